@@ -1,0 +1,100 @@
+#include "calib/camera/pixels.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+std::string Size(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+// Value below which `fraction` of the pixels lie: a few dead or hot pixels must not set the scale.
+float Percentile(const cv::Mat& grey, double fraction) {
+  std::vector<float> values;
+  values.reserve(grey.total() / 7 + 1);
+  for (std::size_t i = 0; i < grey.total(); i += 7) {
+    values.push_back(
+        grey.at<float>(static_cast<int>(i) / grey.cols, static_cast<int>(i) % grey.cols));
+  }
+  const auto nth = values.begin() +
+                   static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+}  // namespace
+
+cv::Mat Stretch(const cv::Mat& grey) {
+  const float low = Percentile(grey, 0.01);
+  const float high = std::max(Percentile(grey, 0.99), low + 1e-3F);
+  cv::Mat out;
+  grey.convertTo(out, CV_8U, 255.0 / (high - low), -255.0 * low / (high - low));
+  return out;
+}
+
+void CheckImage(const CameraSpec& camera, const Image& image) {
+  const std::string where = "image of camera \"" + camera.name + "\": ";
+  if (image.pixels.cols != camera.width || image.pixels.rows != camera.height) {
+    throw InputError(where + "size is " + Size(image.pixels.cols, image.pixels.rows) +
+                     ", the rig file says " + Size(camera.width, camera.height));
+  }
+  if (camera.kind == CameraKind::kThermal && image.pixels.channels() != 1) {
+    throw InputError(where + "a thermal image has one channel, this one has " +
+                     std::to_string(image.pixels.channels()) +
+                     "; save counts, not a coloured picture");
+  }
+}
+
+cv::Mat ToBgr(const Image& image) {
+  cv::Mat out;
+  switch (image.format) {
+    case PixelFormat::kMono8:
+      cv::cvtColor(image.pixels, out, cv::COLOR_GRAY2BGR);
+      return out;
+    case PixelFormat::kMono16: {
+      cv::Mat grey;
+      image.pixels.convertTo(grey, CV_32F);
+      cv::cvtColor(Stretch(grey), out, cv::COLOR_GRAY2BGR);
+      return out;
+    }
+    // OpenCV names a mosaic by its second row's second and third pixel: its BG is GenICam's RG.
+    case PixelFormat::kBayerRg8:
+      cv::cvtColor(image.pixels, out, cv::COLOR_BayerBG2BGR);
+      return out;
+    case PixelFormat::kBayerGr8:
+      cv::cvtColor(image.pixels, out, cv::COLOR_BayerGB2BGR);
+      return out;
+    case PixelFormat::kBayerGb8:
+      cv::cvtColor(image.pixels, out, cv::COLOR_BayerGR2BGR);
+      return out;
+    case PixelFormat::kBayerBg8:
+      cv::cvtColor(image.pixels, out, cv::COLOR_BayerRG2BGR);
+      return out;
+    case PixelFormat::kBgr8:
+      return image.pixels;
+    case PixelFormat::kJpeg:
+    case PixelFormat::kPng:
+      break;
+  }
+  throw InputError("image of camera \"" + image.camera + "\": compressed pixels were not decoded");
+}
+
+cv::Mat ToGrey(const Image& image) {
+  cv::Mat out;
+  if (image.format == PixelFormat::kMono8 || image.format == PixelFormat::kMono16) {
+    image.pixels.convertTo(out, CV_32F);
+    return out;
+  }
+  cv::Mat grey;
+  cv::cvtColor(ToBgr(image), grey, cv::COLOR_BGR2GRAY);
+  grey.convertTo(out, CV_32F);
+  return out;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+#include "calib/model/image.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// Throws InputError, with both values, for an image of another size or kind than the rig says.
+void CheckImage(const CameraSpec& camera, const Image& image);
+
+/// Grey values of any image as CV_32FC1 in the image's own units (DN or counts). A mosaic is
+/// demosaiced first. Throws InputError for pixels that were not decompressed.
+cv::Mat ToGrey(const Image& image);
+
+/// A colour picture of any image, CV_8UC3 BGR: a mosaic demosaiced, 16-bit counts stretched.
+/// Throws InputError for pixels that were not decompressed.
+cv::Mat ToBgr(const Image& image);
+
+/// CV_32FC1 to CV_8UC1 between the 1st and the 99th percentile: a few dead or hot pixels do not set
+/// the scale.
+cv::Mat Stretch(const cv::Mat& grey);
+
+}  // namespace rgbdt

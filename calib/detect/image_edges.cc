@@ -1,0 +1,306 @@
+#include "calib/detect/image_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/camera/pixels.h"
+#include "calib/detect/checkerboard.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr int kBandHalf = 2;  // a 5x5 window (paper II-A.1)
+
+using Corners = std::array<Eigen::Vector2d, 4>;
+using Directions = std::array<Eigen::Vector3d, 4>;  // camera axes; a side joins two of them
+using Chain = std::vector<Eigen::Vector2d>;
+
+std::string Text(const Eigen::Vector2d& p) {
+  return "(" + std::to_string(std::lround(p.x())) + ", " + std::to_string(std::lround(p.y())) + ")";
+}
+
+// Points at which a pixel's view cuts the plane z = 1, camera axes.
+std::optional<std::vector<cv::Point2d>> Normalised(const Camera& camera, const Chain& pixels) {
+  std::vector<cv::Point2d> out;
+  for (const Eigen::Vector2d& pixel : pixels) {
+    const auto direction = camera.Unproject(pixel);
+    if (!direction || direction->z() < 1e-3) return std::nullopt;
+    out.emplace_back(direction->x() / direction->z(), direction->y() / direction->z());
+  }
+  return out;
+}
+
+// The board's outline corners in camera axes, from its inner corners in the image.
+std::optional<Directions> OutlineFromInnerCorners(const Camera& camera, const Target& target,
+                                                  const Chain& inner) {
+  const auto points = Normalised(camera, inner);
+  if (!points) return std::nullopt;
+  std::vector<cv::Point3d> model;
+  for (const Eigen::Vector3d& c : target.InnerCorners()) model.emplace_back(c.x(), c.y(), c.z());
+  cv::Vec3d rotation;
+  cv::Vec3d translation;
+  const cv::Matx33d identity = cv::Matx33d::eye();
+  if (!cv::solvePnP(model, *points, identity, cv::noArray(), rotation, translation, false,
+                    cv::SOLVEPNP_IPPE)) {
+    return std::nullopt;
+  }
+  cv::solvePnPRefineLM(model, *points, identity, cv::noArray(), rotation, translation);
+  cv::Matx33d r;
+  cv::Rodrigues(rotation, r);
+  const auto corners = target.OutlineCorners();
+  Directions out;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const cv::Vec3d p = r * cv::Vec3d(corners[i].x(), corners[i].y(), corners[i].z()) + translation;
+    out[i] = {p[0], p[1], p[2]};
+  }
+  return out;
+}
+
+// Picks in order round the board, not crossing.
+std::string WhyNotAQuadrangle(const Corners& c) {
+  int turns = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d a = c[(i + 1) % 4] - c[i];
+    const Eigen::Vector2d b = c[(i + 2) % 4] - c[(i + 1) % 4];
+    if (a.norm() < 3) {
+      return "picked corners " + Text(c[i]) + " and " + Text(c[(i + 1) % 4]) +
+             " are the same point; pick four different corners";
+    }
+    turns += a.x() * b.y() - a.y() * b.x() > 0 ? 1 : -1;
+  }
+  if (std::abs(turns) != 4) return "picked corners do not go round the board; pick them in order";
+  return "";
+}
+
+// Where inner corners are, when only the outline is known: the same fractions of the board.
+std::optional<Chain> InnerFromOutline(const Camera& camera, const Target& target,
+                                      const Directions& outline) {
+  std::vector<cv::Point2f> quadrangle;
+  for (const Eigen::Vector3d& d : outline) {
+    quadrangle.emplace_back(static_cast<float>(d.x() / d.z()), static_cast<float>(d.y() / d.z()));
+  }
+  const std::vector<cv::Point2f> unit = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<cv::Point2f> inner;
+  for (const Eigen::Vector3d& c : target.InnerCorners()) {
+    inner.emplace_back(static_cast<float>(c.x() / target.width_m + 0.5),
+                       static_cast<float>(c.y() / target.height_m + 0.5));
+  }
+  std::vector<cv::Point2f> seen;
+  cv::perspectiveTransform(inner, seen, cv::getPerspectiveTransform(unit, quadrangle));
+  Chain out;
+  for (const cv::Point2f& p : seen) {
+    const auto pixel = camera.Project({p.x, p.y, 1.0});
+    if (!pixel) return std::nullopt;
+    out.push_back(*pixel);
+  }
+  return out;
+}
+
+struct Gradient {
+  cv::Mat x, y;       // CV_32F, Sobel
+  cv::Mat magnitude;  // CV_32F
+  float threshold = 0;
+};
+
+// Sobel, and the threshold that Matlab's edge(I, 'sobel') takes: magnitude^2 > 4 mean(magnitude^2).
+Gradient SobelOf(const cv::Mat& grey) {
+  Gradient g;
+  cv::Sobel(grey, g.x, CV_32F, 1, 0);
+  cv::Sobel(grey, g.y, CV_32F, 0, 1);
+  cv::magnitude(g.x, g.y, g.magnitude);
+  const double rms =
+      cv::norm(g.magnitude, cv::NORM_L2) / std::sqrt(static_cast<double>(g.magnitude.total()));
+  g.threshold = static_cast<float>(2.0 * rms);
+  return g;
+}
+
+// A side as a chain of pixels about half a pixel apart.
+Chain SideOf(const Camera& camera, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const auto a = camera.Project(from);
+  const auto b = camera.Project(to);
+  if (!a || !b) return {};
+  const int pieces = std::clamp(static_cast<int>(2 * (*b - *a).norm()), 8, 20000);
+  return ProjectSegment(camera, from, to, pieces);
+}
+
+std::vector<Eigen::Vector2i> EdgePixelsIn(const std::array<Chain, 4>& sides, const Gradient& g) {
+  cv::Mat band = cv::Mat::zeros(g.magnitude.size(), CV_8U);
+  const cv::Rect image(0, 0, band.cols, band.rows);
+  for (const Chain& side : sides) {
+    for (const Eigen::Vector2d& p : side) {
+      const cv::Rect window(static_cast<int>(std::lround(p.x())) - kBandHalf,
+                            static_cast<int>(std::lround(p.y())) - kBandHalf, 2 * kBandHalf + 1,
+                            2 * kBandHalf + 1);
+      const cv::Rect inside = window & image;
+      if (!inside.empty()) band(inside).setTo(255);
+    }
+  }
+  std::vector<Eigen::Vector2i> pixels;
+  for (int y = 0; y < band.rows; ++y) {
+    for (int x = 0; x < band.cols; ++x) {
+      if (band.at<std::uint8_t>(y, x) != 0 && g.magnitude.at<float>(y, x) > g.threshold) {
+        pixels.emplace_back(x, y);
+      }
+    }
+  }
+  return pixels;
+}
+
+float Bilinear(const cv::Mat& m, const Eigen::Vector2d& p) {
+  const int x = static_cast<int>(std::floor(p.x()));
+  const int y = static_cast<int>(std::floor(p.y()));
+  if (x < 0 || y < 0 || x + 1 >= m.cols || y + 1 >= m.rows) return 0;
+  const auto fx = static_cast<float>(p.x() - x);
+  const auto fy = static_cast<float>(p.y() - y);
+  const float top = (1 - fx) * m.at<float>(y, x) + fx * m.at<float>(y, x + 1);
+  const float bottom = (1 - fx) * m.at<float>(y + 1, x) + fx * m.at<float>(y + 1, x + 1);
+  return (1 - fy) * top + fy * bottom;
+}
+
+// Offset [px] along `normal` of the steepest gradient near `p`, by a parabola through the peak.
+std::optional<double> EdgeOffset(const Gradient& g, const Eigen::Vector2d& p,
+                                 const Eigen::Vector2d& normal) {
+  constexpr double kReach = 3.0;
+  constexpr double kStep = 0.5;
+  constexpr int kSteps = static_cast<int>(2 * kReach / kStep);
+  std::array<double, kSteps + 1> steepness;
+  for (int i = 0; i <= kSteps; ++i) {
+    const Eigen::Vector2d at = p + (i * kStep - kReach) * normal;
+    steepness[static_cast<std::size_t>(i)] =
+        std::abs(Bilinear(g.x, at) * normal.x() + Bilinear(g.y, at) * normal.y());
+  }
+  const auto best = std::max_element(steepness.begin(), steepness.end());
+  if (best == steepness.begin() || best == steepness.end() - 1 || *best < g.threshold) {
+    return std::nullopt;
+  }
+  const double curvature = best[-1] - 2 * best[0] + best[1];
+  const double shift = curvature < 0 ? 0.5 * (best[-1] - best[1]) / curvature : 0;
+  return (static_cast<double>(best - steepness.begin()) + shift) * kStep - kReach;
+}
+
+// The side moved and turned onto the image's edge: offset = a + b t, t from -1 to 1, by iteratively
+// reweighted least squares. A side whose edge is seen along less than a third of it stays.
+Chain FitSide(const Chain& side, const Gradient& g) {
+  struct Sample {
+    double t, offset;
+  };
+  std::vector<Sample> samples;
+  const std::size_t n = side.size();
+  const auto normal_at = [&](std::size_t i) {
+    const Eigen::Vector2d along = side[std::min(i + 1, n - 1)] - side[i == 0 ? 0 : i - 1];
+    return Eigen::Vector2d(-along.y(), along.x()).normalized();
+  };
+  const auto t_at = [&](std::size_t i) {
+    return 2.0 * static_cast<double>(i) / static_cast<double>(n - 1) - 1.0;
+  };
+  if (n < 24) return side;
+  std::size_t tried = 0;
+  for (std::size_t i = n / 12; i < n - n / 12; i += 2) {  // the corners are another side's, too
+    ++tried;
+    const auto offset = EdgeOffset(g, side[i], normal_at(i));
+    if (offset) samples.push_back({t_at(i), *offset});
+  }
+  if (samples.size() < 8 || samples.size() * 3 < tried) return side;
+  double a = 0;
+  double b = 0;
+  for (int iteration = 0; iteration < 15; ++iteration) {
+    Eigen::Matrix2d h = 1e-9 * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d r = Eigen::Vector2d::Zero();
+    for (const Sample& s : samples) {
+      const double residual = s.offset - a - b * s.t;
+      const double weight = iteration == 0 ? 1 : 1 / (1 + residual * residual / 0.04);  // Cauchy
+      const Eigen::Vector2d j(1, s.t);
+      h += weight * j * j.transpose();
+      r += weight * s.offset * j;
+    }
+    const Eigen::Vector2d solution = h.ldlt().solve(r);
+    a = solution.x();
+    b = solution.y();
+  }
+  Chain fitted;
+  fitted.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) fitted.push_back(side[i] + (a + b * t_at(i)) * normal_at(i));
+  return fitted;
+}
+
+struct Located {
+  Directions outline;
+  Chain inner;
+  std::string why;
+};
+
+Located FromPicks(const Camera& camera, const Target& target, const Corners& picks) {
+  Located located;
+  located.why = WhyNotAQuadrangle(picks);
+  if (!located.why.empty()) return located;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto direction = camera.Unproject(picks[i]);
+    if (!camera.Contains(picks[i]) || !direction || direction->z() < 1e-3) {
+      located.why = "picked corner " + Text(picks[i]) + " lies outside the image";
+      return located;
+    }
+    located.outline[i] = *direction / direction->z();
+  }
+  const auto inner = InnerFromOutline(camera, target, located.outline);
+  if (!inner) {
+    located.why = "picked corners do not fit a board";
+    return located;
+  }
+  located.inner = *inner;
+  return located;
+}
+
+Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target) {
+  Located located;
+  const auto inner = FindCheckerboard(grey, target);
+  if (!inner) {
+    located.why = "no checkerboard of " + std::to_string(target.corners_x()) + " x " +
+                  std::to_string(target.corners_y()) +
+                  " inner corners in the image; is the whole board in view, sharp, with contrast?";
+    return located;
+  }
+  located.inner = *inner;
+  const auto outline = OutlineFromInnerCorners(camera, target, *inner);
+  if (!outline) {
+    located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+    return located;
+  }
+  located.outline = *outline;
+  return located;
+}
+
+}  // namespace
+
+ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
+                                  const CornerSelection* picks) {
+  const cv::Mat grey = ToGrey(image);
+  const Located located = picks != nullptr ? FromPicks(camera, target, picks->corners)
+                                           : FromCheckerboard(grey, camera, target);
+  if (!located.why.empty()) return {std::nullopt, located.why};
+
+  ImageEdges edges;
+  edges.width = image.pixels.cols;
+  edges.height = image.pixels.rows;
+  edges.picked = picks != nullptr;
+  edges.corners = located.inner;
+  const Gradient gradient = SobelOf(grey);
+  std::array<Chain, 4> sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto corner = camera.Project(located.outline[i]);
+    sides[i] = SideOf(camera, located.outline[i], located.outline[(i + 1) % 4]);
+    if (!corner || sides[i].size() < 2) return {std::nullopt, "an outline corner cannot be seen"};
+    edges.outline_corners[i] = *corner;
+    const Chain fitted = FitSide(sides[i], gradient);
+    // Every few pixels is enough: the chain is straight but for the lens.
+    for (std::size_t k = 0; k < fitted.size(); k += 8) edges.outline.push_back(fitted[k]);
+  }
+  edges.edge_pixels = EdgePixelsIn(sides, gradient);
+  if (edges.edge_pixels.empty()) {
+    return {std::nullopt, "no edge of the board stands out in the image; more contrast is needed"};
+  }
+  return {edges, ""};
+}
+
+}  // namespace rgbdt

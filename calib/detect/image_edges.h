@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib/camera/camera.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// Edges or the reason why there are none.
+struct ImageEdgesResult {
+  std::optional<ImageEdges> edges;
+  std::string why;
+};
+
+/// The target's edges in an image (paper II-A.1): Sobel edges within a 5x5 window of the four lines
+/// that join the outline corners. The corners are a person's picks, or, without any, follow from
+/// the detected inner corners and the board's known size. A line is straight in space: it bends in
+/// the image as the lens bends it (the paper assumes no distortion).
+ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
+                                  const CornerSelection* picks);
+
+}  // namespace rgbdt

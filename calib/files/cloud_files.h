@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calib/model/cloud.h"
+#include "calib/model/rgbdt_cloud.h"
+
+namespace rgbdt {
+
+/// Reads a PCD file (ASCII, binary or binary_compressed). Fields, each of any numeric type:
+///  - x y z [m], required. Not finite, or all three 0 (as many drivers write it): nothing returned.
+///  - intensity; where the file's largest is above 1, 0..255 (or, above 255, 0..65535) is brought
+///    to 0..1.
+///  - ring.
+///  - utime [us, UTC], or timestamp or time [s], or t [ns]; the last three count from
+///    `sweep_utime` unless they are themselves times since 1970.
+///  - line, beam: the place in an organised cloud. Without them an organised cloud is HEIGHT lines
+///    of WIDTH beams; HEIGHT 1 is a cloud without order.
+///  - dir_x dir_y dir_z: unit vector of the beam; origin_x origin_y origin_z [m]: where it starts.
+/// What the file does not have stays empty. Throws InputError naming the file, and where it is cut
+/// short, inconsistent, without x y z or without a single point that returned.
+Cloud ReadPcd(const std::filesystem::path& path, Utime sweep_utime = 0);
+
+/// The same from bytes; `where` stands for the file in error messages.
+Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_utime = 0);
+
+/// Writes a binary PCD with the fields above, bit for bit what ReadPcd gives back; only those that
+/// the cloud has. Throws InputError for a cloud that is empty or whose vectors differ in length.
+void WritePcd(const std::filesystem::path& path, const Cloud& cloud);
+
+/// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us], temperature [K],
+/// thermal_counts, valid (bit i: camera i saw the point).
+void WritePcd(const std::filesystem::path& path, const RgbdtCloud& cloud);
+
+/// Writes a binary little-endian PLY: x y z [m], red green blue, intensity, temperature [K],
+/// thermal_counts, valid.
+void WritePly(const std::filesystem::path& path, const RgbdtCloud& cloud);
+
+}  // namespace rgbdt

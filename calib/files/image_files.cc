@@ -1,0 +1,103 @@
+#include "calib/files/image_files.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/files/atomic_file.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+std::string Describe(const cv::Mat& image) {
+  static const char* const kDepths[] = {"8-bit",          "signed 8-bit", "16-bit",
+                                        "signed 16-bit",  "signed 32-bit", "32-bit float",
+                                        "64-bit float",   "16-bit float"};
+  return std::to_string(image.channels()) + "-channel " + kDepths[image.depth()];
+}
+
+int TypeOf(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono16: return CV_16UC1;
+    case PixelFormat::kBgr8: return CV_8UC3;
+    case PixelFormat::kJpeg:
+    case PixelFormat::kPng: return -1;
+    default: return CV_8UC1;
+  }
+}
+
+}  // namespace
+
+cv::Mat DecodeImageFile(const std::filesystem::path& path) {
+  return DecodeImage(ReadWholeFile(path), path.string());
+}
+
+cv::Mat DecodeImage(const std::string& bytes, const std::string& where) {
+  if (bytes.empty()) throw InputError(where + " is empty; expected an image");
+  cv::Mat image;
+  std::string reason = "damaged, cut short or of an unknown format";
+  try {
+    const cv::Mat view(1, static_cast<int>(bytes.size()), CV_8UC1,
+                       const_cast<char*>(bytes.data()));
+    image = cv::imdecode(view, cv::IMREAD_UNCHANGED);
+  } catch (const std::exception& error) {  // cv::Exception or bad_alloc (a forged size)
+    reason = error.what();
+  }
+  if (image.empty()) throw InputError(where + " cannot be decoded as an image: " + reason);
+  return image;
+}
+
+std::string EncodePng(const cv::Mat& pixels, int compression) {
+  const int depth = pixels.depth();
+  const int channels = pixels.channels();
+  if (pixels.empty() || (depth != CV_8U && depth != CV_16U) || (channels != 1 && channels != 3)) {
+    throw InputError(
+        "cannot write a PNG of a " + std::to_string(pixels.cols) + "x" +
+        std::to_string(pixels.rows) + " image of OpenCV type " + std::to_string(pixels.type()) +
+        "; expected 8 or 16 bit with 1 or 3 channels");
+  }
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, compression})) {
+    throw InputError("OpenCV could not encode the image as PNG");
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
+void WritePng(const std::filesystem::path& path, const cv::Mat& pixels) {
+  WriteFileAtomically(path, EncodePng(pixels));
+}
+
+PixelFormat FormatOf(PixelFormat told, cv::Mat* decoded) {
+  if (decoded->type() == CV_8UC4) {
+    cv::Mat bgr;
+    cv::cvtColor(*decoded, bgr, cv::COLOR_BGRA2BGR);
+    *decoded = bgr;
+  }
+  if (told != PixelFormat{}) {
+    if (TypeOf(told) == decoded->type()) return told;
+    throw InputError("is a " + Describe(*decoded) + " image, which is not " + NameOf(told));
+  }
+  for (const PixelFormat format :
+       {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kBgr8}) {
+    if (TypeOf(format) == decoded->type()) return format;
+  }
+  throw InputError("is a " + Describe(*decoded) +
+                   " image; expected 8-bit grey, Bayer mosaic or colour, or 16-bit grey");
+}
+
+std::string NameOf(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kMono8: return "MONO8";
+    case PixelFormat::kMono16: return "MONO16";
+    case PixelFormat::kBayerRg8: return "BAYER_RG8";
+    case PixelFormat::kBayerGr8: return "BAYER_GR8";
+    case PixelFormat::kBayerGb8: return "BAYER_GB8";
+    case PixelFormat::kBayerBg8: return "BAYER_BG8";
+    case PixelFormat::kBgr8: return "BGR8";
+    case PixelFormat::kJpeg: return "JPEG";
+    case PixelFormat::kPng: return "PNG";
+  }
+  return "pixel format " + std::to_string(static_cast<int>(format));
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+#include "calib/model/image.h"
+
+namespace rgbdt {
+
+/// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
+/// rotation by EXIF. Throws InputError naming the file where it cannot be read or decoded.
+cv::Mat DecodeImageFile(const std::filesystem::path& path);
+
+/// The same from bytes, e.g. of an image message of the format kJpeg or kPng; `where` stands for
+/// the file in the error message.
+cv::Mat DecodeImage(const std::string& bytes, const std::string& where);
+
+/// `pixels` (8 or 16 bit; 1 or 3 channels) as the bytes of a PNG. `compression` 0 to 9; the default
+/// is for speed: a raw camera image is mostly noise, and more takes seconds to save little.
+std::string EncodePng(const cv::Mat& pixels, int compression = 1);
+
+/// EncodePng into a file, atomically.
+void WritePng(const std::filesystem::path& path, const cv::Mat& pixels);
+
+/// What `decoded` is: kMono8, kMono16 or kBgr8 by its type, or `told` where that fits the type (a
+/// raw mosaic is a grey image of which only the writer knows the pattern). Turns BGRA into BGR.
+/// Throws InputError where the type is none of these or contradicts `told`; 0 is "not told".
+PixelFormat FormatOf(PixelFormat told, cv::Mat* decoded);
+
+/// BAYER_RG8 and so on, as the schemas name it.
+std::string NameOf(PixelFormat format);
+
+}  // namespace rgbdt

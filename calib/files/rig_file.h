@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// Reads and checks a rig.textproto (schema: calib/files/proto/rig.proto). `text` and `hash` of the
+/// result are the file's. Throws InputError with file, line and key.
+Rig ReadRig(const std::filesystem::path& path);
+
+/// The same from text, as it comes over the bus; `where` stands for the file in error messages.
+Rig ParseRig(const std::string& text, const std::string& where);
+
+/// The rig as rig.textproto, full precision; `text` and `hash` are not looked at.
+std::string PrintRig(const Rig& rig);
+
+/// What stands in Rig::hash: FNV-1a, 64 bit, 16 hexadecimal digits.
+std::string HashOfRigText(const std::string& text);
+
+}  // namespace rgbdt

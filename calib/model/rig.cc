@@ -1,0 +1,119 @@
+#include "calib/model/rig.h"
+
+#include <cctype>
+#include <set>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+void Require(bool good, const std::string& field, const std::string& value,
+             const std::string& expected) {
+  if (!good) throw InputError("rig: " + field + " is " + value + "; expected " + expected);
+}
+
+void RequirePositive(double value, const std::string& field) {
+  Require(std::isfinite(value) && value > 0, field, std::to_string(value), "a positive number");
+}
+
+void CheckName(const std::string& name, const std::string& field) {
+  bool good = !name.empty() && name.size() <= 32;
+  for (const char c : name) {
+    good &= std::islower(static_cast<unsigned char>(c)) != 0 ||
+            std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '_';
+  }
+  Require(good, field, "\"" + name + "\"", "1 to 32 of a-z, 0-9 and _");
+}
+
+void CheckCamera(const CameraSpec& camera) {
+  CheckName(camera.name, "camera.name");
+  const std::string field = "camera \"" + camera.name + "\": ";
+  Require(camera.width > 0 && camera.width <= 20000, field + "width", std::to_string(camera.width),
+          "1 to 20000 px");
+  Require(camera.height > 0 && camera.height <= 20000, field + "height",
+          std::to_string(camera.height), "1 to 20000 px");
+  RequirePositive(camera.lens.fx, field + "lens.fx");
+  RequirePositive(camera.lens.fy, field + "lens.fy");
+  Require(std::isfinite(camera.lens.cx), field + "lens.cx", std::to_string(camera.lens.cx),
+          "a finite number");
+  Require(std::isfinite(camera.lens.cy), field + "lens.cy", std::to_string(camera.lens.cy),
+          "a finite number");
+  for (const double k : camera.lens.distortion) {
+    Require(std::isfinite(k), field + "lens.distortion", std::to_string(k), "finite numbers");
+  }
+  Require(camera.readout_s >= 0, field + "readout_s", std::to_string(camera.readout_s),
+          "0 or more seconds");
+  const bool sixteen_bit = camera.format == PixelFormat::kMono16;
+  Require(camera.kind == CameraKind::kThermal || !sixteen_bit, field + "pixel format", "MONO16",
+          "a colour or 8-bit format for a camera of kind COLOR");
+}
+
+void CheckTarget(const Target& target) {
+  Require(target.squares_x >= 3 && target.squares_x <= 100, "target.squares_x",
+          std::to_string(target.squares_x), "3 to 100");
+  Require(target.squares_y >= 3 && target.squares_y <= 100, "target.squares_y",
+          std::to_string(target.squares_y), "3 to 100");
+  RequirePositive(target.square_m, "target.square_m");
+  RequirePositive(target.width_m, "target.width_m");
+  RequirePositive(target.height_m, "target.height_m");
+  const double half_x =
+      0.5 * target.squares_x * target.square_m + std::abs(target.pattern_offset_m.x());
+  const double half_y =
+      0.5 * target.squares_y * target.square_m + std::abs(target.pattern_offset_m.y());
+  Require(half_x <= 0.5 * target.width_m + 1e-6, "target.width_m", std::to_string(target.width_m),
+          "at least the pattern's width " + std::to_string(2 * half_x) + " m");
+  Require(half_y <= 0.5 * target.height_m + 1e-6, "target.height_m",
+          std::to_string(target.height_m),
+          "at least the pattern's height " + std::to_string(2 * half_y) + " m");
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> Target::InnerCorners() const {
+  std::vector<Eigen::Vector3d> corners;
+  corners.reserve(static_cast<std::size_t>(corners_x() * corners_y()));
+  for (int row = 0; row < corners_y(); ++row) {
+    for (int column = 0; column < corners_x(); ++column) {
+      corners.emplace_back(pattern_offset_m.x() + (column - 0.5 * (corners_x() - 1)) * square_m,
+                           pattern_offset_m.y() + (row - 0.5 * (corners_y() - 1)) * square_m, 0.0);
+    }
+  }
+  return corners;
+}
+
+std::array<Eigen::Vector3d, 4> Target::OutlineCorners() const {
+  const double x = 0.5 * width_m;
+  const double y = 0.5 * height_m;
+  return {Eigen::Vector3d(-x, -y, 0), Eigen::Vector3d(x, -y, 0), Eigen::Vector3d(x, y, 0),
+          Eigen::Vector3d(-x, y, 0)};
+}
+
+void Rig::Check() const {
+  Require(!cameras.empty() && cameras.size() <= 32, "number of cameras",
+          std::to_string(cameras.size()), "1 to 32");
+  std::set<std::string> names;
+  for (const CameraSpec& camera : cameras) {
+    CheckCamera(camera);
+    Require(names.insert(camera.name).second, "camera.name", "\"" + camera.name + "\" twice",
+            "a name of its own for each camera");
+  }
+  if (lidar.turned_scanner) {
+    const double ticks = lidar.turned_scanner->ticks_per_rad;
+    Require(std::isfinite(ticks) && ticks != 0, "lidar.turned_scanner.ticks_per_degree",
+            std::to_string(ticks), "a number other than zero (negative: turns the other way)");
+  }
+  RequirePositive(lidar.range_sigma_m, "lidar.range_sigma_m");
+  CheckTarget(target);
+}
+
+const CameraSpec& Rig::Camera(const std::string& camera_name) const {
+  std::string names;
+  for (const CameraSpec& camera : cameras) {
+    if (camera.name == camera_name) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  throw InputError("the rig has no camera \"" + camera_name + "\"; it has: " + names);
+}
+
+}  // namespace rgbdt

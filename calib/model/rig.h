@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/image.h"
+#include "calib/model/rigid3.h"
+
+namespace rgbdt {
+
+enum class CameraKind { kColor = 1, kThermal = 2 };
+
+/// Lens parameters, OpenCV's order and meaning. Pixel centres at integer coordinates.
+struct Lens {
+  enum class Model {
+    kPinhole,  ///< distortion k1 k2 p1 p2 k3 [k4 k5 k6]; unused ones 0
+    kFisheye,  ///< equidistant, distortion k1 k2 k3 k4
+  };
+  Model model = Model::kPinhole;
+  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
+  std::array<double, 8> distortion{};
+};
+
+struct CameraSpec {
+  std::string name;  ///< lower case; the channel is its upper case + "_IMAGE"
+  CameraKind kind = CameraKind::kColor;
+  int width = 0, height = 0;  ///< [px]
+  PixelFormat format = PixelFormat::kBgr8;
+  Lens lens;
+  Radiometry radiometry;  ///< thermal; used where an image brings none
+  double readout_s = 0;   ///< D: read-out and transfer time; an image serves points from utime + D
+  double netd_k = 0;      ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
+  std::optional<Rigid3> camera_from_lidar_guess;  ///< measured by hand
+};
+
+/// A 2D scanner on a motor. LIDAR frame: the motor's base, motor axis z, at encoder zero x forward.
+/// point_in_lidar = Rz(angle) * motor_from_scanner * (r cos a, 0, r sin a).
+struct TurnedScanner {
+  Rigid3 motor_from_scanner;
+  double ticks_per_rad = 0;
+  double zero_ticks = 0;  ///< reading at which the motor's angle is zero
+};
+
+struct LidarSpec {
+  std::string name;
+  std::optional<TurnedScanner> turned_scanner;  ///< absent: the sensor gives 3D clouds itself
+  double range_sigma_m = 0.01;
+};
+
+/// The checkerboard. Target frame: origin in the board's centre, x to the right along the width,
+/// y down, z away from who looks at it; the printed side is z = 0.
+struct Target {
+  int squares_x = 0, squares_y = 0;        ///< along width and height; inner corners: one fewer
+  double square_m = 0;                     ///< side of a square
+  double width_m = 0, height_m = 0;        ///< of the whole board, border included
+  Eigen::Vector2d pattern_offset_m{0, 0};  ///< pattern's centre minus board's centre
+
+  int corners_x() const { return squares_x - 1; }
+  int corners_y() const { return squares_y - 1; }
+  /// Inner corners, row by row from the top left, target frame [m]; corners_x() * corners_y().
+  std::vector<Eigen::Vector3d> InnerCorners() const;
+  /// The board's corners: top left, top right, bottom right, bottom left; target frame [m].
+  std::array<Eigen::Vector3d, 4> OutlineCorners() const;
+};
+
+struct Rig {
+  std::string name;
+  LidarSpec lidar;
+  std::vector<CameraSpec> cameras;
+  Target target;
+  std::string text;  ///< the rig file as read: what the bus carries
+  std::string hash;  ///< of the text; a calibration names the rig it was made with
+
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+  /// Throws InputError with the names that there are.
+  const CameraSpec& Camera(const std::string& camera_name) const;
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace rgbdt {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// A rigid motion named `a_from_b`: point_in_a = a_from_b * point_in_b. Metres.
+struct Rigid3 {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const {
+    return rotation * point + translation;
+  }
+  Rigid3 operator*(const Rigid3& b_from_c) const {
+    return {(rotation * b_from_c.rotation).normalized(),
+            rotation * b_from_c.translation + translation};
+  }
+  Rigid3 Inverse() const {
+    const Eigen::Quaterniond inverse = rotation.conjugate();
+    return {inverse, -(inverse * translation)};
+  }
+};
+
+/// The exponential map of SE(3): delta = (rx, ry, rz [rad], tx, ty, tz [m]).
+/// A calibration's error is defined by camera_from_lidar = Exp(delta) * estimate.
+Rigid3 Exp(const Vector6d& delta);
+
+/// The inverse of Exp for rotations below 180 degrees.
+Vector6d Log(const Rigid3& motion);
+
+/// Rotation about one axis by `angle` [rad], no translation.
+Rigid3 RotationAbout(const Eigen::Vector3d& axis, double angle);
+
+/// Angle of the rotation between two poses [rad], 0 to pi.
+double RotationDistance(const Rigid3& a, const Rigid3& b);
+
+/// Distance [m] between the camera centres of two `camera_from_lidar`, in the LIDAR frame.
+double CentreDistance(const Rigid3& camera_from_lidar_a, const Rigid3& camera_from_lidar_b);
+
+}  // namespace rgbdt

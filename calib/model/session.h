@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/model/rigid3.h"
+#include "calib/model/time.h"
+
+namespace rgbdt {
+
+enum class SessionVerb {
+  kNextPose = 1,  ///< put the board where the next view wants it
+  kSweep = 2,     ///< turn the scanner once
+  kCapture = 3,   ///< take this sweep and the cameras' next images as a view
+  kSolve = 4,     ///< calibrate from all observations so far
+  kEvaluate = 5,  ///< judge the calibration on the held-out views
+  kReset = 6,     ///< forget all observations: a new session begins
+};
+
+/// What the session asks of everybody. Who is concerned answers with events of the same command.
+struct SessionCommand {
+  std::int64_t command = 0;  ///< its number: unique and growing within a session
+  std::int64_t seq = 0;
+  Utime utime = 0;  ///< newest sensor time that the session knew; 0 before the first
+  SessionVerb verb = SessionVerb::kReset;
+  std::string view;                         ///< next_pose, sweep, capture: name of the view
+  Utime sweep_utime = 0;                    ///< capture: the sweep
+  bool heldout = false;                     ///< capture
+  std::vector<std::string> picked_cameras;  ///< capture: where a person picks the corners
+};
+
+enum class EventKind { kProgress = 1, kDone = 2, kFailed = 3 };
+
+struct SessionEvent {
+  std::int64_t command = 0;  ///< which command this answers
+  std::int64_t seq = 0;
+  Utime utime = 0;
+  std::string source;  ///< process
+  EventKind kind = EventKind::kDone;
+  std::string text;       ///< for a person; with kFailed what, where and what to do
+  Utime sweep_utime = 0;  ///< sweep done: its name
+  double fraction = 0;    ///< progress, 0 to 1
+};
+
+/// Health of a process; sent at 1 Hz and when something happens.
+struct Status {
+  std::string process;
+  std::int64_t seq = 0;
+  Utime utime = 0;
+  bool ready = false;
+  std::string text;                                            ///< what it does or waits for
+  std::string last_problem;                                    ///< newest thing dropped, and why
+  std::vector<std::pair<std::string, std::int64_t>> counters;  ///< received, dropped, gaps, ...
+};
+
+/// The rig file as it travels.
+struct RigText {
+  std::int64_t seq = 0;
+  std::string hash;
+  std::string text;
+};
+
+/// The report as it travels: a `Report` (calib/files) as JSON.
+struct ReportText {
+  std::int64_t seq = 0;
+  Utime utime = 0;
+  std::string json;
+};
+
+/// Where the rig is: point_in_map = map_from_lidar * point_in_lidar.
+struct StampedPose {
+  std::int64_t seq = 0;
+  Utime utime = 0;
+  std::string source;
+  Rigid3 map_from_lidar;
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,127 @@
+#include "calib/scan_assembly/assembler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+
+Cloud LineToCloud(const TurnedScanner& scanner, const LineScan& line,
+                  const std::vector<double>& angles) {
+  const std::size_t beams = line.range.size();
+  Cloud cloud;
+  cloud.lines = 1;
+  cloud.beams = static_cast<int>(beams);
+  cloud.points.resize(beams);
+  cloud.directions.resize(beams);
+  cloud.intensity = line.intensity;
+  cloud.utime.resize(beams);
+  cloud.ring.resize(beams);
+  const Eigen::Matrix3d motor_from_scanner = scanner.motor_from_scanner.rotation.toRotationMatrix();
+  const Eigen::Vector3d& lever = scanner.motor_from_scanner.translation;
+  const Eigen::Vector3f nothing =
+      Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < beams; ++i) {
+    const double a = line.first_angle_rad + static_cast<double>(i) * line.angle_step_rad;
+    const double c = std::cos(angles[i]);
+    const double s = std::sin(angles[i]);
+    const auto turned = [&](const Eigen::Vector3d& v) {
+      return Eigen::Vector3d(c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z());
+    };
+    const Eigen::Vector3d direction =
+        turned(motor_from_scanner * Eigen::Vector3d(std::cos(a), 0, std::sin(a)));
+    const Eigen::Vector3d origin = turned(lever);
+    if (i == beams / 2) cloud.origins = {origin.cast<float>()};
+    const float range = line.range[i];
+    cloud.directions[i] = direction.cast<float>();
+    cloud.points[i] = std::isfinite(range)
+                          ? Eigen::Vector3f((origin + range * direction).cast<float>())
+                          : nothing;
+    cloud.utime[i] = line.utime + FromSeconds(static_cast<double>(i) * line.beam_period_s);
+    cloud.ring[i] = static_cast<std::uint16_t>(i);
+  }
+  return cloud;
+}
+
+bool EncoderTrack::Add(const EncoderReading& reading) {
+  if (!readings_.empty() && reading.utime <= readings_.back().utime) return false;
+  readings_.push_back(reading);
+  return true;
+}
+
+namespace {
+
+auto FirstAfter(const std::deque<EncoderReading>& readings, Utime utime) {
+  return std::upper_bound(readings.begin(), readings.end(), utime,
+                          [](Utime t, const EncoderReading& r) { return t < r.utime; });
+}
+
+}  // namespace
+
+std::optional<double> EncoderTrack::AngleAt(const TurnedScanner& scanner, Utime utime,
+                                            Utime max_gap) const {
+  const auto angle = [&](const EncoderReading& r) {
+    return (static_cast<double>(r.ticks) - scanner.zero_ticks) / scanner.ticks_per_rad;
+  };
+  const auto after = FirstAfter(readings_, utime);
+  if (after == readings_.begin()) return std::nullopt;
+  const EncoderReading& before = *std::prev(after);
+  if (before.utime == utime) return angle(before);
+  if (after == readings_.end() || after->utime - before.utime > max_gap) return std::nullopt;
+  const double part =
+      static_cast<double>(utime - before.utime) / static_cast<double>(after->utime - before.utime);
+  return angle(before) + part * (angle(*after) - angle(before));
+}
+
+Utime EncoderTrack::SweepAt(Utime utime) const {
+  const auto after = FirstAfter(readings_, utime);
+  return after == readings_.begin() ? 0 : std::prev(after)->sweep_utime;
+}
+
+void EncoderTrack::ForgetBefore(Utime utime) {
+  while (readings_.size() > 1 && readings_[1].utime <= utime) readings_.pop_front();
+}
+
+namespace {
+
+template <typename T>
+void Append(const std::vector<T>& from, std::vector<T>* to) {
+  to->insert(to->end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
+  std::vector<const Cloud*> parts;
+  for (const CloudChunk& chunk : chunks) {
+    if (!chunk.cloud.points.empty()) parts.push_back(&chunk.cloud);
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Cloud* a, const Cloud* b) { return a->first_line < b->first_line; });
+  Cloud sweep;
+  for (const Cloud* part : parts) {
+    if (sweep.lines > 0 && part->beams != sweep.beams) {
+      throw InputError("a sweep's chunks have " + std::to_string(sweep.beams) + " and " +
+                       std::to_string(part->beams) + " beams per line");
+    }
+    if (sweep.lines == 0) {
+      sweep.sweep_utime = part->sweep_utime;
+      sweep.first_line = part->first_line;
+      sweep.beams = part->beams;
+      sweep.organised = part->organised;
+    }
+    sweep.lines += part->lines;
+    Append(part->points, &sweep.points);
+    Append(part->directions, &sweep.directions);
+    Append(part->origins, &sweep.origins);
+    Append(part->intensity, &sweep.intensity);
+    Append(part->utime, &sweep.utime);
+    Append(part->ring, &sweep.ring);
+  }
+  return sweep;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "calib/model/cloud.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// One line in 3D: point_in_lidar = Rz(angle) * motor_from_scanner * (r cos a, 0, r sin a), with
+/// the motor's angle of each beam (the motor turns while a line is fired). `angles` [rad] is as
+/// long as the line. Misses keep their direction.
+Cloud LineToCloud(const TurnedScanner& scanner, const LineScan& line,
+                  const std::vector<double>& angles);
+
+/// Motor angle over time from encoder readings, interpolated linearly.
+class EncoderTrack {
+ public:
+  /// Readings must come in the order of their times; one that does not is refused (false).
+  bool Add(const EncoderReading& reading);
+
+  /// Angle [rad] at a time between two readings at most `max_gap` apart; nothing otherwise.
+  std::optional<double> AngleAt(const TurnedScanner& scanner, Utime utime, Utime max_gap) const;
+
+  /// The sweep that a time belongs to: that of the newest reading at or before it; 0: none.
+  Utime SweepAt(Utime utime) const;
+
+  /// Newest reading's time; 0 before the first.
+  Utime newest() const { return readings_.empty() ? 0 : readings_.back().utime; }
+
+  /// Forgets what lies before `utime`, but for the last reading before it.
+  void ForgetBefore(Utime utime);
+
+ private:
+  std::deque<EncoderReading> readings_;
+};
+
+/// Puts chunks back together, in the order of their lines. Lines that are missing leave a gap: the
+/// sweep then has fewer lines. Throws InputError where chunks differ in beams per line.
+Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
+
+}  // namespace rgbdt

@@ -1,0 +1,180 @@
+#include "calib/simulate/options.h"
+
+#include <cmath>
+#include <set>
+
+#include "calib/model/errors.h"
+#include "calib/simulate/lens_table.h"
+
+namespace rgbdt::simulate {
+namespace {
+
+void Require(bool good, const std::string& field, double value, const std::string& expected) {
+  if (good) return;
+  throw InputError("simulator: " + field + " is " + std::to_string(value) + "; expected " +
+                   expected);
+}
+
+void Positive(double value, const std::string& field) {
+  Require(std::isfinite(value) && value > 0, field, value, "a positive number");
+}
+
+void NotNegative(double value, const std::string& field) {
+  Require(std::isfinite(value) && value >= 0, field, value, "zero or a positive number");
+}
+
+void Between(double value, double low, double high, const std::string& field) {
+  Require(value >= low && value <= high, field, value,
+          std::to_string(low) + " to " + std::to_string(high));
+}
+
+void Check(const ScannerOptions& o) {
+  Between(o.beams, 2, 10000, "scanner.beams");
+  Between(o.first_angle_rad, -90 * kDegree, 90 * kDegree, "scanner.first_angle_rad");
+  Positive(o.angle_step_rad, "scanner.angle_step_rad");
+  Between(o.first_angle_rad + o.angle_step_rad * (o.beams - 1), -90 * kDegree, 90 * kDegree,
+          "scanner's last angle [rad]");
+  Positive(o.beam_period_s, "scanner.beam_period_s");
+  const double line_us = o.beams * o.beam_period_s * 1e6;
+  Require(std::abs(line_us - std::round(line_us)) < 1e-6, "scanner.beams * beam_period_s [us]",
+          line_us, "whole microseconds");
+  Positive(o.motor_speed_rad_s, "scanner.motor_speed_rad_s");
+  Between(o.sweep_start_rad, -360 * kDegree, 360 * kDegree, "scanner.sweep_start_rad");
+  Between(o.sweep_rad, 1e-3, 360 * kDegree, "scanner.sweep_rad");
+  Require(std::isfinite(o.ticks_per_rad) && o.ticks_per_rad != 0, "scanner.ticks_per_rad",
+          o.ticks_per_rad, "a number other than zero");
+  Require(std::isfinite(o.zero_ticks), "scanner.zero_ticks", o.zero_ticks, "a finite number");
+  Require(o.lever_arm_m.norm() < 1, "length of scanner.lever_arm_m", o.lever_arm_m.norm(),
+          "less than 1");
+  Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),
+          "less than 0.5");
+  // Zero is refused because a rig file gives the range's sigma, which whitens residuals.
+  Positive(o.range_sigma_m, "scanner.range_sigma_m");
+  Between(o.divergence_rad, 0, 0.1, "scanner.divergence_rad");
+  Between(o.divergence_rings, 2, 8, "scanner.divergence_rings");
+  NotNegative(o.merge_m, "scanner.merge_m");
+  Between(o.min_return, 0, 1, "scanner.min_return");
+  Between(o.white_wall_reflectivity, 0.01, 1, "scanner.white_wall_reflectivity");
+  Positive(o.max_range_m, "scanner.max_range_m");
+  NotNegative(o.intensity_sigma, "scanner.intensity_sigma");
+}
+
+void Check(const CameraOptions& o, const std::string& field) {
+  Between(o.width, 8, 20000, field + "width");
+  Between(o.height, 8, 20000, field + "height");
+  Require(o.width % 2 == 0 && o.height % 2 == 0, field + "width * height",
+          double(o.width) * o.height, "an even width and an even height (mosaic)");
+  Positive(o.lens.fx, field + "lens.fx");
+  Positive(o.lens.fy, field + "lens.fy");
+  Require(o.position_m.norm() < 5, "length of " + field + "position_m", o.position_m.norm(),
+          "less than 5");
+  NotNegative(o.position_spread_m, field + "position_spread_m");
+  Between(o.tilt_rad, 0, 30 * kDegree, field + "tilt_rad");
+  Between(o.blur_px, 0, 20, field + "blur_px");
+  NotNegative(o.noise_dn, field + "noise_dn");
+  Between(o.white_dn, 1, 255, field + "white_dn");
+  NotNegative(o.netd_k, field + "netd_k");
+  Positive(o.gain_k, field + "gain_k");
+  NotNegative(o.offset_k, field + "offset_k");
+  Between(o.bits, 8, 16, field + "bits");
+  Positive(o.exposure_s, field + "exposure_s");
+  NotNegative(o.readout_s, field + "readout_s");
+  CheckLens(o.lens, o.width, o.height, field + "lens");
+}
+
+void Check(const BoardOptions& o) {
+  Between(o.squares_x, 3, 100, "board.squares_x");
+  Between(o.squares_y, 3, 100, "board.squares_y");
+  Positive(o.square_m, "board.square_m");
+  Require(o.width_m >= o.squares_x * o.square_m, "board.width_m", o.width_m,
+          "at least the squares' width");
+  Require(o.height_m >= o.squares_y * o.square_m, "board.height_m", o.height_m,
+          "at least the squares' height");
+  Positive(o.thickness_m, "board.thickness_m");
+  Between(o.black_reflectivity, 0, 1, "board.black_reflectivity");
+  Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");
+  Between(o.emissivity, 0.05, 1, "board.emissivity");
+  if (o.temperature_k) Between(*o.temperature_k, 150, 600, "board.temperature_k");
+  if (o.black_minus_white_k) Between(*o.black_minus_white_k, -100, 100, "board.black_minus_white_k");
+  if (o.gradient_k) Between(*o.gradient_k, -100, 100, "board.gradient_k");
+  if (o.glow_k) Between(*o.glow_k, -100, 100, "board.glow_k");
+  Positive(o.glow_radius_m, "board.glow_radius_m");
+  NotNegative(o.hidden_outline_m, "board.hidden_outline_m");
+  Positive(o.hidden_depth_m, "board.hidden_depth_m");
+  Positive(o.stand_m, "board.stand_m");
+  Between(o.stand_reflectivity, 0, 1, "board.stand_reflectivity");
+}
+
+void Check(const PoseOptions& o) {
+  Positive(o.min_range_m, "pose.min_range_m");
+  Require(o.max_range_m >= o.min_range_m, "pose.max_range_m", o.max_range_m,
+          "at least pose.min_range_m");
+  Between(o.max_tilt_rad, 0, 80 * kDegree, "pose.max_tilt_rad");
+  Between(o.max_roll_rad, 0, 180 * kDegree, "pose.max_roll_rad");
+  Between(o.image_margin, 0, 0.4, "pose.image_margin");
+  Between(o.sweep_margin_rad, 0, 1, "pose.sweep_margin_rad");
+  NotNegative(o.clearance_m, "pose.clearance_m");
+}
+
+}  // namespace
+
+CameraOptions DefaultColorCamera() {
+  CameraOptions o;
+  o.name = "rgb";
+  o.kind = CameraKind::kColor;
+  o.width = 1936;
+  o.height = 1456;
+  o.lens.fx = o.lens.fy = 1100;
+  o.lens.cx = 971.3;
+  o.lens.cy = 722.6;
+  o.lens.distortion = {-0.11, 0.07, 4e-4, -3e-4, -0.012, 0, 0, 0};
+  o.position_m = {0.06, 0.11, 0.09};
+  o.blur_px = 0.7;
+  o.noise_dn = 2;
+  return o;
+}
+
+CameraOptions DefaultThermalCamera() {
+  CameraOptions o;
+  o.name = "thermal";
+  o.kind = CameraKind::kThermal;
+  o.width = 640;
+  o.height = 480;
+  o.lens.fx = o.lens.fy = 530;
+  o.lens.cx = 317.2;
+  o.lens.cy = 243.1;
+  o.lens.distortion = {-0.24, 0.11, -6e-4, 5e-4, -0.02, 0, 0, 0};
+  o.position_m = {0.05, -0.13, 0.10};
+  o.blur_px = 1;
+  o.netd_k = 0.05;
+  o.exposure_s = 0.01;
+  return o;
+}
+
+void Options::Check() const {
+  simulate::Check(scanner);
+  if (cameras.empty()) throw InputError("simulator: cameras is empty; expected at least one");
+  std::set<std::string> names;
+  for (const CameraOptions& camera : cameras) {
+    simulate::Check(camera, "camera \"" + camera.name + "\" ");
+    if (!names.insert(camera.name).second) {
+      throw InputError("simulator: two cameras are named \"" + camera.name + "\"");
+    }
+  }
+  simulate::Check(board);
+  simulate::Check(pose);
+  Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
+  Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");
+  Require(world.reflected_temperature_k == 0 ||
+              (world.reflected_temperature_k > 100 && world.reflected_temperature_k < 500),
+          "world.reflected_temperature_k", world.reflected_temperature_k,
+          "0 (the scene's own) or 100 to 500");
+  Positive(world.lamp_range_m, "world.lamp_range_m");
+  Between(guess_rotation_rad, 0, 90 * kDegree, "guess_rotation_rad");
+  NotNegative(guess_translation_m, "guess_translation_m");
+  NotNegative(pick_sigma_px, "pick_sigma_px");
+  Between(supersampling, 1, 16, "supersampling");
+  Between(threads, 0, 256, "threads");
+}
+
+}  // namespace rgbdt::simulate

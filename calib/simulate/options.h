@@ -1,0 +1,123 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/rig.h"
+
+namespace rgbdt::simulate {
+
+enum class Scene { kOutdoor, kIndoor, kNight };
+
+inline constexpr double kDegree = 3.14159265358979323846 / 180;
+
+/// A 2D scanner (80 degree line, 10,000 beams/s) turned about the LIDAR's z.
+struct ScannerOptions {
+  int beams = 400;                         ///< per line
+  double first_angle_rad = -40 * kDegree;  ///< elevation of beam 0
+  double angle_step_rad = 0.2 * kDegree;   ///< between two beams of a line
+  double beam_period_s = 1e-4;             ///< between two beams; a line is whole microseconds
+  double motor_speed_rad_s = 5 * kDegree;  ///< the motor turns while a line is fired
+  double sweep_start_rad = -30 * kDegree;  ///< motor angle at which a sweep starts
+  double sweep_rad = 60 * kDegree;         ///< what a sweep covers
+  double ticks_per_rad = 1400 / kDegree;   ///< of the encoder, which reads whole ticks
+  double zero_ticks = 100000;              ///< reading at motor angle zero
+  Eigen::Vector3d lever_arm_m{0.02, 0.0, 0.05};  ///< scanner's origin in the motor's frame
+  /// Rotation vector of motor_from_scanner [rad].
+  Eigen::Vector3d tilt_rad{0.3 * kDegree, -0.4 * kDegree, 0.2 * kDegree};
+  double range_sigma_m = 0.010;     ///< noise of a range
+  double divergence_rad = 2.7e-3;   ///< full angle of the beam's cone, evenly filled
+  int divergence_rings = 2;         ///< sub-rays: 1 + 3 n (n + 1), so 19
+  double merge_m = 0.5;             ///< surfaces closer together than this in range merge
+  double min_return = 0.02;         ///< of what the whole beam returns from the white wall
+  double white_wall_reflectivity = 1.0;  ///< of that wall
+  double max_range_m = 60;               ///< nothing returns from farther away
+  double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
+};
+
+/// One camera: lens, mount, noise. Lenses are pinhole with OpenCV's distortion.
+struct CameraOptions {
+  std::string name;
+  CameraKind kind = CameraKind::kColor;  ///< kColor gives BayerRG8, kThermal Mono16
+  int width = 0, height = 0;             ///< [px]
+  Lens lens;
+  Eigen::Vector3d position_m{0, 0, 0};  ///< nominal camera centre, LIDAR frame
+  double position_spread_m = 0.01;      ///< truth differs by up to this along each axis
+  double tilt_rad = 3 * kDegree;        ///< truth looks up to this away from straight ahead
+  double blur_px = 0;                   ///< sigma, besides the pixel's own area
+  double noise_dn = 0;                  ///< colour: sigma [digital numbers]
+  double white_dn = 200;    ///< colour: what the exposure makes of the board's brightest white
+  double netd_k = 0;        ///< thermal: sigma [K]
+  double gain_k = 0.02;     ///< thermal: [K per count]
+  double offset_k = 233.15; ///< thermal: [K] at zero counts
+  int bits = 14;            ///< thermal: counts stop at 2^bits - 1
+  double exposure_s = 0.004;  ///< colour: in full sun, longer where darker; thermal: always this
+  double readout_s = 0.03;    ///< an image serves points from its utime + this
+};
+
+/// 1936x1456, f = 1100 px, BayerRG8, blur 0.7 px, noise 2 DN.
+CameraOptions DefaultColorCamera();
+/// 640x480, f = 530 px, 14 bit in Mono16, blur 1 px, NETD 50 mK.
+CameraOptions DefaultThermalCamera();
+
+/// The checkerboard, its stand and its heat. `absent` in heat: the scene's own value, which is
+/// several kelvin outdoors and less in `indoor` and `night` (it was warmed in the sun before).
+struct BoardOptions {
+  int squares_x = 11, squares_y = 8;
+  double square_m = 0.1;
+  double width_m = 1.2192, height_m = 0.9144;  ///< 4 ft x 3 ft, black border included
+  double thickness_m = 0.015;
+  double black_reflectivity = 0.08;  ///< in colour and at the LIDAR's wavelength
+  double white_reflectivity = 0.7;
+  double emissivity = 0.95;
+  std::optional<double> temperature_k;         ///< [K] mean of black and white at the coolest
+  std::optional<double> black_minus_white_k;   ///< [K]
+  std::optional<double> gradient_k;            ///< [K] from one end of the board to the other
+  std::optional<double> glow_k;                ///< [K] of the warm patch
+  double glow_radius_m = 0.3;                  ///< sigma of the warm patch
+  double hidden_outline_m = 0.35;  ///< length of the outline as warm as what lies behind it
+  double hidden_depth_m = 0.1;    ///< sigma of how far that reaches inwards [m]
+  double stand_m = 0.04;           ///< side of the stand's square pole
+  double stand_reflectivity = 0.3;
+};
+
+/// Where the board is put. Angles against the line of sight from the LIDAR to the board's centre.
+struct PoseOptions {
+  double min_range_m = 2, max_range_m = 6;  ///< of the board's centre
+  double max_tilt_rad = 40 * kDegree;       ///< of its normal from the line of sight
+  double max_roll_rad = 45 * kDegree;       ///< in its plane
+  double image_margin = 0.03;  ///< outline to image border, of the image's width
+  double sweep_margin_rad = 1.5 * kDegree;  ///< outline to the sweep's limits
+  double clearance_m = 0.3;                 ///< to ground and objects
+};
+
+struct SceneOptions {
+  double ground_z_m = -1.2;            ///< the LIDAR stands this high
+  double person_temperature_k = 306;   ///< of clothing; skin is 1 K warmer
+  double reflected_temperature_k = 0;  ///< [K] what surfaces mirror; 0: the scene's own
+  double lamp_range_m = 7;  ///< `night`: the rig's lamp lights the board up to here, then ends
+};
+
+/// Every term of the synthetic rig. Angles in radians, lengths in metres.
+struct Options {
+  std::uint64_t seed = 1;
+  Scene scene = Scene::kOutdoor;
+  ScannerOptions scanner;
+  std::vector<CameraOptions> cameras{DefaultColorCamera(), DefaultThermalCamera()};
+  BoardOptions board;
+  PoseOptions pose;
+  SceneOptions world;
+  double guess_rotation_rad = 2 * kDegree;  ///< hand-measured rotation is wrong by up to this
+  double guess_translation_m = 0.05;        ///< hand-measured camera centre: wrong by up to this
+  double pick_sigma_px = 1.5;               ///< of a picked corner, along x and along y
+  int supersampling = 5;                    ///< n x n rays in a pixel that holds an edge
+  int threads = 0;                          ///< 0: as many as the machine has; same result
+
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+};
+
+}  // namespace rgbdt::simulate

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "calib/model/calibration.h"
+#include "calib/model/cloud.h"
+#include "calib/model/image.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+#include "calib/simulate/options.h"
+
+namespace rgbdt::simulate {
+
+/// The paper's rig with known truth. All noise is a function of (seed, utime, sensor) only.
+class Simulator {
+ public:
+  explicit Simulator(const Options& options);
+  ~Simulator();
+
+  /// What the user would know: lenses, the hand-measured (wrong) guesses, the target. `text` and
+  /// `hash` are empty.
+  const Rig& rig() const;
+  /// camera_from_lidar of each camera, lidar_from_target of every view shown so far.
+  const Truth& truth() const;
+
+  /// Puts the board at view `index` (0, 1, ...; the pose is a function of seed and index) and
+  /// renders what the cameras see, once.
+  void ShowView(int index, const std::string& view_name);
+
+  /// A sweep: `sweep_lines()` lines, line i begins at sweep_utime + i * line_period().
+  int sweep_lines() const;
+  Utime line_period() const;
+  LineScan Line(Utime sweep_utime, int line) const;
+  /// The encoder at a time; sweep_utime 0: standing still between sweeps.
+  EncoderReading Encoder(Utime utime, Utime sweep_utime) const;
+  Image TakeImage(const std::string& camera, Utime utime) const;
+  /// What a person would click: the true outline corners + 1.5 px of noise.
+  CornerSelection PickCorners(const std::string& camera, Utime image_utime) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rgbdt::simulate

@@ -1,0 +1,193 @@
+#include "calib/solve/calibrate.h"
+
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "calib/model/errors.h"
+#include "calib/solve/evaluate.h"
+#include "calib/solve/paper_cost.h"
+
+namespace rgbdt {
+namespace {
+
+using Views = std::vector<const Observation*>;
+
+// One camera's observations in the order of their views, whatever order they came in.
+Views ObservationsOf(const std::string& camera, const std::vector<Observation>& observations) {
+  Views views;
+  for (const Observation& o : observations) {
+    if (o.camera == camera) views.push_back(&o);
+  }
+  std::stable_sort(views.begin(), views.end(),
+                   [](const Observation* a, const Observation* b) { return a->view < b->view; });
+  return views;
+}
+
+Views Select(const Views& views, bool heldout) {
+  Views selected;
+  for (const Observation* o : views) {
+    if (o->usable() && o->heldout == heldout) selected.push_back(o);
+  }
+  return selected;
+}
+
+// Views, rejections and computing time: what a report says whatever the method.
+CameraReport Describe(const std::string& camera, const Views& views) {
+  CameraReport report;
+  report.calibration.camera = camera;
+  for (const Observation* o : views) {
+    report.detect_image_s += o->detect_image_s;
+    report.detect_cloud_s += o->detect_cloud_s;
+    if (!o->usable()) {
+      report.rejected.push_back({o->view, o->rejected});
+    } else {
+      (o->heldout ? report.heldout : report.used).push_back(o->view);
+    }
+  }
+  return report;
+}
+
+void Judge(const CameraSpec& camera, const Views& views, CameraReport* report) {
+  Views usable;
+  for (const Observation* o : views) {
+    if (o->usable()) usable.push_back(o);
+  }
+  JudgeCamera(camera, usable, report);
+}
+
+Utime NewestImage(const std::vector<Observation>& observations) {
+  Utime newest = 0;
+  for (const Observation& o : observations) newest = std::max(newest, o.image_utime);
+  return newest;
+}
+
+StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rigid3& guess,
+                          const CameraReport& report, const CalibrateOptions& options) {
+  StartResult result;
+  const auto degrees = [](double rad) { return std::to_string(std::lround(rad * 180 / M_PI)); };
+  result.start = degrees(options.wide_roll_rad) + " deg roll and " + degrees(options.wide_yaw_rad) +
+                 " deg yaw off the hand-measured guess";
+  result.calibration = SolvePaper(
+      camera, used, TurnedStart(guess, options.wide_roll_rad, options.wide_yaw_rad), options);
+  CameraReport judged;
+  judged.calibration = result.calibration;
+  JudgeCamera(camera, used, &judged);
+  result.distance_transform_px = judged.distance_transform_px.train;
+  result.from_result =
+      ErrorOf(result.calibration.camera_from_lidar, report.calibration.camera_from_lidar);
+  return result;
+}
+
+CameraReport CalibrateCamera(const CameraSpec& camera, const Views& views,
+                             const CalibrateOptions& options) {
+  CameraReport report = Describe(camera.name, views);
+  report.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
+  report.calibration.camera_from_lidar = report.first_guess;
+  const Views used = Select(views, false);
+  if (static_cast<int>(used.size()) < options.min_views) {
+    report.calibration.status = "not calibrated: " + std::to_string(used.size()) +
+                                " usable views, at least " + std::to_string(options.min_views) +
+                                " are needed; this is the hand-measured guess";
+    return report;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  report.calibration = SolvePaper(camera, used, report.first_guess, options);
+  report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Judge(camera, views, &report);
+  report.other_starts.push_back(FromWideStart(camera, used, report.first_guess, report, options));
+  return report;
+}
+
+}  // namespace
+
+void CalibrateOptions::Check() const {
+  if (method != "paper") {
+    throw InputError("unknown method \"" + method + "\"; there is: paper");
+  }
+  if (min_views < 1) {
+    throw InputError("CalibrateOptions.min_views is " + std::to_string(min_views) +
+                     "; expected 1 or more");
+  }
+  if (max_iterations < 1) {
+    throw InputError("CalibrateOptions.max_iterations is " + std::to_string(max_iterations) +
+                     "; expected 1 or more");
+  }
+}
+
+Rigid3 TurnedStart(const Rigid3& camera_from_lidar, double roll_rad, double yaw_rad) {
+  return camera_from_lidar * RotationAbout(Eigen::Vector3d::UnitZ(), yaw_rad) *
+         RotationAbout(Eigen::Vector3d::UnitX(), roll_rad);
+}
+
+CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Rigid3& start,
+                             const CalibrateOptions& options) {
+  const Camera camera(spec);
+  std::vector<std::unique_ptr<DistanceField>> fields;
+  ceres::Problem problem;
+  Vector6d delta = Vector6d::Zero();
+  for (const Observation* o : used) {
+    fields.push_back(
+        std::make_unique<DistanceField>(o->image->width, o->image->height, o->image->edge_pixels));
+    problem.AddResidualBlock(
+        PaperCost::Create(&camera, fields.back().get(), &o->cloud->boundary, start).release(),
+        nullptr, delta.data());
+  }
+  ceres::Solver::Options solver;
+  solver.minimizer_type = ceres::TRUST_REGION;
+  solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = 1e-9;
+  solver.parameter_tolerance = 1e-10;
+  solver.num_threads = 1;  // the same input gives the same bits; the look-up tables are shared
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  CameraCalibration result;
+  result.camera = spec.name;
+  result.camera_from_lidar = Exp(delta) * start;
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.status = result.converged ? "converged" : "not converged: " + summary.message;
+  return result;
+}
+
+Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
+                 const CalibrateOptions& options) {
+  options.Check();
+  Report report;
+  report.method = options.method;
+  report.rig_hash = rig.hash;
+  report.utime = NewestImage(observations);
+  for (const CameraSpec& camera : rig.cameras) {
+    report.cameras.push_back(
+        CalibrateCamera(camera, ObservationsOf(camera.name, observations), options));
+  }
+  return report;
+}
+
+Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
+                const Calibration& calibration) {
+  Report report;
+  report.method = calibration.method;
+  report.rig_hash = rig.hash;
+  report.utime = calibration.utime;
+  for (const CameraSpec& camera : rig.cameras) {
+    const CameraCalibration* found = calibration.Find(camera.name);
+    if (found == nullptr) continue;
+    const Views views = ObservationsOf(camera.name, observations);
+    CameraReport judged = Describe(camera.name, views);
+    judged.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
+    judged.calibration = *found;
+    Judge(camera, views, &judged);
+    report.cameras.push_back(std::move(judged));
+  }
+  return report;
+}
+
+}  // namespace rgbdt

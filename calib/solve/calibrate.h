@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/model/calibration.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+struct CalibrateOptions {
+  std::string method = "paper";  ///< the only one so far
+  int min_views = 3;             ///< usable views for a result that may be called converged
+  int max_iterations = 200;      ///< of Levenberg-Marquardt
+  double wide_roll_rad = 0.52359877559829887;  ///< 30 deg about the LIDAR's x (paper, Figure 6)
+  double wide_yaw_rad = 0.69813170079773179;   ///< 40 deg about the LIDAR's z
+
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+};
+
+/// Calibrates every camera of the rig that was observed, each by itself as in the paper, from the
+/// hand-measured guess; solves a second time from a start turned away by wide_roll and wide_yaw and
+/// reports where that ends; judges the result on used and held-out views. The order of the
+/// observations does not matter. A camera without enough views gets its guess and a status that
+/// says so. Throws InputError for an unknown method.
+Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
+                 const CalibrateOptions& options = {});
+
+/// Levenberg-Marquardt over the paper's objective from one start. `used` are usable observations
+/// of one camera.
+CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const Observation*>& used,
+                             const Rigid3& start, const CalibrateOptions& options);
+
+/// The guess turned by roll about the LIDAR's x, then yaw about its z.
+Rigid3 TurnedStart(const Rigid3& camera_from_lidar, double roll_rad, double yaw_rad);
+
+/// Judges a given calibration on observations; like Calibrate, without the solve.
+Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
+                const Calibration& calibration);
+
+}  // namespace rgbdt

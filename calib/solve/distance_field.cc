@@ -1,0 +1,101 @@
+#include "calib/solve/distance_field.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr int kFrom = -5;
+constexpr int kTo = 4;
+constexpr int kSide = kTo - kFrom + 1;
+constexpr int kWindow = kSide * kSide;
+
+using FitMatrix = Eigen::Matrix<double, 6, kWindow>;
+
+// Least squares over a window whose offsets never change: one matrix for all pixels.
+const FitMatrix& Fitter() {
+  static const FitMatrix matrix = [] {
+    Eigen::Matrix<double, kWindow, 6> design;
+    for (int i = 0; i < kWindow; ++i) {
+      const double x = i % kSide + kFrom;
+      const double y = static_cast<double>(i / kSide) + kFrom;
+      design.row(i) << 1, x, y, x * x, x * y, y * y;
+    }
+    return FitMatrix(
+        (design.transpose() * design).ldlt().solve(Eigen::MatrixXd(design.transpose())));
+  }();
+  return matrix;
+}
+
+cv::Mat Transform(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels) {
+  cv::Mat background(height, width, CV_8U, cv::Scalar(255));
+  bool any = false;
+  for (const Eigen::Vector2i& p : edge_pixels) {
+    if (p.x() < 0 || p.y() < 0 || p.x() >= width || p.y() >= height) continue;
+    background.at<std::uint8_t>(p.y(), p.x()) = 0;
+    any = true;
+  }
+  if (!any) {
+    throw InputError("distance field: none of " + std::to_string(edge_pixels.size()) +
+                     " edge pixels lies in the image of " + std::to_string(width) + "x" +
+                     std::to_string(height));
+  }
+  cv::Mat transform;
+  cv::distanceTransform(background, transform, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  return transform;
+}
+
+int Round(double value, int size) {
+  return static_cast<int>(std::clamp(std::floor(value + 0.5), 0.0, size - 1.0));
+}
+
+}  // namespace
+
+DistanceField::DistanceField(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels)
+    : transform_(Transform(width, height, edge_pixels)),
+      lookup_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1) {}
+
+DistanceField::Surface DistanceField::Fit(int x, int y) const {
+  Eigen::Matrix<double, kWindow, 1> values;
+  for (int i = 0; i < kWindow; ++i) {
+    const int column = std::clamp(x + i % kSide + kFrom, 0, transform_.cols - 1);
+    const int row = std::clamp(y + i / kSide + kFrom, 0, transform_.rows - 1);
+    values[i] = transform_.at<float>(row, column);
+  }
+  return Fitter() * values;
+}
+
+const DistanceField::Surface& DistanceField::SurfaceAt(int x, int y) const {
+  std::int32_t& entry =
+      lookup_[static_cast<std::size_t>(y) * static_cast<std::size_t>(transform_.cols) +
+              static_cast<std::size_t>(x)];
+  if (entry < 0) {
+    entry = static_cast<std::int32_t>(surfaces_.size());
+    surfaces_.push_back(Fit(x, y));
+  }
+  return surfaces_[static_cast<std::size_t>(entry)];
+}
+
+double DistanceField::Value(const Eigen::Vector2d& pixel) const {
+  const double u = std::clamp(pixel.x(), 0.0, transform_.cols - 1.0);
+  const double v = std::clamp(pixel.y(), 0.0, transform_.rows - 1.0);
+  if (u != pixel.x() || v != pixel.y()) return Nearest(pixel);
+  const int column = Round(u, transform_.cols);
+  const int row = Round(v, transform_.rows);
+  const Surface& s = SurfaceAt(column, row);
+  const double x = u - column;
+  const double y = v - row;
+  return s[0] + s[1] * x + s[2] * y + s[3] * x * x + s[4] * x * y + s[5] * y * y;
+}
+
+double DistanceField::Nearest(const Eigen::Vector2d& pixel) const {
+  return transform_.at<float>(Round(pixel.y(), transform_.rows), Round(pixel.x(), transform_.cols));
+}
+
+}  // namespace rgbdt

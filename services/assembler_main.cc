@@ -1,0 +1,16 @@
+#include <CLI/CLI.hpp>
+
+#include "services/bus/process.h"
+#include "services/nodes/assembler_node.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "LINE_SCAN and ENCODER to CLOUD: a turned 2D scanner's lines become 3D.\nExample: "
+      "rgbdt-assembler --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
+      "rgbdt-assembler"};
+  std::string url;
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  rgbdt::AssemblerNode node;
+  return rgbdt::RunOnLcm(node, url);
+}

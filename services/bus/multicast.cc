@@ -1,0 +1,85 @@
+#include "services/bus/multicast.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "services/bus/bus.h"
+
+namespace rgbdt {
+namespace {
+
+class UdpSocket {
+ public:
+  UdpSocket() : descriptor_(socket(AF_INET, SOCK_DGRAM, 0)) {}
+  ~UdpSocket() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  int get() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+// The address of udpm://239.255.76.67:7667?ttl=0; LCM's default where the URL gives none.
+std::string AddressOf(const std::string& url) {
+  const std::size_t begin = std::strlen("udpm://");
+  const std::string address = url.substr(begin, url.find_first_of(":?", begin) - begin);
+  return address.empty() ? "239.255.76.67" : address;
+}
+
+// Why no datagram can go to the address; 0: one can.
+int RouteError(const in_addr& address) {
+  const UdpSocket udp;
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(7667);
+  to.sin_addr = address;
+  return connect(udp.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+std::string WhyNoBus(const std::string& url) {
+  const std::string expected = "expected a URL like udpm://239.255.76.67:7667?ttl=0";
+  if (url.compare(0, 7, "udpm://") != 0) return "LCM refuses it (see above); " + expected;
+  const std::string text = AddressOf(url);
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1 || !IN_MULTICAST(ntohl(address.s_addr))) {
+    return "\"" + text + "\" is no multicast address; " + expected;
+  }
+  const int error = RouteError(address);
+  const std::string commands = "ip link set lo up multicast on && ip route add 239.0.0.0/8 dev lo";
+  if (error != 0) {
+    return "no multicast route (" + std::string(std::strerror(error)) +
+           "); to stay within this machine: " + commands;
+  }
+  return "LCM refuses it, or its own test message did not come back (see above): a wrong port, a "
+         "firewall, or an interface without multicast; to stay within this machine: " +
+         commands;
+}
+
+// What the kernel grants is asked of a socket: in a network namespace there is no
+// /proc/sys/net/core/rmem_max to read, and its limit holds all the same.
+std::string ReceiveBufferAdvice() {
+  const UdpSocket udp;
+  const int wanted = kReceiveBufferBytes;
+  int granted = 0;
+  socklen_t size = sizeof granted;
+  setsockopt(udp.get(), SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+  if (getsockopt(udp.get(), SOL_SOCKET, SO_RCVBUF, &granted, &size) != 0) return "";
+  granted /= 2;  // Linux doubles what it grants, for its own bookkeeping
+  if (granted >= wanted) return "";
+  return "the kernel's receive buffer is limited to " + std::to_string(granted) +
+         " bytes, so large messages (images, clouds) may be lost under load: sudo sysctl -w "
+         "net.core.rmem_max=" +
+         std::to_string(wanted);
+}
+
+}  // namespace rgbdt

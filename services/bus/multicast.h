@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace rgbdt {
+
+/// What LCM needs of a socket so that large messages arrive whole.
+inline constexpr int kReceiveBufferBytes = 33554432;
+
+/// After LCM could not open `url`: the likely reason, and what to do.
+std::string WhyNoBus(const std::string& url);
+
+}  // namespace rgbdt

@@ -1,0 +1,16 @@
+#include <CLI/CLI.hpp>
+
+#include "services/bus/process.h"
+#include "services/nodes/detector_node.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "On a capture command: the target's edges in images and cloud (OBSERVATION).\nExample: "
+      "rgbdt-detector --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
+      "rgbdt-detector"};
+  std::string url;
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  rgbdt::DetectorNode node;
+  return rgbdt::RunOnLcm(node, url);
+}

@@ -1,0 +1,16 @@
+#include <CLI/CLI.hpp>
+
+#include "services/bus/process.h"
+#include "services/nodes/fuser_node.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "CLOUD and images through the calibration to RGBDT_CLOUD.\nExample: rgbdt-fuser --lcm-url "
+      "'udpm://239.255.76.67:7667?ttl=0'",
+      "rgbdt-fuser"};
+  std::string url;
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  rgbdt::FuserNode node;
+  return rgbdt::RunOnLcm(node, url);
+}

@@ -1,0 +1,68 @@
+#include "services/nodes/detector_node.h"
+
+#include "calib/camera/pixels.h"
+#include "calib/detect/detect.h"
+#include "calib/files/rig_file.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+
+Messages DetectorNode::Handle(const Message& message) {
+  if (const auto* text = std::get_if<RigText>(&message)) {
+    if (!rig_ || rig_->hash != text->hash) rig_ = ParseRig(text->text, "RIG message");
+    return {};
+  }
+  if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
+  if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
+    view_.Add(*chunk);
+  } else if (const auto* image = std::get_if<Image>(&message)) {
+    CheckImage(rig_->Camera(image->camera), *image);
+    view_.Add(*image);
+  } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
+    rig_->Camera(picks->camera);
+    view_.Add(*picks);
+  } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
+    OnCommand(*command);
+  }
+  return DetectIfComplete();
+}
+
+void DetectorNode::OnCommand(const SessionCommand& command) {
+  if (command.verb == SessionVerb::kReset) view_.Reset();
+  if (command.verb == SessionVerb::kCapture) view_.Begin(command);
+}
+
+Messages DetectorNode::DetectIfComplete() {
+  if (!view_.active()) return {};
+  const std::int64_t command = view_.capture().command;
+  const std::optional<View> view = view_.Take(*rig_);
+  if (!view) return {};
+  Messages out;
+  SessionEvent done;
+  done.command = command;
+  done.source = name();
+  done.kind = EventKind::kDone;
+  ++views_;
+  for (Observation& observation : DetectView(*rig_, *view)) {
+    done.utime = std::max(done.utime, observation.image_utime);
+    done.text += (done.text.empty() ? "" : "; ") + observation.camera + ": " +
+                 (observation.usable() ? "board found" : observation.rejected);
+    if (!observation.usable()) ++rejected_;
+    out.push_back(std::move(observation));
+  }
+  out.push_back(std::move(done));
+  return out;
+}
+
+Status DetectorNode::GetStatus() const {
+  Status status;
+  status.ready = rig_.has_value();
+  status.text = !rig_ ? "waits for the rig (RIG)"
+                : !view_.active()
+                    ? "waits for a capture"
+                    : "view " + view_.capture().view + " waits for " + view_.Missing(*rig_);
+  status.counters = {{"views", views_}, {"rejected", rejected_}};
+  return status;
+}
+
+}  // namespace rgbdt

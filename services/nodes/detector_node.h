@@ -1,0 +1,86 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+#include "services/nodes/node.h"
+
+namespace rgbdt {
+
+/// Sweeps by their name, as their chunks come in. Keeps the newest few.
+class SweepCollector {
+ public:
+  static constexpr std::size_t kMaxSweeps = 3;
+  static constexpr std::size_t kMaxChunks = 100000;  ///< of one sweep
+
+  void Add(const CloudChunk& chunk);
+  /// The complete sweep, or nothing while its end has not come.
+  std::optional<Cloud> Complete(Utime sweep_utime) const;
+  void Clear() { sweeps_.clear(); }
+
+ private:
+  std::map<Utime, std::vector<CloudChunk>> sweeps_;
+};
+
+/// The view that a capture command asks for, put together from the bus: the sweep it names, each
+/// camera's first image with utime >= the command's and at most kImageWait after it, and the picks
+/// made in those images where the command asks for a person's. What arrives in which order does
+/// not matter. Images before the command are kept (kKept a camera) so that one may come early.
+class ViewCollector {
+ public:
+  static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
+  static constexpr std::size_t kKept = 3;
+
+  void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
+  void Add(const Image& image);
+  void Add(const CornerSelection& picks);
+  /// A new capture replaces one that never became complete.
+  void Begin(const SessionCommand& capture);
+  /// Forgets everything but the newest images.
+  void Reset();
+
+  /// The view, once, as soon as it is complete.
+  std::optional<View> Take(const Rig& rig);
+  bool active() const { return capture_.has_value(); }
+  const SessionCommand& capture() const { return *capture_; }
+  /// What is missing, in words; empty when nothing is.
+  std::string Missing(const Rig& rig) const;
+
+ private:
+  const Image* ImageOf(const std::string& camera) const;
+  const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;
+  bool PersonPicks(const std::string& camera) const;
+
+  std::optional<SessionCommand> capture_;
+  SweepCollector sweeps_;
+  std::map<std::string, std::deque<Image>> images_;
+  std::map<std::string, CornerSelection> picks_;
+};
+
+/// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> OBSERVATION, one a
+/// camera, then SESSION_EVENT done. A view that never becomes complete is dropped when the next
+/// capture or a reset comes; the status says what it waits for.
+class DetectorNode : public Node {
+ public:
+  std::string name() const override { return "detector"; }
+  std::vector<std::string> Subscriptions() const override {
+    return {"RIG", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "SESSION_COMMAND"};
+  }
+  Messages Handle(const Message& message) override;
+  Status GetStatus() const override;
+
+ private:
+  void OnCommand(const SessionCommand& command);
+  Messages DetectIfComplete();
+
+  std::optional<Rig> rig_;
+  ViewCollector view_;
+  std::int64_t views_ = 0;
+  std::int64_t rejected_ = 0;
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib/fuse/fuse.h"
+#include "calib/model/rig.h"
+#include "services/nodes/node.h"
+
+namespace rgbdt {
+
+/// CLOUD + <CAMERA>_IMAGE + CALIBRATION -> RGBDT_CLOUD, one message for each chunk, at once:
+/// nothing waits for the future. A point is coloured by the image that serves its time (fuse.h), so
+/// live and replay agree as long as `readout_s` in the rig file is not below the true delay. Before
+/// a calibration comes the cloud goes out without colour. A calibration of another rig is refused.
+class FuserNode : public Node {
+ public:
+  std::string name() const override { return "fuser"; }
+  std::vector<std::string> Subscriptions() const override {
+    return {"RIG", "CLOUD", ".*_IMAGE", "CALIBRATION"};
+  }
+  Messages Handle(const Message& message) override;
+  Status GetStatus() const override;
+
+ private:
+  void OnRig(const RigText& text);
+  void OnCalibration(const CalibrationMessage& message);
+  FusionCamera& CameraOf(const std::string& name);
+  Messages OnChunk(const CloudChunk& chunk);
+
+  std::optional<Rig> rig_;
+  std::vector<FusionCamera> cameras_;
+  Utime calibration_utime_ = 0;
+  std::int64_t points_ = 0;
+  std::int64_t coloured_ = 0;
+  std::int64_t shutter_frames_ = 0;
+};
+
+}  // namespace rgbdt

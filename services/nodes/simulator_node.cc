@@ -1,0 +1,182 @@
+#include "services/nodes/simulator_node.h"
+
+#include <algorithm>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr Utime kSecond = kMicrosecondsPerSecond;
+
+}  // namespace
+
+SimulatorNode::SimulatorNode(const simulate::Options& options) : simulator_(options) {}
+
+// Read-out and transfer of the slowest camera.
+Utime SimulatorNode::Delay() const {
+  Utime delay = 0;
+  for (const CameraSpec& camera : simulator_.rig().cameras) {
+    delay = std::max(delay, FromSeconds(camera.readout_s));
+  }
+  return delay;
+}
+
+Messages SimulatorNode::Handle(const Message& message) {
+  const auto* command = std::get_if<SessionCommand>(&message);
+  if (command == nullptr) return {};
+  switch (command->verb) {
+    case SessionVerb::kNextPose:
+      PlanPose(*command);
+      break;
+    case SessionVerb::kSweep:
+      PlanSweep(*command);
+      break;
+    case SessionVerb::kCapture:
+      PlanCapture(*command);
+      break;
+    case SessionVerb::kReset:
+      views_ = 0;
+      break;
+    default:
+      break;
+  }
+  return {};
+}
+
+void SimulatorNode::PlanEvent(Utime due, std::int64_t command, EventKind kind,
+                              const std::string& text, Utime sweep_utime, double fraction) {
+  Task task;
+  task.kind = Task::Kind::kEvent;
+  task.utime = due;
+  task.command = command;
+  task.event = kind;
+  task.text = text;
+  task.sweep_utime = sweep_utime;
+  task.fraction = fraction;
+  At(due, std::move(task));
+}
+
+void SimulatorNode::PlanImages(Utime from, Utime to) {
+  for (Utime utime = (from / kSecond + 1) * kSecond; utime <= to; utime += kSecond) {
+    Task task;
+    task.kind = Task::Kind::kImages;
+    task.utime = utime;
+    At(utime + Delay(), std::move(task));
+  }
+}
+
+// The board is carried to its next place; the cameras see it there before the scanner turns.
+void SimulatorNode::PlanPose(const SessionCommand& command) {
+  const Utime begin = std::max(now_, newest_planned_);
+  const Utime end = begin + 2 * kSecond;
+  PlanEvent(begin, command.command, EventKind::kProgress, "carrying the board to its next place", 0,
+            0);
+  Task show;
+  show.kind = Task::Kind::kShow;
+  show.text = command.view;
+  At(begin + 1, std::move(show));
+  PlanImages(begin, end);
+  newest_planned_ = end + kSecond / 10;
+  PlanEvent(newest_planned_, command.command, EventKind::kDone, "the board stands", 0, 1);
+}
+
+void SimulatorNode::PlanSweep(const SessionCommand& command) {
+  const Utime begin = std::max(now_, newest_planned_);
+  const Utime sweep = begin + kSecond / 10;
+  const Utime sweep_end = sweep + simulator_.sweep_lines() * simulator_.line_period();
+  const Utime end = sweep_end + kSecond / 4;
+  for (Utime utime = begin; utime <= end; utime += kEncoderPeriod) {
+    Task reading;
+    reading.kind = Task::Kind::kEncoder;
+    reading.utime = utime;
+    reading.sweep_utime = utime >= sweep && utime <= sweep_end ? sweep : 0;
+    At(utime, std::move(reading));
+  }
+  for (int line = 0; line < simulator_.sweep_lines(); ++line) {
+    Task task;
+    task.kind = Task::Kind::kLine;
+    task.line = line;
+    task.sweep_utime = sweep;
+    const Utime due = sweep + (line + 1) * simulator_.line_period();
+    At(due, std::move(task));
+    if (line % 25 == 24) {
+      PlanEvent(due, command.command, EventKind::kProgress, "sweeping", sweep,
+                (line + 1.0) / simulator_.sweep_lines());
+    }
+  }
+  PlanImages(begin, sweep_end);
+  newest_planned_ = end + Delay();
+  PlanEvent(newest_planned_, command.command, EventKind::kDone, "sweep complete", sweep, 1);
+}
+
+void SimulatorNode::PlanCapture(const SessionCommand& command) {
+  const Utime utime = std::max({now_, newest_planned_, command.utime});
+  Task images;
+  images.kind = Task::Kind::kImages;
+  images.utime = utime;
+  At(utime + Delay(), std::move(images));
+  newest_planned_ = utime + Delay();
+  for (const std::string& camera : command.picked_cameras) {
+    Task picks;
+    picks.kind = Task::Kind::kPicks;
+    picks.utime = utime;
+    picks.text = camera;
+    newest_planned_ += kSecond / 10;
+    At(newest_planned_, std::move(picks));
+  }
+  PlanEvent(newest_planned_, command.command, EventKind::kDone, "images taken", 0, 1);
+}
+
+std::optional<Utime> SimulatorNode::NextDue() const {
+  if (agenda_.empty()) return std::nullopt;
+  return agenda_.begin()->first;
+}
+
+Messages SimulatorNode::TakeNext() {
+  const auto next = agenda_.begin();
+  const Utime due = next->first;
+  const Task task = std::move(next->second);
+  agenda_.erase(next);
+  now_ = due;
+  switch (task.kind) {
+    case Task::Kind::kShow:
+      simulator_.ShowView(views_++, task.text);
+      return {};
+    case Task::Kind::kEncoder:
+      return {simulator_.Encoder(task.utime, task.sweep_utime)};
+    case Task::Kind::kLine:
+      return {simulator_.Line(task.sweep_utime, task.line)};
+    case Task::Kind::kImages: {
+      Messages images;
+      for (const CameraSpec& camera : simulator_.rig().cameras) {
+        images.push_back(simulator_.TakeImage(camera.name, task.utime));
+      }
+      return images;
+    }
+    case Task::Kind::kPicks:
+      return {simulator_.PickCorners(task.text, task.utime)};
+    case Task::Kind::kEvent: {
+      SessionEvent event;
+      event.command = task.command;
+      event.utime = due;
+      event.source = name();
+      event.kind = task.event;
+      event.text = task.text;
+      event.sweep_utime = task.sweep_utime;
+      event.fraction = task.fraction;
+      return {event};
+    }
+  }
+  return {};
+}
+
+Status SimulatorNode::GetStatus() const {
+  Status status;
+  status.ready = true;
+  status.text = agenda_.empty() ? "time stands still, waits for a command" : "simulating";
+  status.counters = {{"views", views_}};
+  return status;
+}
+
+}  // namespace rgbdt

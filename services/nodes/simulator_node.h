@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "calib/simulate/simulator.h"
+#include "services/nodes/node.h"
+
+namespace rgbdt {
+
+/// SESSION_COMMAND -> LINE_SCAN, ENCODER, <CAMERA>_IMAGE, CORNER_SELECTION, SESSION_EVENT: the
+/// synthetic rig on the bus. Its time is simulated and stands still until a command comes. Cameras
+/// take an image at each full second of simulated time and at each capture; each message is due
+/// when the real sensor would have sent it (a line after its last beam, an image after read-out).
+class SimulatorNode : public Node {
+ public:
+  static constexpr Utime kEpoch = 1'433'160'000'000'000;  ///< 2015-06-01, a sunny day
+  static constexpr Utime kEncoderPeriod = 10'000;         ///< 100 Hz
+
+  explicit SimulatorNode(const simulate::Options& options);
+
+  std::string name() const override { return "simulator"; }
+  std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }
+  Messages Handle(const Message& message) override;
+  Status GetStatus() const override;
+
+  /// When the next message is due; nothing while time stands still.
+  std::optional<Utime> NextDue() const;
+  /// The messages due next. Only when NextDue() says so. May render for seconds.
+  Messages TakeNext();
+
+  const simulate::Simulator& simulator() const { return simulator_; }
+
+ private:
+  struct Task {
+    enum class Kind { kShow, kEncoder, kLine, kImages, kPicks, kEvent };
+    Kind kind = Kind::kEvent;
+    Utime utime = 0;  // of the data
+    int line = 0;
+    Utime sweep_utime = 0;
+    std::string text;  // kShow: the view; kEvent: for a person; kPicks: the camera
+    std::int64_t command = 0;
+    EventKind event = EventKind::kDone;
+    double fraction = 0;
+  };
+
+  void At(Utime due, Task task) { agenda_.emplace(due, std::move(task)); }
+  void PlanPose(const SessionCommand& command);
+  void PlanSweep(const SessionCommand& command);
+  void PlanCapture(const SessionCommand& command);
+  void PlanImages(Utime from, Utime to);
+  void PlanEvent(Utime due, std::int64_t command, EventKind kind, const std::string& text,
+                 Utime sweep_utime, double fraction);
+  Utime Delay() const;
+
+  simulate::Simulator simulator_;
+  std::multimap<Utime, Task> agenda_;  // by the time they are due
+  Utime now_ = kEpoch;
+  Utime newest_planned_ = kEpoch;
+  int views_ = 0;
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,123 @@
+#include <algorithm>
+
+#include "calib/camera/pixels.h"
+#include "calib/model/errors.h"
+#include "calib/scan_assembly/assembler.h"
+#include "services/nodes/detector_node.h"
+
+namespace rgbdt {
+
+void SweepCollector::Add(const CloudChunk& chunk) {
+  std::vector<CloudChunk>& chunks = sweeps_[chunk.cloud.sweep_utime];
+  if (chunks.size() >= kMaxChunks) {
+    throw InputError("sweep " + std::to_string(chunk.cloud.sweep_utime) + " has more than " +
+                     std::to_string(kMaxChunks) + " chunks");
+  }
+  chunks.push_back(chunk);
+  while (sweeps_.size() > kMaxSweeps) sweeps_.erase(sweeps_.begin());
+}
+
+std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
+  const auto found = sweeps_.find(sweep_utime);
+  if (found == sweeps_.end()) return std::nullopt;
+  const bool ended = std::any_of(found->second.begin(), found->second.end(),
+                                 [](const CloudChunk& chunk) { return chunk.sweep_end; });
+  if (!ended) return std::nullopt;
+  Cloud cloud = JoinChunks(found->second);
+  cloud.sweep_utime = sweep_utime;
+  return cloud;
+}
+
+void ViewCollector::Add(const Image& image) {
+  std::deque<Image>& kept = images_[image.camera];
+  const auto later = std::find_if(kept.begin(), kept.end(),
+                                  [&](const Image& other) { return other.utime >= image.utime; });
+  if (later != kept.end() && later->utime == image.utime) return;
+  kept.insert(later, image);
+  // While a view is being put together its own image must stay: it is the first at or after the
+  // command, so newer ones go first. Otherwise the newest stay.
+  if (kept.size() <= kKept) return;
+  if (capture_ && kept[kept.size() - 2].utime >= capture_->utime) {
+    kept.pop_back();
+  } else {
+    kept.pop_front();
+  }
+}
+
+void ViewCollector::Add(const CornerSelection& picks) { picks_[picks.camera] = picks; }
+
+void ViewCollector::Begin(const SessionCommand& capture) { capture_ = capture; }
+
+void ViewCollector::Reset() {
+  capture_.reset();
+  sweeps_.Clear();
+  picks_.clear();
+}
+
+const Image* ViewCollector::ImageOf(const std::string& camera) const {
+  const auto kept = images_.find(camera);
+  if (kept == images_.end()) return nullptr;
+  for (const Image& image : kept->second) {
+    if (image.shutter_correcting || image.utime < capture_->utime) continue;
+    return image.utime - capture_->utime <= kImageWait ? &image : nullptr;
+  }
+  return nullptr;
+}
+
+const CornerSelection* ViewCollector::PicksOf(const std::string& camera, Utime image_utime) const {
+  const auto found = picks_.find(camera);
+  if (found == picks_.end() || found->second.image_utime != image_utime) return nullptr;
+  return &found->second;
+}
+
+bool ViewCollector::PersonPicks(const std::string& camera) const {
+  const auto& names = capture_->picked_cameras;
+  return std::find(names.begin(), names.end(), camera) != names.end();
+}
+
+std::string ViewCollector::Missing(const Rig& rig) const {
+  if (!capture_) return "";
+  std::string missing;
+  const auto add = [&](const std::string& what) {
+    missing += (missing.empty() ? "" : ", ") + what;
+  };
+  if (!sweeps_.Complete(capture_->sweep_utime)) {
+    add("the end of sweep " + std::to_string(capture_->sweep_utime));
+  }
+  for (const CameraSpec& camera : rig.cameras) {
+    const Image* image = ImageOf(camera.name);
+    if (image == nullptr) {
+      add("an image of camera " + camera.name);
+    } else if (PersonPicks(camera.name) && PicksOf(camera.name, image->utime) == nullptr) {
+      add("picked corners for camera " + camera.name);
+    }
+  }
+  return missing;
+}
+
+std::optional<View> ViewCollector::Take(const Rig& rig) {
+  if (!capture_) return std::nullopt;
+  // The cheap questions first: this is asked after every message.
+  for (const CameraSpec& camera : rig.cameras) {
+    const Image* image = ImageOf(camera.name);
+    if (image == nullptr) return std::nullopt;
+    if (PersonPicks(camera.name) && PicksOf(camera.name, image->utime) == nullptr) {
+      return std::nullopt;
+    }
+  }
+  std::optional<Cloud> cloud = sweeps_.Complete(capture_->sweep_utime);
+  if (!cloud) return std::nullopt;
+  View view;
+  view.name = capture_->view;
+  view.heldout = capture_->heldout;
+  view.cloud = std::move(*cloud);
+  for (const CameraSpec& camera : rig.cameras) {
+    const Image* image = ImageOf(camera.name);
+    view.images.push_back(*image);
+    if (PersonPicks(camera.name)) view.picks.push_back(*PicksOf(camera.name, image->utime));
+  }
+  capture_.reset();
+  return view;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,29 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "services/rgbdt/verbs.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"
+      "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic",
+      "rgbdt"};
+  app.require_subcommand(1);
+  int exit_code = 0;
+  rgbdt::AddCalibrate(&app, &exit_code);
+  rgbdt::AddEvaluate(&app, &exit_code);
+  rgbdt::AddFuse(&app, &exit_code);
+  rgbdt::AddSimulate(&app, &exit_code);
+  rgbdt::AddReplay(&app, &exit_code);
+  rgbdt::AddExport(&app, &exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rgbdt: %s\n", e.what());
+    return 1;
+  }
+  return exit_code;
+}

@@ -1,0 +1,83 @@
+#include "services/rgbdt/report_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+namespace rgbdt {
+namespace {
+
+constexpr int kLabel = 44;
+constexpr int kColumn = 22;
+
+std::string Number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+
+std::string Error(const std::optional<PoseError>& error) {
+  return error ? fmt::format("{:.3f} deg {:.1f} mm", error->rotation_deg, error->translation_mm)
+               : "-";
+}
+
+}  // namespace
+
+std::string ReportTable(const Report& report) {
+  std::string text;
+  const auto row = [&](const std::string& label,
+                       const std::function<std::string(const CameraReport&)>& cell) {
+    text += fmt::format("{:<{}}", label, kLabel);
+    for (const CameraReport& camera : report.cameras) {
+      text += fmt::format("{:>{}}", cell(camera), kColumn);
+    }
+    text += "\n";
+  };
+  row("method " + report.method, [](const CameraReport& c) { return c.calibration.camera; });
+  row("status", [](const CameraReport& c) {
+    return std::string(c.calibration.converged ? "converged" : "NOT CONVERGED");
+  });
+  row("views used / held out / rejected", [](const CameraReport& c) {
+    return fmt::format("{} / {} / {}", c.used.size(), c.heldout.size(), c.rejected.size());
+  });
+  row("distance transform, views used [px]",
+      [](const CameraReport& c) { return Number(c.distance_transform_px.train, 2); });
+  row("distance transform, held out [px]",
+      [](const CameraReport& c) { return Number(c.distance_transform_px.heldout, 2); });
+  row("RMS distance to outline, views used [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.train, 2); });
+  row("RMS distance to outline, held out [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
+  const auto any = [&](auto has) {
+    return std::any_of(report.cameras.begin(), report.cameras.end(), has);
+  };
+  if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
+    row("first guess against truth",
+        [](const CameraReport& c) { return Error(c.first_guess_error); });
+    row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
+  }
+  if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
+    row("from 30 deg roll, 40 deg yaw: ends off by", [](const CameraReport& c) {
+      return c.other_starts.empty() ? std::string("-") : Error(c.other_starts[0].from_result);
+    });
+  }
+  row("seconds: image / cloud / solve", [](const CameraReport& c) {
+    return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
+  });
+  for (const CameraReport& camera : report.cameras) {
+    if (!camera.calibration.converged) {
+      text += camera.calibration.camera + ": " + camera.calibration.status + "\n";
+    }
+    for (const RejectedView& view : camera.rejected) {
+      text += camera.calibration.camera + ": view " + view.view + " rejected: " + view.why + "\n";
+    }
+  }
+  return text;
+}
+
+bool AllConverged(const Report& report) {
+  return std::all_of(report.cameras.begin(), report.cameras.end(),
+                     [](const CameraReport& c) { return c.calibration.converged; });
+}
+
+}  // namespace rgbdt

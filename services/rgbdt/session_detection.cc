@@ -1,0 +1,76 @@
+#include "services/rgbdt/session_detection.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "calib/detect/detect.h"
+
+namespace rgbdt {
+namespace {
+
+std::vector<Observation> Rejected(const Rig& rig, const std::string& view, const std::string& why) {
+  std::vector<Observation> observations;
+  for (const CameraSpec& camera : rig.cameras) {
+    Observation observation;
+    observation.view = view;
+    observation.camera = camera.name;
+    observation.rejected = why;
+    observations.push_back(std::move(observation));
+  }
+  return observations;
+}
+
+std::string Summary(const std::vector<Observation>& observations) {
+  std::string text;
+  for (const Observation& o : observations) {
+    text += (text.empty() ? "" : "; ") + o.camera + ": " +
+            (o.usable() ? (o.heldout ? "board found (held out)" : "board found")
+                        : "rejected, " + o.rejected);
+  }
+  return text;
+}
+
+}  // namespace
+
+SessionDetection DetectSession(const Session& session) {
+  const std::size_t count = session.views.size();
+  std::vector<std::vector<Observation>> by_view(count);
+  std::vector<std::string> unreadable(count);
+  std::atomic<std::size_t> next{0};
+  std::size_t done = 0;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      const std::string& name = session.views[i];
+      try {
+        by_view[i] = DetectView(session.rig, ReadView(session, name));
+      } catch (const std::exception& e) {
+        unreadable[i] = e.what();
+        by_view[i] = Rejected(session.rig, name, e.what());
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      std::fprintf(stderr, "[%zu/%zu] view %s: %s\n", ++done, count, name.c_str(),
+                   Summary(by_view[i]).c_str());
+    }
+  };
+  std::vector<std::thread> threads;
+  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
+    threads.emplace_back(work);
+  }
+  for (std::thread& thread : threads) thread.join();
+
+  SessionDetection detection;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (Observation& o : by_view[i]) detection.observations.push_back(std::move(o));
+    if (!unreadable[i].empty()) {
+      detection.unreadable.push_back("view " + session.views[i] + ": " + unreadable[i]);
+    }
+  }
+  return detection;
+}
+
+}  // namespace rgbdt

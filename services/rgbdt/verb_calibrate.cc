@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <memory>
+
+#include "calib/files/calibration_file.h"
+#include "calib/solve/calibrate.h"
+#include "services/rgbdt/paths.h"
+#include "services/rgbdt/report_table.h"
+#include "services/rgbdt/session_detection.h"
+#include "services/rgbdt/verbs.h"
+#include "services/rgbdt/write_report.h"
+
+namespace rgbdt {
+namespace {
+
+struct Flags {
+  std::string dir, out, truth;
+  CalibrateOptions options;
+};
+
+int Run(const Flags& flags) {
+  flags.options.Check();
+  const Session session = OpenSession(flags.dir);
+  const std::filesystem::path out = PathOr(flags.out, session.root);
+  const SessionDetection detection = DetectSession(session);
+  std::fprintf(stderr, "solving ...\n");
+  Report report = Calibrate(session.rig, detection.observations, flags.options);
+  const std::filesystem::path truth = PathOr(flags.truth, session.root / "truth.textproto");
+  if (!flags.truth.empty() || std::filesystem::exists(truth)) AddTruth(ReadTruth(truth), &report);
+  WriteCalibration(out / "calibration.textproto", report.ToCalibration());
+  WriteReportFiles(out, session, detection.observations, report);
+  std::fputs(ReportTable(report).c_str(), stdout);
+  std::printf("wrote %s, report.json, report.html\n", (out / "calibration.textproto").c_str());
+  for (const std::string& line : detection.unreadable) {
+    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
+  }
+  return AllConverged(report) && detection.unreadable.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void AddCalibrate(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "calibrate",
+      "Finds each camera's pose relative to the LIDAR from a session directory.\n"
+      "Writes calibration.textproto, report.json and report.html. Exit code 1: a camera did not\n"
+      "converge, or a view could not be read.\n"
+      "Example: rgbdt calibrate out/demo/session --out out/again");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
+  verb->add_option("--out", flags->out, "where to write; default: DIR");
+  verb->add_option("--method", flags->options.method, "paper (Krishnan et al. 2015)")
+      ->capture_default_str();
+  verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "calib/files/calibration_file.h"
+#include "calib/files/cloud_files.h"
+#include "calib/files/cloud_picture.h"
+#include "calib/files/image_files.h"
+#include "calib/files/session_dir.h"
+#include "calib/fuse/fuse.h"
+#include "calib/model/errors.h"
+#include "services/rgbdt/paths.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+struct Flags {
+  std::string dir, calibration, out, view;
+  bool png = false;
+};
+
+RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
+                    const std::string& name) {
+  const View view = ReadView(session, name);
+  std::vector<FusionCamera> cameras;
+  for (const CameraSpec& spec : session.rig.cameras) {
+    FusionCamera camera(spec);
+    camera.ServeAllTimes();
+    const CameraCalibration* found = calibration.Find(spec.name);
+    if (found != nullptr) {
+      camera.camera_from_lidar = found->camera_from_lidar;
+      camera.calibrated = true;
+    }
+    for (const Image& image : view.images) {
+      if (image.camera == spec.name) camera.AddImage(Prepare(spec, image));
+    }
+    cameras.push_back(std::move(camera));
+  }
+  RgbdtCloud fused = Fuse(view.cloud, cameras);
+  fused.sweep_end = true;
+  fused.calibration_utime = calibration.utime;
+  return fused;
+}
+
+int Run(const Flags& flags) {
+  const Session session = OpenSession(flags.dir);
+  const std::filesystem::path out = PathOr(flags.out, session.root);
+  const Calibration calibration =
+      ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
+  const std::string view = flags.view.empty() ? session.views.back() : flags.view;
+  if (std::find(session.views.begin(), session.views.end(), view) == session.views.end()) {
+    throw InputError("session " + session.root.string() + " has no view \"" + view + "\"; it has " +
+                     session.views.front() + " to " + session.views.back());
+  }
+  const RgbdtCloud fused = FuseView(session, calibration, view);
+  if (fused.points.empty()) throw InputError("view " + view + " has no points that returned");
+  const auto coloured = std::count_if(fused.valid.begin(), fused.valid.end(),
+                                      [](std::uint32_t valid) { return valid != 0; });
+  WritePly(out / "fused.ply", fused);
+  WritePcd(out / "fused.pcd", fused);
+  std::printf("view %s: %zu points, %.0f%% seen by a camera; wrote fused.ply, fused.pcd",
+              view.c_str(), fused.size(),
+              100.0 * static_cast<double>(coloured) / static_cast<double>(fused.size()));
+  if (flags.png) {
+    WritePng(out / "fused_rgb.png", DrawCloud(fused, CloudColour::kRgb, {}));
+    WritePng(out / "fused_thermal.png", DrawCloud(fused, CloudColour::kThermal, {}));
+    std::printf(", fused_rgb.png, fused_thermal.png");
+  }
+  std::printf(" to %s\n", out.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddFuse(CLI::App* app, int* exit_code) {
+  CLI::App* verb =
+      app->add_subcommand("fuse",
+                          "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
+                          "colour, temperature\n"
+                          "[K], which cameras saw it. Writes fused.ply and fused.pcd.\n"
+                          "Example: rgbdt fuse out/demo/session --view 0003 --png");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("DIR", flags->dir, "session directory")->required();
+  verb->add_option("--view", flags->view, "which view; default: the last");
+  verb->add_option("--calibration", flags->calibration, "default: DIR/calibration.textproto");
+  verb->add_option("--out", flags->out, "where to write; default: DIR");
+  verb->add_flag("--png", flags->png, "also draw the cloud: fused_rgb.png, fused_thermal.png");
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt

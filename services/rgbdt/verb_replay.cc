@@ -1,0 +1,103 @@
+#include <cstdio>
+#include <memory>
+
+#include "calib/files/calibration_file.h"
+#include "calib/files/report_file.h"
+#include "calib/model/errors.h"
+#include "services/bus/log.h"
+#include "services/bus/node_runner.h"
+#include "services/nodes/assembler_node.h"
+#include "services/nodes/detector_node.h"
+#include "services/nodes/fuser_node.h"
+#include "services/nodes/solver_node.h"
+#include "services/rgbdt/report_table.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+struct Flags {
+  std::string log;
+  std::string out = "out/replay";
+};
+
+// What sensors, people and the session said. All else in a log is what nodes made of it.
+bool IsInput(const std::string& channel) {
+  static const std::string kImage = "_IMAGE";
+  return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
+         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND" || channel == "POSE" ||
+         (channel.size() > kImage.size() &&
+          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
+}
+
+void PrintProblems(const NodeRunner& runner) {
+  const Status status = runner.GetStatus();
+  if (runner.dropped() == 0 && runner.gaps() == 0) return;
+  std::fprintf(stderr, "%s: %lld messages dropped, %lld missing; last problem: %s\n",
+               status.process.c_str(), static_cast<long long>(runner.dropped()),
+               static_cast<long long>(runner.gaps()), status.last_problem.c_str());
+}
+
+int Run(const Flags& flags) {
+  LogReader log(flags.log);
+  MemoryBus bus;
+  AssemblerNode assembler;
+  DetectorNode detector;
+  SolverNode solver;
+  FuserNode fuser;
+  NodeRunner assembler_runner(&assembler, &bus);
+  NodeRunner detector_runner(&detector, &bus);
+  NodeRunner solver_runner(&solver, &bus);
+  NodeRunner fuser_runner(&fuser, &bus);
+  // A log of clouds only (a 3D LIDAR) has no lines; one with lines gets its clouds from them.
+  bool has_lines = false;
+  std::int64_t events = 0;
+  int percent = -1;
+  while (const auto event = log.Next()) {
+    has_lines |= event->channel == "LINE_SCAN";
+    if (IsInput(event->channel) || (event->channel == "CLOUD" && !has_lines)) {
+      bus.Publish(event->channel, event->bytes);
+      bus.Run();
+    }
+    ++events;
+    const int now = static_cast<int>(100 * log.position() / std::max<std::int64_t>(1, log.size()));
+    if (now / 5 != percent / 5) std::fprintf(stderr, "replay: %d%%\n", now);
+    percent = now;
+  }
+  for (const NodeRunner* runner :
+       {&assembler_runner, &detector_runner, &solver_runner, &fuser_runner}) {
+    PrintProblems(*runner);
+  }
+  if (log.unreadable_bytes() > 0) {
+    std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
+                 flags.log.c_str(), static_cast<long long>(log.unreadable_bytes()));
+  }
+  if (!solver.report()) {
+    throw InputError(flags.log + ": " + std::to_string(events) +
+                     " messages, but no view was captured in them; solver: " +
+                     solver.GetStatus().text + "; detector: " + detector.GetStatus().text);
+  }
+  const std::filesystem::path out = flags.out;
+  WriteCalibration(out / "calibration.textproto", solver.report()->ToCalibration());
+  WriteReport(out / "report.json", *solver.report());
+  std::fputs(ReportTable(*solver.report()).c_str(), stdout);
+  std::printf("fuser: %s\n", fuser_runner.GetStatus().text.c_str());
+  std::printf("wrote %s, report.json\n", (out / "calibration.textproto").c_str());
+  return AllConverged(*solver.report()) ? 0 : 1;
+}
+
+}  // namespace
+
+void AddReplay(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "replay",
+      "Runs the nodes of the live processes on a log of lcm-logger, in one process, in order, as\n"
+      "fast as it goes. The same log gives the same bytes.\n"
+      "Example: rgbdt replay out/demo/session.lcm --out out/replay");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();
+  verb->add_option("--out", flags->out, "where to write")->capture_default_str();
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,107 @@
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "calib/files/rig_file.h"
+#include "calib/files/session_dir.h"
+#include "calib/model/errors.h"
+#include "calib/scan_assembly/assembler.h"
+#include "calib/simulate/simulator.h"
+#include "services/nodes/simulator_node.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+using simulate::Simulator;
+
+struct Flags {
+  std::string dir;
+  int views = 12;
+  std::vector<std::string> picked = {"thermal"};
+  simulate::Options options;
+};
+
+// One sweep of the scanner, assembled as on the bus.
+Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
+  const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
+  const Utime end = sweep_utime + simulator.sweep_lines() * simulator.line_period();
+  EncoderTrack track;
+  for (Utime t = sweep_utime; t <= end; t += SimulatorNode::kEncoderPeriod) {
+    track.Add(simulator.Encoder(t, sweep_utime));
+  }
+  std::vector<CloudChunk> chunks;
+  for (int i = 0; i < simulator.sweep_lines(); ++i) {
+    const LineScan line = simulator.Line(sweep_utime, i);
+    std::vector<double> angles;
+    for (std::size_t beam = 0; beam < line.range.size(); ++beam) {
+      const Utime at = line.utime + FromSeconds(static_cast<double>(beam) * line.beam_period_s);
+      angles.push_back(track.AngleAt(scanner, at, kMicrosecondsPerSecond).value());
+    }
+    CloudChunk chunk;
+    chunk.cloud = LineToCloud(scanner, line, angles);
+    chunk.cloud.first_line = i;
+    chunks.push_back(std::move(chunk));
+  }
+  Cloud cloud = JoinChunks(chunks);
+  cloud.sweep_utime = sweep_utime;
+  return cloud;
+}
+
+int Run(const Flags& flags) {
+  if (flags.views < 1 || flags.views > 9999) {
+    throw InputError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
+  }
+  Simulator simulator(flags.options);
+  Rig rig = simulator.rig();
+  for (const std::string& camera : flags.picked) rig.Camera(camera);
+  WriteRig(flags.dir, ParseRig(PrintRig(rig), "synthetic rig"));
+  Utime now = SimulatorNode::kEpoch;
+  for (int i = 0; i < flags.views; ++i) {
+    View view;
+    char name[16];
+    std::snprintf(name, sizeof(name), "%04d", i + 1);
+    view.name = name;
+    view.heldout = i % 3 == 2;
+    std::fprintf(stderr, "[%d/%d] view %s: rendering, sweeping\n", i + 1, flags.views, name);
+    simulator.ShowView(i, view.name);
+    view.cloud = Sweep(simulator, now);
+    now += simulator.sweep_lines() * simulator.line_period() + kMicrosecondsPerSecond;
+    for (const CameraSpec& camera : rig.cameras) {
+      view.images.push_back(simulator.TakeImage(camera.name, now));
+    }
+    for (const std::string& camera : flags.picked) {
+      view.picks.push_back(simulator.PickCorners(camera, now));
+    }
+    now += kMicrosecondsPerSecond;
+    WriteView(flags.dir, view);
+    WriteTruth(std::filesystem::path(flags.dir) / "truth.textproto", simulator.truth());
+  }
+  std::printf("wrote %s: rig.textproto, %d views, truth.textproto\nnext: rgbdt calibrate %s\n",
+              flags.dir.c_str(), flags.views, flags.dir.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "simulate",
+      "Writes a session directory of the synthetic rig, with its truth beside (truth.textproto).\n"
+      "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("DIR", flags->dir, "session directory to write")->required();
+  verb->add_option("--views", flags->views, "how many")->capture_default_str();
+  verb->add_option("--seed", flags->options.seed, "of everything random")->capture_default_str();
+  static const std::map<std::string, simulate::Scene> kScenes = {
+      {"outdoor", simulate::Scene::kOutdoor},
+      {"indoor", simulate::Scene::kIndoor},
+      {"night", simulate::Scene::kNight}};
+  verb->add_option("--scene", flags->options.scene, "outdoor, indoor or night")
+      ->transform(CLI::CheckedTransformer(kScenes));
+  verb->add_option("--picked", flags->picked, "cameras whose corners a person picks")
+      ->capture_default_str();
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt

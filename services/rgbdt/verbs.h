@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rgbdt {
+
+/// Each verb of the command line adds its options to `app` and, when chosen, runs and sets
+/// `*exit_code`. Bad input is thrown as InputError; main prints it.
+void AddCalibrate(CLI::App* app, int* exit_code);
+void AddEvaluate(CLI::App* app, int* exit_code);
+void AddFuse(CLI::App* app, int* exit_code);
+void AddSimulate(CLI::App* app, int* exit_code);
+void AddReplay(CLI::App* app, int* exit_code);
+void AddExport(CLI::App* app, int* exit_code);
+
+}  // namespace rgbdt

@@ -1,0 +1,81 @@
+#include "services/rgbdt/write_report.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/camera/camera.h"
+#include "calib/camera/pixels.h"
+#include "calib/files/atomic_file.h"
+#include "calib/files/report_file.h"
+#include "calib/files/report_html.h"
+
+namespace rgbdt {
+namespace {
+
+// The boundary points on the image: green within 1 px of the outline, then yellow, red beyond 4 px.
+cv::Scalar ColourOf(double distance) {
+  if (distance <= 1) return {80, 220, 60};
+  if (distance <= 4) return {40, 210, 250};
+  return {60, 60, 250};
+}
+
+double DistanceToOutline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
+  std::vector<cv::Point2f> polygon;
+  for (const Eigen::Vector2d& q : outline) {
+    polygon.emplace_back(static_cast<float>(q.x()), static_cast<float>(q.y()));
+  }
+  return std::abs(
+      cv::pointPolygonTest(polygon, {static_cast<float>(p.x()), static_cast<float>(p.y())}, true));
+}
+
+cv::Mat Overlay(const Session& session, const Observation& observation,
+                const Rigid3& camera_from_lidar) {
+  const View view = ReadView(session, observation.view);
+  const auto image = std::find_if(view.images.begin(), view.images.end(),
+                                  [&](const Image& i) { return i.camera == observation.camera; });
+  const Camera camera(session.rig.Camera(observation.camera));
+  cv::Mat picture = ToBgr(*image).clone();
+  const double size = std::max(1.0, picture.cols / 640.0);
+  for (const Eigen::Vector3d& point : observation.cloud->boundary) {
+    const auto pixel = camera.Project(camera_from_lidar * point);
+    if (!pixel || !camera.Contains(*pixel)) continue;
+    cv::circle(
+        picture,
+        {static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y()))},
+        static_cast<int>(1.6 * size),
+        ColourOf(DistanceToOutline(*pixel, observation.image->outline)), cv::FILLED, cv::LINE_AA);
+  }
+  const double scale = std::min(1.0, 1280.0 / picture.cols);
+  if (scale < 1) cv::resize(picture, picture, {}, scale, scale, cv::INTER_AREA);
+  return picture;
+}
+
+const Observation* ToShow(const std::string& camera, const std::vector<Observation>& observations) {
+  const Observation* best = nullptr;
+  for (const Observation& o : observations) {
+    if (o.camera != camera || !o.usable()) continue;
+    if (best == nullptr || (o.heldout && !best->heldout)) best = &o;
+  }
+  return best;
+}
+
+}  // namespace
+
+void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
+                      const std::vector<Observation>& observations, const Report& report) {
+  WriteReport(dir / "report.json", report);
+  std::vector<ReportPicture> pictures;
+  for (const CameraReport& camera : report.cameras) {
+    const std::string& name = camera.calibration.camera;
+    const Observation* shown = ToShow(name, observations);
+    if (shown == nullptr) continue;
+    pictures.push_back(
+        {name + ", view " + shown->view + (shown->heldout ? ", held out" : ""),
+         "The board's boundary points in the cloud, laid on the image by the calibration. Green: "
+         "within 1 px of the board's outline; yellow: within 4 px; red: beyond.",
+         Overlay(session, *shown, camera.calibration.camera_from_lidar)});
+  }
+  WriteFileAtomically(dir / "report.html", ReportHtml(report, pictures));
+}
+
+}  // namespace rgbdt

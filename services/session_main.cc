@@ -1,0 +1,77 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+
+#include "calib/files/rig_file.h"
+#include "calib/files/session_script.h"
+#include "services/bus/process.h"
+#include "services/nodes/session_node.h"
+
+namespace {
+
+double Seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// A line for each new text, and for each quarter of a long step: how far, how long still.
+class ProgressPrinter {
+ public:
+  void operator()(const rgbdt::SessionProgress& progress) {
+    const int quarter = static_cast<int>(progress.fraction * 4);
+    if (progress.step == step_ && progress.text == text_ && quarter == quarter_) return;
+    step_ = progress.step;
+    text_ = progress.text;
+    quarter_ = quarter;
+    const double done = (progress.step - 1 + progress.fraction) / progress.steps;
+    std::string left;
+    if (done > 0.05) {
+      left = ", about " + std::to_string(std::lround((Seconds() - began_) * (1 - done) / done)) +
+             " s left";
+    }
+    std::printf("[%d/%d] %s, %.0f%%%s\n", progress.step, progress.steps, progress.text.c_str(),
+                100 * progress.fraction, left.c_str());
+    std::fflush(stdout);
+  }
+
+ private:
+  double began_ = Seconds();
+  int step_ = 0;
+  int quarter_ = -1;
+  std::string text_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Runs a scripted calibration session on the bus and writes the session directory.\n"
+      "Example: rgbdt-session scripts/sessions/demo.session.textproto --rig out/rig.textproto "
+      "--out out/session",
+      "rgbdt-session"};
+  std::string url;
+  std::string script_file;
+  std::string rig_file;
+  std::string out = "out/session";
+  app.add_option("FILE", script_file, "session.textproto")->required();
+  app.add_option("--rig", rig_file, "rig.textproto; default: the one that the script names");
+  app.add_option("--out", out, "session directory to write")->capture_default_str();
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const rgbdt::SessionScript script = rgbdt::ReadSessionScript(script_file, rig_file);
+    rgbdt::SessionNode node(script, rgbdt::ReadRig(script.rig), out, ProgressPrinter());
+    const double began = Seconds();
+    const int code = rgbdt::RunOnLcm(node, url, [&](rgbdt::NodeRunner& runner) {
+      runner.Publish(node.Advance(Seconds() - began));
+      return !node.finished();
+    });
+    if (!node.failure().empty()) {
+      std::fprintf(stderr, "rgbdt-session: %s\n", node.failure().c_str());
+      return 1;
+    }
+    return node.finished() ? code : 1;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rgbdt-session: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,16 @@
+#include <CLI/CLI.hpp>
+
+#include "services/bus/process.h"
+#include "services/nodes/solver_node.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "OBSERVATION to CALIBRATION: where each camera sits relative to the LIDAR.\nExample: "
+      "rgbdt-solver --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
+      "rgbdt-solver"};
+  std::string url;
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  rgbdt::SolverNode node;
+  return rgbdt::RunOnLcm(node, url);
+}

@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <limits>
+
+#include "calib/model/errors.h"
+#include "services/bus/codec.h"
+#include "tests/unit/bus/random_messages.h"
+
+// Hostile bytes: every outcome is a message or an InputError, and memory stays bounded. Built with
+// -fsanitize=address,undefined these tests also hold that nothing is read past the end; the copy
+// into a vector of exact size makes one byte too far visible.
+
+namespace rgbdt {
+namespace {
+
+using testing::RandomMessages;
+
+constexpr int kFlipsPerMessage = 400;
+constexpr std::int64_t kMaxGrowthKb = 300 * 1024;
+
+std::int64_t PeakMemoryKb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+/// True if the bytes were taken for a message.
+bool Survives(const std::string& channel, const Bytes& bytes) {
+  const Bytes exact(bytes.begin(), bytes.end());
+  try {
+    const Message message = Decode(channel, exact.data(), exact.size());
+    Encode(message);  // what is accepted can be sent on
+    return true;
+  } catch (const InputError& e) {
+    EXPECT_STRNE(e.what(), "");
+    return false;
+  }
+}
+
+class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
+ protected:
+  RandomMessages random_{GetParam() + 1000};
+};
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Fuzz, ::testing::Range(std::uint64_t{0}, std::uint64_t{8}));
+
+TEST_P(Fuzz, EveryTruncationIsRefused) {
+  for (const Message& message : random_.OneOfEach()) {
+    const std::string channel = ChannelOf(message);
+    const Bytes whole = Encode(message);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      EXPECT_FALSE(Survives(channel, Bytes(whole.data(), whole.data() + size))) << channel << size;
+    }
+    Bytes longer = whole;
+    longer.push_back(0);
+    EXPECT_FALSE(Survives(channel, longer)) << channel;
+  }
+}
+
+TEST_P(Fuzz, ForgedCountsAtEveryByte) {
+  const std::int64_t before = PeakMemoryKb();
+  const std::int32_t forged[] = {-1,      std::numeric_limits<std::int32_t>::min(),
+                                 0,       std::numeric_limits<std::int32_t>::max(),
+                                 1 << 30, (1 << 30) + 1,
+                                 1 << 29, 1 << 28,
+                                 1,       100'000};
+  for (const Message& message : random_.OneOfEach()) {
+    const std::string channel = ChannelOf(message);
+    const Bytes whole = Encode(message);
+    const std::size_t end = std::min<std::size_t>(whole.size(), 1500);
+    for (std::size_t at = 8; at + 4 <= end; ++at) {
+      for (const std::int32_t count : forged) {
+        Bytes bytes = whole;
+        for (std::size_t i = 0; i < 4; ++i) {
+          bytes[at + i] =
+              static_cast<std::uint8_t>(static_cast<std::uint32_t>(count) >> (24 - 8 * i));
+        }
+        Survives(channel, bytes);
+      }
+    }
+  }
+  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+}
+
+TEST_P(Fuzz, RandomBytesFlipped) {
+  const std::int64_t before = PeakMemoryKb();
+  for (const Message& message : random_.OneOfEach()) {
+    const std::string channel = ChannelOf(message);
+    const Bytes whole = Encode(message);
+    const int last = static_cast<int>(whole.size()) - 1;
+    for (int round = 0; round < kFlipsPerMessage; ++round) {
+      Bytes bytes = whole;
+      for (int flips = random_.Int(1, 6); flips > 0; --flips) {
+        // The fingerprint is spared: nothing gets past a wrong one.
+        bytes[static_cast<std::size_t>(random_.Int(8, last))] =
+            static_cast<std::uint8_t>(random_.Int(0, 255));
+      }
+      Survives(channel, bytes);
+    }
+  }
+  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+}
+
+TEST_P(Fuzz, RandomBytesBehindTheFingerprint) {
+  for (const Message& message : random_.OneOfEach()) {
+    const std::string channel = ChannelOf(message);
+    const Bytes whole = Encode(message);
+    for (int round = 0; round < 100; ++round) {
+      Bytes bytes(whole.begin(), whole.begin() + 8);
+      for (int size = random_.Int(0, 600); size > 0; --size) {
+        bytes.push_back(static_cast<std::uint8_t>(random_.Coin() ? 0 : random_.Int(0, 255)));
+      }
+      Survives(channel, bytes);
+    }
+  }
+}
+
+// Compressed pictures go through OpenCV: broken files must end in an error or a picture.
+TEST_P(Fuzz, BrokenImageFiles) {
+  const std::int64_t before = PeakMemoryKb();
+  for (const PixelFormat format : {PixelFormat::kPng, PixelFormat::kJpeg}) {
+    Image image = random_.Picture(PixelFormat::kBgr8);
+    image.format = format;
+    const std::string channel = ChannelOf(image);
+    const Bytes whole = Encode(image);
+    for (int round = 0; round < kFlipsPerMessage; ++round) {
+      Bytes bytes = whole;
+      bytes[static_cast<std::size_t>(random_.Int(100, static_cast<int>(whole.size()) - 1))] =
+          static_cast<std::uint8_t>(random_.Int(0, 255));
+      Survives(channel, bytes);
+    }
+  }
+  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+}
+
+TEST(FuzzChannels, EveryTypeOnEveryOtherChannelIsRefused) {
+  RandomMessages random(1);
+  const Messages messages = random.OneOfEach();
+  for (const Message& a : messages) {
+    const Bytes bytes = Encode(a);
+    for (const Message& b : messages) {
+      EXPECT_EQ(Survives(ChannelOf(b), bytes), ChannelOf(a) == ChannelOf(b));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt

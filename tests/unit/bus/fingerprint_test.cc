@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include <lcmtypes/rgbdt/radiometry_t.hpp>
+
+#include "services/bus/codec_types.h"
+
+namespace rgbdt {
+namespace {
+
+// The wire is frozen: others write these types and read these logs. If this fails, a field was
+// changed; put it back and add a new type instead (lcmtypes/README.md).
+TEST(Fingerprint, IsWhatItWas) {
+  EXPECT_EQ(static_cast<std::uint64_t>(calibration_t::getHash()), 0xc21f3b8901adb5f5U);
+  EXPECT_EQ(static_cast<std::uint64_t>(cloud_t::getHash()), 0x125e8ff78f44efb8U);
+  EXPECT_EQ(static_cast<std::uint64_t>(corner_selection_t::getHash()), 0x02f689fdcac537a0U);
+  EXPECT_EQ(static_cast<std::uint64_t>(encoder_t::getHash()), 0x7aad6668dd2e9ec1U);
+  EXPECT_EQ(static_cast<std::uint64_t>(image_t::getHash()), 0xf724a27bdd3abd9cU);
+  EXPECT_EQ(static_cast<std::uint64_t>(line_scan_t::getHash()), 0x62ff83194fdec7fcU);
+  EXPECT_EQ(static_cast<std::uint64_t>(observation_t::getHash()), 0x882584ff7f6e6b63U);
+  EXPECT_EQ(static_cast<std::uint64_t>(pose_t::getHash()), 0xfd782618dd276dcfU);
+  EXPECT_EQ(static_cast<std::uint64_t>(radiometry_t::getHash()), 0x2570e4bcc16de0dbU);
+  EXPECT_EQ(static_cast<std::uint64_t>(report_t::getHash()), 0x5c2dc84a6180ae4dU);
+  EXPECT_EQ(static_cast<std::uint64_t>(rgbdt_cloud_t::getHash()), 0xd7bb8efddb8b9255U);
+  EXPECT_EQ(static_cast<std::uint64_t>(rig_t::getHash()), 0x9c564d644627e935U);
+  EXPECT_EQ(static_cast<std::uint64_t>(session_command_t::getHash()), 0x259249a63234a765U);
+  EXPECT_EQ(static_cast<std::uint64_t>(session_event_t::getHash()), 0x20babb8a4ce9fbb5U);
+  EXPECT_EQ(static_cast<std::uint64_t>(status_t::getHash()), 0xcc7326579c48e529U);
+}
+
+}  // namespace
+}  // namespace rgbdt

@@ -1,0 +1,50 @@
+#include "calib/simulate/options.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt::simulate {
+namespace {
+
+TEST(Options, DefaultsAreGood) { EXPECT_NO_THROW(Options().Check()); }
+
+TEST(Options, BadOnesAreNamed) {
+  const std::vector<std::pair<std::string, std::function<void(Options*)>>> cases{
+      {"scanner.beams", [](Options* o) { o->scanner.beams = 0; }},
+      {"scanner.beam_period_s", [](Options* o) { o->scanner.beam_period_s = -1; }},
+      {"beam_period_s", [](Options* o) { o->scanner.beam_period_s = 1.234567e-4; }},
+      {"scanner.range_sigma_m",
+       [](Options* o) { o->scanner.range_sigma_m = std::numeric_limits<double>::quiet_NaN(); }},
+      {"scanner.divergence_rings", [](Options* o) { o->scanner.divergence_rings = 1; }},
+      {"scanner.sweep_rad", [](Options* o) { o->scanner.sweep_rad = 0; }},
+      {"cameras", [](Options* o) { o->cameras.clear(); }},
+      {"width", [](Options* o) { o->cameras[0].width = 1935; }},
+      {"thermal", [](Options* o) { o->cameras[1].netd_k = -0.05; }},
+      {"two cameras", [](Options* o) { o->cameras[1].name = "rgb"; }},
+      {"folds back", [](Options* o) { o->cameras[1].lens.distortion[0] = -0.9; }},
+      {"board.width_m", [](Options* o) { o->board.width_m = 1; }},
+      {"board.white_reflectivity", [](Options* o) { o->board.white_reflectivity = 1.5; }},
+      {"pose.max_range_m", [](Options* o) { o->pose.max_range_m = 1; }},
+      {"pose.max_tilt_rad", [](Options* o) { o->pose.max_tilt_rad = 40; }},
+      {"world.ground_z_m", [](Options* o) { o->world.ground_z_m = 1; }},
+      {"guess_rotation_rad", [](Options* o) { o->guess_rotation_rad = 2; }},
+      {"supersampling", [](Options* o) { o->supersampling = 0; }},
+  };
+  for (const auto& [field, spoil] : cases) {
+    Options options;
+    spoil(&options);
+    try {
+      options.Check();
+      ADD_FAILURE() << field << " was not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(field), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt::simulate

@@ -1,0 +1,242 @@
+#include "calib/simulate/simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "calib/model/calibration.h"
+#include "calib/model/errors.h"
+#include "tests/unit/simulate/simulate_testing.h"
+
+namespace rgbdt::simulate {
+namespace {
+
+constexpr Utime kStart = 1'700'000'000'000'000;
+
+bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+bool SamePixels(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && a.type() == b.type() && cv::norm(a, b, cv::NORM_INF) == 0;
+}
+
+TEST(Simulator, RepeatsItselfAfterARestartWithOtherThreads) {
+  Options options = SmallOptions();
+  options.threads = 1;
+  Simulator first(options);
+  first.ShowView(0, "a");
+  first.ShowView(4, "b");
+  options.threads = 3;
+  Simulator second(options);  // never showed view 0
+  second.ShowView(4, "b");
+  for (const char* camera : {"rgb", "thermal"}) {
+    const Image a = first.TakeImage(camera, kStart + 77);
+    first.TakeImage(camera, kStart + 78);
+    EXPECT_TRUE(SamePixels(a.pixels, first.TakeImage(camera, kStart + 77).pixels));
+    EXPECT_TRUE(SamePixels(a.pixels, second.TakeImage(camera, kStart + 77).pixels));
+    EXPECT_FALSE(SamePixels(a.pixels, second.TakeImage(camera, kStart + 78).pixels));
+    EXPECT_EQ(first.PickCorners(camera, kStart).corners,
+              second.PickCorners(camera, kStart).corners);
+  }
+  const LineScan line = first.Line(kStart, 150);
+  EXPECT_TRUE(SameBits(line.range, second.Line(kStart, 150).range));
+  EXPECT_TRUE(SameBits(line.intensity, second.Line(kStart, 150).intensity));
+  EXPECT_FALSE(SameBits(line.range, second.Line(kStart + 1, 150).range));
+}
+
+TEST(Simulator, SeedChangesTruthGuessAndNoise) {
+  Options options = SmallOptions();
+  const Simulator first(options);
+  options.seed = 2;
+  const Simulator second(options);
+  EXPECT_NE(first.truth().camera_from_lidar.at("rgb").translation,
+            second.truth().camera_from_lidar.at("rgb").translation);
+  EXPECT_FALSE(SameBits(first.Line(kStart, 10).range, second.Line(kStart, 10).range));
+}
+
+TEST(Simulator, GuessIsWrongWithinItsBounds) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Options options = SmallOptions();
+    options.seed = seed;
+    const Simulator simulator(options);
+    for (const CameraSpec& camera : simulator.rig().cameras) {
+      const Rigid3& truth = simulator.truth().camera_from_lidar.at(camera.name);
+      const PoseError error = ErrorOf(*camera.camera_from_lidar_guess, truth);
+      EXPECT_LE(error.rotation_deg, 2.0 + 1e-9);
+      EXPECT_GE(error.rotation_deg, 0.5);
+      EXPECT_LE(error.translation_mm, 50 + 1e-6);
+      EXPECT_GE(error.translation_mm, 15);
+      const double off = truth.Inverse().translation.norm();
+      EXPECT_GE(off, 0.10);
+      EXPECT_LE(off, 0.25);
+    }
+  }
+}
+
+TEST(Simulator, RigIsThePapers) {
+  const Simulator simulator{Options()};
+  const Rig& rig = simulator.rig();
+  EXPECT_EQ(rig.Camera("rgb").width, 1936);
+  EXPECT_EQ(rig.Camera("rgb").height, 1456);
+  EXPECT_EQ(rig.Camera("rgb").format, PixelFormat::kBayerRg8);
+  EXPECT_EQ(rig.Camera("rgb").lens.fx, 1100);
+  EXPECT_EQ(rig.Camera("thermal").width, 640);
+  EXPECT_EQ(rig.Camera("thermal").height, 480);
+  EXPECT_EQ(rig.Camera("thermal").format, PixelFormat::kMono16);
+  EXPECT_EQ(rig.Camera("thermal").lens.fx, 530);
+  EXPECT_EQ(rig.Camera("thermal").radiometry.kind, Radiometry::Kind::kLinear);
+  EXPECT_EQ(rig.target.squares_x, 11);
+  EXPECT_EQ(rig.target.squares_y, 8);
+  EXPECT_DOUBLE_EQ(rig.target.width_m, 1.2192);
+  EXPECT_DOUBLE_EQ(rig.target.height_m, 0.9144);
+  EXPECT_NEAR(rig.lidar.turned_scanner->ticks_per_rad * kDegree, 1400, 1e-9);
+  EXPECT_EQ(simulator.sweep_lines(), 300);
+  EXPECT_EQ(simulator.line_period(), 40000);
+  EXPECT_EQ(simulator.Line(kStart, 0).range.size(), 400U);
+}
+
+TEST(Simulator, EncoderReadsWholeTicksOfTheSweep) {
+  const Simulator simulator(SmallOptions());
+  const double zero = simulator.rig().lidar.turned_scanner->zero_ticks;
+  EXPECT_EQ(simulator.Encoder(kStart, kStart).ticks, std::llround(zero) - 42000);
+  EXPECT_EQ(simulator.Encoder(kStart + 6000000, kStart).ticks, std::llround(zero));
+  EXPECT_EQ(simulator.Encoder(kStart + 12000000, kStart).ticks, std::llround(zero) + 42000);
+  EXPECT_EQ(simulator.Encoder(kStart + 6000000, 0).ticks, std::llround(zero) - 42000);
+  EXPECT_EQ(simulator.Encoder(kStart + 1, kStart).sweep_utime, kStart);
+}
+
+/// Every range on the board, put into the target's frame with the truth, lies in its plane.
+TEST(Simulator, CloudLiesOnTheBoard) {
+  Simulator simulator(SmallOptions());
+  simulator.ShowView(1, "0001");
+  const Rigid3 target_from_lidar = simulator.truth().lidar_from_target.at("0001").Inverse();
+  const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
+  double squares = 0;
+  int count = 0;
+  for (int line = 0; line < simulator.sweep_lines(); ++line) {
+    const LineScan scan = simulator.Line(kStart, line);
+    for (std::size_t beam = 0; beam < scan.range.size(); ++beam) {
+      const Utime utime = scan.utime + static_cast<Utime>(beam) * 100;
+      const double motor =
+          (static_cast<double>(simulator.Encoder(utime, kStart).ticks) - scanner.zero_ticks) /
+          scanner.ticks_per_rad;
+      const double a = scan.first_angle_rad + scan.angle_step_rad * static_cast<double>(beam);
+      const Eigen::Vector3d in_scanner =
+          scan.range[beam] * Eigen::Vector3d(std::cos(a), 0, std::sin(a));
+      const Eigen::Vector3d p =
+          target_from_lidar * (RotationAbout(Eigen::Vector3d::UnitZ(), motor) *
+                               (scanner.motor_from_scanner * in_scanner));
+      if (!(std::abs(p.x()) < 0.58 && std::abs(p.y()) < 0.43 && std::abs(p.z()) < 0.2)) continue;
+      squares += p.z() * p.z();
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 500);
+  EXPECT_LT(std::sqrt(squares / count), 0.0105);
+  EXPECT_GT(std::sqrt(squares / count), 0.006);
+}
+
+TEST(Simulator, PicksScatterRoundTheTrueCorners) {
+  Simulator simulator(SmallOptions());
+  simulator.ShowView(2, "0001");
+  for (const CameraSpec& camera : simulator.rig().cameras) {
+    const Rigid3 camera_from_target = simulator.truth().camera_from_lidar.at(camera.name) *
+                                      simulator.truth().lidar_from_target.at("0001");
+    const auto outline = simulator.rig().target.OutlineCorners();
+    const std::vector<cv::Point2d> truth = OpenCvPixels(
+        camera.lens, camera_from_target, {outline.begin(), outline.end()});
+    double squares = 0;
+    constexpr int kTimes = 200;
+    for (int i = 0; i < kTimes; ++i) {
+      const CornerSelection picks = simulator.PickCorners(camera.name, kStart + i);
+      EXPECT_EQ(picks.image_utime, kStart + i);
+      for (std::size_t k = 0; k < 4; ++k) {
+        squares += (picks.corners[k] - Eigen::Vector2d(truth[k].x, truth[k].y)).squaredNorm();
+      }
+    }
+    EXPECT_NEAR(std::sqrt(squares / (8 * kTimes)), 1.5, 0.1);
+  }
+}
+
+/// Read back through the rig's radiometry, board and person have the temperatures they should.
+TEST(Simulator, ThermalImageGivesTemperatures) {
+  Options options = SmallOptions(Scene::kIndoor);
+  options.board.temperature_k = 310;
+  options.board.black_minus_white_k = 0;
+  options.board.gradient_k = options.board.glow_k = 0;
+  options.board.hidden_outline_m = 0;
+  Simulator simulator(options);
+  simulator.ShowView(0, "0001");
+  const CameraSpec& camera = simulator.rig().Camera("thermal");
+  const Image image = simulator.TakeImage("thermal", kStart);
+  const Rigid3 camera_from_target = simulator.truth().camera_from_lidar.at("thermal") *
+                                    simulator.truth().lidar_from_target.at("0001");
+  const cv::Point2d pixel =
+      OpenCvPixels(camera.lens, camera_from_target, {Eigen::Vector3d(0, 0, 0)})[0];
+  const double counts = image.pixels.at<std::uint16_t>(cv::Point(pixel));
+  const Radiometry& r = image.radiometry;
+  const double apparent = r.gain * counts + r.offset;
+  const double surface =
+      std::pow((std::pow(apparent, 4) - (1 - r.emissivity) * std::pow(r.reflected_temperature_k, 4)) /
+                   r.emissivity,
+               0.25);
+  EXPECT_NEAR(surface, 310, 0.25);
+}
+
+/// The paper's hard case: along some stretch the outline does not show.
+TEST(Simulator, PartOfTheOutlineIsAsWarmAsItsBackground) {
+  Options options;
+  options.cameras.erase(options.cameras.begin());  // thermal only, in full
+  options.cameras[0].netd_k = 0;
+  for (const Scene scene : {Scene::kOutdoor, Scene::kIndoor, Scene::kNight}) {
+    options.scene = scene;
+    Simulator simulator(options);
+    simulator.ShowView(0, "0001");
+    const Image image = simulator.TakeImage("thermal", kStart);
+    const Rigid3 camera_from_target = simulator.truth().camera_from_lidar.at("thermal") *
+                                      simulator.truth().lidar_from_target.at("0001");
+    const auto corners = simulator.rig().target.OutlineCorners();
+    int stations = 0, invisible = 0;
+    for (std::size_t side = 0; side < 4; ++side) {
+      const Eigen::Vector3d step = (corners[(side + 1) % 4] - corners[side]) / 20;
+      const Eigen::Vector3d inwards = -(corners[side] + 10 * step).normalized();
+      for (int i = 1; i < 20; ++i) {
+        const Eigen::Vector3d place = corners[side] + i * step;
+        const auto pixels =
+            OpenCvPixels(simulator.rig().cameras[0].lens, camera_from_target,
+                         {place + 0.03 * inwards, place - 0.03 * inwards});
+        const double inside = image.pixels.at<std::uint16_t>(cv::Point(pixels[0]));
+        const double outside = image.pixels.at<std::uint16_t>(cv::Point(pixels[1]));
+        ++stations;
+        invisible += std::abs(inside - outside) * 0.02 < 0.8 ? 1 : 0;
+      }
+    }
+    EXPECT_GE(invisible, 4) << "scene " << static_cast<int>(scene);
+    EXPECT_LE(invisible, stations / 3) << "scene " << static_cast<int>(scene);
+  }
+}
+
+TEST(Simulator, RefusesWhatItDoesNotHave) {
+  Simulator simulator(SmallOptions());
+  EXPECT_THROW(simulator.TakeImage("lidar", kStart), InputError);
+  EXPECT_THROW(simulator.PickCorners("rgb", kStart), InputError);  // no view yet
+  EXPECT_THROW(simulator.Line(kStart, 300), InputError);
+  EXPECT_THROW(simulator.Line(kStart, -1), InputError);
+  EXPECT_THROW(simulator.ShowView(-1, "x"), InputError);
+  Options bad;
+  bad.supersampling = -1;
+  EXPECT_THROW(Simulator{bad}, InputError);
+}
+
+TEST(Simulator, ShowsTheSceneWithoutABoardBeforeTheFirstView) {
+  Simulator simulator(SmallOptions());
+  const Image before = simulator.TakeImage("rgb", kStart);
+  EXPECT_EQ(before.pixels.cols, 484);
+  simulator.ShowView(0, "a");
+  EXPECT_FALSE(SamePixels(before.pixels, simulator.TakeImage("rgb", kStart).pixels));
+}
+
+}  // namespace
+}  // namespace rgbdt::simulate
