@@ -18,7 +18,8 @@ double DistortedRadius(const Lens& lens, double angle) {
 
 // The angle up to which the distorted radius grows: beyond it the polynomial folds back.
 double FoldAngle(const Lens& lens) {
-  const double limit = lens.model == Lens::Model::kFisheye ? kPi : 0.5 * kPi - 1e-3;
+  // At kPi itself, straight behind a fisheye, there is no direction in the image to go to.
+  const double limit = (lens.model == Lens::Model::kFisheye ? kPi : 0.5 * kPi) - 1e-3;
   constexpr int kSteps = 4000;
   double previous = 0;
   for (int i = 1; i <= kSteps; ++i) {

@@ -14,7 +14,28 @@ std::string Size(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
-// Value below which `fraction` of the pixels lie: a few dead or hot pixels must not set the scale.
+// Whether pixels can be of that format at all: OpenCV's own complaint would name no camera.
+bool Fits(PixelFormat format, const cv::Mat& pixels) {
+  switch (format) {
+    case PixelFormat::kMono16:
+      return pixels.type() == CV_16UC1;
+    case PixelFormat::kBgr8:
+      return pixels.type() == CV_8UC3;
+    case PixelFormat::kMono8:
+    case PixelFormat::kBayerRg8:
+    case PixelFormat::kBayerGr8:
+    case PixelFormat::kBayerGb8:
+    case PixelFormat::kBayerBg8:
+      return pixels.type() == CV_8UC1;
+    case PixelFormat::kJpeg:
+    case PixelFormat::kPng:
+      break;
+  }
+  return false;
+}
+
+}  // namespace
+
 float Percentile(const cv::Mat& grey, double fraction) {
   std::vector<float> values;
   values.reserve(grey.total() / 7 + 1);
@@ -27,8 +48,6 @@ float Percentile(const cv::Mat& grey, double fraction) {
   std::nth_element(values.begin(), nth, values.end());
   return *nth;
 }
-
-}  // namespace
 
 cv::Mat Stretch(const cv::Mat& grey) {
   const float low = Percentile(grey, 0.01);
@@ -48,6 +67,12 @@ void CheckImage(const CameraSpec& camera, const Image& image) {
     throw InputError(where + "a thermal image has one channel, this one has " +
                      std::to_string(image.pixels.channels()) +
                      "; save counts, not a coloured picture");
+  }
+  if (!Fits(image.format, image.pixels)) {
+    throw InputError(where + std::to_string(image.pixels.channels()) + " channels of " +
+                     std::to_string(8 * image.pixels.elemSize1()) +
+                     " bits do not make an image of format " +
+                     std::to_string(static_cast<int>(image.format)) + " (image_t.lcm)");
   }
 }
 

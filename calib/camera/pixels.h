@@ -7,7 +7,8 @@
 
 namespace rgbdt {
 
-/// Throws InputError, with both values, for an image of another size or kind than the rig says.
+/// Throws InputError, with both values, for an image of another size or kind than the rig says, and
+/// for pixels that are not of the image's own format.
 void CheckImage(const CameraSpec& camera, const Image& image);
 
 /// Grey values of any image as CV_32FC1 in the image's own units (DN or counts). A mosaic is
@@ -17,6 +18,9 @@ cv::Mat ToGrey(const Image& image);
 /// A colour picture of any image, CV_8UC3 BGR: a mosaic demosaiced, 16-bit counts stretched.
 /// Throws InputError for pixels that were not decompressed.
 cv::Mat ToBgr(const Image& image);
+
+/// Value of CV_32FC1 below which `fraction` (0 to 1) of the pixels lie, from every seventh pixel.
+float Percentile(const cv::Mat& grey, double fraction);
 
 /// CV_32FC1 to CV_8UC1 between the 1st and the 99th percentile: a few dead or hot pixels do not set
 /// the scale.

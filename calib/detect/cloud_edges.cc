@@ -61,7 +61,8 @@ Indices PointsNearCorners(const Points& points, const Camera& camera,
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto pixel = camera.Project(camera_from_lidar * points[i].cast<double>());
     if (!pixel || !camera.Contains(*pixel)) continue;
-    if (mask.at<std::uint8_t>(static_cast<int>(pixel->y()), static_cast<int>(pixel->x())) != 0) {
+    if (mask.at<std::uint8_t>(static_cast<int>(std::lround(pixel->y())),
+                              static_cast<int>(std::lround(pixel->x()))) != 0) {
       near.push_back(static_cast<int>(i));
     }
   }

@@ -23,8 +23,7 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
   if (camera.camera().empty()) place.Fail("camera", "is missing; expected the camera's name");
   CameraCalibration out;
   out.camera = camera.camera();
-  out.camera_from_lidar =
-      text::ToRigid3(camera.camera_from_lidar(), place.In("camera_from_lidar"));
+  out.camera_from_lidar = text::ToRigid3(camera.camera_from_lidar(), place.In("camera_from_lidar"));
   if (camera.has_covariance()) {
     out.covariance = text::ToMatrix(camera.covariance(), place.In("covariance"));
   }

@@ -27,8 +27,7 @@ void SetRange(std::vector<float> values, ColourScale* scale) {
   if (values.empty()) return;
   const auto percentile = [&](double fraction) {
     const std::size_t k = static_cast<std::size_t>(fraction * (values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k),
-                     values.end());
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
     return static_cast<double>(values[k]);
   };
   scale->low = percentile(0.02);
@@ -105,8 +104,8 @@ PointColours ColourPoints(const RgbdtCloud& cloud, CloudColour colour, bool whit
   if (colour != CloudColour::kRgb) values = Values(cloud, colour, &colours.scale);
   for (std::size_t i = 0; i < n; ++i) {
     const auto& rgb = cloud.rgb[i];
-    const bool coloured = colour == CloudColour::kRgb ? (rgb[0] | rgb[1] | rgb[2]) != 0
-                                                      : std::isfinite(values[i]);
+    const bool coloured =
+        colour == CloudColour::kRgb ? (rgb[0] | rgb[1] | rgb[2]) != 0 : std::isfinite(values[i]);
     colours.coloured.push_back(coloured);
     if (!coloured) {
       colours.bgr.push_back(Grey(cloud.intensity[i], white_background));

@@ -12,10 +12,10 @@ namespace rgbdt {
 
 /// Which value is which colour.
 struct ColourScale {
-  bool used = false;        ///< false: colours mean nothing but themselves
+  bool used = false;  ///< false: colours mean nothing but themselves
   double low = 0, high = 1;
-  std::string unit;         ///< "C" (drawn with its degree sign), "counts", "intensity"
-  cv::Mat table;            ///< 256 colours, CV_8UC3
+  std::string unit;  ///< "C" (drawn with its degree sign), "counts", "intensity"
+  cv::Mat table;     ///< 256 colours, CV_8UC3
 };
 
 struct PointColours {

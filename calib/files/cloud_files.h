@@ -29,8 +29,8 @@ Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_u
 /// the cloud has. Throws InputError for a cloud that is empty or whose vectors differ in length.
 void WritePcd(const std::filesystem::path& path, const Cloud& cloud);
 
-/// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us], temperature [K],
-/// thermal_counts, valid (bit i: camera i saw the point).
+/// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us], temperature
+/// [K], thermal_counts, valid (bit i: camera i saw the point).
 void WritePcd(const std::filesystem::path& path, const RgbdtCloud& cloud);
 
 /// Writes a binary little-endian PLY: x y z [m], red green blue, intensity, temperature [K],

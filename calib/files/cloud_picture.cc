@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/files/cloud_colours.h"
+#include "calib/files/point_radius.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -56,75 +57,119 @@ std::vector<Eigen::Vector3d> Subject(const RgbdtCloud& cloud, const PointColours
   return coloured.size() >= 50 ? coloured : all;
 }
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double Percentile(std::vector<double> values, double fraction) {
+  const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
 }
 
 Eigen::Vector3d Middle(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d middle;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
+    values.reserve(points.size());
     for (const Eigen::Vector3d& point : points) values.push_back(point[axis]);
-    middle[axis] = Median(values);
+    middle[axis] = Percentile(values, 0.5);
   }
   return middle;
 }
 
-// Share of the points that lie in the picture, clear of its rim.
-double ShareInside(const std::vector<Eigen::Vector3d>& points, const Viewpoint& viewpoint) {
-  std::size_t inside = 0;
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3d p = viewpoint * point;
-    inside += p.z() > 0.1 &&
-              std::abs(viewpoint.focal * p.x() / p.z()) < 0.92 * viewpoint.cx &&
-              std::abs(viewpoint.focal * p.y() / p.z()) < 0.92 * viewpoint.cy;
-  }
-  return static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(points.size(), 1));
+// The nearer part: what people look at stands in front of the walls.
+std::vector<Eigen::Vector3d> NearerPart(std::vector<Eigen::Vector3d> points) {
+  const auto end = points.begin() + static_cast<std::ptrdiff_t>((points.size() + 1) * 6 / 10);
+  std::nth_element(points.begin(), end == points.end() ? points.begin() : end, points.end(),
+                   [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+                     return a.squaredNorm() < b.squaredNorm();
+                   });
+  points.erase(end, points.end());
+  return points;
 }
 
-// Behind the LIDAR, above it and to its left, as far back as shows nearly everything with colour.
-Viewpoint ChooseViewpoint(const std::vector<Eigen::Vector3d>& subject,
-                          const DrawOptions& options) {
+// Turns nothing, but zooms and shifts so that nearly all of `points` fills the picture.
+void Fit(const std::vector<Eigen::Vector3d>& points, Viewpoint* viewpoint) {
+  std::vector<double> xs, ys;
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d p = *viewpoint * point;
+    if (p.z() < 0.1) continue;
+    xs.push_back(p.x() / p.z());
+    ys.push_back(p.y() / p.z());
+  }
+  if (xs.size() < 10) return;
+  const double left = Percentile(xs, 0.02), right = Percentile(xs, 0.98);
+  const double top = Percentile(ys, 0.02), bottom = Percentile(ys, 0.98);
+  const double width = 2 * viewpoint->cx + 1, height = 2 * viewpoint->cy + 1;
+  const double zoom =
+      0.88 * std::min(width / std::max(right - left, 1e-3), height / std::max(bottom - top, 1e-3));
+  viewpoint->focal = std::min(zoom, 4 * viewpoint->focal);
+  viewpoint->cx -= viewpoint->focal * 0.5 * (left + right);
+  viewpoint->cy -= viewpoint->focal * 0.5 * (top + bottom);
+}
+
+// Somewhat behind the LIDAR, above it and to its left.
+Viewpoint ChooseViewpoint(const std::vector<Eigen::Vector3d>& subject, const DrawOptions& options) {
   const Eigen::Vector3d target =
       options.look_at ? *options.look_at
-                      : (subject.empty() ? Eigen::Vector3d(1, 0, 0) : Middle(subject));
+                      : (subject.empty() ? Eigen::Vector3d(1, 0, 0) : Middle(NearerPart(subject)));
   if (options.eye) return LookAt(*options.eye, target, options);
   Eigen::Vector3d ahead(target.x(), target.y(), 0);
   ahead = ahead.norm() > 1e-3 ? ahead.normalized() : Eigen::Vector3d::UnitX();
   const Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(ahead);
-  const Eigen::Vector3d back =
-      (-ahead + 0.55 * left + 0.42 * Eigen::Vector3d::UnitZ()).normalized();
-  double distance = std::max(0.5, 0.7 * target.norm());
-  Viewpoint viewpoint = LookAt(target + distance * back, target, options);
-  for (int i = 0; i < 25 && ShareInside(subject, viewpoint) < 0.93; ++i) {
-    distance *= 1.08;
-    viewpoint = LookAt(target + distance * back, target, options);
-  }
+  const double distance = std::max(0.5, target.norm());
+  const Eigen::Vector3d eye =
+      distance * (-0.25 * ahead + 0.3 * left + 0.25 * Eigen::Vector3d::UnitZ());
+  Viewpoint viewpoint = LookAt(eye, target, options);
+  if (!options.look_at) Fit(subject, &viewpoint);
   return viewpoint;
 }
 
-// Angle between neighbouring beams [rad], the median over some of them.
-double BeamSpacing(const RgbdtCloud& cloud) {
-  constexpr std::size_t kSamples = 101;
-  std::vector<Eigen::Vector3f> beams;
-  beams.reserve(cloud.size());
-  for (const Eigen::Vector3f& point : cloud.points) {
-    if (point.allFinite() && !point.isZero(0)) beams.push_back(point.normalized());
+/// A point as it lies in the picture.
+struct Splat {
+  cv::Point2d centre;  // [px]
+  double radius = 0;   // [px]
+  float depth = 0;     // [m]
+  cv::Vec3b bgr;
+};
+
+std::vector<Splat> Project(const RgbdtCloud& cloud, const PointColours& colours,
+                           const Viewpoint& viewpoint, const DrawOptions& options) {
+  const std::vector<float> radii = PointRadii(cloud.points);
+  // What stands between the eye and the LIDAR would hide what the LIDAR looks at.
+  const double lidar = (viewpoint * Eigen::Vector3d(0, 0, 0)).z();
+  const double nearest = options.eye ? 0.1 : std::max(0.1, lidar);
+  std::vector<Splat> splats;
+  splats.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.points[i].allFinite()) continue;
+    const Eigen::Vector3d p = viewpoint * cloud.points[i].cast<double>();
+    if (p.z() < (colours.coloured[i] ? 0.1 : nearest)) continue;
+    const double scale = viewpoint.focal / p.z();
+    const cv::Point2d centre(scale * p.x() + viewpoint.cx, scale * p.y() + viewpoint.cy);
+    if (std::abs(centre.x) > 1e5 || std::abs(centre.y) > 1e5) continue;
+    const double radius = std::clamp(options.point_size * radii[i] * scale, 0.6 * kSupersampling,
+                                     15.0 * kSupersampling);
+    splats.push_back({centre, radius, static_cast<float>(p.z()), colours.bgr[i]});
   }
-  if (beams.size() < 2) return 0.003;
-  std::vector<double> spacings;
-  const std::size_t step = std::max<std::size_t>(1, beams.size() / kSamples);
-  for (std::size_t i = step / 2; i < beams.size(); i += step) {
-    float nearest = kNoDepth;
-    for (const Eigen::Vector3f& beam : beams) {
-      const float squared = (beam - beams[i]).squaredNorm();
-      if (squared > 1e-9f && squared < nearest) nearest = squared;  // not itself, not its double
+  return splats;
+}
+
+// Calls visit(x, y, weight) for each pixel of a disc in a picture of `size`; weight 1 in the
+// middle, near 0 at the rim.
+template <typename Visit>
+void VisitDisc(const Splat& splat, const cv::Size& size, Visit visit) {
+  const double squared = splat.radius * splat.radius;
+  const int y0 = std::max(0, static_cast<int>(std::ceil(splat.centre.y - splat.radius)));
+  const int y1 =
+      std::min(size.height - 1, static_cast<int>(std::floor(splat.centre.y + splat.radius)));
+  for (int y = y0; y <= y1; ++y) {
+    const double dy = y - splat.centre.y;
+    const double half = std::sqrt(std::max(0.0, squared - dy * dy));
+    const int x0 = std::max(0, static_cast<int>(std::ceil(splat.centre.x - half)));
+    const int x1 = std::min(size.width - 1, static_cast<int>(std::floor(splat.centre.x + half)));
+    for (int x = x0; x <= x1; ++x) {
+      const double dx = x - splat.centre.x;
+      visit(x, y, static_cast<float>(1.02 - (dx * dx + dy * dy) / squared));
     }
-    if (std::isfinite(nearest)) spacings.push_back(std::sqrt(nearest));
   }
-  return spacings.empty() ? 0.003 : std::clamp(Median(spacings), 0.0005, 0.03);
 }
 
 /// The picture while it is drawn.
@@ -133,42 +178,36 @@ struct Canvas {
   cv::Mat depth;  // CV_32FC1; infinite: background
 };
 
-void DrawDisc(const cv::Point2d& centre, double radius, float depth, const cv::Vec3b& colour,
-              Canvas* canvas) {
-  const int y0 = std::max(0, static_cast<int>(std::ceil(centre.y - radius)));
-  const int y1 = std::min(canvas->bgr.rows - 1, static_cast<int>(std::floor(centre.y + radius)));
-  for (int y = y0; y <= y1; ++y) {
-    const double dy = y - centre.y;
-    const double half = std::sqrt(std::max(0.0, radius * radius - dy * dy));
-    const int x0 = std::max(0, static_cast<int>(std::ceil(centre.x - half)));
-    const int x1 = std::min(canvas->bgr.cols - 1, static_cast<int>(std::floor(centre.x + half)));
-    float* const depths = canvas->depth.ptr<float>(y);
-    cv::Vec3b* const pixels = canvas->bgr.ptr<cv::Vec3b>(y);
-    for (int x = x0; x <= x1; ++x) {
-      if (depth >= depths[x]) continue;
-      depths[x] = depth;
-      pixels[x] = colour;
-    }
+// Two passes (surface splatting, Zwicker 2001, with round splats): first how near the front is;
+// then the mean of all discs that belong to the front, so that range noise does not show as specks.
+void DrawSplats(const std::vector<Splat>& splats, Canvas* canvas) {
+  const cv::Size size = canvas->bgr.size();
+  cv::Mat front(size, CV_32FC1, cv::Scalar(kNoDepth));
+  for (const Splat& splat : splats) {
+    VisitDisc(splat, size, [&](int x, int y, float) {
+      float& depth = front.at<float>(y, x);
+      depth = std::min(depth, splat.depth);
+    });
   }
-}
-
-void DrawPoints(const RgbdtCloud& cloud, const PointColours& colours, const Viewpoint& viewpoint,
-                const DrawOptions& options, Canvas* canvas) {
-  const double spacing = BeamSpacing(cloud);
-  // What stands between the eye and the LIDAR would hide what the LIDAR looks at.
-  const double nearest = std::max(0.1, options.eye ? 0.1 : (viewpoint * Eigen::Vector3d(0, 0, 0)).z());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.points[i].allFinite()) continue;
-    const Eigen::Vector3d point = cloud.points[i].cast<double>();
-    const Eigen::Vector3d p = viewpoint * point;
-    if (p.z() < (colours.coloured[i] ? 0.1 : nearest)) continue;
-    const double radius =
-        std::clamp(0.75 * options.point_size * spacing * point.norm() * viewpoint.focal / p.z(),
-                   0.6 * kSupersampling, 9.0 * kSupersampling);
-    const cv::Point2d centre(viewpoint.focal * p.x() / p.z() + viewpoint.cx,
-                             viewpoint.focal * p.y() / p.z() + viewpoint.cy);
-    if (std::abs(centre.x) > 1e6 || std::abs(centre.y) > 1e6) continue;
-    DrawDisc(centre, radius, static_cast<float>(p.z()), colours.bgr[i], canvas);
+  cv::Mat sums(size, CV_32FC4, cv::Scalar::all(0));  // colour and weight
+  cv::Mat depths(size, CV_32FC1, cv::Scalar::all(0));
+  for (const Splat& splat : splats) {
+    VisitDisc(splat, size, [&](int x, int y, float weight) {
+      const float nearest = front.at<float>(y, x);
+      if (splat.depth > nearest + 0.04f + 0.01f * nearest) return;
+      sums.at<cv::Vec4f>(y, x) += weight * cv::Vec4f(splat.bgr[0], splat.bgr[1], splat.bgr[2], 1);
+      depths.at<float>(y, x) += weight * splat.depth;
+    });
+  }
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Vec4f& sum = sums.at<cv::Vec4f>(y, x);
+      if (sum[3] <= 0) continue;
+      for (int c = 0; c < 3; ++c) {
+        canvas->bgr.at<cv::Vec3b>(y, x)[c] = cv::saturate_cast<unsigned char>(sum[c] / sum[3]);
+      }
+      canvas->depth.at<float>(y, x) = depths.at<float>(y, x) / sum[3];
+    }
   }
 }
 
@@ -236,7 +275,7 @@ cv::Mat DrawCloud(const RgbdtCloud& cloud, CloudColour colour, const DrawOptions
   const cv::Size size(options.width * kSupersampling, options.height * kSupersampling);
   Canvas canvas{cv::Mat(size, CV_8UC3, cv::Scalar::all(options.white_background ? 255 : 24)),
                 cv::Mat(size, CV_32FC1, cv::Scalar(kNoDepth))};
-  DrawPoints(cloud, colours, viewpoint, options, &canvas);
+  DrawSplats(Project(cloud, colours, viewpoint, options), &canvas);
   Shade(&canvas);
   cv::Mat picture;
   cv::resize(canvas.bgr, picture, {options.width, options.height}, 0, 0, cv::INTER_AREA);

@@ -13,13 +13,13 @@ namespace rgbdt {
 enum class CloudColour { kRgb, kThermal, kIntensity };
 
 struct DrawOptions {
-  int width = 1600, height = 1000;   ///< [px]
-  double field_of_view_deg = 50;     ///< across the width, 10 to 150
-  std::optional<Eigen::Vector3d> eye;      ///< LIDAR frame [m]; absent: behind, above and aside
-  std::optional<Eigen::Vector3d> look_at;  ///< LIDAR frame [m]; absent: middle of what has colour
+  int width = 1600, height = 1000;     ///< [px]
+  double field_of_view_deg = 50;       ///< across the width, 10 to 150; without `eye` it is chosen
+  std::optional<Eigen::Vector3d> eye;  ///< LIDAR frame [m]; absent: behind, above and aside
+  std::optional<Eigen::Vector3d> look_at;  ///< LIDAR frame [m]; absent: what has colour
   bool white_background = false;
-  double point_size = 1;             ///< times the size that closes the gaps of a dense sweep
-  std::string title;                 ///< small, top left; ASCII
+  double point_size = 1;  ///< times the size that closes the gaps of a dense sweep
+  std::string title;      ///< small, top left; ASCII
 
   /// Throws InputError naming the field and its value.
   void Check() const;

@@ -21,9 +21,8 @@ void RequireLength(std::size_t have, std::size_t need, const std::string& what,
 void AddVectors(const std::string& prefix, const std::vector<Eigen::Vector3f>& vectors,
                 std::size_t points_per_vector, std::vector<Column>* columns) {
   for (int axis = 0; axis < 3; ++axis) {
-    columns->push_back(MakeColumn<float>(
-        prefix + "xyz"[axis],
-        [&vectors, axis, points_per_vector](std::size_t i) {
+    columns->push_back(
+        MakeColumn<float>(prefix + "xyz"[axis], [&vectors, axis, points_per_vector](std::size_t i) {
           return vectors[i / points_per_vector][axis];
         }));
   }
@@ -41,8 +40,8 @@ std::string PcdBytes(const std::vector<Column>& columns, std::size_t width, std:
   return "# .PCD v0.7 - Point Cloud Data file format\n# " + comment + "\nVERSION 0.7\nFIELDS" +
          fields + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " +
          std::to_string(width) + "\nHEIGHT " + std::to_string(height) +
-         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(width * height) +
-         "\nDATA binary\n" + records::Pack(columns, width * height);
+         "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(width * height) + "\nDATA binary\n" +
+         records::Pack(columns, width * height);
 }
 
 void CheckCloud(const Cloud& cloud, const std::filesystem::path& path) {
@@ -62,9 +61,8 @@ void CheckCloud(const Cloud& cloud, const std::filesystem::path& path) {
                   path);
   }
   if (!cloud.origins.empty() && cloud.origins.size() != lines) {
-    throw InputError("cannot write " + path.string() + ": the cloud has " +
-                     std::to_string(lines) + " lines but " +
-                     std::to_string(cloud.origins.size()) + " origins");
+    throw InputError("cannot write " + path.string() + ": the cloud has " + std::to_string(lines) +
+                     " lines but " + std::to_string(cloud.origins.size()) + " origins");
   }
 }
 
@@ -104,8 +102,7 @@ std::string PlyType(const Column& column) {
 
 void WritePcd(const std::filesystem::path& path, const Cloud& cloud) {
   CheckCloud(cloud, path);
-  const std::size_t beams =
-      cloud.organised ? static_cast<std::size_t>(cloud.beams) : cloud.size();
+  const std::size_t beams = cloud.organised ? static_cast<std::size_t>(cloud.beams) : cloud.size();
   std::vector<Column> columns;
   AddVectors("", cloud.points, 1, &columns);
   if (!cloud.intensity.empty()) {
@@ -158,8 +155,8 @@ void WritePly(const std::filesystem::path& path, const RgbdtCloud& cloud) {
   AddVectors("", cloud.points, 1, &columns);
   const char* const names[] = {"red", "green", "blue"};
   for (std::size_t c = 0; c < 3; ++c) {
-    columns.push_back(MakeColumn<std::uint8_t>(
-        names[c], [&cloud, c](std::size_t i) { return cloud.rgb[i][c]; }));
+    columns.push_back(
+        MakeColumn<std::uint8_t>(names[c], [&cloud, c](std::size_t i) { return cloud.rgb[i][c]; }));
   }
   const auto add = [&columns](const char* name, const std::vector<float>& values) {
     columns.push_back(MakeColumn<float>(name, [&values](std::size_t i) { return values[i]; }));

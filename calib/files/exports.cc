@@ -112,8 +112,8 @@ std::string RosLines(const Exported& camera, const std::string& lidar) {
          lidar + " --child-frame-id " + child +
          "\n# ROS 1 (x y z qx qy qz qw parent child)\n"
          "rosrun tf2_ros static_transform_publisher " +
-         List(t.data(), 3, " ") + " " + Number(q.x()) + " " + Number(q.y()) + " " +
-         Number(q.z()) + " " + Number(q.w()) + " " + lidar + " " + child + "\n";
+         List(t.data(), 3, " ") + " " + Number(q.x()) + " " + Number(q.y()) + " " + Number(q.z()) +
+         " " + Number(q.w()) + " " + lidar + " " + child + "\n";
 }
 
 std::string KalibrMatrix(const std::string& name, const Rigid3& pose) {

@@ -61,8 +61,7 @@ std::vector<std::uint16_t> ReadRing(const pcd::Table& table, const std::string& 
   std::vector<std::uint16_t> ring;
   for (const double value : table.Column("ring")) {
     if (!(value >= 0 && value <= 65535)) {
-      throw InputError(where + ": ring holds " + std::to_string(value) +
-                       "; expected 0 to 65535");
+      throw InputError(where + ": ring holds " + std::to_string(value) + "; expected 0 to 65535");
     }
     ring.push_back(static_cast<std::uint16_t>(value));
   }
@@ -77,8 +76,7 @@ Utime ToUtime(double microseconds, const std::string& where, const std::string& 
   return static_cast<Utime>(std::llround(microseconds));
 }
 
-std::vector<Utime> ReadUtime(const pcd::Table& table, Utime sweep_utime,
-                             const std::string& where) {
+std::vector<Utime> ReadUtime(const pcd::Table& table, Utime sweep_utime, const std::string& where) {
   std::vector<Utime> utime;
   if (table.Has("utime")) {
     for (const double value : table.Column("utime")) {
@@ -132,8 +130,7 @@ void Organise(const pcd::Table& table, Cloud* cloud) {
 
 // One a line: that of its first beam.
 std::vector<Eigen::Vector3f> ReadOrigins(const pcd::Table& table, const Cloud& cloud) {
-  const std::vector<Eigen::Vector3f> all =
-      ReadVectors(table, "origin_x", "origin_y", "origin_z");
+  const std::vector<Eigen::Vector3f> all = ReadVectors(table, "origin_x", "origin_y", "origin_z");
   std::vector<Eigen::Vector3f> origins;
   for (int line = 0; line < cloud.lines; ++line) {
     origins.push_back(all[static_cast<std::size_t>(line) * static_cast<std::size_t>(cloud.beams)]);

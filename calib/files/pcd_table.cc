@@ -27,6 +27,14 @@ std::string_view NextWord(std::string_view* text) {
   return word;
 }
 
+bool IsKey(std::string_view word) {
+  for (const char* key : {"VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT",
+                          "VIEWPOINT", "POINTS", "DATA"}) {
+    if (word == key) return true;
+  }
+  return false;
+}
+
 std::vector<std::string_view> Words(std::string_view line) {
   std::vector<std::string_view> words;
   for (std::string_view w = NextWord(&line); !w.empty(); w = NextWord(&line)) words.push_back(w);
@@ -66,7 +74,8 @@ Loader LoaderOf(const Field& field) {
              : field.size == 4 ? Load<std::uint32_t>
              : field.size == 8 ? Load<std::uint64_t>
                                : nullptr;
-    default: return nullptr;
+    default:
+      return nullptr;
   }
 }
 
@@ -123,7 +132,11 @@ void Table::ReadHeader(std::string_view bytes) {
     at = std::min(end + 1, bytes.size());
     if (words.empty() || words[0].front() == '#') continue;
     const std::string_view key = words[0];
-    if (words.size() < 2) Fail("PCD header: \"" + std::string(key.substr(0, 40)) + "\" is empty");
+    if (!IsKey(key)) {
+      Fail("is not a PCD file, or its header is damaged at \"" + std::string(key.substr(0, 40)) +
+           "\"");
+    }
+    if (words.size() < 2) Fail("PCD header: " + std::string(key) + " is empty");
     if (key == "FIELDS") {
       header_.fields.clear();
       for (std::size_t i = 1; i < words.size(); ++i) {
@@ -152,9 +165,6 @@ void Table::ReadHeader(std::string_view bytes) {
     } else if (key == "DATA") {
       header_.data = std::string(words[1]);
       header_.data_begin = at;
-    } else if (key != "VERSION" && key != "VIEWPOINT" && key != "COLUMNS") {
-      Fail("is not a PCD file, or its header is damaged at \"" + std::string(key.substr(0, 40)) +
-           "\"");
     }
   }
   if (header_.data != "ascii" && header_.data != "binary" && header_.data != "binary_compressed") {

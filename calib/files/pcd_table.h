@@ -11,7 +11,7 @@ namespace rgbdt::pcd {
 
 struct Field {
   std::string name;
-  char type = 'F';  ///< I, U or F
+  char type = 'F';        ///< I, U or F
   std::size_t size = 4;   ///< bytes of one element
   std::size_t count = 1;  ///< elements a point
 };
@@ -19,7 +19,7 @@ struct Field {
 struct Header {
   std::vector<Field> fields;
   std::size_t width = 0, height = 0;
-  std::string data;             ///< ascii, binary or binary_compressed
+  std::string data;            ///< ascii, binary or binary_compressed
   std::size_t data_begin = 0;  ///< where the points begin in the file
 
   std::size_t points() const { return width * height; }

@@ -21,8 +21,7 @@ Eigen::Quaterniond ToQuaternionFromAngles(const Numbers& degrees, const Place& p
     return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * M_PI / 180.0, axis));
   };
   return (about(degrees[2], Eigen::Vector3d::UnitZ()) *
-          about(degrees[1], Eigen::Vector3d::UnitY()) *
-          about(degrees[0], Eigen::Vector3d::UnitX()))
+          about(degrees[1], Eigen::Vector3d::UnitY()) * about(degrees[0], Eigen::Vector3d::UnitX()))
       .normalized();
 }
 

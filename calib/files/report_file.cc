@@ -134,8 +134,7 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   camera.calibration.converged = message.converged();
   camera.calibration.status = message.status();
   if (message.has_covariance()) {
-    camera.calibration.covariance =
-        text::ToMatrix(message.covariance(), place.In("covariance"));
+    camera.calibration.covariance = text::ToMatrix(message.covariance(), place.In("covariance"));
   }
   if (message.has_first_guess()) {
     camera.first_guess = text::ToRigid3(message.first_guess(), place.In("first_guess"));
@@ -155,6 +154,17 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   camera.detect_cloud_s = message.seconds().detect_cloud();
   camera.solve_s = message.seconds().solve();
   return camera;
+}
+
+// Protobuf puts the reason, the place and a mark below it on three lines.
+std::string OneLine(const std::string& message) {
+  std::string line;
+  for (const char c : message) {
+    const bool space = static_cast<unsigned char>(c) <= ' ';
+    if (!space || (!line.empty() && line.back() != ' ')) line += space ? ' ' : c;
+  }
+  while (!line.empty() && (line.back() == ' ' || line.back() == '^')) line.pop_back();
+  return line;
 }
 
 // A map has no order of its own; this gives it one, run after run.
@@ -203,7 +213,7 @@ Report ReportFromJson(const std::string& json, const std::string& where) {
   if (ValidUtf8(json) != json) throw InputError(where + ": is not UTF-8 text; expected JSON");
   const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
   if (!status.ok()) {
-    throw InputError(where + ": is not a report: " + std::string(status.message()));
+    throw InputError(where + ": is not a report: " + OneLine(std::string(status.message())));
   }
   Report report;
   report.method = message.method();

@@ -46,13 +46,13 @@ std::string FiguresHtml(const CameraReport& camera) {
   const auto row = [](const char* name, const TrainHeldout& figure) {
     return Row{name, Optional(figure.train, 2) + " px", Optional(figure.heldout, 2) + " px"};
   };
-  std::string out = html::Table(
-      {"figure", "views used (" + std::to_string(camera.used.size()) + ")",
-       "views held out (" + std::to_string(camera.heldout.size()) + ")"},
-      {row("RMS distance of the LIDAR's board edge to the outline in the image",
-           camera.edge_rms_px),
-       row("mean distance-transform value (the 2015 paper's quality)",
-           camera.distance_transform_px)});
+  std::string out =
+      html::Table({"figure", "views used (" + std::to_string(camera.used.size()) + ")",
+                   "views held out (" + std::to_string(camera.heldout.size()) + ")"},
+                  {row("RMS distance of the LIDAR's board edge to the outline in the image",
+                       camera.edge_rms_px),
+                   row("mean distance-transform value (the 2015 paper's quality)",
+                       camera.distance_transform_px)});
   Rows rows;
   if (camera.truth_error) rows.push_back({"result against truth", ErrorText(*camera.truth_error)});
   if (camera.first_guess_error) {
@@ -110,9 +110,8 @@ std::string ViewsHtml(const CameraReport& camera) {
   std::vector<Line> lines;
   const auto add = [&](const std::vector<std::string>& views, const char* role) {
     for (const std::string& view : views) {
-      const auto quality =
-          std::find_if(camera.views.begin(), camera.views.end(),
-                       [&](const ViewQuality& q) { return q.view == view; });
+      const auto quality = std::find_if(camera.views.begin(), camera.views.end(),
+                                        [&](const ViewQuality& q) { return q.view == view; });
       const bool known = quality != camera.views.end();
       lines.push_back({view,
                        {Escape(view), role, known ? Number(quality->edge_rms_px, 2) : "–",
@@ -124,9 +123,8 @@ std::string ViewsHtml(const CameraReport& camera) {
   for (const RejectedView& view : camera.rejected) {
     lines.push_back({view.view, {Escape(view.view), "rejected", "–", "–", Escape(view.why)}});
   }
-  std::stable_sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) {
-    return NaturalLess(a.view, b.view);
-  });
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const Line& a, const Line& b) { return NaturalLess(a.view, b.view); });
   Rows rows;
   for (const Line& line : lines) rows.push_back(line.cells);
   return Heading(3, "Views") +
@@ -177,8 +175,9 @@ std::string TimeText(Utime utime) {
 }
 
 std::string IntroHtml(const Report& report) {
-  std::string out = "<h1>Calibration of the cameras against the LIDAR</h1>\n<p>Method: " +
-                    Escape(report.method) + ". Rig: " + Escape(report.rig_hash) + ".";
+  std::string out =
+      "<h1>Calibration of the cameras against the LIDAR</h1>\n<p>Method: " + Escape(report.method) +
+      ". Rig: " + Escape(report.rig_hash) + ".";
   if (report.utime != 0) out += " Newest image: " + TimeText(report.utime) + ".";
   return out + "</p>\n";
 }

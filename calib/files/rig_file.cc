@@ -43,7 +43,8 @@ Lens ToLens(const proto::Camera& camera, const Place& place) {
       return ToLens(camera.pinhole(), Lens::Model::kPinhole, {0, 4, 5, 8}, place.In("pinhole"));
     case proto::Camera::kFisheye:
       return ToLens(camera.fisheye(), Lens::Model::kFisheye, {0, 4}, place.In("fisheye"));
-    case proto::Camera::LENS_NOT_SET: break;
+    case proto::Camera::LENS_NOT_SET:
+      break;
   }
   place.Fail("pinhole", "is missing; give pinhole { ... } or fisheye { ... }");
 }
@@ -121,9 +122,9 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
               "motor_from_scanner { quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0] }");
     }
     text::RequireFinite(scanner.zero_ticks(), at, "zero_ticks");
-    spec.turned_scanner = TurnedScanner{
-        text::ToRigid3(scanner.motor_from_scanner(), at.In("motor_from_scanner")),
-        scanner.ticks_per_degree() * kDegreesPerRadian, scanner.zero_ticks()};
+    spec.turned_scanner =
+        TurnedScanner{text::ToRigid3(scanner.motor_from_scanner(), at.In("motor_from_scanner")),
+                      scanner.ticks_per_degree() * kDegreesPerRadian, scanner.zero_ticks()};
   }
   return spec;
 }

@@ -76,8 +76,7 @@ Session OpenSession(const fs::path& dir) {
 }
 
 void WriteRig(const fs::path& session_dir, const Rig& rig) {
-  WriteFileAtomically(session_dir / "rig.textproto",
-                      rig.text.empty() ? PrintRig(rig) : rig.text);
+  WriteFileAtomically(session_dir / "rig.textproto", rig.text.empty() ? PrintRig(rig) : rig.text);
 }
 
 }  // namespace rgbdt

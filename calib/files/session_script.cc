@@ -23,8 +23,8 @@ constexpr double kDefaultTimeout = 60;
 
 double CheckSeconds(double seconds, const Place& place, int index, const std::string& field) {
   if (!(seconds >= 0) || !std::isfinite(seconds)) {
-    FailStep(place, index, "has " + field + " " + std::to_string(seconds) +
-                               "; expected seconds, 0 or more");
+    FailStep(place, index,
+             "has " + field + " " + std::to_string(seconds) + "; expected seconds, 0 or more");
   }
   return seconds;
 }
@@ -32,8 +32,12 @@ double CheckSeconds(double seconds, const Place& place, int index, const std::st
 SessionStep ToStep(const proto::Step& message, const Place& place, int index) {
   SessionStep step;
   switch (message.step_case()) {
-    case proto::Step::kNextPose: step.kind = Kind::kNextPose; break;
-    case proto::Step::kSweep: step.kind = Kind::kSweep; break;
+    case proto::Step::kNextPose:
+      step.kind = Kind::kNextPose;
+      break;
+    case proto::Step::kSweep:
+      step.kind = Kind::kSweep;
+      break;
     case proto::Step::kCapture:
       step.kind = Kind::kCapture;
       step.heldout = message.capture().heldout();
@@ -44,9 +48,15 @@ SessionStep ToStep(const proto::Step& message, const Place& place, int index) {
       step.kind = Kind::kWait;
       step.wait_s = CheckSeconds(message.wait().seconds(), place, index, "wait.seconds");
       break;
-    case proto::Step::kSolve: step.kind = Kind::kSolve; break;
-    case proto::Step::kEvaluate: step.kind = Kind::kEvaluate; break;
-    case proto::Step::kSave: step.kind = Kind::kSave; break;
+    case proto::Step::kSolve:
+      step.kind = Kind::kSolve;
+      break;
+    case proto::Step::kEvaluate:
+      step.kind = Kind::kEvaluate;
+      break;
+    case proto::Step::kSave:
+      step.kind = Kind::kSave;
+      break;
     case proto::Step::STEP_NOT_SET:
       FailStep(place, index,
                "is empty; expected next_pose, sweep, capture, wait, solve, evaluate or save");
@@ -62,8 +72,12 @@ class OrderCheck {
   // Returns what is wrong, or nothing.
   std::string Next(const SessionStep& step) {
     switch (step.kind) {
-      case Kind::kNextPose: swept_ = false; break;
-      case Kind::kSweep: swept_ = true; break;
+      case Kind::kNextPose:
+        swept_ = false;
+        break;
+      case Kind::kSweep:
+        swept_ = true;
+        break;
       case Kind::kCapture:
         if (!swept_) return "captures, but there was no sweep since the last pose or capture";
         swept_ = false;
@@ -77,7 +91,8 @@ class OrderCheck {
         if (!solved_) return "evaluates, but nothing was solved before it";
         break;
       case Kind::kWait:
-      case Kind::kSave: break;
+      case Kind::kSave:
+        break;
     }
     return {};
   }

@@ -24,9 +24,9 @@ struct SessionScript {
 
 /// Reads a session.textproto (schema: calib/files/proto/session.proto). `rig` takes the place of
 /// the rig file that the script names (which is relative to the script). Throws InputError with
-/// file, line and the number of the step: an empty step, a negative time, a capture without a sweep,
-/// a solve before any capture, an evaluate before any solve, picks for a camera that the rig does
-/// not have, a rig that cannot be read.
+/// file, line and the number of the step: an empty step, a negative time, a capture without a
+/// sweep, a solve before any capture, an evaluate before any solve, picks for a camera that the rig
+/// does not have, a rig that cannot be read.
 SessionScript ReadSessionScript(const std::filesystem::path& path,
                                 const std::filesystem::path& rig = {});
 

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/io/tokenizer.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "calib/model/errors.h"
@@ -12,21 +13,53 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::TextFormat;
 
+// Where a line (from 0) begins in a text.
+std::size_t BeginOfLine(const std::string& text, int line) {
+  std::size_t at = 0;
+  for (; line > 0; --line) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) return text.size();
+    at = end + 1;
+  }
+  return at;
+}
+
 // Keeps the first error; later ones only follow from it.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
+  explicit FirstError(const std::string& source) : source_(source) {}
+
   void AddError(int line, google::protobuf::io::ColumnNumber column,
                 const std::string& message) override {
     if (!text.empty()) return;
-    // Protobuf counts lines and columns from 0; -1: belongs to no line.
-    if (line >= 0) {
-      text = std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": ";
-    }
-    text += message;
+    text = (line < 0 ? " " : Position(line, column, message)) + message;  // -1: of no line
   }
   void AddWarning(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
 
   std::string text;
+
+ private:
+  // Protobuf counts lines and columns from 0, and names the word after a wrong key or value: that
+  // may stand lines below. So look for the word itself, which the message quotes.
+  std::string Position(int line, int column, const std::string& message) const {
+    std::size_t at =
+        std::min(BeginOfLine(source_, line) + static_cast<std::size_t>(column), source_.size());
+    for (const std::string before : {"has no field named \"", "Unknown enumeration value of \""}) {
+      const std::size_t begin = message.find(before);
+      if (begin == std::string::npos) continue;
+      const std::size_t word = begin + before.size();
+      const std::size_t found =
+          source_.rfind(message.substr(word, message.find('"', word) - word), at);
+      if (found != std::string::npos) at = found;
+    }
+    const std::size_t last = at == 0 ? std::string::npos : source_.rfind('\n', at - 1);
+    const std::size_t in_line = last == std::string::npos ? at : at - last - 1;
+    const auto lines =
+        std::count(source_.begin(), source_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    return std::to_string(lines + 1) + ":" + std::to_string(in_line + 1) + ": ";
+  }
+
+  const std::string& source_;
 };
 
 int LineOf(const Place::Tree* tree, const FieldDescriptor* field, int index) {
@@ -86,7 +119,7 @@ void Place::Fail(const std::string& field, const std::string& problem) const {
 Place ParseText(const std::string& text, const std::string& file,
                 google::protobuf::Message* message, Place::Tree* tree) {
   TextFormat::Parser parser;
-  FirstError error;
+  FirstError error(text);
   parser.RecordErrorsTo(&error);
   parser.WriteLocationsTo(tree);
   // Deeper than any of the schemas, and far from the end of the stack.

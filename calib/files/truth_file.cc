@@ -15,8 +15,8 @@ Truth ReadTruth(const std::filesystem::path& path) {
   Truth truth;
   for (int i = 0; i < message.camera_size(); ++i) {
     const proto::TruthCamera& camera = message.camera(i);
-    truth.camera_from_lidar[camera.camera()] = text::ToRigid3(
-        camera.camera_from_lidar(), place.In("camera", i).In("camera_from_lidar"));
+    truth.camera_from_lidar[camera.camera()] =
+        text::ToRigid3(camera.camera_from_lidar(), place.In("camera", i).In("camera_from_lidar"));
   }
   for (int i = 0; i < message.view_size(); ++i) {
     const proto::TruthView& view = message.view(i);

@@ -18,7 +18,7 @@ struct Verdict {
 
 /// Judges by what the report itself holds, and says the rule with the figure: not converged is bad;
 /// caution where nothing was held out, where held-out views fit clearly worse than the views used,
-/// where few views were used, or where another start ended elsewhere.
+/// where few views were used, or where another start ended elsewhere and fits about as well.
 Verdict Judge(const CameraReport& camera);
 
 }  // namespace rgbdt

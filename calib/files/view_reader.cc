@@ -80,10 +80,9 @@ void CheckPixels(const CameraSpec& camera, const Image& image, const std::string
 
 Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path& folder,
                 const Place& place) {
-  const CameraSpec& camera =
-      ReadFor(place, "camera", [&]() -> std::reference_wrapper<const CameraSpec> {
-        return rig.Camera(message.camera());
-      });
+  const CameraSpec& camera = ReadFor(
+      place, "camera",
+      [&]() -> std::reference_wrapper<const CameraSpec> { return rig.Camera(message.camera()); });
   if (message.file().empty()) place.Fail("file", "is missing; expected the image's path");
   const fs::path file = folder / message.file();
   Image image;
@@ -107,8 +106,7 @@ Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path&
   return image;
 }
 
-CornerSelection ReadPicks(const proto::ViewImage& message, const Image& image,
-                          const Place& place) {
+CornerSelection ReadPicks(const proto::ViewImage& message, const Image& image, const Place& place) {
   const Place at = place.In("picked");
   text::RequireNumbers(message.picked().corner_px(), 8, at, "corner_px");
   CornerSelection picks;
@@ -140,12 +138,17 @@ View ReadView(const Session& session, const std::string& view) {
   const fs::path folder = session.root / "views" / view;
   const fs::path file = folder / "view.textproto";
   if (!fs::exists(file)) {
-    throw InputError(file.string() + " is missing; it names the view's cloud and images, as "
-                                     "calib/files/README.md shows");
+    throw InputError(file.string() +
+                     " is missing; it names the view's cloud and images, as "
+                     "calib/files/README.md shows");
   }
   proto::View message;
   Place::Tree tree;
   const Place place = text::ParseText(ReadWholeFile(file), file.string(), &message, &tree);
+  if (std::abs(ToSeconds(message.sweep_utime())) > 1e11) {
+    place.Fail("sweep_utime", "is " + std::to_string(message.sweep_utime()) +
+                                  "; expected microseconds since 1970");
+  }
   if (message.cloud().empty()) place.Fail("cloud", "is missing; expected the PCD file's path");
   if (message.image_size() == 0) place.Fail("image", "is missing; expected image { ... }");
 
@@ -160,9 +163,8 @@ View ReadView(const Session& session, const std::string& view) {
       result.picks.push_back(ReadPicks(message.image(i), result.images.back(), at));
     }
   }
-  result.cloud = ReadFor(place, "cloud", [&] {
-    return ReadPcd(folder / message.cloud(), message.sweep_utime());
-  });
+  result.cloud = ReadFor(place, "cloud",
+                         [&] { return ReadPcd(folder / message.cloud(), message.sweep_utime()); });
   return result;
 }
 

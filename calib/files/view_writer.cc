@@ -99,8 +99,9 @@ void WriteView(const fs::path& session_dir, const View& view) {
   }
   // Last: a folder with a view.textproto is complete.
   WriteFileAtomically(folder / "view.textproto",
-                      text::PrintText(message, "One view of the board (schema: "
-                                               "calib/files/proto/session.proto). utime: us, UTC."));
+                      text::PrintText(message,
+                                      "One view of the board (schema: "
+                                      "calib/files/proto/session.proto). utime: us, UTC."));
 }
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #include "calib/model/rig.h"
 
 #include <cctype>
+#include <cmath>
 #include <set>
 
 #include "calib/model/errors.h"
@@ -26,6 +27,11 @@ void CheckName(const std::string& name, const std::string& field) {
   Require(good, field, "\"" + name + "\"", "1 to 32 of a-z, 0-9 and _");
 }
 
+void CheckPose(const Rigid3& pose, const std::string& field) {
+  Require(pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 1e-6, field,
+          "not a pose", "finite metres and a unit quaternion");
+}
+
 void CheckCamera(const CameraSpec& camera) {
   CheckName(camera.name, "camera.name");
   const std::string field = "camera \"" + camera.name + "\": ";
@@ -42,8 +48,14 @@ void CheckCamera(const CameraSpec& camera) {
   for (const double k : camera.lens.distortion) {
     Require(std::isfinite(k), field + "lens.distortion", std::to_string(k), "finite numbers");
   }
-  Require(camera.readout_s >= 0, field + "readout_s", std::to_string(camera.readout_s),
-          "0 or more seconds");
+  Require(camera.readout_s >= 0 && camera.readout_s <= 60, field + "readout_s",
+          std::to_string(camera.readout_s), "0 to 60 seconds");
+  const double emissivity = camera.radiometry.emissivity;
+  Require(emissivity > 0 && emissivity <= 1, field + "radiometry.emissivity",
+          std::to_string(emissivity), "more than 0, at most 1");
+  if (camera.camera_from_lidar_guess) {
+    CheckPose(*camera.camera_from_lidar_guess, field + "camera_from_lidar_guess");
+  }
   const bool sixteen_bit = camera.format == PixelFormat::kMono16;
   Require(camera.kind == CameraKind::kThermal || !sixteen_bit, field + "pixel format", "MONO16",
           "a colour or 8-bit format for a camera of kind COLOR");
@@ -57,6 +69,10 @@ void CheckTarget(const Target& target) {
   RequirePositive(target.square_m, "target.square_m");
   RequirePositive(target.width_m, "target.width_m");
   RequirePositive(target.height_m, "target.height_m");
+  for (const double offset : {target.pattern_offset_m.x(), target.pattern_offset_m.y()}) {
+    Require(std::isfinite(offset), "target.pattern_offset_m", std::to_string(offset),
+            "finite numbers");
+  }
   const double half_x =
       0.5 * target.squares_x * target.square_m + std::abs(target.pattern_offset_m.x());
   const double half_y =
@@ -102,6 +118,9 @@ void Rig::Check() const {
     const double ticks = lidar.turned_scanner->ticks_per_rad;
     Require(std::isfinite(ticks) && ticks != 0, "lidar.turned_scanner.ticks_per_degree",
             std::to_string(ticks), "a number other than zero (negative: turns the other way)");
+    Require(std::isfinite(lidar.turned_scanner->zero_ticks), "lidar.turned_scanner.zero_ticks",
+            std::to_string(lidar.turned_scanner->zero_ticks), "a finite number");
+    CheckPose(lidar.turned_scanner->motor_from_scanner, "lidar.turned_scanner.motor_from_scanner");
   }
   RequirePositive(lidar.range_sigma_m, "lidar.range_sigma_m");
   CheckTarget(target);

@@ -17,7 +17,8 @@ Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const Eigen::Matrix3d k = Skew(w);
   if (angle < 1e-5) return Eigen::Matrix3d::Identity() + 0.5 * k + k * k / 6.0;
   const double a2 = angle * angle;
-  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / a2 * k +
+  const double half_sine = std::sin(0.5 * angle);  // 1 - cos(angle) would lose its digits
+  return Eigen::Matrix3d::Identity() + 2 * half_sine * half_sine / a2 * k +
          (angle - std::sin(angle)) / (a2 * angle) * k * k;
 }
 

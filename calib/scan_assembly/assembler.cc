@@ -92,6 +92,14 @@ void Append(const std::vector<T>& from, std::vector<T>* to) {
   to->insert(to->end(), from.begin(), from.end());
 }
 
+// Vectors of a cloud may be empty, but all chunks of a sweep must agree on which: joined, they
+// would be shorter than `points`.
+bool TellTheSame(const Cloud& a, const Cloud& b) {
+  return a.organised == b.organised && a.directions.empty() == b.directions.empty() &&
+         a.origins.empty() == b.origins.empty() && a.intensity.empty() == b.intensity.empty() &&
+         a.utime.empty() == b.utime.empty() && a.ring.empty() == b.ring.empty();
+}
+
 }  // namespace
 
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
@@ -106,6 +114,14 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
     if (sweep.lines > 0 && part->beams != sweep.beams) {
       throw InputError("a sweep's chunks have " + std::to_string(sweep.beams) + " and " +
                        std::to_string(part->beams) + " beams per line");
+    }
+    if (!TellTheSame(*parts.front(), *part)) {
+      throw InputError(
+          "a sweep's chunks differ in what they tell of their points: the one of line " +
+          std::to_string(part->first_line) +
+          " has other fields (directions, origins, intensity, utime, ring) than that "
+          "of line " +
+          std::to_string(parts.front()->first_line));
     }
     if (sweep.lines == 0) {
       sweep.sweep_utime = part->sweep_utime;

@@ -38,7 +38,8 @@ class EncoderTrack {
 };
 
 /// Puts chunks back together, in the order of their lines. Lines that are missing leave a gap: the
-/// sweep then has fewer lines. Throws InputError where chunks differ in beams per line.
+/// sweep then has fewer lines. Throws InputError where chunks differ in beams per line or in which
+/// of a cloud's vectors they fill.
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
 
 }  // namespace rgbdt

@@ -112,8 +112,7 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
   const double inwards = std::pow(0.985, attempt);
   PoseNumbers n;
   // Near views weigh more in a calibration and are more easily detected: prefer them a little.
-  n.range = o.min_range_m +
-            (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), 1.3);
+  n.range = o.min_range_m + (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), 1.8);
   const double medium = o.min_range_m + 0.4 * (o.max_range_m - o.min_range_m);
   n.range = medium + (n.range - medium) * (n.range < medium ? inwards : 1);
   n.azimuth = inwards * spread(1, -25 * kDegree, 25 * kDegree);

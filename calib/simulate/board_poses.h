@@ -18,7 +18,6 @@ Rigid3 BoardPose(const Options& options, const World& empty, const Scanner& scan
 /// Why a pose does not do; empty: it does. What PoseOptions say of field, margins, clearance and
 /// of nothing standing in between.
 std::string WhyNotSeen(const Options& options, const World& empty, const Scanner& scanner,
-                       const std::vector<CameraRenderer>& cameras,
-                       const Rigid3& lidar_from_target);
+                       const std::vector<CameraRenderer>& cameras, const Rigid3& lidar_from_target);
 
 }  // namespace rgbdt::simulate

@@ -15,9 +15,8 @@ void Store(const Eigen::Vector3d& value, int row, int column, cv::Mat* values) {
   if (values->channels() == 1) {
     values->at<float>(row, column) = static_cast<float>(value[0]);
   } else {
-    values->at<cv::Vec3f>(row, column) = {static_cast<float>(value[0]),
-                                          static_cast<float>(value[1]),
-                                          static_cast<float>(value[2])};
+    values->at<cv::Vec3f>(row, column) = {
+        static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
   }
 }
 
@@ -89,8 +88,7 @@ void CameraRenderer::ShadeRow(const World& world, int row, const std::vector<std
   }
 }
 
-void CameraRenderer::RefineRow(const World& world, int row,
-                               const std::vector<std::uint8_t>* moving,
+void CameraRenderer::RefineRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                                const std::vector<std::uint64_t>& patches, cv::Mat* values) const {
   const Eigen::Vector3d origin = CentreInLidar();
   const int n = supersampling_;

@@ -37,8 +37,7 @@ std::optional<double> BackgroundAt(const World& world, const Eigen::Vector3d& ey
   constexpr int kRays = 5;
   for (int i = 0; i < kRays; ++i) {
     const double along = (i / (kRays - 1.0) - 0.5) * length_m;
-    const Eigen::Vector2d place =
-        station.place + along * station.along + 0.03 * station.outwards;
+    const Eigen::Vector2d place = station.place + along * station.along + 0.03 * station.outwards;
     const Eigen::Vector3d target =
         world.board()->lidar_from_target() * Eigen::Vector3d(place.x(), place.y(), 0);
     const Eigen::Vector3d direction = (target - eye).normalized();
@@ -64,8 +63,8 @@ HeatMap HideOutline(const World& world, const Eigen::Vector3d& eye, const BoardO
     const std::optional<double> apparent =
         BackgroundAt(world, eye, station, options.hidden_outline_m);
     if (!apparent) continue;
-    const double behind = SurfaceTemperature(*apparent, options.emissivity,
-                                             world.scene().reflected_temperature_k);
+    const double behind =
+        SurfaceTemperature(*apparent, options.emissivity, world.scene().reflected_temperature_k);
     const double contrast = std::abs(before.At(station.place, true) - behind);
     if (contrast >= least) continue;
     least = contrast;

@@ -37,17 +37,18 @@ double Pattern(const Texture& texture, const Eigen::Vector2d& at) {
       const double row = std::floor(3 * y);
       const double along = x + (std::fmod(std::abs(row), 2) < 1 ? 0.0 : 0.5);
       const double joint = 0.012 / texture.size_m;
-      const bool in_joint =
-          along - std::floor(along) < joint || 3 * y - row < 3 * joint;
+      const bool in_joint = along - std::floor(along) < joint || 3 * y - row < 3 * joint;
       if (in_joint) return 1;
       return 0.6 * CellNoise(static_cast<std::int64_t>(std::floor(along)),
                              static_cast<std::int64_t>(row)) -
              0.2;
     }
     case Texture::Kind::kTiles: {
-      const auto i = static_cast<std::int64_t>(std::floor(x));
-      const auto j = static_cast<std::int64_t>(std::floor(y));
-      return ((i + j) % 2 == 0 ? 0.7 : -0.7) + 0.3 * CellNoise(i, j);
+      // Shades at random: two in turn would be a second checkerboard in the picture.
+      const double joint = 0.01 / texture.size_m;
+      if (x - std::floor(x) < joint || y - std::floor(y) < joint) return -1;
+      return 0.8 * CellNoise(static_cast<std::int64_t>(std::floor(x)),
+                             static_cast<std::int64_t>(std::floor(y)));
     }
     case Texture::Kind::kPlanks:
       return 0.7 * CellNoise(static_cast<std::int64_t>(std::floor(y)), 7) +

@@ -10,7 +10,7 @@ struct Texture {
     kNone,
     kBlotches,  ///< soft noise, `size_m` wide
     kBricks,    ///< bricks of size_m x size_m / 3 with light joints
-    kTiles,     ///< squares in two shades
+    kTiles,     ///< squares in random shades, dark joints
     kPlanks,    ///< stripes along the first axis, each in a shade of its own
   };
   Kind kind = Kind::kNone;

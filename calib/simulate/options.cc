@@ -95,7 +95,8 @@ void Check(const BoardOptions& o) {
   Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");
   Between(o.emissivity, 0.05, 1, "board.emissivity");
   if (o.temperature_k) Between(*o.temperature_k, 150, 600, "board.temperature_k");
-  if (o.black_minus_white_k) Between(*o.black_minus_white_k, -100, 100, "board.black_minus_white_k");
+  if (o.black_minus_white_k)
+    Between(*o.black_minus_white_k, -100, 100, "board.black_minus_white_k");
   if (o.gradient_k) Between(*o.gradient_k, -100, 100, "board.gradient_k");
   if (o.glow_k) Between(*o.glow_k, -100, 100, "board.glow_k");
   Positive(o.glow_radius_m, "board.glow_radius_m");

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -28,11 +27,11 @@ struct ScannerOptions {
   Eigen::Vector3d lever_arm_m{0.02, 0.0, 0.05};  ///< scanner's origin in the motor's frame
   /// Rotation vector of motor_from_scanner [rad].
   Eigen::Vector3d tilt_rad{0.3 * kDegree, -0.4 * kDegree, 0.2 * kDegree};
-  double range_sigma_m = 0.010;     ///< noise of a range
-  double divergence_rad = 2.7e-3;   ///< full angle of the beam's cone, evenly filled
-  int divergence_rings = 2;         ///< sub-rays: 1 + 3 n (n + 1), so 19
-  double merge_m = 0.5;             ///< surfaces closer together than this in range merge
-  double min_return = 0.02;         ///< of what the whole beam returns from the white wall
+  double range_sigma_m = 0.010;          ///< noise of a range
+  double divergence_rad = 2.7e-3;        ///< full angle of the beam's cone, evenly filled
+  int divergence_rings = 2;              ///< sub-rays: 1 + 3 n (n + 1), so 19
+  double merge_m = 0.5;                  ///< surfaces closer together than this in range merge
+  double min_return = 0.02;              ///< of what the whole beam returns from the white wall
   double white_wall_reflectivity = 1.0;  ///< of that wall
   double max_range_m = 60;               ///< nothing returns from farther away
   double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
@@ -49,11 +48,11 @@ struct CameraOptions {
   double tilt_rad = 3 * kDegree;        ///< truth looks up to this away from straight ahead
   double blur_px = 0;                   ///< sigma, besides the pixel's own area
   double noise_dn = 0;                  ///< colour: sigma [digital numbers]
-  double white_dn = 200;    ///< colour: what the exposure makes of the board's brightest white
-  double netd_k = 0;        ///< thermal: sigma [K]
-  double gain_k = 0.02;     ///< thermal: [K per count]
-  double offset_k = 233.15; ///< thermal: [K] at zero counts
-  int bits = 14;            ///< thermal: counts stop at 2^bits - 1
+  double white_dn = 200;      ///< colour: what the exposure makes of the board's brightest white
+  double netd_k = 0;          ///< thermal: sigma [K]
+  double gain_k = 0.02;       ///< thermal: [K per count]
+  double offset_k = 233.15;   ///< thermal: [K] at zero counts
+  int bits = 14;              ///< thermal: counts stop at 2^bits - 1
   double exposure_s = 0.004;  ///< colour: in full sun, longer where darker; thermal: always this
   double readout_s = 0.03;    ///< an image serves points from its utime + this
 };
@@ -63,8 +62,8 @@ CameraOptions DefaultColorCamera();
 /// 640x480, f = 530 px, 14 bit in Mono16, blur 1 px, NETD 50 mK.
 CameraOptions DefaultThermalCamera();
 
-/// The checkerboard, its stand and its heat. `absent` in heat: the scene's own value, which is
-/// several kelvin outdoors and less in `indoor` and `night` (it was warmed in the sun before).
+/// The checkerboard, its stand and its heat. Heat that is absent takes the scene's own value, which
+/// is several kelvin outdoors and less in `indoor` and `night` (it was warmed in the sun before).
 struct BoardOptions {
   int squares_x = 11, squares_y = 8;
   double square_m = 0.1;
@@ -73,13 +72,13 @@ struct BoardOptions {
   double black_reflectivity = 0.08;  ///< in colour and at the LIDAR's wavelength
   double white_reflectivity = 0.7;
   double emissivity = 0.95;
-  std::optional<double> temperature_k;         ///< [K] mean of black and white at the coolest
-  std::optional<double> black_minus_white_k;   ///< [K]
-  std::optional<double> gradient_k;            ///< [K] from one end of the board to the other
-  std::optional<double> glow_k;                ///< [K] of the warm patch
-  double glow_radius_m = 0.3;                  ///< sigma of the warm patch
+  std::optional<double> temperature_k;        ///< [K] mean of black and white at the coolest
+  std::optional<double> black_minus_white_k;  ///< [K]
+  std::optional<double> gradient_k;           ///< [K] from one end of the board to the other
+  std::optional<double> glow_k;               ///< [K] of the warm patch
+  double glow_radius_m = 0.3;                 ///< sigma of the warm patch
   double hidden_outline_m = 0.35;  ///< length of the outline as warm as what lies behind it
-  double hidden_depth_m = 0.1;    ///< sigma of how far that reaches inwards [m]
+  double hidden_depth_m = 0.1;     ///< sigma of how far that reaches inwards [m]
   double stand_m = 0.04;           ///< side of the stand's square pole
   double stand_reflectivity = 0.3;
 };
@@ -89,7 +88,7 @@ struct PoseOptions {
   double min_range_m = 2, max_range_m = 6;  ///< of the board's centre
   double max_tilt_rad = 40 * kDegree;       ///< of its normal from the line of sight
   double max_roll_rad = 45 * kDegree;       ///< in its plane
-  double image_margin = 0.03;  ///< outline to image border, of the image's width
+  double image_margin = 0.03;               ///< outline to image border, of the image's width
   double sweep_margin_rad = 1.5 * kDegree;  ///< outline to the sweep's limits
   double clearance_m = 0.3;                 ///< to ground and objects
 };

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -43,9 +44,9 @@ struct RayCaster::Impl {
 
 void RayCaster::Impl::AddMesh(const Mesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), mesh.vertices.size()));
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.vertices.size()));
   auto* indices = static_cast<unsigned*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(unsigned), mesh.triangles.size()));
@@ -112,8 +113,8 @@ Hit RayCaster::Cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direct
   return hit;
 }
 
-void RayCaster::CastFan(const Eigen::Vector3d& origin, const Eigen::Vector3d* directions,
-                        int count, Hit* hits) const {
+void RayCaster::CastFan(const Eigen::Vector3d& origin, const Eigen::Vector3d* directions, int count,
+                        Hit* hits) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

@@ -12,8 +12,8 @@ namespace rgbdt::simulate {
 /// First surface on a ray.
 struct Hit {
   double range = std::numeric_limits<double>::infinity();  ///< [m]; infinite: nothing
-  int object = -1;              ///< index of the mesh
-  int triangle = -1;            ///< of that mesh
+  int object = -1;                                         ///< index of the mesh
+  int triangle = -1;                                       ///< of that mesh
   Eigen::Vector3d normal{0, 0, 0};  ///< unit, towards the ray's origin; smooth on round meshes
 
   bool hit() const { return object >= 0; }
@@ -33,8 +33,7 @@ class RayCaster {
   void CastFan(const Eigen::Vector3d& origin, const Eigen::Vector3d* directions, int count,
                Hit* hits) const;
   /// Whether anything lies on the ray before `range` [m].
-  bool Blocked(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-               double range) const;
+  bool Blocked(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range) const;
 
  private:
   struct Impl;

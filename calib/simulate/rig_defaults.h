@@ -9,6 +9,8 @@
 
 namespace rgbdt::simulate {
 
+class Noise;
+
 /// Where a camera truly sits: its nominal place looking straight ahead (camera z along LIDAR x, x
 /// along -y, y along -z), moved and tilted by what seed and name draw.
 Rigid3 DrawCameraFromLidar(const CameraOptions& camera, std::uint64_t seed);
@@ -23,7 +25,6 @@ Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& sc
             const std::vector<Rigid3>& camera_from_lidar);
 
 /// An evenly distributed unit vector from the stream's numbers `index` and `index` + 1.
-class Noise;
 Eigen::Vector3d DrawDirection(const Noise& noise, std::uint64_t index);
 
 }  // namespace rgbdt::simulate

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 /// Places in the unit disc: the middle, and rings of 6, 12, ... of which each stands for the same
-/// area.
+/// area. Rings are turned so that no places line up with an upright or level edge.
 std::vector<Eigen::Vector2d> DiscPlaces(int rings) {
   const double count = 1 + 3 * rings * (rings + 1);
   std::vector<Eigen::Vector2d> places{{0, 0}};
@@ -20,7 +20,7 @@ std::vector<Eigen::Vector2d> DiscPlaces(int rings) {
     // Radius that halves the ring's area; the ring starts where 1 + 3 ring (ring - 1) shares end.
     const double radius = std::sqrt((1 + 3 * ring * (ring - 1) + 3 * ring) / count);
     for (int i = 0; i < 6 * ring; ++i) {
-      const double angle = 2 * kPi * (i + 0.5 * (ring % 2)) / (6 * ring);
+      const double angle = 2 * kPi * (i + 0.37 * ring) / (6 * ring);
       places.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
     }
   }
@@ -61,8 +61,7 @@ BeamReturn CombineReturns(const ScannerOptions& options, int sub_rays,
 Scanner::Scanner(const ScannerOptions& options, std::uint64_t seed)
     : options_(options), seed_(seed) {
   const double tilt = options.tilt_rad.norm();
-  geometry_.motor_from_scanner =
-      tilt > 0 ? RotationAbout(options.tilt_rad / tilt, tilt) : Rigid3();
+  geometry_.motor_from_scanner = tilt > 0 ? RotationAbout(options.tilt_rad / tilt, tilt) : Rigid3();
   geometry_.motor_from_scanner.translation = options.lever_arm_m;
   geometry_.ticks_per_rad = options.ticks_per_rad;
   geometry_.zero_ticks = options.zero_ticks;
@@ -74,9 +73,8 @@ Scanner::Scanner(const ScannerOptions& options, std::uint64_t seed)
     const Eigen::Vector3d up(-std::sin(a), 0, std::cos(a));
     for (const Eigen::Vector2d& place : disc) {
       const Eigen::Vector2d off = place * std::tan(0.5 * options.divergence_rad);
-      sub_rays_.push_back(
-          geometry_.motor_from_scanner.rotation *
-          (along + off.x() * Eigen::Vector3d::UnitY() + off.y() * up).normalized());
+      sub_rays_.push_back(geometry_.motor_from_scanner.rotation *
+                          (along + off.x() * Eigen::Vector3d::UnitY() + off.y() * up).normalized());
     }
   }
 }
@@ -139,8 +137,7 @@ LineScan Scanner::Line(const World& world, Utime sweep_utime, int line) const {
     const double seconds = ToSeconds(scan.utime - sweep_utime) + beam * options_.beam_period_s;
     const BeamReturn back = Beam(world, beam, MotorAngle(seconds));
     const auto i = static_cast<std::size_t>(beam);
-    scan.range[i] =
-        static_cast<float>(back.range + options_.range_sigma_m * noise.Normal(2 * i));
+    scan.range[i] = static_cast<float>(back.range + options_.range_sigma_m * noise.Normal(2 * i));
     scan.intensity[i] =
         std::isnan(back.range)
             ? 0.0F

@@ -22,16 +22,19 @@ void AddPerson(double x, double y, double ground, double temperature, SceneModel
   const Material shirt = Paint(Rgb(0.55, 0.08, 0.07), 0.45, temperature);
   const Material trousers = Paint(Rgb(0.06, 0.09, 0.22), 0.35, temperature - 0.7);
   const Material hair = Paint(Rgb(0.05, 0.035, 0.02), 0.2, temperature - 1);
-  const auto at = [&](double dx, double dy, double z) { return Vector3d(x + dx, y + dy, ground + z); };
+  const auto at = [&](double dx, double dy, double z) {
+    return Vector3d(x + dx, y + dy, ground + z);
+  };
   const auto add = [&](const char* name, const Mesh& mesh, const Material& material) {
     scene->objects.push_back({name, mesh, material});
   };
   for (const double side : {-1.0, 1.0}) {
     add("leg", MakeRod(at(0, side * 0.11, 0.06), at(0, side * 0.09, 0.9), 0.065, 0.095), trousers);
     add("shoe", MakeEllipsoid(at(-0.06, side * 0.11, 0.05), {0.14, 0.055, 0.05}), hair);
-    add("arm", MakeRod(at(0, side * 0.22, 1.42), at(-0.05, side * 0.34, 1.12), 0.055, 0.045), shirt);
-    add("forearm", MakeRod(at(-0.05, side * 0.34, 1.12), at(-0.18, side * 0.30, 0.90), 0.042, 0.034),
-        skin);
+    add("arm", MakeRod(at(0, side * 0.22, 1.42), at(-0.05, side * 0.34, 1.12), 0.055, 0.045),
+        shirt);
+    add("forearm",
+        MakeRod(at(-0.05, side * 0.34, 1.12), at(-0.18, side * 0.30, 0.90), 0.042, 0.034), skin);
     add("hand", MakeEllipsoid(at(-0.2, side * 0.295, 0.86), {0.045, 0.035, 0.06}), skin);
   }
   add("torso", MakeEllipsoid(at(0, 0, 1.18), {0.14, 0.23, 0.36}), shirt);
@@ -47,18 +50,17 @@ void AddTree(double x, double y, double ground, double height, double temperatur
   const Material leaves = Paint(Rgb(0.10, 0.22, 0.05), 0.5, temperature - 1.5,
                                 {Texture::Kind::kBlotches, 0.25, 0.7, 0.5});
   const double trunk = 0.45 * height;
-  scene->objects.push_back({"trunk",
-                            MakeRod({x, y, ground - 0.05}, {x, y, ground + trunk + 0.4}, 0.16, 0.1),
-                            bark});
+  scene->objects.push_back(
+      {"trunk", MakeRod({x, y, ground - 0.05}, {x, y, ground + trunk + 0.4}, 0.16, 0.1), bark});
   const std::vector<Vector3d> crowns{
       {0, 0, 0.72}, {0.1, 0.16, 0.6}, {-0.06, -0.17, 0.62}, {-0.05, 0.03, 0.86}};
   for (const Vector3d& c : crowns) {
     const double radius = 0.2 * height * (c.z() > 0.8 ? 0.75 : 1);
-    scene->objects.push_back({"crown",
-                              MakeEllipsoid({x + c.x() * height, y + c.y() * height,
-                                             ground + c.z() * height},
-                                            {radius, radius, 0.8 * radius}),
-                              leaves});
+    scene->objects.push_back(
+        {"crown",
+         MakeEllipsoid({x + c.x() * height, y + c.y() * height, ground + c.z() * height},
+                       {radius, radius, 0.8 * radius}),
+         leaves});
   }
 }
 
@@ -68,8 +70,7 @@ void AddYard(double ground, double air, double warm, double person, SceneModel* 
   const auto add = [&](const char* name, const Mesh& mesh, const Material& material) {
     scene->objects.push_back({name, mesh, material});
   };
-  add("lawn",
-      MakeQuad({-60, -60, ground}, {80, -60, ground}, {80, 60, ground}, {-60, 60, ground}),
+  add("lawn", MakeQuad({-60, -60, ground}, {80, -60, ground}, {80, 60, ground}, {-60, 60, ground}),
       Paint(Rgb(0.13, 0.20, 0.06), 0.45, air + 0.3 * warm,
             {Texture::Kind::kBlotches, 0.35, 0.5, 0.8}));
   add("pavement",
@@ -77,7 +78,8 @@ void AddYard(double ground, double air, double warm, double person, SceneModel* 
                {-3, 4.2, ground + 0.01}),
       Paint(Rgb(0.30, 0.29, 0.27), 0.3, air + 0.8 * warm, {Texture::Kind::kTiles, 0.6, 0.18, 0.3}));
   add("building", MakeBox({14, -14, ground - 0.1}, {22, 2.6, ground + 4.6}),
-      Paint(Rgb(0.42, 0.17, 0.11), 0.4, air + 0.6 * warm, {Texture::Kind::kBricks, 0.45, 0.45, 0.3}));
+      Paint(Rgb(0.42, 0.17, 0.11), 0.4, air + 0.6 * warm,
+            {Texture::Kind::kBricks, 0.45, 0.45, 0.3}));
   add("roof edge", MakeBox({13.8, -14.1, ground + 4.6}, {22, 2.8, ground + 4.85}),
       Paint(Rgb(0.62, 0.60, 0.56), 0.6, air + 0.7 * warm));
   for (const double y : {-1.6, -5.2, -8.8}) {

@@ -24,8 +24,8 @@ struct Light {
 
 struct Sky {
   Eigen::Vector3d zenith{0.9, 0.6, 0.4}, horizon{0.9, 0.85, 0.8};  ///< radiance, blue green red
-  double cloud = 0;                    ///< radiance that a cloud adds
-  double zenith_k = 240, horizon_k = 265;  ///< apparent temperature
+  double cloud = 0;                                                ///< radiance that a cloud adds
+  double zenith_k = 240, horizon_k = 265;                          ///< apparent temperature
 };
 
 struct SceneObject {

@@ -131,9 +131,8 @@ Seen SeeHeat(const World& world, const Eigen::Vector3d& origin, const Eigen::Vec
   }
   const Eigen::Vector3d point = PointOn(origin, direction, hit);
   const Surface surface = world.At(hit, point, Footprint(hit, direction, pixel_rad));
-  seen.value[0] =
-      ApparentTemperature(surface.material.temperature_k, surface.material.emissivity,
-                          world.scene().reflected_temperature_k);
+  seen.value[0] = ApparentTemperature(surface.material.temperature_k, surface.material.emissivity,
+                                      world.scene().reflected_temperature_k);
   seen.patch = PatchNumber(world, hit, surface.patch, 0);
   return seen;
 }
@@ -147,8 +146,8 @@ double ApparentTemperature(double temperature_k, double emissivity, double mirro
 double SurfaceTemperature(double apparent_k, double emissivity, double mirrored_k) {
   const double apparent = apparent_k * apparent_k;
   const double mirrored = mirrored_k * mirrored_k;
-  return std::sqrt(std::sqrt(
-      (apparent * apparent - (1 - emissivity) * mirrored * mirrored) / emissivity));
+  return std::sqrt(
+      std::sqrt((apparent * apparent - (1 - emissivity) * mirrored * mirrored) / emissivity));
 }
 
 }  // namespace rgbdt::simulate

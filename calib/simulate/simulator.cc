@@ -78,13 +78,11 @@ const Truth& Simulator::truth() const { return impl_->truth; }
 
 void Simulator::ShowView(int index, const std::string& view_name) {
   if (index < 0) {
-    throw InputError("simulator: view index is " + std::to_string(index) +
-                     "; expected 0 or more");
+    throw InputError("simulator: view index is " + std::to_string(index) + "; expected 0 or more");
   }
   Impl& sim = *impl_;
   const Rigid3 pose = BoardPose(sim.options, sim.empty, sim.scanner, sim.cameras, index);
-  const HeatMap heat =
-      DrawHeat(sim.options.board, sim.scene->board_heat, sim.options.seed, index);
+  const HeatMap heat = DrawHeat(sim.options.board, sim.scene->board_heat, sim.options.seed, index);
   sim.view.emplace(sim.scene, Board(sim.options.board, pose, heat), sim.options);
   sim.MakeHeat();
   for (CameraRenderer& camera : sim.cameras) {

@@ -1,5 +1,6 @@
 #include "calib/simulate/world.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rgbdt::simulate {

@@ -19,7 +19,8 @@ struct Surface {
 /// The scene, with or without the board: what rays are shot into. May be used by several threads.
 class World {
  public:
-  World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board, const Options& options);
+  World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board,
+        const Options& options);
 
   const SceneModel& scene() const { return *scene_; }
   const RayCaster& caster() const { return caster_; }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "calib/model/errors.h"
 #include "calib/solve/evaluate.h"
@@ -17,47 +18,69 @@ namespace {
 
 using Views = std::vector<const Observation*>;
 
+// Share of points in the image below which the paper saw no convergence (its section III-C).
+constexpr double kMinShareInImage = 0.5;
+
 // One camera's observations in the order of their views, whatever order they came in.
 Views ObservationsOf(const std::string& camera, const std::vector<Observation>& observations) {
   Views views;
   for (const Observation& o : observations) {
     if (o.camera == camera) views.push_back(&o);
   }
-  std::stable_sort(views.begin(), views.end(),
-                   [](const Observation* a, const Observation* b) { return a->view < b->view; });
+  std::stable_sort(views.begin(), views.end(), [](const Observation* a, const Observation* b) {
+    return std::tie(a->view, a->image_utime, a->seq) < std::tie(b->view, b->image_utime, b->seq);
+  });
   return views;
 }
 
-Views Select(const Views& views, bool heldout) {
-  Views selected;
-  for (const Observation* o : views) {
-    if (o->usable() && o->heldout == heldout) selected.push_back(o);
+// Why an observation cannot be used; empty: it can. What comes from the bus may be well formed and
+// still hold nothing to solve with.
+std::string WhyUnusable(const CameraSpec& camera, const Observation& o) {
+  if (!o.rejected.empty()) return o.rejected;
+  if (!o.image || o.image->edge_pixels.empty() || o.image->outline.empty()) {
+    return "the observation has no edges in the image";
   }
-  return selected;
+  if (!o.cloud || o.cloud->boundary.empty()) {
+    return "the observation has no boundary points in the cloud";
+  }
+  if (o.image->width != camera.width || o.image->height != camera.height) {
+    return "the observation's image is " + std::to_string(o.image->width) + "x" +
+           std::to_string(o.image->height) + ", the rig file says " + std::to_string(camera.width) +
+           "x" + std::to_string(camera.height);
+  }
+  return "";
+}
+
+Views Usable(const CameraSpec& camera, const Views& views) {
+  Views usable;
+  for (const Observation* o : views) {
+    if (WhyUnusable(camera, *o).empty()) usable.push_back(o);
+  }
+  return usable;
+}
+
+Views Used(const CameraSpec& camera, const Views& views) {
+  Views used = Usable(camera, views);
+  used.erase(std::remove_if(used.begin(), used.end(), [](auto* o) { return o->heldout; }),
+             used.end());
+  return used;
 }
 
 // Views, rejections and computing time: what a report says whatever the method.
-CameraReport Describe(const std::string& camera, const Views& views) {
+CameraReport Describe(const CameraSpec& camera, const Views& views) {
   CameraReport report;
-  report.calibration.camera = camera;
+  report.calibration.camera = camera.name;
   for (const Observation* o : views) {
     report.detect_image_s += o->detect_image_s;
     report.detect_cloud_s += o->detect_cloud_s;
-    if (!o->usable()) {
-      report.rejected.push_back({o->view, o->rejected});
+    const std::string why = WhyUnusable(camera, *o);
+    if (!why.empty()) {
+      report.rejected.push_back({o->view, why});
     } else {
       (o->heldout ? report.heldout : report.used).push_back(o->view);
     }
   }
   return report;
-}
-
-void Judge(const CameraSpec& camera, const Views& views, CameraReport* report) {
-  Views usable;
-  for (const Observation* o : views) {
-    if (o->usable()) usable.push_back(o);
-  }
-  JudgeCamera(camera, usable, report);
 }
 
 Utime NewestImage(const std::vector<Observation>& observations) {
@@ -85,10 +108,10 @@ StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rig
 
 CameraReport CalibrateCamera(const CameraSpec& camera, const Views& views,
                              const CalibrateOptions& options) {
-  CameraReport report = Describe(camera.name, views);
+  CameraReport report = Describe(camera, views);
   report.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
   report.calibration.camera_from_lidar = report.first_guess;
-  const Views used = Select(views, false);
+  const Views used = Used(camera, views);
   if (static_cast<int>(used.size()) < options.min_views) {
     report.calibration.status = "not calibrated: " + std::to_string(used.size()) +
                                 " usable views, at least " + std::to_string(options.min_views) +
@@ -98,9 +121,23 @@ CameraReport CalibrateCamera(const CameraSpec& camera, const Views& views,
   const auto start = std::chrono::steady_clock::now();
   report.calibration = SolvePaper(camera, used, report.first_guess, options);
   report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  Judge(camera, views, &report);
+  JudgeCamera(camera, Usable(camera, views), &report);
   report.other_starts.push_back(FromWideStart(camera, used, report.first_guess, report, options));
   return report;
+}
+
+// Share of the views' boundary points that fall into the image: elsewhere the objective is flat.
+double ShareInImage(const Camera& camera, const Views& views, const Rigid3& camera_from_lidar) {
+  double inside = 0;
+  double all = 0;
+  for (const Observation* o : views) {
+    for (const Eigen::Vector3d& point : o->cloud->boundary) {
+      const auto pixel = camera.Project(camera_from_lidar * point);
+      inside += pixel && camera.Contains(*pixel) ? 1 : 0;
+      all += 1;
+    }
+  }
+  return all > 0 ? inside / all : 0;
 }
 
 }  // namespace
@@ -154,6 +191,13 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   result.camera_from_lidar = Exp(delta) * start;
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.status = result.converged ? "converged" : "not converged: " + summary.message;
+  // Where most points miss the image the gradient vanishes, which Ceres takes for a minimum.
+  const double share = ShareInImage(camera, used, result.camera_from_lidar);
+  if (share < kMinShareInImage) {
+    result.converged = false;
+    result.status = "not converged: only " + std::to_string(std::lround(100 * share)) +
+                    "% of the boundary points project into the image; start nearer";
+  }
   return result;
 }
 
@@ -181,10 +225,10 @@ Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
     const CameraCalibration* found = calibration.Find(camera.name);
     if (found == nullptr) continue;
     const Views views = ObservationsOf(camera.name, observations);
-    CameraReport judged = Describe(camera.name, views);
+    CameraReport judged = Describe(camera, views);
     judged.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
     judged.calibration = *found;
-    Judge(camera, views, &judged);
+    JudgeCamera(camera, Usable(camera, views), &judged);
     report.cameras.push_back(std::move(judged));
   }
   return report;

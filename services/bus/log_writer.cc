@@ -26,7 +26,7 @@ struct LogWriter::Impl {
   }
 
   void Put(const void* data, std::size_t size) {
-    if (std::fwrite(data, 1, size, file) != size) ThrowErrno();
+    if (size > 0 && std::fwrite(data, 1, size, file) != size) ThrowErrno();
   }
 
   std::string path;

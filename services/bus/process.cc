@@ -34,6 +34,14 @@ double Now() {
       .count();
 }
 
+void SayGoodbye(const Status& status) {
+  std::string counters;
+  for (const auto& [name, value] : status.counters) {
+    counters += ", " + name + " " + std::to_string(value);
+  }
+  spdlog::info("{}: stopped; {}{}", status.process, status.text, counters);
+}
+
 void Loop(Node& node, const std::string& url, const Idle& idle) {
   LcmBus bus(url);
   NodeRunner runner(&node, &bus);
@@ -48,6 +56,7 @@ void Loop(Node& node, const std::string& url, const Idle& idle) {
     if (idle && !idle(runner)) return;
     bus.Run(idle ? kWaitWithIdleMs : kWaitMs);
   }
+  SayGoodbye(runner.GetStatus());
 }
 
 }  // namespace

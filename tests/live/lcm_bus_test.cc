@@ -7,9 +7,11 @@
 #include <chrono>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
+#include "services/bus/codec.h"
 #include "services/bus/node_runner.h"
 
 // Runs in a network namespace of its own with a multicast route (scripts/in-namespace). Waits for
@@ -20,7 +22,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kPatience = std::chrono::seconds(30);
-constexpr char kUrl[] = "udpm://239.255.76.67:7667?ttl=0";
+
+/// Of the bus that LCM_DEFAULT_URL names.
+int Port() {
+  const std::string url = CompleteUrl("");
+  const std::size_t colon = url.find(':', std::string("udpm://").size());
+  return colon == std::string::npos ? 7667 : std::stoi(url.substr(colon + 1));
+}
 
 /// Runs the bus until `done`; false after 30 s.
 bool RunUntil(LcmBus* bus, const std::function<bool()>& done) {
@@ -43,8 +51,8 @@ Bytes Numbered(int number, std::size_t size) {
 
 class LcmBusTest : public ::testing::Test {
  protected:
-  LcmBus sender_{kUrl};
-  LcmBus receiver_{kUrl};
+  LcmBus sender_{""};
+  LcmBus receiver_{""};
 };
 
 // As fast as the kernel's buffer allows: all at once where it has the 32 MiB that set-up asks for,
@@ -106,7 +114,7 @@ void SendDatagram(const Bytes& bytes) {
   const int udp = socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(7667);
+  to.sin_port = htons(static_cast<std::uint16_t>(Port()));
   inet_pton(AF_INET, "239.255.76.67", &to.sin_addr);
   EXPECT_EQ(
       sendto(udp, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to),
@@ -142,7 +150,7 @@ TEST_F(LcmBusTest, GarbageIsSurvivedAndCounted) {
     sender_.Publish("ENCODER", Numbered(i, static_cast<std::size_t>(i)));
     sender_.Publish("STATUS", Numbered(i, 1000));
   }
-  NodeRunner(&node, &sender_).Publish({EncoderReading{1, 0, 0, 0}});
+  sender_.Publish("ENCODER", Encode(EncoderReading{1, 0, 0, 0}));
   EXPECT_TRUE(RunUntil(&receiver_, [&] { return node.handled == 1; }));
   EXPECT_EQ(runner.dropped(), 100);
 }

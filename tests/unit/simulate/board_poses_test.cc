@@ -61,8 +61,7 @@ void ExpectWithinLimits(const Setting& s, const Rigid3& lidar_from_target) {
     const CameraOptions& o = camera.options();
     for (const cv::Point2d& pixel :
          OpenCvPixels(o.lens, camera.camera_from_lidar() * lidar_from_target, outline)) {
-      EXPECT_TRUE(pixel.x > 10 && pixel.y > 10 && pixel.x < o.width - 11 &&
-                  pixel.y < o.height - 11)
+      EXPECT_TRUE(pixel.x > 10 && pixel.y > 10 && pixel.x < o.width - 11 && pixel.y < o.height - 11)
           << o.name << " " << pixel;
     }
   }

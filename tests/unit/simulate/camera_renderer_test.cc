@@ -18,8 +18,8 @@ struct Scenery {
         empty(scene, std::nullopt, o),
         world(scene, Board(o.board, lidar_from_target, DrawHeat(o.board, scene->board_heat, 1, 0)),
               o),
-        renderer(o.cameras[camera], DrawCameraFromLidar(o.cameras[camera], o.seed),
-                 o.supersampling, o.threads) {
+        renderer(o.cameras[camera], DrawCameraFromLidar(o.cameras[camera], o.seed), o.supersampling,
+                 o.threads) {
     renderer.RenderEmpty(empty);
     renderer.Render(world);
   }
@@ -44,10 +44,10 @@ Rigid3 TiltedBoard() {
 
 /// Mean distance between corners refined in the noise-free image and OpenCV's projection.
 double MeanCornerError(const Scenery& s, const cv::Mat& grey) {
-  const std::vector<cv::Point2d> truth = OpenCvPixels(
-      s.renderer.options().lens,
-      s.renderer.camera_from_lidar() * s.world.board()->lidar_from_target(),
-      MakeTarget(s.options.board).InnerCorners());
+  const std::vector<cv::Point2d> truth =
+      OpenCvPixels(s.renderer.options().lens,
+                   s.renderer.camera_from_lidar() * s.world.board()->lidar_from_target(),
+                   MakeTarget(s.options.board).InnerCorners());
   std::vector<cv::Point2f> corners;
   for (const cv::Point2d& t : truth) {
     corners.emplace_back(static_cast<float>(t.x + 0.4), static_cast<float>(t.y - 0.3));
@@ -98,8 +98,7 @@ TEST(CameraRenderer, AnUprightEdgeIsPlacedToTheHundredthOfAPixel) {
   const World world(scene, std::nullopt, options);
   camera.RenderEmpty(world);
   camera.ShowEmpty(world);
-  const double edge_u =
-      options.cameras[1].lens.cx - options.cameras[1].lens.fx * 0.003 / depth;
+  const double edge_u = options.cameras[1].lens.cx - options.cameras[1].lens.fx * 0.003 / depth;
   double warm_pixels = 0;
   for (int u = 0; u < camera.options().width; ++u) {
     const double kelvin = camera.clean().at<float>(60, u) * 0.02 + 233.15;

@@ -145,8 +145,8 @@ TEST(Simulator, PicksScatterRoundTheTrueCorners) {
     const Rigid3 camera_from_target = simulator.truth().camera_from_lidar.at(camera.name) *
                                       simulator.truth().lidar_from_target.at("0001");
     const auto outline = simulator.rig().target.OutlineCorners();
-    const std::vector<cv::Point2d> truth = OpenCvPixels(
-        camera.lens, camera_from_target, {outline.begin(), outline.end()});
+    const std::vector<cv::Point2d> truth =
+        OpenCvPixels(camera.lens, camera_from_target, {outline.begin(), outline.end()});
     double squares = 0;
     constexpr int kTimes = 200;
     for (int i = 0; i < kTimes; ++i) {
@@ -178,10 +178,10 @@ TEST(Simulator, ThermalImageGivesTemperatures) {
   const double counts = image.pixels.at<std::uint16_t>(cv::Point(pixel));
   const Radiometry& r = image.radiometry;
   const double apparent = r.gain * counts + r.offset;
-  const double surface =
-      std::pow((std::pow(apparent, 4) - (1 - r.emissivity) * std::pow(r.reflected_temperature_k, 4)) /
-                   r.emissivity,
-               0.25);
+  const double surface = std::pow(
+      (std::pow(apparent, 4) - (1 - r.emissivity) * std::pow(r.reflected_temperature_k, 4)) /
+          r.emissivity,
+      0.25);
   EXPECT_NEAR(surface, 310, 0.25);
 }
 
@@ -204,9 +204,8 @@ TEST(Simulator, PartOfTheOutlineIsAsWarmAsItsBackground) {
       const Eigen::Vector3d inwards = -(corners[side] + 10 * step).normalized();
       for (int i = 1; i < 20; ++i) {
         const Eigen::Vector3d place = corners[side] + i * step;
-        const auto pixels =
-            OpenCvPixels(simulator.rig().cameras[0].lens, camera_from_target,
-                         {place + 0.03 * inwards, place - 0.03 * inwards});
+        const auto pixels = OpenCvPixels(simulator.rig().cameras[0].lens, camera_from_target,
+                                         {place + 0.03 * inwards, place - 0.03 * inwards});
         const double inside = image.pixels.at<std::uint16_t>(cv::Point(pixels[0]));
         const double outside = image.pixels.at<std::uint16_t>(cv::Point(pixels[1]));
         ++stations;

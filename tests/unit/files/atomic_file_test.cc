@@ -1,0 +1,69 @@
+#include "calib/files/atomic_file.h"
+
+#include <sys/stat.h>
+
+#include <fstream>
+
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+std::size_t FilesIn(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(AtomicFile, GivesBackEveryByteAndMakesFolders) {
+  const test::TempDir dir;
+  std::string bytes;
+  for (int i = 0; i < 200'000; ++i) bytes += static_cast<char>(i * 7);
+  WriteFileAtomically(dir / "a/b/c.bin", bytes);
+  EXPECT_EQ(ReadWholeFile(dir / "a/b/c.bin"), bytes);
+  WriteFileAtomically(dir / "a/b/c.bin", "");
+  EXPECT_EQ(ReadWholeFile(dir / "a/b/c.bin"), "");
+  EXPECT_EQ(FilesIn(dir / "a/b"), 1u) << "a temporary file was left";
+}
+
+TEST(AtomicFile, OtherPeopleMayReadWhatIsWritten) {
+  const test::TempDir dir;
+  const mode_t before = umask(022);
+  WriteFileAtomically(dir / "x", "x");
+  umask(before);
+  EXPECT_EQ(fs::status(dir / "x").permissions(), static_cast<fs::perms>(0644));
+}
+
+TEST(AtomicFile, AFailingWriteLeavesTheOldFileAndNoOther) {
+  const test::TempDir dir;
+  // A folder of the file's name that is not empty: the rename at the end must fail.
+  WriteFileAtomically(dir / "target/old", "old");
+  const std::string error = test::ErrorOf([&] { WriteFileAtomically(dir / "target", "new"); });
+  EXPECT_THAT(error, HasSubstr((dir / "target").string()));
+  EXPECT_EQ(ReadWholeFile(dir / "target/old"), "old");
+  EXPECT_EQ(FilesIn(dir.path()), 1u) << "a temporary file was left";
+}
+
+TEST(AtomicFile, AReaderOfTheOldFileKeepsIt) {
+  const test::TempDir dir;
+  WriteFileAtomically(dir / "file", "old");
+  std::ifstream reader(dir / "file");
+  WriteFileAtomically(dir / "file", "new!");
+  std::string text;
+  reader >> text;
+  EXPECT_EQ(text, "old");
+  EXPECT_EQ(ReadWholeFile(dir / "file"), "new!");
+}
+
+TEST(AtomicFile, ErrorsNameThePathAndTheReason) {
+  const test::TempDir dir;
+  const std::string missing = test::ErrorOf([&] { ReadWholeFile(dir / "none.pcd"); });
+  EXPECT_THAT(missing, HasSubstr((dir / "none.pcd").string()));
+  EXPECT_THAT(missing, HasSubstr("No such file"));
+  EXPECT_THAT(test::ErrorOf([&] { ReadWholeFile(dir.path()); }), HasSubstr("directory"));
+}
+
+}  // namespace
+}  // namespace rgbdt

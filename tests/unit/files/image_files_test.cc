@@ -1,0 +1,77 @@
+#include "calib/files/image_files.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "calib/files/atomic_file.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::HasSubstr;
+
+bool Same(const cv::Mat& a, const cv::Mat& b) {
+  return a.type() == b.type() && a.size() == b.size() &&
+         cv::norm(a.reshape(1), b.reshape(1), cv::NORM_INF) == 0;
+}
+
+cv::Mat Random(int type) {
+  cv::Mat image(17, 23, type);
+  cv::randu(image, 0, image.depth() == CV_8U ? 256 : 65536);
+  return image;
+}
+
+TEST(ImageFiles, PngGivesBackEveryPixel) {
+  const test::TempDir dir;
+  for (const int type : {CV_8UC1, CV_16UC1, CV_8UC3, CV_16UC3}) {
+    const cv::Mat image = Random(type);
+    WritePng(dir / "a.png", image);
+    EXPECT_TRUE(Same(DecodeImageFile(dir / "a.png"), image)) << "OpenCV type " << type;
+  }
+}
+
+TEST(ImageFiles, RefusesWhatAPngCannotHold) {
+  const test::TempDir dir;
+  EXPECT_THAT(test::ErrorOf([&] { WritePng(dir / "a.png", cv::Mat(3, 4, CV_32FC1)); }),
+              HasSubstr("4x3"));
+  test::ErrorOf([&] { WritePng(dir / "a.png", cv::Mat()); });
+  EXPECT_FALSE(std::filesystem::exists(dir / "a.png"));
+}
+
+TEST(ImageFiles, FormatFollowsTheTypeOrWhatIsTold) {
+  const auto format = [](int type, PixelFormat told = PixelFormat{}) {
+    cv::Mat image = Random(type);
+    return FormatOf(told, &image);
+  };
+  EXPECT_EQ(format(CV_8UC1), PixelFormat::kMono8);
+  EXPECT_EQ(format(CV_16UC1), PixelFormat::kMono16);
+  EXPECT_EQ(format(CV_8UC3), PixelFormat::kBgr8);
+  EXPECT_EQ(format(CV_8UC4), PixelFormat::kBgr8);
+  EXPECT_EQ(format(CV_8UC1, PixelFormat::kBayerGb8), PixelFormat::kBayerGb8);
+  EXPECT_THAT(test::ErrorOf([&] { format(CV_8UC3, PixelFormat::kBayerGb8); }),
+              HasSubstr("BAYER_GB8"));
+  EXPECT_THAT(test::ErrorOf([&] { format(CV_16UC3); }), HasSubstr("3-channel 16-bit"));
+  EXPECT_THAT(test::ErrorOf([&] { format(CV_32FC1); }), HasSubstr("32-bit float"));
+}
+
+TEST(ImageFiles, DamagedFilesNeverCrashAndAreNamed) {
+  const auto parse = [](const std::string& bytes) { DecodeImage(bytes, "a.png"); };
+  const std::string png = EncodePng(Random(CV_16UC1));
+  test::ParseTruncations(png, parse);
+  test::ParseDamaged(png, parse, 100);
+  std::vector<unsigned char> jpeg;
+  cv::imencode(".jpg", Random(CV_8UC3), jpeg);
+  test::ParseTruncations({jpeg.begin(), jpeg.end()}, parse, 100);
+  EXPECT_THAT(test::ErrorOf([&] { parse("not an image"); }), HasSubstr("a.png"));
+  EXPECT_THAT(test::ErrorOf([&] { parse(""); }), HasSubstr("empty"));
+  EXPECT_THAT(test::ErrorOf([&] { parse(png.substr(0, png.size() / 2)); }), HasSubstr("cut short"));
+}
+
+TEST(ImageFiles, AForgedSizeIsAnError) {
+  std::string png = EncodePng(Random(CV_8UC1));
+  for (std::size_t i = 16; i < 24; ++i) png[i] = '\x7f';  // width and height in the header
+  EXPECT_THAT(test::ErrorOf([&] { DecodeImage(png, "huge.png"); }), HasSubstr("huge.png"));
+}
+
+}  // namespace
+}  // namespace rgbdt
