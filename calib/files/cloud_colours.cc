@@ -26,7 +26,8 @@ void SetRange(std::vector<float> values, ColourScale* scale) {
                values.end());
   if (values.empty()) return;
   const auto percentile = [&](double fraction) {
-    const std::size_t k = static_cast<std::size_t>(fraction * (values.size() - 1) + 0.5);
+    const std::size_t k =
+        static_cast<std::size_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
     return static_cast<double>(values[k]);
   };
@@ -37,7 +38,8 @@ void SetRange(std::vector<float> values, ColourScale* scale) {
 
 cv::Vec3b Look(const ColourScale& scale, double value) {
   const double fraction = (value - scale.low) / (scale.high - scale.low);
-  return scale.table.at<cv::Vec3b>(static_cast<int>(std::clamp(fraction, 0.0, 1.0) * 255 + 0.5));
+  return scale.table.at<cv::Vec3b>(
+      static_cast<int>(std::lround(std::clamp(fraction, 0.0, 1.0) * 255)));
 }
 
 // Grey and unobtrusive, on either ground; brighter where more light came back.

@@ -51,7 +51,7 @@ std::vector<Eigen::Vector3d> Subject(const RgbdtCloud& cloud, const PointColours
   std::vector<Eigen::Vector3d> coloured, all;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (!cloud.points[i].allFinite()) continue;
-    all.push_back(cloud.points[i].cast<double>());
+    all.emplace_back(cloud.points[i].cast<double>());
     if (colours.coloured[i]) coloured.push_back(all.back());
   }
   return coloured.size() >= 50 ? coloured : all;

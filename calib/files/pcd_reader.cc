@@ -110,8 +110,9 @@ bool OrganiseByFields(const pcd::Table& table, Cloud* cloud) {
   }
   const std::size_t width = static_cast<std::size_t>(beams);
   for (std::size_t i = 0; i < line.size(); ++i) {
-    const bool in_place = line[i] == first + static_cast<double>(i / width) &&
-                          beam[i] == static_cast<double>(i % width);
+    const std::size_t row = i / width;
+    const bool in_place = line[i] == first + static_cast<double>(row) &&
+                          beam[i] == static_cast<double>(i - row * width);
     if (!in_place) return false;
   }
   cloud->first_line = static_cast<int>(first);
@@ -132,6 +133,7 @@ void Organise(const pcd::Table& table, Cloud* cloud) {
 std::vector<Eigen::Vector3f> ReadOrigins(const pcd::Table& table, const Cloud& cloud) {
   const std::vector<Eigen::Vector3f> all = ReadVectors(table, "origin_x", "origin_y", "origin_z");
   std::vector<Eigen::Vector3f> origins;
+  origins.reserve(static_cast<std::size_t>(cloud.lines));
   for (int line = 0; line < cloud.lines; ++line) {
     origins.push_back(all[static_cast<std::size_t>(line) * static_cast<std::size_t>(cloud.beams)]);
   }

@@ -38,10 +38,10 @@ class Table {
   /// The field's type ('I', 'U' or 'F').
   char TypeOf(const std::string& field) const;
   /// The field's first element of every point. Every integer up to 2^53 and every float is exact.
-  std::vector<double> Column(const std::string& field) const;
+  std::vector<double> Column(const std::string& name) const;
 
  private:
-  const Field* Find(const std::string& field) const;
+  const Field* Find(const std::string& name) const;
   void ReadHeader(std::string_view bytes);
   void ReadAscii(std::string_view data);
   void Unpack(std::string_view data);

@@ -220,7 +220,9 @@ Report ReportFromJson(const std::string& json, const std::string& where) {
   report.rig_hash = message.rig_hash();
   report.utime = message.utime();
   for (const auto& [name, camera] : message.cameras()) {
-    const Place place(where + ": camera \"" + name + "\"", camera.GetDescriptor(), nullptr);
+    std::string at = where;
+    at.append(": camera \"").append(name).append("\"");
+    const Place place(at, camera.GetDescriptor(), nullptr);
     report.cameras.push_back(ToCamera(name, camera, place));
   }
   std::sort(report.cameras.begin(), report.cameras.end(),

@@ -28,8 +28,8 @@ struct CalibrateOptions {
 Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
                  const CalibrateOptions& options = {});
 
-/// Levenberg-Marquardt over the paper's objective from one start. `used` are usable observations
-/// of one camera.
+/// Levenberg-Marquardt over the paper's objective from one start: the rotation first, then all six
+/// parameters. `used` are usable observations of one camera.
 CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const Observation*>& used,
                              const Rigid3& start, const CalibrateOptions& options);
 

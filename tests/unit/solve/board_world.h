@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/camera/camera.h"
+#include "calib/model/observation.h"
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+
+/// An ideal world: a rectangular board's outline seen through a lens, one pixel wide, and its
+/// boundary in the LIDAR frame without noise. What is left to a solver is the pixel grid.
+struct BoardWorld {
+  CameraSpec spec;
+  Rigid3 camera_from_lidar;  ///< the truth
+  std::vector<Observation> views;
+
+  std::vector<const Observation*> Used() const {
+    std::vector<const Observation*> used;
+    for (const Observation& o : views) {
+      if (!o.heldout) used.push_back(&o);
+    }
+    return used;
+  }
+};
+
+/// 640x480, f = 500 px, distorted.
+inline CameraSpec WorldCamera() {
+  CameraSpec spec;
+  spec.name = "rgb";
+  spec.width = 640;
+  spec.height = 480;
+  spec.lens = {Lens::Model::kPinhole, 500, 501, 318.3, 241.2, {-0.15, 0.05, 3e-4, -2e-4}};
+  return spec;
+}
+
+/// LIDAR x forward, y left, z up to camera x right, y down, z forward, somewhat off.
+inline Rigid3 WorldTruth() {
+  Eigen::Matrix3d axes;
+  axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  Rigid3 truth = RotationAbout({0.3, -0.5, 0.8}, 0.06);
+  truth.rotation = truth.rotation * Eigen::Quaterniond(axes);
+  truth.translation = {0.08, -0.12, 0.05};
+  return truth;
+}
+
+/// A board's view: its edge pixels are the rounded projected outline.
+inline Observation ObserveBoard(const CameraSpec& spec, const Rigid3& camera_from_lidar,
+                                const Rigid3& lidar_from_board, const std::string& view) {
+  constexpr double kHalfWidth = 0.6;
+  constexpr double kHalfHeight = 0.45;
+  const Eigen::Vector3d corners[] = {{-kHalfWidth, -kHalfHeight, 0},
+                                     {kHalfWidth, -kHalfHeight, 0},
+                                     {kHalfWidth, kHalfHeight, 0},
+                                     {-kHalfWidth, kHalfHeight, 0}};
+  const Camera camera(spec);
+  Observation o;
+  o.view = view;
+  o.camera = spec.name;
+  o.image = ImageEdges();
+  o.image->width = spec.width;
+  o.image->height = spec.height;
+  o.cloud = CloudEdges();
+  std::set<std::pair<int, int>> pixels;  // by row, each once
+  for (int side = 0; side < 4; ++side) {
+    const Eigen::Vector3d from = lidar_from_board * corners[side];
+    const Eigen::Vector3d to = lidar_from_board * corners[(side + 1) % 4];
+    for (const Eigen::Vector2d& p :
+         ProjectSegment(camera, camera_from_lidar * from, camera_from_lidar * to, 2000)) {
+      pixels.insert({std::lround(p.y()), std::lround(p.x())});
+      o.image->outline.push_back(p);
+    }
+    constexpr int kPoints = 40;  // 2 to 3 cm apart
+    for (int i = 0; i < kPoints; ++i) {
+      o.cloud->boundary.push_back(from + (to - from) * (static_cast<double>(i) / kPoints));
+    }
+  }
+  for (const auto& [y, x] : pixels) o.image->edge_pixels.emplace_back(x, y);
+  return o;
+}
+
+/// `count` views, 2 to 4.5 m away all over the image, tilted and turned; every third held out.
+inline BoardWorld MakeBoardWorld(int count, std::uint32_t seed = 1) {
+  BoardWorld world{WorldCamera(), WorldTruth(), {}};
+  const Camera camera(world.spec);
+  Random random(seed);
+  while (static_cast<int>(world.views.size()) < count) {
+    Rigid3 camera_from_board = RotationAbout(random.Direction(), random.Uniform(0.2, 0.7)) *
+                               RotationAbout({0, 0, 1}, random.Uniform(-0.8, 0.8));
+    const double z = random.Uniform(2, 4.5);
+    camera_from_board.translation = {random.Uniform(-0.5, 0.5) * z, random.Uniform(-0.4, 0.4) * z,
+                                     z};
+    const auto n = world.views.size();
+    Observation o =
+        ObserveBoard(world.spec, world.camera_from_lidar,
+                     world.camera_from_lidar.Inverse() * camera_from_board, std::to_string(n));
+    bool whole = o.image->outline.size() == 4 * 2001;
+    for (const Eigen::Vector2d& p : o.image->outline) whole &= camera.Contains(p);
+    if (!whole) continue;
+    o.heldout = n % 3 == 2;
+    o.image_utime = static_cast<Utime>(1000 + n);
+    world.views.push_back(std::move(o));
+  }
+  return world;
+}
+
+/// A guess `angle` [rad] and `shift` [m] off.
+inline Rigid3 GuessOff(const Rigid3& truth, double angle, double shift, std::uint32_t seed) {
+  Random random(seed);
+  Rigid3 guess = RotationAbout(random.Direction(), angle) * truth;
+  guess.translation = guess.rotation * (truth.rotation.conjugate() * truth.translation) +
+                      shift * random.Direction();  // the camera's centre moves by `shift` alone
+  return guess;
+}
+
+}  // namespace rgbdt
