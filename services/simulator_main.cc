@@ -14,7 +14,8 @@ namespace {
 using rgbdt::Utime;
 
 // Simulated time against the steady clock: what is due is published, `speed` times faster. After
-// time stood still, or rendering took long, it goes on from there and does not catch up.
+// time stood still, or rendering took long, it goes on from there and does not catch up: a burst
+// would fill the receivers' queues (lcm-logger's holds 30 messages).
 class Pacer {
  public:
   explicit Pacer(double speed) : speed_(speed) {}
@@ -24,7 +25,7 @@ class Pacer {
     const double late_s =
         std::chrono::duration<double>(now - wall_).count() - rgbdt::ToSeconds(due - sim_) / speed_;
     if (late_s < 0 && late_s > -10) return false;
-    if (late_s > 0.5 || late_s <= -10) {
+    if (late_s > 0.02 || late_s <= -10) {
       wall_ = now;
       sim_ = due;
     }

@@ -55,6 +55,13 @@ Observation DetectOne(const Rig& rig, const View& view, const Image& image,
         "paper's method needs one";
     return observation;
   }
+  const int lost = LostLines(view.cloud);
+  if (lost * 100 > view.cloud.lines) {  // gaps look like edges
+    observation.rejected = std::to_string(lost) + " of the sweep's " +
+                           std::to_string(view.cloud.lines) +
+                           " lines were lost on the way; look at the assembler's status";
+    return observation;
+  }
   const Stopwatch cloud_watch;
   CloudEdgesResult in_cloud = DetectCloudEdges(view.cloud, camera, *spec.camera_from_lidar_guess,
                                                observation.image->corners, rig.target);

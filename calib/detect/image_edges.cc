@@ -104,9 +104,9 @@ struct Gradient {
   float threshold = 0;
 };
 
-// Sobel. The paper names no threshold: an edge is what stands out 4 times from the median magnitude,
-// some 5 sigma where an image is mostly noise. (Matlab's rule, twice the RMS, loses a black border
-// on dark ground as soon as a bright sky raises the RMS.)
+// Sobel. The paper names no threshold: an edge is what stands out 4 times from the median
+// magnitude, some 5 sigma where an image is mostly noise. (Matlab's rule, twice the RMS, loses a
+// black border on dark ground as soon as a bright sky raises the RMS.)
 Gradient SobelOf(const cv::Mat& grey) {
   Gradient g;
   cv::Sobel(grey, g.x, CV_32F, 1, 0);

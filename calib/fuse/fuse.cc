@@ -29,8 +29,9 @@ std::array<double, channels> Sample(const cv::Mat& image, const Eigen::Vector2d&
   return out;
 }
 
-// Fills what one camera knows of the points of `fused`.
-void Colour(const FusionCamera& camera, std::uint32_t bit, std::uint32_t earlier_colour,
+// Fills what one camera knows of the points of `fused`. `earlier`: bits of the cameras of its kind
+// that come before it.
+void Colour(const FusionCamera& camera, std::uint32_t bit, std::uint32_t earlier,
             RgbdtCloud* fused) {
   const Eigen::Matrix3d rotation = camera.camera_from_lidar.rotation.toRotationMatrix();
   for (std::size_t i = 0; i < fused->size(); ++i) {
@@ -39,17 +40,19 @@ void Colour(const FusionCamera& camera, std::uint32_t bit, std::uint32_t earlier
     const auto pixel = camera.camera().Project(rotation * fused->points[i].cast<double>() +
                                                camera.camera_from_lidar.translation);
     if (!pixel || !camera.camera().Contains(*pixel)) continue;
+    const bool taken = (fused->valid[i] & earlier) != 0;
+    fused->valid[i] |= bit;
+    if (taken) continue;
     if (camera.spec().kind == CameraKind::kThermal) {
       const double counts = Sample<float, 1>(image->pixels, *pixel)[0];
       fused->thermal_counts[i] = static_cast<float>(counts);
       fused->temperature_k[i] = static_cast<float>(KelvinOf(image->radiometry, counts));
-    } else if ((fused->valid[i] & earlier_colour) == 0) {
+    } else {
       const auto bgr = Sample<std::uint8_t, 3>(image->pixels, *pixel);
       for (std::size_t c = 0; c < 3; ++c) {
         fused->rgb[i][c] = static_cast<std::uint8_t>(std::lround(bgr[2 - c]));
       }
     }
-    fused->valid[i] |= bit;
   }
 }
 
@@ -101,12 +104,15 @@ RgbdtCloud Fuse(const Cloud& cloud, const std::vector<FusionCamera>& cameras) {
   fused.temperature_k.assign(fused.size(), kNone);
   fused.thermal_counts.assign(fused.size(), kNone);
   fused.valid.assign(fused.size(), 0);
-  std::uint32_t earlier_colour = 0;
+  std::uint32_t earlier_color = 0;
+  std::uint32_t earlier_thermal = 0;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     const std::uint32_t bit = 1U << c;
     fused.cameras.push_back(cameras[c].spec().name);
-    if (cameras[c].calibrated) Colour(cameras[c], bit, earlier_colour, &fused);
-    if (cameras[c].spec().kind == CameraKind::kColor) earlier_colour |= bit;
+    const bool thermal = cameras[c].spec().kind == CameraKind::kThermal;
+    std::uint32_t& earlier = thermal ? earlier_thermal : earlier_color;
+    if (cameras[c].calibrated) Colour(cameras[c], bit, earlier, &fused);
+    earlier |= bit;
   }
   return fused;
 }

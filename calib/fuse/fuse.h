@@ -60,8 +60,8 @@ class FusionCamera {
 
 /// Colours a cloud: each hit is projected into the image of each camera that serves its time and
 /// sampled bilinearly. No colour for a point behind a camera, outside its image, or beyond the
-/// angle where the lens polynomial folds back. Where several colour cameras see a point, the first
-/// of the rig counts. `seq`, `sweep_end` and `calibration_utime` are left to the caller.
+/// angle where the lens polynomial folds back. Where several cameras of a kind see a point, the
+/// first of the rig counts. `seq`, `sweep_end` and `calibration_utime` are left to the caller.
 RgbdtCloud Fuse(const Cloud& cloud, const std::vector<FusionCamera>& cameras);
 
 }  // namespace rgbdt

@@ -47,6 +47,9 @@ struct Cloud {
   bool IsHit(std::size_t i) const { return std::isfinite(points[i].x()); }
 };
 
+/// How many lines of an organised sweep never came: of such a line not even directions are known.
+int LostLines(const Cloud& cloud);
+
 /// A chunk of a sweep as it travels on the bus. The last one has `sweep_end` and may be empty.
 struct CloudChunk {
   std::int64_t seq = 0;

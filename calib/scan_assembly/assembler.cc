@@ -92,6 +92,25 @@ void Append(const std::vector<T>& from, std::vector<T>* to) {
   to->insert(to->end(), from.begin(), from.end());
 }
 
+// Lines that never came, before `next`: nothing is known of them, not even their directions.
+void AppendLostLines(int count, const Cloud& next, Cloud* sweep) {
+  if (count <= 0 || !sweep->organised) return;
+  const std::size_t n = static_cast<std::size_t>(count) * static_cast<std::size_t>(sweep->beams);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Eigen::Vector3f unknown = Eigen::Vector3f::Constant(nan);
+  sweep->lines += count;
+  sweep->points.insert(sweep->points.end(), n, unknown);
+  if (!next.directions.empty()) sweep->directions.insert(sweep->directions.end(), n, unknown);
+  if (!next.origins.empty()) {
+    sweep->origins.insert(sweep->origins.end(), static_cast<std::size_t>(count), next.origins[0]);
+  }
+  if (!next.intensity.empty()) sweep->intensity.insert(sweep->intensity.end(), n, nan);
+  if (!next.utime.empty()) sweep->utime.insert(sweep->utime.end(), n, next.utime[0]);
+  for (std::size_t i = 0; i < n && !next.ring.empty(); ++i) {
+    sweep->ring.push_back(next.ring[i % static_cast<std::size_t>(sweep->beams)]);
+  }
+}
+
 // Vectors of a cloud may be empty, but all chunks of a sweep must agree on which: joined, they
 // would be shorter than `points`.
 bool TellTheSame(const Cloud& a, const Cloud& b) {
@@ -111,24 +130,25 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
                    [](const Cloud* a, const Cloud* b) { return a->first_line < b->first_line; });
   Cloud sweep;
   for (const Cloud* part : parts) {
-    if (sweep.lines > 0 && part->beams != sweep.beams) {
-      throw InputError("a sweep's chunks have " + std::to_string(sweep.beams) + " and " +
-                       std::to_string(part->beams) + " beams per line");
-    }
-    if (!TellTheSame(*parts.front(), *part)) {
-      throw InputError(
-          "a sweep's chunks differ in what they tell of their points: the one of line " +
-          std::to_string(part->first_line) +
-          " has other fields (directions, origins, intensity, utime, ring) than that "
-          "of line " +
-          std::to_string(parts.front()->first_line));
-    }
     if (sweep.lines == 0) {
       sweep.sweep_utime = part->sweep_utime;
       sweep.first_line = part->first_line;
       sweep.beams = part->beams;
       sweep.organised = part->organised;
     }
+    if (!TellTheSame(*part, *parts.front())) {
+      throw InputError(
+          "a sweep's chunks differ in what they tell of their points (directions, origins, "
+          "intensity, utime, ring): those of lines " +
+          std::to_string(sweep.first_line) + " and " + std::to_string(part->first_line));
+    }
+    const int place = part->first_line - sweep.first_line;
+    if (sweep.organised && part->beams != sweep.beams) {
+      throw InputError("a sweep's chunks have " + std::to_string(sweep.beams) + " and " +
+                       std::to_string(part->beams) + " beams per line");
+    }
+    if (place < sweep.lines) continue;  // the same lines again
+    AppendLostLines(place - sweep.lines, *part, &sweep);
     sweep.lines += part->lines;
     Append(part->points, &sweep.points);
     Append(part->directions, &sweep.directions);
@@ -136,6 +156,10 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
     Append(part->intensity, &sweep.intensity);
     Append(part->utime, &sweep.utime);
     Append(part->ring, &sweep.ring);
+  }
+  if (!sweep.organised) {
+    sweep.lines = 1;
+    sweep.beams = static_cast<int>(sweep.points.size());
   }
   return sweep;
 }

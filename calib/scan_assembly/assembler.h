@@ -37,9 +37,10 @@ class EncoderTrack {
   std::deque<EncoderReading> readings_;
 };
 
-/// Puts chunks back together, in the order of their lines. Lines that are missing leave a gap: the
-/// sweep then has fewer lines. Throws InputError where chunks differ in beams per line or in which
-/// of a cloud's vectors they fill.
+/// Puts chunks back together, in the order of their lines; a chunk that came twice counts once.
+/// Lines that never came become lines of NaN without known directions, so neighbours in the cloud
+/// are neighbours in the sweep. Throws InputError where chunks differ in beams per line
+/// or in which of a cloud's vectors they fill.
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
 
 }  // namespace rgbdt

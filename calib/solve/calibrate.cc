@@ -182,8 +182,6 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = 1e-9;
-  solver.parameter_tolerance = 1e-10;
   solver.num_threads = 1;  // the same input gives the same bits; the look-up tables are shared
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

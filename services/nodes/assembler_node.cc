@@ -1,5 +1,7 @@
 #include "services/nodes/assembler_node.h"
 
+#include <algorithm>
+
 #include "calib/files/rig_file.h"
 #include "calib/model/errors.h"
 
@@ -12,11 +14,7 @@ Messages AssemblerNode::Handle(const Message& message) {
   }
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* reading = std::get_if<EncoderReading>(&message)) {
-    if (!track_.Add(*reading)) {
-      throw InputError("encoder reading of " + std::to_string(reading->utime) +
-                       " us is not after the one before it (" + std::to_string(track_.newest()) +
-                       " us)");
-    }
+    OnReading(*reading);
   } else if (const auto* line = std::get_if<LineScan>(&message)) {
     OnLine(*line);
   }
@@ -30,12 +28,20 @@ void AssemblerNode::OnRig(const RigText& text) {
     throw InputError("the rig's lidar has no turned_scanner: nothing to assemble");
   }
   rig_ = std::move(rig);
+  Forget();
+}
+
+void AssemblerNode::OnReading(const EncoderReading& reading) {
+  if (reading.utime < track_.newest() - kClockReset) Forget();
+  if (!track_.Add(reading)) {
+    throw InputError("encoder reading of " + std::to_string(reading.utime) +
+                     " us is not after the one before it (" + std::to_string(track_.newest()) +
+                     " us)");
+  }
 }
 
 void AssemblerNode::OnLine(const LineScan& line) {
-  if (waiting_.count(line.utime) != 0) {
-    throw InputError("line of " + std::to_string(line.utime) + " us came twice");
-  }
+  CheckLine(line);
   if (waiting_.size() >= kMaxWaiting) {
     waiting_.erase(waiting_.begin());
     ++lines_lost_;
@@ -43,76 +49,129 @@ void AssemblerNode::OnLine(const LineScan& line) {
   waiting_.emplace(line.utime, line);
 }
 
+// What is refused is refused when it comes, so that it costs no other line its place.
+void AssemblerNode::CheckLine(const LineScan& line) const {
+  const std::string of = "line of " + std::to_string(line.utime) + " us ";
+  if (waiting_.count(line.utime) != 0) throw InputError(of + "came twice");
+  if (track_.newest() == 0 || line.utime > track_.newest()) return;  // its sweep is not known yet
+  if (line.utime < track_.newest() - kKept) {
+    throw InputError(of + "is more than 1 s older than the newest encoder reading (" +
+                     std::to_string(track_.newest()) + " us)");
+  }
+  const Utime sweep = SweepOf(line);
+  if (sweep != 0 && sweep <= ended_) throw InputError(of + "came after its sweep had ended");
+  if (sweep_ && sweep == sweep_->utime && !FitsSweep(line)) {
+    throw InputError(of + "has number " + std::to_string(line.seq) +
+                     ", which came before or does not fit the sweep that began with number " +
+                     std::to_string(sweep_->first_seq));
+  }
+}
+
+bool AssemblerNode::FitsSweep(const LineScan& line) const {
+  const std::int64_t place = line.seq - sweep_->first_seq;
+  return place >= 0 && place <= kMaxLines && sweep_->sent.count(static_cast<int>(place)) == 0;
+}
+
+namespace {
+
+Utime EndOf(const LineScan& line) {
+  return line.utime + FromSeconds(static_cast<double>(line.range.size()) * line.beam_period_s);
+}
+
+}  // namespace
+
+// A sweep's name is its start: where the reading at its start is missing, the next one tells.
+Utime AssemblerNode::SweepOf(const LineScan& line) const {
+  const Utime sweep = track_.SweepAt(line.utime);
+  if (sweep != 0) return sweep;
+  const Utime next = track_.SweepAt(EndOf(line));
+  return next <= line.utime ? next : 0;
+}
+
+bool AssemblerNode::IsReady(const LineScan& line) const {
+  if (EndOf(line) > track_.newest()) return false;
+  const Utime sweep = SweepOf(line);
+  const bool first = sweep != 0 && !(sweep_ && sweep_->utime == sweep);
+  return !first || EndOf(line) + kGrace <= track_.newest();
+}
+
 Messages AssemblerNode::Drain() {
   Messages out;
-  const auto last_beam = [](const LineScan& line) {
-    return line.utime + FromSeconds(static_cast<double>(line.range.size()) * line.beam_period_s);
-  };
-  while (!waiting_.empty() && last_beam(waiting_.begin()->second) <= track_.newest()) {
+  while (!waiting_.empty() && IsReady(waiting_.begin()->second)) {
     const LineScan line = std::move(waiting_.begin()->second);
     waiting_.erase(waiting_.begin());
     Add(line, &out);
   }
-  if (sweep_ && track_.SweepAt(track_.newest() - kGrace) != sweep_->utime) EndSweep(&out);
-  track_.ForgetBefore(track_.newest() - 10 * kGrace);
+  const auto names_it = [&](Utime at) { return track_.SweepAt(at) == sweep_->utime; };
+  if (sweep_ && !names_it(track_.newest()) && !names_it(track_.newest() - kGrace)) EndSweep(&out);
+  track_.ForgetBefore(track_.newest() - kKept - kGrace);
   return out;
 }
 
 void AssemblerNode::Add(const LineScan& line, Messages* out) {
-  const Utime sweep_utime = track_.SweepAt(line.utime);
+  const Utime sweep_utime = SweepOf(line);
   if (sweep_utime == 0) return;
-  if (sweep_utime <= ended_) {
+  if (sweep_utime <= ended_) {  // not known yet when the line came
     ++lines_lost_;
-    throw InputError("line of " + std::to_string(line.utime) +
-                     " us came after its sweep had ended");
+    return;
   }
   if (sweep_ && sweep_->utime != sweep_utime) EndSweep(out);
-  if (!sweep_) sweep_ = Sweep{sweep_utime, line.seq, {}};
-  const std::int64_t place = line.seq - sweep_->first_seq;
-  if (place < 0 || place > kMaxLines || !sweep_->lines.insert(static_cast<int>(place)).second) {
+  if (!sweep_) sweep_ = Sweep{sweep_utime, line.seq, {}, 0};
+  if (!FitsSweep(line)) {
     ++lines_lost_;
-    throw InputError("line number " + std::to_string(line.seq) +
-                     " does not fit the sweep that began with number " +
-                     std::to_string(sweep_->first_seq));
+    return;
   }
+  const int place = static_cast<int>(line.seq - sweep_->first_seq);
+  sweep_->lines = std::max(sweep_->lines, place + 1);
+  const auto angles = AnglesOf(line);
+  if (!angles) return;
+  sweep_->sent.insert(place);
+  CloudChunk chunk;
+  chunk.cloud = LineToCloud(*rig_->lidar.turned_scanner, line, *angles);
+  chunk.cloud.sweep_utime = sweep_utime;
+  chunk.cloud.first_line = place;
+  out->push_back(std::move(chunk));
+  ++lines_used_;
+}
+
+std::optional<std::vector<double>> AssemblerNode::AnglesOf(const LineScan& line) const {
   std::vector<double> angles;
   angles.reserve(line.range.size());
   for (std::size_t i = 0; i < line.range.size(); ++i) {
     const Utime beam = line.utime + FromSeconds(static_cast<double>(i) * line.beam_period_s);
     const auto angle = track_.AngleAt(*rig_->lidar.turned_scanner, beam, kMaxGap);
-    if (!angle) {
-      sweep_->lines.erase(static_cast<int>(place));
-      ++lines_lost_;
-      return;
-    }
+    if (!angle) return std::nullopt;
     angles.push_back(*angle);
   }
-  CloudChunk chunk;
-  chunk.cloud = LineToCloud(*rig_->lidar.turned_scanner, line, angles);
-  chunk.cloud.sweep_utime = sweep_utime;
-  chunk.cloud.first_line = static_cast<int>(place);
-  out->push_back(std::move(chunk));
-  ++lines_used_;
+  return angles;
 }
 
 void AssemblerNode::EndSweep(Messages* out) {
   CloudChunk end;
   end.cloud.sweep_utime = sweep_->utime;
-  end.sweep_lines = sweep_->lines.empty() ? 0 : *sweep_->lines.rbegin() + 1;
+  end.sweep_lines = sweep_->lines;
   end.cloud.first_line = end.sweep_lines;
   end.sweep_end = true;
-  end.lines_lost = end.sweep_lines - static_cast<int>(sweep_->lines.size());
+  end.lines_lost = end.sweep_lines - static_cast<int>(sweep_->sent.size());
+  lines_lost_ += end.lines_lost;
   out->push_back(std::move(end));
   ended_ = sweep_->utime;
   sweep_.reset();
   ++sweeps_;
 }
 
+void AssemblerNode::Forget() {
+  track_ = {};
+  waiting_.clear();
+  sweep_.reset();
+  ended_ = 0;
+}
+
 Status AssemblerNode::GetStatus() const {
   Status status;
   status.ready = rig_.has_value();
   status.text = !rig_    ? "waits for the rig (RIG)"
-                : sweep_ ? "assembling a sweep, " + std::to_string(sweep_->lines.size()) + " lines"
+                : sweep_ ? "assembling a sweep, " + std::to_string(sweep_->sent.size()) + " lines"
                          : "waits for a sweep";
   status.counters = {{"lines", lines_used_}, {"lines lost", lines_lost_}, {"sweeps", sweeps_}};
   return status;

@@ -1,5 +1,7 @@
 #include "services/nodes/detector_node.h"
 
+#include <algorithm>
+
 #include "calib/camera/pixels.h"
 #include "calib/detect/detect.h"
 #include "calib/files/rig_file.h"
@@ -9,7 +11,7 @@ namespace rgbdt {
 
 Messages DetectorNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
-    if (!rig_ || rig_->hash != text->hash) rig_ = ParseRig(text->text, "RIG message");
+    OnRig(*text);
     return {};
   }
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
@@ -27,6 +29,12 @@ Messages DetectorNode::Handle(const Message& message) {
   return DetectIfComplete();
 }
 
+void DetectorNode::OnRig(const RigText& text) {
+  if (rig_ && rig_->hash == text.hash) return;
+  rig_ = ParseRig(text.text, "RIG message");
+  view_ = {};
+}
+
 void DetectorNode::OnCommand(const SessionCommand& command) {
   if (command.verb == SessionVerb::kReset) view_.Reset();
   if (command.verb == SessionVerb::kCapture) view_.Begin(command);
@@ -34,23 +42,32 @@ void DetectorNode::OnCommand(const SessionCommand& command) {
 
 Messages DetectorNode::DetectIfComplete() {
   if (!view_.active()) return {};
-  const std::int64_t command = view_.capture().command;
+  SessionEvent event;
+  event.command = view_.capture().command;
+  event.utime = view_.capture().utime;
+  event.source = name();
   const std::optional<View> view = view_.Take(*rig_);
   if (!view) return {};
-  Messages out;
-  SessionEvent done;
-  done.command = command;
-  done.source = name();
-  done.kind = EventKind::kDone;
   ++views_;
-  for (Observation& observation : DetectView(*rig_, *view)) {
-    done.utime = std::max(done.utime, observation.image_utime);
-    done.text += (done.text.empty() ? "" : "; ") + observation.camera + ": " +
-                 (observation.usable() ? "board found" : observation.rejected);
+  try {
+    return Detect(*view, event);
+  } catch (const InputError& e) {
+    event.kind = EventKind::kFailed;
+    event.text = e.what();
+    return {event};
+  }
+}
+
+Messages DetectorNode::Detect(const View& view, SessionEvent event) {
+  Messages out;
+  for (Observation& observation : DetectView(*rig_, view)) {
+    event.utime = std::max(event.utime, observation.image_utime);
+    event.text += (event.text.empty() ? "" : "; ") + observation.camera + ": " +
+                  (observation.usable() ? "board found" : observation.rejected);
     if (!observation.usable()) ++rejected_;
     out.push_back(std::move(observation));
   }
-  out.push_back(std::move(done));
+  out.push_back(std::move(event));
   return out;
 }
 

@@ -15,24 +15,36 @@ namespace rgbdt {
 class SweepCollector {
  public:
   static constexpr std::size_t kMaxSweeps = 3;
-  static constexpr std::size_t kMaxChunks = 100000;  ///< of one sweep
+  static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
+  static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
 
+  /// Throws InputError for a chunk that cannot be joined to those of its sweep.
   void Add(const CloudChunk& chunk);
   /// The complete sweep, or nothing while its end has not come.
   std::optional<Cloud> Complete(Utime sweep_utime) const;
   void Clear() { sweeps_.clear(); }
 
  private:
-  std::map<Utime, std::vector<CloudChunk>> sweeps_;
+  struct Sweep {
+    std::vector<CloudChunk> chunks;
+    std::size_t points = 0;
+    bool ended = false;
+  };
+  static void Check(const Sweep& sweep, const CloudChunk& chunk);
+
+  std::map<Utime, Sweep> sweeps_;
 };
 
 /// The view that a capture command asks for, put together from the bus: the sweep it names, each
 /// camera's first image with utime >= the command's and at most kImageWait after it, and the picks
-/// made in those images where the command asks for a person's. What arrives in which order does
-/// not matter. Images before the command are kept (kKept a camera) so that one may come early.
+/// made in those images where the command asks for a person's. Which of these arrives first does
+/// not matter. The newest images before the command are kept (kKept a camera) so that one may come
+/// early; an image older than those by more than kClockReset means that the clock was set back, and
+/// they go. A thermal camera's images from while its shutter corrects are left out.
 class ViewCollector {
  public:
   static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
+  static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   static constexpr std::size_t kKept = 3;
 
   void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
@@ -62,8 +74,9 @@ class ViewCollector {
 };
 
 /// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> OBSERVATION, one a
-/// camera, then SESSION_EVENT done. A view that never becomes complete is dropped when the next
-/// capture or a reset comes; the status says what it waits for.
+/// camera, then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
+/// view that never becomes complete is dropped when the next capture or a reset comes; the status
+/// says what it waits for. Another rig forgets everything.
 class DetectorNode : public Node {
  public:
   std::string name() const override { return "detector"; }
@@ -74,8 +87,10 @@ class DetectorNode : public Node {
   Status GetStatus() const override;
 
  private:
+  void OnRig(const RigText& rig);
   void OnCommand(const SessionCommand& command);
   Messages DetectIfComplete();
+  Messages Detect(const View& view, SessionEvent event);
 
   std::optional<Rig> rig_;
   ViewCollector view_;

@@ -15,12 +15,7 @@ Messages FuserNode::Handle(const Message& message) {
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* chunk = std::get_if<CloudChunk>(&message)) return OnChunk(*chunk);
   if (const auto* image = std::get_if<Image>(&message)) {
-    FusionCamera& camera = CameraOf(image->camera);
-    if (image->shutter_correcting) {
-      ++shutter_frames_;
-    } else {
-      camera.AddImage(Prepare(camera.spec(), *image));
-    }
+    OnImage(*image);
   } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
     OnCalibration(*calibration);
   }
@@ -32,7 +27,27 @@ void FuserNode::OnRig(const RigText& text) {
   rig_ = ParseRig(text.text, "RIG message");
   cameras_.clear();
   for (const CameraSpec& camera : rig_->cameras) cameras_.emplace_back(camera);
+  newest_image_.clear();
   calibration_utime_ = 0;
+}
+
+void FuserNode::OnImage(const Image& image) {
+  FusionCamera& camera = CameraOf(image.camera);
+  if (image.shutter_correcting) {
+    ++shutter_frames_;
+    return;
+  }
+  PreparedImage prepared = Prepare(camera.spec(), image);
+  Utime& newest = newest_image_[image.camera];
+  if (image.utime < newest - kClockReset) {
+    FusionCamera anew(camera.spec());
+    anew.calibrated = camera.calibrated;
+    anew.camera_from_lidar = camera.camera_from_lidar;
+    camera = std::move(anew);
+    newest = 0;
+  }
+  newest = std::max(newest, image.utime);
+  camera.AddImage(std::move(prepared));
 }
 
 FusionCamera& FuserNode::CameraOf(const std::string& name) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 
+#include "calib/camera/pixels.h"
 #include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/files/session_dir.h"
@@ -62,10 +63,25 @@ SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path di
       directory_(std::move(directory)),
       progress_(std::move(progress)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
+  std::error_code ignored;
+  const std::filesystem::path views = directory_ / "views";
+  if (std::filesystem::exists(views, ignored) && !std::filesystem::is_empty(views, ignored)) {
+    throw InputError(views.string() +
+                     " holds views of an earlier session; remove them or name another directory");
+  }
 }
 
 Messages SessionNode::Handle(const Message& message) {
-  newest_utime_ = std::max(newest_utime_, UtimeOf(message));
+  Take(message);
+  // Another process' health is no sensor's time.
+  if (!std::holds_alternative<Status>(message)) {
+    newest_utime_ = std::max(newest_utime_, UtimeOf(message));
+  }
+  SaveView();
+  return {};
+}
+
+void SessionNode::Take(const Message& message) {
   if (const auto* status = std::get_if<Status>(&message)) {
     statuses_[status->process] = *status;
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
@@ -73,14 +89,14 @@ Messages SessionNode::Handle(const Message& message) {
   } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
     collector_.Add(*chunk);
   } else if (const auto* image = std::get_if<Image>(&message)) {
+    CheckImage(rig_.Camera(image->camera), *image);
     collector_.Add(*image);
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
+    rig_.Camera(picks->camera);
     collector_.Add(*picks);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = *report;
   }
-  SaveView();
-  return {};
 }
 
 void SessionNode::OnEvent(const SessionEvent& event) {
@@ -101,11 +117,15 @@ void SessionNode::OnEvent(const SessionEvent& event) {
 }
 
 void SessionNode::SaveView() {
-  if (!collector_.active()) return;
+  if (finished_ || !collector_.active()) return;
   const auto view = collector_.Take(rig_);
   if (!view) return;
-  WriteView(directory_, *view);
-  view_saved_ = true;
+  try {
+    WriteView(directory_, *view);
+    view_saved_ = true;
+  } catch (const InputError& e) {
+    Fail(e.what());
+  }
 }
 
 Messages SessionNode::Advance(double wall_s) {
@@ -118,12 +138,14 @@ Messages SessionNode::Advance(double wall_s) {
       return {};
     }
     started_ = true;
+    WriteRig(directory_, rig_);
     Messages out = Send(SessionVerb::kReset);
     for (Message& message : Begin()) out.push_back(std::move(message));
     return out;
   }
   if (waiting_ && !StepDone()) {
-    if (wall_s - step_began_s_ > step().timeout_s) {
+    const bool waits = step().kind == SessionStep::Kind::kWait;
+    if (!waits && wall_s - step_began_s_ > step().timeout_s) {
       Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
            WhatIsMissing());
     }
@@ -205,7 +227,6 @@ bool SessionNode::StepDone() {
 }
 
 void SessionNode::Save() {
-  WriteRig(directory_, rig_);
   if (!report_) {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
     return;

@@ -26,13 +26,15 @@ struct SessionProgress {
 /// CORNER_SELECTION, REPORT -> RIG, SESSION_COMMAND.
 /// It begins when assembler, detector, solver and fuser say that they are ready. next_pose and
 /// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
-/// evaluate with the solver's. A failed event, or no answer in the step's time, ends the session
-/// with the reason. The wall clock is handed in, it serves time-outs only.
+/// evaluate with the solver's. A failed event, no answer in the step's time, or a file that cannot
+/// be written ends the session with the reason. The wall clock is handed in, it serves time-outs
+/// only.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
 
-  /// Throws InputError where the script makes no sense.
+  /// Throws InputError where the script makes no sense, and where `directory` holds views already:
+  /// two sessions' views must not mix.
   SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress);
 
   std::string name() const override { return "session"; }
@@ -55,6 +57,7 @@ class SessionNode : public Node {
   Messages BeginCapture();
   Messages Send(SessionVerb verb);
   bool StepDone();
+  void Take(const Message& message);
   void OnEvent(const SessionEvent& event);
   void SaveView();
   void Save();

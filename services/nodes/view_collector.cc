@@ -7,29 +7,47 @@
 
 namespace rgbdt {
 
-void SweepCollector::Add(const CloudChunk& chunk) {
-  std::vector<CloudChunk>& chunks = sweeps_[chunk.cloud.sweep_utime];
-  if (chunks.size() >= kMaxChunks) {
-    throw InputError("sweep " + std::to_string(chunk.cloud.sweep_utime) + " has more than " +
-                     std::to_string(kMaxChunks) + " chunks");
+void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
+  const std::string name = "sweep " + std::to_string(chunk.cloud.sweep_utime);
+  if (sweep.chunks.size() >= kMaxChunks) {
+    throw InputError(name + " has more than " + std::to_string(kMaxChunks) + " chunks");
   }
-  chunks.push_back(chunk);
+  const std::size_t reach = static_cast<std::size_t>(chunk.cloud.first_line + chunk.cloud.lines) *
+                            static_cast<std::size_t>(chunk.cloud.beams);
+  if (std::max(reach, sweep.points + chunk.cloud.size()) > kMaxPoints) {
+    throw InputError(name + " has more than " + std::to_string(kMaxPoints) + " points");
+  }
+  const auto first = std::find_if(sweep.chunks.begin(), sweep.chunks.end(),
+                                  [](const CloudChunk& c) { return c.cloud.size() != 0; });
+  if (first == sweep.chunks.end() || chunk.cloud.size() == 0) return;
+  CloudChunk next = chunk;
+  next.cloud.first_line = first->cloud.first_line + first->cloud.lines;
+  JoinChunks({*first, next});
+}
+
+void SweepCollector::Add(const CloudChunk& chunk) {
+  const auto found = sweeps_.find(chunk.cloud.sweep_utime);
+  static const Sweep kNone;
+  Check(found == sweeps_.end() ? kNone : found->second, chunk);
+  Sweep& sweep = sweeps_[chunk.cloud.sweep_utime];
+  sweep.chunks.push_back(chunk);
+  sweep.points += chunk.cloud.size();
+  sweep.ended |= chunk.sweep_end;
   while (sweeps_.size() > kMaxSweeps) sweeps_.erase(sweeps_.begin());
 }
 
 std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
   const auto found = sweeps_.find(sweep_utime);
-  if (found == sweeps_.end()) return std::nullopt;
-  const bool ended = std::any_of(found->second.begin(), found->second.end(),
-                                 [](const CloudChunk& chunk) { return chunk.sweep_end; });
-  if (!ended) return std::nullopt;
-  Cloud cloud = JoinChunks(found->second);
+  if (found == sweeps_.end() || !found->second.ended) return std::nullopt;
+  Cloud cloud = JoinChunks(found->second.chunks);
   cloud.sweep_utime = sweep_utime;
   return cloud;
 }
 
 void ViewCollector::Add(const Image& image) {
+  if (image.shutter_correcting) return;
   std::deque<Image>& kept = images_[image.camera];
+  if (!kept.empty() && image.utime < kept.back().utime - kClockReset) kept.clear();
   const auto later = std::find_if(kept.begin(), kept.end(),
                                   [&](const Image& other) { return other.utime >= image.utime; });
   if (later != kept.end() && later->utime == image.utime) return;
@@ -58,7 +76,7 @@ const Image* ViewCollector::ImageOf(const std::string& camera) const {
   const auto kept = images_.find(camera);
   if (kept == images_.end()) return nullptr;
   for (const Image& image : kept->second) {
-    if (image.shutter_correcting || image.utime < capture_->utime) continue;
+    if (image.utime < capture_->utime) continue;
     return image.utime - capture_->utime <= kImageWait ? &image : nullptr;
   }
   return nullptr;

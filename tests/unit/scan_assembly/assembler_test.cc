@@ -252,9 +252,44 @@ TEST(JoinChunks, PutsLinesInOrderWhateverOrderTheyComeIn) {
   }
 }
 
-TEST(JoinChunks, MissingLinesLeaveTheSweepShorter) {
+TEST(JoinChunks, MissingLinesKeepTheirPlaceAndAreKnownToBeLost) {
   const Cloud sweep = JoinChunks({ChunkOf(3, 2, 3), ChunkOf(0, 2, 3)});
-  EXPECT_THAT(LinesOf(sweep), ElementsAre(0, 1, 3, 4));
+  EXPECT_EQ(sweep.lines, 5);
+  ASSERT_EQ(sweep.points.size(), 15U);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(std::isnan(sweep.points[i].x()), i / 3 == 2) << i;
+  }
+  EXPECT_EQ(LostLines(sweep), 1);
+  EXPECT_EQ(LostLines(JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 3, 3)})), 0);
+  // Every vector stays in step with the points, so the lines behind the gap keep what is theirs.
+  ASSERT_EQ(sweep.directions.size(), 15U);
+  ASSERT_EQ(sweep.intensity.size(), 15U);
+  ASSERT_EQ(sweep.utime.size(), 15U);
+  ASSERT_EQ(sweep.ring.size(), 15U);
+  ASSERT_EQ(sweep.origins.size(), 5U);
+  for (std::size_t i = 9; i < 15; ++i) {
+    EXPECT_EQ(sweep.points[i].x(), static_cast<float>(i / 3));
+    EXPECT_EQ(sweep.intensity[i], static_cast<float>(i / 3));
+    EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * (i / 3) + i % 3));
+    EXPECT_EQ(sweep.origins[i / 3].z(), static_cast<float>(i / 3));
+  }
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(sweep.ring[i], i % 3);
+}
+
+TEST(JoinChunks, AChunkThatCameTwiceCountsOnce) {
+  const Cloud sweep = JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 1, 3), ChunkOf(0, 2, 3)});
+  EXPECT_THAT(LinesOf(sweep), ElementsAre(0, 1, 2));
+}
+
+TEST(JoinChunks, AnUnorganisedSweepIsOneLine) {
+  CloudChunk first = ChunkOf(0, 1, 3);
+  CloudChunk second = ChunkOf(1, 1, 5);
+  first.cloud.organised = second.cloud.organised = false;
+  const Cloud sweep = JoinChunks({first, second});
+  EXPECT_FALSE(sweep.organised);
+  EXPECT_EQ(sweep.lines, 1);
+  EXPECT_EQ(sweep.beams, 8);
+  EXPECT_EQ(sweep.size(), 8U);
 }
 
 TEST(JoinChunks, TheEmptyChunkThatEndsASweepAddsNothing) {
@@ -276,7 +311,7 @@ TEST(JoinChunks, ChunksThatFillOtherVectorsAreAnError) {
   CloudChunk without_times = ChunkOf(2, 1, 3);
   without_times.cloud.utime.clear();
   const std::string message = InputErrorOf([&] { JoinChunks({ChunkOf(0, 2, 3), without_times}); });
-  EXPECT_THAT(message, HasSubstr("line 2"));
+  EXPECT_THAT(message, HasSubstr("differ in what they tell"));
 }
 
 // The whole stage: a wall scanned by a turning scanner comes out flat, exactly where it stands.

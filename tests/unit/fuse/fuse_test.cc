@@ -1,0 +1,361 @@
+#include "calib/fuse/fuse.h"
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// f = 100 px, 41 x 31 px: a point (x, y, z) projects to (20 + 100 x / z, 15 + 100 y / z).
+CameraSpec SpecOf(CameraKind kind) {
+  CameraSpec spec;
+  spec.kind = kind;
+  spec.name = kind == CameraKind::kThermal ? "thermal" : "rgb";
+  spec.width = 41;
+  spec.height = 31;
+  spec.lens = {Lens::Model::kPinhole, 100, 100, 20, 15, {}};
+  if (kind == CameraKind::kThermal) {
+    spec.format = PixelFormat::kMono16;
+    spec.radiometry.kind = Radiometry::Kind::kLinear;
+    spec.radiometry.gain = 0.04;
+  }
+  return spec;
+}
+
+PreparedImage At(Utime utime) { return {utime, cv::Mat(31, 41, CV_8UC3, cv::Scalar(1, 2, 3)), {}}; }
+
+Utime ServedBy(const FusionCamera& camera, Utime point) {
+  const PreparedImage* image = camera.ImageAt(point);
+  return image == nullptr ? -1 : image->utime;
+}
+
+class ImageAtTest : public testing::Test {
+ protected:
+  static constexpr Utime kReadout = 30'000;
+
+  ImageAtTest() : camera_(WithReadout()) {}
+  static CameraSpec WithReadout() {
+    CameraSpec spec = SpecOf(CameraKind::kColor);
+    spec.readout_s = 0.03;
+    return spec;
+  }
+  FusionCamera camera_;
+};
+
+TEST_F(ImageAtTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
+  camera_.AddImage(At(1'000'000));
+  camera_.AddImage(At(1'500'000));
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout - 1), -1);
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout), 1'000'000);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000), 1'000'000);  // taken, but not yet read out
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout - 1), 1'000'000);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
+}
+
+TEST_F(ImageAtTest, AnImageServesNoLongerThanItsMaximumAge) {
+  camera_.AddImage(At(1'000'000));
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge), 1'000'000);
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge + 1), -1);
+}
+
+TEST_F(ImageAtTest, AnOlderImageDoesNotStandInForOneThatIsTooOld) {
+  camera_.AddImage(At(1'000'000));
+  camera_.AddImage(At(1'500'000));
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + FusionCamera::kMaxAge + 1), -1);
+}
+
+TEST_F(ImageAtTest, TheOrderInWhichImagesComeDoesNotMatter) {
+  for (const Utime utime : {3, 1, 4, 2, 5}) camera_.AddImage(At(utime * 100'000));
+  for (const Utime utime : {1, 2, 3, 4, 5}) {
+    EXPECT_EQ(ServedBy(camera_, utime * 100'000 + kReadout), utime * 100'000);
+  }
+}
+
+TEST_F(ImageAtTest, TheSameImageTwiceIsOne) {
+  camera_.AddImage(At(1'000'000));
+  PreparedImage again = At(1'000'000);
+  again.pixels.setTo(cv::Scalar(9, 9, 9));
+  camera_.AddImage(again);
+  EXPECT_EQ(camera_.ImageAt(1'100'000)->pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(1, 2, 3));
+  // It takes no place either: all of kMaxImages are still there.
+  for (Utime n = 1; n < static_cast<Utime>(FusionCamera::kMaxImages); ++n) {
+    camera_.AddImage(At(1'000'000 + n * 1000));
+    camera_.AddImage(At(1'000'000 + n * 1000));
+  }
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout), 1'000'000);
+}
+
+TEST_F(ImageAtTest, TheOldestOfTooManyGoes) {
+  for (Utime n = 0; n <= static_cast<Utime>(FusionCamera::kMaxImages); ++n) {
+    camera_.AddImage(At(1'000'000 + n * 1000));
+  }
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout), -1);
+  EXPECT_EQ(ServedBy(camera_, 1'001'000 + kReadout), 1'001'000);
+}
+
+TEST_F(ImageAtTest, ForgettingKeepsTheImageThatServesFromThenOn) {
+  camera_.AddImage(At(1'000'000));
+  camera_.AddImage(At(1'500'000));
+  camera_.AddImage(At(2'000'000));
+  camera_.ForgetBefore(1'500'000 + kReadout - 1);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout - 1), 1'000'000);
+  camera_.ForgetBefore(1'500'000 + kReadout);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout - 1), -1);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
+  camera_.ForgetBefore(9'000'000);  // the newest stays
+  EXPECT_EQ(ServedBy(camera_, 2'100'000), 2'000'000);
+}
+
+TEST_F(ImageAtTest, ServingAllTimesTakesTheNewestImage) {
+  camera_.ServeAllTimes();
+  EXPECT_EQ(ServedBy(camera_, 5), -1);
+  camera_.AddImage(At(1'500'000));
+  camera_.AddImage(At(1'000'000));
+  EXPECT_EQ(ServedBy(camera_, 5), 1'500'000);
+  EXPECT_EQ(ServedBy(camera_, 900'000'000), 1'500'000);
+}
+
+// A picture without any symmetry; every pixel and channel differs from its neighbours.
+cv::Mat ColourPicture() {
+  cv::Mat bgr(31, 41, CV_8UC3);
+  for (int y = 0; y < bgr.rows; ++y) {
+    for (int x = 0; x < bgr.cols; ++x) {
+      bgr.at<cv::Vec3b>(y, x) = cv::Vec3b(static_cast<std::uint8_t>(x * 37 + y * 11),
+                                          static_cast<std::uint8_t>(x * 5 + y * 53 + 90),
+                                          static_cast<std::uint8_t>(x * 101 + y * 29 + 7));
+    }
+  }
+  return bgr;
+}
+
+cv::Mat CountsPicture() {
+  cv::Mat counts(31, 41, CV_32F);
+  for (int i = 0; i < 31 * 41; ++i) {
+    counts.at<float>(i / 41, i % 41) = static_cast<float>(7000 + i * 7919 % 1000);
+  }
+  return counts;
+}
+
+constexpr Utime kNow = 10'000'000;
+
+FusionCamera Ready(CameraKind kind, Rigid3 camera_from_lidar = {}) {
+  const CameraSpec spec = SpecOf(kind);
+  FusionCamera camera(spec);
+  const bool thermal = kind == CameraKind::kThermal;
+  camera.AddImage({kNow, thermal ? CountsPicture() : ColourPicture(), spec.radiometry});
+  camera.calibrated = true;
+  camera.camera_from_lidar = camera_from_lidar;
+  return camera;
+}
+
+Cloud CloudOf(const std::vector<Eigen::Vector3f>& points) {
+  Cloud cloud;
+  cloud.sweep_utime = kNow;
+  cloud.lines = 1;
+  cloud.beams = static_cast<int>(points.size());
+  cloud.points = points;
+  cloud.utime.assign(points.size(), kNow + 5);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    cloud.intensity.push_back(0.1F * static_cast<float>(i));
+  }
+  return cloud;
+}
+
+// The point at distance z that a pixel sees.
+Eigen::Vector3f Seen(double u, double v, double z) {
+  return Eigen::Vector3d((u - 20) / 100 * z, (v - 15) / 100 * z, z).cast<float>();
+}
+
+std::array<std::uint8_t, 3> RgbAt(int x, int y) {
+  const cv::Vec3b bgr = ColourPicture().at<cv::Vec3b>(y, x);
+  return {bgr[2], bgr[1], bgr[0]};
+}
+
+TEST(Fuse, APointTakesThePixelsColourAndCounts) {
+  const RgbdtCloud fused = Fuse(CloudOf({Seen(7, 22, 4), Seen(20, 15, 2)}),
+                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+  ASSERT_EQ(fused.size(), 2U);
+  EXPECT_THAT(fused.cameras, ElementsAre("rgb", "thermal"));
+  EXPECT_EQ(fused.sweep_utime, kNow);
+  EXPECT_EQ(fused.rgb[0], RgbAt(7, 22));
+  EXPECT_EQ(fused.rgb[1], RgbAt(20, 15));
+  const float counts = CountsPicture().at<float>(22, 7);
+  EXPECT_NEAR(fused.thermal_counts[0], counts, 0.01);  // the float point is 1e-5 px off the pixel
+  EXPECT_NEAR(fused.temperature_k[0], 0.04 * counts, 0.001);
+  EXPECT_THAT(fused.valid, ElementsAre(3U, 3U));
+  EXPECT_THAT(fused.intensity, ElementsAre(0, 0.1F));
+  EXPECT_THAT(fused.utime, ElementsAre(kNow + 5, kNow + 5));
+}
+
+TEST(Fuse, BetweenPixelsItTakesTheBilinearValue) {
+  const RgbdtCloud fused = Fuse(CloudOf({Seen(7.25, 22.75, 1)}),
+                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+  const auto bilinear = [](auto at) {
+    return 0.25 * (0.75 * at(7, 22) + 0.25 * at(8, 22)) +
+           0.75 * (0.75 * at(7, 23) + 0.25 * at(8, 23));
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double expected = bilinear([&](int x, int y) { return 1.0 * RgbAt(x, y)[c]; });
+    EXPECT_NEAR(fused.rgb[0][c], expected, 0.51);
+  }
+  const cv::Mat counts = CountsPicture();
+  const double expected = bilinear([&](int x, int y) { return 1.0 * counts.at<float>(y, x); });
+  EXPECT_NEAR(fused.thermal_counts[0], expected, 0.01);
+}
+
+TEST(Fuse, TheImagesBorderPixelsCount) {
+  // Powers of two: the border itself is hit exactly.
+  CameraSpec spec = SpecOf(CameraKind::kThermal);
+  spec.lens = {Lens::Model::kPinhole, 64, 64, 20, 15, {}};
+  FusionCamera camera(spec);
+  // Cut out of a larger picture of NaN: what reads beyond the border, even with weight 0, shows.
+  cv::Mat around(32, 42, CV_32F, cv::Scalar(kNan));
+  cv::Mat picture = around(cv::Rect(0, 0, 41, 31));
+  CountsPicture().copyTo(picture);
+  camera.AddImage({kNow, picture, spec.radiometry});
+  camera.calibrated = true;
+  const RgbdtCloud fused =
+      Fuse(CloudOf({{-20.F / 64, -15.F / 64, 1}, {20.F / 64, 15.F / 64, 1}}), {camera});
+  EXPECT_THAT(fused.valid, ElementsAre(1U, 1U));
+  EXPECT_EQ(fused.thermal_counts[0], CountsPicture().at<float>(0, 0));
+  EXPECT_EQ(fused.thermal_counts[1], CountsPicture().at<float>(30, 40));
+}
+
+TEST(Fuse, UsesTheCalibration) {
+  // LIDAR axes x forward, y left, z up; the camera 0.5 m to the left of it, looking forward.
+  Eigen::Matrix3d axes;
+  axes << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  Rigid3 camera_from_lidar;
+  camera_from_lidar.rotation = Eigen::Quaterniond(axes);
+  camera_from_lidar.translation = -(axes * Eigen::Vector3d(0, 0.5, 0));
+  // 5 m ahead, 0.25 m left of the camera and 0.1 m above it: 5 px left and 2 px up.
+  const RgbdtCloud fused =
+      Fuse(CloudOf({{5, 0.75F, 0.1F}}), {Ready(CameraKind::kColor, camera_from_lidar)});
+  EXPECT_EQ(fused.rgb[0], RgbAt(15, 13));
+}
+
+TEST(Fuse, NoColourBehindOrOutside) {
+  const RgbdtCloud fused =
+      Fuse(CloudOf({Seen(7, 22, -4), Seen(-0.1, 15, 3), Seen(40.1, 15, 3), Seen(20, 30.1, 3)}),
+           {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+  ASSERT_EQ(fused.size(), 4U);  // the points themselves stay
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(fused.valid[i], 0U) << i;
+    EXPECT_THAT(fused.rgb[i], ElementsAre(0, 0, 0));
+    EXPECT_TRUE(std::isnan(fused.temperature_k[i]));
+    EXPECT_TRUE(std::isnan(fused.thermal_counts[i]));
+  }
+}
+
+TEST(Fuse, NoColourBeyondTheFold) {
+  // x (1 - 0.5 x^2) at x = 1.4 is 0.028: the formula would put the point near the image's centre.
+  CameraSpec spec = SpecOf(CameraKind::kColor);
+  spec.lens.distortion = {-0.5};
+  FusionCamera camera(spec);
+  camera.AddImage({kNow, ColourPicture(), {}});
+  camera.calibrated = true;
+  const RgbdtCloud fused = Fuse(CloudOf({{1.4F, 0, 1}, {0.028F, 0, 1}}), {camera});
+  EXPECT_THAT(fused.valid, ElementsAre(0U, 1U));
+}
+
+TEST(Fuse, MissesAreLeftOut) {
+  Cloud cloud = CloudOf({Seen(7, 22, 4), {kNan, kNan, kNan}, Seen(20, 15, 2), {1, kNan, 1}});
+  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)});
+  ASSERT_EQ(fused.size(), 2U);
+  EXPECT_EQ(fused.points[1], cloud.points[2]);
+  EXPECT_EQ(fused.intensity[1], 0.2F);
+  EXPECT_EQ(fused.rgb[1], RgbAt(20, 15));
+}
+
+TEST(Fuse, WithoutACalibrationNothingIsColoured) {
+  FusionCamera camera = Ready(CameraKind::kColor);
+  camera.calibrated = false;
+  const RgbdtCloud fused = Fuse(CloudOf({Seen(20, 15, 2)}), {camera});
+  EXPECT_THAT(fused.valid, ElementsAre(0U));
+  EXPECT_THAT(fused.cameras, ElementsAre("rgb"));  // what the bits stand for stays the same
+}
+
+TEST(Fuse, EveryPointIsServedByTheImageOfItsOwnTime) {
+  FusionCamera camera(SpecOf(CameraKind::kColor));
+  camera.calibrated = true;
+  camera.AddImage({kNow, cv::Mat(31, 41, CV_8UC3, cv::Scalar(1, 1, 1)), {}});
+  camera.AddImage({kNow + 100, cv::Mat(31, 41, CV_8UC3, cv::Scalar(2, 2, 2)), {}});
+  Cloud cloud = CloudOf({Seen(20, 15, 2), Seen(20, 15, 2), Seen(20, 15, 2)});
+  cloud.utime = {kNow - 1, kNow + 99, kNow + 100};
+  const RgbdtCloud fused = Fuse(cloud, {camera});
+  EXPECT_THAT(fused.valid, ElementsAre(0U, 1U, 1U));
+  EXPECT_EQ(fused.rgb[1][0], 1);
+  EXPECT_EQ(fused.rgb[2][0], 2);
+}
+
+TEST(Fuse, OfSeveralCamerasOfAKindTheFirstThatSeesThePointCounts) {
+  // The second of each kind sees another pixel, and also what the first does not see.
+  Rigid3 beside;
+  beside.translation = {-0.2, 0, 0};  // 10 px to the left at 2 m
+  const std::vector<FusionCamera> cameras = {Ready(CameraKind::kColor), Ready(CameraKind::kThermal),
+                                             Ready(CameraKind::kColor, beside),
+                                             Ready(CameraKind::kThermal, beside)};
+  const RgbdtCloud fused =
+      Fuse(CloudOf({Seen(20, 15, 2), Seen(45, 15, 2), Seen(3, 15, 2)}), cameras);
+  EXPECT_THAT(fused.valid, ElementsAre(0b1111U, 0b1100U, 0b0011U));
+  EXPECT_EQ(fused.rgb[0], RgbAt(20, 15));
+  EXPECT_EQ(fused.rgb[1], RgbAt(35, 15));
+  EXPECT_NEAR(fused.thermal_counts[0], CountsPicture().at<float>(15, 20), 0.01);
+  EXPECT_NEAR(fused.thermal_counts[1], CountsPicture().at<float>(15, 35), 0.01);
+}
+
+TEST(Fuse, ACloudThatTellsNoTimesIsAsOldAsItsSweep) {
+  Cloud cloud = CloudOf({Seen(20, 15, 2)});
+  cloud.utime.clear();
+  cloud.intensity.clear();
+  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)});
+  EXPECT_THAT(fused.utime, ElementsAre(kNow));
+  EXPECT_TRUE(std::isnan(fused.intensity[0]));
+  EXPECT_THAT(fused.valid, ElementsAre(1U));
+}
+
+TEST(Prepare, AMosaicBecomesColourAndCountsStayCounts) {
+  Image image;
+  image.camera = "rgb";
+  image.utime = 7;
+  image.format = PixelFormat::kBayerRg8;
+  image.pixels = cv::Mat(31, 41, CV_8UC1, cv::Scalar(50));
+  const PreparedImage colour = Prepare(SpecOf(CameraKind::kColor), image);
+  EXPECT_EQ(colour.utime, 7);
+  EXPECT_EQ(colour.pixels.type(), CV_8UC3);
+  image.format = PixelFormat::kMono16;
+  image.pixels = cv::Mat(31, 41, CV_16UC1, cv::Scalar(7000));
+  const PreparedImage thermal = Prepare(SpecOf(CameraKind::kThermal), image);
+  EXPECT_EQ(thermal.pixels.type(), CV_32FC1);
+  EXPECT_EQ(thermal.pixels.at<float>(3, 4), 7000);
+}
+
+TEST(Prepare, AnImagesOwnRadiometryGoesBeforeTheRigs) {
+  Image image;
+  image.camera = "thermal";
+  image.format = PixelFormat::kMono16;
+  image.pixels = cv::Mat(31, 41, CV_16UC1, cv::Scalar(7000));
+  EXPECT_EQ(Prepare(SpecOf(CameraKind::kThermal), image).radiometry.gain, 0.04);
+  image.radiometry.kind = Radiometry::Kind::kLinear;
+  image.radiometry.gain = 0.4;
+  EXPECT_EQ(Prepare(SpecOf(CameraKind::kThermal), image).radiometry.gain, 0.4);
+}
+
+TEST(Prepare, AnImageOfAnotherSizeIsRefused) {
+  Image image;
+  image.camera = "rgb";
+  image.format = PixelFormat::kBgr8;
+  image.pixels = cv::Mat(31, 40, CV_8UC3);
+  EXPECT_THAT(InputErrorOf([&] { Prepare(SpecOf(CameraKind::kColor), image); }),
+              HasSubstr("40x31"));
+}
+
+}  // namespace
+}  // namespace rgbdt
