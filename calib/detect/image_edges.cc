@@ -112,7 +112,8 @@ Gradient SobelOf(const cv::Mat& grey) {
   cv::Sobel(grey, g.x, CV_32F, 1, 0);
   cv::Sobel(grey, g.y, CV_32F, 0, 1);
   cv::magnitude(g.x, g.y, g.magnitude);
-  g.threshold = 4 * Percentile(g.magnitude, 0.5);
+  // Not below a step of one grey value, which Sobel shows as 4: a flat sky has no noise to go by.
+  g.threshold = std::max(4.0F, 4 * Percentile(g.magnitude, 0.5));
   return g;
 }
 

@@ -148,6 +148,12 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
                        std::to_string(part->beams) + " beams per line");
     }
     if (place < sweep.lines) continue;  // the same lines again
+    constexpr std::int64_t kMaxPoints = 100'000'000;
+    if (static_cast<std::int64_t>(place + part->lines) * sweep.beams > kMaxPoints) {
+      throw InputError("a sweep's chunk begins at line " + std::to_string(part->first_line) +
+                       " of " + std::to_string(sweep.beams) + " beams: more than " +
+                       std::to_string(kMaxPoints) + " points");
+    }
     AppendLostLines(place - sweep.lines, *part, &sweep);
     sweep.lines += part->lines;
     Append(part->points, &sweep.points);

@@ -20,6 +20,7 @@ namespace {
 using Views = std::vector<const Observation*>;
 
 // Share of points in the image below which the paper saw no convergence (section III).
+constexpr int kRotationIterations = 50;  // enough to come round; the rest is for both
 constexpr double kMinShareInImage = 0.5;
 
 // One camera's observations in the order of their views, whatever order they came in.
@@ -84,12 +85,6 @@ CameraReport Describe(const CameraSpec& camera, const Views& views) {
   return report;
 }
 
-Utime NewestImage(const std::vector<Observation>& observations) {
-  Utime newest = 0;
-  for (const Observation& o : observations) newest = std::max(newest, o.image_utime);
-  return newest;
-}
-
 StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rigid3& guess,
                           const CameraReport& report, const CalibrateOptions& options) {
   StartResult result;
@@ -114,16 +109,19 @@ CameraReport CalibrateCamera(const CameraSpec& camera, const Views& views,
   report.calibration.camera_from_lidar = report.first_guess;
   const Views used = Used(camera, views);
   if (static_cast<int>(used.size()) < options.min_views) {
-    report.calibration.status = "not calibrated: " + std::to_string(used.size()) +
-                                " usable views, at least " + std::to_string(options.min_views) +
-                                " are needed; this is the hand-measured guess";
+    report.calibration.status =
+        "not calibrated: " + std::to_string(used.size()) + " usable views, at least " +
+        std::to_string(options.min_views) + " are needed" +
+        (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
     return report;
   }
   const auto start = std::chrono::steady_clock::now();
   report.calibration = SolvePaper(camera, used, report.first_guess, options);
   report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   JudgeCamera(camera, Usable(camera, views), &report);
-  report.other_starts.push_back(FromWideStart(camera, used, report.first_guess, report, options));
+  if (options.wide_start) {
+    report.other_starts.push_back(FromWideStart(camera, used, report.first_guess, report, options));
+  }
   return report;
 }
 
@@ -181,7 +179,7 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   solver.minimizer_type = ceres::TRUST_REGION;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = options.max_iterations;
+  solver.max_num_iterations = std::min(options.max_iterations, kRotationIterations);
   solver.num_threads = 1;  // the same input gives the same bits; the look-up tables are shared
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -190,6 +188,7 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   problem.SetManifold(delta.data(), new ceres::SubsetManifold(6, {3, 4, 5}));
   ceres::Solve(solver, &problem, &summary);
   problem.SetManifold(delta.data(), nullptr);
+  solver.max_num_iterations = options.max_iterations;
   ceres::Solve(solver, &problem, &summary);
 
   CameraCalibration result;
@@ -213,10 +212,12 @@ Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
   Report report;
   report.method = options.method;
   report.rig_hash = rig.hash;
-  report.utime = NewestImage(observations);
   for (const CameraSpec& camera : rig.cameras) {
-    report.cameras.push_back(
-        CalibrateCamera(camera, ObservationsOf(camera.name, observations), options));
+    const Views views = ObservationsOf(camera.name, observations);
+    report.cameras.push_back(CalibrateCamera(camera, views, options));
+    for (const Observation* o : Usable(camera, views)) {
+      report.utime = std::max(report.utime, o->image_utime);
+    }
   }
   return report;
 }

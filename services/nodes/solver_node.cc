@@ -44,7 +44,7 @@ Messages SolverNode::Handle(const Message& message) {
   if (const auto* observation = std::get_if<Observation>(&message)) {
     rig_->Camera(observation->camera);
     observations_[{observation->view, observation->camera}] = *observation;
-    Solve();
+    Solve(false);
     return Calibrations();
   }
   if (const auto* command = std::get_if<SessionCommand>(&message)) return OnCommand(*command);
@@ -68,7 +68,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
     event.text = "no observation yet; capture views of the target first";
     return {event};
   }
-  Solve();
+  Solve(true);
   Messages out = Calibrations();
   out.push_back(ReportText{0, report_->utime, ReportToJson(*report_)});
   event.text = Brief(*report_, evaluate);
@@ -76,10 +76,12 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   return out;
 }
 
-void SolverNode::Solve() {
+void SolverNode::Solve(bool wide_start) {
   std::vector<Observation> all;
   for (const auto& [key, observation] : observations_) all.push_back(observation);
-  report_ = Calibrate(*rig_, all, options_);
+  CalibrateOptions options = options_;
+  options.wide_start &= wide_start;
+  report_ = Calibrate(*rig_, all, options);
 }
 
 Messages SolverNode::Calibrations() const {

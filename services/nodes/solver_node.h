@@ -33,7 +33,7 @@ class SolverNode : public Node {
   const std::optional<Report>& report() const { return report_; }
 
  private:
-  void Solve();
+  void Solve(bool wide_start);  // the second start is for the report alone
   Messages Calibrations() const;
   Messages OnCommand(const SessionCommand& command);
 

@@ -1,0 +1,271 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/nodes/detector_node.h"
+#include "tests/nodes/nodes_testing.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using test::ErrorOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr Utime kSweep = 1'500'000'000'000'000;
+constexpr Utime kSecond = kMicrosecondsPerSecond;
+constexpr Utime kCommand = kSweep + 13 * kSecond;
+
+Rig MakeRig() {
+  Rig rig;
+  for (const char* name : {"rgb", "thermal"}) {
+    CameraSpec camera;
+    camera.name = name;
+    rig.cameras.push_back(camera);
+  }
+  return rig;
+}
+
+CloudChunk Chunk(Utime sweep, int first_line, int lines = 1, int beams = 4) {
+  CloudChunk chunk;
+  chunk.cloud.sweep_utime = sweep;
+  chunk.cloud.first_line = first_line;
+  chunk.cloud.lines = lines;
+  chunk.cloud.beams = beams;
+  chunk.cloud.points.assign(static_cast<std::size_t>(lines * beams),
+                            Eigen::Vector3f(1, 2, static_cast<float>(first_line)));
+  return chunk;
+}
+
+CloudChunk End(Utime sweep, int lines) {
+  CloudChunk end;
+  end.cloud.sweep_utime = sweep;
+  end.sweep_end = true;
+  end.sweep_lines = lines;
+  return end;
+}
+
+Image MakeImage(const std::string& camera, Utime utime) {
+  Image image;
+  image.camera = camera;
+  image.utime = utime;
+  return image;
+}
+
+CornerSelection Picks(const std::string& camera, Utime image_utime) {
+  CornerSelection picks;
+  picks.camera = camera;
+  picks.image_utime = image_utime;
+  return picks;
+}
+
+SessionCommand Capture(Utime utime = kCommand, Utime sweep = kSweep,
+                       std::vector<std::string> picked = {}) {
+  SessionCommand command;
+  command.command = 3;
+  command.verb = SessionVerb::kCapture;
+  command.utime = utime;
+  command.view = "0001";
+  command.sweep_utime = sweep;
+  command.heldout = true;
+  command.picked_cameras = std::move(picked);
+  return command;
+}
+
+class ViewCollectorTest : public ::testing::Test {
+ protected:
+  void AddSweep(Utime sweep = kSweep, int lines = 3) {
+    for (int i = 0; i < lines; ++i) collector_.Add(Chunk(sweep, i));
+    collector_.Add(End(sweep, lines));
+  }
+  void AddImages(Utime utime = kCommand) {
+    for (const CameraSpec& camera : rig_.cameras) collector_.Add(MakeImage(camera.name, utime));
+  }
+
+  Rig rig_ = MakeRig();
+  ViewCollector collector_;
+};
+
+TEST_F(ViewCollectorTest, WhatArrivesFirstDoesNotMatter) {
+  std::vector<int> order = {0, 1, 2, 3};
+  do {
+    ViewCollector collector;
+    for (const int what : order) {
+      EXPECT_FALSE(collector.Take(rig_).has_value());
+      if (what == 0) {
+        for (int i = 0; i < 3; ++i) collector.Add(Chunk(kSweep, i));
+        collector.Add(End(kSweep, 3));
+      } else if (what == 1) {
+        collector.Begin(Capture(kCommand, kSweep, {"thermal"}));
+      } else if (what == 2) {
+        collector.Add(MakeImage("rgb", kCommand));
+        collector.Add(MakeImage("thermal", kCommand));
+      } else {
+        collector.Add(Picks("thermal", kCommand));
+      }
+    }
+    const auto view = collector.Take(rig_);
+    ASSERT_TRUE(view.has_value());
+    EXPECT_EQ(view->name, "0001");
+    EXPECT_TRUE(view->heldout);
+    EXPECT_EQ(view->cloud.sweep_utime, kSweep);
+    EXPECT_EQ(view->cloud.lines, 3);
+    ASSERT_EQ(view->images.size(), 2U);
+    ASSERT_EQ(view->picks.size(), 1U);
+    EXPECT_EQ(view->picks.front().image_utime, kCommand);
+    EXPECT_FALSE(collector.Take(rig_).has_value()) << "only once";
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST_F(ViewCollectorTest, TheFirstImageAtOrAfterTheCommandCounts) {
+  AddSweep();
+  AddImages(kCommand - kSecond);
+  AddImages(kCommand - 1);
+  collector_.Begin(Capture());
+  EXPECT_FALSE(collector_.Take(rig_).has_value());
+  EXPECT_THAT(collector_.Missing(rig_), HasSubstr("an image of camera rgb"));
+  collector_.Add(MakeImage("rgb", kCommand));
+  collector_.Add(MakeImage("rgb", kCommand + kSecond));
+  collector_.Add(MakeImage("thermal", kCommand + 2 * kSecond));
+  const auto view = collector_.Take(rig_);
+  ASSERT_TRUE(view.has_value());
+  EXPECT_EQ(view->images[0].utime, kCommand);
+  EXPECT_EQ(view->images[1].utime, kCommand + 2 * kSecond);
+}
+
+TEST_F(ViewCollectorTest, ItStaysTheFirstHoweverManyCome) {
+  AddSweep();
+  collector_.Begin(Capture());
+  for (int i = 0; i < 10; ++i) collector_.Add(MakeImage("rgb", kCommand + i * kSecond / 4));
+  collector_.Add(MakeImage("thermal", kCommand));
+  EXPECT_EQ(collector_.Take(rig_)->images[0].utime, kCommand);
+}
+
+TEST_F(ViewCollectorTest, AnImageTooLongAfterTheCommandDoesNotCount) {
+  AddSweep();
+  collector_.Begin(Capture());
+  AddImages(kCommand + ViewCollector::kImageWait + 1);
+  EXPECT_FALSE(collector_.Take(rig_).has_value());
+  EXPECT_THAT(collector_.Missing(rig_), HasSubstr("an image of camera thermal"));
+}
+
+TEST_F(ViewCollectorTest, ImagesWhileTheShutterCorrectsAreSkipped) {
+  AddSweep();
+  collector_.Begin(Capture());
+  collector_.Add(MakeImage("rgb", kCommand));
+  for (int i = 0; i < 8; ++i) {
+    Image image = MakeImage("thermal", kCommand + i * kSecond / 10);
+    image.shutter_correcting = true;
+    collector_.Add(image);
+  }
+  EXPECT_FALSE(collector_.Take(rig_).has_value());
+  collector_.Add(MakeImage("thermal", kCommand + kSecond));
+  EXPECT_EQ(collector_.Take(rig_)->images[1].utime, kCommand + kSecond);
+}
+
+TEST_F(ViewCollectorTest, PicksOfAnotherImageDoNotCount) {
+  AddSweep();
+  AddImages();
+  collector_.Begin(Capture(kCommand, kSweep, {"rgb"}));
+  collector_.Add(Picks("rgb", kCommand - kSecond));
+  EXPECT_FALSE(collector_.Take(rig_).has_value());
+  EXPECT_EQ(collector_.Missing(rig_), "picked corners for camera rgb");
+  collector_.Add(Picks("rgb", kCommand));
+  EXPECT_TRUE(collector_.Take(rig_).has_value());
+}
+
+TEST_F(ViewCollectorTest, PicksThatNobodyAskedForStayOut) {
+  AddSweep();
+  AddImages();
+  collector_.Add(Picks("rgb", kCommand));
+  collector_.Begin(Capture());
+  EXPECT_TRUE(collector_.Take(rig_)->picks.empty());
+}
+
+TEST_F(ViewCollectorTest, MissingNamesEverything) {
+  EXPECT_EQ(collector_.Missing(rig_), "");
+  collector_.Begin(Capture());
+  EXPECT_EQ(collector_.Missing(rig_), "the end of sweep " + std::to_string(kSweep) +
+                                          ", an image of camera rgb, an image of camera thermal");
+  for (int i = 0; i < 3; ++i) collector_.Add(Chunk(kSweep, i));
+  EXPECT_THAT(collector_.Missing(rig_), HasSubstr("the end of sweep"));
+  collector_.Add(End(kSweep, 3));
+  EXPECT_THAT(collector_.Missing(rig_), Not(HasSubstr("sweep")));
+}
+
+TEST_F(ViewCollectorTest, ANewCaptureReplacesAnIncompleteOne) {
+  collector_.Begin(Capture());
+  const Utime next = kCommand + 20 * kSecond;
+  AddSweep(kSweep + 20 * kSecond);
+  SessionCommand second = Capture(next, kSweep + 20 * kSecond);
+  second.view = "0002";
+  collector_.Begin(second);
+  AddImages(next);
+  AddSweep(kSweep);
+  EXPECT_EQ(collector_.Take(rig_)->name, "0002");
+  EXPECT_FALSE(collector_.active());
+}
+
+TEST_F(ViewCollectorTest, ResetForgetsCaptureAndSweeps) {
+  AddSweep();
+  AddImages();
+  collector_.Begin(Capture());
+  collector_.Reset();
+  EXPECT_FALSE(collector_.active());
+  collector_.Begin(Capture());
+  EXPECT_THAT(collector_.Missing(rig_), HasSubstr("the end of sweep"));
+}
+
+TEST_F(ViewCollectorTest, AClockSetBackForgetsTheImagesFromBefore) {
+  AddSweep();
+  for (int i = 0; i < 5; ++i) AddImages(kCommand + 1000 * kSecond + i);
+  AddImages(kCommand);
+  AddImages(kCommand + kSecond);
+  collector_.Begin(Capture());
+  const auto view = collector_.Take(rig_);
+  ASSERT_TRUE(view.has_value());
+  EXPECT_EQ(view->images[0].utime, kCommand);
+}
+
+TEST(SweepCollectorTest, ChunksInAnyOrderAndTwice) {
+  SweepCollector sweeps;
+  for (const int line : {2, 0, 2, 1}) sweeps.Add(Chunk(kSweep, line));
+  EXPECT_FALSE(sweeps.Complete(kSweep).has_value());
+  sweeps.Add(End(kSweep, 3));
+  const auto cloud = sweeps.Complete(kSweep);
+  ASSERT_TRUE(cloud.has_value());
+  EXPECT_EQ(cloud->lines, 3);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(cloud->points[static_cast<std::size_t>(4 * i)].z(), static_cast<float>(i));
+  }
+  EXPECT_FALSE(sweeps.Complete(kSweep + 1).has_value());
+}
+
+TEST(SweepCollectorTest, KeepsTheNewestFew) {
+  SweepCollector sweeps;
+  for (int i = 0; i < 5; ++i) sweeps.Add(End(kSweep + i, 0));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(sweeps.Complete(kSweep + i).has_value(),
+              i >= 5 - static_cast<int>(SweepCollector::kMaxSweeps));
+  }
+}
+
+// What would make the sweep impossible to join, or larger than memory, never gets in.
+TEST(SweepCollectorTest, RefusesWhatDoesNotFitTheSweep) {
+  SweepCollector sweeps;
+  sweeps.Add(Chunk(kSweep, 0));
+  EXPECT_THAT(ErrorOf([&] { sweeps.Add(Chunk(kSweep, 1, 1, 5)); }), HasSubstr("beams"));
+  CloudChunk with_rings = Chunk(kSweep, 1);
+  with_rings.cloud.ring.assign(4, 0);
+  ErrorOf([&] { sweeps.Add(with_rings); });
+  EXPECT_THAT(ErrorOf([&] { sweeps.Add(Chunk(kSweep, 1'000'000, 1, 4000)); }),
+              HasSubstr("more than 8000000 points"));
+  EXPECT_THAT(ErrorOf([&] { sweeps.Add(Chunk(kSweep, 2'000'000, 1, 4)); }),
+              HasSubstr("more than 8000000 points"));
+  sweeps.Add(Chunk(kSweep, 1));
+  sweeps.Add(End(kSweep, 2));
+  EXPECT_EQ(sweeps.Complete(kSweep)->lines, 2);
+}
+
+}  // namespace
+}  // namespace rgbdt
