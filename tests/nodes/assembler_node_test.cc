@@ -154,11 +154,18 @@ TEST_F(AssemblerNodeTest, AChunkLeavesWithTheReadingAtItsLastBeam) {
   Messages messages = SweepInOrder();
   const std::size_t tenth = PlaceOfLine(messages, 10);
   Feed(Messages(messages.begin(), messages.begin() + static_cast<std::ptrdiff_t>(tenth)));
-  // Its last beam left 8 ms before the reading of its end, which has been heard: it goes at once.
+  const Utime end = Line(10).utime + 8 * 4 * kMs;
+  EXPECT_TRUE(node_.Handle(Line(10)).empty());
   EXPECT_TRUE(node_.Handle(Line(11)).empty());
-  const auto chunks = Only<CloudChunk>(node_.Handle(Line(10)));
+  const auto chunks = Only<CloudChunk>(node_.Handle(Reading(end)));
   ASSERT_EQ(chunks.size(), 1U);
   EXPECT_EQ(chunks.front().cloud.first_line, 10);
+  // Where the reading is there already, with the line.
+  EXPECT_TRUE(node_.Handle(Line(12)).empty());
+  Feed({Reading(end + 80 * kMs)});
+  EXPECT_EQ(Only<CloudChunk>(node_.Handle(Line(13))).size(), 0U);
+  Feed({Reading(end + 140 * kMs)});
+  EXPECT_EQ(Only<CloudChunk>(node_.Handle(Line(14))).size(), 1U);
 }
 
 TEST_F(AssemblerNodeTest, ASweepDoesNotEndAtItsOwnStart) {

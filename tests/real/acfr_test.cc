@@ -1,0 +1,67 @@
+// Fourteen real views (a fisheye camera and a VLP-16). There is no truth, only the published mean.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "calib/detect/detect.h"
+#include "calib/files/rig_file.h"
+#include "calib/files/session_dir.h"
+#include "calib/solve/calibrate.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+// point_in_lidar = R point_in_camera + t, R = Rz(yaw) Ry(pitch) Rx(roll): README of the data.
+Rigid3 PublishedCameraFromLidar() {
+  const Rigid3 rotation = RotationAbout({0, 0, 1}, -1.4929) * RotationAbout({0, 1, 0}, -0.0209) *
+                          RotationAbout({1, 0, 0}, -1.695);
+  return Rigid3{rotation.rotation, {0.063, 0.004, -0.196}}.Inverse();
+}
+
+TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
+  const char* real = std::getenv("RGBDT_REAL_DATA");
+  if (real == nullptr) GTEST_SKIP() << "RGBDT_REAL_DATA is not set";
+  const fs::path source = fs::path(real) / "acfr_vlp16";
+  if (!fs::exists(source)) GTEST_SKIP() << "RGBDT_REAL_DATA has no acfr_vlp16";
+  const fs::path dir = fs::path(::testing::TempDir()) / "rgbdt_acfr_session";
+  fs::remove_all(dir);
+  const std::string command = std::string(RGBDT_SOURCE_DIR) + "/scripts/session-from-acfr '" +
+                              source.string() + "' '" + dir.string() + "' > /dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+
+  const Session session = OpenSession(dir);
+  ASSERT_EQ(session.views.size(), 14U);
+  std::vector<Observation> observations;
+  for (const std::string& view : session.views) {
+    for (Observation& o : DetectView(session.rig, ReadView(session, view))) {
+      observations.push_back(std::move(o));
+    }
+  }
+  const Report report = Calibrate(session.rig, observations);
+  ASSERT_EQ(report.cameras.size(), 1U);
+  const CameraReport& camera = report.cameras[0];
+  EXPECT_GE(camera.used.size() + camera.heldout.size(), 8U);
+  EXPECT_EQ(camera.used.size() + camera.heldout.size() + camera.rejected.size(), 14U);
+  for (const RejectedView& view : camera.rejected) EXPECT_FALSE(view.why.empty()) << view.view;
+  ASSERT_TRUE(camera.distance_transform_px.heldout && camera.edge_rms_px.heldout);
+
+  // The figures a person asks for; no limit is claimed: 16 rings are not what the method is for.
+  const PoseError from_published =
+      ErrorOf(camera.calibration.camera_from_lidar, PublishedCameraFromLidar());
+  const PoseError guess_from_published = ErrorOf(camera.first_guess, PublishedCameraFromLidar());
+  std::printf(
+      "%s; from the published mean %.2f deg, %.0f mm (the guess: %.2f deg, %.0f mm); "
+      "held out %.1f px\n",
+      camera.calibration.status.c_str(), from_published.rotation_deg, from_published.translation_mm,
+      guess_from_published.rotation_deg, guess_from_published.translation_mm,
+      *camera.distance_transform_px.heldout);
+  // A result that ran away would not be a calibration at all: it stays nearer than the wide start.
+  EXPECT_LT(from_published.rotation_deg, 30);
+  fs::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace rgbdt
