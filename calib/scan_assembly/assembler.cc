@@ -81,6 +81,20 @@ Utime EncoderTrack::SweepAt(Utime utime) const {
   return after == readings_.begin() ? 0 : std::prev(after)->sweep_utime;
 }
 
+std::optional<std::vector<double>> BeamAngles(const TurnedScanner& scanner,
+                                              const EncoderTrack& track, const LineScan& line,
+                                              Utime max_gap) {
+  std::vector<double> angles;
+  angles.reserve(line.range.size());
+  for (std::size_t i = 0; i < line.range.size(); ++i) {
+    const Utime fired = line.utime + FromSeconds(static_cast<double>(i) * line.beam_period_s);
+    const auto angle = track.AngleAt(scanner, fired, max_gap);
+    if (!angle) return std::nullopt;
+    angles.push_back(*angle);
+  }
+  return angles;
+}
+
 void EncoderTrack::ForgetBefore(Utime utime) {
   while (readings_.size() > 1 && readings_[1].utime <= utime) readings_.pop_front();
 }

@@ -37,6 +37,11 @@ class EncoderTrack {
   std::deque<EncoderReading> readings_;
 };
 
+/// The motor's angle [rad] when each beam of a line was fired; nothing where one is not known.
+std::optional<std::vector<double>> BeamAngles(const TurnedScanner& scanner,
+                                              const EncoderTrack& track, const LineScan& line,
+                                              Utime max_gap);
+
 /// Puts chunks back together, in the order of their lines; a chunk that came twice counts once.
 /// Lines that never came become lines of NaN without known directions, so neighbours in the cloud
 /// are neighbours in the sweep. Throws InputError where chunks differ in beams per line

@@ -123,27 +123,16 @@ void AssemblerNode::Add(const LineScan& line, Messages* out) {
   }
   const int place = static_cast<int>(line.seq - sweep_->first_seq);
   sweep_->lines = std::max(sweep_->lines, place + 1);
-  const auto angles = AnglesOf(line);
+  const TurnedScanner& scanner = *rig_->lidar.turned_scanner;
+  const auto angles = BeamAngles(scanner, track_, line, kMaxGap);
   if (!angles) return;
   sweep_->sent.insert(place);
   CloudChunk chunk;
-  chunk.cloud = LineToCloud(*rig_->lidar.turned_scanner, line, *angles);
+  chunk.cloud = LineToCloud(scanner, line, *angles);
   chunk.cloud.sweep_utime = sweep_utime;
   chunk.cloud.first_line = place;
   out->push_back(std::move(chunk));
   ++lines_used_;
-}
-
-std::optional<std::vector<double>> AssemblerNode::AnglesOf(const LineScan& line) const {
-  std::vector<double> angles;
-  angles.reserve(line.range.size());
-  for (std::size_t i = 0; i < line.range.size(); ++i) {
-    const Utime beam = line.utime + FromSeconds(static_cast<double>(i) * line.beam_period_s);
-    const auto angle = track_.AngleAt(*rig_->lidar.turned_scanner, beam, kMaxGap);
-    if (!angle) return std::nullopt;
-    angles.push_back(*angle);
-  }
-  return angles;
 }
 
 void AssemblerNode::EndSweep(Messages* out) {

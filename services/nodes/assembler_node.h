@@ -55,7 +55,6 @@ class AssemblerNode : public Node {
   bool IsReady(const LineScan& line) const;
   Messages Drain();
   void Add(const LineScan& line, Messages* out);
-  std::optional<std::vector<double>> AnglesOf(const LineScan& line) const;
   void EndSweep(Messages* out);
   void Forget();
 

@@ -33,13 +33,9 @@ Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
   std::vector<CloudChunk> chunks;
   for (int i = 0; i < simulator.sweep_lines(); ++i) {
     const LineScan line = simulator.Line(sweep_utime, i);
-    std::vector<double> angles;
-    for (std::size_t beam = 0; beam < line.range.size(); ++beam) {
-      const Utime at = line.utime + FromSeconds(static_cast<double>(beam) * line.beam_period_s);
-      angles.push_back(track.AngleAt(scanner, at, kMicrosecondsPerSecond).value());
-    }
+    const auto angles = BeamAngles(scanner, track, line, kMicrosecondsPerSecond);
     CloudChunk chunk;
-    chunk.cloud = LineToCloud(scanner, line, angles);
+    chunk.cloud = LineToCloud(scanner, line, angles.value());
     chunk.cloud.first_line = i;
     chunks.push_back(std::move(chunk));
   }

@@ -1,0 +1,195 @@
+#include "services/nodes/detector_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/nodes/assembler_node.h"
+#include "services/nodes/simulator_node.h"
+#include "tests/nodes/nodes_testing.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using test::BytesOf;
+using test::Counter;
+using test::ErrorOf;
+using test::Only;
+using ::testing::HasSubstr;
+
+constexpr Utime kSweep = 1'500'000'000'000'000;
+constexpr Utime kCommand = kSweep + 2 * kMicrosecondsPerSecond;
+
+const Rig& TinyRig() {
+  static const Rig rig = test::RigOf(simulate::Simulator(test::TinyOptions()));
+  return rig;
+}
+
+SessionCommand Capture(std::vector<std::string> picked = {}) {
+  SessionCommand command;
+  command.command = 7;
+  command.verb = SessionVerb::kCapture;
+  command.utime = kCommand;
+  command.view = "0001";
+  command.sweep_utime = kSweep;
+  command.picked_cameras = std::move(picked);
+  return command;
+}
+
+// Grey all over: no board.
+Image Blank(const std::string& name, Utime utime = kCommand) {
+  const CameraSpec& camera = TinyRig().Camera(name);
+  Image image;
+  image.camera = name;
+  image.utime = utime;
+  image.format = camera.format;
+  image.pixels = cv::Mat(camera.height, camera.width,
+                         camera.kind == CameraKind::kThermal ? CV_16UC1 : CV_8UC1, cv::Scalar(90));
+  return image;
+}
+
+Messages EmptySweep() {
+  CloudChunk line;
+  line.cloud.sweep_utime = kSweep;
+  line.cloud.lines = 1;
+  line.cloud.beams = 4;
+  line.cloud.points.assign(4, Eigen::Vector3f(3, 0, 0));
+  CloudChunk end;
+  end.cloud.sweep_utime = kSweep;
+  end.sweep_end = true;
+  end.sweep_lines = 1;
+  return {line, end};
+}
+
+class DetectorNodeTest : public ::testing::Test {
+ protected:
+  DetectorNodeTest() { node_.Handle(test::TextOf(TinyRig())); }
+  DetectorNode node_;
+};
+
+TEST(DetectorNodeRigTest, BeforeTheRigNothingIsTaken) {
+  DetectorNode node;
+  EXPECT_FALSE(node.GetStatus().ready);
+  EXPECT_THAT(ErrorOf([&] { node.Handle(Capture()); }), HasSubstr("no rig heard yet"));
+  node.Handle(test::TextOf(TinyRig()));
+  EXPECT_TRUE(node.GetStatus().ready);
+}
+
+TEST_F(DetectorNodeTest, AViewWithoutABoardIsRejectedWithReasonsAndDone) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  EXPECT_TRUE(node_.Handle(Blank("rgb")).empty());
+  EXPECT_EQ(node_.GetStatus().text, "view 0001 waits for an image of camera thermal");
+  const Messages out = node_.Handle(Blank("thermal"));
+  const auto observations = Only<Observation>(out);
+  ASSERT_EQ(observations.size(), 2U);
+  for (const Observation& observation : observations) {
+    EXPECT_FALSE(observation.usable());
+    EXPECT_FALSE(observation.rejected.empty());
+    EXPECT_EQ(observation.view, "0001");
+  }
+  const auto events = Only<SessionEvent>(out);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].command, 7);
+  EXPECT_EQ(events[0].kind, EventKind::kDone);
+  EXPECT_EQ(events[0].utime, kCommand);
+  EXPECT_EQ(events[0].text,
+            "rgb: " + observations[0].rejected + "; thermal: " + observations[1].rejected);
+  EXPECT_EQ(Counter(node_.GetStatus(), "views"), 1);
+  EXPECT_EQ(Counter(node_.GetStatus(), "rejected"), 2);
+  EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
+}
+
+TEST_F(DetectorNodeTest, ImagesOfTheWrongKindAreRefusedAndChangeNothing) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  node_.Handle(Blank("rgb"));
+  const std::string waits = node_.GetStatus().text;
+
+  Image small = Blank("thermal");
+  small.pixels = cv::Mat(10, 20, CV_16UC1, cv::Scalar(0));
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(small); }), HasSubstr("20x10"));
+  Image coloured = Blank("thermal");
+  coloured.format = PixelFormat::kBgr8;
+  coloured.pixels = cv::Mat(coloured.pixels.size(), CV_8UC3, cv::Scalar(0, 0, 0));
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(coloured); }), HasSubstr("thermal"));
+  Image stranger = Blank("thermal");
+  stranger.camera = "front";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(stranger); }), HasSubstr("front"));
+  CornerSelection picks;
+  picks.camera = "front";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(picks); }), HasSubstr("front"));
+
+  EXPECT_EQ(node_.GetStatus().text, waits);
+  EXPECT_EQ(node_.Handle(Blank("thermal")).size(), 3U);
+}
+
+TEST_F(DetectorNodeTest, ResetForgetsTheCapture) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  SessionCommand reset;
+  reset.verb = SessionVerb::kReset;
+  node_.Handle(reset);
+  EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
+  EXPECT_TRUE(test::HandleAll(&node_, {Blank("rgb"), Blank("thermal")}).empty());
+}
+
+TEST_F(DetectorNodeTest, AnotherRigForgetsEverything) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  node_.Handle(Blank("rgb"));
+  RigText other = test::TextOf(TinyRig());
+  other.text += "# moved\n";
+  other.hash = HashOfRigText(other.text);
+  node_.Handle(other);
+  EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
+}
+
+// One view of the synthetic rig: found by both cameras, the same in whatever order it comes.
+TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
+  simulate::Simulator simulator(test::HalfSizeOptions());
+  const Rig rig = test::RigOf(simulator);
+  simulator.ShowView(0, "0001");
+  AssemblerNode assembler;
+  Messages sweep = {test::TextOf(rig)};
+  const Utime end = kSweep + simulator.sweep_lines() * simulator.line_period();
+  for (Utime t = kSweep; t < end + 300'000; t += SimulatorNode::kEncoderPeriod) {
+    sweep.push_back(simulator.Encoder(t, t <= end ? kSweep : 0));
+  }
+  for (int i = 0; i < simulator.sweep_lines(); ++i) {
+    LineScan line = simulator.Line(kSweep, i);
+    line.seq = i;
+    sweep.insert(sweep.begin() + 1 + i, line);
+  }
+  const Messages cloud = test::HandleAll(&assembler, sweep);
+  const Utime now = end + kMicrosecondsPerSecond;
+  SessionCommand command = Capture({"thermal"});
+  command.utime = now;
+  const Messages images = {simulator.TakeImage("rgb", now), simulator.TakeImage("thermal", now)};
+  const Message picks = simulator.PickCorners("thermal", now);
+
+  const auto detect = [&](const std::vector<Messages>& parts) {
+    DetectorNode node;
+    node.Handle(test::TextOf(rig));
+    Messages out;
+    for (const Messages& part : parts) {
+      for (Message& message : test::HandleAll(&node, part)) out.push_back(std::move(message));
+    }
+    for (Message& message : out) {
+      if (auto* observation = std::get_if<Observation>(&message)) {  // the wall clock's part
+        observation->detect_image_s = observation->detect_cloud_s = 0;
+      }
+    }
+    return out;
+  };
+  const Messages expected = detect({cloud, {command}, images, {picks}});
+  ASSERT_EQ(expected.size(), 3U);
+  for (const Observation& observation : Only<Observation>(expected)) {
+    EXPECT_TRUE(observation.usable()) << observation.camera << ": " << observation.rejected;
+    EXPECT_EQ(observation.image->picked, observation.camera == "thermal");
+  }
+  EXPECT_EQ(BytesOf(detect({{picks}, images, {command}, cloud})), BytesOf(expected));
+}
+
+}  // namespace
+}  // namespace rgbdt

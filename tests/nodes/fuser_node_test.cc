@@ -1,0 +1,187 @@
+#include "services/nodes/fuser_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/nodes/nodes_testing.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using test::Counter;
+using test::ErrorOf;
+using test::Only;
+using ::testing::HasSubstr;
+
+constexpr Utime kNow = 1'500'000'000'000'000;
+constexpr Utime kSecond = kMicrosecondsPerSecond;
+
+const simulate::Simulator& Simulator() {
+  static const simulate::Simulator simulator(test::TinyOptions());
+  return simulator;
+}
+
+const Rig& TinyRig() {
+  static const Rig rig = test::RigOf(Simulator());
+  return rig;
+}
+
+Image Plain(const std::string& name, Utime utime, int value) {
+  const CameraSpec& camera = TinyRig().Camera(name);
+  Image image;
+  image.camera = name;
+  image.utime = utime;
+  image.format = camera.format;
+  image.pixels =
+      cv::Mat(camera.height, camera.width, camera.kind == CameraKind::kThermal ? CV_16UC1 : CV_8UC1,
+              cv::Scalar(value));
+  return image;
+}
+
+CalibrationMessage Calibrated(const std::string& camera) {
+  CalibrationMessage message;
+  message.utime = kNow - 10 * kSecond;
+  message.rig_hash = TinyRig().hash;
+  message.method = "paper";
+  message.calibration.camera = camera;
+  message.calibration.camera_from_lidar = Simulator().truth().camera_from_lidar.at(camera);
+  return message;
+}
+
+// Points straight ahead, one every 10 ms, and one behind.
+CloudChunk Chunk(Utime utime, int points = 3) {
+  CloudChunk chunk;
+  chunk.cloud.sweep_utime = kNow;
+  chunk.cloud.lines = 1;
+  chunk.cloud.beams = points + 1;
+  for (int i = 0; i <= points; ++i) {
+    chunk.cloud.points.emplace_back(i == points ? -5.0F : 5.0F, 0.01F * static_cast<float>(i), 0);
+    chunk.cloud.utime.push_back(utime + i * 10'000);
+  }
+  chunk.cloud.intensity.assign(chunk.cloud.points.size(), 0.5F);
+  return chunk;
+}
+
+class FuserNodeTest : public ::testing::Test {
+ protected:
+  FuserNodeTest() { node_.Handle(test::TextOf(TinyRig())); }
+  RgbdtCloud FuseAt(Utime utime) { return Only<RgbdtCloud>(node_.Handle(Chunk(utime))).at(0); }
+  FuserNode node_;
+};
+
+TEST_F(FuserNodeTest, WithoutACalibrationNoColour) {
+  node_.Handle(Plain("rgb", kNow, 100));
+  const RgbdtCloud cloud = FuseAt(kNow + kSecond);
+  EXPECT_EQ(cloud.size(), 4U);
+  EXPECT_EQ(cloud.calibration_utime, 0);
+  for (const std::uint32_t valid : cloud.valid) EXPECT_EQ(valid, 0U);
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
+}
+
+TEST_F(FuserNodeTest, ColoursWhatACameraSees) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Calibrated("thermal"));
+  node_.Handle(Plain("rgb", kNow, 100));
+  node_.Handle(Plain("thermal", kNow, 3000));
+  const RgbdtCloud cloud = FuseAt(kNow + kSecond);
+  EXPECT_EQ(cloud.calibration_utime, kNow - 10 * kSecond);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(cloud.valid[i], 3U);
+    EXPECT_EQ(cloud.rgb[i][1], 100);
+    EXPECT_EQ(cloud.thermal_counts[i], 3000);
+    EXPECT_GT(cloud.temperature_k[i], 250);
+  }
+  EXPECT_EQ(cloud.valid[3], 0U) << "behind the cameras";
+  EXPECT_EQ(Counter(node_.GetStatus(), "points"), 4);
+  EXPECT_EQ(Counter(node_.GetStatus(), "coloured"), 3);
+  EXPECT_EQ(node_.GetStatus().text, "fusing");
+}
+
+TEST_F(FuserNodeTest, AnImageServesFromItsTimePlusReadout) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Plain("rgb", kNow, 100));
+  node_.Handle(Plain("rgb", kNow + kSecond, 200));  // heard early: the future waits
+  const Utime readout = FromSeconds(TinyRig().Camera("rgb").readout_s);
+  ASSERT_GT(readout, 20'000);
+  const RgbdtCloud cloud = FuseAt(kNow + kSecond + readout - 15'000);
+  EXPECT_EQ(cloud.rgb[0][1], 100);
+  EXPECT_EQ(cloud.rgb[1][1], 100);
+  EXPECT_EQ(cloud.rgb[2][1], 200);
+}
+
+TEST_F(FuserNodeTest, ImagesOutOfOrderGiveTheSame) {
+  FuserNode other;
+  other.Handle(test::TextOf(TinyRig()));
+  other.Handle(Calibrated("rgb"));
+  node_.Handle(Calibrated("rgb"));
+  const Messages images = {Plain("rgb", kNow, 100), Plain("rgb", kNow + kSecond / 2, 200)};
+  test::HandleAll(&node_, images);
+  test::HandleAll(&other, {images[1], images[0]});
+  const Message chunk = Chunk(kNow + kSecond / 2 + 20'000);
+  EXPECT_EQ(test::BytesOf(node_.Handle(chunk)), test::BytesOf(other.Handle(chunk)));
+}
+
+TEST_F(FuserNodeTest, ACalibrationOfAnotherRigIsRefused) {
+  CalibrationMessage other = Calibrated("rgb");
+  other.rig_hash = "0123456789abcdef";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(other); }),
+              ::testing::AllOf(HasSubstr("0123456789abcdef"), HasSubstr(TinyRig().hash)));
+  CalibrationMessage stranger = Calibrated("rgb");
+  stranger.calibration.camera = "front";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(stranger); }), HasSubstr("front"));
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
+}
+
+TEST_F(FuserNodeTest, AnotherRigForgetsTheCalibration) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(test::TextOf(TinyRig()));
+  EXPECT_EQ(node_.GetStatus().text, "fusing");
+  RigText other = test::TextOf(TinyRig());
+  other.text += "# moved\n";
+  other.hash = HashOfRigText(other.text);
+  node_.Handle(other);
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
+}
+
+TEST_F(FuserNodeTest, ShutterFramesAreCountedAndNotUsed) {
+  node_.Handle(Calibrated("thermal"));
+  node_.Handle(Plain("thermal", kNow, 3000));
+  Image shutter = Plain("thermal", kNow + kSecond, 1);
+  shutter.shutter_correcting = true;
+  node_.Handle(shutter);
+  EXPECT_EQ(FuseAt(kNow + kSecond + kSecond / 2).thermal_counts[0], 3000);
+  EXPECT_EQ(Counter(node_.GetStatus(), "shutter frames"), 1);
+}
+
+TEST_F(FuserNodeTest, TheSweepsEndGoesOn) {
+  CloudChunk end;
+  end.cloud.sweep_utime = kNow;
+  end.sweep_end = true;
+  const auto out = Only<RgbdtCloud>(node_.Handle(end));
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_TRUE(out[0].sweep_end);
+  EXPECT_EQ(out[0].sweep_utime, kNow);
+  Encode(out[0]);  // and it can travel
+}
+
+TEST_F(FuserNodeTest, WrongImagesAreRefused) {
+  Image image = Plain("rgb", kNow, 1);
+  image.pixels = cv::Mat(4, 4, CV_8UC1, cv::Scalar(0));
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(image); }), HasSubstr("4x4"));
+  image = Plain("rgb", kNow, 1);
+  image.camera = "front";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(image); }), HasSubstr("front"));
+}
+
+TEST_F(FuserNodeTest, AClockSetBackForgetsTheImagesFromBefore) {
+  node_.Handle(Calibrated("rgb"));
+  for (int i = 0; i < 40; ++i) node_.Handle(Plain("rgb", kNow + 1000 * kSecond + i, 50));
+  for (int i = 0; i < 3; ++i) node_.Handle(Plain("rgb", kNow + i * kSecond, 100));
+  const RgbdtCloud cloud = FuseAt(kNow + 2 * kSecond + kSecond / 2);
+  EXPECT_EQ(cloud.valid[0], 1U);
+  EXPECT_EQ(cloud.rgb[0][1], 100);
+}
+
+}  // namespace
+}  // namespace rgbdt

@@ -1,0 +1,157 @@
+#include "services/nodes/solver_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calib/files/calibration_file.h"
+#include "calib/files/report_file.h"
+#include "tests/nodes/nodes_testing.h"
+#include "tests/unit/files/test_data.h"
+#include "tests/unit/solve/board_world.h"
+
+namespace rgbdt {
+namespace {
+
+using test::ErrorOf;
+using test::Only;
+using ::testing::HasSubstr;
+
+const BoardWorld& World() {
+  static const BoardWorld world = MakeBoardWorld(6);
+  return world;
+}
+
+Rig MakeRig(double guess_off = 0.02) {
+  Rig rig = simulate::Simulator(test::TinyOptions()).rig();
+  CameraSpec camera = World().spec;
+  camera.camera_from_lidar_guess = GuessOff(World().camera_from_lidar, guess_off, 0.03, 5);
+  rig.cameras = {camera};
+  return ParseRig(PrintRig(rig), "test rig");
+}
+
+SessionCommand Command(SessionVerb verb) {
+  SessionCommand command;
+  command.command = 40;
+  command.verb = verb;
+  command.utime = 5000;
+  return command;
+}
+
+std::string CalibrationOf(const SolverNode& node) {
+  return node.report() ? PrintCalibration(node.report()->ToCalibration()) : "";
+}
+
+class SolverNodeTest : public ::testing::Test {
+ protected:
+  SolverNodeTest() { node_.Handle(test::TextOf(MakeRig())); }
+  Messages FeedWorld() {
+    return test::HandleAll(&node_, Messages(World().views.begin(), World().views.end()));
+  }
+  SolverNode node_;
+};
+
+TEST(SolverNodeRigTest, BeforeTheRigNothingIsTaken) {
+  SolverNode node;
+  EXPECT_FALSE(node.GetStatus().ready);
+  EXPECT_THAT(ErrorOf([&] { node.Handle(World().views[0]); }), HasSubstr("no rig heard yet"));
+  CalibrateOptions options;
+  options.method = "magic";
+  EXPECT_THAT(ErrorOf([&] { SolverNode bad(options); }), HasSubstr("magic"));
+}
+
+TEST_F(SolverNodeTest, SolvesAgainAfterEachObservation) {
+  std::size_t calibrations = 0;
+  for (const Observation& observation : World().views) {
+    const auto out = Only<CalibrationMessage>(node_.Handle(observation));
+    calibrations += out.size();
+    for (const CalibrationMessage& message : out) {
+      EXPECT_EQ(message.rig_hash, MakeRig().hash);
+      EXPECT_EQ(message.method, "paper");
+    }
+  }
+  EXPECT_GE(calibrations, 4U);
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("calibrated from 6 observations"));
+  ASSERT_TRUE(node_.report().has_value());
+  EXPECT_EQ(node_.report()->cameras[0].used.size(), 4U);
+  EXPECT_EQ(node_.report()->cameras[0].heldout.size(), 2U);
+  // An ideal world but for its pixel grid; the unit tests of solve/ hold the accuracy.
+  EXPECT_THAT(node_.report()->cameras[0].calibration.camera_from_lidar,
+              Rigid3Near(World().camera_from_lidar, 0.01, 0.03));
+}
+
+TEST_F(SolverNodeTest, TheOrderOfObservationsDoesNotMatterAndRepeatsReplace) {
+  FeedWorld();
+  const std::string expected = CalibrationOf(node_);
+  SolverNode backwards;
+  backwards.Handle(test::TextOf(MakeRig()));
+  test::HandleAll(&backwards, Messages(World().views.rbegin(), World().views.rend()));
+  EXPECT_EQ(CalibrationOf(backwards), expected);
+  FeedWorld();
+  EXPECT_EQ(CalibrationOf(node_), expected);
+  EXPECT_EQ(test::Counter(node_.GetStatus(), "observations"), 6);
+  // Another observation of a view takes the place of the first.
+  Observation rejected = World().views[0];
+  rejected.rejected = "somebody stood before it";
+  node_.Handle(rejected);
+  EXPECT_EQ(node_.report()->cameras[0].used.size(), 3U);
+  EXPECT_EQ(node_.report()->cameras[0].rejected.at(0).why, "somebody stood before it");
+}
+
+TEST_F(SolverNodeTest, SolveAndEvaluateAreAnsweredWithReportAndEvent) {
+  FeedWorld();
+  for (const SessionVerb verb : {SessionVerb::kSolve, SessionVerb::kEvaluate}) {
+    const Messages out = node_.Handle(Command(verb));
+    EXPECT_EQ(Only<CalibrationMessage>(out).size(), 1U);
+    ASSERT_EQ(Only<ReportText>(out).size(), 1U);
+    const Report report = ReportFromJson(Only<ReportText>(out)[0].json);
+    EXPECT_EQ(PrintCalibration(report.ToCalibration()), CalibrationOf(node_))
+        << "what the session saves is what the solver has, bit for bit";
+    ASSERT_TRUE(std::holds_alternative<SessionEvent>(out.back())) << "the event comes last";
+    const auto& event = std::get<SessionEvent>(out.back());
+    EXPECT_EQ(event.kind, EventKind::kDone);
+    EXPECT_EQ(event.command, 40);
+    EXPECT_THAT(event.text, HasSubstr(verb == SessionVerb::kSolve ? " px" : "held-out"));
+  }
+}
+
+TEST_F(SolverNodeTest, WithoutObservationsSolvingFailsWithTheReason) {
+  for (const SessionVerb verb : {SessionVerb::kSolve, SessionVerb::kEvaluate}) {
+    const auto events = Only<SessionEvent>(node_.Handle(Command(verb)));
+    ASSERT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0].kind, EventKind::kFailed);
+    EXPECT_THAT(events[0].text, HasSubstr("no observation yet"));
+  }
+}
+
+TEST_F(SolverNodeTest, RepeatsTheCalibration) {
+  EXPECT_TRUE(node_.Republish().empty());
+  const Messages last = node_.Handle(World().views[0]);
+  FeedWorld();
+  const auto repeated = Only<CalibrationMessage>(node_.Republish());
+  ASSERT_EQ(repeated.size(), 1U);
+  EXPECT_EQ(Encode(repeated[0]),
+            Encode(Only<CalibrationMessage>(node_.Handle(Command(SessionVerb::kSolve)))[0]));
+}
+
+TEST_F(SolverNodeTest, ResetAndAnotherRigForgetAll) {
+  FeedWorld();
+  node_.Handle(test::TextOf(MakeRig()));  // the same rig again changes nothing
+  EXPECT_TRUE(node_.report().has_value());
+  node_.Handle(Command(SessionVerb::kReset));
+  EXPECT_FALSE(node_.report().has_value());
+  EXPECT_TRUE(node_.Republish().empty());
+  EXPECT_EQ(node_.GetStatus().text, "waits for observations");
+  FeedWorld();
+  node_.Handle(test::TextOf(MakeRig(0.03)));
+  EXPECT_FALSE(node_.report().has_value());
+}
+
+TEST_F(SolverNodeTest, AnObservationOfAStrangersCameraIsRefused) {
+  Observation stranger = World().views[0];
+  stranger.camera = "front";
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(stranger); }), HasSubstr("front"));
+  EXPECT_EQ(test::Counter(node_.GetStatus(), "observations"), 0);
+}
+
+}  // namespace
+}  // namespace rgbdt
