@@ -69,6 +69,10 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "rgbdt-session: %s\n", node.failure().c_str());
       return 1;
     }
+    if (!node.finished() && code == 0) {
+      std::fprintf(stderr, "rgbdt-session: stopped before its end: %s\n",
+                   node.GetStatus().text.c_str());
+    }
     return node.finished() ? code : 1;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-session: %s\n", e.what());

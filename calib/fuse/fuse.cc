@@ -50,7 +50,8 @@ void Colour(const FusionCamera& camera, std::uint32_t bit, std::uint32_t earlier
     } else {
       const auto bgr = Sample<std::uint8_t, 3>(image->pixels, *pixel);
       for (std::size_t c = 0; c < 3; ++c) {
-        fused->rgb[i][c] = static_cast<std::uint8_t>(std::lround(bgr[2 - c]));
+        // A black that was seen is 1, 1, 1: 0 says that no colour camera saw the point.
+        fused->rgb[i][c] = static_cast<std::uint8_t>(std::max(1L, std::lround(bgr[2 - c])));
       }
     }
   }

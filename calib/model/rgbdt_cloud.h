@@ -21,7 +21,7 @@ struct RgbdtCloud {
   std::vector<Eigen::Vector3f> points;
   std::vector<float> intensity;  ///< 0 to 1
   std::vector<Utime> utime;
-  std::vector<std::array<std::uint8_t, 3>> rgb;  ///< 0 where no colour camera saw the point
+  std::vector<std::array<std::uint8_t, 3>> rgb;  ///< 1 to 255; 0 where no colour camera saw it
   std::vector<float> temperature_k;              ///< NaN where no thermal camera saw it
   std::vector<float> thermal_counts;             ///< raw counts; NaN likewise
   std::vector<std::uint32_t> valid;              ///< which cameras saw it

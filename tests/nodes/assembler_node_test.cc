@@ -164,7 +164,7 @@ TEST_F(AssemblerNodeTest, AChunkLeavesWithTheReadingAtItsLastBeam) {
   EXPECT_TRUE(node_.Handle(Line(12)).empty());
   Feed({Reading(end + 80 * kMs)});
   EXPECT_EQ(Only<CloudChunk>(node_.Handle(Line(13))).size(), 0U);
-  Feed({Reading(end + 140 * kMs)});
+  Feed({Reading(end + 170 * kMs)});
   EXPECT_EQ(Only<CloudChunk>(node_.Handle(Line(14))).size(), 1U);
 }
 

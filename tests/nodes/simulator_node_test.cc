@@ -124,8 +124,10 @@ TEST_F(SimulatorNodeTest, TheAssemblerMakesAWholeSweepOfIt) {
   AssemblerNode assembler;
   assembler.Handle(test::TextOf(test::RigOf(node_.simulator())));
   std::vector<CloudChunk> chunks;
-  for (const Message& message : View(&node_)) {
+  std::map<std::size_t, std::int64_t> seq;  // as NodeRunner numbers them
+  for (Message& message : View(&node_)) {
     if (ChannelOf(message) != "LINE_SCAN" && ChannelOf(message) != "ENCODER") continue;
+    SetSeq(seq[message.index()]++, &message);
     for (CloudChunk& chunk : Only<CloudChunk>(assembler.Handle(message))) {
       chunks.push_back(std::move(chunk));
     }

@@ -1,0 +1,215 @@
+// What the live tests' scripts need of the bus. See usage().
+
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "calib/files/calibration_file.h"
+#include "calib/model/errors.h"
+#include "services/bus/bus.h"
+#include "services/bus/codec.h"
+#include "services/bus/log.h"
+#include "services/bus/sequence.h"
+#include "tests/unit/bus/random_messages.h"
+
+namespace rgbdt {
+namespace {
+
+using Arguments = std::vector<std::string>;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPatience = std::chrono::seconds(90);
+
+int Usage() {
+  std::fputs(
+      "usage: live_helper VERB ...\n"
+      "  ready PROCESS...       until the bus carries a status of each\n"
+      "  garbage PROCESS...     publishes garbage on every channel until each names some\n"
+      "  calibration VIEWS      until the solver has them of two cameras; prints what it found\n"
+      "  gaps LOG               messages that a log lacks, by channel; exit code 3 if any\n"
+      "  print FILE             prints a calibration.textproto in the same way\n"
+      "Gives up after 90 s with exit code 1.\n",
+      stderr);
+  return 2;
+}
+
+/// Listens to STATUS; knows the newest of each process.
+class Listener {
+ public:
+  Listener() {
+    bus.Subscribe("STATUS",
+                  [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+                    try {
+                      const Status status = std::get<Status>(Decode(channel, data, size));
+                      statuses[status.process] = status;
+                    } catch (const InputError&) {  // our own garbage
+                    }
+                  });
+  }
+
+  /// Throws InputError with `what` where it does not happen.
+  void RunUntil(const std::function<bool()>& done, const std::string& what) {
+    const Clock::time_point end = Clock::now() + kPatience;
+    while (!done()) {
+      if (Clock::now() > end) throw InputError("waited 90 s for " + what);
+      bus.Run(20);
+    }
+  }
+
+  std::int64_t Counter(const std::string& process, const std::string& name) const {
+    const auto found = statuses.find(process);
+    if (found == statuses.end()) return -1;
+    for (const auto& [counter, value] : found->second.counters) {
+      if (counter == name) return value;
+    }
+    return 0;
+  }
+
+  LcmBus bus{""};
+  std::map<std::string, Status> statuses;
+};
+
+int Ready(const Arguments& processes) {
+  Listener listener;
+  for (const std::string& process : processes) {
+    listener.RunUntil([&] { return listener.statuses.count(process) != 0; },
+                      "a status of " + process);
+  }
+  return 0;
+}
+
+/// Every channel's messages cut short, torn and drawn by lot.
+std::vector<std::pair<std::string, Bytes>> MakeGarbage() {
+  std::vector<std::pair<std::string, Bytes>> garbage;
+  std::mt19937 random(1);
+  for (Message& message : testing::RandomMessages(1).OneOfEach()) {
+    if (auto* image = std::get_if<Image>(&message)) image->camera = "rgb";
+    const std::string channel = ChannelOf(message);
+    const Bytes good = Encode(message);
+    for (const std::size_t size : {std::size_t{0}, std::size_t{3}, good.size() / 2}) {
+      garbage.emplace_back(channel, Bytes(good.begin(), good.begin() + static_cast<long>(size)));
+    }
+    Bytes longer = good;
+    longer.push_back(0);
+    garbage.emplace_back(channel, longer);
+    Bytes noise(1000);
+    for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
+    garbage.emplace_back(channel, noise);
+    std::copy(good.begin(), good.begin() + 8, noise.begin());  // the type's own fingerprint
+    garbage.emplace_back(channel, noise);
+  }
+  return garbage;
+}
+
+int Garbage(const Arguments& processes) {
+  Listener listener;
+  for (const auto& [channel, bytes] : MakeGarbage()) listener.bus.Publish(channel, bytes);
+  for (const std::string& process : processes) {
+    listener.RunUntil(
+        [&] {
+          return listener.Counter(process, "dropped") > 0 &&
+                 !listener.statuses[process].last_problem.empty();
+        },
+        process + " to name garbage in its status");
+    std::printf("%s: dropped %lld, last: %s\n", process.c_str(),
+                static_cast<long long>(listener.Counter(process, "dropped")),
+                listener.statuses[process].last_problem.c_str());
+  }
+  return 0;
+}
+
+void Print(const CameraCalibration& calibration) {
+  const Rigid3& pose = calibration.camera_from_lidar;
+  std::printf("%s %s", calibration.camera.c_str(), calibration.status.c_str());
+  for (const double value :
+       {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z(),
+        pose.translation.x(), pose.translation.y(), pose.translation.z()}) {
+    std::printf(" %.17g", value);
+  }
+  std::printf("\n");
+}
+
+// The solver repeats its calibration at 1 Hz: what comes after the last observation is the result.
+int PrintLive(const Arguments& arguments) {
+  const std::int64_t observations = 2 * std::stoll(arguments.at(0));
+  Listener listener;
+  std::map<std::string, CameraCalibration> found;
+  listener.bus.Subscribe(
+      "CALIBRATION", [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        if (listener.Counter("solver", "observations") < observations) return;
+        try {
+          const auto message = std::get<CalibrationMessage>(Decode(channel, data, size));
+          found[message.calibration.camera] = message.calibration;
+        } catch (const InputError&) {  // the log's garbage
+        }
+      });
+  listener.RunUntil([&] { return found.size() == 2; }, "two calibrated cameras");
+  for (const auto& [camera, calibration] : found) Print(calibration);
+  int code = 0;
+  for (const auto& [process, status] : listener.statuses) {
+    const std::int64_t gaps = listener.Counter(process, "gaps");
+    if (gaps <= 0) continue;
+    std::fprintf(stderr, "%s counted %lld gaps\n", process.c_str(), static_cast<long long>(gaps));
+    code = 3;
+  }
+  return code;
+}
+
+int PrintFile(const Arguments& arguments) {
+  std::map<std::string, CameraCalibration> found;
+  for (const CameraCalibration& c : ReadCalibration(arguments.at(0)).cameras) found[c.camera] = c;
+  for (const auto& [camera, calibration] : found) Print(calibration);
+  return 0;
+}
+
+// As NodeRunner counts them: by channel, where several speak by channel and sender.
+int PrintGaps(const Arguments& arguments) {
+  LogReader log(arguments.at(0));
+  std::map<std::string, SequenceCounter> counters;
+  std::map<std::string, std::int64_t> messages, gaps;
+  while (const auto event = log.Next()) {
+    try {
+      const Message message = Decode(event->channel, event->bytes.data(), event->bytes.size());
+      std::string key = event->channel;
+      if (const auto* status = std::get_if<Status>(&message)) key += " " + status->process;
+      if (const auto* done = std::get_if<SessionEvent>(&message)) key += " " + done->source;
+      ++messages[key];
+      gaps[key] += counters[key].Add(SeqOf(message)).gaps;
+    } catch (const InputError&) {  // garbage
+    }
+  }
+  int code = 0;
+  for (const auto& [key, missing] : gaps) {
+    if (missing == 0) continue;
+    std::printf("%s: %lld of %lld missing\n", key.c_str(), static_cast<long long>(missing),
+                static_cast<long long>(missing + messages[key]));
+    code = 3;
+  }
+  return code;
+}
+
+int Run(const std::string& verb, const Arguments& arguments) {
+  if (verb == "ready") return Ready(arguments);
+  if (verb == "garbage") return Garbage(arguments);
+  if (verb == "calibration") return PrintLive(arguments);
+  if (verb == "gaps") return PrintGaps(arguments);
+  if (verb == "print") return PrintFile(arguments);
+  return Usage();
+}
+
+}  // namespace
+}  // namespace rgbdt
+
+int main(int argc, char** argv) {
+  if (argc < 3) return rgbdt::Usage();
+  try {
+    return rgbdt::Run(argv[1], rgbdt::Arguments(argv + 2, argv + argc));
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "live_helper: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,106 @@
+#include "tests/replay/harness.h"
+
+#include <stdexcept>
+
+#include "calib/files/calibration_file.h"
+#include "tests/nodes/nodes_testing.h"
+
+namespace rgbdt::test {
+
+bool IsInput(const std::string& channel) {
+  static const std::string kImage = "_IMAGE";
+  const bool image = channel.size() > kImage.size() &&
+                     channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0;
+  return image || channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
+         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND";
+}
+
+Services::Services(Bus* bus)
+    : assembler_runner(&assembler, bus),
+      detector_runner(&detector, bus),
+      solver_runner(&solver, bus),
+      fuser_runner(&fuser, bus) {}
+
+std::vector<NodeRunner*> Services::runners() {
+  return {&assembler_runner, &detector_runner, &solver_runner, &fuser_runner};
+}
+
+std::int64_t Services::gaps() const {
+  return assembler_runner.gaps() + detector_runner.gaps() + solver_runner.gaps() +
+         fuser_runner.gaps();
+}
+
+std::int64_t Services::dropped() const {
+  return assembler_runner.dropped() + detector_runner.dropped() + solver_runner.dropped() +
+         fuser_runner.dropped();
+}
+
+std::string Services::Calibration() const {
+  return solver.report() ? PrintCalibration(solver.report()->ToCalibration()) : "";
+}
+
+SessionScript MakeScript(int views) {
+  SessionScript script;
+  const auto add = [&](SessionStep::Kind kind) {
+    script.steps.emplace_back();
+    script.steps.back().kind = kind;
+    return &script.steps.back();
+  };
+  for (int view = 0; view < views; ++view) {
+    add(SessionStep::Kind::kNextPose);
+    add(SessionStep::Kind::kSweep);
+    SessionStep* capture = add(SessionStep::Kind::kCapture);
+    capture->heldout = view % 3 == 2;
+    capture->picked_cameras = {"thermal"};
+  }
+  add(SessionStep::Kind::kSolve);
+  add(SessionStep::Kind::kEvaluate);
+  add(SessionStep::Kind::kSave);
+  return script;
+}
+
+SessionRun RunSession(const simulate::Options& options, const SessionScript& script,
+                      const std::filesystem::path& directory) {
+  SessionRun run;
+  MemoryBus bus;
+  bus.Subscribe(".*", [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+    run.recording.push_back({channel, Bytes(data, data + size)});
+  });
+  SimulatorNode simulator(options);
+  run.rig = RigOf(simulator.simulator());
+  SessionNode session(script, run.rig, directory, {});
+  Services services(&bus);
+  NodeRunner simulator_runner(&simulator, &bus);
+  NodeRunner session_runner(&session, &bus);
+  constexpr int kMaxTurns = 1'000'000;
+  for (int turn = 0; turn < kMaxTurns && !session.finished(); ++turn) {
+    if (turn % 500 == 0) {  // once a second or so
+      session_runner.Tick();
+      bus.Run();
+      for (NodeRunner* runner : services.runners()) runner->Tick();
+    }
+    session_runner.Publish(session.Advance(turn * 0.001));
+    bus.Run();
+    if (simulator.NextDue()) simulator_runner.Publish(simulator.TakeNext());
+    bus.Run();
+  }
+  if (!session.finished()) throw std::runtime_error("the session did not end");
+  run.failure = session.failure();
+  run.calibration = services.Calibration();
+  run.truth = simulator.simulator().truth();
+  run.gaps = services.gaps() + session_runner.gaps() + simulator_runner.gaps();
+  run.dropped = services.dropped() + session_runner.dropped() + simulator_runner.dropped();
+  return run;
+}
+
+std::unique_ptr<Services> Replay(const Recording& recording, MemoryBus* bus) {
+  auto services = std::make_unique<Services>(bus);
+  for (const Recorded& message : recording) {
+    if (!IsInput(message.channel)) continue;
+    bus->Publish(message.channel, message.bytes);
+    bus->Run();
+  }
+  return services;
+}
+
+}  // namespace rgbdt::test
