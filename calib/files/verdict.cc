@@ -27,7 +27,7 @@ class Judgement {
     Say(sentence);
   }
   Verdict Finish() {
-    verdict_.headline = verdict_.grade == Grade::kGood      ? "Good: it can be used."
+    verdict_.headline = verdict_.grade == Grade::kGood ? "Consistent: no sign that it is wrong."
                         : verdict_.grade == Grade::kCaution ? "Take care before using it."
                                                             : "Do not use it.";
     return verdict_;

@@ -48,7 +48,7 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
     change(&report.cameras[0]);
     return ReportHtml(report, {});
   };
-  EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Good: it can be used."));
+  EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Consistent: no sign that it is wrong."));
   const std::string failed = page([](CameraReport* camera) {
     camera->calibration.converged = false;
     camera->calibration.status = "too few views";
