@@ -1,6 +1,6 @@
 #include "calib/files/pcd_table.h"
 
-#include <pcl/io/lzf.h>
+#include <liblzf/lzf.h>
 
 #include <charconv>
 #include <cmath>
@@ -238,7 +238,7 @@ void Table::Unpack(std::string_view data) {
   // LZF makes at most 264 bytes of 3: more is a forged length.
   if (unpacked > std::size_t{packed} * 100) Fail("is damaged: its unpacked length cannot be true");
   unpacked_.resize(unpacked);
-  if (pcl::lzfDecompress(data.data(), packed, unpacked_.data(), unpacked) != unpacked) {
+  if (lzf_decompress(data.data(), packed, unpacked_.data(), unpacked) != unpacked) {
     Fail("is damaged: its points cannot be unpacked");
   }
   binary_ = unpacked_;

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "services/rgbdt/verbs.h"
 
@@ -11,12 +12,18 @@ int main(int argc, char** argv) {
       "rgbdt"};
   app.require_subcommand(1);
   int exit_code = 0;
+  const std::string verb = argc > 1 ? argv[1] : "";
   rgbdt::AddCalibrate(&app, &exit_code);
   rgbdt::AddEvaluate(&app, &exit_code);
   rgbdt::AddFuse(&app, &exit_code);
   rgbdt::AddSimulate(&app, &exit_code);
   rgbdt::AddReplay(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);
+  const auto is_it = [&](const CLI::App* candidate) { return candidate->get_name() == verb; };
+  if (!verb.empty() && verb[0] != '-' && app.get_subcommands(is_it).empty()) {
+    std::fprintf(stderr, "rgbdt: there is no verb \"%s\"; see rgbdt --help\n", verb.c_str());
+    return 1;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -64,8 +65,12 @@ int Run(const Flags& flags) {
               100.0 * static_cast<double>(coloured) / static_cast<double>(fused.size()));
   if (flags.png) {
     WritePng(out / "fused_rgb.png", DrawCloud(fused, CloudColour::kRgb, {}));
-    WritePng(out / "fused_thermal.png", DrawCloud(fused, CloudColour::kThermal, {}));
-    std::printf(", fused_rgb.png, fused_thermal.png");
+    std::printf(", fused_rgb.png");
+    if (std::any_of(fused.thermal_counts.begin(), fused.thermal_counts.end(),
+                    [](float counts) { return std::isfinite(counts); })) {
+      WritePng(out / "fused_thermal.png", DrawCloud(fused, CloudColour::kThermal, {}));
+      std::printf(", fused_thermal.png");
+    }
   }
   std::printf(" to %s\n", out.c_str());
   return 0;

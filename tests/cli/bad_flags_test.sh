@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Flags, scripts and folders that make no sense. Usage: bad_flags_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+mkdir "$scratch/kept"
+accepts "a session of one view" "$bin/rgbdt" simulate "$scratch/good" --views 1
+good=$scratch/good
+
+refuses "no verb" "$bin/rgbdt"
+says=("frobnicate")
+refuses "an unknown verb" "$bin/rgbdt" frobnicate
+says=("--colour")
+refuses "an unknown flag" "$bin/rgbdt" calibrate "$good" --colour
+says=("DIR")
+refuses "no directory" "$bin/rgbdt" calibrate
+says=("magic" "paper")
+refuses "an unknown method" "$bin/rgbdt" calibrate "$good" --method magic --out "$scratch/kept"
+says=("--views" "0")
+refuses "no views at all" "$bin/rgbdt" simulate "$scratch/new" --views 0
+says=("--scene" "moon")
+refuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
+says=("front" "rgb" "thermal")
+refuses "picks for a camera that is not there" "$bin/rgbdt" simulate "$scratch/new" --picked front
+says=("views")
+refuses "too few views" "$bin/rgbdt" calibrate "$good" --out "$scratch/out"
+
+: >"$scratch/file"
+says=("$scratch/file")
+refuses "a file in place of a folder" "$bin/rgbdt" calibrate "$good" --out "$scratch/file/out"
+if [ "$(id -u)" -ne 0 ]; then
+  mkdir "$scratch/locked"
+  chmod a-w "$scratch/locked"
+  says=("$scratch/locked")
+  refuses "a folder that nobody may write" "$bin/rgbdt" calibrate "$good" --out "$scratch/locked"
+fi
+says=("/proc/rgbdt")
+refuses "a file system that takes no files" "$bin/rgbdt" simulate /proc/rgbdt --views 1
+
+for process in assembler detector solver fuser simulator; do
+  says=("--colour")
+  refuses "an unknown flag of rgbdt-$process" "$bin/rgbdt-$process" --colour
+  says=("nonsense://")
+  refuses "a bus that is none (rgbdt-$process)" "$bin/rgbdt-$process" --lcm-url nonsense://
+done
+says=("--speed")
+refuses "standing still" "$bin/rgbdt-simulator" --speed 0
+
+script=$scratch/session.textproto
+run=("$bin/rgbdt-session" "$script" --rig "$good/rig.textproto" --out "$scratch/kept/session")
+refuses "no session script" "$bin/rgbdt-session"
+says=("session.textproto")
+refuses "a missing script" "${run[@]}"
+printf 'step { next_pose {} }\nstep { frobnicate {} }\n' >"$script"
+says=("session.textproto:2" "frobnicate")
+refuses "an unknown key in the script" "${run[@]}"
+echo 'step { capture {} }' >"$script"
+says=("session.textproto" "sweep")
+refuses "a capture without a sweep" "${run[@]}"
+: >"$script"
+says=("session.textproto" "step")
+refuses "a script without steps" "${run[@]}"
+echo 'step { next_pose {} }' >"$script"
+says=("nowhere.textproto")
+refuses "a missing rig" "$bin/rgbdt-session" "$script" --rig "$scratch/nowhere.textproto"
+mkdir -p "$scratch/kept/session/views/0001"
+: >"$scratch/kept/session/views/0001/view.textproto"
+says=("kept/session/views" "earlier session")
+refuses "another session's views" "${run[@]}"
+
+verdict

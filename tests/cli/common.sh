@@ -1,0 +1,48 @@
+# shellcheck shell=bash
+# Sourced by the command-line tests. Usage of each: NAME_test.sh BIN_DIR
+
+# shellcheck disable=SC2034 # for the tests
+bin=$1
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/rgbdt-cli-XXXXXX")
+trap 'chmod -R u+w "$scratch"; rm -rf "$scratch"' EXIT
+failures=0
+
+complain() {
+  printf 'FAILED: %s\n' "$*" >&2
+  sed 's/^/    /' "$scratch/output" >&2
+  failures=$((failures + 1))
+}
+
+# refuses "what" COMMAND...: fails, by itself and not by a signal, with a line that holds each of
+# the words given by `says` before; nothing in $scratch/kept changes.
+says=()
+refuses() {
+  local what=$1 code=0 word before
+  shift
+  before=$(fingerprint)
+  timeout 120 "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
+  [ "$code" -ne 0 ] || complain "$what: exit code 0"
+  [ "$code" -lt 124 ] || complain "$what: exit code $code, a signal or a time-out"
+  for word in "${says[@]}"; do
+    grep -qiF -- "$word" "$scratch/output" || complain "$what: no word of '$word'"
+  done
+  if grep -qE 'terminate called|Assertion|Aborted|libprotobuf|Segmentation' "$scratch/output"; then
+    complain "$what: it broke down"
+  fi
+  [ "$(fingerprint)" = "$before" ] || complain "$what: existing outputs changed"
+  says=()
+}
+
+accepts() {
+  local what=$1 code=0
+  shift
+  timeout 120 "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
+  [ "$code" -eq 0 ] || complain "$what: exit code $code"
+}
+
+fingerprint() { find "$scratch/kept" -type f -exec md5sum {} + 2>/dev/null | sort | md5sum; }
+
+verdict() {
+  [ "$failures" -eq 0 ] || exit 1
+  echo "passed"
+}
