@@ -107,7 +107,12 @@ std::vector<std::pair<std::string, Bytes>> MakeGarbage() {
 
 int Garbage(const Arguments& processes) {
   Listener listener;
-  for (const auto& [channel, bytes] : MakeGarbage()) listener.bus.Publish(channel, bytes);
+  for (const auto& [channel, bytes] : MakeGarbage()) {
+    listener.bus.Publish(channel, bytes);
+    // One at a time: lcm-logger's queue holds 30 messages, and a burst would cost it good ones.
+    const Clock::time_point next = Clock::now() + std::chrono::milliseconds(10);
+    while (Clock::now() < next) listener.bus.Run(5);
+  }
   for (const std::string& process : processes) {
     listener.RunUntil(
         [&] {

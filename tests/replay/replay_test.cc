@@ -129,9 +129,9 @@ TEST_F(ReplayTest, TheInputsAloneGiveTheSameBitForBit) {
   EXPECT_TRUE(clouds(made) == clouds(run_->recording));
 }
 
-// A lost line shows as a gap across the board. Compared with the result of the whole log: the paper's
-// objective is flat within two pixels, which leaves 0.2 degrees and 15 mm at best (DESIGN.md, "The
-// beam"), so no more than that may a line in 1200 move it.
+// A lost line shows as a gap across the board. Compared with the result of the whole log: the
+// paper's objective is flat within two pixels, which leaves 0.2 degrees and 15 mm at best
+// (DESIGN.md, "The beam"), so no more than that may a line in 1200 move it.
 TEST_F(ReplayTest, ADroppedAndTwoReorderedMessagesAreCountedAndHardlyMatter) {
   Recording damaged = run_->recording;
   const auto lines = PlacesOf("LINE_SCAN");
