@@ -8,6 +8,7 @@
 #include "calib/files/report_file.h"
 #include "calib/files/session_dir.h"
 #include "calib/model/errors.h"
+#include "services/nodes/solver_node.h"
 
 namespace rgbdt {
 namespace {
@@ -232,8 +233,13 @@ void SessionNode::Save() {
     return;
   }
   const Report report = ReportFromJson(report_->json);
-  WriteCalibration(directory_ / "calibration.textproto", report.ToCalibration());
   WriteReport(directory_ / "report.json", report);
+  for (const CameraReport& camera : report.cameras) {
+    if (IsSolved(camera)) continue;
+    Fail("camera " + camera.calibration.camera + ": " + camera.calibration.status);
+    return;
+  }
+  WriteCalibration(directory_ / "calibration.textproto", report.ToCalibration());
   Say("saved to " + directory_.string(), 1);
 }
 

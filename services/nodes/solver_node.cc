@@ -28,6 +28,8 @@ std::string Brief(const Report& report, bool heldout) {
 
 }  // namespace
 
+bool IsSolved(const CameraReport& camera) { return camera.distance_transform_px.train.has_value(); }
+
 SolverNode::SolverNode(CalibrateOptions options) : options_(std::move(options)) {
   options_.Check();
 }
@@ -88,7 +90,7 @@ Messages SolverNode::Calibrations() const {
   Messages out;
   if (!report_) return out;
   for (const CameraReport& camera : report_->cameras) {
-    if (!camera.distance_transform_px.train) continue;  // not solved: only the guess
+    if (!IsSolved(camera)) continue;
     out.push_back(CalibrationMessage{0, report_->utime, report_->rig_hash, report_->method,
                                      camera.calibration});
   }

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/calibration_file.h"
 #include "calib/solve/calibrate.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/report_table.h"
@@ -26,10 +25,10 @@ int Run(const Flags& flags) {
   Report report = Calibrate(session.rig, detection.observations, flags.options);
   const std::filesystem::path truth = PathOr(flags.truth, session.root / "truth.textproto");
   if (!flags.truth.empty() || std::filesystem::exists(truth)) AddTruth(ReadTruth(truth), &report);
-  WriteCalibration(out / "calibration.textproto", report.ToCalibration());
+  const std::string written = WriteIfSolved(out, report);
   WriteReportFiles(out, session, detection.observations, report);
   std::fputs(ReportTable(report).c_str(), stdout);
-  std::printf("wrote %s, report.json, report.html\n", (out / "calibration.textproto").c_str());
+  std::printf("%s report.json, report.html\n", written.c_str());
   for (const std::string& line : detection.unreadable) {
     std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
   }

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/model/errors.h"
 #include "services/bus/log.h"
@@ -12,6 +11,7 @@
 #include "services/nodes/solver_node.h"
 #include "services/rgbdt/report_table.h"
 #include "services/rgbdt/verbs.h"
+#include "services/rgbdt/write_report.h"
 
 namespace rgbdt {
 namespace {
@@ -78,11 +78,11 @@ int Run(const Flags& flags) {
                      solver.GetStatus().text + "; detector: " + detector.GetStatus().text);
   }
   const std::filesystem::path out = flags.out;
-  WriteCalibration(out / "calibration.textproto", solver.report()->ToCalibration());
+  const std::string written = WriteIfSolved(out, *solver.report());
   WriteReport(out / "report.json", *solver.report());
   std::fputs(ReportTable(*solver.report()).c_str(), stdout);
   std::printf("fuser: %s\n", fuser_runner.GetStatus().text.c_str());
-  std::printf("wrote %s, report.json\n", (out / "calibration.textproto").c_str());
+  std::printf("%s report.json\n", written.c_str());
   return AllConverged(*solver.report()) ? 0 : 1;
 }
 

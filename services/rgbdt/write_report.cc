@@ -6,8 +6,10 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
 #include "calib/files/atomic_file.h"
+#include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/files/report_html.h"
+#include "services/nodes/solver_node.h"
 
 namespace rgbdt {
 namespace {
@@ -60,6 +62,15 @@ const Observation* ToShow(const std::string& camera, const std::vector<Observati
 }
 
 }  // namespace
+
+std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report) {
+  const std::filesystem::path path = dir / "calibration.textproto";
+  if (!std::any_of(report.cameras.begin(), report.cameras.end(), IsSolved)) {
+    return "no camera was solved, so " + path.string() + " was not written; wrote";
+  }
+  WriteCalibration(path, report.ToCalibration());
+  return "wrote " + path.string() + ",";
+}
 
 void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
                       const std::vector<Observation>& observations, const Report& report) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "calib/files/session_dir.h"
@@ -12,5 +13,9 @@ namespace rgbdt {
 /// none, one used) with the cloud's boundary points laid on the image by the calibration.
 void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
                       const std::vector<Observation>& observations, const Report& report);
+
+/// calibration.textproto into `dir`, unless no camera was solved: a guess must not take the place
+/// of what an earlier run found. Returns what it did, in words: "wrote DIR/calibration.textproto,".
+std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report);
 
 }  // namespace rgbdt

@@ -23,8 +23,12 @@ says=("--scene" "moon")
 refuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
 says=("front" "rgb" "thermal")
 refuses "picks for a camera that is not there" "$bin/rgbdt" simulate "$scratch/new" --picked front
-says=("views")
+mkdir "$scratch/out"
+echo "what an earlier run found" >"$scratch/out/calibration.textproto"
+says=("1 usable views" "calibration.textproto was not written")
 refuses "too few views" "$bin/rgbdt" calibrate "$good" --out "$scratch/out"
+grep -q "an earlier run" "$scratch/out/calibration.textproto" ||
+  complain "a guess took the place of a calibration"
 
 : >"$scratch/file"
 says=("$scratch/file")

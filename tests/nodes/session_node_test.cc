@@ -83,7 +83,9 @@ class World {
     for (const CameraSpec& camera : TinyRig().cameras) {
       report.cameras.emplace_back();
       report.cameras.back().calibration.camera = camera.name;
-      report.cameras.back().calibration.converged = true;
+      report.cameras.back().calibration.converged = solved;
+      report.cameras.back().calibration.status = solved ? "converged" : "2 usable views";
+      if (solved) report.cameras.back().distance_transform_px.train = 1;
     }
     report.method = "paper";
     report.rig_hash = TinyRig().hash;
@@ -106,6 +108,7 @@ class World {
   Utime now = kNow;
   std::optional<SessionVerb> silent_at, failing_at;
   bool images = true;
+  bool solved = true;
   std::vector<SessionCommand> commands;
 
  private:
@@ -314,6 +317,16 @@ TEST_F(SessionNodeTest, SaveWithoutAReportFails) {
   EverybodyReady();
   Run();
   EXPECT_THAT(node_->failure(), HasSubstr("put solve before save"));
+}
+
+TEST_F(SessionNodeTest, TooFewViewsForACalibrationFailWithTheReason) {
+  world_.solved = false;
+  Start(Script(kOneView));
+  EverybodyReady();
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("save"), HasSubstr("camera rgb: 2 usable views")));
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "session/report.json"));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "session/calibration.textproto"));
 }
 
 TEST_F(SessionNodeTest, AViewThatCannotBeWrittenEndsTheSession) {
