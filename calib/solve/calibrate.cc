@@ -20,7 +20,6 @@ namespace {
 using Views = std::vector<const Observation*>;
 
 // Share of points in the image below which the paper saw no convergence (section III).
-constexpr int kRotationIterations = 50;  // enough to come round; the rest is for both
 constexpr double kMinShareInImage = 0.5;
 
 // One camera's observations in the order of their views, whatever order they came in.
@@ -179,7 +178,7 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   solver.minimizer_type = ceres::TRUST_REGION;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = std::min(options.max_iterations, kRotationIterations);
+  solver.max_num_iterations = options.max_iterations;
   solver.num_threads = 1;  // the same input gives the same bits; the look-up tables are shared
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
@@ -188,7 +187,6 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   problem.SetManifold(delta.data(), new ceres::SubsetManifold(6, {3, 4, 5}));
   ceres::Solve(solver, &problem, &summary);
   problem.SetManifold(delta.data(), nullptr);
-  solver.max_num_iterations = options.max_iterations;
   ceres::Solve(solver, &problem, &summary);
 
   CameraCalibration result;
