@@ -51,14 +51,10 @@ int main(int argc, char** argv) {
   std::string truth_file;
   double speed = 1;
   rgbdt::simulate::Options options;
-  const std::map<std::string, rgbdt::simulate::Scene> scenes = {
-      {"outdoor", rgbdt::simulate::Scene::kOutdoor},
-      {"indoor", rgbdt::simulate::Scene::kIndoor},
-      {"night", rgbdt::simulate::Scene::kNight}};
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
   app.add_option("--seed", options.seed, "of everything random")->capture_default_str();
   app.add_option("--scene", options.scene, "outdoor, indoor or night")
-      ->transform(CLI::CheckedTransformer(scenes));
+      ->transform(CLI::CheckedTransformer(rgbdt::simulate::kSceneNames));
   app.add_option("--speed", speed, "simulated seconds per second")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();

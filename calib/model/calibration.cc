@@ -4,7 +4,9 @@ namespace rgbdt {
 
 Calibration Report::ToCalibration() const {
   Calibration calibration{method, rig_hash, utime, {}};
-  for (const CameraReport& camera : cameras) calibration.cameras.push_back(camera.calibration);
+  for (const CameraReport& camera : cameras) {
+    if (camera.solved()) calibration.cameras.push_back(camera.calibration);
+  }
   return calibration;
 }
 

@@ -79,6 +79,9 @@ struct CameraReport {
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views
+
+  /// Whether the pose is more than the rig's guess: there were views enough to solve it.
+  bool solved() const { return distance_transform_px.train.has_value(); }
 };
 
 struct Report {
@@ -87,6 +90,7 @@ struct Report {
   Utime utime = 0;
   std::vector<CameraReport> cameras;
 
+  /// The cameras that were solved: a guess is no calibration.
   Calibration ToCalibration() const;
 };
 

@@ -125,15 +125,23 @@ void AppendLostLines(int count, const Cloud& next, Cloud* sweep) {
   }
 }
 
-// Vectors of a cloud may be empty, but all chunks of a sweep must agree on which: joined, they
-// would be shorter than `points`.
-bool TellTheSame(const Cloud& a, const Cloud& b) {
-  return a.organised == b.organised && a.directions.empty() == b.directions.empty() &&
-         a.origins.empty() == b.origins.empty() && a.intensity.empty() == b.intensity.empty() &&
-         a.utime.empty() == b.utime.empty() && a.ring.empty() == b.ring.empty();
-}
-
 }  // namespace
+
+void RequireJoinable(const Cloud& a, const Cloud& b) {
+  // Vectors of a cloud may be empty, but joined to others they would be shorter than `points`.
+  if (a.organised != b.organised || a.directions.empty() != b.directions.empty() ||
+      a.origins.empty() != b.origins.empty() || a.intensity.empty() != b.intensity.empty() ||
+      a.utime.empty() != b.utime.empty() || a.ring.empty() != b.ring.empty()) {
+    throw InputError(
+        "a sweep's chunks differ in what they tell of their points (directions, origins, "
+        "intensity, utime, ring): those of lines " +
+        std::to_string(a.first_line) + " and " + std::to_string(b.first_line));
+  }
+  if (a.organised && a.beams != b.beams) {
+    throw InputError("a sweep's chunks have " + std::to_string(a.beams) + " and " +
+                     std::to_string(b.beams) + " beams per line");
+  }
+}
 
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
   std::vector<const Cloud*> parts;
@@ -150,17 +158,8 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
       sweep.beams = part->beams;
       sweep.organised = part->organised;
     }
-    if (!TellTheSame(*part, *parts.front())) {
-      throw InputError(
-          "a sweep's chunks differ in what they tell of their points (directions, origins, "
-          "intensity, utime, ring): those of lines " +
-          std::to_string(sweep.first_line) + " and " + std::to_string(part->first_line));
-    }
+    RequireJoinable(*parts.front(), *part);
     const int place = part->first_line - sweep.first_line;
-    if (sweep.organised && part->beams != sweep.beams) {
-      throw InputError("a sweep's chunks have " + std::to_string(sweep.beams) + " and " +
-                       std::to_string(part->beams) + " beams per line");
-    }
     if (place < sweep.lines) continue;  // the same lines again
     constexpr std::int64_t kMaxPoints = 100'000'000;
     if (static_cast<std::int64_t>(place + part->lines) * sweep.beams > kMaxPoints) {

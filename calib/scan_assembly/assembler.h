@@ -42,10 +42,13 @@ std::optional<std::vector<double>> BeamAngles(const TurnedScanner& scanner,
                                               const EncoderTrack& track, const LineScan& line,
                                               Utime max_gap);
 
+/// Throws InputError where two chunks of a sweep differ in beams per line or in which of a cloud's
+/// vectors they fill.
+void RequireJoinable(const Cloud& a, const Cloud& b);
+
 /// Puts chunks back together, in the order of their lines; a chunk that came twice counts once.
 /// Lines that never came become lines of NaN without known directions, so neighbours in the cloud
-/// are neighbours in the sweep. Throws InputError where chunks differ in beams per line
-/// or in which of a cloud's vectors they fill.
+/// are neighbours in the sweep. Throws InputError where they are not joinable.
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,10 @@
 namespace rgbdt::simulate {
 
 enum class Scene { kOutdoor, kIndoor, kNight };
+
+/// As a person types them.
+inline const std::map<std::string, Scene> kSceneNames = {
+    {"outdoor", Scene::kOutdoor}, {"indoor", Scene::kIndoor}, {"night", Scene::kNight}};
 
 inline constexpr double kDegree = 3.14159265358979323846 / 180;
 

@@ -8,7 +8,6 @@
 #include "calib/files/report_file.h"
 #include "calib/files/session_dir.h"
 #include "calib/model/errors.h"
-#include "services/nodes/solver_node.h"
 
 namespace rgbdt {
 namespace {
@@ -234,12 +233,15 @@ void SessionNode::Save() {
   }
   const Report report = ReportFromJson(report_->json);
   WriteReport(directory_ / "report.json", report);
+  const Calibration calibration = report.ToCalibration();
+  if (!calibration.cameras.empty()) {
+    WriteCalibration(directory_ / "calibration.textproto", calibration);
+  }
   for (const CameraReport& camera : report.cameras) {
-    if (IsSolved(camera)) continue;
+    if (camera.solved()) continue;
     Fail("camera " + camera.calibration.camera + ": " + camera.calibration.status);
     return;
   }
-  WriteCalibration(directory_ / "calibration.textproto", report.ToCalibration());
   Say("saved to " + directory_.string(), 1);
 }
 

@@ -8,8 +8,8 @@
 
 #include "calib/files/session_script.h"
 #include "calib/model/rig.h"
-#include "services/nodes/detector_node.h"
 #include "services/nodes/node.h"
+#include "services/nodes/view_collector.h"
 
 namespace rgbdt {
 
@@ -27,9 +27,9 @@ struct SessionProgress {
 /// It begins when assembler, detector, solver and fuser say that they are ready. next_pose and
 /// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
 /// evaluate with the solver's. Save writes the report, and the calibration
-/// if every camera has one. A failed event, no answer in the step's time, a camera that could not
-/// be solved, or a file that cannot be written ends the session with the reason. The wall clock is
-/// handed in, it serves time-outs only.
+/// of the cameras that were solved. A failed event, no answer in the step's time, a camera that
+/// could not be solved, or a file that cannot be written ends the session with the reason. The wall
+/// clock is handed in, it serves time-outs only.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;

@@ -28,8 +28,6 @@ std::string Brief(const Report& report, bool heldout) {
 
 }  // namespace
 
-bool IsSolved(const CameraReport& camera) { return camera.distance_transform_px.train.has_value(); }
-
 SolverNode::SolverNode(CalibrateOptions options) : options_(std::move(options)) {
   options_.Check();
 }
@@ -89,10 +87,9 @@ void SolverNode::Solve(bool wide_start) {
 Messages SolverNode::Calibrations() const {
   Messages out;
   if (!report_) return out;
-  for (const CameraReport& camera : report_->cameras) {
-    if (!IsSolved(camera)) continue;
-    out.push_back(CalibrationMessage{0, report_->utime, report_->rig_hash, report_->method,
-                                     camera.calibration});
+  for (const CameraCalibration& camera : report_->ToCalibration().cameras) {
+    out.push_back(
+        CalibrationMessage{0, report_->utime, report_->rig_hash, report_->method, camera});
   }
   return out;
 }

@@ -12,9 +12,6 @@
 
 namespace rgbdt {
 
-/// Whether a camera's pose is more than the rig's guess: there were views enough to solve it.
-bool IsSolved(const CameraReport& camera);
-
 /// OBSERVATION -> CALIBRATION and REPORT. Solves again after each observation, always from the
 /// rig's guess and from all observations so far, so the order in which they came does not matter;
 /// an observation of a view and camera seen before replaces it. SESSION_COMMAND: solve and evaluate

@@ -1,9 +1,9 @@
+#include "services/nodes/view_collector.h"
+
 #include <algorithm>
 
-#include "calib/camera/pixels.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/assembler.h"
-#include "services/nodes/detector_node.h"
 
 namespace rgbdt {
 
@@ -20,9 +20,7 @@ void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
   const auto first = std::find_if(sweep.chunks.begin(), sweep.chunks.end(),
                                   [](const CloudChunk& c) { return c.cloud.size() != 0; });
   if (first == sweep.chunks.end() || chunk.cloud.size() == 0) return;
-  CloudChunk next = chunk;
-  next.cloud.first_line = first->cloud.first_line + first->cloud.lines;
-  JoinChunks({*first, next});
+  RequireJoinable(first->cloud, chunk.cloud);
 }
 
 void SweepCollector::Add(const CloudChunk& chunk) {
@@ -36,10 +34,14 @@ void SweepCollector::Add(const CloudChunk& chunk) {
   while (sweeps_.size() > kMaxSweeps) sweeps_.erase(sweeps_.begin());
 }
 
-std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
+bool SweepCollector::Ended(Utime sweep_utime) const {
   const auto found = sweeps_.find(sweep_utime);
-  if (found == sweeps_.end() || !found->second.ended) return std::nullopt;
-  Cloud cloud = JoinChunks(found->second.chunks);
+  return found != sweeps_.end() && found->second.ended;
+}
+
+std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
+  if (!Ended(sweep_utime)) return std::nullopt;
+  Cloud cloud = JoinChunks(sweeps_.at(sweep_utime).chunks);
   cloud.sweep_utime = sweep_utime;
   return cloud;
 }
@@ -99,7 +101,7 @@ std::string ViewCollector::Missing(const Rig& rig) const {
   const auto add = [&](const std::string& what) {
     missing += (missing.empty() ? "" : ", ") + what;
   };
-  if (!sweeps_.Complete(capture_->sweep_utime)) {
+  if (!sweeps_.Ended(capture_->sweep_utime)) {
     add("the end of sweep " + std::to_string(capture_->sweep_utime));
   }
   for (const CameraSpec& camera : rig.cameras) {

@@ -57,7 +57,7 @@ std::string ReportTable(const Report& report) {
     row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
   }
   if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
-    row("from 30 deg roll, 40 deg yaw: ends off by", [](const CameraReport& c) {
+    row("a far start ends off the result by", [](const CameraReport& c) {
       return c.other_starts.empty() ? std::string("-") : Error(c.other_starts[0].from_result);
     });
   }

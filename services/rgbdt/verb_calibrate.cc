@@ -23,16 +23,9 @@ int Run(const Flags& flags) {
   const SessionDetection detection = DetectSession(session);
   std::fprintf(stderr, "solving ...\n");
   Report report = Calibrate(session.rig, detection.observations, flags.options);
-  const std::filesystem::path truth = PathOr(flags.truth, session.root / "truth.textproto");
-  if (!flags.truth.empty() || std::filesystem::exists(truth)) AddTruth(ReadTruth(truth), &report);
-  const std::string written = WriteIfSolved(out, report);
-  WriteReportFiles(out, session, detection.observations, report);
-  std::fputs(ReportTable(report).c_str(), stdout);
-  std::printf("%s report.json, report.html\n", written.c_str());
-  for (const std::string& line : detection.unreadable) {
-    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
-  }
-  return AllConverged(report) && detection.unreadable.empty() ? 0 : 1;
+  const std::string wrote = WriteIfSolved(out, report);
+  const bool all_read = FinishReport(out, flags.truth, wrote, session, detection, &report);
+  return all_read && AllConverged(report) ? 0 : 1;
 }
 
 }  // namespace

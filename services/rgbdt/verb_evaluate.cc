@@ -6,7 +6,6 @@
 #include "calib/files/report_file.h"
 #include "calib/solve/calibrate.h"
 #include "services/rgbdt/paths.h"
-#include "services/rgbdt/report_table.h"
 #include "services/rgbdt/session_detection.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
@@ -45,15 +44,8 @@ int Run(const Flags& flags) {
   const SessionDetection detection = DetectSession(session);
   Report report = Evaluate(session.rig, detection.observations, calibration);
   KeepFromSolve(session.root / "report.json", &report);
-  const std::filesystem::path truth = PathOr(flags.truth, session.root / "truth.textproto");
-  if (!flags.truth.empty() || std::filesystem::exists(truth)) AddTruth(ReadTruth(truth), &report);
-  WriteReportFiles(out, session, detection.observations, report);
-  std::fputs(ReportTable(report).c_str(), stdout);
-  std::printf("wrote %s, report.html\n", (out / "report.json").c_str());
-  for (const std::string& line : detection.unreadable) {
-    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
-  }
-  return detection.unreadable.empty() ? 0 : 1;
+  const std::string wrote = "wrote to " + out.string() + ":";
+  return FinishReport(out, flags.truth, wrote, session, detection, &report) ? 0 : 1;
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <map>
 #include <memory>
 
 #include "calib/files/rig_file.h"
@@ -89,12 +88,8 @@ void AddSimulate(CLI::App* app, int* exit_code) {
   verb->add_option("DIR", flags->dir, "session directory to write")->required();
   verb->add_option("--views", flags->views, "how many")->capture_default_str();
   verb->add_option("--seed", flags->options.seed, "of everything random")->capture_default_str();
-  static const std::map<std::string, simulate::Scene> kScenes = {
-      {"outdoor", simulate::Scene::kOutdoor},
-      {"indoor", simulate::Scene::kIndoor},
-      {"night", simulate::Scene::kNight}};
   verb->add_option("--scene", flags->options.scene, "outdoor, indoor or night")
-      ->transform(CLI::CheckedTransformer(kScenes));
+      ->transform(CLI::CheckedTransformer(simulate::kSceneNames));
   verb->add_option("--picked", flags->picked, "cameras whose corners a person picks")
       ->capture_default_str();
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });

@@ -1,6 +1,7 @@
 #include "services/rgbdt/write_report.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 #include "calib/camera/camera.h"
@@ -9,7 +10,8 @@
 #include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/files/report_html.h"
-#include "services/nodes/solver_node.h"
+#include "services/rgbdt/paths.h"
+#include "services/rgbdt/report_table.h"
 
 namespace rgbdt {
 namespace {
@@ -61,17 +63,6 @@ const Observation* ToShow(const std::string& camera, const std::vector<Observati
   return best;
 }
 
-}  // namespace
-
-std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report) {
-  const std::filesystem::path path = dir / "calibration.textproto";
-  if (!std::any_of(report.cameras.begin(), report.cameras.end(), IsSolved)) {
-    return "no camera was solved, so " + path.string() + " was not written; wrote";
-  }
-  WriteCalibration(path, report.ToCalibration());
-  return "wrote " + path.string() + ",";
-}
-
 void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
                       const std::vector<Observation>& observations, const Report& report) {
   WriteReport(dir / "report.json", report);
@@ -87,6 +78,34 @@ void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
          Overlay(session, *shown, camera.calibration.camera_from_lidar)});
   }
   WriteFileAtomically(dir / "report.html", ReportHtml(report, pictures));
+}
+
+}  // namespace
+
+std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report) {
+  const std::filesystem::path path = dir / "calibration.textproto";
+  const Calibration calibration = report.ToCalibration();
+  if (calibration.cameras.empty()) {
+    return "no camera was solved, so " + path.string() + " was not written; wrote";
+  }
+  WriteCalibration(path, calibration);
+  return "wrote " + path.string() + ",";
+}
+
+bool FinishReport(const std::filesystem::path& dir, const std::string& truth,
+                  const std::string& wrote, const Session& session,
+                  const SessionDetection& detection, Report* report) {
+  const std::filesystem::path beside = session.root / "truth.textproto";
+  if (!truth.empty() || std::filesystem::exists(beside)) {
+    AddTruth(ReadTruth(PathOr(truth, beside)), report);
+  }
+  WriteReportFiles(dir, session, detection.observations, *report);
+  std::fputs(ReportTable(*report).c_str(), stdout);
+  std::printf("%s report.json, report.html\n", wrote.c_str());
+  for (const std::string& line : detection.unreadable) {
+    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
+  }
+  return detection.unreadable.empty();
 }
 
 }  // namespace rgbdt

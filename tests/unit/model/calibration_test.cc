@@ -39,23 +39,27 @@ TEST(AddTruth, FillsEveryErrorThatNeedsTruth) {
   EXPECT_FALSE(report.cameras[1].first_guess_error);
 }
 
-TEST(Report, ToCalibrationKeepsEveryCameraAndWhereItComesFrom) {
+TEST(Report, ToCalibrationKeepsTheSolvedCamerasAndWhereItComesFrom) {
   Report report;
   report.method = "paper";
   report.rig_hash = "abc";
   report.utime = 42;
-  report.cameras.resize(2);
+  report.cameras.resize(3);
   report.cameras[0].calibration.camera = "rgb";
+  report.cameras[0].distance_transform_px.train = 1.5;
   report.cameras[1].calibration.camera = "thermal";
-  report.cameras[1].calibration.status = "not calibrated";
+  report.cameras[1].calibration.status = "not converged: stopped";
+  report.cameras[1].distance_transform_px.train = 9.5;
+  report.cameras[2].calibration.camera = "lwir";
+  report.cameras[2].calibration.status = "not calibrated: 0 usable views";
   const Calibration calibration = report.ToCalibration();
   EXPECT_EQ(calibration.method, "paper");
   EXPECT_EQ(calibration.rig_hash, "abc");
   EXPECT_EQ(calibration.utime, 42);
   ASSERT_EQ(calibration.cameras.size(), 2U);
   ASSERT_NE(calibration.Find("thermal"), nullptr);
-  EXPECT_EQ(calibration.Find("thermal")->status, "not calibrated");
-  EXPECT_EQ(calibration.Find("lwir"), nullptr);
+  EXPECT_EQ(calibration.Find("thermal")->status, "not converged: stopped");
+  EXPECT_EQ(calibration.Find("lwir"), nullptr) << "a guess is no calibration";
 }
 
 }  // namespace

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+#include "calib/model/session.h"
+
+namespace rgbdt {
+
+/// Sweeps by their name, as their chunks come in. Keeps the newest few.
+class SweepCollector {
+ public:
+  static constexpr std::size_t kMaxSweeps = 3;
+  static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
+  static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
+
+  /// Throws InputError for a chunk that cannot be joined to those of its sweep.
+  void Add(const CloudChunk& chunk);
+  /// The complete sweep, or nothing while its end has not come.
+  std::optional<Cloud> Complete(Utime sweep_utime) const;
+  bool Ended(Utime sweep_utime) const;
+  void Clear() { sweeps_.clear(); }
+
+ private:
+  struct Sweep {
+    std::vector<CloudChunk> chunks;
+    std::size_t points = 0;
+    bool ended = false;
+  };
+  static void Check(const Sweep& sweep, const CloudChunk& chunk);
+
+  std::map<Utime, Sweep> sweeps_;
+};
+
+/// The view that a capture command asks for, put together from the bus: the sweep it names, each
+/// camera's first image with utime >= the command's and at most kImageWait after it, and the picks
+/// made in those images where the command asks for a person's. Which of these arrives first does
+/// not matter. The newest images before the command are kept (kKept a camera) so that one may come
+/// early; an image older than those by more than kClockReset means that the clock was set back, and
+/// they go. A thermal camera's images from while its shutter corrects are left out.
+class ViewCollector {
+ public:
+  static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
+  static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
+  static constexpr std::size_t kKept = 3;
+
+  void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
+  void Add(const Image& image);
+  void Add(const CornerSelection& picks);
+  /// A new capture replaces one that never became complete.
+  void Begin(const SessionCommand& capture);
+  /// Forgets everything but the newest images.
+  void Reset();
+
+  /// The view, once, as soon as it is complete.
+  std::optional<View> Take(const Rig& rig);
+  bool active() const { return capture_.has_value(); }
+  const SessionCommand& capture() const { return *capture_; }
+  /// What is missing, in words; empty when nothing is.
+  std::string Missing(const Rig& rig) const;
+
+ private:
+  const Image* ImageOf(const std::string& camera) const;
+  const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;
+  bool PersonPicks(const std::string& camera) const;
+
+  std::optional<SessionCommand> capture_;
+  SweepCollector sweeps_;
+  std::map<std::string, std::deque<Image>> images_;
+  std::map<std::string, CornerSelection> picks_;
+};
+
+}  // namespace rgbdt
