@@ -8,6 +8,7 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
+#include "calib/model/rigid3.h"
 
 namespace rgbdt {
 
@@ -21,6 +22,24 @@ struct CornerSelection {
   std::array<Eigen::Vector2d, 4> corners;
 };
 
+/// The target's pose in a sensor's frame: sensor_from_target = Exp(delta) * pose, delta the error
+/// (rx, ry, rz [rad], tx, ty, tz [m]) in the sensor's axes.
+struct TargetPose {
+  Rigid3 sensor_from_target;
+  Matrix6d covariance = Matrix6d::Zero();  ///< of delta
+  /// False: the target may as well be turned by half a turn about its z.
+  bool half_turn_known = false;
+};
+
+/// One side of the board in an image, fitted to the image's own gradient.
+struct ImageSide {
+  bool seen = false;
+  std::string why;                     ///< why it is not seen
+  std::vector<Eigen::Vector2d> curve;  ///< the fitted side as the lens bends it, end to end [px]
+  /// Of the curve's displacement along its normal at its first and last point [px^2].
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+};
+
 /// What one image shows of the target. Pixels of the distorted image, centres at integers.
 struct ImageEdges {
   int width = 0, height = 0;             ///< of the image [px]
@@ -31,6 +50,25 @@ struct ImageEdges {
   std::vector<Eigen::Vector2i> edge_pixels;  ///< the target's edge pixels (paper II-A.1)
   /// The fitted outline, closed, as a chain of points through the lens; for `edge_rms_px`.
   std::vector<Eigen::Vector2d> outline;
+  double corner_sigma_px = 0;      ///< of a corner along x or y, from the pose fit's residuals
+  std::optional<TargetPose> pose;  ///< in the camera; from the corners
+  std::array<ImageSide, 4> sides;  ///< top, right, bottom, left; without a pose none is seen
+};
+
+/// What lies beyond the board where a scan leaves it: it decides how the beam's width moves the
+/// board's apparent edge.
+enum class CrossingKind {
+  kNoReturn = 1,  ///< the beam beyond returned nothing
+  kFar = 2,       ///< something so far behind that returns do not merge
+  kMerged = 3,    ///< something just behind: the returns of a split beam merge
+};
+
+/// Where a scan leaves the board: between the last beam on it and the first beyond.
+struct Crossing {
+  Eigen::Vector3d point{0, 0, 0};  ///< middle of that interval on the board's plane, LIDAR frame
+  double half_width_m = 0;         ///< half of the interval, across the side
+  int side = 0;                    ///< 0 top, 1 right, 2 bottom, 3 left of the target
+  CrossingKind kind = CrossingKind::kNoReturn;
 };
 
 /// What one cloud shows of the target. LIDAR frame, metres.
@@ -41,6 +79,9 @@ struct CloudEdges {
   double width_m = 0, height_m = 0;       ///< measured extent, width >= height
   double spacing_m = 0;                   ///< point spacing on the board, across lines
   int points = 0;                         ///< in the segment
+  /// In the LIDAR frame, from the crossings; absent by the paper's method.
+  std::optional<TargetPose> pose;
+  std::vector<Crossing> crossings;
 };
 
 /// One camera's view of the target together with the cloud's. Either both edges or a reason.
@@ -53,6 +94,8 @@ struct Observation {
   bool heldout = false;
   std::optional<ImageEdges> image;
   std::optional<CloudEdges> cloud;
+  /// All that looks like the target in the cloud, likeliest first; the views together choose.
+  std::vector<CloudEdges> candidates;
   std::string rejected;       ///< why it cannot be used; empty: it can
   double detect_image_s = 0;  ///< computing time
   double detect_cloud_s = 0;

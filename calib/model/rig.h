@@ -51,7 +51,8 @@ struct LidarSpec {
 };
 
 /// The checkerboard. Target frame: origin in the board's centre, x to the right along the width,
-/// y down, z away from who looks at it; the printed side is z = 0.
+/// y down, z away from who looks at it; the printed side is z = 0. The top left square is black:
+/// where squares_x + squares_y is odd, that tells top from bottom.
 struct Target {
   int squares_x = 0, squares_y = 0;        ///< along width and height; inner corners: one fewer
   double square_m = 0;                     ///< side of a square
