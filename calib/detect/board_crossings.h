@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/detect/plane_regions.h"
+#include "calib/detect/range_grid.h"
+#include "calib/model/observation.h"
+
+namespace rgbdt {
+
+/// Two axes in a plane and the place they start from: what is flat is easier in two dimensions.
+struct PlaneFrame {
+  Eigen::Vector3d origin{0, 0, 0};
+  Eigen::Vector3d u{1, 0, 0}, v{0, 1, 0};  ///< unit, in the plane; u x v points away from the LIDAR
+
+  PlaneFrame(const Plane& plane, const Eigen::Vector3d& near);
+  Eigen::Vector2d Flat(const Eigen::Vector3d& p) const {
+    return {u.dot(p - origin), v.dot(p - origin)};
+  }
+  Eigen::Vector3d Solid(const Eigen::Vector2d& p) const { return origin + p.x() * u + p.y() * v; }
+};
+
+/// Where a row or column of beams leaves the plane: the truth lies between the last beam on it and
+/// the first beyond. Places in the plane's frame [m].
+struct FlatCrossing {
+  Eigen::Vector2d middle{0, 0};   ///< of the two beams
+  Eigen::Vector2d outward{0, 0};  ///< unit, from the last beam on the plane to the first beyond
+  double half_m = 0;              ///< half of the distance between the two
+  double length_m = 0;            ///< how much of a side it stands for, were the side across it
+  double range_m = 0;             ///< from the LIDAR
+  Eigen::Vector2d slope{0, 0};    ///< how far the beam moves along the plane per metre of depth
+  CrossingKind kind = CrossingKind::kNoReturn;
+  std::size_t cell = 0;  ///< of the last beam: one cell may be crossed along and across
+};
+
+/// A plane's beams in the grid at full resolution.
+struct PlaneMembers {
+  Plane plane;  ///< fitted to all of them
+  PlaneFrame frame;
+  double rms_m = 0;
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> flat;     ///< where their beams meet the plane
+  std::vector<Eigen::Vector2d> through;  ///< where beams went through the plane and hit beyond
+  std::vector<FlatCrossing> crossings;
+  double row_spacing_m = 0, column_spacing_m = 0;  ///< between neighbouring beams on the plane
+};
+
+/// Looks again, at every beam, at the part of the grid where a region was found, no farther than
+/// `reach_m` from its middle. `sigma_m`: of a range.
+PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region, double reach_m,
+                         double sigma_m);
+
+}  // namespace rgbdt

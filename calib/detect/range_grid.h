@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "calib/model/cloud.h"
+
+namespace rgbdt {
+
+/// A cloud as the sensor saw it: beams in rows and columns, neighbours in the grid being neighbours
+/// in angle. An organised cloud that tells the directions of its misses is taken as it is (line x
+/// beam). Any other is put back into ring x azimuth: by its rings where it has them, by the
+/// elevations that its points keep to, or, where they keep to none, in even cells of angle. There
+/// an empty cell is a beam that returned nothing. LIDAR frame, metres.
+class RangeGrid {
+ public:
+  /// `cloud` outlives the grid.
+  explicit RangeGrid(const Cloud& cloud);
+
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  /// Columns go round: column -1 is the last one.
+  bool wraps() const { return wraps_; }
+  /// Median angle between neighbours [rad]; 0: fewer than two rows (columns).
+  double row_step() const { return row_step_; }
+  double column_step() const { return column_step_; }
+
+  /// Whether a beam was fired there as far as one knows. The column may lie beyond the grid's
+  /// limits where it wraps.
+  bool Contains(int row, int column) const {
+    return row >= 0 && row < rows_ && (wraps_ || (column >= 0 && column < columns_));
+  }
+  /// Index of a cell; it must be contained.
+  std::size_t Cell(int row, int column) const {
+    if (wraps_) column = ((column % columns_) + columns_) % columns_;
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+  bool IsHit(std::size_t cell) const {
+    const std::int64_t i = PointOf(cell);
+    return i >= 0 && std::isfinite(cloud_->points[static_cast<std::size_t>(i)].x());
+  }
+  /// The point of a hit.
+  const Eigen::Vector3f& Point(std::size_t cell) const {
+    return cloud_->points[static_cast<std::size_t>(PointOf(cell))];
+  }
+  /// Where the beam starts.
+  Eigen::Vector3d Origin(std::size_t cell) const;
+  /// Unit direction of the beam; nothing where it is not known.
+  std::optional<Eigen::Vector3d> Direction(std::size_t cell) const;
+  /// How many points the cloud has.
+  int hits() const { return hits_; }
+
+  /// Where a point is seen from the sensor's origin.
+  struct Angles {
+    float azimuth = 0, elevation = 0;  ///< [rad]
+    std::int32_t point = 0;
+  };
+  /// Points that belong to one row each, lowest row first.
+  using Rows = std::vector<std::vector<Angles>>;
+
+ private:
+  std::int64_t PointOf(std::size_t cell) const {
+    return place_.empty() ? static_cast<std::int64_t>(cell) : place_[cell];
+  }
+  void TakeAsItIs();
+  void Rebuild();
+  // Puts rows into columns a step apart; how many points found their cell taken.
+  int Place(const Rows& rows, double step, bool even);
+  void MeasureSteps();
+
+  const Cloud* cloud_;
+  int rows_ = 0, columns_ = 0;
+  bool wraps_ = false;
+  double row_step_ = 0, column_step_ = 0;
+  int hits_ = 0;
+  std::vector<std::int32_t> place_;    // by cell: index of its point, -1: none; empty: the same
+  std::vector<double> row_elevation_;  // rebuilt: of each row
+  std::vector<double> row_azimuth_;    // rebuilt: of each row's column 0
+};
+
+}  // namespace rgbdt
