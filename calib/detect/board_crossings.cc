@@ -35,19 +35,19 @@ class MemberFinder {
   MemberFinder(const RangeGrid& grid, const Window& window) : grid_(grid), window_(window) {}
 
   // Fits the plane to the points near it, twice.
-  Plane Refit(Plane plane, const Eigen::Vector3d& middle, double reach, double tolerance,
-              double* rms) const {
+  Plane Refit(Plane plane, const Eigen::Vector3d& middle, double reach, double tolerance) const {
     for (int round = 0; round < 2; ++round) {
       PlaneSums sums;
       ForEach([&](int, int, std::size_t cell) {
-        if (!grid_.IsHit(cell)) return;
-        const Eigen::Vector3d p = grid_.Point(cell).cast<double>();
-        if (std::abs(plane.Signed(p)) < tolerance && (p - middle).squaredNorm() < reach * reach) {
-          sums.Add(p);
-        }
+        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point) {
+          const Eigen::Vector3d p = point.cast<double>();
+          if (std::abs(plane.Signed(p)) < tolerance && (p - middle).squaredNorm() < reach * reach) {
+            sums.Add(p);
+          }
+        });
       });
       if (sums.count() < 6) return plane;
-      plane = sums.Fit(rms);
+      plane = sums.Fit(nullptr);
     }
     return plane;
   }
@@ -86,8 +86,12 @@ class MemberFinder {
       const double behind = (p - origin).norm() - range;
       if (std::abs(plane.Signed(p)) <= tolerance) {
         beams_[i] = Beam::kOn;
-        members->points.push_back(p);
-        members->flat.push_back(flat_[i]);
+        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point) {
+          const Eigen::Vector3d q = point.cast<double>();
+          if (std::abs(plane.Signed(q)) > tolerance) return;
+          members->points.push_back(q);
+          members->flat.push_back(flat_[i]);
+        });
       } else if (behind < 0) {
         beams_[i] = Beam::kBefore;
       } else {
@@ -128,7 +132,7 @@ class MemberFinder {
     const double stands_for = along_rows ? members->row_spacing_m : members->column_spacing_m;
     for (std::size_t line = 0; line < lines; ++line) {
       const std::size_t start = line * (along_rows ? width_ : 1);
-      CrossLine(start, step, length, stands_for, members);
+      CrossLine(start, step, length, stands_for, along_rows, members);
     }
   }
 
@@ -148,7 +152,7 @@ class MemberFinder {
 
   // Runs of beams on the plane; a hole does not end one.
   void CrossLine(std::size_t start, std::size_t step, std::size_t length, double stands_for,
-                 PlaneMembers* members) const {
+                 bool along_row, PlaneMembers* members) const {
     std::size_t k = 0;
     while (k < length) {
       if (beams_[start + k * step] != Beam::kOn) {
@@ -170,15 +174,16 @@ class MemberFinder {
       }
       if (count < 2) continue;
       if (first > 0) {
-        AddCrossing(start + first * step, start + (first - 1) * step, stands_for, members);
+        AddCrossing(start + first * step, start + (first - 1) * step, stands_for, along_row,
+                    members);
       }
       if (last + 1 < length) {
-        AddCrossing(start + last * step, start + (last + 1) * step, stands_for, members);
+        AddCrossing(start + last * step, start + (last + 1) * step, stands_for, along_row, members);
       }
     }
   }
 
-  void AddCrossing(std::size_t in, std::size_t out, double stands_for,
+  void AddCrossing(std::size_t in, std::size_t out, double stands_for, bool along_row,
                    PlaneMembers* members) const {
     const Beam beam = beams_[out];
     if (beam == Beam::kUnknown || beam == Beam::kBefore || beam == Beam::kOn) return;
@@ -196,6 +201,8 @@ class MemberFinder {
                     : beam == Beam::kFar   ? CrossingKind::kFar
                                            : CrossingKind::kMerged;
     crossing.cell = in;
+    crossing.along_row = along_row;
+    crossing.gap = along_row ? in % width_ : in / width_;
     members->crossings.push_back(crossing);
   }
 
@@ -216,17 +223,13 @@ PlaneFrame::PlaneFrame(const Plane& plane, const Eigen::Vector3d& near)
   v = -plane.normal.cross(u);
 }
 
-PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region, double reach_m,
-                         double sigma_m) {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3f& p : region.points) middle += p.cast<double>();
-  middle /= static_cast<double>(region.points.size());
-  const double tolerance = std::max(0.03, 3.5 * sigma_m);
+PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region,
+                         const MemberOptions& options) {
+  const double tolerance = std::max(0.03, 3.5 * options.sigma_m);
   MemberFinder finder(grid, Around(grid, region));
-  double rms = 0;
-  const Plane plane = finder.Refit(region.plane, middle, reach_m, tolerance, &rms);
-  PlaneMembers members{plane, PlaneFrame(plane, middle), rms, {}, {}, {}, {}, 0, 0};
-  finder.Classify(middle, reach_m, tolerance, &members);
+  const Plane plane = finder.Refit(region.plane, options.middle, options.fit_reach_m, tolerance);
+  PlaneMembers members{plane, PlaneFrame(plane, options.middle), {}, {}, {}, {}, 0, 0};
+  finder.Classify(options.middle, options.reach_m, tolerance, &members);
   finder.Spacings(&members);
   finder.Cross(true, &members);
   finder.Cross(false, &members);

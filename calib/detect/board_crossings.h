@@ -31,14 +31,15 @@ struct FlatCrossing {
   double range_m = 0;             ///< from the LIDAR
   Eigen::Vector2d slope{0, 0};    ///< how far the beam moves along the plane per metre of depth
   CrossingKind kind = CrossingKind::kNoReturn;
-  std::size_t cell = 0;  ///< of the last beam: one cell may be crossed along and across
+  std::size_t cell = 0;    ///< of the last beam: one cell may be crossed along and across
+  bool along_row = false;  ///< the two beams are neighbours in a row
+  std::size_t gap = 0;     ///< the last beam's column (along a row) or row
 };
 
 /// A plane's beams in the grid at full resolution.
 struct PlaneMembers {
   Plane plane;  ///< fitted to all of them
   PlaneFrame frame;
-  double rms_m = 0;
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> flat;     ///< where their beams meet the plane
   std::vector<Eigen::Vector2d> through;  ///< where beams went through the plane and hit beyond
@@ -46,9 +47,15 @@ struct PlaneMembers {
   double row_spacing_m = 0, column_spacing_m = 0;  ///< between neighbouring beams on the plane
 };
 
-/// Looks again, at every beam, at the part of the grid where a region was found, no farther than
-/// `reach_m` from its middle. `sigma_m`: of a range.
-PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region, double reach_m,
-                         double sigma_m);
+struct MemberOptions {
+  double sigma_m = 0.01;            ///< of a range
+  Eigen::Vector3d middle{0, 0, 0};  ///< of what is looked at
+  double reach_m = 1;               ///< no farther from there
+  double fit_reach_m = 1;           ///< the plane is fitted to what is no farther from there
+};
+
+/// Looks again, at every beam, at the part of the grid where a region was found.
+PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region,
+                         const MemberOptions& options);
 
 }  // namespace rgbdt

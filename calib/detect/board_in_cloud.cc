@@ -61,6 +61,7 @@ struct Filling {
   double inside = 0;  // of the beams well inside that were not stopped before: those on the plane
   double beyond = 0;  // how densely a band round the rectangle is on the plane, against its inside
   std::vector<Eigen::Vector3d> points;  // on the board, its rim left out
+  std::vector<Eigen::Vector2d> flat;    // where their beams meet the plane
 };
 
 Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const Target& target) {
@@ -79,7 +80,10 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
   int through = 0;
   for (std::size_t i = 0; i < members.flat.size(); ++i) {
     const double off = outside(members.flat[i]);
-    if (off < -kMargin) filling.points.push_back(members.points[i]);
+    if (off < -kMargin) {
+      filling.points.push_back(members.points[i]);
+      filling.flat.push_back(members.flat[i]);
+    }
     if (off > kMargin && off < kMargin + kBand) ++band;
   }
   for (const Eigen::Vector2d& p : members.through) {
@@ -93,6 +97,30 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
   const double inner_area = (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin);
   filling.beyond = on == 0 ? 1 : std::min(1.0, band / band_area / (on / inner_area));
   return filling;
+}
+
+// The plane of least squares, noise lying along the beams. The plane of least distances would lean
+// by sigma^2 sin cos / extent^2 (angles of incidence), since noise moves the points of a slanted
+// board along it, too. Where the beams meet the plane is free of it.
+Plane PlaneAlongRays(const PlaneMembers& members, const Filling& filling, double* rms) {
+  Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  double squares = 0;
+  for (std::size_t i = 0; i < filling.points.size(); ++i) {
+    const Eigen::Vector3d j(filling.flat[i].x(), filling.flat[i].y(), 1);
+    const double z = members.plane.Signed(filling.points[i]);
+    h += j * j.transpose();
+    g += z * j;
+    squares += z * z;
+  }
+  const Eigen::Vector3d lean = h.ldlt().solve(g);
+  *rms =
+      std::sqrt(std::max(0.0, squares - lean.dot(g)) / static_cast<double>(filling.points.size()));
+  Plane plane;
+  plane.normal =
+      (members.plane.normal - lean.x() * members.frame.u - lean.y() * members.frame.v).normalized();
+  plane.offset = plane.normal.dot(members.frame.origin + lean.z() * members.plane.normal);
+  return plane;
 }
 
 // Of delta in the target's own axes about its centre: tilt and distance from the points' scatter
@@ -179,10 +207,8 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const Target& tar
     return std::nullopt;
   }
   // What sticks out of the rectangle has no say in where its plane lies.
-  PlaneSums sums;
-  for (const Eigen::Vector3d& p : filling.points) sums.Add(p);
   double rms = 0;
-  const Plane plane = sums.Fit(&rms);
+  const Plane plane = PlaneAlongRays(members, filling, &rms);
   const Rigid3 pose = PoseOf(members.frame, rectangle, plane);
   Candidate out;
   out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
@@ -245,6 +271,26 @@ class Likeness {
   Size size_;
 };
 
+// Looks at all the beams of a region; and where that shows a board, once more about its centre, so
+// that what touches it has no say in where its plane lies.
+std::optional<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, const Target& target,
+                                    const BoardInCloudOptions& options, Likeness* likeness) {
+  const double diagonal = std::hypot(target.width_m, target.height_m);
+  PlaneSums sums;
+  for (const Eigen::Vector3f& p : region.points) sums.Add(p.cast<double>());
+  const MemberOptions whole{options.range_sigma_m, sums.Mean(), 1.2 * diagonal, 1.2 * diagonal};
+  const PlaneMembers members = FindMembers(grid, region, whole);
+  const auto board = FitBoard(members, target, options);
+  if (!board) {
+    likeness->Consider(members);
+    return std::nullopt;
+  }
+  region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
+  const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
+                             0.5 * std::min(target.width_m, target.height_m)};
+  return FitBoard(FindMembers(grid, region, closer), target, options);
+}
+
 PlaneRegionOptions RegionOptions(const Target& target, const BoardInCloudOptions& options) {
   PlaneRegionOptions out;
   out.sigma_m = std::max(0.008, options.range_sigma_m);
@@ -285,14 +331,10 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   }
   std::vector<Candidate> found;
   Likeness likeness;
-  const double reach = 0.8 * std::hypot(target.width_m, target.height_m);
   for (const PlaneRegion& region : FindPlaneRegions(grid, RegionOptions(target, options))) {
     if (!MayBe(region, target)) continue;
-    const PlaneMembers members = FindMembers(grid, region, 1.5 * reach, options.range_sigma_m);
-    if (auto board = FitBoard(members, target, options)) {
+    if (auto board = LookCloser(grid, region, target, options, &likeness)) {
       found.push_back(std::move(*board));
-    } else {
-      likeness.Consider(members);
     }
   }
   if (found.empty()) return {{}, likeness.Why(target)};

@@ -241,6 +241,7 @@ int RangeGrid::Place(const Rows& rows, double step, bool even) {
   rows_ = static_cast<int>(rows.size());
   columns_ = static_cast<int>((wraps_ ? 2 * kPi : high - low) / step + 0.5) + (wraps_ ? 0 : 2);
   place_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), -1);
+  next_.assign(cloud_->size(), -1);
   row_elevation_.clear();
   row_azimuth_.clear();
   std::vector<double> elevations;
@@ -256,8 +257,13 @@ int RangeGrid::Place(const Rows& rows, double step, bool even) {
       const int column = static_cast<int>(std::lround((a.azimuth - row_azimuth_.back()) / step));
       if (!Contains(r, column)) continue;
       std::int32_t& place = place_[Cell(r, column)];
-      if (place >= 0) ++crowded;
-      if (place < 0) place = a.point;
+      if (place >= 0) {
+        ++crowded;
+        next_[static_cast<std::size_t>(a.point)] = next_[static_cast<std::size_t>(place)];
+        next_[static_cast<std::size_t>(place)] = a.point;
+      } else {
+        place = a.point;
+      }
     }
   }
   column_step_ = step;

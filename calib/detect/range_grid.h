@@ -46,6 +46,18 @@ class RangeGrid {
   const Eigen::Vector3f& Point(std::size_t cell) const {
     return cloud_->points[static_cast<std::size_t>(PointOf(cell))];
   }
+  /// All the points of a cell: where the grid is coarser than the points, there are several, and
+  /// which of them comes first depends on their noise.
+  template <typename F>
+  void ForEachPoint(std::size_t cell, F f) const {
+    if (place_.empty()) {
+      if (IsHit(cell)) f(cloud_->points[cell]);
+      return;
+    }
+    for (std::int32_t i = place_[cell]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
+      f(cloud_->points[static_cast<std::size_t>(i)]);
+    }
+  }
   /// Where the beam starts.
   Eigen::Vector3d Origin(std::size_t cell) const;
   /// Unit direction of the beam; nothing where it is not known.
@@ -77,6 +89,7 @@ class RangeGrid {
   double row_step_ = 0, column_step_ = 0;
   int hits_ = 0;
   std::vector<std::int32_t> place_;    // by cell: index of its point, -1: none; empty: the same
+  std::vector<std::int32_t> next_;     // by point: index of the next one in its cell; -1: none
   std::vector<double> row_elevation_;  // rebuilt: of each row
   std::vector<double> row_azimuth_;    // rebuilt: of each row's column 0
 };

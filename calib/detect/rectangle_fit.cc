@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace rgbdt {
 namespace {
@@ -175,11 +176,13 @@ class Refiner {
     return normal.dot(c.middle - x.head<2>()) - HalfExtent(side) - shift;
   }
 
-  double Sigma(const Parameters& x, const FlatCrossing& c, int side) const {
-    const Eigen::Vector2d normal = NormalOf(Axes(x[2]), side);
-    // Evenly spread over the interval; and a beam does not end sharply.
-    return std::hypot(c.half_m * std::abs(normal.dot(c.outward)) / std::sqrt(3.0),
-                      options_.blur_rad * PerRadian(c, normal));
+  // Of one of `same` crossings in one gap: the truth is evenly spread over the interval, but at the
+  // same place of it for all of them, so together they tell no more of that than one; and a beam
+  // does not end sharply, which averages out.
+  double Variance(const FlatCrossing& c, const Eigen::Vector2d& normal, int same) const {
+    const double half = c.half_m * normal.dot(c.outward);
+    const double blur = options_.blur_rad * PerRadian(c, normal);
+    return same * half * half / 3 + blur * blur;
   }
 
   // Each crossing's side: the nearest that it faces, within the interval and the gate.
@@ -187,6 +190,7 @@ class Refiner {
     const Axes axes(x[2]);
     side_.assign(crossings_.size(), -1);
     std::map<std::pair<std::size_t, int>, int> told;
+    std::map<std::tuple<std::size_t, bool, int>, int> gaps;
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       const FlatCrossing& c = crossings_[i];
       double nearest = 1;
@@ -204,11 +208,16 @@ class Refiner {
           side_[i] = side;
         }
       }
-      if (side_[i] >= 0) ++told[{c.cell, side_[i]}];
+      if (side_[i] < 0) continue;
+      ++told[{c.cell, side_[i]}];
+      ++gaps[{c.gap, c.along_row, side_[i]}];
     }
     shared_.assign(crossings_.size(), 1);
+    same_.assign(crossings_.size(), 1);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
-      if (side_[i] >= 0) shared_[i] = told[{crossings_[i].cell, side_[i]}];
+      if (side_[i] < 0) continue;
+      shared_[i] = told[{crossings_[i].cell, side_[i]}];
+      same_[i] = gaps[{crossings_[i].gap, crossings_[i].along_row, side_[i]}];
     }
   }
 
@@ -222,9 +231,9 @@ class Refiner {
       const int side = side_[i];
       if (side < 0) continue;
       const FlatCrossing& c = crossings_[i];
-      const double sigma = Sigma(x, c, side);
       const double residual = Beyond(x, c, side);
       const Eigen::Vector2d normal = NormalOf(axes, side);
+      const double variance = Variance(c, normal, same_[i]) * shared_[i];
       Parameters j = Parameters::Zero();
       j.head<2>() = -normal;
       const Eigen::Vector2d turned(-normal.y(), normal.x());
@@ -232,12 +241,12 @@ class Refiner {
       j[kClass + static_cast<int>(c.kind)] = -PerRadian(c, normal);
       j[kSide + side] = -PerRadian(c, normal);
       j[kThickness] = -PerThickness(c, normal);
-      const double whitened = residual / sigma;
-      const double robust = 1 / (1 + whitened * whitened / 9);  // Cauchy
-      const double weight = robust / (sigma * sigma * shared_[i]);
+      const double whitened2 = residual * residual / Variance(c, normal, 1);
+      const double robust = 1 / (1 + whitened2 / 9);  // Cauchy
+      const double weight = robust / variance;
       h += weight * j * j.transpose();
       g -= weight * residual * j;
-      *chi2 += robust * whitened * whitened / shared_[i];
+      *chi2 += robust * whitened2;
       ++*used;
     }
     for (int k = 3; k < kParameters; ++k) {
@@ -304,7 +313,8 @@ class Refiner {
   double width_, height_;
   const BeamEdgeOptions& options_;
   std::vector<int> side_;
-  std::vector<int> shared_;  // how many crossings of its cell lie on the same side
+  std::vector<int> shared_;  // by crossing: how many of its cell lie on the same side
+  std::vector<int> same_;    // by crossing: how many of its gap lie on the same side
 };
 
 }  // namespace
