@@ -1,0 +1,292 @@
+#include "calib/solve/first_guess.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+const Rigid3 kHalfTurn{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
+
+// delta in frame b, as it is in frame a.
+Matrix6d Adjoint(const Rigid3& a_from_b) {
+  const Eigen::Matrix3d r = a_from_b.rotation.toRotationMatrix();
+  const Eigen::Vector3d& t = a_from_b.translation;
+  Eigen::Matrix3d cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  Matrix6d out = Matrix6d::Zero();
+  out.topLeftCorner<3, 3>() = r;
+  out.bottomRightCorner<3, 3>() = r;
+  out.bottomLeftCorner<3, 3>() = cross * r;
+  return out;
+}
+
+// How well a board's angle [rad] and centre [m] are known.
+struct Spread {
+  double angle = 0, centre = 0;
+};
+
+Spread SpreadOf(const TargetPose& pose) {
+  const Eigen::Vector3d& c = pose.sensor_from_target.translation;
+  Eigen::Matrix<double, 3, 6> j;
+  j << 0, c.z(), -c.y(), 1, 0, 0, -c.z(), 0, c.x(), 0, 1, 0, c.y(), -c.x(), 0, 0, 0, 1;
+  return {std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<3, 3>().trace())),
+          std::sqrt(std::max(0.0, (j * pose.covariance * j.transpose()).trace()))};
+}
+
+// A board seen by both, and what each makes of it.
+struct Pair {
+  const TargetPose* in_camera;
+  const TargetPose* in_lidar;
+  bool half_turn;
+
+  Rigid3 CameraFromTarget() const {
+    return half_turn ? in_camera->sensor_from_target * kHalfTurn : in_camera->sensor_from_target;
+  }
+  Rigid3 CameraFromLidar() const {
+    return CameraFromTarget() * in_lidar->sensor_from_target.Inverse();
+  }
+};
+
+CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from_lidar,
+                      const FirstGuessOptions& options) {
+  const Rigid3 seen = pair.CameraFromTarget();
+  const Rigid3 meant = camera_from_lidar * pair.in_lidar->sensor_from_target;
+  const Spread a = SpreadOf(*pair.in_camera);
+  const Spread b = SpreadOf(*pair.in_lidar);
+  // Poorly seen boards may be farther off, but not at will.
+  const double angle = std::clamp(4 * std::hypot(a.angle, b.angle), options.rotation_gate_rad,
+                                  4 * options.rotation_gate_rad);
+  const double distance = std::clamp(4 * std::hypot(a.centre, b.centre), options.distance_gate_m,
+                                     4 * options.distance_gate_m);
+  CandidateChoice choice{candidate, pair.half_turn, RotationDistance(seen, meant),
+                         (seen.translation - meant.translation).norm(), 0};
+  choice.cost = std::max(choice.rotation_rad / angle, choice.distance_m / distance);
+  return choice;
+}
+
+// The best pairing of a view, whether it fits or not.
+CandidateChoice Nearest(const Observation& view, const Rigid3& camera_from_lidar,
+                        const FirstGuessOptions& options) {
+  CandidateChoice best;
+  best.cost = 1e300;
+  for (std::size_t k = 0; k < view.candidates.size(); ++k) {
+    for (const bool half_turn : {false, true}) {
+      const Pair pair{&*view.image->pose, &*view.candidates[k].pose, half_turn};
+      const CandidateChoice choice = Judge(pair, static_cast<int>(k), camera_from_lidar, options);
+      if (choice.cost < best.cost) best = choice;
+    }
+  }
+  return best;
+}
+
+bool HasPoses(const Observation& view) {
+  return view.image && view.image->pose && !view.candidates.empty() &&
+         std::all_of(view.candidates.begin(), view.candidates.end(),
+                     [](const CloudEdges& c) { return c.pose.has_value(); });
+}
+
+using Views = std::vector<const Observation*>;
+
+// How many views agree with a pose, and how well.
+struct Agreement {
+  Rigid3 camera_from_lidar;
+  int views = 0;
+  double cost = 0;  // of those that agree
+
+  bool operator<(const Agreement& other) const {
+    return views != other.views ? views < other.views : cost > other.cost;
+  }
+};
+
+Agreement AgreementOn(const Views& views, const Rigid3& camera_from_lidar,
+                      const FirstGuessOptions& options) {
+  Agreement agreement{camera_from_lidar, 0, 0};
+  for (const Observation* view : views) {
+    const double cost = Nearest(*view, camera_from_lidar, options).cost;
+    if (cost >= 1) continue;
+    ++agreement.views;
+    agreement.cost += cost * cost;
+  }
+  return agreement;
+}
+
+// The pose that one pairing gives and most views agree with; and the best that is a different one.
+struct Vote {
+  Agreement best, other;
+};
+
+Vote VoteAmong(const Views& views, const FirstGuessOptions& options) {
+  std::vector<Agreement> all;
+  for (const Observation* view : views) {
+    for (const CloudEdges& candidate : view->candidates) {
+      for (const bool half_turn : {false, true}) {
+        const Pair pair{&*view->image->pose, &*candidate.pose, half_turn};
+        all.push_back(AgreementOn(views, pair.CameraFromLidar(), options));
+      }
+    }
+  }
+  Vote vote;
+  for (const Agreement& a : all) vote.best = std::max(vote.best, a);
+  for (const Agreement& a : all) {
+    if (RotationDistance(a.camera_from_lidar, vote.best.camera_from_lidar) > 0.3 ||
+        CentreDistance(a.camera_from_lidar, vote.best.camera_from_lidar) > 0.5) {
+      vote.other = std::max(vote.other, a);
+    }
+  }
+  return vote;
+}
+
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+// The mean of what the agreeing views give, weighed by their covariances; the seventh unknown is
+// the range offset.
+void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* guess) {
+  double offset = 0;
+  Matrix7d information = Matrix7d::Identity();
+  for (int round = 0; round < 10; ++round) {
+    Rigid3& pose = *guess->camera_from_lidar;
+    information.setZero();
+    Vector7d gradient = Vector7d::Zero();
+    guess->agreeing = 0;
+    for (const Observation* view : views) {
+      const CandidateChoice choice = Nearest(*view, pose, options);
+      if (choice.cost >= 1) continue;
+      ++guess->agreeing;
+      const TargetPose& in_lidar =
+          *view->candidates[static_cast<std::size_t>(choice.candidate)].pose;
+      const Pair pair{&*view->image->pose, &in_lidar, choice.half_turn};
+      const Matrix6d adjoint = Adjoint(pose);
+      Matrix6d covariance =
+          pair.in_camera->covariance + adjoint * in_lidar.covariance * adjoint.transpose();
+      // Nothing is exact: a tenth of a milliradian, a tenth of a millimetre.
+      covariance.diagonal().array() += 1e-8;
+      const Vector6d delta = Log(pair.CameraFromLidar() * pose.Inverse());
+      Eigen::Matrix<double, 6, 7> j = Eigen::Matrix<double, 6, 7>::Zero();
+      j.leftCols<6>().setIdentity();
+      j.block<3, 1>(3, 6) = pose.rotation * in_lidar.sensor_from_target.translation.normalized();
+      Vector6d residual = delta;
+      residual -= j.col(6) * offset;
+      const Matrix6d weight = covariance.ldlt().solve(Matrix6d::Identity());
+      // Beyond what six Gaussian unknowns do in 3 of 10,000 views, a view counts less.
+      const double robust = std::min(1.0, 25 / std::max(1e-12, residual.dot(weight * residual)));
+      information += robust * j.transpose() * weight * j;
+      gradient += robust * j.transpose() * weight * residual;
+    }
+    const double prior = options.range_offset ? options.range_offset_sigma_m : 1e-9;
+    information(6, 6) += 1 / (prior * prior);
+    gradient[6] -= offset / (prior * prior);
+    const Vector7d step = information.ldlt().solve(gradient);
+    pose = Exp(step.head<6>()) * pose;
+    offset += step[6];
+    if (step.norm() < 1e-10) break;
+  }
+  const Matrix7d covariance = information.ldlt().solve(Matrix7d::Identity());
+  guess->covariance = covariance.topLeftCorner<6, 6>();
+  if (options.range_offset) {
+    guess->range_offset_m = offset;
+    guess->range_offset_sigma_m = std::sqrt(covariance(6, 6));
+  }
+}
+
+// Left and right of the images swapped back: the board is then mirrored, too.
+std::vector<Observation> Unmirrored(const Views& views) {
+  std::vector<Observation> out;
+  const Eigen::Vector3d mirror(-1, 1, 1);
+  for (const Observation* view : views) {
+    out.push_back(*view);
+    Rigid3& pose = out.back().image->pose->sensor_from_target;
+    const Eigen::Matrix3d r = mirror.asDiagonal() * pose.rotation.toRotationMatrix() *
+                              Eigen::Matrix3d(mirror.asDiagonal());
+    pose = {Eigen::Quaterniond(r), mirror.asDiagonal() * pose.translation};
+  }
+  return out;
+}
+
+std::string WhyNone(const Views& views, const Vote& vote, const FirstGuessOptions& options) {
+  const std::string of = std::to_string(views.size()) + " views";
+  std::vector<Observation> unmirrored = Unmirrored(views);
+  Views turned;
+  for (const Observation& view : unmirrored) turned.push_back(&view);
+  const int mirrored = VoteAmong(turned, options).best.views;
+  if (mirrored > vote.best.views && 2 * mirrored > static_cast<int>(views.size())) {
+    return "the images are mirrored: " + std::to_string(mirrored) + " of " + of +
+           " agree once left and right are swapped; turn that off in the camera";
+  }
+  return "the views do not agree where the camera is (at most " + std::to_string(vote.best.views) +
+         " of " + of + "); do images and clouds belong together?";
+}
+
+}  // namespace
+
+void FirstGuessOptions::Check() const {
+  const auto require = [](double value, const char* name) {
+    if (!(value > 0) || !std::isfinite(value)) {
+      throw InputError(std::string("FirstGuessOptions.") + name + " is " + std::to_string(value) +
+                       "; expected a positive number");
+    }
+  };
+  require(rotation_gate_rad, "rotation_gate_rad");
+  require(distance_gate_m, "distance_gate_m");
+  require(range_offset_sigma_m, "range_offset_sigma_m");
+}
+
+FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
+                           const FirstGuessOptions& options) {
+  options.Check();
+  Views views;
+  std::copy_if(observations.begin(), observations.end(), std::back_inserter(views),
+               [](const Observation* o) { return HasPoses(*o); });
+  FirstGuess guess;
+  if (views.size() < 2) {
+    guess.status = std::to_string(views.size()) +
+                   " views in which both camera and LIDAR see the board; at least 2 are needed";
+    return guess;
+  }
+  const Vote vote = VoteAmong(views, options);
+  guess.agreeing = vote.best.views;
+  if (vote.best.views < 2 || 2 * vote.best.views < static_cast<int>(views.size())) {
+    guess.status = WhyNone(views, vote, options);
+    return guess;
+  }
+  if (vote.other.views >= vote.best.views && vote.other.cost < 4 * vote.best.cost + 0.1) {
+    guess.status =
+        "two poses of the camera fit the views alike; add views with the board elsewhere, tilted "
+        "and turned otherwise";
+    return guess;
+  }
+  guess.camera_from_lidar = vote.best.camera_from_lidar;
+  Average(views, options, &guess);
+  guess.status =
+      std::to_string(guess.agreeing) + " of " + std::to_string(views.size()) + " views agree";
+  return guess;
+}
+
+CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,
+                                const FirstGuessOptions& options) {
+  if (!HasPoses(view)) return {};
+  CandidateChoice choice = Nearest(view, camera_from_lidar, options);
+  if (choice.cost >= 1) choice.candidate = -1;
+  return choice;
+}
+
+Observation WithChosenCandidate(Observation view, const Rigid3& camera_from_lidar,
+                                const FirstGuessOptions& options) {
+  if (!view.rejected.empty() || !HasPoses(view)) return view;
+  const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, options);
+  if (choice.candidate >= 0) {
+    view.cloud = view.candidates[static_cast<std::size_t>(choice.candidate)];
+    return view;
+  }
+  view.cloud.reset();
+  view.rejected = "no board in the cloud where the other views put it: the nearest is " +
+                  std::to_string(std::lround(choice.distance_m * 1000)) + " mm and " +
+                  std::to_string(std::lround(choice.rotation_rad * 180 / M_PI)) + " deg off";
+  return view;
+}
+
+}  // namespace rgbdt

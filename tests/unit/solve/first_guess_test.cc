@@ -1,0 +1,236 @@
+#include "calib/solve/first_guess.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "calib/model/calibration.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Rigid3 kHalfTurn = RotationAbout({0, 0, 1}, M_PI);
+
+// Sessions without images: what detection would give, with noise of its stated covariance.
+class Made {
+ public:
+  explicit Made(unsigned seed) : random_(seed) {}
+
+  double Normal() { return std::normal_distribution<double>()(random_); }
+  double Uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Rigid3 AnyRotation() {
+    return {Eigen::Quaterniond(Normal(), Normal(), Normal(), Normal()).normalized(), {0, 0, 0}};
+  }
+  // A camera that looks anywhere, beside the LIDAR.
+  Rigid3 AnyCamera() {
+    Rigid3 camera = AnyRotation();
+    camera.translation = {Uniform(-0.3, 0.3), Uniform(-0.3, 0.3), Uniform(-0.3, 0.3)};
+    return camera;
+  }
+  // A board that faces the LIDAR, more or less, 2 to 6 m away.
+  Rigid3 AnyBoard() {
+    const Rigid3 place =
+        RotationAbout({0, 0, 1}, Uniform(-0.5, 0.5)) * RotationAbout({0, 1, 0}, Uniform(-0.3, 0.3));
+    const Eigen::Vector3d centre = place * Eigen::Vector3d(Uniform(2, 6), 0, 0);
+    Eigen::Matrix3d facing;  // target x right, y down, z away, seen along the LIDAR's x
+    facing << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    Rigid3 board = place * Rigid3{Eigen::Quaterniond(facing), {0, 0, 0}} *
+                   RotationAbout({1, 0, 0}, Uniform(-0.6, 0.6)) *
+                   RotationAbout({0, 1, 0}, Uniform(-0.6, 0.6)) *
+                   RotationAbout({0, 0, 1}, Uniform(-M_PI, M_PI));
+    board.translation = centre;
+    return board;
+  }
+  // `pose` seen with errors of these sigmas about the board's centre.
+  TargetPose Seen(const Rigid3& pose, double angle_sigma, double centre_sigma) {
+    Vector6d sigma;
+    sigma << angle_sigma, angle_sigma, angle_sigma, centre_sigma, centre_sigma, centre_sigma;
+    Vector6d noise;
+    for (int i = 0; i < 6; ++i) noise[i] = sigma[i] * Normal();
+    // Errors are drawn in axes parallel to the sensor's through the board's centre.
+    const Rigid3 centre{Eigen::Quaterniond::Identity(), pose.translation};
+    TargetPose seen;
+    seen.sensor_from_target = centre * Exp(noise) * centre.Inverse() * pose;
+    Matrix6d shift = Matrix6d::Identity();
+    const Eigen::Vector3d& c = pose.translation;
+    shift.block<3, 3>(3, 0) << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
+    seen.covariance = shift * Matrix6d(sigma.cwiseAbs2().asDiagonal()) * shift.transpose();
+    if (Uniform(0, 1) < 0.5) seen.sensor_from_target = seen.sensor_from_target * kHalfTurn;
+    return seen;
+  }
+  Observation View(const Rigid3& camera_from_lidar, const Rigid3& board) {
+    Observation view;
+    view.image.emplace();
+    view.image->pose = Seen(camera_from_lidar * board, 0.005, 0.008);
+    view.candidates.push_back(Candidate(board));
+    view.cloud = view.candidates[0];
+    return view;
+  }
+  CloudEdges Candidate(const Rigid3& board) {
+    CloudEdges edges;
+    edges.pose = Seen(board, 0.005, 0.004);
+    return edges;
+  }
+  std::vector<Observation> Session(const Rigid3& camera_from_lidar, int views) {
+    std::vector<Observation> session;
+    for (int i = 0; i < views; ++i) session.push_back(View(camera_from_lidar, AnyBoard()));
+    return session;
+  }
+
+ private:
+  std::mt19937 random_;
+};
+
+std::vector<const Observation*> Pointers(const std::vector<Observation>& session) {
+  std::vector<const Observation*> out;
+  for (const Observation& view : session) out.push_back(&view);
+  return out;
+}
+
+TEST(FirstGuess, FindsCamerasThatLookAnywhereFromFiveViews) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    Made made(seed);
+    const Rigid3 truth = made.AnyCamera();
+    const auto session = made.Session(truth, 5);
+    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
+    const PoseError error = ErrorOf(*guess.camera_from_lidar, truth);
+    EXPECT_LT(error.rotation_deg, 2) << seed;
+    EXPECT_LT(error.translation_mm, 60) << seed;
+    EXPECT_EQ(guess.agreeing, 5) << seed;
+  }
+}
+
+TEST(FirstGuess, ItsCovarianceIsThatOfItsErrors) {
+  double chi2 = 0;
+  constexpr int kSessions = 400;
+  for (unsigned seed = 0; seed < kSessions; ++seed) {
+    Made made(1000 + seed);
+    const Rigid3 truth = made.AnyCamera();
+    const auto session = made.Session(truth, 6);
+    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    ASSERT_TRUE(guess.camera_from_lidar);
+    const Vector6d delta = Log(truth * guess.camera_from_lidar->Inverse());
+    chi2 += delta.dot(guess.covariance.ldlt().solve(delta));
+  }
+  // Mean of chi squared with six degrees of freedom: 6, its own sigma sqrt(12 / 400) = 0.17.
+  EXPECT_NEAR(chi2 / kSessions, 6, 0.6);
+}
+
+TEST(FirstGuess, AThirdOfTheViewsMayBeWrong) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Made made(2000 + seed);
+    const Rigid3 truth = made.AnyCamera();
+    auto session = made.Session(truth, 9);
+    for (std::size_t i = 0; i < 3; ++i) {  // another board's pose, a door
+      session[i].candidates = {made.Candidate(made.AnyBoard())};
+    }
+    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
+    EXPECT_LT(ErrorOf(*guess.camera_from_lidar, truth).rotation_deg, 2) << seed;
+    EXPECT_EQ(guess.agreeing, 6) << seed;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const Observation chosen = WithChosenCandidate(session[i], *guess.camera_from_lidar);
+      EXPECT_EQ(chosen.rejected.empty(), i >= 3) << seed << " view " << i;
+      EXPECT_THAT(chosen.rejected, HasSubstr(i < 3 ? "where the other views put it" : ""));
+    }
+  }
+}
+
+TEST(FirstGuess, ViewsTogetherChooseAmongCandidates) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    Made made(3000 + seed);
+    const Rigid3 truth = made.AnyCamera();
+    auto session = made.Session(truth, 6);
+    const Rigid3 door = made.AnyBoard();  // stands where it is in every view, and looks better
+    for (Observation& view : session) {
+      view.candidates.insert(view.candidates.begin(), made.Candidate(door));
+      view.cloud = view.candidates[0];
+    }
+    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
+    for (const Observation& view : session) {
+      EXPECT_EQ(ChooseCandidate(view, *guess.camera_from_lidar).candidate, 1) << seed;
+    }
+  }
+}
+
+TEST(FirstGuess, SaysSoWhenTwoAnswersFitAlike) {
+  Made made(7);
+  const Rigid3 truth = made.AnyCamera();
+  const Rigid3 board = made.AnyBoard();
+  std::vector<Observation> session;
+  for (int i = 0; i < 4; ++i) session.push_back(made.View(truth, board));
+  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  EXPECT_FALSE(guess.camera_from_lidar);
+  EXPECT_THAT(guess.status, HasSubstr("fit the views alike"));
+}
+
+TEST(FirstGuess, MirroredImagesAreNamed) {
+  Made made(8);
+  auto session = made.Session(made.AnyCamera(), 8);
+  for (Observation& view : session) {
+    Rigid3& pose = view.image->pose->sensor_from_target;
+    const Eigen::Vector3d mirror(-1, 1, 1);
+    const Eigen::Matrix3d r = mirror.asDiagonal() * pose.rotation.toRotationMatrix() *
+                              Eigen::Matrix3d(mirror.asDiagonal());
+    pose = {Eigen::Quaterniond(r), mirror.asDiagonal() * pose.translation};
+  }
+  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  EXPECT_FALSE(guess.camera_from_lidar);
+  EXPECT_THAT(guess.status, HasSubstr("mirrored"));
+}
+
+TEST(FirstGuess, ViewsThatDoNotBelongTogetherGiveNone) {
+  Made made(9);
+  std::vector<Observation> session;
+  for (int i = 0; i < 7; ++i) session.push_back(made.View(made.AnyCamera(), made.AnyBoard()));
+  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  EXPECT_FALSE(guess.camera_from_lidar);
+  EXPECT_THAT(guess.status, HasSubstr("do not agree"));
+  EXPECT_THAT(GuessFromBoards({}).status, HasSubstr("0 views"));
+}
+
+TEST(FirstGuess, FindsWhatTheRangesAreOffBy) {
+  Made made(10);
+  const Rigid3 truth = made.AnyCamera();
+  std::vector<Observation> session;
+  for (int i = 0; i < 12; ++i) {
+    const Rigid3 board = made.AnyBoard();
+    session.push_back(made.View(truth, board));
+    Rigid3& seen = session.back().candidates[0].pose->sensor_from_target;
+    seen.translation += 0.03 * seen.translation.normalized();  // measured 30 mm too long
+  }
+  FirstGuessOptions options;
+  options.range_offset = true;
+  const FirstGuess guess = GuessFromBoards(Pointers(session), options);
+  ASSERT_TRUE(guess.camera_from_lidar);
+  EXPECT_GT(guess.range_offset_sigma_m, 0);
+  EXPECT_LT(guess.range_offset_sigma_m, 0.02);
+  EXPECT_NEAR(guess.range_offset_m, -0.03, 3.5 * guess.range_offset_sigma_m);
+}
+
+TEST(FirstGuess, WithoutCandidatesAViewStaysAsItIs) {
+  Made made(11);
+  Observation view = made.View(made.AnyCamera(), made.AnyBoard());
+  view.candidates.clear();
+  const Observation same = WithChosenCandidate(view, made.AnyCamera());
+  EXPECT_TRUE(same.rejected.empty());
+  EXPECT_TRUE(same.cloud);
+}
+
+TEST(FirstGuess, OptionsAreChecked) {
+  FirstGuessOptions options;
+  options.distance_gate_m = -1;
+  EXPECT_THROW(GuessFromBoards({}, options), InputError);
+}
+
+}  // namespace
+}  // namespace rgbdt
