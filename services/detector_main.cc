@@ -10,7 +10,9 @@ int main(int argc, char** argv) {
       "rgbdt-detector"};
   std::string url;
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  std::string method = rgbdt::kAutoMethod;
+  app.add_option("--method", method, rgbdt::kMethodHelp)->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  rgbdt::DetectorNode node;
+  rgbdt::DetectorNode node(method);
   return rgbdt::RunOnLcm(node, url);
 }

@@ -10,7 +10,11 @@ int main(int argc, char** argv) {
       "rgbdt-solver"};
   std::string url;
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  std::string method = rgbdt::kAutoMethod;
+  app.add_option("--method", method, rgbdt::kMethodHelp)->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  rgbdt::SolverNode node;
+  rgbdt::CalibrateOptions options;
+  options.method = method;
+  rgbdt::SolverNode node(options);
   return rgbdt::RunOnLcm(node, url);
 }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "calib/camera/pixels.h"
+#include "calib/detect/board_in_cloud.h"
 #include "calib/detect/cloud_edges.h"
 #include "calib/detect/image_edges.h"
 
@@ -30,63 +32,107 @@ Observation Empty(const View& view, const std::string& camera) {
   return observation;
 }
 
-}  // namespace
-
-Observation DetectOne(const Rig& rig, const View& view, const Image& image,
-                      const CornerSelection* picks) {
-  const CameraSpec& spec = rig.Camera(image.camera);
-  CheckImage(spec, image);
-  const Camera camera(spec);
-  Observation observation = Empty(view, image.camera);
-  observation.image_utime = image.utime;
-
-  const Stopwatch image_watch;
-  ImageEdgesResult in_image = DetectImageEdges(image, camera, rig.target, picks);
-  observation.detect_image_s = image_watch.Seconds();
-  if (!in_image.edges) {
-    observation.rejected = in_image.why;
-    return observation;
-  }
-  observation.image = std::move(in_image.edges);
-
-  if (!spec.camera_from_lidar_guess) {
-    observation.rejected =
-        "the rig file has no camera_from_lidar_guess for this camera; the "
-        "paper's method needs one";
-    return observation;
-  }
-  const int lost = LostLines(view.cloud);
-  if (lost * 100 > view.cloud.lines) {  // gaps look like edges
-    observation.rejected = std::to_string(lost) + " of the sweep's " +
-                           std::to_string(view.cloud.lines) +
-                           " lines were lost on the way; look at the assembler's status";
-    return observation;
-  }
-  const Stopwatch cloud_watch;
-  CloudEdgesResult in_cloud = DetectCloudEdges(view.cloud, camera, *spec.camera_from_lidar_guess,
-                                               observation.image->corners, rig.target);
-  observation.detect_cloud_s = cloud_watch.Seconds();
-  observation.rejected = in_cloud.why;
-  observation.cloud = std::move(in_cloud.edges);
-  return observation;
+const Image* FirstImageOf(const std::string& camera, const View& view) {
+  const auto found = std::find_if(view.images.begin(), view.images.end(),
+                                  [&](const Image& image) { return image.camera == camera; });
+  return found == view.images.end() ? nullptr : &*found;
 }
 
-std::vector<Observation> DetectView(const Rig& rig, const View& view) {
+const CornerSelection* PicksOf(const std::string& camera, const View& view) {
+  const auto found =
+      std::find_if(view.picks.begin(), view.picks.end(),
+                   [&](const CornerSelection& picks) { return picks.camera == camera; });
+  return found == view.picks.end() ? nullptr : &*found;
+}
+
+// Why a sweep cannot be used as it came; empty: it can. Gaps look like edges.
+std::string WhySweepIsTorn(const Cloud& cloud) {
+  const int lost = LostLines(cloud);
+  if (lost * 100 <= cloud.lines) return "";
+  return std::to_string(lost) + " of the sweep's " + std::to_string(cloud.lines) +
+         " lines were lost on the way; look at the assembler's status";
+}
+
+void DetectImage(const CameraSpec& spec, const Target& target, const Image& image,
+                 const CornerSelection* picks, Observation* observation) {
+  const Stopwatch watch;
+  observation->image_utime = image.utime;
+  ImageEdgesResult found = DetectImageEdges(image, Camera(spec), target, picks);
+  observation->detect_image_s = watch.Seconds();
+  observation->rejected = found.why;
+  observation->image = std::move(found.edges);
+}
+
+void DetectCloudByGuess(const CameraSpec& spec, const Target& target, const Cloud& cloud,
+                        Observation* observation) {
+  if (!spec.camera_from_lidar_guess) {
+    observation->rejected =
+        "the rig file has no camera_from_lidar_guess for this camera; the "
+        "paper's method needs one";
+    return;
+  }
+  observation->rejected = WhySweepIsTorn(cloud);
+  if (!observation->rejected.empty()) return;
+  const Stopwatch watch;
+  CloudEdgesResult found = DetectCloudEdges(cloud, Camera(spec), *spec.camera_from_lidar_guess,
+                                            observation->image->corners, target);
+  observation->detect_cloud_s = watch.Seconds();
+  observation->rejected = found.why;
+  observation->cloud = std::move(found.edges);
+}
+
+// What the cloud shows is the same for all cameras.
+struct CloudLook {
+  BoardsInCloud boards;
+  double seconds = 0;
+};
+
+CloudLook LookAtCloud(const Rig& rig, const Cloud& cloud) {
+  CloudLook look;
+  look.boards.why = WhySweepIsTorn(cloud);
+  if (!look.boards.why.empty()) return look;
+  const Stopwatch watch;
+  BoardInCloudOptions options;
+  options.range_sigma_m = rig.lidar.range_sigma_m;
+  look.boards = FindBoards(cloud, rig.target, options);
+  look.seconds = watch.Seconds();
+  return look;
+}
+
+void UseCloudLook(const CloudLook& look, Observation* observation) {
+  observation->detect_cloud_s = look.seconds;
+  if (look.boards.candidates.empty()) {
+    observation->rejected = look.boards.why;
+    return;
+  }
+  observation->candidates = look.boards.candidates;
+  observation->cloud = look.boards.candidates.front();  // until the views together choose
+}
+
+}  // namespace
+
+std::vector<Observation> DetectView(const Rig& rig, const View& view, const std::string& method) {
+  RequireMethod(method);
+  const bool by_paper = method == kPaperMethod;
+  std::optional<CloudLook> look;
   std::vector<Observation> observations;
   for (const CameraSpec& camera : rig.cameras) {
-    const auto image =
-        std::find_if(view.images.begin(), view.images.end(),
-                     [&](const Image& candidate) { return candidate.camera == camera.name; });
-    if (image == view.images.end()) {
-      observations.push_back(Empty(view, camera.name));
-      observations.back().rejected = "the view has no image of this camera";
+    Observation& observation = observations.emplace_back(Empty(view, camera.name));
+    const Image* image = FirstImageOf(camera.name, view);
+    if (image == nullptr) {
+      observation.rejected = "the view has no image of this camera";
       continue;
     }
-    const auto picks =
-        std::find_if(view.picks.begin(), view.picks.end(),
-                     [&](const CornerSelection& p) { return p.camera == camera.name; });
-    observations.push_back(
-        DetectOne(rig, view, *image, picks == view.picks.end() ? nullptr : &*picks));
+    CheckImage(camera, *image);
+    DetectImage(camera, rig.target, *image, by_paper ? PicksOf(camera.name, view) : nullptr,
+                &observation);
+    if (!observation.image) continue;
+    if (by_paper) {
+      DetectCloudByGuess(camera, rig.target, view.cloud, &observation);
+    } else {
+      if (!look) look = LookAtCloud(rig, view.cloud);
+      UseCloudLook(*look, &observation);
+    }
   }
   return observations;
 }

@@ -1,20 +1,21 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "calib/model/method.h"
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {
 
-/// What one camera and the LIDAR see of the target in one view, by the paper's method; or why it
-/// cannot be used. `picks` may be null: the board is then found in the image. Throws InputError
-/// for an image that is not the rig's.
-Observation DetectOne(const Rig& rig, const View& view, const Image& image,
-                      const CornerSelection* picks);
-
-/// One observation for each camera of the rig, in the rig's order; a camera without an image in
-/// this view is rejected with that reason.
-std::vector<Observation> DetectView(const Rig& rig, const View& view);
+/// What each camera and the LIDAR see of the target in one view, or why it cannot be used: one
+/// observation for each camera of the rig, in the rig's order. The first image of a camera is
+/// looked at; where there are more, taken during the sweep, the board must not have moved.
+/// "auto" finds the board in image and cloud by itself; "paper" uses a person's picks, where there
+/// are any, and the rig's hand-measured guess. Throws InputError for an image that is not the
+/// rig's and for an unknown method.
+std::vector<Observation> DetectView(const Rig& rig, const View& view,
+                                    const std::string& method = kAutoMethod);
 
 }  // namespace rgbdt

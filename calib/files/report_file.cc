@@ -111,7 +111,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   out->set_converged(calibration.converged);
   out->set_status(ValidUtf8(calibration.status));
   if (calibration.covariance) text::FromMatrix(*calibration.covariance, out->mutable_covariance());
-  text::FromRigid3(camera.first_guess, out->mutable_first_guess());
+  if (camera.first_guess) text::FromRigid3(*camera.first_guess, out->mutable_first_guess());
   FromViews(camera, out);
   FromTrainHeldout(camera.distance_transform_px, out->mutable_distance_transform_px());
   FromTrainHeldout(camera.edge_rms_px, out->mutable_edge_rms_px());

@@ -58,8 +58,10 @@ std::string FiguresHtml(const CameraReport& camera) {
   if (camera.first_guess_error) {
     rows.push_back({"first guess against truth", ErrorText(*camera.first_guess_error)});
   }
-  rows.push_back({"result against first guess",
-                  ErrorText(ErrorOf(camera.calibration.camera_from_lidar, camera.first_guess))});
+  if (camera.first_guess) {
+    rows.push_back({"result against first guess",
+                    ErrorText(ErrorOf(camera.calibration.camera_from_lidar, *camera.first_guess))});
+  }
   if (camera.calibration.covariance) {
     const Vector6d sigma = camera.calibration.covariance->diagonal().cwiseMax(0).cwiseSqrt();
     rows.push_back({"1 sigma about and along the camera's x, y, z",

@@ -19,7 +19,9 @@ void AddTruth(const Truth& truth, Report* report) {
   for (CameraReport& camera : report->cameras) {
     const auto found = truth.camera_from_lidar.find(camera.calibration.camera);
     if (found == truth.camera_from_lidar.end()) continue;
-    camera.first_guess_error = ErrorOf(camera.first_guess, found->second);
+    if (camera.first_guess) {
+      camera.first_guess_error = ErrorOf(*camera.first_guess, found->second);
+    }
     camera.truth_error = ErrorOf(camera.calibration.camera_from_lidar, found->second);
     for (StartResult& start : camera.other_starts) {
       start.truth_error = ErrorOf(start.calibration.camera_from_lidar, found->second);

@@ -69,7 +69,7 @@ struct StartResult {
 
 struct CameraReport {
   CameraCalibration calibration;
-  Rigid3 first_guess;  ///< camera_from_lidar that the solve began from
+  std::optional<Rigid3> first_guess;  ///< camera_from_lidar that the solve began from
   std::vector<std::string> used, heldout;
   std::vector<RejectedView> rejected;
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)

@@ -23,14 +23,21 @@ using Views = std::vector<const Observation*>;
 constexpr double kMinShareInImage = 0.5;
 
 // One camera's observations in the order of their views, whatever order they came in.
-Views ObservationsOf(const std::string& camera, const std::vector<Observation>& observations) {
-  Views views;
+std::vector<Observation> ObservationsOf(const std::string& camera,
+                                        const std::vector<Observation>& observations) {
+  std::vector<Observation> own;
   for (const Observation& o : observations) {
-    if (o.camera == camera) views.push_back(&o);
+    if (o.camera == camera) own.push_back(o);
   }
-  std::stable_sort(views.begin(), views.end(), [](const Observation* a, const Observation* b) {
-    return std::tie(a->view, a->image_utime, a->seq) < std::tie(b->view, b->image_utime, b->seq);
+  std::stable_sort(own.begin(), own.end(), [](const Observation& a, const Observation& b) {
+    return std::tie(a.view, a.image_utime, a.seq) < std::tie(b.view, b.image_utime, b.seq);
   });
+  return own;
+}
+
+Views PointersTo(const std::vector<Observation>& observations) {
+  Views views;
+  for (const Observation& o : observations) views.push_back(&o);
   return views;
 }
 
@@ -101,25 +108,61 @@ StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rig
   return result;
 }
 
-CameraReport CalibrateCamera(const CameraSpec& camera, const Views& views,
+// Where the solve starts; the status says why there is nowhere.
+struct Start {
+  std::optional<Rigid3> camera_from_lidar;
+  std::string status;
+};
+
+// The paper's: measured by hand. `own` stays as it is.
+Start HandMeasured(const CameraSpec& camera) {
+  if (camera.camera_from_lidar_guess) return {camera.camera_from_lidar_guess, ""};
+  return {Rigid3(), ""};
+}
+
+// From the boards of the views used; the views held out have no say, but they choose their board by
+// it, too.
+Start FromBoards(const FirstGuessOptions& options, std::vector<Observation>* own) {
+  Views used;
+  for (const Observation& o : *own) {
+    if (o.usable() && !o.heldout) used.push_back(&o);
+  }
+  const FirstGuess guess = GuessFromBoards(used, options);
+  if (!guess.camera_from_lidar) return {std::nullopt, guess.status};
+  for (Observation& o : *own) {
+    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, options);
+  }
+  return {guess.camera_from_lidar, guess.status};
+}
+
+CameraReport CalibrateCamera(const CameraSpec& camera, std::vector<Observation>* own,
                              const CalibrateOptions& options) {
+  const bool by_paper = options.method == kPaperMethod;
+  const Start start = by_paper ? HandMeasured(camera) : FromBoards(options.first_guess, own);
+  const Views views = PointersTo(*own);
   CameraReport report = Describe(camera, views);
-  report.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
-  report.calibration.camera_from_lidar = report.first_guess;
+  report.first_guess = start.camera_from_lidar;
+  report.calibration.camera_from_lidar =
+      start.camera_from_lidar.value_or(camera.camera_from_lidar_guess.value_or(Rigid3()));
   const Views used = Used(camera, views);
   if (static_cast<int>(used.size()) < options.min_views) {
     report.calibration.status =
         "not calibrated: " + std::to_string(used.size()) + " usable views, at least " +
         std::to_string(options.min_views) + " are needed" +
-        (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
+        (by_paper && camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
     return report;
   }
-  const auto start = std::chrono::steady_clock::now();
-  report.calibration = SolvePaper(camera, used, report.first_guess, options);
-  report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!start.camera_from_lidar) {
+    report.calibration.status = "not calibrated: " + start.status;
+    return report;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  report.calibration = SolvePaper(camera, used, *start.camera_from_lidar, options);
+  report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   JudgeCamera(camera, Usable(camera, views), &report);
-  if (options.wide_start) {
-    report.other_starts.push_back(FromWideStart(camera, used, report.first_guess, report, options));
+  if (by_paper && options.wide_start) {
+    report.other_starts.push_back(
+        FromWideStart(camera, used, *start.camera_from_lidar, report, options));
   }
   return report;
 }
@@ -141,9 +184,8 @@ double ShareInImage(const Camera& camera, const Views& views, const Rigid3& came
 }  // namespace
 
 void CalibrateOptions::Check() const {
-  if (method != "paper") {
-    throw InputError("unknown method \"" + method + "\"; there is: paper");
-  }
+  RequireMethod(method);
+  first_guess.Check();
   if (min_views < 1) {
     throw InputError("CalibrateOptions.min_views is " + std::to_string(min_views) +
                      "; expected 1 or more");
@@ -211,9 +253,9 @@ Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
   report.method = options.method;
   report.rig_hash = rig.hash;
   for (const CameraSpec& camera : rig.cameras) {
-    const Views views = ObservationsOf(camera.name, observations);
-    report.cameras.push_back(CalibrateCamera(camera, views, options));
-    for (const Observation* o : Usable(camera, views)) {
+    std::vector<Observation> own = ObservationsOf(camera.name, observations);
+    report.cameras.push_back(CalibrateCamera(camera, &own, options));
+    for (const Observation* o : Usable(camera, PointersTo(own))) {
       report.utime = std::max(report.utime, o->image_utime);
     }
   }
@@ -229,9 +271,11 @@ Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
   for (const CameraSpec& camera : rig.cameras) {
     const CameraCalibration* found = calibration.Find(camera.name);
     if (found == nullptr) continue;
-    const Views views = ObservationsOf(camera.name, observations);
+    std::vector<Observation> own = ObservationsOf(camera.name, observations);
+    for (Observation& o : own) o = WithChosenCandidate(std::move(o), found->camera_from_lidar);
+    const Views views = PointersTo(own);
     CameraReport judged = Describe(camera, views);
-    judged.first_guess = camera.camera_from_lidar_guess.value_or(Rigid3());
+    judged.first_guess = camera.camera_from_lidar_guess;
     judged.calibration = *found;
     JudgeCamera(camera, Usable(camera, views), &judged);
     report.cameras.push_back(std::move(judged));

@@ -4,16 +4,19 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/model/method.h"
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
+#include "calib/solve/first_guess.h"
 
 namespace rgbdt {
 
 struct CalibrateOptions {
-  std::string method = "paper";  ///< the only one so far
-  int min_views = 3;             ///< usable views for a result that may be called converged
-  int max_iterations = 1000;     ///< of Levenberg-Marquardt
-  bool wide_start = true;        ///< solve a second time from a start turned away
+  std::string method = kAutoMethod;
+  FirstGuessOptions first_guess;  ///< "auto"
+  int min_views = 3;              ///< usable views for a result that may be called converged
+  int max_iterations = 1000;      ///< of Levenberg-Marquardt
+  bool wide_start = true;         ///< "paper": solve a second time from a start turned away
   double wide_roll_rad = 0.52359877559829887;  ///< 30 deg about the LIDAR's x (paper, Figure 6)
   double wide_yaw_rad = 0.69813170079773179;   ///< 40 deg about the LIDAR's z
 
@@ -21,11 +24,13 @@ struct CalibrateOptions {
   void Check() const;
 };
 
-/// Calibrates every camera of the rig that was observed, each by itself as in the paper, from the
-/// hand-measured guess; with wide_start solves a second time from a start turned away by wide_roll
-/// and wide_yaw and reports where that ends; judges the result on used and held-out views. The
-/// order of the observations does not matter. A camera without enough views gets its guess and a
-/// status that says so. Throws InputError for an unknown method.
+/// Calibrates every camera of the rig that was observed, each by itself, and judges the result on
+/// used and held-out views. "auto" starts from what the views' boards tell (first_guess.h), which
+/// also chooses the board among each view's candidates. "paper" starts from the hand-measured
+/// guess; with wide_start it solves a second time from a start turned away by wide_roll and
+/// wide_yaw and reports where that ends. The order of the observations does not matter. A camera
+/// without enough views gets its guess and a status that says so. Throws InputError for an unknown
+/// method.
 Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
                  const CalibrateOptions& options = {});
 

@@ -9,6 +9,10 @@
 
 namespace rgbdt {
 
+DetectorNode::DetectorNode(std::string method) : method_(std::move(method)) {
+  RequireMethod(method_);
+}
+
 Messages DetectorNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
     OnRig(*text);
@@ -60,7 +64,7 @@ Messages DetectorNode::DetectIfComplete() {
 
 Messages DetectorNode::Detect(const View& view, SessionEvent event) {
   Messages out;
-  for (Observation& observation : DetectView(*rig_, view)) {
+  for (Observation& observation : DetectView(*rig_, view, method_)) {
     event.utime = std::max(event.utime, observation.image_utime);
     event.text += (event.text.empty() ? "" : "; ") + observation.camera + ": " +
                   (observation.usable() ? "board found" : observation.rejected);

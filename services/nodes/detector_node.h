@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
+#include "calib/model/method.h"
 #include "calib/model/rig.h"
 #include "services/nodes/node.h"
 #include "services/nodes/view_collector.h"
@@ -14,6 +16,8 @@ namespace rgbdt {
 /// says what it waits for. Another rig forgets everything.
 class DetectorNode : public Node {
  public:
+  /// Throws InputError for an unknown method.
+  explicit DetectorNode(std::string method = kAutoMethod);
   std::string name() const override { return "detector"; }
   std::vector<std::string> Subscriptions() const override {
     return {"RIG", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "SESSION_COMMAND"};
@@ -27,6 +31,7 @@ class DetectorNode : public Node {
   Messages DetectIfComplete();
   Messages Detect(const View& view, SessionEvent event);
 
+  std::string method_;
   std::optional<Rig> rig_;
   ViewCollector view_;
   std::int64_t views_ = 0;

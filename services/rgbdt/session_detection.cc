@@ -36,7 +36,7 @@ std::string Summary(const std::vector<Observation>& observations) {
 
 }  // namespace
 
-SessionDetection DetectSession(const Session& session) {
+SessionDetection DetectSession(const Session& session, const std::string& method) {
   const std::size_t count = session.views.size();
   std::vector<std::vector<Observation>> by_view(count);
   std::vector<std::string> unreadable(count);
@@ -47,7 +47,7 @@ SessionDetection DetectSession(const Session& session) {
     for (std::size_t i = next++; i < count; i = next++) {
       const std::string& name = session.views[i];
       try {
-        by_view[i] = DetectView(session.rig, ReadView(session, name));
+        by_view[i] = DetectView(session.rig, ReadView(session, name), method);
       } catch (const std::exception& e) {
         unreadable[i] = e.what();
         by_view[i] = Rejected(session.rig, name, e.what());

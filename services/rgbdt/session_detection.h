@@ -16,6 +16,6 @@ struct SessionDetection {
 /// Detects the target in every view of a session directory, two or more views at a time, with a
 /// line of progress for each on stderr. A view that cannot be read is rejected with its reason, and
 /// the rest goes on.
-SessionDetection DetectSession(const Session& session);
+SessionDetection DetectSession(const Session& session, const std::string& method);
 
 }  // namespace rgbdt

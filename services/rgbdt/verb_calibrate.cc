@@ -20,7 +20,7 @@ int Run(const Flags& flags) {
   flags.options.Check();
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
-  const SessionDetection detection = DetectSession(session);
+  const SessionDetection detection = DetectSession(session, flags.options.method);
   std::fprintf(stderr, "solving ...\n");
   Report report = Calibrate(session.rig, detection.observations, flags.options);
   const std::string wrote = WriteIfSolved(out, report);
@@ -40,8 +40,7 @@ void AddCalibrate(CLI::App* app, int* exit_code) {
   auto flags = std::make_shared<Flags>();
   verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
   verb->add_option("--out", flags->out, "where to write; default: DIR");
-  verb->add_option("--method", flags->options.method, "paper (Krishnan et al. 2015)")
-      ->capture_default_str();
+  verb->add_option("--method", flags->options.method, kMethodHelp)->capture_default_str();
   verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }

@@ -41,7 +41,7 @@ int Run(const Flags& flags) {
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const Calibration calibration =
       ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
-  const SessionDetection detection = DetectSession(session);
+  const SessionDetection detection = DetectSession(session, calibration.method);
   Report report = Evaluate(session.rig, detection.observations, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const std::string wrote = "wrote to " + out.string() + ":";

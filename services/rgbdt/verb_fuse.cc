@@ -33,9 +33,9 @@ RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
       camera.camera_from_lidar = found->camera_from_lidar;
       camera.calibrated = true;
     }
-    for (const Image& image : view.images) {
-      if (image.camera == spec.name) camera.AddImage(Prepare(spec, image));
-    }
+    const auto image = std::find_if(view.images.begin(), view.images.end(),
+                                    [&](const Image& i) { return i.camera == spec.name; });
+    if (image != view.images.end()) camera.AddImage(Prepare(spec, *image));
     cameras.push_back(std::move(camera));
   }
   RgbdtCloud fused = Fuse(view.cloud, cameras);

@@ -19,6 +19,7 @@ namespace {
 struct Flags {
   std::string log;
   std::string out = "out/replay";
+  std::string method = kAutoMethod;
 };
 
 // What sensors, people and the session said. All else in a log is what nodes made of it.
@@ -42,8 +43,10 @@ int Run(const Flags& flags) {
   LogReader log(flags.log);
   MemoryBus bus;
   AssemblerNode assembler;
-  DetectorNode detector;
-  SolverNode solver;
+  DetectorNode detector(flags.method);
+  CalibrateOptions options;
+  options.method = flags.method;
+  SolverNode solver(options);
   FuserNode fuser;
   NodeRunner assembler_runner(&assembler, &bus);
   NodeRunner detector_runner(&detector, &bus);
@@ -97,6 +100,7 @@ void AddReplay(CLI::App* app, int* exit_code) {
   auto flags = std::make_shared<Flags>();
   verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();
   verb->add_option("--out", flags->out, "where to write")->capture_default_str();
+  verb->add_option("--method", flags->method, kMethodHelp)->capture_default_str();
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }
 

@@ -10,6 +10,7 @@
 #include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/files/report_html.h"
+#include "calib/solve/first_guess.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/report_table.h"
 
@@ -54,11 +55,15 @@ cv::Mat Overlay(const Session& session, const Observation& observation,
   return picture;
 }
 
-const Observation* ToShow(const std::string& camera, const std::vector<Observation>& observations) {
-  const Observation* best = nullptr;
+// A held-out view or, with none, one used; its board is the one that the calibration chooses.
+std::optional<Observation> ToShow(const CameraCalibration& camera,
+                                  const std::vector<Observation>& observations) {
+  std::optional<Observation> best;
   for (const Observation& o : observations) {
-    if (o.camera != camera || !o.usable()) continue;
-    if (best == nullptr || (o.heldout && !best->heldout)) best = &o;
+    if (o.camera != camera.camera || !o.usable()) continue;
+    if (best && (best->heldout || !o.heldout)) continue;
+    Observation chosen = WithChosenCandidate(o, camera.camera_from_lidar);
+    if (chosen.usable()) best = std::move(chosen);
   }
   return best;
 }
@@ -69,8 +74,8 @@ void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
   std::vector<ReportPicture> pictures;
   for (const CameraReport& camera : report.cameras) {
     const std::string& name = camera.calibration.camera;
-    const Observation* shown = ToShow(name, observations);
-    if (shown == nullptr) continue;
+    const auto shown = ToShow(camera.calibration, observations);
+    if (!shown) continue;
     pictures.push_back(
         {name + ", view " + shown->view + (shown->heldout ? ", held out" : ""),
          "The board's boundary points in the cloud, laid on the image by the calibration. Green: "

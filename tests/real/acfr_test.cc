@@ -51,7 +51,7 @@ TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
   // The figures a person asks for; no limit is claimed: 16 rings are not what the method is for.
   const PoseError from_published =
       ErrorOf(camera.calibration.camera_from_lidar, PublishedCameraFromLidar());
-  const PoseError guess_from_published = ErrorOf(camera.first_guess, PublishedCameraFromLidar());
+  const PoseError guess_from_published = ErrorOf(*camera.first_guess, PublishedCameraFromLidar());
   std::printf(
       "%s; from the published mean %.2f deg, %.0f mm (the guess: %.2f deg, %.0f mm); "
       "held out %.1f px\n",

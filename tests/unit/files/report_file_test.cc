@@ -21,7 +21,8 @@ TEST(ReportFile, GivesBackEveryFigure) {
     EXPECT_EQ(b.calibration.camera, a.calibration.camera);
     test::ExpectSame(b.calibration.camera_from_lidar, a.calibration.camera_from_lidar);
     EXPECT_EQ(b.calibration.covariance, a.calibration.covariance);
-    test::ExpectSame(b.first_guess, a.first_guess);
+    ASSERT_EQ(b.first_guess.has_value(), a.first_guess.has_value());
+    if (a.first_guess) test::ExpectSame(*b.first_guess, *a.first_guess);
     EXPECT_EQ(b.used, a.used);
     EXPECT_EQ(b.heldout, a.heldout);
     ASSERT_EQ(b.rejected.size(), 1u);

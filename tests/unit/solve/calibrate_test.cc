@@ -148,7 +148,7 @@ TEST_F(CalibrateTest, ReportsViewsQualityAndWhereItComesFrom) {
   EXPECT_EQ(camera.rejected[0].why, "no board");
   EXPECT_EQ(camera.views.size(), 8U);
   EXPECT_TRUE(camera.calibration.converged);
-  EXPECT_THAT(camera.first_guess, Rigid3Near(guess_, 0.0, 0.0));
+  EXPECT_THAT(camera.first_guess.value(), Rigid3Near(guess_, 0.0, 0.0));
   EXPECT_LT(ReprojectionRms(world_, camera.calibration.camera_from_lidar, world_.camera_from_lidar),
             0.5);
   // On pixels drawn from the truth: a rounding (0.5 px) and the grid's diagonal at most.

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+namespace rgbdt {
+
+/// How a calibration is found. "auto": boards are found in images and clouds without clicks and
+/// without a guess. "paper": Krishnan, Stinnett and Saripalli (2015), from picked or detected
+/// corners and a hand-measured guess; the reference.
+inline constexpr const char* kAutoMethod = "auto";
+inline constexpr const char* kPaperMethod = "paper";
+
+/// For command lines.
+inline constexpr const char* kMethodHelp =
+    "auto (the board finds itself) or paper (Krishnan et al. 2015, the reference)";
+
+/// Throws InputError with the names that there are.
+void RequireMethod(const std::string& method);
+
+}  // namespace rgbdt
