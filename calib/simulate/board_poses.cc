@@ -10,6 +10,8 @@ namespace rgbdt::simulate {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+/// Attempts in which a far board stays as far as it was drawn.
+constexpr int kFarAttempts = 100;
 
 /// What a pose is made of. Angles against the line of sight from the LIDAR.
 struct PoseNumbers {
@@ -64,11 +66,15 @@ bool InImage(const CameraRenderer& camera, double margin, const Eigen::Vector3d&
          pixel->y() < camera.options().height - 1 - border;
 }
 
-bool InSweep(const Options& options, const Eigen::Vector3d& point) {
-  const ScannerOptions& s = options.scanner;
+bool InField(const Options& options, const Eigen::Vector3d& point) {
   const double margin = options.pose.sweep_margin_rad;
   const double azimuth = std::atan2(point.y(), point.x());
   const double elevation = std::atan2(point.z(), point.head<2>().norm());
+  if (options.spinning) {
+    return elevation > options.spinning->elevations_rad.front() + margin &&
+           elevation < options.spinning->elevations_rad.back() - margin;
+  }
+  const ScannerOptions& s = options.scanner;
   return azimuth > s.sweep_start_rad + margin &&
          azimuth < s.sweep_start_rad + s.sweep_rad - margin &&
          elevation > s.first_angle_rad + margin &&
@@ -96,6 +102,17 @@ bool Hidden(const World& empty, const Eigen::Vector3d& eye, const Eigen::Vector3
   return empty.caster().Blocked(eye, offset.normalized(), offset.norm());
 }
 
+/// Elevation that later attempts draw closer to: the middle of the LIDAR's field, but no lower than
+/// a board may hang.
+double MiddleElevation(const Options& options, double range) {
+  if (!options.spinning) return 0;
+  const std::vector<double>& rings = options.spinning->elevations_rad;
+  const double radius = 0.5 * std::hypot(options.board.width_m, options.board.height_m);
+  const double lowest = options.world.ground_z_m + options.pose.clearance_m + radius;
+  const double middle = std::sin(0.5 * (rings.front() + rings.back()));
+  return std::asin(std::clamp(std::max(middle, lowest / range), -1.0, 1.0));
+}
+
 /// Attempt 0 spreads evenly; later ones draw closer to the middle and to a medium range.
 PoseNumbers Draw(const Options& options, int index, int attempt) {
   const PoseOptions& o = options.pose;
@@ -112,13 +129,17 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
   const double inwards = std::pow(0.985, attempt);
   PoseNumbers n;
   // Near views weigh more in a calibration and are more easily detected: prefer them a little.
-  n.range = o.min_range_m + (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), 1.8);
+  n.range = o.min_range_m +
+            (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), o.near_preference);
   const double medium = o.min_range_m + 0.4 * (o.max_range_m - o.min_range_m);
-  n.range = medium + (n.range - medium) * (n.range < medium ? inwards : 1);
-  n.azimuth = inwards * spread(1, -25 * kDegree, 25 * kDegree);
-  n.elevation = inwards * spread(2, -16 * kDegree, 18 * kDegree);
+  // A far place has more room than a near one, but the scene may end before it.
+  const double far_inwards = std::pow(0.985, std::max(0, attempt - kFarAttempts));
+  n.range = medium + (n.range - medium) * (n.range < medium ? inwards : far_inwards);
+  n.azimuth = inwards * spread(1, -o.max_azimuth_rad, o.max_azimuth_rad);
+  n.elevation = inwards * spread(2, o.min_elevation_rad, o.max_elevation_rad) +
+                (1 - inwards) * MiddleElevation(options, n.range);
   n.tilt_axis = spread(3, 0, 2 * kPi);
-  n.tilt = spread(4, 0.35, 0.98) * o.max_tilt_rad;
+  n.tilt = spread(4, o.min_tilt, 0.98) * o.max_tilt_rad;
   n.roll = spread(5, -0.98, 0.98) * o.max_roll_rad;
   return n;
 }
@@ -128,9 +149,10 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
 std::string WhyNotSeen(const Options& options, const World& empty, const Scanner& scanner,
                        const std::vector<CameraRenderer>& cameras,
                        const Rigid3& lidar_from_target) {
+  if (!InField(options, lidar_from_target.translation)) return "outside the LIDAR's field";
   for (const Eigen::Vector3d& place : Places(options.board)) {
     const Eigen::Vector3d point = lidar_from_target * place;
-    if (!InSweep(options, point)) return "outside the sweep";
+    if (options.pose.whole_in_lidar && !InField(options, point)) return "outside the LIDAR's field";
     for (const CameraRenderer& camera : cameras) {
       if (!InImage(camera, options.pose.image_margin, point)) {
         return "outside the image of " + camera.options().name;
@@ -139,7 +161,9 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
     if (point.z() < options.world.ground_z_m + options.pose.clearance_m) return "in the ground";
     if (Crowded(empty, point, options.pose.clearance_m)) return "too close to an object";
     const double azimuth = std::atan2(point.y(), point.x());
-    if (Hidden(empty, scanner.Centre(azimuth), point)) return "hidden from the LIDAR";
+    const Eigen::Vector3d eye =
+        options.spinning ? Eigen::Vector3d::Zero() : scanner.Centre(azimuth);
+    if (Hidden(empty, eye, point)) return "hidden from the LIDAR";
     for (const CameraRenderer& camera : cameras) {
       if (Hidden(empty, camera.CentreInLidar(), point)) {
         return "hidden from " + camera.options().name;

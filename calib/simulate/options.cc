@@ -5,28 +5,10 @@
 
 #include "calib/model/errors.h"
 #include "calib/simulate/lens_table.h"
+#include "calib/simulate/option_checks.h"
 
 namespace rgbdt::simulate {
 namespace {
-
-void Require(bool good, const std::string& field, double value, const std::string& expected) {
-  if (good) return;
-  throw InputError("simulator: " + field + " is " + std::to_string(value) + "; expected " +
-                   expected);
-}
-
-void Positive(double value, const std::string& field) {
-  Require(std::isfinite(value) && value > 0, field, value, "a positive number");
-}
-
-void NotNegative(double value, const std::string& field) {
-  Require(std::isfinite(value) && value >= 0, field, value, "zero or a positive number");
-}
-
-void Between(double value, double low, double high, const std::string& field) {
-  Require(value >= low && value <= high, field, value,
-          std::to_string(low) + " to " + std::to_string(high));
-}
 
 void Check(const ScannerOptions& o) {
   Between(o.beams, 2, 10000, "scanner.beams");
@@ -48,15 +30,7 @@ void Check(const ScannerOptions& o) {
           "less than 1");
   Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),
           "less than 0.5");
-  // Zero is refused because a rig file gives the range's sigma, which whitens residuals.
-  Positive(o.range_sigma_m, "scanner.range_sigma_m");
-  Between(o.divergence_rad, 0, 0.1, "scanner.divergence_rad");
-  Between(o.divergence_rings, 2, 8, "scanner.divergence_rings");
-  NotNegative(o.merge_m, "scanner.merge_m");
-  Between(o.min_return, 0, 1, "scanner.min_return");
-  Between(o.white_wall_reflectivity, 0.01, 1, "scanner.white_wall_reflectivity");
-  Positive(o.max_range_m, "scanner.max_range_m");
-  NotNegative(o.intensity_sigma, "scanner.intensity_sigma");
+  o.BeamOptions::Check("scanner.");
 }
 
 void Check(const CameraOptions& o, const std::string& field) {
@@ -115,9 +89,24 @@ void Check(const PoseOptions& o) {
   Between(o.image_margin, 0, 0.4, "pose.image_margin");
   Between(o.sweep_margin_rad, 0, 1, "pose.sweep_margin_rad");
   NotNegative(o.clearance_m, "pose.clearance_m");
+  Between(o.near_preference, 0.1, 10, "pose.near_preference");
+  Between(o.min_tilt, 0, 0.98, "pose.min_tilt");
+  Between(o.max_azimuth_rad, 0, 180 * kDegree, "pose.max_azimuth_rad");
+  Between(o.min_elevation_rad, -80 * kDegree, 80 * kDegree, "pose.min_elevation_rad");
+  Between(o.max_elevation_rad, o.min_elevation_rad, 80 * kDegree, "pose.max_elevation_rad");
 }
 
 }  // namespace
+
+ScannerOptions DenseScanner() {
+  constexpr double kLines = 800;
+  ScannerOptions o;
+  const double fan = o.angle_step_rad * (o.beams - 1);
+  o.beams = 900;
+  o.angle_step_rad = fan / (o.beams - 1);
+  o.beam_period_s = o.sweep_rad / o.motor_speed_rad_s / kLines / o.beams;
+  return o;
+}
 
 CameraOptions DefaultColorCamera() {
   CameraOptions o;
@@ -154,6 +143,7 @@ CameraOptions DefaultThermalCamera() {
 
 void Options::Check() const {
   simulate::Check(scanner);
+  if (spinning) spinning->Check();
   if (cameras.empty()) throw InputError("simulator: cameras is empty; expected at least one");
   std::set<std::string> names;
   for (const CameraOptions& camera : cameras) {
@@ -164,6 +154,7 @@ void Options::Check() const {
   }
   simulate::Check(board);
   simulate::Check(pose);
+  clutter.Check();
   Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
   Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");
   Require(world.reflected_temperature_k == 0 ||
@@ -176,6 +167,13 @@ void Options::Check() const {
   NotNegative(pick_sigma_px, "pick_sigma_px");
   Between(supersampling, 1, 16, "supersampling");
   Between(threads, 0, 256, "threads");
+}
+
+void UseLidar(int rings, Options* options) {
+  options->spinning.reset();
+  if (rings == 0) return;
+  options->spinning = SpinningLidar(rings);
+  if (rings == 64) options->world.ground_z_m = -2;
 }
 
 }  // namespace rgbdt::simulate

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "calib/model/rig.h"
+#include "calib/simulate/clutter_options.h"
+#include "calib/simulate/lidar_options.h"
 
 namespace rgbdt::simulate {
 
@@ -16,10 +18,8 @@ enum class Scene { kOutdoor, kIndoor, kNight };
 inline const std::map<std::string, Scene> kSceneNames = {
     {"outdoor", Scene::kOutdoor}, {"indoor", Scene::kIndoor}, {"night", Scene::kNight}};
 
-inline constexpr double kDegree = 3.14159265358979323846 / 180;
-
 /// A 2D scanner (80 degree line, 10,000 beams/s) turned about the LIDAR's z.
-struct ScannerOptions {
+struct ScannerOptions : BeamOptions {
   int beams = 400;                         ///< per line
   double first_angle_rad = -40 * kDegree;  ///< elevation of beam 0
   double angle_step_rad = 0.2 * kDegree;   ///< between two beams of a line
@@ -32,15 +32,10 @@ struct ScannerOptions {
   Eigen::Vector3d lever_arm_m{0.02, 0.0, 0.05};  ///< scanner's origin in the motor's frame
   /// Rotation vector of motor_from_scanner [rad].
   Eigen::Vector3d tilt_rad{0.3 * kDegree, -0.4 * kDegree, 0.2 * kDegree};
-  double range_sigma_m = 0.010;          ///< noise of a range
-  double divergence_rad = 2.7e-3;        ///< full angle of the beam's cone, evenly filled
-  int divergence_rings = 2;              ///< sub-rays: 1 + 3 n (n + 1), so 19
-  double merge_m = 0.5;                  ///< surfaces closer together than this in range merge
-  double min_return = 0.02;              ///< of what the whole beam returns from the white wall
-  double white_wall_reflectivity = 1.0;  ///< of that wall
-  double max_range_m = 60;               ///< nothing returns from farther away
-  double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
 };
+
+/// A fine, slow sweep: 800 lines of 900 beams, 720,000 points over the same field.
+ScannerOptions DenseScanner();
 
 /// One camera: lens, mount, noise. Lenses are pinhole with OpenCV's distortion.
 struct CameraOptions {
@@ -96,6 +91,11 @@ struct PoseOptions {
   double image_margin = 0.03;               ///< outline to image border, of the image's width
   double sweep_margin_rad = 1.5 * kDegree;  ///< outline to the sweep's limits
   double clearance_m = 0.3;                 ///< to ground and objects
+  double near_preference = 1.8;  ///< 1: ranges are spread evenly; more: near ones are likelier
+  double min_tilt = 0.35;        ///< least tilt, as a share of max_tilt_rad
+  double max_azimuth_rad = 25 * kDegree;  ///< of the board's centre from straight ahead
+  double min_elevation_rad = -16 * kDegree, max_elevation_rad = 18 * kDegree;
+  bool whole_in_lidar = true;  ///< false: the LIDAR's field need only hold the board's centre
 };
 
 struct SceneOptions {
@@ -110,10 +110,12 @@ struct Options {
   std::uint64_t seed = 1;
   Scene scene = Scene::kOutdoor;
   ScannerOptions scanner;
+  std::optional<SpinningOptions> spinning;  ///< the rig's LIDAR in place of the scanner
   std::vector<CameraOptions> cameras{DefaultColorCamera(), DefaultThermalCamera()};
   BoardOptions board;
   PoseOptions pose;
   SceneOptions world;
+  ClutterOptions clutter;
   double guess_rotation_rad = 2 * kDegree;  ///< hand-measured rotation is wrong by up to this
   double guess_translation_m = 0.05;        ///< hand-measured camera centre: wrong by up to this
   double pick_sigma_px = 1.5;               ///< of a picked corner, along x and along y
@@ -123,5 +125,9 @@ struct Options {
   /// Throws InputError naming the field and its value.
   void Check() const;
 };
+
+/// Gives the rig a spinning LIDAR of so many rings, see SpinningLidar; 0: the turned scanner. That
+/// of 64 rings looks down and stands 2 m high, or no board would be wholly in its field.
+void UseLidar(int rings, Options* options);
 
 }  // namespace rgbdt::simulate

@@ -6,28 +6,11 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/rig.h"
+#include "calib/simulate/beam.h"
 #include "calib/simulate/options.h"
 #include "calib/simulate/world.h"
 
 namespace rgbdt::simulate {
-
-/// One sub-ray of a beam that met a surface.
-struct SubReturn {
-  double range = 0;  ///< [m]
-  double reflectivity = 0;
-};
-
-struct BeamReturn {
-  double range = 0;      ///< [m]; NaN: nothing returned
-  double intensity = 0;  ///< reflectivity seen by the whole beam, range compensated
-};
-
-/// What a beam of `sub_rays` equal shares reports. Each return has energy reflectivity * share /
-/// range^2. Returns within `merge_m` of the next merge to their energy-weighted mean range; of what
-/// remains the strongest is reported, unless it is weaker than `min_return` of what the whole beam
-/// would return from the white wall at that range. `returns` is sorted.
-BeamReturn CombineReturns(const ScannerOptions& options, int sub_rays,
-                          std::vector<SubReturn>* returns);
 
 /// The 2D scanner on its motor.
 class Scanner {
@@ -46,8 +29,12 @@ class Scanner {
   /// One beam without noise, at a motor angle.
   BeamReturn Beam(const World& world, int beam, double motor_angle) const;
   LineScan Line(const World& world, Utime sweep_utime, int line) const;
+  /// A whole sweep, line x beam, with the motor's true angles (an encoder reads whole ticks).
+  Cloud Sweep(const World& world, Utime sweep_utime, int threads) const;
 
  private:
+  void AddLine(const LineScan& scan, int line, Cloud* cloud) const;
+
   ScannerOptions options_;
   std::uint64_t seed_;
   TurnedScanner geometry_;

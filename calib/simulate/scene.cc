@@ -1,5 +1,7 @@
 #include "calib/simulate/scene.h"
 
+#include "calib/simulate/clutter.h"
+
 namespace rgbdt::simulate {
 namespace {
 
@@ -233,6 +235,7 @@ SceneModel MakeScene(const Options& options) {
   if (options.world.reflected_temperature_k != 0) {
     scene.reflected_temperature_k = options.world.reflected_temperature_k;
   }
+  AddClutter(options, &scene);
   return scene;
 }
 

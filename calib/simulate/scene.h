@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "calib/simulate/options.h"
 
 namespace rgbdt::simulate {
+
+class Board;
 
 /// A source of light. Colours are blue, green, red; 1 lights a white sheet to the fullest.
 struct Light {
@@ -32,6 +35,7 @@ struct SceneObject {
   std::string name;
   Mesh mesh;  ///< LIDAR frame
   Material material;
+  std::shared_ptr<const Board> pattern = {};  ///< not null: the object is a board and looks like it
 };
 
 /// What the board takes on in a scene where the options do not say.
@@ -51,7 +55,8 @@ struct SceneModel {
 };
 
 /// Ground, wall, boxes, trees and a warm person; or a room. All of it lies farther from the LIDAR
-/// than the board ever stands, but for the ground and what is beside the field of view.
+/// than the board stands by default, but for the ground, what is beside the field of view, and
+/// clutter.
 SceneModel MakeScene(const Options& options);
 
 }  // namespace rgbdt::simulate

@@ -11,6 +11,7 @@
 #include "calib/simulate/noise.h"
 #include "calib/simulate/rig_defaults.h"
 #include "calib/simulate/scanner.h"
+#include "calib/simulate/spinning.h"
 #include "calib/simulate/world.h"
 
 namespace rgbdt::simulate {
@@ -101,6 +102,12 @@ LineScan Simulator::Line(Utime sweep_utime, int line) const {
                      std::to_string(sweep_lines() - 1));
   }
   return impl_->scanner.Line(impl_->world(), sweep_utime, line);
+}
+
+Cloud Simulator::Revolution(Utime utime) const {
+  const Options& o = impl_->options;
+  if (!o.spinning) throw InputError("simulator: the rig has a turned scanner; call Line");
+  return SpinningSweep(impl_->world(), *o.spinning, o.seed, utime, o.threads);
 }
 
 EncoderReading Simulator::Encoder(Utime utime, Utime sweep_utime) const {

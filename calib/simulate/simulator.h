@@ -32,6 +32,8 @@ class Simulator {
   int sweep_lines() const;
   Utime line_period() const;
   LineScan Line(Utime sweep_utime, int line) const;
+  /// A revolution of the spinning LIDAR; throws InputError where the rig has none.
+  Cloud Revolution(Utime utime) const;
   /// The encoder at a time; sweep_utime 0: standing still between sweeps.
   EncoderReading Encoder(Utime utime, Utime sweep_utime) const;
   Image TakeImage(const std::string& camera, Utime utime) const;

@@ -3,16 +3,23 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib/simulate/holder.h"
+
 namespace rgbdt::simulate {
 namespace {
 
+std::vector<SceneObject> HolderOf(const std::optional<Board>& board, const Options& options,
+                                  const SceneModel& scene) {
+  if (!board) return {};
+  return MakeHolder(*board, options, scene.air_k);
+}
+
 std::vector<Mesh> CollectMeshes(const SceneModel& scene, const std::optional<Board>& board,
-                                const Options& options) {
+                                const std::vector<SceneObject>& holder) {
   std::vector<Mesh> meshes;
   for (const SceneObject& object : scene.objects) meshes.push_back(object.mesh);
-  if (!board) return meshes;
-  meshes.push_back(board->Shape());
-  for (Mesh& part : board->Stand(options.world.ground_z_m)) meshes.push_back(std::move(part));
+  if (board) meshes.push_back(board->Shape());
+  for (const SceneObject& part : holder) meshes.push_back(part.mesh);
   return meshes;
 }
 
@@ -23,7 +30,8 @@ World::World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board
     : scene_(std::move(scene)),
       board_(std::move(board)),
       board_object_(static_cast<int>(scene_->objects.size())),
-      meshes_(CollectMeshes(*scene_, board_, options)),
+      holder_(HolderOf(board_, options, *scene_)),
+      meshes_(CollectMeshes(*scene_, board_, holder_)),
       caster_(meshes_) {
   for (std::size_t i = scene_->objects.size(); i < meshes_.size(); ++i) {
     Box box{meshes_[i].vertices[0], meshes_[i].vertices[0]};
@@ -33,9 +41,6 @@ World::World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board
     }
     moving_.push_back({box.low.array() - 0.02, box.high.array() + 0.02});
   }
-  stand_.albedo.setConstant(options.board.stand_reflectivity);
-  stand_.reflectivity = options.board.stand_reflectivity;
-  stand_.temperature_k = scene_->air_k;
 }
 
 bool World::MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
@@ -60,24 +65,30 @@ int World::Face(const Hit& hit) const {
   return 1 + hit.object * 8 + (round ? 0 : hit.triangle / 2);
 }
 
+const SceneObject& World::Object(const Hit& hit) const {
+  const auto i = static_cast<std::size_t>(hit.object);
+  return IsMoving(hit) ? holder_[i - scene_->objects.size() - 1] : scene_->objects[i];
+}
+
 Surface World::At(const Hit& hit, const Eigen::Vector3d& point, double footprint_m) const {
   Surface surface;
   if (IsBoard(hit)) {
     surface.material = board_->At(point, &surface.patch);
   } else if (IsMoving(hit)) {
-    surface.material = stand_;
+    surface.material = Object(hit).material;
+  } else if (Object(hit).pattern) {
+    surface.material = Object(hit).pattern->At(point, &surface.patch);
   } else {
-    surface.material = Textured(scene_->objects[static_cast<std::size_t>(hit.object)].material,
-                                point, hit.normal, footprint_m);
+    surface.material = Textured(Object(hit).material, point, hit.normal, footprint_m);
   }
   return surface;
 }
 
 double World::Reflectivity(const Hit& hit, const Eigen::Vector3d& point) const {
   if (IsBoard(hit)) return board_->Reflectivity(point);
-  if (IsMoving(hit)) return stand_.reflectivity;
-  // The LIDAR sees surfaces without their painted pattern.
-  return scene_->objects[static_cast<std::size_t>(hit.object)].material.reflectivity;
+  const SceneObject& object = Object(hit);
+  // The LIDAR sees surfaces without their painted pattern, but for a board's.
+  return object.pattern ? object.pattern->Reflectivity(point) : object.material.reflectivity;
 }
 
 }  // namespace rgbdt::simulate

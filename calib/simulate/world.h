@@ -32,6 +32,8 @@ class World {
   bool IsMoving(const Hit& hit) const { return hit.object >= board_object_; }
   /// Whether a ray comes near board or stand (their boxes along the axes; no false "no").
   bool MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+  /// What the ray met, of the scene or of what holds the board. Not for the board itself.
+  const SceneObject& Object(const Hit& hit) const;
   /// Number of an object's face: neighbouring pixels that differ in it have an edge between them.
   int Face(const Hit& hit) const;
 
@@ -48,10 +50,10 @@ class World {
   std::shared_ptr<const SceneModel> scene_;
   std::optional<Board> board_;
   int board_object_;
+  std::vector<SceneObject> holder_;  ///< what holds the board: numbered after it
   std::vector<Mesh> meshes_;
   RayCaster caster_;
   std::vector<Box> moving_;
-  Material stand_;
 };
 
 }  // namespace rgbdt::simulate

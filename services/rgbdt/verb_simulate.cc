@@ -18,6 +18,7 @@ struct Flags {
   std::string dir;
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
+  int rings = 0;
   simulate::Options options;
 };
 
@@ -43,11 +44,24 @@ Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
   return cloud;
 }
 
+// The LIDAR's cloud from this time on; `now` becomes when it ends.
+Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Utime* now) {
+  const Utime begin = *now;
+  if (options.spinning) {
+    *now += FromSeconds(options.spinning->revolution_s);
+    return simulator.Revolution(begin);
+  }
+  *now += simulator.sweep_lines() * simulator.line_period();
+  return Sweep(simulator, begin);
+}
+
 int Run(const Flags& flags) {
   if (flags.views < 1 || flags.views > 9999) {
     throw InputError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
-  Simulator simulator(flags.options);
+  simulate::Options options = flags.options;
+  simulate::UseLidar(flags.rings, &options);
+  Simulator simulator(options);
   Rig rig = simulator.rig();
   for (const std::string& camera : flags.picked) rig.Camera(camera);
   WriteRig(flags.dir, ParseRig(PrintRig(rig), "synthetic rig"));
@@ -60,8 +74,8 @@ int Run(const Flags& flags) {
     view.heldout = i % 3 == 2;
     std::fprintf(stderr, "[%d/%d] view %s: rendering, sweeping\n", i + 1, flags.views, name);
     simulator.ShowView(i, view.name);
-    view.cloud = Sweep(simulator, now);
-    now += simulator.sweep_lines() * simulator.line_period() + kMicrosecondsPerSecond;
+    view.cloud = TakeCloud(simulator, options, &now);
+    now += kMicrosecondsPerSecond;
     for (const CameraSpec& camera : rig.cameras) {
       view.images.push_back(simulator.TakeImage(camera.name, now));
     }
@@ -90,6 +104,8 @@ void AddSimulate(CLI::App* app, int* exit_code) {
   verb->add_option("--seed", flags->options.seed, "of everything random")->capture_default_str();
   verb->add_option("--scene", flags->options.scene, "outdoor, indoor or night")
       ->transform(CLI::CheckedTransformer(simulate::kSceneNames));
+  verb->add_option("--lidar", flags->rings, "turned, vlp16, 32, 64 or 128: scanner or rings")
+      ->transform(CLI::CheckedTransformer(simulate::kLidarRings));
   verb->add_option("--picked", flags->picked, "cameras whose corners a person picks")
       ->capture_default_str();
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });

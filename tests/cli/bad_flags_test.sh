@@ -21,6 +21,8 @@ says=("--views" "0")
 refuses "no views at all" "$bin/rgbdt" simulate "$scratch/new" --views 0
 says=("--scene" "moon")
 refuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
+says=("--lidar" "moon")
+refuses "an unknown LIDAR" "$bin/rgbdt" simulate "$scratch/new" --lidar moon
 says=("front" "rgb" "thermal")
 refuses "picks for a camera that is not there" "$bin/rgbdt" simulate "$scratch/new" --picked front
 mkdir "$scratch/out"

@@ -32,6 +32,33 @@ TEST(Options, BadOnesAreNamed) {
       {"pose.max_tilt_rad", [](Options* o) { o->pose.max_tilt_rad = 40; }},
       {"world.ground_z_m", [](Options* o) { o->world.ground_z_m = 1; }},
       {"guess_rotation_rad", [](Options* o) { o->guess_rotation_rad = 2; }},
+      {"pose.min_tilt", [](Options* o) { o->pose.min_tilt = 1; }},
+      {"pose.near_preference", [](Options* o) { o->pose.near_preference = 0; }},
+      {"pose.max_elevation_rad", [](Options* o) { o->pose.max_elevation_rad = -1; }},
+      {"clutter.panel_m", [](Options* o) { o->clutter.panel_m.y() = 9; }},
+      {"clutter.far_m", [](Options* o) { o->clutter.far_m = 2; }},
+      {"clutter.door_ajar_rad", [](Options* o) { o->clutter.door_ajar_rad = -0.1; }},
+      {"spinning.range_sigma_m",
+       [](Options* o) {
+         UseLidar(16, o);
+         o->spinning->range_sigma_m = 0;
+       }},
+      {"spinning.elevations_rad",
+       [](Options* o) {
+         UseLidar(16, o);
+         std::swap(o->spinning->elevations_rad[3], o->spinning->elevations_rad[4]);
+       }},
+      {"number of spinning.elevations_rad", [](Options* o) { o->spinning = SpinningOptions(); }},
+      {"spinning.azimuth_step_rad",
+       [](Options* o) {
+         UseLidar(16, o);
+         o->spinning->azimuth_step_rad = 0;
+       }},
+      {"spinning.firing_share",
+       [](Options* o) {
+         UseLidar(32, o);
+         o->spinning->firing_share = 1.5;
+       }},
       {"supersampling", [](Options* o) { o->supersampling = 0; }},
   };
   for (const auto& [field, spoil] : cases) {

@@ -237,5 +237,32 @@ TEST(Simulator, ShowsTheSceneWithoutABoardBeforeTheFirstView) {
   EXPECT_FALSE(SamePixels(before.pixels, simulator.TakeImage("rgb", kStart).pixels));
 }
 
+TEST(Simulator, MayHaveASpinningLidar) {
+  for (const int rings : {16, 64}) {
+    Options options = SmallOptions();
+    UseLidar(rings, &options);
+    Simulator simulator(options);
+    EXPECT_FALSE(simulator.rig().lidar.turned_scanner);
+    EXPECT_EQ(simulator.rig().lidar.range_sigma_m, options.spinning->range_sigma_m);
+    simulator.ShowView(0, "a");
+    const Cloud cloud = simulator.Revolution(2000000);
+    EXPECT_EQ(cloud.lines, rings);
+    const Rigid3 target_from_lidar = simulator.truth().lidar_from_target.at("a").Inverse();
+    int on_board = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!cloud.IsHit(i)) continue;
+      const Eigen::Vector3d p = target_from_lidar * cloud.points[i].cast<double>();
+      on_board += std::abs(p.x()) < 0.6 && std::abs(p.y()) < 0.45 && std::abs(p.z()) < 0.08 ? 1 : 0;
+    }
+    EXPECT_GT(on_board, 15);
+    for (const Eigen::Vector2d& corner : simulator.PickCorners("rgb", 3000000).corners) {
+      EXPECT_GT(corner.minCoeff(), 0);
+      EXPECT_LT(corner.x(), options.cameras[0].width);
+      EXPECT_LT(corner.y(), options.cameras[0].height);
+    }
+  }
+  EXPECT_THROW(Simulator(SmallOptions()).Revolution(0), InputError);
+}
+
 }  // namespace
 }  // namespace rgbdt::simulate

@@ -1,0 +1,63 @@
+#include "calib/simulate/lidar_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/simulate/option_checks.h"
+
+namespace rgbdt::simulate {
+
+void BeamOptions::Check(const std::string& prefix) const {
+  // Zero is refused because a rig file gives the range's sigma, which whitens residuals.
+  Positive(range_sigma_m, prefix + "range_sigma_m");
+  Between(divergence_rad, 0, 0.1, prefix + "divergence_rad");
+  Between(divergence_rings, 2, 8, prefix + "divergence_rings");
+  NotNegative(merge_m, prefix + "merge_m");
+  Between(min_return, 0, 1, prefix + "min_return");
+  Between(white_wall_reflectivity, 0.01, 1, prefix + "white_wall_reflectivity");
+  Positive(max_range_m, prefix + "max_range_m");
+  NotNegative(intensity_sigma, prefix + "intensity_sigma");
+}
+
+int SpinningOptions::columns() const {
+  return static_cast<int>(std::lround(360 * kDegree / azimuth_step_rad));
+}
+
+void SpinningOptions::Check() const {
+  BeamOptions::Check("spinning.");
+  Between(rings(), 2, 1024, "number of spinning.elevations_rad");
+  for (std::size_t i = 0; i < elevations_rad.size(); ++i) {
+    Between(elevations_rad[i], -89 * kDegree, 89 * kDegree, "spinning.elevations_rad");
+    Require(i == 0 || elevations_rad[i] > elevations_rad[i - 1], "spinning.elevations_rad",
+            elevations_rad[i], "more than that of the ring below");
+  }
+  Between(azimuth_step_rad, 0.01 * kDegree, 10 * kDegree, "spinning.azimuth_step_rad");
+  Between(first_azimuth_rad, -360 * kDegree, 360 * kDegree, "spinning.first_azimuth_rad");
+  Between(revolution_s, 1e-3, 60, "spinning.revolution_s");
+  Between(firing_share, 0, 1, "spinning.firing_share");
+  Between(ring_bias_sigma_m, 0, 1, "spinning.ring_bias_sigma_m");
+  Between(range_offset_m, -1, 1, "spinning.range_offset_m");
+}
+
+SpinningOptions SpinningLidar(int rings) {
+  struct Fan {
+    int rings;
+    double low, high;  // [degrees]
+  };
+  for (const Fan& fan : {Fan{16, -15, 15}, {32, -30.67, 10.67}, {64, -24.8, 2}, {128, -25, 15}}) {
+    if (fan.rings != rings) continue;
+    SpinningOptions o;
+    for (int i = 0; i < rings; ++i) {
+      o.elevations_rad.push_back((fan.low + (fan.high - fan.low) * i / (rings - 1)) * kDegree);
+    }
+    o.azimuth_step_rad = (rings == 64 ? 0.17 : 0.2) * kDegree;
+    o.range_sigma_m = rings == 16 ? 0.02 : 0.015;
+    o.divergence_rad = 3e-3;
+    o.max_range_m = 100;
+    return o;
+  }
+  throw InputError("simulator: no spinning LIDAR of " + std::to_string(rings) +
+                   " rings; expected 16, 32, 64 or 128");
+}
+
+}  // namespace rgbdt::simulate

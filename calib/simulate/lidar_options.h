@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rgbdt::simulate {
+
+inline constexpr double kDegree = 3.14159265358979323846 / 180;
+
+/// The beam of any LIDAR: its width, what it returns and its noise.
+struct BeamOptions {
+  double range_sigma_m = 0.010;          ///< noise of a range
+  double divergence_rad = 2.7e-3;        ///< full angle of the beam's cone, evenly filled
+  int divergence_rings = 2;              ///< sub-rays: 1 + 3 n (n + 1), so 19
+  double merge_m = 0.5;                  ///< surfaces closer together than this in range merge
+  double min_return = 0.02;              ///< of what the whole beam returns from the white wall
+  double white_wall_reflectivity = 1.0;  ///< of that wall
+  double max_range_m = 60;               ///< nothing returns from farther away
+  double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
+
+  /// Throws InputError naming the field, with `prefix` before it, and its value.
+  void Check(const std::string& prefix) const;
+};
+
+/// A spinning multi-beam LIDAR in the LIDAR frame's origin, turning about z from x towards y.
+struct SpinningOptions : BeamOptions {
+  std::vector<double> elevations_rad;         ///< one a ring, rising: ring 0 is the lowest
+  double azimuth_step_rad = 0;                ///< rounded so that a revolution is whole steps
+  double first_azimuth_rad = -180 * kDegree;  ///< of column 0: where the grid's seam lies
+  double revolution_s = 0.1;                  ///< rings of a column fire within a step's time:
+  double firing_share = 0;       ///< over this share of it, one ring after the other while
+                                 ///< the head turns; 0: all at once
+  double ring_bias_sigma_m = 0;  ///< each ring's ranges are off by a constant of its own
+  double range_offset_m = 0;     ///< all ranges are off by this
+
+  int rings() const { return static_cast<int>(elevations_rad.size()); }
+  int columns() const;  ///< azimuths of a revolution
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+};
+
+/// LIDARs of 16 (-15 to 15 degrees), 32 (-30.67 to 10.67), 64 (-24.8 to 2) or 128 rings (-25 to
+/// 15), evenly spaced. Throws InputError for another number.
+SpinningOptions SpinningLidar(int rings);
+
+/// As a person types them; 0 is the turned scanner.
+inline const std::map<std::string, int> kLidarRings = {
+    {"turned", 0}, {"vlp16", 16}, {"32", 32}, {"64", 64}, {"128", 128}};
+
+}  // namespace rgbdt::simulate

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Sessions of spinning LIDARs hold what such a LIDAR gives. Usage: simulate_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+holds() {  # WHAT FILE PATTERN: the text file, or a binary one's header, has such a line
+  head -c 2000 "$2" | grep -qaE -- "$3" || complain "$1: no '$3' in $2"
+}
+
+for kind in "vlp16 16 1800" "64 64 2118"; do
+  read -r lidar rings azimuths <<<"$kind"
+  session=$scratch/$lidar
+  accepts "a session of $lidar" "$bin/rgbdt" simulate "$session" --views 1 --lidar "$lidar"
+  cloud=$session/views/0001/cloud.pcd
+  holds "$lidar" "$cloud" "^FIELDS x y z intensity ring utime line beam dir_x dir_y dir_z$"
+  holds "$lidar" "$cloud" "^WIDTH $azimuths$"
+  holds "$lidar" "$cloud" "^HEIGHT $rings$"
+  ! grep -q turned_scanner "$session/rig.textproto" || complain "$lidar: its rig has a motor"
+  [ -s "$session/views/0001/thermal.png" ] || complain "$lidar: no thermal image"
+done
+
+accepts "the turned scanner by name" "$bin/rgbdt" simulate "$scratch/named" --views 1 --lidar turned
+accepts "the turned scanner by default" "$bin/rgbdt" simulate "$scratch/default" --views 1
+diff -r "$scratch/named" "$scratch/default" >"$scratch/output" 2>&1 ||
+  complain "the turned scanner is not the default"
+grep -q turned_scanner "$scratch/named/rig.textproto" || complain "the turned scanner has no motor"
+
+verdict
