@@ -54,18 +54,28 @@ struct FisheyeLens {
 };
 
 /// Projects a point in camera axes (x right, y down, z forward; z > 0) to a pixel, without any
-/// check: see Camera::Project for those.
-template <typename T>
-void ProjectUnchecked(const Lens& lens, const T& px, const T& py, const T& pz, T* u, T* v) {
+/// check: see Camera::Project for those. The lens's numbers have a scalar K of their own, so that
+/// they can be what is solved for: `f` is fx fy, `c` is cx cy [px], `k` is Lens::distortion, all 8.
+template <typename T, typename K>
+void ProjectUnchecked(Lens::Model model, const K* f, const K* c, const K* k, const T& px,
+                      const T& py, const T& pz, T* u, T* v) {
   T xd;
   T yd;
-  if (lens.model == Lens::Model::kFisheye) {
-    FisheyeLens::Distort(lens.distortion.data(), px, py, pz, &xd, &yd);
+  if (model == Lens::Model::kFisheye) {
+    FisheyeLens::Distort(k, px, py, pz, &xd, &yd);
   } else {
-    PinholeLens::Distort(lens.distortion.data(), T(px / pz), T(py / pz), &xd, &yd);
+    PinholeLens::Distort(k, T(px / pz), T(py / pz), &xd, &yd);
   }
-  *u = T(lens.fx) * xd + T(lens.cx);
-  *v = T(lens.fy) * yd + T(lens.cy);
+  *u = T(f[0]) * xd + T(c[0]);
+  *v = T(f[1]) * yd + T(c[1]);
+}
+
+/// The same for a lens that is known.
+template <typename T>
+void ProjectUnchecked(const Lens& lens, const T& px, const T& py, const T& pz, T* u, T* v) {
+  const double f[2] = {lens.fx, lens.fy};
+  const double c[2] = {lens.cx, lens.cy};
+  ProjectUnchecked(lens.model, f, c, lens.distortion.data(), px, py, pz, u, v);
 }
 
 }  // namespace rgbdt

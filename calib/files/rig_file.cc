@@ -46,7 +46,15 @@ Lens ToLens(const proto::Camera& camera, const Place& place) {
     case proto::Camera::LENS_NOT_SET:
       break;
   }
-  place.Fail("pinhole", "is missing; give pinhole { ... } or fisheye { ... }");
+  return {};
+}
+
+void CheckLensIsKnown(const CameraSpec& camera, const Place& place) {
+  if (camera.lens.known()) return;
+  place.Fail(camera.lens.model == Lens::Model::kFisheye ? "fisheye" : "pinhole",
+             "is missing: camera \"" + camera.name +
+                 "\" has no lens; run `rgbdt intrinsics DIR` to find it, or give pinhole { ... } "
+                 "or fisheye { ... }");
 }
 
 Radiometry ToRadiometry(const proto::Camera& camera, const Place& place) {
@@ -87,7 +95,7 @@ void CheckKindAndFormat(const proto::Camera& camera, const Place& place) {
   }
 }
 
-CameraSpec ToCamera(const proto::Camera& camera, const Place& place) {
+CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed lenses) {
   CheckKindAndFormat(camera, place);
   CameraSpec spec;
   spec.name = camera.name();
@@ -96,6 +104,7 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place) {
   spec.height = camera.height();
   spec.format = static_cast<PixelFormat>(camera.pixel_format());
   spec.lens = ToLens(camera, place);
+  if (lenses == LensNeed::kKnown) CheckLensIsKnown(spec, place);
   spec.radiometry = ToRadiometry(camera, place);
   text::RequireFinite(camera.readout_s(), place, "readout_s");
   spec.readout_s = camera.readout_s();
@@ -166,17 +175,23 @@ void FromLens(const Lens& lens, int least, ProtoLens* out) {
   for (int i = 0; i < count; ++i) out->add_distortion(lens.distortion[static_cast<size_t>(i)]);
 }
 
+// A lens that is not known stays so, and keeps its model where that is not the usual one.
+void FromLens(const Lens& lens, proto::Camera* out) {
+  if (lens.model == Lens::Model::kFisheye) {
+    proto::Fisheye* const fisheye = out->mutable_fisheye();
+    if (lens.known()) FromLens(lens, 4, fisheye);
+  } else if (lens.known()) {
+    FromLens(lens, 4, out->mutable_pinhole());
+  }
+}
+
 void FromCamera(const CameraSpec& spec, proto::Camera* out) {
   out->set_name(text::ValidUtf8(spec.name));
   out->set_kind(static_cast<proto::Camera::Kind>(spec.kind));
   out->set_width(spec.width);
   out->set_height(spec.height);
   out->set_pixel_format(static_cast<proto::Camera::PixelFormat>(spec.format));
-  if (spec.lens.model == Lens::Model::kPinhole) {
-    FromLens(spec.lens, 4, out->mutable_pinhole());
-  } else {
-    FromLens(spec.lens, 4, out->mutable_fisheye());
-  }
+  FromLens(spec.lens, out);
   if (spec.radiometry.kind == Radiometry::Kind::kLinear) {
     text::FromLinear(spec.radiometry, out->mutable_linear());
   } else if (spec.radiometry.kind == Radiometry::Kind::kPlanck) {
@@ -214,11 +229,11 @@ void FromTarget(const Target& spec, proto::Target* out) {
 
 }  // namespace
 
-Rig ReadRig(const std::filesystem::path& path) {
-  return ParseRig(ReadWholeFile(path), path.string());
+Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
+  return ParseRig(ReadWholeFile(path), path.string(), lenses);
 }
 
-Rig ParseRig(const std::string& text, const std::string& where) {
+Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses) {
   proto::Rig message;
   Place::Tree tree;
   const Place place = text::ParseText(text, where, &message, &tree);
@@ -228,13 +243,13 @@ Rig ParseRig(const std::string& text, const std::string& where) {
   rig.name = message.name();
   rig.lidar = ToLidar(message.lidar(), place.In("lidar"));
   for (int i = 0; i < message.camera_size(); ++i) {
-    rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i)));
+    rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
   }
   rig.target = ToTarget(message.target(), place.In("target"));
   rig.text = text;
   rig.hash = HashOfRigText(text);
   try {
-    rig.Check();
+    rig.Check(lenses);
   } catch (const InputError& error) {
     throw InputError(where + ": " + error.what());
   }

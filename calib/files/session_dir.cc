@@ -53,7 +53,7 @@ bool NaturalLess(const std::string& a, const std::string& b) {
   return i == a.size();
 }
 
-Session OpenSession(const fs::path& dir) {
+Session OpenSession(const fs::path& dir, LensNeed lenses) {
   if (!fs::is_directory(dir)) {
     throw InputError("there is no session directory " + dir.string() +
                      "; expected a folder with rig.textproto and views/");
@@ -64,7 +64,7 @@ Session OpenSession(const fs::path& dir) {
                      " is missing; write one (cameras, lenses, board), as calib/files/README.md "
                      "shows");
   }
-  Session session{dir, ReadRig(rig), {}};
+  Session session{dir, ReadRig(rig, lenses), {}};
   const fs::path views = dir / "views";
   if (fs::is_directory(views)) session.views = ListViews(views);
   if (session.views.empty()) {

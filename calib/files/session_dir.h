@@ -19,13 +19,16 @@ struct Session {
 
 /// Reads rig.textproto and lists the views. Throws InputError saying what is missing and what to
 /// do.
-Session OpenSession(const std::filesystem::path& dir);
+Session OpenSession(const std::filesystem::path& dir, LensNeed lenses = LensNeed::kKnown);
 
 /// Reads one view: its cloud, its images and a person's picks. Where view.textproto does not say
 /// whether it is held out, every third view of the session is (the 3rd, 6th, ...). Throws
 /// InputError naming file, line and field: a missing file, an image that is not what the rig says
 /// (camera, size, channels), a cloud and an image more than 60 s apart.
 View ReadView(const Session& session, const std::string& view);
+
+/// The same without its cloud, which then need not be there.
+View ReadImages(const Session& session, const std::string& view);
 
 /// Writes rig.textproto: the rig's own text where it has one, so that its hash stays.
 void WriteRig(const std::filesystem::path& session_dir, const Rig& rig);

@@ -131,9 +131,9 @@ void CheckTimes(const proto::View& message, const Image& image, const Place& pla
                           "moment (0: time unknown)");
 }
 
-}  // namespace
+enum class WithCloud { kYes, kNo };
 
-View ReadView(const Session& session, const std::string& view) {
+View Read(const Session& session, const std::string& view, WithCloud with_cloud) {
   const std::size_t index = IndexOf(session, view);
   const fs::path folder = session.root / "views" / view;
   const fs::path file = folder / "view.textproto";
@@ -149,7 +149,9 @@ View ReadView(const Session& session, const std::string& view) {
     place.Fail("sweep_utime", "is " + std::to_string(message.sweep_utime()) +
                                   "; expected microseconds since 1970");
   }
-  if (message.cloud().empty()) place.Fail("cloud", "is missing; expected the PCD file's path");
+  const bool cloud = with_cloud == WithCloud::kYes;
+  if (cloud && message.cloud().empty())
+    place.Fail("cloud", "is missing; expected the PCD file's path");
   if (message.image_size() == 0) place.Fail("image", "is missing; expected image { ... }");
 
   View result;
@@ -163,9 +165,21 @@ View ReadView(const Session& session, const std::string& view) {
       result.picks.push_back(ReadPicks(message.image(i), result.images.back(), at));
     }
   }
-  result.cloud = ReadFor(place, "cloud",
-                         [&] { return ReadPcd(folder / message.cloud(), message.sweep_utime()); });
+  if (cloud) {
+    result.cloud = ReadFor(
+        place, "cloud", [&] { return ReadPcd(folder / message.cloud(), message.sweep_utime()); });
+  }
   return result;
+}
+
+}  // namespace
+
+View ReadView(const Session& session, const std::string& view) {
+  return Read(session, view, WithCloud::kYes);
+}
+
+View ReadImages(const Session& session, const std::string& view) {
+  return Read(session, view, WithCloud::kNo);
 }
 
 }  // namespace rgbdt

@@ -32,22 +32,24 @@ void CheckPose(const Rigid3& pose, const std::string& field) {
           "not a pose", "finite metres and a unit quaternion");
 }
 
-void CheckCamera(const CameraSpec& camera) {
+void CheckLens(const Lens& lens, const std::string& field) {
+  RequirePositive(lens.fx, field + "lens.fx");
+  RequirePositive(lens.fy, field + "lens.fy");
+  Require(std::isfinite(lens.cx), field + "lens.cx", std::to_string(lens.cx), "a finite number");
+  Require(std::isfinite(lens.cy), field + "lens.cy", std::to_string(lens.cy), "a finite number");
+  for (const double k : lens.distortion) {
+    Require(std::isfinite(k), field + "lens.distortion", std::to_string(k), "finite numbers");
+  }
+}
+
+void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
   CheckName(camera.name, "camera.name");
   const std::string field = "camera \"" + camera.name + "\": ";
   Require(camera.width > 0 && camera.width <= 20000, field + "width", std::to_string(camera.width),
           "1 to 20000 px");
   Require(camera.height > 0 && camera.height <= 20000, field + "height",
           std::to_string(camera.height), "1 to 20000 px");
-  RequirePositive(camera.lens.fx, field + "lens.fx");
-  RequirePositive(camera.lens.fy, field + "lens.fy");
-  Require(std::isfinite(camera.lens.cx), field + "lens.cx", std::to_string(camera.lens.cx),
-          "a finite number");
-  Require(std::isfinite(camera.lens.cy), field + "lens.cy", std::to_string(camera.lens.cy),
-          "a finite number");
-  for (const double k : camera.lens.distortion) {
-    Require(std::isfinite(k), field + "lens.distortion", std::to_string(k), "finite numbers");
-  }
+  if (lenses == LensNeed::kKnown || camera.lens.known()) CheckLens(camera.lens, field);
   Require(camera.readout_s >= 0 && camera.readout_s <= 60, field + "readout_s",
           std::to_string(camera.readout_s), "0 to 60 seconds");
   const double emissivity = camera.radiometry.emissivity;
@@ -105,12 +107,12 @@ std::array<Eigen::Vector3d, 4> Target::OutlineCorners() const {
           Eigen::Vector3d(-x, y, 0)};
 }
 
-void Rig::Check() const {
+void Rig::Check(LensNeed lenses) const {
   Require(!cameras.empty() && cameras.size() <= 32, "number of cameras",
           std::to_string(cameras.size()), "1 to 32");
   std::set<std::string> names;
   for (const CameraSpec& camera : cameras) {
-    CheckCamera(camera);
+    CheckCamera(camera, lenses);
     Require(names.insert(camera.name).second, "camera.name", "\"" + camera.name + "\" twice",
             "a name of its own for each camera");
   }

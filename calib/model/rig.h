@@ -22,6 +22,15 @@ struct Lens {
   Model model = Model::kPinhole;
   double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
   std::array<double, 8> distortion{};
+
+  /// False: nobody has found it yet; the numbers say nothing, the model is what is wanted.
+  bool known() const { return fx != 0 || fy != 0; }
+};
+
+/// Whether a rig is of use without its lenses.
+enum class LensNeed {
+  kKnown,         ///< every camera has one
+  kMayBeUnknown,  ///< they are still to be found
 };
 
 struct CameraSpec {
@@ -76,7 +85,7 @@ struct Rig {
   std::string hash;  ///< of the text; a calibration names the rig it was made with
 
   /// Throws InputError naming the field and its value.
-  void Check() const;
+  void Check(LensNeed lenses = LensNeed::kKnown) const;
   /// Throws InputError with the names that there are.
   const CameraSpec& Camera(const std::string& camera_name) const;
 };

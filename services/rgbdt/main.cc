@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   rgbdt::AddFuse(&app, &exit_code);
   rgbdt::AddSimulate(&app, &exit_code);
   rgbdt::AddReplay(&app, &exit_code);
+  rgbdt::AddIntrinsics(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);
   const auto is_it = [&](const CLI::App* candidate) { return candidate->get_name() == verb; };
   if (!verb.empty() && verb[0] != '-' && app.get_subcommands(is_it).empty()) {

@@ -11,6 +11,7 @@ void AddEvaluate(CLI::App* app, int* exit_code);
 void AddFuse(CLI::App* app, int* exit_code);
 void AddSimulate(CLI::App* app, int* exit_code);
 void AddReplay(CLI::App* app, int* exit_code);
+void AddIntrinsics(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);
 
 }  // namespace rgbdt

@@ -57,6 +57,33 @@ TEST_P(LensModel, IsOpenCvs) {
   }
 }
 
+// The lens's own numbers as what is solved for.
+TEST_P(LensModel, AJetHasTheDerivativesByTheLensToo) {
+  using Jet = ceres::Jet<double, 12>;
+  for (const Eigen::Vector3d& p : Points(0.6)) {
+    Jet f[2] = {Jet(lens().fx, 0), Jet(lens().fy, 1)};
+    Jet c[2] = {Jet(lens().cx, 2), Jet(lens().cy, 3)};
+    Jet k[8];
+    for (int i = 0; i < 8; ++i) k[i] = Jet(lens().distortion[static_cast<size_t>(i)], 4 + i);
+    Jet u;
+    Jet v;
+    ProjectUnchecked(lens().model, f, c, k, Jet(p.x()), Jet(p.y()), Jet(p.z()), &u, &v);
+    EXPECT_THAT(Eigen::Vector2d(u.a, v.a), EigenNear(Projected(lens(), p), 1e-10));
+    const auto moved = [&](int i, double step) {
+      Lens lens = this->lens();
+      double* const first[4] = {&lens.fx, &lens.fy, &lens.cx, &lens.cy};
+      (i < 4 ? *first[i] : lens.distortion[static_cast<size_t>(i - 4)]) += step;
+      return Projected(lens, p);
+    };
+    for (int i = 0; i < 12; ++i) {
+      const double step = 1e-6;
+      const Eigen::Vector2d slope = (moved(i, step) - moved(i, -step)) / (2 * step);
+      // Rounding: 1e-13 of up to 1e3 px over the step.
+      EXPECT_THAT(Eigen::Vector2d(u.v[i], v.v[i]), EigenNear(slope, 1e-3)) << i;
+    }
+  }
+}
+
 // A Jet is what automatic differentiation runs through the same text.
 TEST_P(LensModel, AJetHasTheSameValueAndTheDerivativesOfCentralDifferences) {
   using Jet = ceres::Jet<double, 3>;

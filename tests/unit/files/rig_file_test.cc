@@ -154,6 +154,28 @@ TEST(RigFile, WhatIsMissingIsNamed) {
   EXPECT_THAT(ErrorOfRig("width: 640", ""), StartsWith("rig.textproto: rig: "));
 }
 
+TEST(RigFile, ALensMayBeUnknownWhereItIsStillToBeFound) {
+  const std::string lens =
+      "pinhole { fx: 500 fy: 501 cx: 320 cy: 240 distortion: [0.1, 0.2, 0.3, 0.4] }";
+  for (const char* unknown : {"", "pinhole {}", "fisheye {}", "pinhole { cx: 320 cy: 240 }"}) {
+    const std::string text = With(kRig, lens, unknown);
+    const std::string error = test::ErrorOf([&] { ParseRig(text, "rig.textproto"); });
+    EXPECT_THAT(error, HasSubstr("camera \"rgb\" has no lens"));
+    EXPECT_THAT(error, HasSubstr("rgbdt intrinsics DIR"));
+    const Rig rig = ParseRig(text, "rig.textproto", LensNeed::kMayBeUnknown);
+    EXPECT_FALSE(rig.cameras[0].lens.known());
+    // Printed and read again it is the same: not known, of the same model.
+    const Rig back = ParseRig(PrintRig(rig), "", LensNeed::kMayBeUnknown);
+    EXPECT_FALSE(back.cameras[0].lens.known());
+    EXPECT_EQ(back.cameras[0].lens.model, rig.cameras[0].lens.model);
+  }
+  // A lens that is there has to make sense all the same.
+  EXPECT_THAT(test::ErrorOf([&] {
+                ParseRig(With(kRig, "fy: 501", ""), "rig.textproto", LensNeed::kMayBeUnknown);
+              }),
+              HasSubstr("lens.fy"));
+}
+
 TEST(RigFile, AQuaternionThatIsRoundedIsNormalised) {
   const Rig rig = ParseRig(
       With(kRig, "roll_pitch_yaw_deg: [-90, 0, -90]", "quaternion_wxyz: [0.5, 0.5, 0.5, 0.5005]"),

@@ -44,6 +44,16 @@ class SessionDir : public ::testing::Test {
   test::TempDir dir_;
 };
 
+TEST_F(SessionDir, ImagesCanBeReadWithoutACloud) {
+  fs::remove(Folder("0001") / "cloud.pcd");
+  const Session session = OpenSession(dir_.path());
+  EXPECT_EQ(ReadImages(session, "0001").images.size(), test::MakeView().images.size());
+  EXPECT_THAT(test::ErrorOf([&] { ReadView(session, "0001"); }), HasSubstr("cloud"));
+  WriteViewText("0006", "image { camera: \"thermal\" file: \"thermal.png\" }\n");
+  EXPECT_EQ(ReadImages(session, "0006").images.size(), 1u);
+  EXPECT_EQ(ReadImages(session, "0006").cloud.size(), 0u);
+}
+
 TEST_F(SessionDir, GivesBackTheWholeView) {
   const Session session = OpenSession(dir_.path());
   EXPECT_EQ(session.views.size(), 6u);

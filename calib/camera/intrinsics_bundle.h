@@ -1,0 +1,54 @@
+#pragma once
+
+// Inside calib/camera only: the lens and the views' poses that explain the corners best.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/model/intrinsics.h"
+
+namespace rgbdt {
+
+/// fx fy cx cy k1 ...: what is solved for.
+std::vector<std::string> ParameterNames(LensChoice choice);
+std::vector<double> ParametersOf(const Lens& lens, LensChoice choice);
+Lens LensOf(const std::vector<double>& parameters, LensChoice choice);
+
+struct BundleView {
+  std::vector<Eigen::Vector2d> pixels;  ///< one for each of Bundle::points
+  std::vector<bool> used;
+  bool posed = false;   ///< has a pose
+  bool active = false;  ///< has one, and takes part
+  Vector6d pose;        ///< camera_from_target: rotation vector [rad], translation [m]
+};
+
+struct Bundle {
+  LensChoice choice = LensChoice::kPinhole5;
+  std::vector<double> lens;                    ///< ParametersOf
+  double least_focal = 0, greatest_focal = 0;  ///< bounds of fx and fy [px]
+  std::vector<Eigen::Vector3d> points;         ///< the target's corners, target frame [m]
+  std::vector<BundleView> views;
+};
+
+struct BundleSolve {
+  int parameters = 0;     ///< the first so many of the lens are free; the rest is held
+  double loss_scale = 0;  ///< of Cauchy's loss [px]; 0: least squares
+  int max_iterations = 150;
+};
+
+/// Levenberg-Marquardt with exact derivatives over the lens and every active view's pose. False
+/// where it stopped before its end; `why` then says so.
+bool Solve(const BundleSolve& options, Bundle* bundle, std::string* why);
+
+/// The same for one view's pose alone, active or not, from all of its corners with Cauchy's loss.
+void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view);
+
+/// Measured - predicted [px] of each corner of a view, active or not.
+std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& view);
+
+/// Covariance of the lens' parameters, the poses eliminated, scaled with the residuals' variance.
+/// Empty where the corners do not determine every parameter.
+Eigen::MatrixXd LensCovariance(const Bundle& bundle);
+
+}  // namespace rgbdt

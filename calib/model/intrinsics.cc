@@ -1,0 +1,73 @@
+#include "calib/model/intrinsics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+void CheckView(const IntrinsicsView& view, std::size_t expected) {
+  if (view.corners.size() != expected) {
+    throw InputError("intrinsics: view " + view.name + " has " +
+                     std::to_string(view.corners.size()) + " corners; the target has " +
+                     std::to_string(expected));
+  }
+  for (const Eigen::Vector2d& corner : view.corners) {
+    if (!corner.allFinite()) {
+      throw InputError("intrinsics: view " + view.name + " has a corner that is not finite");
+    }
+  }
+}
+
+}  // namespace
+
+void IntrinsicsInput::Check() const {
+  if (width < 1 || height < 1) {
+    throw InputError("intrinsics: the image's size is " + std::to_string(width) + "x" +
+                     std::to_string(height) + " px; expected positive numbers");
+  }
+  if (target.corners_x() < 2 || target.corners_y() < 2 || !(target.square_m > 0)) {
+    throw InputError("intrinsics: the target has " + std::to_string(target.squares_x) + "x" +
+                     std::to_string(target.squares_y) + " squares of " +
+                     std::to_string(target.square_m) +
+                     " m; expected at least 3x3 and a positive size");
+  }
+  const auto expected = static_cast<std::size_t>(target.corners_x() * target.corners_y());
+  for (const IntrinsicsView& view : views) CheckView(view, expected);
+}
+
+std::vector<std::string> ImageCoverage::EmptyParts() const {
+  static const char* const kNames[9] = {"top left",    "top",    "top right",
+                                        "left",        "middle", "right",
+                                        "bottom left", "bottom", "bottom right"};
+  int cells[9] = {};
+  int held[9] = {};
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const int part = 3 * row / rows * 3 + 3 * column / columns;
+      ++cells[part];
+      if (Holds(column, row)) ++held[part];
+    }
+  }
+  std::vector<std::string> empty;
+  for (int part = 0; part < 9; ++part) {
+    if (2 * held[part] < cells[part]) empty.push_back(kNames[part]);
+  }
+  return empty;
+}
+
+double IntrinsicsResult::Sigma(int i) const {
+  if (i >= covariance.rows()) return std::numeric_limits<double>::infinity();
+  return std::sqrt(std::max(0.0, covariance(i, i)));
+}
+
+int IntrinsicsResult::ViewsUsed() const {
+  return static_cast<int>(
+      std::count_if(views.begin(), views.end(),
+                    [](const IntrinsicsViewFit& view) { return view.rejected.empty(); }));
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "calib/camera/intrinsics.h"
+#include "calib/files/atomic_file.h"
+#include "calib/files/intrinsics_html.h"
+#include "calib/files/rig_file.h"
+#include "calib/model/errors.h"
+#include "services/rgbdt/intrinsics_text.h"
+#include "services/rgbdt/paths.h"
+#include "services/rgbdt/session_corners.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, LensChoice> kChoices = {{"pinhole5", LensChoice::kPinhole5},
+                                                    {"pinhole8", LensChoice::kPinhole8},
+                                                    {"fisheye", LensChoice::kFisheye}};
+
+struct Flags {
+  std::string dir, out;
+  std::vector<std::string> cameras;
+  std::optional<LensChoice> choice;
+};
+
+// What was asked for, or else what the rig file's lens is.
+LensChoice ChoiceFor(const Flags& flags, const Lens& lens) {
+  if (flags.choice) return *flags.choice;
+  if (lens.model == Lens::Model::kFisheye) return LensChoice::kFisheye;
+  const bool rational = std::any_of(lens.distortion.begin() + 5, lens.distortion.end(),
+                                    [](double k) { return k != 0; });
+  return rational ? LensChoice::kPinhole8 : LensChoice::kPinhole5;
+}
+
+std::vector<std::string> CamerasFor(const Flags& flags, const Rig& rig) {
+  for (const std::string& name : flags.cameras) rig.Camera(name);
+  if (!flags.cameras.empty()) return flags.cameras;
+  std::vector<std::string> all;
+  for (const CameraSpec& camera : rig.cameras) all.push_back(camera.name);
+  return all;
+}
+
+IntrinsicsResult SolveCamera(const Flags& flags, const Rig& rig, const CameraCorners& corners) {
+  const CameraSpec& camera = rig.Camera(corners.camera);
+  return CalibrateIntrinsics(
+      {ChoiceFor(flags, camera.lens), camera.width, camera.height, rig.target, corners.views});
+}
+
+// A camera without a single image is left as it is, unless it was asked for by name.
+bool IsSkipped(const Flags& flags, const CameraCorners& corners) {
+  if (corners.images > 0 || !flags.cameras.empty()) return false;
+  std::printf("camera %s: the session has no image of it; left as it is\n", corners.camera.c_str());
+  return true;
+}
+
+void Write(const Flags& flags, const Session& session, const Rig& rig,
+           const std::vector<CameraIntrinsics>& solved) {
+  const fs::path out = PathOr(flags.out, session.root / "rig.intrinsics.textproto");
+  const fs::path page = out.parent_path() / "intrinsics.html";
+  WriteFileAtomically(page, IntrinsicsHtml(solved));
+  std::printf("wrote %s", page.c_str());
+  const bool any = std::any_of(solved.begin(), solved.end(), [](const CameraIntrinsics& camera) {
+    return camera.result.converged;
+  });
+  if (!any) {
+    std::printf("; no camera converged: no rig file was written\n");
+    return;
+  }
+  WriteFileAtomically(out, PrintRig(rig));
+  std::printf(" and %s: the rig with the lenses found (comments of the old file are not kept)\n",
+              out.c_str());
+  const fs::path in_use = session.root / "rig.textproto";
+  if (fs::weakly_canonical(out) != fs::weakly_canonical(in_use)) {
+    std::printf("next: mv %s %s\n", out.c_str(), in_use.c_str());
+  }
+}
+
+int Run(const Flags& flags) {
+  const Session session = OpenSession(flags.dir, LensNeed::kMayBeUnknown);
+  const SessionCorners corners = FindSessionCorners(session, CamerasFor(flags, session.rig));
+  Rig rig = session.rig;
+  std::vector<CameraIntrinsics> solved;
+  bool good = corners.unreadable.empty();
+  for (const CameraCorners& camera : corners.cameras) {
+    if (IsSkipped(flags, camera)) continue;
+    const CameraSpec& before = session.rig.Camera(camera.camera);
+    const IntrinsicsResult result = SolveCamera(flags, session.rig, camera);
+    std::printf("%s\n", IntrinsicsText(before, camera, result).c_str());
+    good &= result.converged;
+    for (CameraSpec& spec : rig.cameras) {
+      if (spec.name == camera.camera && result.converged) spec.lens = result.lens;
+    }
+    solved.push_back({before.name, before.width, before.height, camera.views, result});
+  }
+  for (const std::string& line : corners.unreadable) std::printf("not read: %s\n", line.c_str());
+  if (solved.empty()) throw InputError(flags.dir + " holds no image of any camera of its rig");
+  Write(flags, session, rig, solved);
+  return good ? 0 : 1;
+}
+
+}  // namespace
+
+void AddIntrinsics(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "intrinsics",
+      "Finds the cameras' lenses from the checkerboard in a session's images; clouds are not\n"
+      "needed, and the rig file may lack the lenses. 20 views or more, tilted by 30 to 45 "
+      "degrees,\n"
+      "in every part of the image. Writes the rig with the lenses, and intrinsics.html beside it.\n"
+      "Exit code 1: a camera did not converge, or a view could not be read.\n"
+      "Example: rgbdt intrinsics out/lenses --camera rgb --model pinhole5");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
+  verb->add_option("--camera", flags->cameras, "only this one; may be given again")
+      ->allow_extra_args(false);
+  verb->add_option("--model", flags->choice,
+                   "pinhole5, pinhole8 or fisheye; default: the rig file's, else pinhole5")
+      ->transform(CLI::CheckedTransformer(kChoices));
+  verb->add_option("--out", flags->out,
+                   "the rig file to write; default: DIR/rig.intrinsics.textproto, so that nothing "
+                   "that calibrations refer to is replaced unasked");
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt
