@@ -41,7 +41,7 @@ Observation DetectOne(const Rig& rig, const View& view, const Image& image,
   observation.image_utime = image.utime;
 
   const Stopwatch image_watch;
-  ImageEdgesResult in_image = DetectImageEdges(image, camera, rig.target, picks);
+  ImageEdgesResult in_image = DetectImageEdges(image, camera, rig.target, picks, spec.kind);
   observation.detect_image_s = image_watch.Seconds();
   if (!in_image.edges) {
     observation.rejected = in_image.why;
