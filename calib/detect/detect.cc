@@ -8,6 +8,7 @@
 #include "calib/detect/board_in_cloud.h"
 #include "calib/detect/cloud_edges.h"
 #include "calib/detect/image_edges.h"
+#include "calib/detect/stillness.h"
 
 namespace rgbdt {
 namespace {
@@ -53,14 +54,30 @@ std::string WhySweepIsTorn(const Cloud& cloud) {
          " lines were lost on the way; look at the assembler's status";
 }
 
-void DetectImage(const CameraSpec& spec, const Target& target, const Image& image,
+// Whether the board moved between the camera's images in this view; empty: it stood still.
+std::string WhyMoved(const CameraSpec& spec, const Target& target, const View& view,
+                     const Image& image, const ImageEdges& edges) {
+  std::vector<SweepImage> others;
+  for (const Image& other : view.images) {
+    if (other.camera != spec.name || &other == &image) continue;
+    CheckImage(spec, other);
+    others.push_back({ToGrey(other), ToSeconds(other.utime - view.cloud.sweep_utime)});
+  }
+  if (others.empty() || edges.picked) return "";
+  return WhyNotStill(Camera(spec), target, ToGrey(image), edges.corners, others);
+}
+
+void DetectImage(const CameraSpec& spec, const Target& target, const View& view, const Image& image,
                  const CornerSelection* picks, Observation* observation) {
   const Stopwatch watch;
   observation->image_utime = image.utime;
-  ImageEdgesResult found = DetectImageEdges(image, Camera(spec), target, picks);
-  observation->detect_image_s = watch.Seconds();
+  ImageEdgesResult found = DetectImageEdges(image, Camera(spec), target, picks, spec.kind);
   observation->rejected = found.why;
   observation->image = std::move(found.edges);
+  if (observation->image) {
+    observation->rejected = WhyMoved(spec, target, view, image, *observation->image);
+  }
+  observation->detect_image_s = watch.Seconds();
 }
 
 void DetectCloudByGuess(const CameraSpec& spec, const Target& target, const Cloud& cloud,
@@ -124,9 +141,9 @@ std::vector<Observation> DetectView(const Rig& rig, const View& view, const std:
       continue;
     }
     CheckImage(camera, *image);
-    DetectImage(camera, rig.target, *image, by_paper ? PicksOf(camera.name, view) : nullptr,
+    DetectImage(camera, rig.target, view, *image, by_paper ? PicksOf(camera.name, view) : nullptr,
                 &observation);
-    if (!observation.image) continue;
+    if (!observation.rejected.empty()) continue;
     if (by_paper) {
       DetectCloudByGuess(camera, rig.target, view.cloud, &observation);
     } else {

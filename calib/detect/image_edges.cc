@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "calib/camera/pixels.h"
+#include "calib/detect/board_sides.h"
 #include "calib/detect/checkerboard.h"
+#include "calib/detect/clipped.h"
+#include "calib/detect/corner_order.h"
+#include "calib/detect/target_pose.h"
 
 namespace rgbdt {
 namespace {
@@ -19,43 +22,6 @@ using Chain = std::vector<Eigen::Vector2d>;
 
 std::string Text(const Eigen::Vector2d& p) {
   return "(" + std::to_string(std::lround(p.x())) + ", " + std::to_string(std::lround(p.y())) + ")";
-}
-
-// Points at which a pixel's view cuts the plane z = 1, camera axes.
-std::optional<std::vector<cv::Point2d>> Normalised(const Camera& camera, const Chain& pixels) {
-  std::vector<cv::Point2d> out;
-  for (const Eigen::Vector2d& pixel : pixels) {
-    const auto direction = camera.Unproject(pixel);
-    if (!direction || direction->z() < 1e-3) return std::nullopt;
-    out.emplace_back(direction->x() / direction->z(), direction->y() / direction->z());
-  }
-  return out;
-}
-
-// The board's outline corners in camera axes, from its inner corners in the image.
-std::optional<Directions> OutlineFromInnerCorners(const Camera& camera, const Target& target,
-                                                  const Chain& inner) {
-  const auto points = Normalised(camera, inner);
-  if (!points) return std::nullopt;
-  std::vector<cv::Point3d> model;
-  for (const Eigen::Vector3d& c : target.InnerCorners()) model.emplace_back(c.x(), c.y(), c.z());
-  cv::Vec3d rotation;
-  cv::Vec3d translation;
-  const cv::Matx33d identity = cv::Matx33d::eye();
-  if (!cv::solvePnP(model, *points, identity, cv::noArray(), rotation, translation, false,
-                    cv::SOLVEPNP_IPPE)) {
-    return std::nullopt;
-  }
-  cv::solvePnPRefineLM(model, *points, identity, cv::noArray(), rotation, translation);
-  cv::Matx33d r;
-  cv::Rodrigues(rotation, r);
-  const auto corners = target.OutlineCorners();
-  Directions out;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const cv::Vec3d p = r * cv::Vec3d(corners[i].x(), corners[i].y(), corners[i].z()) + translation;
-    out[i] = {p[0], p[1], p[2]};
-  }
-  return out;
 }
 
 // Picks in order round the board, not crossing.
@@ -229,6 +195,7 @@ Chain FitSide(const Chain& side, const Gradient& g) {
 struct Located {
   Directions outline;
   Chain inner;
+  std::optional<CornerPose> pose;  // not from picks
   std::string why;
 };
 
@@ -253,32 +220,46 @@ Located FromPicks(const Camera& camera, const Target& target, const Corners& pic
   return located;
 }
 
-Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target) {
+Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
+                         CameraKind kind) {
   Located located;
-  const auto inner = FindCheckerboard(grey, target);
+  auto inner = FindCheckerboard(grey, target);
   if (!inner) {
     located.why = "no checkerboard of " + std::to_string(target.corners_x()) + " x " +
                   std::to_string(target.corners_y()) +
                   " inner corners in the image; is the whole board in view, sharp, with contrast?";
     return located;
   }
+  const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &*inner);
   located.inner = *inner;
-  const auto outline = OutlineFromInnerCorners(camera, target, *inner);
-  if (!outline) {
+  located.pose = PoseFromCorners(camera, target, *inner);
+  if (!located.pose) {
     located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
     return located;
   }
-  located.outline = *outline;
+  located.pose->pose.half_turn_known = known;
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < 4; ++i) {
+    located.outline[i] = located.pose->pose.sensor_from_target * corners[i];
+  }
   return located;
+}
+
+// What goes beyond the paper: pose, its covariance, and each side fitted by itself.
+void AddPose(const Image& image, const cv::Mat& grey, const Camera& camera, const Target& target,
+             const CornerPose& pose, ImageEdges* edges) {
+  edges->pose = pose.pose;
+  edges->corner_sigma_px = pose.corner_sigma_px;
+  edges->sides = FitBoardSides(grey, Clipped(image), camera, target, pose.pose);
 }
 
 }  // namespace
 
 ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
-                                  const CornerSelection* picks) {
+                                  const CornerSelection* picks, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
   const Located located = picks != nullptr ? FromPicks(camera, target, picks->corners)
-                                           : FromCheckerboard(grey, camera, target);
+                                           : FromCheckerboard(grey, camera, target, kind);
   if (!located.why.empty()) return {std::nullopt, located.why};
 
   ImageEdges edges;
@@ -301,6 +282,7 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
   if (edges.edge_pixels.empty()) {
     return {std::nullopt, "no edge of the board stands out in the image; more contrast is needed"};
   }
+  if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
   return {edges, ""};
 }
 

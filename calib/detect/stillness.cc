@@ -1,0 +1,253 @@
+#include "calib/detect/stillness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+#include <optional>
+
+#include "calib/camera/pixels.h"
+#include "calib/detect/checkerboard.h"
+#include "calib/detect/target_pose.h"
+
+namespace rgbdt {
+namespace {
+
+using Pixels = std::vector<Eigen::Vector2d>;
+using Points = std::vector<cv::Point2f>;
+
+Points ToPoints(const Pixels& pixels) {
+  Points points;
+  for (const Eigen::Vector2d& p : pixels) {
+    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  }
+  return points;
+}
+
+Pixels ToPixels(const Points& points) {
+  Pixels pixels;
+  for (const cv::Point2f& p : points) pixels.emplace_back(p.x, p.y);
+  return pixels;
+}
+
+// Half a window well inside the four squares that meet in a corner.
+int HalfWindow(const Target& target, const Pixels& corners) {
+  const auto columns = static_cast<std::size_t>(target.corners_x());
+  double shortest = 1e9;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if ((i + 1) % columns != 0) {
+      shortest = std::min(shortest, (corners[i + 1] - corners[i]).norm());
+    }
+    if (i + columns < corners.size()) {
+      shortest = std::min(shortest, (corners[i + columns] - corners[i]).norm());
+    }
+  }
+  return std::clamp(static_cast<int>(0.35 * shortest), 2, 11);
+}
+
+// The same refinement in both images, whatever found the corners: their difference is what counts.
+Pixels RefineCorners(const cv::Mat& grey, const Pixels& corners, int half) {
+  Points points = ToPoints(corners);
+  cv::cornerSubPix(grey, points, {half, half}, {-1, -1},
+                   {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
+  return ToPixels(points);
+}
+
+// Lucas and Kanade's tracker there and back; nothing where less than four fifths return.
+std::optional<Pixels> Track(const cv::Mat& from, const cv::Mat& to, const Pixels& corners) {
+  const Points start = ToPoints(corners);
+  Points there;
+  Points back;
+  std::vector<std::uint8_t> found;
+  std::vector<std::uint8_t> returned;
+  std::vector<float> errors;
+  const cv::Size window(21, 21);
+  cv::calcOpticalFlowPyrLK(from, to, start, there, found, errors, window, 4);
+  cv::calcOpticalFlowPyrLK(to, from, there, back, returned, errors, window, 4);
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    good += found[i] != 0 && returned[i] != 0 && cv::norm(back[i] - start[i]) < 1 ? 1U : 0U;
+  }
+  if (5 * good < 4 * start.size()) return std::nullopt;
+  return ToPixels(there);
+}
+
+// A board seen twice does not lie about where its corners are much more the second time.
+bool FitsAsWell(const std::optional<CornerPose>& pose, const CornerPose& at_capture) {
+  return pose && pose->corner_sigma_px < 3 * at_capture.corner_sigma_px + 0.1;
+}
+
+struct Sight {
+  const Camera* camera;
+  const Target* target;
+  int half_window;
+  cv::Mat grey;
+  cv::Mat stretched;  // CV_8U, at capture
+  CornerPose pose;    // at capture
+  Pixels corners;     // at capture
+};
+
+bool InImage(const Camera& camera, const Pixels& corners) {
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Eigen::Vector2d& c) { return camera.Contains(c); });
+}
+
+// Of two orders of the same corners, half a turn apart, the one nearer to the first sight.
+Pixels NearerOrder(const Pixels& found, const Pixels& before) {
+  Pixels turned(found.rbegin(), found.rend());
+  double straight = 0;
+  double reversed = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    straight += (found[i] - before[i]).norm();
+    reversed += (turned[i] - before[i]).norm();
+  }
+  return reversed < straight ? turned : found;
+}
+
+// Centres of the pattern's outermost squares, a row for each side, target frame.
+std::vector<std::vector<Eigen::Vector3d>> OuterSquares(const Target& target) {
+  const auto at = [&](int column, int row) {
+    return Eigen::Vector3d(
+        target.pattern_offset_m.x() + (column - 0.5 * (target.squares_x - 1)) * target.square_m,
+        target.pattern_offset_m.y() + (row - 0.5 * (target.squares_y - 1)) * target.square_m, 0);
+  };
+  std::vector<std::vector<Eigen::Vector3d>> sides(4);
+  for (int column = 0; column < target.squares_x; ++column) {
+    sides[0].push_back(at(column, 0));
+    sides[1].push_back(at(column, target.squares_y - 1));
+  }
+  for (int row = 0; row < target.squares_y; ++row) {
+    sides[2].push_back(at(0, row));
+    sides[3].push_back(at(target.squares_x - 1, row));
+  }
+  return sides;
+}
+
+// Mean of 3 x 3 pixels.
+std::optional<double> Brightness(const Camera& camera, const cv::Mat& grey,
+                                 const Eigen::Vector3d& point_in_camera) {
+  const auto pixel = camera.Project(point_in_camera);
+  if (!pixel) return std::nullopt;
+  const cv::Rect around(static_cast<int>(std::lround(pixel->x())) - 1,
+                        static_cast<int>(std::lround(pixel->y())) - 1, 3, 3);
+  if ((around & cv::Rect(0, 0, grey.cols, grey.rows)) != around) return std::nullopt;
+  return cv::mean(grey(around))[0];
+}
+
+// A pattern is like itself two squares farther on, and a tracker may take one for the other; but
+// then its outermost squares are not there. In three of four pairs of neighbours along each side
+// the difference in brightness is to be what it was, in sign and at least a third of it in size.
+bool OuterSquaresAreThere(const Sight& sight, const cv::Mat& grey, const Rigid3& pose) {
+  for (const auto& side : OuterSquares(*sight.target)) {
+    std::size_t alike = 0;
+    for (std::size_t i = 0; i + 1 < side.size(); ++i) {
+      const Rigid3& before = sight.pose.pose.sensor_from_target;
+      const auto a = Brightness(*sight.camera, sight.grey, before * side[i]);
+      const auto b = Brightness(*sight.camera, sight.grey, before * side[i + 1]);
+      const auto c = Brightness(*sight.camera, grey, pose * side[i]);
+      const auto d = Brightness(*sight.camera, grey, pose * side[i + 1]);
+      if (!a || !b || !c || !d) continue;
+      alike += (*c - *d) * (*a - *b) > (*a - *b) * (*a - *b) / 3 ? 1U : 0U;
+    }
+    if (4 * alike < 3 * (side.size() - 1)) return false;
+  }
+  return true;
+}
+
+// The pose in another image: by tracking, or, where the board went too far for that, found anew.
+std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
+  const auto fitted = [&](const Pixels& corners) -> std::optional<CornerPose> {
+    if (!InImage(*sight.camera, corners)) return std::nullopt;
+    auto pose = PoseFromCorners(*sight.camera, *sight.target,
+                                RefineCorners(grey, corners, sight.half_window));
+    if (!FitsAsWell(pose, sight.pose)) return std::nullopt;
+    if (!OuterSquaresAreThere(sight, grey, pose->pose.sensor_from_target)) return std::nullopt;
+    return pose;
+  };
+  const auto tracked = Track(sight.stretched, Stretch(grey), sight.corners);
+  if (tracked) {
+    auto pose = fitted(*tracked);
+    if (pose) return pose;
+  }
+  const auto found = FindCheckerboard(grey, *sight.target);
+  if (!found) return std::nullopt;
+  return fitted(NearerOrder(*found, sight.corners));
+}
+
+// Median distance [px] between where two poses put the corners.
+double MedianShift(const Sight& sight, const Rigid3& later) {
+  std::vector<double> shifts;
+  for (const Eigen::Vector3d& point : sight.target->InnerCorners()) {
+    const auto a = sight.camera->Project(sight.pose.pose.sensor_from_target * point);
+    const auto b = sight.camera->Project(later * point);
+    if (a && b) shifts.push_back((*a - *b).norm());
+  }
+  if (shifts.empty()) return 0;
+  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
+  std::nth_element(shifts.begin(), middle, shifts.end());
+  return *middle;
+}
+
+// Covariance of where the target's centre is [m^2], camera axes: delta turns about the camera.
+Eigen::Matrix3d CentreCovariance(const TargetPose& pose) {
+  const Eigen::Vector3d p = pose.sensor_from_target.translation;
+  Eigen::Matrix<double, 3, 6> j;
+  j << 0, p.z(), -p.y(), 1, 0, 0,  //
+      -p.z(), 0, p.x(), 0, 1, 0,   //
+      p.y(), -p.x(), 0, 0, 0, 1;
+  return j * pose.covariance * j.transpose();
+}
+
+// How far the board's centre went [m]. Along the line of sight an image tells little: that part
+// counts only where it is beyond 3 sigma.
+double CentreShift(const TargetPose& before, const TargetPose& after) {
+  const Eigen::Vector3d shift =
+      after.sensor_from_target.translation - before.sensor_from_target.translation;
+  const Eigen::Vector3d sight = before.sensor_from_target.translation.normalized();
+  const double along = shift.dot(sight);
+  const double across = (shift - along * sight).norm();
+  const Eigen::Matrix3d covariance = CentreCovariance(before) + CentreCovariance(after);
+  const double sigma = std::sqrt(sight.dot(covariance * sight));
+  return std::abs(along) > 3 * sigma ? std::hypot(along, across) : across;
+}
+
+std::string Text(const char* format, double a) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, a);
+  return text;
+}
+
+}  // namespace
+
+std::string WhyNotStill(const Camera& camera, const Target& target, const cv::Mat& grey_at_capture,
+                        const std::vector<Eigen::Vector2d>& corners,
+                        const std::vector<SweepImage>& others) {
+  if (others.empty()) return "";
+  Sight sight;
+  sight.camera = &camera;
+  sight.target = &target;
+  sight.half_window = HalfWindow(target, corners);
+  sight.grey = grey_at_capture;
+  sight.stretched = Stretch(grey_at_capture);
+  sight.corners = RefineCorners(grey_at_capture, corners, sight.half_window);
+  const auto pose = PoseFromCorners(camera, target, sight.corners);
+  if (!pose)
+    return "whether the board stood still is not known: its corners do not fit a flat board";
+  sight.pose = *pose;
+  for (const SweepImage& other : others) {
+    const auto later = PoseIn(sight, other.grey);
+    if (!later) {
+      return "board moved: not found again in the image " +
+             Text("%.1f s after the sweep's start", other.after_start_s);
+    }
+    const double shift_px = MedianShift(sight, later->pose.sensor_from_target);
+    if (shift_px <= kStillPx) continue;
+    return "board moved " + Text("%.0f", 1000 * CentreShift(sight.pose.pose, later->pose)) +
+           " mm during the sweep (" + Text("%.1f", shift_px) + " px in the image " +
+           Text("%.1f s after its start)", other.after_start_s);
+  }
+  return "";
+}
+
+}  // namespace rgbdt

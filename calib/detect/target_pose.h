@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calib/camera/camera.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// The target's pose from its inner corners in one image.
+struct CornerPose {
+  /// camera_from_target with the covariance of delta in the camera's axes (see TargetPose);
+  /// half_turn_known is false: corners alone do not tell.
+  TargetPose pose;
+  double corner_sigma_px = 0;  ///< of a corner along x or y, from the residuals of those used
+  std::vector<bool> used;      ///< for each corner: false is off the rest, and left out
+  /// A plane has a second pose that looks much alike, its tilt mirrored. Sum of squared residuals
+  /// of that one minus that of this one, over sigma^2; infinite where there is no such second pose.
+  /// Below some 10 the tilt is not certain.
+  double second_pose_chi2 = 0;
+};
+
+/// Least squares of the reprojection error in pixels of the distorted image, through the whole lens
+/// model, from both of the planar pose's solutions (Collins and Bartoli 2014, IPPE); the better one
+/// is kept. Robust: Cauchy weights with the residuals' own scale, then corners beyond 4 sigma are
+/// left out. `corners`: inner corners [px] in the target's order. Nothing where no flat board fits:
+/// another number of corners, a mirrored order, corners where the lens model ends, all on one line,
+/// or more than a fifth of them off the rest.
+std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
+                                          const std::vector<Eigen::Vector2d>& corners);
+
+}  // namespace rgbdt
