@@ -255,15 +255,13 @@ Located FromPicks(const Camera& camera, const Target& target, const Corners& pic
 
 Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target) {
   Located located;
-  const auto inner = FindCheckerboard(grey, target);
-  if (!inner) {
-    located.why = "no checkerboard of " + std::to_string(target.corners_x()) + " x " +
-                  std::to_string(target.corners_y()) +
-                  " inner corners in the image; is the whole board in view, sharp, with contrast?";
+  const CheckerboardResult found = FindCheckerboard(grey, target);
+  if (!found.board) {
+    located.why = found.why;
     return located;
   }
-  located.inner = *inner;
-  const auto outline = OutlineFromInnerCorners(camera, target, *inner);
+  located.inner = found.board->corners;
+  const auto outline = OutlineFromInnerCorners(camera, target, located.inner);
   if (!outline) {
     located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
     return located;

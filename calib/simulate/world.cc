@@ -3,27 +3,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib/simulate/people.h"
+
 namespace rgbdt::simulate {
-namespace {
-
-std::vector<Mesh> CollectMeshes(const SceneModel& scene, const std::optional<Board>& board,
-                                const Options& options) {
-  std::vector<Mesh> meshes;
-  for (const SceneObject& object : scene.objects) meshes.push_back(object.mesh);
-  if (!board) return meshes;
-  meshes.push_back(board->Shape());
-  for (Mesh& part : board->Stand(options.world.ground_z_m)) meshes.push_back(std::move(part));
-  return meshes;
-}
-
-}  // namespace
 
 World::World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board,
              const Options& options)
     : scene_(std::move(scene)),
       board_(std::move(board)),
+      holder_(board_ ? MakeHolder(options, board_->lidar_from_target())
+                     : std::vector<SceneObject>()),
       board_object_(static_cast<int>(scene_->objects.size())),
-      meshes_(CollectMeshes(*scene_, board_, options)),
+      meshes_(CollectMeshes(options)),
+      holder_object_(static_cast<int>(meshes_.size() - holder_.size())),
       caster_(meshes_) {
   for (std::size_t i = scene_->objects.size(); i < meshes_.size(); ++i) {
     Box box{meshes_[i].vertices[0], meshes_[i].vertices[0]};
@@ -36,6 +28,22 @@ World::World(std::shared_ptr<const SceneModel> scene, std::optional<Board> board
   stand_.albedo.setConstant(options.board.stand_reflectivity);
   stand_.reflectivity = options.board.stand_reflectivity;
   stand_.temperature_k = scene_->air_k;
+}
+
+std::vector<Mesh> World::CollectMeshes(const Options& options) const {
+  std::vector<Mesh> meshes;
+  for (const SceneObject& object : scene_->objects) meshes.push_back(object.mesh);
+  if (!board_) return meshes;
+  meshes.push_back(board_->Shape());
+  for (Mesh& part : board_->Stand(options.world.ground_z_m)) meshes.push_back(std::move(part));
+  for (const SceneObject& object : holder_) meshes.push_back(object.mesh);
+  return meshes;
+}
+
+const SceneObject* World::ObjectOf(const Hit& hit) const {
+  if (!IsMoving(hit)) return &scene_->objects[static_cast<std::size_t>(hit.object)];
+  if (hit.object < holder_object_) return nullptr;
+  return &holder_[static_cast<std::size_t>(hit.object - holder_object_)];
 }
 
 bool World::MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {
@@ -64,20 +72,19 @@ Surface World::At(const Hit& hit, const Eigen::Vector3d& point, double footprint
   Surface surface;
   if (IsBoard(hit)) {
     surface.material = board_->At(point, &surface.patch);
-  } else if (IsMoving(hit)) {
-    surface.material = stand_;
+  } else if (const SceneObject* object = ObjectOf(hit)) {
+    surface.material = Textured(object->material, point, hit.normal, footprint_m);
   } else {
-    surface.material = Textured(scene_->objects[static_cast<std::size_t>(hit.object)].material,
-                                point, hit.normal, footprint_m);
+    surface.material = stand_;
   }
   return surface;
 }
 
 double World::Reflectivity(const Hit& hit, const Eigen::Vector3d& point) const {
   if (IsBoard(hit)) return board_->Reflectivity(point);
-  if (IsMoving(hit)) return stand_.reflectivity;
   // The LIDAR sees surfaces without their painted pattern.
-  return scene_->objects[static_cast<std::size_t>(hit.object)].material.reflectivity;
+  const SceneObject* object = ObjectOf(hit);
+  return object != nullptr ? object->material.reflectivity : stand_.reflectivity;
 }
 
 }  // namespace rgbdt::simulate

@@ -28,9 +28,9 @@ class World {
   void set_heat(const HeatMap& heat) { board_->set_heat(heat); }
 
   bool IsBoard(const Hit& hit) const { return board_ && hit.object == board_object_; }
-  /// Board or stand: what the next view will have elsewhere.
+  /// Board, stand or who holds it: what the next view will have elsewhere.
   bool IsMoving(const Hit& hit) const { return hit.object >= board_object_; }
-  /// Whether a ray comes near board or stand (their boxes along the axes; no false "no").
+  /// Whether a ray comes near any of these (their boxes along the axes; no false "no").
   bool MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   /// Number of an object's face: neighbouring pixels that differ in it have an edge between them.
   int Face(const Hit& hit) const;
@@ -45,10 +45,16 @@ class World {
     Eigen::Vector3d low, high;
   };
 
+  std::vector<Mesh> CollectMeshes(const Options& options) const;
+  /// What of the scene, or of who holds the board, was hit; null: board or stand.
+  const SceneObject* ObjectOf(const Hit& hit) const;
+
   std::shared_ptr<const SceneModel> scene_;
   std::optional<Board> board_;
-  int board_object_;
+  std::vector<SceneObject> holder_;  ///< who holds the board
+  int board_object_;                 ///< after the scene's; then the stand's parts, then holder_
   std::vector<Mesh> meshes_;
+  int holder_object_;
   RayCaster caster_;
   std::vector<Box> moving_;
   Material stand_;
