@@ -3,16 +3,42 @@
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calib/model/rig.h"
 
 namespace rgbdt {
 
-/// Finds the checkerboard's inner corners [px], sub-pixel, in the target's order up to a half turn
-/// (row by row). Nothing where the board is not wholly seen. The image may be of either polarity,
-/// and unevenly bright: what is stretched is the deviation from the local background.
-std::optional<std::vector<Eigen::Vector2d>> FindCheckerboard(const cv::Mat& grey,
-                                                             const Target& target);
+/// The target's checkerboard in an image.
+struct Checkerboard {
+  /// Inner corners [px], sub-pixel, row by row in the target's order up to a half turn (a quarter
+  /// turn where the pattern is square). Never mirrored: rows run to the right of columns, y down.
+  std::vector<Eigen::Vector2d> corners;
+  /// Whether the square above and left of the first corner is darker than its neighbours. Colour
+  /// images show black dark; a thermal image shows it light where black is the warmer one.
+  bool top_left_dark = false;
+  /// Typical uncertainty of a corner along its worst direction [px], from the image's noise.
+  double sigma_px = 0;
+};
+
+/// The checkerboard or the reason why there is none.
+struct CheckerboardResult {
+  std::optional<Checkerboard> board;
+  std::string why;
+};
+
+/// Finds the checkerboard in grey values (CV_32FC1, finite, any unit) of any camera, of either
+/// polarity and unevenly bright; of at least 3x3 inner corners. All of its squares must be seen;
+/// hands may hold it by the border.
+///   1. dead pixels are repaired
+///   2. saddles of the brightness are found (FindSaddles), at one size after another
+///   3. grids are grown among them (GridFinder)
+///   4. the pattern's place in the grid follows from which squares alternate (MatchPattern)
+///   5. each corner is measured in the full image (FitCorner)
+/// Corners that do not follow a flat grid seen through a smooth lens, or whose light and dark are
+/// exchanged, are refused: up to 5% of them are then taken from the others' grid, with more there
+/// is no board. Of several boards the one that fits best is returned.
+CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target);
 
 }  // namespace rgbdt

@@ -223,16 +223,14 @@ Located FromPicks(const Camera& camera, const Target& target, const Corners& pic
 Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
                          CameraKind kind) {
   Located located;
-  auto inner = FindCheckerboard(grey, target);
-  if (!inner) {
-    located.why = "no checkerboard of " + std::to_string(target.corners_x()) + " x " +
-                  std::to_string(target.corners_y()) +
-                  " inner corners in the image; is the whole board in view, sharp, with contrast?";
+  const CheckerboardResult found = FindCheckerboard(grey, target);
+  if (!found.board) {
+    located.why = found.why;
     return located;
   }
-  const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &*inner);
-  located.inner = *inner;
-  located.pose = PoseFromCorners(camera, target, *inner);
+  located.inner = found.board->corners;
+  const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &located.inner);
+  located.pose = PoseFromCorners(camera, target, located.inner);
   if (!located.pose) {
     located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
     return located;

@@ -170,9 +170,9 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
     auto pose = fitted(*tracked);
     if (pose) return pose;
   }
-  const auto found = FindCheckerboard(grey, *sight.target);
+  const auto found = FindCheckerboard(grey, *sight.target).board;
   if (!found) return std::nullopt;
-  return fitted(NearerOrder(*found, sight.corners));
+  return fitted(NearerOrder(found->corners, sight.corners));
 }
 
 // Median distance [px] between where two poses put the corners.

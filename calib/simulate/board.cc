@@ -7,7 +7,11 @@
 
 namespace rgbdt::simulate {
 
-double HeatMap::At(const Eigen::Vector2d& place, bool black) const {
+double HeatMap::BorderAt(const Eigen::Vector2d& place) const {
+  return border_k.value_or(Between(place, border_to_white));
+}
+
+double HeatMap::Between(const Eigen::Vector2d& place, double whiteness) const {
   const double glow = (place - glow_centre).squaredNorm() / (2 * glow_radius_m * glow_radius_m);
   double temperature = mean_k + slope_k_per_m.dot(place) + glow_k * std::exp(-glow);
   if (hides) {
@@ -21,7 +25,7 @@ double HeatMap::At(const Eigen::Vector2d& place, bool black) const {
         std::exp(-(along * along + deep * deep) / (2 * hidden_depth_m * hidden_depth_m));
     temperature += weight * (hidden_k - 0.5 * black_minus_white_k - temperature);
   }
-  return temperature + (black ? 0.5 : -0.5) * black_minus_white_k;
+  return temperature + (0.5 - whiteness) * black_minus_white_k;
 }
 
 Board::Board(const BoardOptions& options, const Rigid3& lidar_from_target, const HeatMap& heat)
@@ -92,7 +96,7 @@ Material Board::At(const Eigen::Vector3d& point_in_lidar, int* patch) const {
   material.reflectivity = black ? options_.black_reflectivity : options_.white_reflectivity;
   material.albedo.setConstant(material.reflectivity);
   material.emissivity = options_.emissivity;
-  material.temperature_k = heat_.At(p.head<2>(), black);
+  material.temperature_k = *patch == 0 ? heat_.BorderAt(p.head<2>()) : heat_.At(p.head<2>(), black);
   return material;
 }
 
@@ -109,6 +113,8 @@ HeatMap DrawHeat(const BoardOptions& options, const BoardHeat& scene, std::uint6
                       noise.Uniform(2, -0.35, 0.35) * options.height_m};
   heat.glow_k = options.glow_k.value_or(scene.glow_k);
   heat.glow_radius_m = options.glow_radius_m;
+  heat.border_k = options.border_k;
+  heat.border_to_white = options.border_to_white;
   return heat;
 }
 

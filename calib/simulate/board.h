@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "calib/simulate/material.h"
@@ -21,9 +22,19 @@ struct HeatMap {
   bool hides = false;
   Eigen::Vector2d hidden_centre{0, 0}, hidden_along{1, 0};  ///< on the outline; unit, along it
   double hidden_half_m = 0, hidden_depth_m = 1, hidden_k = 0;
+  std::optional<double> border_k;  ///< of the border; absent: see border_to_white
+  double border_to_white = 0;      ///< 0: the border is as warm as black, 1: as white
 
   /// Black's temperature at a place, `black` false: white's.
-  double At(const Eigen::Vector2d& place, bool black) const;
+  double At(const Eigen::Vector2d& place, bool black) const {
+    return Between(place, black ? 0 : 1);
+  }
+  /// The border's temperature at a place.
+  double BorderAt(const Eigen::Vector2d& place) const;
+
+ private:
+  /// `whiteness` 0: black's temperature, 1: white's.
+  double Between(const Eigen::Vector2d& place, double whiteness) const;
 };
 
 /// The checkerboard where it stands. Front face in z = 0 of the target frame.

@@ -113,30 +113,51 @@ double MiddleElevation(const Options& options, double range) {
   return std::asin(std::clamp(std::max(middle, lowest / range), -1.0, 1.0));
 }
 
+/// Share of the board that lies outside the image of the camera that sees least of it.
+double ShareOutside(const BoardOptions& board, const std::vector<CameraRenderer>& cameras,
+                    const Rigid3& lidar_from_target) {
+  constexpr int kSteps = 24;
+  int most = 0;
+  for (const CameraRenderer& camera : cameras) {
+    int outside = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const Eigen::Vector3d place(((i % kSteps + 0.5) / kSteps - 0.5) * board.width_m,
+                                  ((i / kSteps + 0.5) / kSteps - 0.5) * board.height_m, 0);
+      if (!InImage(camera, 0, lidar_from_target * place)) ++outside;
+    }
+    most = std::max(most, outside);
+  }
+  return double(most) / (kSteps * kSteps);
+}
+
 /// Attempt 0 spreads evenly; later ones draw closer to the middle and to a medium range.
 PoseNumbers Draw(const Options& options, int index, int attempt) {
   const PoseOptions& o = options.pose;
   const Noise shifts(options.seed, 0, "pose");
   const Noise jitter(options.seed, index + 1, "pose " + std::to_string(attempt));
+  const bool wholly = o.outside_image == 0;
   const auto spread = [&](int axis, double low, double high) {
     double u = Spread(index, axis, shifts.Uniform(static_cast<std::uint64_t>(axis)));
     if (attempt > 0) {
-      u += 0.1 * jitter.Uniform(static_cast<std::uint64_t>(axis), -1, 1);
+      const double reach = wholly ? 0.1 : 0.5;
+      u += reach * jitter.Uniform(static_cast<std::uint64_t>(axis), -1, 1);
       u -= std::floor(u);
     }
     return low + (high - low) * u;
   };
-  const double inwards = std::pow(0.985, attempt);
+  const double inwards = wholly ? std::pow(0.985, attempt) : 1;
   PoseNumbers n;
   // Near views weigh more in a calibration and are more easily detected: prefer them a little.
   n.range = o.min_range_m +
             (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), o.near_preference);
   const double medium = o.min_range_m + 0.4 * (o.max_range_m - o.min_range_m);
   // A far place has more room than a near one, but the scene may end before it.
-  const double far_inwards = std::pow(0.985, std::max(0, attempt - kFarAttempts));
+  const double far_inwards = wholly ? std::pow(0.985, std::max(0, attempt - kFarAttempts)) : 1;
   n.range = medium + (n.range - medium) * (n.range < medium ? inwards : far_inwards);
-  n.azimuth = inwards * spread(1, -o.max_azimuth_rad, o.max_azimuth_rad);
-  n.elevation = inwards * spread(2, o.min_elevation_rad, o.max_elevation_rad) +
+  // A camera's own border lies farther out than where the board is wholly seen.
+  const double wider = wholly ? 1 : 2;
+  n.azimuth = inwards * spread(1, -wider * o.max_azimuth_rad, wider * o.max_azimuth_rad);
+  n.elevation = inwards * spread(2, wider * o.min_elevation_rad, wider * o.max_elevation_rad) +
                 (1 - inwards) * MiddleElevation(options, n.range);
   n.tilt_axis = spread(3, 0, 2 * kPi);
   n.tilt = spread(4, o.min_tilt, 0.98) * o.max_tilt_rad;
@@ -149,12 +170,20 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
 std::string WhyNotSeen(const Options& options, const World& empty, const Scanner& scanner,
                        const std::vector<CameraRenderer>& cameras,
                        const Rigid3& lidar_from_target) {
-  if (!InField(options, lidar_from_target.translation)) return "outside the LIDAR's field";
+  const double asked = options.pose.outside_image;
+  const bool wholly = asked == 0;
+  if (!wholly && std::abs(ShareOutside(options.board, cameras, lidar_from_target) - asked) > 0.05) {
+    return "not outside the image by the share that is asked for";
+  }
+  if (wholly && !InField(options, lidar_from_target.translation))
+    return "outside the LIDAR's field";
   for (const Eigen::Vector3d& place : Places(options.board)) {
     const Eigen::Vector3d point = lidar_from_target * place;
-    if (options.pose.whole_in_lidar && !InField(options, point)) return "outside the LIDAR's field";
+    if (wholly && options.pose.whole_in_lidar && !InField(options, point)) {
+      return "outside the LIDAR's field";
+    }
     for (const CameraRenderer& camera : cameras) {
-      if (!InImage(camera, options.pose.image_margin, point)) {
+      if (wholly && !InImage(camera, options.pose.image_margin, point)) {
         return "outside the image of " + camera.options().name;
       }
     }

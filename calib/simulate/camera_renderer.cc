@@ -171,6 +171,17 @@ void CameraRenderer::Develop(const World& world, const cv::Mat& values) {
   }
 }
 
+void CameraRenderer::Kill(std::uint64_t seed, double full_scale, cv::Mat* pixels) const {
+  const Noise noise(seed, 0, camera_.name + " dead pixels");
+  for (int i = 0; i < camera_.dead_pixels; ++i) {
+    const auto number = static_cast<std::uint64_t>(3 * i);
+    const int column = static_cast<int>(noise.Uniform(number, 0, camera_.width));
+    const int row = static_cast<int>(noise.Uniform(number + 1, 0, camera_.height));
+    const double value = noise.Uniform(number + 2) < 0.5 ? 0 : full_scale;
+    pixels->row(row).col(column).setTo(value);
+  }
+}
+
 Image CameraRenderer::Take(std::uint64_t seed, Utime utime) const {
   Image image;
   image.camera = camera_.name;
@@ -197,6 +208,7 @@ Image CameraRenderer::Take(std::uint64_t seed, Utime utime) const {
       }
     }
   }
+  Kill(seed, top, &image.pixels);
   return image;
 }
 

@@ -34,8 +34,8 @@ class CameraRenderer {
 
   /// The image without noise, blur included: DN of the Bayer mosaic, or counts; CV_32FC1.
   const cv::Mat& clean() const { return clean_; }
-  /// The image with the noise of (seed, utime). Camera's name, utime, exposure, format and pixels
-  /// are filled in.
+  /// The image with the noise of (seed, utime) and the dead pixels of the seed. Camera's name,
+  /// utime, exposure, format and pixels are filled in.
   Image Take(std::uint64_t seed, Utime utime) const;
 
  private:
@@ -47,6 +47,7 @@ class CameraRenderer {
                  const std::vector<std::uint64_t>& patches, cv::Mat* values) const;
   void MarkMoving(const World& world, int row, std::vector<std::uint8_t>* moving) const;
   void Develop(const World& world, const cv::Mat& values);
+  void Kill(std::uint64_t seed, double full_scale, cv::Mat* pixels) const;
   bool color() const { return camera_.kind == CameraKind::kColor; }
   std::size_t Index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(camera_.width) +

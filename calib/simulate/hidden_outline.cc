@@ -65,7 +65,7 @@ HeatMap HideOutline(const World& world, const Eigen::Vector3d& eye, const BoardO
     if (!apparent) continue;
     const double behind =
         SurfaceTemperature(*apparent, options.emissivity, world.scene().reflected_temperature_k);
-    const double contrast = std::abs(before.At(station.place, true) - behind);
+    const double contrast = std::abs(before.BorderAt(station.place) - behind);
     if (contrast >= least) continue;
     least = contrast;
     heat.hides = true;

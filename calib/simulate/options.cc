@@ -53,6 +53,7 @@ void Check(const CameraOptions& o, const std::string& field) {
   Between(o.bits, 8, 16, field + "bits");
   Positive(o.exposure_s, field + "exposure_s");
   NotNegative(o.readout_s, field + "readout_s");
+  Between(o.dead_pixels, 0, 10000, field + "dead_pixels");
   CheckLens(o.lens, o.width, o.height, field + "lens");
 }
 
@@ -76,6 +77,8 @@ void Check(const BoardOptions& o) {
   Positive(o.glow_radius_m, "board.glow_radius_m");
   NotNegative(o.hidden_outline_m, "board.hidden_outline_m");
   Positive(o.hidden_depth_m, "board.hidden_depth_m");
+  if (o.border_k) Between(*o.border_k, 150, 600, "board.border_k");
+  Between(o.border_to_white, 0, 1, "board.border_to_white");
   Positive(o.stand_m, "board.stand_m");
   Between(o.stand_reflectivity, 0, 1, "board.stand_reflectivity");
 }
@@ -94,6 +97,14 @@ void Check(const PoseOptions& o) {
   Between(o.max_azimuth_rad, 0, 180 * kDegree, "pose.max_azimuth_rad");
   Between(o.min_elevation_rad, -80 * kDegree, 80 * kDegree, "pose.min_elevation_rad");
   Between(o.max_elevation_rad, o.min_elevation_rad, 80 * kDegree, "pose.max_elevation_rad");
+  Between(o.outside_image, 0, 0.9, "pose.outside_image");
+}
+
+void Check(const HolderOptions& o) {
+  Between(o.hands, 0, 4, "holder.hands");
+  Between(o.hand_reach_m, 0, 0.3, "holder.hand_reach_m");
+  Between(o.hand_k, 250, 350, "holder.hand_k");
+  Between(o.person_aside_m, -2, 2, "holder.person_aside_m");
 }
 
 }  // namespace
@@ -155,6 +166,7 @@ void Options::Check() const {
   simulate::Check(board);
   simulate::Check(pose);
   clutter.Check();
+  simulate::Check(holder);
   Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
   Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");
   Require(world.reflected_temperature_k == 0 ||

@@ -55,6 +55,7 @@ struct CameraOptions {
   int bits = 14;              ///< thermal: counts stop at 2^bits - 1
   double exposure_s = 0.004;  ///< colour: in full sun, longer where darker; thermal: always this
   double readout_s = 0.03;    ///< an image serves points from its utime + this
+  int dead_pixels = 0;        ///< stuck at zero or at full scale; which ones, the seed says
 };
 
 /// 1936x1456, f = 1100 px, BayerRG8, blur 0.7 px, noise 2 DN.
@@ -79,6 +80,8 @@ struct BoardOptions {
   double glow_radius_m = 0.3;                 ///< sigma of the warm patch
   double hidden_outline_m = 0.35;  ///< length of the outline as warm as what lies behind it
   double hidden_depth_m = 0.1;     ///< sigma of how far that reaches inwards [m]
+  std::optional<double> border_k;  ///< [K] of the border all round; absent: as warm as black
+  double border_to_white = 0;      ///< the border's warmth: 0 that of black squares, 1 of white
   double stand_m = 0.04;           ///< side of the stand's square pole
   double stand_reflectivity = 0.3;
 };
@@ -96,6 +99,18 @@ struct PoseOptions {
   double max_azimuth_rad = 25 * kDegree;  ///< of the board's centre from straight ahead
   double min_elevation_rad = -16 * kDegree, max_elevation_rad = 18 * kDegree;
   bool whole_in_lidar = true;  ///< false: the LIDAR's field need only hold the board's centre
+  /// Share of the board that lies outside the image of the camera that sees least of it, within
+  /// 0.05; 0: the board is wholly seen by all sensors.
+  double outside_image = 0;
+};
+
+/// Who holds the board; nobody: it stands.
+struct HolderOptions {
+  int hands = 0;               ///< 0 to 4: at the left, right, upper and lower side
+  double hand_reach_m = 0.05;  ///< of the fingers, from the outline inwards over the front
+  double hand_k = 307;         ///< [K]
+  bool person = false;         ///< close behind the board
+  double person_aside_m = 0;   ///< to the left of the board's centre, seen from the LIDAR
 };
 
 struct SceneOptions {
@@ -114,6 +129,7 @@ struct Options {
   std::vector<CameraOptions> cameras{DefaultColorCamera(), DefaultThermalCamera()};
   BoardOptions board;
   PoseOptions pose;
+  HolderOptions holder;
   SceneOptions world;
   ClutterOptions clutter;
   double guess_rotation_rad = 2 * kDegree;  ///< hand-measured rotation is wrong by up to this

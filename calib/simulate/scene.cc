@@ -1,6 +1,7 @@
 #include "calib/simulate/scene.h"
 
 #include "calib/simulate/clutter.h"
+#include "calib/simulate/people.h"
 
 namespace rgbdt::simulate {
 namespace {
@@ -17,32 +18,6 @@ Material Paint(const Vector3d& albedo, double reflectivity, double temperature_k
   material.temperature_k = temperature_k;
   material.texture = texture;
   return material;
-}
-
-void AddPerson(double x, double y, double ground, double temperature, SceneModel* scene) {
-  const Material skin = Paint(Rgb(0.55, 0.33, 0.24), 0.5, temperature + 1);
-  const Material shirt = Paint(Rgb(0.55, 0.08, 0.07), 0.45, temperature);
-  const Material trousers = Paint(Rgb(0.06, 0.09, 0.22), 0.35, temperature - 0.7);
-  const Material hair = Paint(Rgb(0.05, 0.035, 0.02), 0.2, temperature - 1);
-  const auto at = [&](double dx, double dy, double z) {
-    return Vector3d(x + dx, y + dy, ground + z);
-  };
-  const auto add = [&](const char* name, const Mesh& mesh, const Material& material) {
-    scene->objects.push_back({name, mesh, material});
-  };
-  for (const double side : {-1.0, 1.0}) {
-    add("leg", MakeRod(at(0, side * 0.11, 0.06), at(0, side * 0.09, 0.9), 0.065, 0.095), trousers);
-    add("shoe", MakeEllipsoid(at(-0.06, side * 0.11, 0.05), {0.14, 0.055, 0.05}), hair);
-    add("arm", MakeRod(at(0, side * 0.22, 1.42), at(-0.05, side * 0.34, 1.12), 0.055, 0.045),
-        shirt);
-    add("forearm",
-        MakeRod(at(-0.05, side * 0.34, 1.12), at(-0.18, side * 0.30, 0.90), 0.042, 0.034), skin);
-    add("hand", MakeEllipsoid(at(-0.2, side * 0.295, 0.86), {0.045, 0.035, 0.06}), skin);
-  }
-  add("torso", MakeEllipsoid(at(0, 0, 1.18), {0.14, 0.23, 0.36}), shirt);
-  add("neck", MakeRod(at(0, 0, 1.45), at(0, 0, 1.6), 0.055, 0.055), skin);
-  add("head", MakeEllipsoid(at(0, 0, 1.66), {0.095, 0.08, 0.12}), skin);
-  add("hair", MakeEllipsoid(at(0.02, 0, 1.70), {0.095, 0.085, 0.10}), hair);
 }
 
 void AddTree(double x, double y, double ground, double height, double temperature,
@@ -108,7 +83,7 @@ void AddYard(double ground, double air, double warm, double person, SceneModel* 
   AddTree(12.5, -4.9, ground, 4.6, air, scene);
   AddTree(17, 5.5, ground, 6.5, air, scene);
   AddTree(9.5, 6.9, ground, 4.2, air, scene);
-  AddPerson(7.6, 2.6, ground, person, scene);
+  AddPerson(7.6, 2.6, ground, person, &scene->objects);
 }
 
 /// A laboratory: walls, bench, shelf, cupboard, screens, a heater and a person.
@@ -157,7 +132,7 @@ void AddRoom(double ground, double air, double person, SceneModel* scene) {
       Paint(Rgb(0.7, 0.7, 0.68), 0.7, air + 14));
   add("shelf", MakeBox({3.4, 3.9, ground}, {5.6, 4.35, ground + 2.2}),
       Paint(Rgb(0.45, 0.30, 0.16), 0.5, air, {Texture::Kind::kPlanks, 0.3, 0.4, 0}));
-  AddPerson(7.0, -2.35, ground, person, scene);
+  AddPerson(7.0, -2.35, ground, person, &scene->objects);
 }
 
 void AddDaylight(SceneModel* scene) {

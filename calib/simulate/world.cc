@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "calib/simulate/holder.h"
+#include "calib/simulate/people.h"
 
 namespace rgbdt::simulate {
 namespace {
@@ -11,7 +12,11 @@ namespace {
 std::vector<SceneObject> HolderOf(const std::optional<Board>& board, const Options& options,
                                   const SceneModel& scene) {
   if (!board) return {};
-  return MakeHolder(*board, options, scene.air_k);
+  std::vector<SceneObject> parts = MakeHolder(*board, options, scene.air_k);
+  for (SceneObject& hand : MakeHands(options, board->lidar_from_target())) {
+    parts.push_back(std::move(hand));
+  }
+  return parts;
 }
 
 std::vector<Mesh> CollectMeshes(const SceneModel& scene, const std::optional<Board>& board,
@@ -74,8 +79,6 @@ Surface World::At(const Hit& hit, const Eigen::Vector3d& point, double footprint
   Surface surface;
   if (IsBoard(hit)) {
     surface.material = board_->At(point, &surface.patch);
-  } else if (IsMoving(hit)) {
-    surface.material = Object(hit).material;
   } else if (Object(hit).pattern) {
     surface.material = Object(hit).pattern->At(point, &surface.patch);
   } else {

@@ -28,9 +28,9 @@ class World {
   void set_heat(const HeatMap& heat) { board_->set_heat(heat); }
 
   bool IsBoard(const Hit& hit) const { return board_ && hit.object == board_object_; }
-  /// Board or stand: what the next view will have elsewhere.
+  /// Board, stand or who holds it: what the next view will have elsewhere.
   bool IsMoving(const Hit& hit) const { return hit.object >= board_object_; }
-  /// Whether a ray comes near board or stand (their boxes along the axes; no false "no").
+  /// Whether a ray comes near any of these (their boxes along the axes; no false "no").
   bool MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   /// What the ray met, of the scene or of what holds the board. Not for the board itself.
   const SceneObject& Object(const Hit& hit) const;

@@ -25,10 +25,10 @@ Found FindInImage(const Rig& rig, const Image& image, const std::string& name) {
   CheckImage(rig.Camera(image.camera), image);
   const cv::Mat grey = ToGrey(image);
   Found found{image.camera, {name, {}}, 0};
-  const auto corners = FindCheckerboard(grey, rig.target);
-  if (!corners) return found;
-  found.view.corners = *corners;
-  found.contrast = SquareContrast(grey, rig.target, *corners);
+  const auto board = FindCheckerboard(grey, rig.target).board;
+  if (!board) return found;
+  found.view.corners = board->corners;
+  found.contrast = SquareContrast(grey, rig.target, board->corners);
   return found;
 }
 

@@ -137,5 +137,30 @@ TEST(BoardPoses, SayWhenThereIsNoRoom) {
   EXPECT_THROW(Setting(options).Pose(0), InputError);
 }
 
+TEST(BoardPoses, TheShareThatIsAskedForLiesOutsideTheImage) {
+  for (const double asked : {0.15, 0.4}) {
+    Options options;
+    options.cameras.erase(options.cameras.begin());  // thermal alone
+    options.pose.outside_image = asked;
+    const Setting s(options);
+    for (int index = 0; index < 4; ++index) {
+      const Rigid3 camera_from_target = s.cameras[0].camera_from_lidar() * s.Pose(index);
+      int outside = 0, all = 0;
+      for (double x = -0.6; x <= 0.6; x += 0.05) {
+        for (double y = -0.45; y <= 0.45; y += 0.05) {
+          const auto pixel =
+              s.cameras[0].lens().Project(camera_from_target * Eigen::Vector3d(x, y, 0));
+          const bool seen =
+              pixel && pixel->x() > 0 && pixel->y() > 0 && pixel->x() < 639 && pixel->y() < 479;
+          outside += seen ? 0 : 1;
+          ++all;
+        }
+      }
+      // Within 0.05, and what this coarser grid may miss.
+      EXPECT_NEAR(double(outside) / all, asked, 0.07) << index;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt::simulate

@@ -141,6 +141,28 @@ TEST(CameraRenderer, NoiseHasItsSigma) {
   }
 }
 
+TEST(CameraRenderer, DeadPixelsStayWhereTheSeedPutsThem) {
+  for (const std::size_t camera : {0U, 1U}) {
+    Options options = SmallOptions();
+    const Scenery alive(options, camera, TiltedBoard());
+    options.cameras[camera].dead_pixels = 12;
+    const Scenery dead(options, camera, TiltedBoard());
+    const double top = camera == 0 ? 255 : 16383;
+    const auto places = [&](std::uint64_t seed, Utime utime) {
+      const cv::Mat with = dead.renderer.Take(seed, utime).pixels;
+      cv::Mat changed = with != alive.renderer.Take(seed, utime).pixels;
+      // No more than asked for; one may be as black as what it hides.
+      EXPECT_LE(cv::countNonZero(changed), 12);
+      EXPECT_GE(cv::countNonZero(changed), 6);
+      cv::Mat stuck = (with == 0) | (with == top);
+      EXPECT_EQ(cv::countNonZero(changed & ~stuck), 0);
+      return changed;
+    };
+    EXPECT_EQ(cv::norm(places(1, 123), places(1, 456), cv::NORM_INF), 0);
+    EXPECT_GT(cv::norm(places(1, 123), places(2, 123), cv::NORM_INF), 0);
+  }
+}
+
 TEST(CameraRenderer, ExposesTheBoard) {
   for (const Scene scene : {Scene::kOutdoor, Scene::kIndoor, Scene::kNight}) {
     const Scenery s(SmallOptions(scene), 0, TiltedBoard());

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+
+namespace rgbdt {
+
+/// A checkerboard's corner, measured.
+struct CornerFit {
+  Eigen::Vector2d place{0, 0};  ///< [px]
+  /// Half of light minus dark; positive where the patch between the two steps, and the one opposite
+  /// it, are the lighter ones.
+  double contrast = 0;
+  double blur_px = 0;   ///< sigma of the edges
+  double left = 0;      ///< RMS of what the fit leaves over, of the contrast
+  double sigma_px = 0;  ///< of the place along its worst direction, from what the fit leaves over
+};
+
+/// Fits to the pixels round a corner
+///   b(x, y) + contrast * erf(e1 / (sqrt(2) s)) * erf(e2 / (sqrt(2) s))
+/// with b a polynomial of second degree (glow), e1 and e2 the distances to two straight edges and s
+/// the blur, by least squares. With `blur_px` given, blur and the edges' directions (along `steps`)
+/// are taken as known, which helps weak corners, and b is of third degree where that clearly fits
+/// better. `grey` is CV_32FC1, dead pixels repaired. `steps`: image
+/// shift from this corner to the next column (first) and to the next row [px]. Nothing where the
+/// fit leaves the neighbourhood of `place`, the pixels are not all seen or do not look like that.
+std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
+                                   const Eigen::Matrix2d& steps,
+                                   std::optional<double> blur_px = std::nullopt);
+
+}  // namespace rgbdt
