@@ -112,6 +112,21 @@ void CheckUnitVector(std::string_view field, const Eigen::Vector3d& v) {
     Fail("length of " + std::string(field), v.norm(), "1: a unit vector");
 }
 
+void CheckCovariance(std::string_view field, const double* rows, int size) {
+  CheckFinite(field, rows, static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+  const auto at = [&](int row, int column) { return rows[row * size + column]; };
+  for (int row = 0; row < size; ++row) {
+    if (at(row, row) < 0) Fail("variance in " + std::string(field), at(row, row), "0 or more");
+    for (int column = 0; column < row; ++column) {
+      const double scale = std::sqrt(at(row, row)) * std::sqrt(at(column, column));
+      const double difference = std::abs(at(row, column) - at(column, row));
+      if (!(difference <= 1e-6 * scale)) {
+        Fail("asymmetry of " + std::string(field), difference, "a symmetric matrix");
+      }
+    }
+  }
+}
+
 void CheckCameraName(std::string_view field, const std::string& name) {
   bool good = !name.empty() && name.size() <= 32;
   for (const char c : name) good &= (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';

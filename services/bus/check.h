@@ -48,6 +48,10 @@ void CheckNotNegative(std::string_view field, double value);  ///< finite and >=
 void CheckFinite(std::string_view field, const double* values, std::size_t size);
 void CheckUnitVector(std::string_view field, const Eigen::Vector3d& v);
 
+/// `size` rows of `size` numbers: finite, no variance below zero, symmetric to 1e-6 of the two
+/// sigmas' product.
+void CheckCovariance(std::string_view field, const double* rows, int size);
+
 /// As the rig file has it: 1 to 32 of a-z, 0-9 and _.
 void CheckCameraName(std::string_view field, const std::string& name);
 /// May become a file's name: UTF-8 without control characters, slashes and a leading dot.

@@ -11,19 +11,20 @@
 namespace rgbdt {
 namespace {
 
-void CheckFingerprint(const std::string& channel, const char* type, std::int64_t expected,
-                      const std::uint8_t* data, std::size_t size) {
+template <typename Wire>
+bool IsA(const std::uint8_t* data, std::size_t size) {
   std::uint64_t fingerprint = 0;
   for (std::size_t i = 0; i < 8 && i < size; ++i) fingerprint = fingerprint << 8 | data[i];
-  if (size >= 8 && fingerprint == static_cast<std::uint64_t>(expected)) return;
-  throw InputError(std::string("the message is no ") + type +
-                   ": another type or version on channel " + channel);
+  return size >= 8 && fingerprint == static_cast<std::uint64_t>(Wire::getHash());
 }
 
 template <typename Wire>
 Message DecodeAs(const std::string& channel, std::string_view layout, const std::uint8_t* data,
                  std::size_t size) {
-  CheckFingerprint(channel, Wire::getTypeName(), Wire::getHash(), data, size);
+  if (!IsA<Wire>(data, size)) {
+    throw InputError(std::string("the message is no ") + Wire::getTypeName() +
+                     ": another type or version on channel " + channel);
+  }
   CheckLayout(layout, data, size);
   Wire wire;
   if (wire.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size)) {
@@ -31,6 +32,15 @@ Message DecodeAs(const std::string& channel, std::string_view layout, const std:
   }
   Check(wire);
   return FromWire(wire);
+}
+
+// Logs from before observation_v2_t hold the observation_t that it begins with.
+Message DecodeObservation(const std::string& channel, std::string_view layout,
+                          const std::uint8_t* data, std::size_t size) {
+  if (!IsA<observation_t>(data, size)) {
+    return DecodeAs<observation_v2_t>(channel, layout, data, size);
+  }
+  return DecodeAs<observation_t>(channel, "observation_t", data, size);
 }
 
 struct Kind {
@@ -50,9 +60,9 @@ constexpr std::array<Kind, 13> kKinds = {{
      "num_points*h #num_origins num_origins*f num_origins*f num_origins*f #num_misses num_misses*i "
      "num_misses*f num_misses*f num_misses*f b 2i"},
     {"CORNER_SELECTION", DecodeAs<corner_selection_t>, "2q s q 8d"},
-    {"OBSERVATION", DecodeAs<observation_t>,
-     "2q 2s q b s b 2i b 8d #num_corners num_corners*2d #num_edge_pixels num_edge_pixels*2h "
-     "#num_outline num_outline*2d b #num_boundary num_boundary*3d 3d 3d 3d i 2d"},
+    {"OBSERVATION", DecodeObservation,
+     "observation_t d b target_pose_t 4image_side_t b target_pose_t #num_cloud_crossings "
+     "num_cloud_crossings*board_crossing_t #num_candidates num_candidates*cloud_board_t"},
     {"CALIBRATION", DecodeAs<calibration_t>, "2q 3s b s 7d b 36d"},
     {"RGBDT_CLOUD", DecodeAs<rgbdt_cloud_t>,
      "3q b q #num_cameras num_cameras*s #num_points num_points*f num_points*f num_points*f "

@@ -1,46 +1,8 @@
-#include <cmath>
-
 #include "services/bus/check.h"
+#include "services/bus/codec_geometry.h"
 #include "services/bus/codec_types.h"
 
 namespace rgbdt {
-namespace {
-
-void CovarianceToWire(const Matrix6d& covariance, double wire[6][6]) {
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) wire[row][column] = covariance(row, column);
-  }
-}
-
-// Symmetric, and no variance below zero.
-void CheckCovariance(const double wire[6][6]) {
-  CheckFinite("covariance", wire[0], 36);
-  for (int row = 0; row < 6; ++row) {
-    if (wire[row][row] < 0) Fail("covariance of one", wire[row][row], "0 or more");
-    for (int column = 0; column < row; ++column) {
-      const double scale = std::sqrt(wire[row][row] * wire[column][column]);
-      const double difference = std::abs(wire[row][column] - wire[column][row]);
-      if (difference > 1e-6 * scale) {
-        Fail("asymmetry of covariance", difference, "a symmetric matrix");
-      }
-    }
-  }
-}
-
-Matrix6d CovarianceFromWire(const double wire[6][6]) {
-  Matrix6d covariance;
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) covariance(row, column) = wire[row][column];
-  }
-  return covariance;
-}
-
-void RigidToWire(const Rigid3& rigid, double quaternion_wxyz[4], double translation_m[3]) {
-  RotationToWire(rigid.rotation, quaternion_wxyz);
-  for (int i = 0; i < 3; ++i) translation_m[i] = rigid.translation[i];
-}
-
-}  // namespace
 
 calibration_t ToWire(const CalibrationMessage& message) {
   const CameraCalibration& calibration = message.calibration;
@@ -54,7 +16,7 @@ calibration_t ToWire(const CalibrationMessage& message) {
   wire.status = calibration.status;
   RigidToWire(calibration.camera_from_lidar, wire.quaternion_wxyz, wire.translation_m);
   wire.has_covariance = static_cast<std::int8_t>(calibration.covariance.has_value());
-  if (calibration.covariance) CovarianceToWire(*calibration.covariance, wire.covariance);
+  if (calibration.covariance) MatrixToWire(*calibration.covariance, wire.covariance);
   return wire;
 }
 
@@ -67,7 +29,7 @@ void Check(const calibration_t& wire) {
   CheckText("status", wire.status);
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);
-  if (wire.has_covariance != 0) CheckCovariance(wire.covariance);
+  if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);
 }
 
 CalibrationMessage FromWire(const calibration_t& wire) {
@@ -80,9 +42,8 @@ CalibrationMessage FromWire(const calibration_t& wire) {
   calibration.camera = wire.camera;
   calibration.converged = wire.converged != 0;
   calibration.status = wire.status;
-  calibration.camera_from_lidar = {RotationFromWire(wire.quaternion_wxyz),
-                                   Eigen::Vector3d(wire.translation_m)};
-  if (wire.has_covariance != 0) calibration.covariance = CovarianceFromWire(wire.covariance);
+  calibration.camera_from_lidar = RigidFromWire(wire.quaternion_wxyz, wire.translation_m);
+  if (wire.has_covariance != 0) calibration.covariance = MatrixFromWire(wire.covariance);
   return message;
 }
 
@@ -108,8 +69,7 @@ StampedPose FromWire(const pose_t& wire) {
   pose.utime = wire.utime;
   pose.seq = wire.seq;
   pose.source = wire.source;
-  pose.map_from_lidar = {RotationFromWire(wire.quaternion_wxyz),
-                         Eigen::Vector3d(wire.translation_m)};
+  pose.map_from_lidar = RigidFromWire(wire.quaternion_wxyz, wire.translation_m);
   return pose;
 }
 

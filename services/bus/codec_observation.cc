@@ -1,31 +1,9 @@
-#include <limits>
-
 #include "services/bus/check.h"
+#include "services/bus/codec_board.h"
 #include "services/bus/codec_types.h"
 
 namespace rgbdt {
 namespace {
-
-// lcm-gen makes a vector of vectors of an array [n][2] or [n][3].
-template <typename Row>
-std::vector<std::vector<double>> RowsToWire(const std::vector<Row>& rows) {
-  std::vector<std::vector<double>> wire(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    wire[i].assign(rows[i].data(), rows[i].data() + rows[i].size());
-  }
-  return wire;
-}
-
-template <typename Row>
-std::vector<Row> RowsFromWire(const std::vector<std::vector<double>>& wire) {
-  std::vector<Row> rows(wire.size());
-  for (std::size_t i = 0; i < wire.size(); ++i) rows[i] = Row(wire[i].data());
-  return rows;
-}
-
-void CheckRows(std::string_view field, const std::vector<std::vector<double>>& rows) {
-  for (const std::vector<double>& row : rows) CheckFinite(field, row.data(), row.size());
-}
 
 void CornersToWire(const std::array<Eigen::Vector2d, 4>& corners, double wire[4][2]) {
   for (std::size_t i = 0; i < 4; ++i) {
@@ -38,10 +16,6 @@ std::array<Eigen::Vector2d, 4> CornersFromWire(const double wire[4][2]) {
   std::array<Eigen::Vector2d, 4> corners;
   for (std::size_t i = 0; i < 4; ++i) corners[i] = Eigen::Vector2d(wire[i]);
   return corners;
-}
-
-void Copy(const Eigen::Vector3d& from, double to[3]) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
 
 void ImageToWire(const ImageEdges& image, observation_t* wire) {
@@ -64,18 +38,6 @@ void ImageToWire(const ImageEdges& image, observation_t* wire) {
   }
 }
 
-void CloudToWire(const CloudEdges& cloud, observation_t* wire) {
-  wire->has_cloud = 1;
-  wire->num_boundary = CountOf(cloud.boundary.size(), "num_boundary");
-  wire->boundary_m = RowsToWire(cloud.boundary);
-  Copy(cloud.centre, wire->centre_m);
-  Copy(cloud.normal, wire->normal);
-  wire->width_m = cloud.width_m;
-  wire->height_m = cloud.height_m;
-  wire->spacing_m = cloud.spacing_m;
-  wire->num_board_points = cloud.points;
-}
-
 void CheckImage(const observation_t& wire) {
   CheckRange("image_width", wire.image_width, 1, kMaxImageSide);
   CheckRange("image_height", wire.image_height, 1, kMaxImageSide);
@@ -86,17 +48,6 @@ void CheckImage(const observation_t& wire) {
     CheckRange("edge_pixel x", pixel[0], 0, wire.image_width - 1);
     CheckRange("edge_pixel y", pixel[1], 0, wire.image_height - 1);
   }
-}
-
-void CheckCloud(const observation_t& wire) {
-  CheckRows("boundary_m", wire.boundary_m);
-  CheckFinite("centre_m", wire.centre_m, 3);
-  CheckUnitVector("normal", Eigen::Vector3d(wire.normal));
-  CheckNotNegative("width_m", wire.width_m);
-  CheckNotNegative("height_m", wire.height_m);
-  CheckNotNegative("spacing_m", wire.spacing_m);
-  CheckRange("num_board_points", wire.num_board_points, 0,
-             std::numeric_limits<std::int32_t>::max());
 }
 
 ImageEdges ImageFromWire(const observation_t& wire) {
@@ -112,18 +63,6 @@ ImageEdges ImageFromWire(const observation_t& wire) {
     image.edge_pixels.emplace_back(pixel[0], pixel[1]);
   }
   return image;
-}
-
-CloudEdges CloudFromWire(const observation_t& wire) {
-  CloudEdges cloud;
-  cloud.boundary = RowsFromWire<Eigen::Vector3d>(wire.boundary_m);
-  cloud.centre = Eigen::Vector3d(wire.centre_m);
-  cloud.normal = Eigen::Vector3d(wire.normal);
-  cloud.width_m = wire.width_m;
-  cloud.height_m = wire.height_m;
-  cloud.spacing_m = wire.spacing_m;
-  cloud.points = wire.num_board_points;
-  return cloud;
 }
 
 }  // namespace
@@ -156,7 +95,7 @@ CornerSelection FromWire(const corner_selection_t& wire) {
   return selection;
 }
 
-observation_t ToWire(const Observation& observation) {
+observation_t ToFirstVersion(const Observation& observation) {
   observation_t wire{};
   wire.utime = observation.image_utime;
   wire.seq = observation.seq;
@@ -168,7 +107,8 @@ observation_t ToWire(const Observation& observation) {
   wire.detect_image_s = observation.detect_image_s;
   wire.detect_cloud_s = observation.detect_cloud_s;
   if (observation.image) ImageToWire(*observation.image, &wire);
-  if (observation.cloud) CloudToWire(*observation.cloud, &wire);
+  wire.has_cloud = static_cast<std::int8_t>(observation.cloud.has_value());
+  if (observation.cloud) BoardToWire(*observation.cloud, &wire);
   return wire;
 }
 
@@ -182,7 +122,7 @@ void Check(const observation_t& wire) {
   CheckNotNegative("detect_image_s", wire.detect_image_s);
   CheckNotNegative("detect_cloud_s", wire.detect_cloud_s);
   if (wire.has_image != 0) CheckImage(wire);
-  if (wire.has_cloud != 0) CheckCloud(wire);
+  if (wire.has_cloud != 0) CheckBoard(wire);
   if (wire.rejected.empty() && (wire.has_image == 0 || wire.has_cloud == 0)) {
     Fail("rejected", std::string("empty"), "a reason, as image or cloud is missing");
   }
@@ -200,7 +140,7 @@ Observation FromWire(const observation_t& wire) {
   observation.detect_image_s = wire.detect_image_s;
   observation.detect_cloud_s = wire.detect_cloud_s;
   if (wire.has_image != 0) observation.image = ImageFromWire(wire);
-  if (wire.has_cloud != 0) observation.cloud = CloudFromWire(wire);
+  if (wire.has_cloud != 0) observation.cloud = BoardFromWire(wire);
   return observation;
 }
 

@@ -14,6 +14,7 @@
 #include <lcmtypes/rgbdt/image_t.hpp>
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
 #include <lcmtypes/rgbdt/observation_t.hpp>
+#include <lcmtypes/rgbdt/observation_v2_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
@@ -53,9 +54,15 @@ RgbdtCloud FromWire(const rgbdt_cloud_t& wire);
 corner_selection_t ToWire(const CornerSelection& selection);
 void Check(const corner_selection_t& wire);
 CornerSelection FromWire(const corner_selection_t& wire);
-observation_t ToWire(const Observation& observation);
+/// What the first version carries: no poses, sides, crossings and candidates.
+observation_t ToFirstVersion(const Observation& observation);
 void Check(const observation_t& wire);
 Observation FromWire(const observation_t& wire);
+
+// codec_observation_v2.cc
+observation_v2_t ToWire(const Observation& observation);
+void Check(const observation_v2_t& wire);
+Observation FromWire(const observation_v2_t& wire);
 
 // codec_calibration.cc
 calibration_t ToWire(const CalibrationMessage& message);

@@ -14,6 +14,31 @@ namespace {
 
 constexpr std::size_t kFingerprintBytes = 8;
 
+struct Struct {
+  std::string_view name;
+  std::string_view layout;
+};
+
+// What lies within other types.
+constexpr std::array<Struct, 5> kStructs = {{
+    {"observation_t",
+     "2q 2s q b s b 2i b 8d #num_corners num_corners*2d #num_edge_pixels num_edge_pixels*2h "
+     "#num_outline num_outline*2d b #num_boundary num_boundary*3d 3d 3d 3d i 2d"},
+    {"target_pose_t", "43d b"},
+    {"image_side_t", "b s #num_curve num_curve*2d 4d"},
+    {"board_crossing_t", "4d 2b"},
+    {"cloud_board_t",
+     "#num_boundary num_boundary*3d 3d 3d 3d i b target_pose_t #num_crossings "
+     "num_crossings*board_crossing_t"},
+}};
+
+std::string_view LayoutOf(std::string_view name) {
+  for (const Struct& known : kStructs) {
+    if (known.name == name) return known.layout;
+  }
+  throw std::logic_error("layout: unknown struct " + std::string(name));
+}
+
 std::uint64_t BytesOf(char type) {
   switch (type) {
     case 'q':
@@ -36,6 +61,26 @@ class Walker {
     Skip(kFingerprintBytes, "the fingerprint");
   }
 
+  void Fields(std::string_view layout) {
+    while (!layout.empty()) {
+      const std::size_t end = std::min(layout.find(' '), layout.size());
+      if (end > 0) Token(layout.substr(0, end));
+      layout.remove_prefix(std::min(end + 1, layout.size()));
+    }
+  }
+
+  void End() const {
+    if (at_ == size_) return;
+    throw InputError("the message has " + std::to_string(size_ - at_) +
+                     " bytes more than its fields take");
+  }
+
+ private:
+  struct NamedCount {
+    std::string_view name;
+    std::uint64_t value = 0;
+  };
+
   void Token(std::string_view token) {
     if (token.front() == '#') return ReadCount(token.substr(1));
     const std::string_view whole = token;
@@ -50,21 +95,21 @@ class Walker {
       repeat = 10 * repeat + static_cast<std::uint64_t>(token.front() - '0');
     }
     if (repeat > 0) times *= repeat;
+    if (token.size() > 1) return Structs(token, times);
     if (token.front() != 's') return Skip(times * BytesOf(token.front()), whole);
     for (std::uint64_t i = 0; i < times; ++i) SkipString();
   }
 
-  void End() const {
-    if (at_ == size_) return;
-    throw InputError("the message has " + std::to_string(size_ - at_) +
-                     " bytes more than its fields take");
+  // Every struct takes bytes, so a forged `times` soon finds none left.
+  void Structs(std::string_view name, std::uint64_t times) {
+    const std::string_view layout = LayoutOf(name);
+    const auto counts = counts_;
+    for (std::uint64_t i = 0; i < times; ++i) {
+      counts_ = {};
+      Fields(layout);
+    }
+    counts_ = counts;
   }
-
- private:
-  struct NamedCount {
-    std::string_view name;
-    std::uint64_t value = 0;
-  };
 
   std::uint64_t Count(std::string_view name) const {
     for (const NamedCount& count : counts_) {
@@ -121,11 +166,7 @@ class Walker {
 
 void CheckLayout(std::string_view layout, const std::uint8_t* data, std::size_t size) {
   Walker walker(data, size);
-  while (!layout.empty()) {
-    const std::size_t end = std::min(layout.find(' '), layout.size());
-    if (end > 0) walker.Token(layout.substr(0, end));
-    layout.remove_prefix(std::min(end + 1, layout.size()));
-  }
+  walker.Fields(layout);
   walker.End();
 }
 

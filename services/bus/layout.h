@@ -18,6 +18,7 @@ namespace rgbdt {
 ///   3q              three of them
 ///   #num_points     an int32 that counts what follows under its name
 ///   num_points*2d   two doubles, num_points times
+///   4image_side_t   a struct that layout.cc knows, four times; its counts are its own
 /// Throws InputError naming the count or string that does not fit. The fingerprint is skipped.
 void CheckLayout(std::string_view layout, const std::uint8_t* data, std::size_t size);
 

@@ -5,6 +5,8 @@
 
 #include "calib/model/errors.h"
 #include "services/bus/codec.h"
+#include "services/bus/codec_types.h"
+#include "tests/unit/bus/codec_testing.h"
 #include "tests/unit/bus/random_messages.h"
 
 // Hostile bytes: every outcome is a message or an InputError, and memory stays bounded. Built with
@@ -14,9 +16,11 @@
 namespace rgbdt {
 namespace {
 
+using testing::BytesOf;
 using testing::RandomMessages;
 
 constexpr int kFlipsPerMessage = 400;
+constexpr std::size_t kForgedBytes = 3500;
 #ifdef __SANITIZE_ADDRESS__
 constexpr std::int64_t kMaxGrowthKb = 1024 * 1024;  // it keeps what is freed for a while
 #else
@@ -42,17 +46,49 @@ bool Survives(const std::string& channel, const Bytes& bytes) {
   }
 }
 
+struct Sample {
+  std::string channel;
+  Bytes bytes;
+};
+
 class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
  protected:
+  /// A valid one of every type that is decoded.
+  std::vector<Sample> Samples() {
+    std::vector<Sample> samples;
+    for (const Message& message : random_.OneOfEach()) {
+      samples.push_back({ChannelOf(message), Encode(message)});
+    }
+    samples.push_back({"OBSERVATION", BytesOf(ToFirstVersion(random_.Seen()))});
+    samples.push_back({"OBSERVATION", Encode(SmallButWhole())});
+    return samples;
+  }
+
+  // Every nested struct, within the bytes whose counts are forged.
+  Observation SmallButWhole() {
+    Observation observation = random_.Seen();
+    observation.image = ImageEdges{};
+    observation.image->width = observation.image->height = 100;
+    observation.image->outline_corners.fill({1, 2});
+    ImageSide side = random_.Side();
+    side.curve.resize(2, {3, 4});
+    observation.image->pose = random_.PoseOfTarget();
+    observation.image->sides.fill(side);
+    observation.cloud = random_.Boundary();
+    observation.cloud->boundary.resize(1);
+    observation.cloud->pose = random_.PoseOfTarget();
+    observation.cloud->crossings.assign(2, random_.WhereAScanLeaves());
+    observation.candidates.assign(2, *observation.cloud);
+    return observation;
+  }
+
   RandomMessages random_{GetParam() + 1000};
 };
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Fuzz, ::testing::Range(std::uint64_t{0}, std::uint64_t{4}));
 
 TEST_P(Fuzz, EveryTruncationIsRefused) {
-  for (const Message& message : random_.OneOfEach()) {
-    const std::string channel = ChannelOf(message);
-    const Bytes whole = Encode(message);
+  for (const auto& [channel, whole] : Samples()) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       EXPECT_FALSE(Survives(channel, Bytes(whole.data(), whole.data() + size))) << channel << size;
     }
@@ -69,10 +105,8 @@ TEST_P(Fuzz, ForgedCountsAtEveryByte) {
                                  1 << 30, (1 << 30) + 1,
                                  1 << 29, 1 << 28,
                                  1,       100'000};
-  for (const Message& message : random_.OneOfEach()) {
-    const std::string channel = ChannelOf(message);
-    const Bytes whole = Encode(message);
-    const std::size_t end = std::min<std::size_t>(whole.size(), 1500);
+  for (const auto& [channel, whole] : Samples()) {
+    const std::size_t end = std::min(whole.size(), kForgedBytes);
     for (std::size_t at = 8; at + 4 <= end; ++at) {
       for (const std::int32_t count : forged) {
         Bytes bytes = whole;
@@ -89,9 +123,7 @@ TEST_P(Fuzz, ForgedCountsAtEveryByte) {
 
 TEST_P(Fuzz, RandomBytesFlipped) {
   const std::int64_t before = PeakMemoryKb();
-  for (const Message& message : random_.OneOfEach()) {
-    const std::string channel = ChannelOf(message);
-    const Bytes whole = Encode(message);
+  for (const auto& [channel, whole] : Samples()) {
     const int last = static_cast<int>(whole.size()) - 1;
     for (int round = 0; round < kFlipsPerMessage; ++round) {
       Bytes bytes = whole;
@@ -107,9 +139,7 @@ TEST_P(Fuzz, RandomBytesFlipped) {
 }
 
 TEST_P(Fuzz, RandomBytesBehindTheFingerprint) {
-  for (const Message& message : random_.OneOfEach()) {
-    const std::string channel = ChannelOf(message);
-    const Bytes whole = Encode(message);
+  for (const auto& [channel, whole] : Samples()) {
     for (int round = 0; round < 100; ++round) {
       Bytes bytes(whole.begin(), whole.begin() + 8);
       for (int size = random_.Int(0, 600); size > 0; --size) {

@@ -2,40 +2,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
-#include "calib/model/errors.h"
 #include "services/bus/codec.h"
 #include "services/bus/codec_types.h"
+#include "tests/unit/bus/codec_testing.h"
 #include "tests/unit/bus/random_messages.h"
 
 namespace rgbdt {
 namespace {
 
+using testing::ErrorAfter;
+using testing::ErrorOf;
 using ::testing::HasSubstr;
 using testing::kNan;
 using testing::RandomMessages;
-
-std::string ErrorOf(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
-/// What Decode says of a valid message whose LCM fields were changed.
-template <typename Wire, typename Change>
-std::string ErrorAfter(const Message& message, const Change& change) {
-  const Bytes good = Encode(message);
-  Wire wire;
-  EXPECT_GT(wire.decode(good.data(), 0, static_cast<int>(good.size())), 0);
-  change(wire);
-  Bytes bytes(static_cast<std::size_t>(wire.getEncodedSize()));
-  wire.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return ErrorOf([&] { Decode(ChannelOf(message), bytes.data(), bytes.size()); });
-}
 
 class Invalid : public ::testing::Test {
  protected:
@@ -157,23 +137,6 @@ TEST_F(Invalid, RgbdtCloud) {
               HasSubstr("num_cameras is 33"));
   cloud.valid.pop_back();
   EXPECT_THAT(ErrorOf([&] { Encode(cloud); }), HasSubstr("length of valid"));
-}
-
-TEST_F(Invalid, Observation) {
-  Observation observation = random_.Seen();
-  observation.image = random_.Edges();
-  observation.image->edge_pixels = {{3, 4}};
-  observation.cloud = random_.Boundary();
-  observation.rejected = "";
-  const auto error = [&](auto change) { return ErrorAfter<observation_t>(observation, change); };
-  EXPECT_EQ(error([](auto&) {}), "no error");
-  EXPECT_THAT(error([](auto& w) { w.view = "../../etc"; }), HasSubstr("view is"));
-  EXPECT_THAT(error([](auto& w) { w.image_width = 3; }), HasSubstr("edge_pixel x is 3"));
-  EXPECT_THAT(error([](auto& w) { w.normal[0] = 2; }), HasSubstr("length of normal"));
-  EXPECT_THAT(error([](auto& w) { w.outline_corner_px[2][1] = NAN; }),
-              HasSubstr("outline_corner_px[5] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.has_cloud = 0; }), HasSubstr("a reason"));
-  EXPECT_THAT(error([](auto& w) { w.rejected = "\xff"; }), HasSubstr("rejected is"));
 }
 
 TEST_F(Invalid, CalibrationAndPose) {

@@ -3,18 +3,15 @@
 #include <cstring>
 
 #include "services/bus/codec.h"
+#include "tests/unit/bus/codec_testing.h"
 #include "tests/unit/bus/random_messages.h"
 
 namespace rgbdt {
 namespace {
 
+using testing::ExpectSameRigid;
 using testing::RandomMessages;
-
-template <typename T>
-T ThroughTheWire(const T& message) {
-  const Bytes bytes = Encode(message);
-  return std::get<T>(Decode(ChannelOf(message), bytes.data(), bytes.size()));
-}
+using testing::ThroughTheWire;
 
 bool Same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
@@ -32,11 +29,6 @@ bool SameRows(const std::vector<Row>& a, const std::vector<Row>& b) {
     }
     return true;
   });
-}
-
-void ExpectSameRigid(const Rigid3& a, const Rigid3& b) {
-  EXPECT_LT((a.rotation.coeffs() - b.rotation.coeffs()).norm(), 1e-15);
-  EXPECT_EQ(a.translation, b.translation);
 }
 
 constexpr int kRounds = 100;
@@ -141,41 +133,6 @@ TEST_F(RoundTrip, CornerSelection) {
     EXPECT_EQ(a.camera, b.camera);
     EXPECT_EQ(a.image_utime, b.image_utime);
     EXPECT_EQ(a.corners, b.corners);
-  }
-}
-
-TEST_F(RoundTrip, Observation) {
-  for (int round = 0; round < kRounds; ++round) {
-    const Observation a = random_.Seen();
-    const Observation b = ThroughTheWire(a);
-    EXPECT_EQ(a.view, b.view);
-    EXPECT_EQ(a.camera, b.camera);
-    EXPECT_EQ(a.sweep_utime, b.sweep_utime);
-    EXPECT_EQ(a.heldout, b.heldout);
-    EXPECT_EQ(a.rejected, b.rejected);
-    EXPECT_EQ(a.detect_image_s, b.detect_image_s);
-    EXPECT_EQ(a.detect_cloud_s, b.detect_cloud_s);
-    EXPECT_EQ(a.usable(), b.usable());
-    ASSERT_EQ(a.image.has_value(), b.image.has_value());
-    ASSERT_EQ(a.cloud.has_value(), b.cloud.has_value());
-    if (a.image) {
-      EXPECT_EQ(a.image->width, b.image->width);
-      EXPECT_EQ(a.image->height, b.image->height);
-      EXPECT_EQ(a.image->picked, b.image->picked);
-      EXPECT_EQ(a.image->corners, b.image->corners);
-      EXPECT_EQ(a.image->outline_corners, b.image->outline_corners);
-      EXPECT_EQ(a.image->edge_pixels, b.image->edge_pixels);
-      EXPECT_EQ(a.image->outline, b.image->outline);
-    }
-    if (a.cloud) {
-      EXPECT_EQ(a.cloud->boundary, b.cloud->boundary);
-      EXPECT_EQ(a.cloud->centre, b.cloud->centre);
-      EXPECT_EQ(a.cloud->normal, b.cloud->normal);
-      EXPECT_EQ(a.cloud->width_m, b.cloud->width_m);
-      EXPECT_EQ(a.cloud->height_m, b.cloud->height_m);
-      EXPECT_EQ(a.cloud->spacing_m, b.cloud->spacing_m);
-      EXPECT_EQ(a.cloud->points, b.cloud->points);
-    }
   }
 }
 

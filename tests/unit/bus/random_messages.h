@@ -59,6 +59,13 @@ class RandomMessages {
     return {Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), Rows<Eigen::Vector3d>(1)[0]};
   }
 
+  template <int N>
+  Eigen::Matrix<double, N, N> Covariance() {
+    using Matrix = Eigen::Matrix<double, N, N>;
+    const Matrix root = Matrix::NullaryExpr([&] { return Number(-0.01, 0.01); });
+    return root * root.transpose();
+  }
+
   LineScan Line() {
     LineScan line;
     line.utime = Time();
@@ -164,7 +171,21 @@ class RandomMessages {
     if (!observation.image || !observation.cloud || Int(0, 3) == 0) {
       observation.rejected = "no board in view";
     }
+    for (int i = Int(0, 3); i > 0; --i) observation.candidates.push_back(Boundary());
     return observation;
+  }
+  TargetPose PoseOfTarget() { return {Rigid(), Covariance<6>(), Coin()}; }
+  ImageSide Side() {
+    ImageSide side;
+    side.seen = Coin();
+    side.why = side.seen ? "" : Text();
+    side.curve = Rows<Eigen::Vector2d>(side.seen ? Int(2, 20) : Int(0, 20));
+    side.covariance = Covariance<2>();
+    return side;
+  }
+  Crossing WhereAScanLeaves() {
+    return {Rows<Eigen::Vector3d>(1)[0], Number(0, 0.1), Int(0, 3),
+            static_cast<CrossingKind>(Int(1, 3))};
   }
   ImageEdges Edges() {
     ImageEdges image;
@@ -175,6 +196,9 @@ class RandomMessages {
     image.picked = Coin();
     image.edge_pixels = Rows<Eigen::Vector2i>(Int(0, 300), 0, 99);
     image.outline = Rows<Eigen::Vector2d>(Int(0, 80));
+    image.corner_sigma_px = Number(0, 1);
+    if (Coin()) image.pose = PoseOfTarget();
+    for (ImageSide& side : image.sides) side = Side();
     return image;
   }
   CloudEdges Boundary() {
@@ -186,6 +210,8 @@ class RandomMessages {
     cloud.height_m = Number(0, 1);
     cloud.spacing_m = Number(0, 0.1);
     cloud.points = Int(0, 10000);
+    if (Coin()) cloud.pose = PoseOfTarget();
+    for (int i = Int(0, 20); i > 0; --i) cloud.crossings.push_back(WhereAScanLeaves());
     return cloud;
   }
 
@@ -199,10 +225,7 @@ class RandomMessages {
     message.calibration.camera_from_lidar = Rigid();
     message.calibration.converged = Coin();
     message.calibration.status = Text();
-    if (Coin()) {
-      const Matrix6d root = Matrix6d::NullaryExpr([&] { return Number(-0.01, 0.01); });
-      message.calibration.covariance = root * root.transpose();
-    }
+    if (Coin()) message.calibration.covariance = Covariance<6>();
     return message;
   }
 
