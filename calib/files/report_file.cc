@@ -120,6 +120,10 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
     FromPoseError(*camera.first_guess_error, out->mutable_first_guess_error());
   }
   if (camera.truth_error) FromPoseError(*camera.truth_error, out->mutable_truth_error());
+  if (camera.range_offset) {
+    out->mutable_range_offset_m()->set_value(camera.range_offset->value);
+    out->mutable_range_offset_m()->set_sigma(camera.range_offset->sigma);
+  }
   out->mutable_seconds()->set_detect_image(camera.detect_image_s);
   out->mutable_seconds()->set_detect_cloud(camera.detect_cloud_s);
   out->mutable_seconds()->set_solve(camera.solve_s);
@@ -145,6 +149,10 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   for (int i = 0; i < message.other_starts_size(); ++i) {
     camera.other_starts.push_back(
         ToStart(message.other_starts(i), name, place.In("other_starts", i)));
+  }
+  if (message.has_range_offset_m()) {
+    camera.range_offset =
+        Estimate{message.range_offset_m().value(), message.range_offset_m().sigma()};
   }
   if (message.has_first_guess_error()) {
     camera.first_guess_error = ToPoseError(message.first_guess_error());

@@ -45,6 +45,12 @@ struct PoseError {
   double translation_mm = 0;  ///< between the camera centres, LIDAR frame
 };
 
+/// A figure and how sure it is.
+struct Estimate {
+  double value = 0;
+  double sigma = 0;
+};
+
 struct RejectedView {
   std::string view;
   std::string why;
@@ -76,6 +82,7 @@ struct CameraReport {
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
   std::vector<ViewQuality> views;
   std::vector<StartResult> other_starts;
+  std::optional<Estimate> range_offset;  ///< [m] true range minus measured; absent: not asked for
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views

@@ -75,20 +75,17 @@ Views Used(const CameraSpec& camera, const Views& views) {
 }
 
 // Views, rejections and computing time: what a report says whatever the method.
-CameraReport Describe(const CameraSpec& camera, const Views& views) {
-  CameraReport report;
-  report.calibration.camera = camera.name;
+void Describe(const CameraSpec& camera, const Views& views, CameraReport* report) {
   for (const Observation* o : views) {
-    report.detect_image_s += o->detect_image_s;
-    report.detect_cloud_s += o->detect_cloud_s;
+    report->detect_image_s += o->detect_image_s;
+    report->detect_cloud_s += o->detect_cloud_s;
     const std::string why = WhyUnusable(camera, *o);
     if (!why.empty()) {
-      report.rejected.push_back({o->view, why});
+      report->rejected.push_back({o->view, why});
     } else {
-      (o->heldout ? report.heldout : report.used).push_back(o->view);
+      (o->heldout ? report->heldout : report->used).push_back(o->view);
     }
   }
-  return report;
 }
 
 StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rigid3& guess,
@@ -108,61 +105,81 @@ StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rig
   return result;
 }
 
-// Where the solve starts; the status says why there is nowhere.
-struct Start {
-  std::optional<Rigid3> camera_from_lidar;
-  std::string status;
-};
-
-// The paper's: measured by hand. `own` stays as it is.
-Start HandMeasured(const CameraSpec& camera) {
-  if (camera.camera_from_lidar_guess) return {camera.camera_from_lidar_guess, ""};
-  return {Rigid3(), ""};
+std::string TooFewViews(std::size_t usable, const CalibrateOptions& options) {
+  return "not calibrated: " + std::to_string(usable) + " usable views, at least " +
+         std::to_string(options.min_views) + " are needed";
 }
 
-// From the boards of the views used; the views held out have no say, but they choose their board by
-// it, too.
-Start FromBoards(const FirstGuessOptions& options, std::vector<Observation>* own) {
-  Views used;
-  for (const Observation& o : *own) {
-    if (o.usable() && !o.heldout) used.push_back(&o);
+// Metres more along each boundary point's beam.
+void AddToRanges(double offset_m, CloudEdges* cloud) {
+  for (Eigen::Vector3d& p : cloud->boundary) p += offset_m * p.normalized();
+}
+
+// From the hand-measured guess, by the paper's solve. False: there is none, the status says why.
+bool CalibrateByPaper(const CameraSpec& camera, const Views& views, const CalibrateOptions& options,
+                      CameraReport* report) {
+  const Rigid3 guess = camera.camera_from_lidar_guess.value_or(Rigid3());
+  report->first_guess = guess;
+  report->calibration.camera_from_lidar = guess;
+  const Views used = Used(camera, views);
+  if (static_cast<int>(used.size()) < options.min_views) {
+    report->calibration.status =
+        TooFewViews(used.size(), options) +
+        (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
+    return false;
   }
-  const FirstGuess guess = GuessFromBoards(used, options);
-  if (!guess.camera_from_lidar) return {std::nullopt, guess.status};
+  report->calibration = SolvePaper(camera, used, guess, options);
+  return true;
+}
+
+// From the boards of the views used; false as above. The views held out have no say, but they
+// choose their board by the result, too.
+bool CalibrateByBoards(const CameraSpec& camera, const CalibrateOptions& options,
+                       std::vector<Observation>* own, CameraReport* report) {
+  Views used = Used(camera, PointersTo(*own));
+  if (static_cast<int>(used.size()) < options.min_views) {
+    report->calibration.status = TooFewViews(used.size(), options);
+    return false;
+  }
+  const FirstGuess guess = GuessFromBoards(used, options.first_guess);
+  if (!guess.camera_from_lidar) {
+    report->calibration.status = "not calibrated: " + guess.status;
+    return false;
+  }
+  report->first_guess = guess.camera_from_lidar;
   for (Observation& o : *own) {
-    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, options);
+    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, options.first_guess);
+    if (o.cloud) AddToRanges(guess.range_offset_m, &*o.cloud);
   }
-  return {guess.camera_from_lidar, guess.status};
+  used = Used(camera, PointersTo(*own));
+  if (static_cast<int>(used.size()) < options.min_views) {
+    report->calibration.status = TooFewViews(used.size(), options);
+    return false;
+  }
+  report->calibration = {camera.name, *guess.camera_from_lidar, guess.covariance, true,
+                         "converged"};
+  if (options.first_guess.range_offset) {
+    report->range_offset = Estimate{guess.range_offset_m, guess.range_offset_sigma_m};
+  }
+  return true;
 }
 
 CameraReport CalibrateCamera(const CameraSpec& camera, std::vector<Observation>* own,
                              const CalibrateOptions& options) {
   const bool by_paper = options.method == kPaperMethod;
-  const Start start = by_paper ? HandMeasured(camera) : FromBoards(options.first_guess, own);
-  const Views views = PointersTo(*own);
-  CameraReport report = Describe(camera, views);
-  report.first_guess = start.camera_from_lidar;
-  report.calibration.camera_from_lidar =
-      start.camera_from_lidar.value_or(camera.camera_from_lidar_guess.value_or(Rigid3()));
-  const Views used = Used(camera, views);
-  if (static_cast<int>(used.size()) < options.min_views) {
-    report.calibration.status =
-        "not calibrated: " + std::to_string(used.size()) + " usable views, at least " +
-        std::to_string(options.min_views) + " are needed" +
-        (by_paper && camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
-    return report;
-  }
-  if (!start.camera_from_lidar) {
-    report.calibration.status = "not calibrated: " + start.status;
-    return report;
-  }
+  CameraReport report;
+  report.calibration.camera = camera.name;
   const auto begin = std::chrono::steady_clock::now();
-  report.calibration = SolvePaper(camera, used, *start.camera_from_lidar, options);
+  const bool solved = by_paper ? CalibrateByPaper(camera, PointersTo(*own), options, &report)
+                               : CalibrateByBoards(camera, options, own, &report);
   report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const Views views = PointersTo(*own);
+  Describe(camera, views, &report);
+  if (!solved) return report;
   JudgeCamera(camera, Usable(camera, views), &report);
   if (by_paper && options.wide_start) {
     report.other_starts.push_back(
-        FromWideStart(camera, used, *start.camera_from_lidar, report, options));
+        FromWideStart(camera, Used(camera, views), *report.first_guess, report, options));
   }
   return report;
 }
@@ -274,9 +291,10 @@ Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
     std::vector<Observation> own = ObservationsOf(camera.name, observations);
     for (Observation& o : own) o = WithChosenCandidate(std::move(o), found->camera_from_lidar);
     const Views views = PointersTo(own);
-    CameraReport judged = Describe(camera, views);
+    CameraReport judged;
     judged.first_guess = camera.camera_from_lidar_guess;
     judged.calibration = *found;
+    Describe(camera, views, &judged);
     JudgeCamera(camera, Usable(camera, views), &judged);
     report.cameras.push_back(std::move(judged));
   }

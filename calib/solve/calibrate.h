@@ -25,7 +25,8 @@ struct CalibrateOptions {
 };
 
 /// Calibrates every camera of the rig that was observed, each by itself, and judges the result on
-/// used and held-out views. "auto" starts from what the views' boards tell (first_guess.h), which
+/// used and held-out views. "auto" takes the mean of what the views' boards tell (first_guess.h),
+/// with its covariance; that
 /// also chooses the board among each view's candidates. "paper" starts from the hand-measured
 /// guess; with wide_start it solves a second time from a start turned away by wide_roll and
 /// wide_yaw and reports where that ends. The order of the observations does not matter. A camera

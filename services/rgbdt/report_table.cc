@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -19,6 +21,15 @@ std::string Number(const std::optional<double>& value, int digits) {
 std::string Error(const std::optional<PoseError>& error) {
   return error ? fmt::format("{:.3f} deg {:.1f} mm", error->rotation_deg, error->translation_mm)
                : "-";
+}
+
+std::string Sigma(const CameraCalibration& calibration) {
+  if (!calibration.covariance) return "-";
+  const auto worst = [](const Eigen::Matrix3d& covariance) {
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+  };
+  return Error(PoseError{worst(calibration.covariance->topLeftCorner<3, 3>()) * 180 / M_PI,
+                         worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
 }  // namespace
@@ -55,6 +66,16 @@ std::string ReportTable(const Report& report) {
     row("first guess against truth",
         [](const CameraReport& c) { return Error(c.first_guess_error); });
     row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
+  }
+  if (any([](const CameraReport& c) { return c.calibration.covariance.has_value(); })) {
+    row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
+  }
+  if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
+    row("ranges are short by [mm]", [](const CameraReport& c) {
+      return !c.range_offset ? std::string("-")
+                             : fmt::format("{:.1f} +- {:.1f}", 1e3 * c.range_offset->value,
+                                           1e3 * c.range_offset->sigma);
+    });
   }
   if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
     row("a far start ends off the result by", [](const CameraReport& c) {

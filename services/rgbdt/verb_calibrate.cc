@@ -41,6 +41,8 @@ void AddCalibrate(CLI::App* app, int* exit_code) {
   verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
   verb->add_option("--out", flags->out, "where to write; default: DIR");
   verb->add_option("--method", flags->options.method, kMethodHelp)->capture_default_str();
+  verb->add_flag("--range-offset", flags->options.first_guess.range_offset,
+                 "auto: estimate a constant that all ranges of the LIDAR are off by");
   verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }

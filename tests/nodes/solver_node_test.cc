@@ -47,7 +47,12 @@ class SolverNodeTest : public ::testing::Test {
   Messages FeedWorld() {
     return test::HandleAll(&node_, Messages(World().views.begin(), World().views.end()));
   }
-  SolverNode node_;
+  static CalibrateOptions ByPaper() {
+    CalibrateOptions options;
+    options.method = kPaperMethod;
+    return options;
+  }
+  SolverNode node_{ByPaper()};
 };
 
 TEST(SolverNodeRigTest, BeforeTheRigNothingIsTaken) {
@@ -82,7 +87,7 @@ TEST_F(SolverNodeTest, SolvesAgainAfterEachObservation) {
 TEST_F(SolverNodeTest, TheOrderOfObservationsDoesNotMatterAndRepeatsReplace) {
   FeedWorld();
   const std::string expected = CalibrationOf(node_);
-  SolverNode backwards;
+  SolverNode backwards(ByPaper());
   backwards.Handle(test::TextOf(MakeRig()));
   test::HandleAll(&backwards, Messages(World().views.rbegin(), World().views.rend()));
   EXPECT_EQ(CalibrationOf(backwards), expected);

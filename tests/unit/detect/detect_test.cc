@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
@@ -108,7 +109,7 @@ TEST_F(Detect, PicksThatAreNoQuadrangleAreRefusedWithTheReason) {
 }
 
 TEST_F(Detect, BoundaryPointsLieOnTheBoardsEdge) {
-  const auto observations = DetectView(made_->rig, made_->view);
+  const auto observations = DetectView(made_->rig, made_->view, kPaperMethod);
   ASSERT_EQ(observations.size(), 2U);
   const Observation& rgb = observations[0];
   ASSERT_TRUE(rgb.usable()) << rgb.rejected;
@@ -157,7 +158,7 @@ TEST_F(Detect, ABoardOfAnotherSizeIsRefusedWithBothSizes) {
   Rig rig = made_->rig;
   rig.target.width_m = 2.4;
   rig.target.height_m = 1.8;
-  const auto observations = DetectView(rig, made_->view);
+  const auto observations = DetectView(rig, made_->view, kPaperMethod);
   EXPECT_THAT(observations[0].rejected, HasSubstr("2.40 x 1.80 m"));
   EXPECT_THAT(observations[0].rejected, HasSubstr("1.2"));
 }
@@ -165,35 +166,73 @@ TEST_F(Detect, ABoardOfAnotherSizeIsRefusedWithBothSizes) {
 TEST_F(Detect, EachAbsenceHasItsReason) {
   View view = made_->view;
   view.images.pop_back();
-  EXPECT_THAT(DetectView(made_->rig, view)[1].rejected, HasSubstr("no image of this camera"));
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[1].rejected,
+              HasSubstr("no image of this camera"));
 
   view = made_->view;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (Eigen::Vector3f& p : view.cloud.points) p = Eigen::Vector3f::Constant(nan);
-  EXPECT_THAT(DetectView(made_->rig, view)[0].rejected, HasSubstr("the cloud has 0 points"));
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
+              HasSubstr("the cloud has 0 points"));
 
   view = made_->view;
   for (std::size_t i = 0; i < 5U * 400U; ++i) {
     view.cloud.points[i] = Eigen::Vector3f::Constant(nan);
     view.cloud.directions[i] = Eigen::Vector3f::Constant(nan);
   }
-  EXPECT_THAT(DetectView(made_->rig, view)[0].rejected, HasSubstr("5 of the sweep's 300 lines"));
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
+              HasSubstr("5 of the sweep's 300 lines"));
 
   view = made_->view;
   for (Eigen::Vector3f& p : view.cloud.points) p.x() = -p.x();
-  EXPECT_THAT(DetectView(made_->rig, view)[0].rejected,
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
               HasSubstr("near the checkerboard's corners"));
 
   Rig rig = made_->rig;
   rig.cameras[0].camera_from_lidar_guess.reset();
-  EXPECT_THAT(DetectView(rig, made_->view)[0].rejected, HasSubstr("camera_from_lidar_guess"));
+  EXPECT_THAT(DetectView(rig, made_->view, kPaperMethod)[0].rejected,
+              HasSubstr("camera_from_lidar_guess"));
+}
+
+TEST_F(Detect, TheBoardFindsItselfWithoutPicksAndWithoutAGuess) {
+  Rig rig = made_->rig;
+  View view = made_->view;
+  view.picks.clear();
+  for (CameraSpec& camera : rig.cameras) camera.camera_from_lidar_guess.reset();
+  const auto observations = DetectView(rig, view);
+  ASSERT_EQ(observations.size(), 2U);
+  const Rigid3& truth = made_->truth.lidar_from_target.at("0001");
+  for (const Observation& observation : observations) {
+    ASSERT_TRUE(observation.usable()) << observation.rejected;
+    ASSERT_EQ(observation.candidates.size(), 1U);
+    const TargetPose& pose = *observation.candidates[0].pose;
+    const Eigen::Vector3d off = pose.sensor_from_target.translation - truth.translation;
+    EXPECT_LT(off.norm(), 0.01);
+    ASSERT_TRUE(observation.image->pose);
+    EXPECT_EQ(observation.image->pose->half_turn_known, observation.camera == "rgb");
+  }
+}
+
+TEST_F(Detect, ABoardThatMovedDuringTheSweepRejectsTheView) {
+  View view = made_->view;
+  Image earlier = view.images[0];
+  earlier.utime = view.cloud.sweep_utime + 1'000'000;
+  cv::Mat moved;
+  const cv::Mat shift = (cv::Mat_<double>(2, 3) << 1, 0, 4, 0, 1, 2);  // even: keeps the mosaic
+  cv::warpAffine(earlier.pixels, moved, shift, earlier.pixels.size(), cv::INTER_NEAREST,
+                 cv::BORDER_REPLICATE);
+  view.images.push_back(earlier);  // the same: it stood still
+  EXPECT_TRUE(DetectView(made_->rig, view)[0].usable()) << DetectView(made_->rig, view)[0].rejected;
+  view.images.back().pixels = moved;
+  EXPECT_THAT(DetectView(made_->rig, view)[0].rejected, HasSubstr("board moved"));
+  EXPECT_TRUE(DetectView(made_->rig, view)[1].usable()) << "thermal has no such image";
 }
 
 TEST_F(Detect, AnImageOfAnotherSizeIsAnErrorWithBothSizes) {
   View view = made_->view;
   view.images[0].pixels = cv::Mat::zeros(100, 200, CV_8U);
   try {
-    DetectView(made_->rig, view);
+    DetectView(made_->rig, view, kPaperMethod);
     FAIL() << "expected InputError";
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("200x100"));

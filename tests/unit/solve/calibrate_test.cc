@@ -41,6 +41,7 @@ double ReprojectionRms(const BoardWorld& world, const Rigid3& a, const Rigid3& b
 // one pixel's surface to the next, so it wanders before it does.
 CalibrateOptions Patient() {
   CalibrateOptions options;
+  options.method = kPaperMethod;
   options.max_iterations = 3000;
   return options;
 }
@@ -48,6 +49,7 @@ CalibrateOptions Patient() {
 // For what does not depend on where the solve ends.
 CalibrateOptions Hasty() {
   CalibrateOptions options;
+  options.method = kPaperMethod;
   options.max_iterations = 8;
   return options;
 }
@@ -192,7 +194,7 @@ TEST_F(CalibrateTest, TheOrderOfTheObservationsDoesNotMatterToTheLastBit) {
 
 TEST_F(CalibrateTest, TooFewViewsKeepTheGuessAndSaySo) {
   const std::vector<Observation> two = {world_.views[0], world_.views[1], world_.views[2]};
-  const CameraReport report = Calibrate(rig_, two).cameras[0];  // the third is held out
+  const CameraReport report = Calibrate(rig_, two, Hasty()).cameras[0];  // the third is held out
   EXPECT_FALSE(report.calibration.converged);
   EXPECT_THAT(report.calibration.status, HasSubstr("2 usable views, at least 3"));
   EXPECT_THAT(report.calibration.camera_from_lidar, Rigid3Near(guess_, 0.0, 0.0));
@@ -225,6 +227,14 @@ TEST_F(CalibrateTest, CamerasAreCalibratedEachByItself) {
   EXPECT_TRUE(report.cameras[0].distance_transform_px.train);
   EXPECT_EQ(report.cameras[1].calibration.camera, "thermal");
   EXPECT_THAT(report.cameras[1].calibration.status, HasSubstr("0 usable views"));
+}
+
+TEST_F(CalibrateTest, AutoSaysWhatItLacksWhereNothingHasAPose) {
+  const CameraReport report = Calibrate(rig_, world_.views).cameras[0];
+  EXPECT_FALSE(report.calibration.converged);
+  EXPECT_FALSE(report.solved());
+  EXPECT_FALSE(report.first_guess);
+  EXPECT_THAT(report.calibration.status, HasSubstr("both camera and LIDAR see the board"));
 }
 
 TEST_F(CalibrateTest, AnUnknownMethodIsAnInputErrorThatSaysWhichThereAre) {
