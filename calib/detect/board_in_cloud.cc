@@ -59,6 +59,7 @@ Rigid3 PoseOf(const PlaneFrame& frame, const FlatRectangle& rectangle, const Pla
 // What holds within the rectangle and just beyond it.
 struct Filling {
   double inside = 0;  // of the beams well inside that were not stopped before: those on the plane
+  double seen = 0;    // how densely its inside is on the plane, against the beams' spacing
   double beyond = 0;  // how densely a band round the rectangle is on the plane, against its inside
   std::vector<Eigen::Vector3d> points;  // on the board, its rim left out
   std::vector<Eigen::Vector2d> flat;    // where their beams meet the plane
@@ -95,6 +96,8 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
       (target.width_m + 2 * (kMargin + kBand)) * (target.height_m + 2 * (kMargin + kBand)) -
       (target.width_m + 2 * kMargin) * (target.height_m + 2 * kMargin);
   const double inner_area = (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin);
+  const double cell = members.row_spacing_m * members.column_spacing_m;
+  filling.seen = on * cell / inner_area;
   filling.beyond = on == 0 ? 1 : std::min(1.0, band / band_area / (on / inner_area));
   return filling;
 }
@@ -189,21 +192,23 @@ struct Candidate {
 
 // Two pieces of one board lead to the same place.
 bool IsSame(const CloudEdges& a, const CloudEdges& b) {
-  return (a.centre - b.centre).norm() < 0.1 && a.normal.dot(b.normal) > 0.97;
+  return (a.centre - b.centre).norm() < 0.04 && a.normal.dot(b.normal) > 0.97;
 }
 
-std::optional<Candidate> FitBoard(const PlaneMembers& members, const Target& target,
-                                  const BoardInCloudOptions& options) {
-  const auto voted = VoteForRectangle(members.crossings, target.width_m, target.height_m);
-  if (!voted) return std::nullopt;
+std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectangle& voted,
+                                  const Target& target, const BoardInCloudOptions& options) {
   const FlatRectangle rectangle =
-      RefineRectangle(members.crossings, target.width_m, target.height_m, *voted, options.edge);
+      RefineRectangle(members.crossings, target.width_m, target.height_m, voted, options.edge);
   const auto seen_sides =
       std::count_if(rectangle.side_coverage.begin(), rectangle.side_coverage.end(),
                     [](double coverage) { return coverage >= 0.4; });
-  if (seen_sides < 3 || rectangle.coverage < 0.55) return std::nullopt;
+  constexpr double kMostStrain = 6;
+  if (seen_sides < 3 || rectangle.coverage < 0.55 || rectangle.strain > kMostStrain) {
+    return std::nullopt;
+  }
   Filling filling = Fill(members, rectangle, target);
-  if (filling.inside < 0.85 || filling.beyond > 0.5 || filling.points.size() < 12) {
+  if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 ||
+      filling.points.size() < 12) {
     return std::nullopt;
   }
   // What sticks out of the rectangle has no say in where its plane lies.
@@ -231,6 +236,16 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const Target& tar
         {members.frame.Solid(c.middle), c.half_m, rectangle.side[i], c.kind});
   }
   return out;
+}
+
+// Where a board lies in another frame of nearly the same plane.
+FlatRectangle InFrame(const PlaneFrame& frame, const Candidate& board) {
+  const Rigid3& pose = board.edges.pose->sensor_from_target;
+  const Eigen::Vector3d x = pose.rotation * Eigen::Vector3d::UnitX();
+  FlatRectangle rectangle;
+  rectangle.centre = frame.Flat(pose.translation);
+  rectangle.angle_rad = std::atan2(x.dot(frame.v), x.dot(frame.u));
+  return rectangle;
 }
 
 // The piece that looks most like a board of another size, for the reason.
@@ -273,22 +288,27 @@ class Likeness {
 
 // Looks at all the beams of a region; and where that shows a board, once more about its centre, so
 // that what touches it has no say in where its plane lies.
-std::optional<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, const Target& target,
-                                    const BoardInCloudOptions& options, Likeness* likeness) {
+std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, const Target& target,
+                                  const BoardInCloudOptions& options, Likeness* likeness) {
   const double diagonal = std::hypot(target.width_m, target.height_m);
   PlaneSums sums;
   for (const Eigen::Vector3f& p : region.points) sums.Add(p.cast<double>());
   const MemberOptions whole{options.range_sigma_m, sums.Mean(), 1.2 * diagonal, 1.2 * diagonal};
   const PlaneMembers members = FindMembers(grid, region, whole);
-  const auto board = FitBoard(members, target, options);
-  if (!board) {
-    likeness->Consider(members);
-    return std::nullopt;
+  std::vector<Candidate> found;
+  for (const FlatRectangle& voted :
+       VoteForRectangles(members.crossings, target.width_m, target.height_m)) {
+    const auto board = FitBoard(members, voted, target, options);
+    if (!board) continue;
+    region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
+    const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
+                               0.5 * std::min(target.width_m, target.height_m)};
+    const PlaneMembers about = FindMembers(grid, region, closer);
+    auto better = FitBoard(about, InFrame(about.frame, *board), target, options);
+    if (better) found.push_back(std::move(*better));
   }
-  region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
-  const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
-                             0.5 * std::min(target.width_m, target.height_m)};
-  return FitBoard(FindMembers(grid, region, closer), target, options);
+  if (found.empty()) likeness->Consider(members);
+  return found;
 }
 
 PlaneRegionOptions RegionOptions(const Target& target, const BoardInCloudOptions& options) {
@@ -333,8 +353,8 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   Likeness likeness;
   for (const PlaneRegion& region : FindPlaneRegions(grid, RegionOptions(target, options))) {
     if (!MayBe(region, target)) continue;
-    if (auto board = LookCloser(grid, region, target, options, &likeness)) {
-      found.push_back(std::move(*board));
+    for (Candidate& board : LookCloser(grid, region, target, options, &likeness)) {
+      found.push_back(std::move(board));
     }
   }
   if (found.empty()) return {{}, likeness.Why(target)};

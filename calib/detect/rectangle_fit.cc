@@ -64,9 +64,10 @@ struct Peak {
   double metres = 0;
 };
 
-// The place of the centre along an axis, from crossings that face along it and against it.
-Peak BestAlong(const std::vector<FlatCrossing>& crossings, const Eigen::Vector2d& axis,
-               double extent, double other) {
+// Votes for places of the centre along an axis, from crossings that face along it and against it.
+std::vector<double> MetresAlong(const std::vector<FlatCrossing>& crossings,
+                                const Eigen::Vector2d& axis, double extent, double other,
+                                double* first_place) {
   constexpr double kFacing = 0.25;
   double low = 1e9;
   double high = -1e9;
@@ -85,40 +86,71 @@ Peak BestAlong(const std::vector<FlatCrossing>& crossings, const Eigen::Vector2d
     const double weight = c.length_m * std::abs(facing);
     (facing > 0 ? with : against).Add(place, c.half_m * std::abs(facing), weight);
   }
-  double most = 0;
-  std::size_t first = 0;
-  std::size_t last = 0;
+  std::vector<double> metres;
   for (std::size_t b = 0; b < with.size(); ++b) {
     // Neither side can be explained more than wholly: rows and columns may both cross it.
-    const double metres = std::min(with.At(b), other) + std::min(against.At(b), other);
-    if (metres > most) first = last = b;
-    if (metres == most && b == last + 1) last = b;
-    most = std::max(most, metres);
+    metres.push_back(std::min(with.At(b), other) + std::min(against.At(b), other));
   }
-  return {0.5 * (with.Place(first) + with.Place(last)), most};
+  *first_place = with.Place(0);
+  return metres;
+}
+
+// The best places, best first: one where both sides are seen; two where each explains one side
+// (something flush with the board hides the other).
+std::vector<Peak> BestAlong(const std::vector<FlatCrossing>& crossings, const Eigen::Vector2d& axis,
+                            double extent, double other) {
+  constexpr double kApart = 0.05;
+  double first_place = 0;
+  std::vector<double> metres = MetresAlong(crossings, axis, extent, other, &first_place);
+  std::vector<Peak> peaks;
+  while (peaks.size() < 2) {
+    const auto most = std::max_element(metres.begin(), metres.end());
+    if (most == metres.end()) break;
+    const double height = *most;
+    auto last = most;
+    while (last + 1 != metres.end() && *(last + 1) == height) ++last;
+    const auto place = [&](auto bin) {
+      return first_place + kBin * static_cast<double>(bin - metres.begin());
+    };
+    const Peak peak{0.5 * (place(most) + place(last)), height};
+    if (!peaks.empty() && peak.metres < 0.6 * peaks[0].metres) break;
+    peaks.push_back(peak);
+    if (peak.metres > 1.5 * other) break;  // both sides, mostly
+    for (auto bin = metres.begin(); bin != metres.end(); ++bin) {
+      if (std::abs(place(bin) - peak.place) < kApart) *bin = 0;
+    }
+  }
+  return peaks;
 }
 
 }  // namespace
 
-std::optional<FlatRectangle> VoteForRectangle(const std::vector<FlatCrossing>& crossings,
-                                              double width_m, double height_m) {
-  if (crossings.size() < 8) return std::nullopt;
+std::vector<FlatRectangle> VoteForRectangles(const std::vector<FlatCrossing>& crossings,
+                                             double width_m, double height_m) {
+  if (crossings.size() < 8) return {};
   constexpr int kAngles = 90;
-  FlatRectangle best;
   double most = 0;
+  double angle = 0;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = i * kPi / kAngles;
-    const Axes axes(angle);
-    const Peak x = BestAlong(crossings, axes.x, width_m, height_m);
-    const Peak y = BestAlong(crossings, axes.y, height_m, width_m);
-    if (x.metres + y.metres <= most) continue;
-    most = x.metres + y.metres;
-    best.centre = x.place * axes.x + y.place * axes.y;
-    best.angle_rad = angle;
+    const Axes axes(i * kPi / kAngles);
+    const auto x = BestAlong(crossings, axes.x, width_m, height_m);
+    const auto y = BestAlong(crossings, axes.y, height_m, width_m);
+    if (x[0].metres + y[0].metres <= most) continue;
+    most = x[0].metres + y[0].metres;
+    angle = i * kPi / kAngles;
   }
-  best.coverage = most / (2 * (width_m + height_m));
-  if (best.coverage < 0.5) return std::nullopt;
-  return best;
+  const Axes axes(angle);
+  std::vector<FlatRectangle> rectangles;
+  for (const Peak& x : BestAlong(crossings, axes.x, width_m, height_m)) {
+    for (const Peak& y : BestAlong(crossings, axes.y, height_m, width_m)) {
+      FlatRectangle rectangle;
+      rectangle.centre = x.place * axes.x + y.place * axes.y;
+      rectangle.angle_rad = angle;
+      rectangle.coverage = (x.metres + y.metres) / (2 * (width_m + height_m));
+      if (rectangle.coverage >= 0.5) rectangles.push_back(std::move(rectangle));
+    }
+  }
+  return rectangles;
 }
 
 namespace {
@@ -153,6 +185,11 @@ class Refiner {
   }
 
  private:
+  double PriorSigma(int k) const {
+    if (k == kThickness) return options_.thickness_sigma_m;
+    return k < kSide ? options_.class_sigma_rad : options_.side_sigma_rad;
+  }
+
   double HalfExtent(int side) const { return side % 2 == 1 ? width_ / 2 : height_ / 2; }
 
   // Metres that a side with this outward normal seems farther out, for each radian of shift: a
@@ -250,9 +287,7 @@ class Refiner {
       ++*used;
     }
     for (int k = 3; k < kParameters; ++k) {
-      const double sigma = k == kThickness ? options_.thickness_sigma_m
-                           : k < kSide     ? options_.class_sigma_rad
-                                           : options_.side_sigma_rad;
+      const double sigma = PriorSigma(k);
       h(k, k) += 1 / (sigma * sigma);
       g[k] -= (x[k] - (k == kThickness ? options_.thickness_m : 0)) / (sigma * sigma);
     }
@@ -271,6 +306,10 @@ class Refiner {
     for (int k = 0; k < 3; ++k) {
       out.shift_rad[static_cast<std::size_t>(k)] = x[3 + k];
       out.shift_sigma_rad[static_cast<std::size_t>(k)] = std::sqrt(covariance(3 + k, 3 + k));
+    }
+    for (int k = 3; k < kParameters; ++k) {
+      const double off = x[k] - (k == kThickness ? options_.thickness_m : 0);
+      out.strain = std::hypot(out.strain, off / PriorSigma(k));
     }
     out.thickness_m = x[kThickness];
     out.thickness_sigma_m = std::sqrt(covariance(kThickness, kThickness));

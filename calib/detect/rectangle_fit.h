@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "calib/detect/board_crossings.h"
@@ -28,15 +27,19 @@ struct FlatRectangle {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre (u, v) and angle
   std::array<double, 3> shift_rad{}, shift_sigma_rad{};  ///< of each class of crossing
   double thickness_m = 0, thickness_sigma_m = 0;
+  /// How far the shifts and the thickness are from their priors, in sigmas, all together: a board
+  /// of another size makes itself fit by them.
+  double strain = 0;
   std::vector<int> side;  ///< by crossing: the side that it lies on; -1: none
 };
 
 /// The rectangle that most crossings lie on, by voting: for each direction the crossings that face
-/// it add up where they are, those that face away one width farther. Nothing where they add up to
+/// it add up where they are, those that face away one width farther. None where they add up to
 /// less than half of the outline. Not fooled by what sticks to the board: it takes the best
-/// rectangle, not the piece's extent.
-std::optional<FlatRectangle> VoteForRectangle(const std::vector<FlatCrossing>& crossings,
-                                              double width_m, double height_m);
+/// rectangle, not the piece's extent. Where of two opposite sides only one is seen, there is one
+/// rectangle for each that might be it.
+std::vector<FlatRectangle> VoteForRectangles(const std::vector<FlatCrossing>& crossings,
+                                             double width_m, double height_m);
 
 /// Least squares over the crossings' intervals from a rectangle nearby: place, angle, one shift a
 /// class of crossing and one a side, and the thickness of the board's rim. Crossings far off are
