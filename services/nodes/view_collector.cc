@@ -48,6 +48,7 @@ std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
 
 void ViewCollector::Add(const Image& image) {
   if (image.shutter_correcting) return;
+  KeepForSweep(image);
   std::deque<Image>& kept = images_[image.camera];
   if (!kept.empty() && image.utime < kept.back().utime - kClockReset) kept.clear();
   const auto later = std::find_if(kept.begin(), kept.end(),
@@ -62,6 +63,43 @@ void ViewCollector::Add(const Image& image) {
   } else {
     kept.pop_front();
   }
+}
+
+// The first image of each second, whatever order they came in.
+void ViewCollector::KeepForSweep(const Image& image) {
+  std::map<Utime, Image>& seconds = seconds_[image.camera];
+  const Utime second = image.utime / kMicrosecondsPerSecond;
+  if (!seconds.empty() && second < seconds.rbegin()->first - kClockReset / kMicrosecondsPerSecond &&
+      second < seconds.begin()->first) {
+    seconds.clear();
+  }
+  const auto found = seconds.find(second);
+  if (found == seconds.end()) {
+    seconds.emplace(second, image);
+  } else if (image.utime < found->second.utime) {
+    found->second = image;
+  }
+  while (seconds.size() > kSecondsKept) seconds.erase(seconds.begin());
+}
+
+// At most two: the first since the sweep's start, and the nearest to its middle.
+std::vector<Image> ViewCollector::DuringSweep(const Image& at_capture) const {
+  const Utime start = capture_->sweep_utime;
+  const auto kept = seconds_.find(at_capture.camera);
+  if (kept == seconds_.end() || start <= 0) return {};
+  const Utime middle = start + (capture_->utime - start) / 2;
+  const Image* first = nullptr;
+  const Image* nearest = nullptr;
+  for (const auto& [second, image] : kept->second) {
+    if (image.utime < start || image.utime >= capture_->utime) continue;
+    if (first == nullptr) first = &image;
+    if (nearest == nullptr || std::abs(image.utime - middle) < std::abs(nearest->utime - middle)) {
+      nearest = &image;
+    }
+  }
+  if (first == nullptr) return {};
+  if (nearest == first) return {*first};
+  return {*first, *nearest};
 }
 
 void ViewCollector::Add(const CornerSelection& picks) { picks_[picks.camera] = picks; }
@@ -135,6 +173,9 @@ std::optional<View> ViewCollector::Take(const Rig& rig) {
     const Image* image = ImageOf(camera.name);
     view.images.push_back(*image);
     if (PersonPicks(camera.name)) view.picks.push_back(*PicksOf(camera.name, image->utime));
+  }
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    for (Image& image : DuringSweep(view.images[i])) view.images.push_back(std::move(image));
   }
   capture_.reset();
   return view;

@@ -38,16 +38,18 @@ class SweepCollector {
 };
 
 /// The view that a capture command asks for, put together from the bus: the sweep it names, each
-/// camera's first image with utime >= the command's and at most kImageWait after it, and the picks
-/// made in those images where the command asks for a person's. Which of these arrives first does
-/// not matter. The newest images before the command are kept (kKept a camera) so that one may come
-/// early; an image older than those by more than kClockReset means that the clock was set back, and
-/// they go. A thermal camera's images from while its shutter corrects are left out.
+/// camera's first image with utime >= the command's and at most kImageWait after it, up to two of
+/// its images from the sweep's start and middle (to see whether the board stood still), and the
+/// picks made in those images where the command asks for a person's. Which of these arrives first
+/// does not matter. The newest images before the command are kept (kKept a camera) so that one may
+/// come early; an image older than those by more than kClockReset means that the clock was set
+/// back, and they go. A thermal camera's images from while its shutter corrects are left out.
 class ViewCollector {
  public:
   static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   static constexpr std::size_t kKept = 3;
+  static constexpr std::size_t kSecondsKept = 60;  ///< of the first image of each second
 
   void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
   void Add(const Image& image);
@@ -66,12 +68,15 @@ class ViewCollector {
 
  private:
   const Image* ImageOf(const std::string& camera) const;
+  std::vector<Image> DuringSweep(const Image& at_capture) const;
+  void KeepForSweep(const Image& image);
   const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;
   bool PersonPicks(const std::string& camera) const;
 
   std::optional<SessionCommand> capture_;
   SweepCollector sweeps_;
   std::map<std::string, std::deque<Image>> images_;
+  std::map<std::string, std::map<Utime, Image>> seconds_;  // by camera and whole second
   std::map<std::string, CornerSelection> picks_;
 };
 

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "services/nodes/detector_node.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
@@ -131,6 +133,46 @@ TEST_F(ViewCollectorTest, TheFirstImageAtOrAfterTheCommandCounts) {
   ASSERT_TRUE(view.has_value());
   EXPECT_EQ(view->images[0].utime, kCommand);
   EXPECT_EQ(view->images[1].utime, kCommand + 2 * kSecond);
+}
+
+TEST_F(ViewCollectorTest, ImagesFromTheSweepsStartAndMiddleComeAfterTheViewsOwn) {
+  // Ten a second, in two orders; the sweep takes 12 s, the command comes at 13 s.
+  std::vector<Utime> times;
+  for (int i = -20; i < 140; ++i) times.push_back(kSweep + i * kSecond / 10);
+  std::vector<std::vector<Utime>> taken;
+  for (const bool backwards : {false, true}) {
+    ViewCollector collector;
+    if (backwards) {  // each second's images the other way round
+      for (std::size_t i = 0; i + 10 <= times.size(); i += 10) {
+        std::reverse(times.begin() + static_cast<std::ptrdiff_t>(i),
+                     times.begin() + static_cast<std::ptrdiff_t>(i) + 10);
+      }
+    }
+    collector.Add(Chunk(kSweep, 0));
+    collector.Add(End(kSweep, 1));
+    for (const Utime utime : times) collector.Add(MakeImage("thermal", utime));
+    SessionCommand capture;
+    capture.verb = SessionVerb::kCapture;
+    capture.view = "0001";
+    capture.utime = kCommand;
+    capture.sweep_utime = kSweep;
+    collector.Begin(capture);
+    collector.Add(MakeImage("rgb", kCommand));
+    collector.Add(MakeImage("thermal", kCommand));
+    const auto view = collector.Take(MakeRig());
+    ASSERT_TRUE(view);
+    ASSERT_EQ(view->images.size(), 4U);
+    EXPECT_EQ(view->images[0].camera, "rgb");
+    EXPECT_EQ(view->images[1].camera, "thermal");
+    EXPECT_EQ(view->images[1].utime, kCommand);
+    EXPECT_EQ(view->images[2].camera, "thermal");
+    EXPECT_EQ(view->images[2].utime, kSweep);
+    EXPECT_NEAR(ToSeconds(view->images[3].utime - kSweep), 6.5, 0.6);
+    std::vector<Utime> now;
+    for (const Image& image : view->images) now.push_back(image.utime);
+    taken.push_back(now);
+  }
+  EXPECT_EQ(taken[0], taken[1]);
 }
 
 TEST_F(ViewCollectorTest, ItStaysTheFirstHoweverManyCome) {
