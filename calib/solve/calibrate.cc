@@ -292,7 +292,7 @@ Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
     for (Observation& o : own) o = WithChosenCandidate(std::move(o), found->camera_from_lidar);
     const Views views = PointersTo(own);
     CameraReport judged;
-    judged.first_guess = camera.camera_from_lidar_guess;
+    if (calibration.method == kPaperMethod) judged.first_guess = camera.camera_from_lidar_guess;
     judged.calibration = *found;
     Describe(camera, views, &judged);
     JudgeCamera(camera, Usable(camera, views), &judged);

@@ -31,6 +31,8 @@ void KeepFromSolve(const std::filesystem::path& path, Report* report) {
                                 camera.calibration.camera_from_lidar) < 1e-9;
         });
     if (same == before.cameras.end()) continue;
+    camera.first_guess = same->first_guess;
+    camera.range_offset = same->range_offset;
     camera.other_starts = same->other_starts;
     camera.solve_s = same->solve_s;
   }
