@@ -88,8 +88,9 @@ std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
   return out;
 }
 
-// Even cells a little wider than the points are apart, so that few of them stay empty by chance.
-Rows ByCells(const std::vector<Angles>& angles, double* step) {
+// Width of even cells a little wider than the points are apart, so that few of them stay empty by
+// chance.
+double CellStep(const std::vector<Angles>& angles) {
   constexpr double kCoarse = kPi / 180;
   std::vector<char> seen(360 * 181, 0);
   double solid = 0;
@@ -100,10 +101,13 @@ Rows ByCells(const std::vector<Angles>& angles, double* step) {
     if (cell == 0) solid += kCoarse * kCoarse;
     cell = 1;
   }
-  *step = 1.5 * std::sqrt(solid / static_cast<double>(std::max<std::size_t>(1, angles.size())));
-  Rows rows(static_cast<std::size_t>(kPi / *step) + 2);
+  return 1.5 * std::sqrt(solid / static_cast<double>(std::max<std::size_t>(1, angles.size())));
+}
+
+Rows ByCells(const std::vector<Angles>& angles, double step) {
+  Rows rows(static_cast<std::size_t>(kPi / step) + 2);
   for (const Angles& a : angles) {
-    rows[static_cast<std::size_t>((a.elevation + kPi / 2) / *step)].push_back(a);
+    rows[static_cast<std::size_t>((a.elevation + kPi / 2) / step)].push_back(a);
   }
   while (!rows.empty() && rows.back().empty()) rows.pop_back();
   const auto used =
@@ -217,17 +221,16 @@ void RangeGrid::Rebuild() {
   // A turned scanner has hundreds of beams, and its centre moves: its points keep to no such grid.
   // Nor do those of which too many share a cell.
   constexpr std::size_t kMostRings = 200;
-  if (rows.size() >= 2 && rows.size() <= kMostRings &&
-      Place(rows, AzimuthStep(rows), false) * 50 < hits_) {
-    return;
+  if (rows.size() >= 2 && rows.size() <= kMostRings) {
+    const auto crowded = Place(rows, AzimuthStep(rows), false);
+    if (crowded && *crowded * 50 < hits_) return;
   }
-  double step = 0;
-  rows = ByCells(angles, &step);
-  Place(rows, step, true);
+  double step = CellStep(angles);
+  while (!Place(ByCells(angles, step), step, true)) step *= 1.5;
 }
 
-int RangeGrid::Place(const Rows& rows, double step, bool even) {
-  if (!(step > 1e-5)) return hits_;
+std::optional<int> RangeGrid::Place(const Rows& rows, double step, bool even) {
+  if (!(step > 1e-6)) return std::nullopt;
   float low = 4;
   float high = -4;
   for (const auto& row : rows) {
@@ -240,6 +243,8 @@ int RangeGrid::Place(const Rows& rows, double step, bool even) {
   const double first = wraps_ ? -kPi : low - 0.5 * step;
   rows_ = static_cast<int>(rows.size());
   columns_ = static_cast<int>((wraps_ ? 2 * kPi : high - low) / step + 0.5) + (wraps_ ? 0 : 2);
+  // A few stray points between dense ones must not make a grid of nothing but misses.
+  if (static_cast<double>(rows_) * columns_ > 20.0 * hits_ + 1e6) return std::nullopt;
   place_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), -1);
   next_.assign(cloud_->size(), -1);
   row_elevation_.clear();

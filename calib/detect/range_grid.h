@@ -79,8 +79,9 @@ class RangeGrid {
   }
   void TakeAsItIs();
   void Rebuild();
-  // Puts rows into columns a step apart; how many points found their cell taken.
-  int Place(const Rows& rows, double step, bool even);
+  // Puts rows into columns a step apart; how many points found their cell taken. Nothing: the grid
+  // would have far more cells than the cloud has points.
+  std::optional<int> Place(const Rows& rows, double step, bool even);
   void MeasureSteps();
 
   const Cloud* cloud_;

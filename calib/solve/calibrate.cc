@@ -148,7 +148,7 @@ bool CalibrateByBoards(const CameraSpec& camera, const CalibrateOptions& options
   }
   report->first_guess = guess.camera_from_lidar;
   for (Observation& o : *own) {
-    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, options.first_guess);
+    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
     if (o.cloud) AddToRanges(guess.range_offset_m, &*o.cloud);
   }
   used = Used(camera, PointersTo(*own));
@@ -289,7 +289,9 @@ Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
     const CameraCalibration* found = calibration.Find(camera.name);
     if (found == nullptr) continue;
     std::vector<Observation> own = ObservationsOf(camera.name, observations);
-    for (Observation& o : own) o = WithChosenCandidate(std::move(o), found->camera_from_lidar);
+    for (Observation& o : own) {
+      o = WithChosenCandidate(std::move(o), found->camera_from_lidar, kJudgeGate);
+    }
     const Views views = PointersTo(own);
     CameraReport judged;
     if (calibration.method == kPaperMethod) judged.first_guess = camera.camera_from_lidar_guess;

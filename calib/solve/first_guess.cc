@@ -52,16 +52,13 @@ struct Pair {
 };
 
 CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from_lidar,
-                      const FirstGuessOptions& options) {
+                      const PoseGate& gate) {
   const Rigid3 seen = pair.CameraFromTarget();
   const Rigid3 meant = camera_from_lidar * pair.in_lidar->sensor_from_target;
   const Spread a = SpreadOf(*pair.in_camera);
   const Spread b = SpreadOf(*pair.in_lidar);
-  // Poorly seen boards may be farther off, but not at will.
-  const double angle = std::clamp(4 * std::hypot(a.angle, b.angle), options.rotation_gate_rad,
-                                  4 * options.rotation_gate_rad);
-  const double distance = std::clamp(4 * std::hypot(a.centre, b.centre), options.distance_gate_m,
-                                     4 * options.distance_gate_m);
+  const double angle = std::clamp(4 * std::hypot(a.angle, b.angle), gate.least_rad, gate.most_rad);
+  const double distance = std::clamp(4 * std::hypot(a.centre, b.centre), gate.least_m, gate.most_m);
   CandidateChoice choice{candidate, pair.half_turn, RotationDistance(seen, meant),
                          (seen.translation - meant.translation).norm(), 0};
   choice.cost = std::max(choice.rotation_rad / angle, choice.distance_m / distance);
@@ -70,13 +67,13 @@ CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from
 
 // The best pairing of a view, whether it fits or not.
 CandidateChoice Nearest(const Observation& view, const Rigid3& camera_from_lidar,
-                        const FirstGuessOptions& options) {
+                        const PoseGate& gate) {
   CandidateChoice best;
   best.cost = 1e300;
   for (std::size_t k = 0; k < view.candidates.size(); ++k) {
     for (const bool half_turn : {false, true}) {
       const Pair pair{&*view.image->pose, &*view.candidates[k].pose, half_turn};
-      const CandidateChoice choice = Judge(pair, static_cast<int>(k), camera_from_lidar, options);
+      const CandidateChoice choice = Judge(pair, static_cast<int>(k), camera_from_lidar, gate);
       if (choice.cost < best.cost) best = choice;
     }
   }
@@ -102,11 +99,10 @@ struct Agreement {
   }
 };
 
-Agreement AgreementOn(const Views& views, const Rigid3& camera_from_lidar,
-                      const FirstGuessOptions& options) {
+Agreement AgreementOn(const Views& views, const Rigid3& camera_from_lidar) {
   Agreement agreement{camera_from_lidar, 0, 0};
   for (const Observation* view : views) {
-    const double cost = Nearest(*view, camera_from_lidar, options).cost;
+    const double cost = Nearest(*view, camera_from_lidar, kVotingGate).cost;
     if (cost >= 1) continue;
     ++agreement.views;
     agreement.cost += cost * cost;
@@ -119,13 +115,13 @@ struct Vote {
   Agreement best, other;
 };
 
-Vote VoteAmong(const Views& views, const FirstGuessOptions& options) {
+Vote VoteAmong(const Views& views) {
   std::vector<Agreement> all;
   for (const Observation* view : views) {
     for (const CloudEdges& candidate : view->candidates) {
       for (const bool half_turn : {false, true}) {
         const Pair pair{&*view->image->pose, &*candidate.pose, half_turn};
-        all.push_back(AgreementOn(views, pair.CameraFromLidar(), options));
+        all.push_back(AgreementOn(views, pair.CameraFromLidar()));
       }
     }
   }
@@ -144,17 +140,17 @@ using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 // The mean of what the agreeing views give, weighed by their covariances; the seventh unknown is
-// the range offset.
+// the range offset. At first any that agreed in the vote; then those near enough to be used.
 void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* guess) {
   double offset = 0;
   Matrix7d information = Matrix7d::Identity();
-  for (int round = 0; round < 10; ++round) {
+  for (int round = 0; round < 12; ++round) {
     Rigid3& pose = *guess->camera_from_lidar;
     information.setZero();
     Vector7d gradient = Vector7d::Zero();
     guess->agreeing = 0;
     for (const Observation* view : views) {
-      const CandidateChoice choice = Nearest(*view, pose, options);
+      const CandidateChoice choice = Nearest(*view, pose, round < 4 ? kVotingGate : kAcceptGate);
       if (choice.cost >= 1) continue;
       ++guess->agreeing;
       const TargetPose& in_lidar =
@@ -183,7 +179,7 @@ void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* g
     const Vector7d step = information.ldlt().solve(gradient);
     pose = Exp(step.head<6>()) * pose;
     offset += step[6];
-    if (step.norm() < 1e-10) break;
+    if (round > 4 && step.norm() < 1e-10) break;
   }
   const Matrix7d covariance = information.ldlt().solve(Matrix7d::Identity());
   guess->covariance = covariance.topLeftCorner<6, 6>();
@@ -207,12 +203,12 @@ std::vector<Observation> Unmirrored(const Views& views) {
   return out;
 }
 
-std::string WhyNone(const Views& views, const Vote& vote, const FirstGuessOptions& options) {
+std::string WhyNone(const Views& views, const Vote& vote) {
   const std::string of = std::to_string(views.size()) + " views";
   std::vector<Observation> unmirrored = Unmirrored(views);
   Views turned;
   for (const Observation& view : unmirrored) turned.push_back(&view);
-  const int mirrored = VoteAmong(turned, options).best.views;
+  const int mirrored = VoteAmong(turned).best.views;
   if (mirrored > vote.best.views && 2 * mirrored > static_cast<int>(views.size())) {
     return "the images are mirrored: " + std::to_string(mirrored) + " of " + of +
            " agree once left and right are swapped; turn that off in the camera";
@@ -230,8 +226,6 @@ void FirstGuessOptions::Check() const {
                        "; expected a positive number");
     }
   };
-  require(rotation_gate_rad, "rotation_gate_rad");
-  require(distance_gate_m, "distance_gate_m");
   require(range_offset_sigma_m, "range_offset_sigma_m");
 }
 
@@ -247,10 +241,10 @@ FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
                    " views in which both camera and LIDAR see the board; at least 2 are needed";
     return guess;
   }
-  const Vote vote = VoteAmong(views, options);
+  const Vote vote = VoteAmong(views);
   guess.agreeing = vote.best.views;
   if (vote.best.views < 2 || 2 * vote.best.views < static_cast<int>(views.size())) {
-    guess.status = WhyNone(views, vote, options);
+    guess.status = WhyNone(views, vote);
     return guess;
   }
   if (vote.other.views >= vote.best.views && vote.other.cost < 4 * vote.best.cost + 0.1) {
@@ -267,17 +261,17 @@ FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
 }
 
 CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,
-                                const FirstGuessOptions& options) {
+                                const PoseGate& gate) {
   if (!HasPoses(view)) return {};
-  CandidateChoice choice = Nearest(view, camera_from_lidar, options);
+  CandidateChoice choice = Nearest(view, camera_from_lidar, gate);
   if (choice.cost >= 1) choice.candidate = -1;
   return choice;
 }
 
 Observation WithChosenCandidate(Observation view, const Rigid3& camera_from_lidar,
-                                const FirstGuessOptions& options) {
+                                const PoseGate& gate) {
   if (!view.rejected.empty() || !HasPoses(view)) return view;
-  const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, options);
+  const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate);
   if (choice.candidate >= 0) {
     view.cloud = view.candidates[static_cast<std::size_t>(choice.candidate)];
     return view;

@@ -8,9 +8,20 @@
 
 namespace rgbdt {
 
+/// How far the camera's and the cloud's pose of one board may differ: 4 sigma, within these limits.
+struct PoseGate {
+  double least_rad = 0, most_rad = 0;  ///< rotation
+  double least_m = 0, most_m = 0;      ///< centre
+};
+
+/// A view counts as agreeing with what another view alone says.
+inline constexpr PoseGate kVotingGate{0.06, 0.24, 0.12, 0.48};
+/// A view is used.
+inline constexpr PoseGate kAcceptGate{0.02, 0.075, 0.04, 0.09};
+/// A view may judge a calibration that may be wrong itself.
+inline constexpr PoseGate kJudgeGate{0.2, 0.4, 0.5, 1.0};
+
 struct FirstGuessOptions {
-  double rotation_gate_rad = 0.06;    ///< how far the two poses of a board may differ, or 4 sigma
-  double distance_gate_m = 0.12;      ///< the same for its centre
   bool range_offset = false;          ///< estimate a constant that the LIDAR's ranges are off by
   double range_offset_sigma_m = 0.1;  ///< its prior, about zero
 
@@ -49,11 +60,11 @@ FirstGuess GuessFromBoards(const std::vector<const Observation*>& views,
 
 /// The candidate that fits best.
 CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,
-                                const FirstGuessOptions& options = {});
+                                const PoseGate& gate = kAcceptGate);
 
 /// The observation with its `cloud` the candidate that fits; or rejected, with how far off the
 /// nearest one lies. Without candidates (the paper's method) it stays as it is.
 Observation WithChosenCandidate(Observation view, const Rigid3& camera_from_lidar,
-                                const FirstGuessOptions& options = {});
+                                const PoseGate& gate = kAcceptGate);
 
 }  // namespace rgbdt

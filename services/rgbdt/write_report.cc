@@ -62,7 +62,7 @@ std::optional<Observation> ToShow(const CameraCalibration& camera,
   for (const Observation& o : observations) {
     if (o.camera != camera.camera || !o.usable()) continue;
     if (best && (best->heldout || !o.heldout)) continue;
-    Observation chosen = WithChosenCandidate(o, camera.camera_from_lidar);
+    Observation chosen = WithChosenCandidate(o, camera.camera_from_lidar, kJudgeGate);
     if (chosen.usable()) best = std::move(chosen);
   }
   return best;

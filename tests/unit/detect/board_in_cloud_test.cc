@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <random>
 
 #include "calib/model/errors.h"
+#include "calib/simulate/board.h"
 #include "calib/simulate/cloud_world.h"
 #include "calib/simulate/spinning.h"
 
@@ -209,6 +211,35 @@ TEST(BoardInCloud, EmptyCloudsAndCloudsOfNothingSaySo) {
   EXPECT_TRUE(FindBoards(heap, world.target()).candidates.empty());
   for (std::size_t i = 0; i < 1000; ++i) heap.points[i] = {2, 0, 0.001F * static_cast<float>(i)};
   EXPECT_TRUE(FindBoards(heap, world.target()).candidates.empty());
+}
+
+TEST(BoardInCloud, NoCloudIsTooOdd) {
+  const Target target = simulate::MakeTarget({});
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    Cloud cloud;
+    const int n = 1 + static_cast<int>(random() % 5000);
+    cloud.lines = 1;
+    cloud.beams = n;
+    cloud.organised = trial % 3 == 0;
+    const double tiny = std::pow(10.0, uniform(-7, 1));
+    for (int i = 0; i < n; ++i) {
+      // Specks of dense points, strays all round, huge and broken values.
+      Eigen::Vector3f p(2 + uniform(-tiny, tiny), uniform(-tiny, tiny), uniform(-tiny, tiny));
+      if (random() % 50 == 0) p = {uniform(-9, 9), uniform(-9, 9), uniform(-9, 9)};
+      if (random() % 500 == 0) p *= 1e30F;
+      if (random() % 100 == 0) p.y() = std::numeric_limits<float>::infinity();
+      if (random() % 100 == 0) p = Eigen::Vector3f::Zero();
+      cloud.points.push_back(p);
+    }
+    if (trial % 2 == 0) {
+      for (int i = 0; i < n; ++i) cloud.ring.push_back(static_cast<std::uint16_t>(random()));
+    }
+    EXPECT_TRUE(FindBoards(cloud, target).candidates.empty()) << trial;
+  }
 }
 
 TEST(BoardInCloud, TheSameCloudGivesTheSameBits) {

@@ -228,7 +228,7 @@ TEST(FirstGuess, WithoutCandidatesAViewStaysAsItIs) {
 
 TEST(FirstGuess, OptionsAreChecked) {
   FirstGuessOptions options;
-  options.distance_gate_m = -1;
+  options.range_offset_sigma_m = -1;
   EXPECT_THROW(GuessFromBoards({}, options), InputError);
 }
 
