@@ -1,7 +1,7 @@
 // How many boards are found in rendered images, how exactly and how fast.
 //   study_image_detection COUNT SEED CSV [CLASS]
 // renders COUNT scenes of each class (or of those whose name contains CLASS), prints a table and
-// writes one line for each scene to CSV.
+// writes one line for each scene to CSV. Without arguments it names the classes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -111,6 +111,12 @@ void Run(int count, std::uint64_t seed, const std::string& csv_path, const std::
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
+  if (argc == 1) {
+    for (const auto& scene_class : rgbdt::study::SceneClasses()) {
+      std::cout << scene_class.name << "\n";
+    }
+    return 0;
+  }
   if (argc < 4) {
     std::cerr << "Usage: study_image_detection COUNT SEED CSV [CLASS]\n";
     return 2;

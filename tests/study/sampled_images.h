@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+#include "calib/simulate/noise.h"
+#include "calib/simulate/options.h"
+
+namespace rgbdt::study {
+
+/// A detected corner's error along x or y [px], with the simulator's default cameras: what sampled
+/// corners are given. It hardly changes with the range; study_corner_noise holds it against
+/// rendering.
+double CornerSigma(CameraKind kind);
+
+/// The camera as the rig file would have it.
+CameraSpec SpecOf(const simulate::CameraOptions& camera);
+
+/// The true inner corners [px]; nothing where one of the board's is outside the image.
+std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& camera,
+                                                        const Target& target,
+                                                        const Rigid3& camera_from_target);
+
+/// Corners with noise, in the target's order or turned by half a turn, as the noise draws.
+std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& corners,
+                                            double sigma_px, const simulate::Noise& noise);
+
+/// How far detected corners are off, up to half a turn: root mean square along x or y [px].
+double CornerRms(const std::vector<Eigen::Vector2d>& corners,
+                 const std::vector<Eigen::Vector2d>& truth);
+
+}  // namespace rgbdt::study
