@@ -154,19 +154,6 @@ Matrix6d CovarianceInTarget(const std::vector<Eigen::Vector3d>& points, const Ri
   return out;
 }
 
-// Of delta in the LIDAR's axes about its origin.
-Matrix6d CovarianceInLidar(const Matrix6d& in_target, const Rigid3& pose) {
-  const Eigen::Matrix3d r = pose.rotation.toRotationMatrix();
-  const Eigen::Vector3d& c = pose.translation;
-  Eigen::Matrix3d cross;
-  cross << 0, -c.z(), c.y(), c.z(), 0, -c.x(), -c.y(), c.x(), 0;
-  Matrix6d adjoint = Matrix6d::Zero();
-  adjoint.topLeftCorner<3, 3>() = r;
-  adjoint.bottomRightCorner<3, 3>() = r;
-  adjoint.bottomLeftCorner<3, 3>() = cross * r;
-  return adjoint * in_target * adjoint.transpose();
-}
-
 // Points along the sides that the cloud shows, for who compares outlines.
 std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& rectangle,
                                      const Rigid3& pose) {
@@ -226,8 +213,10 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   out.edges.width_m = size.longer;
   out.edges.height_m = size.shorter;
   const double sigma = std::max(rms, 0.3 * options.range_sigma_m);
+  const Matrix6d to_lidar = Adjoint(pose);
   out.edges.pose = TargetPose{
-      pose, CovarianceInLidar(CovarianceInTarget(filling.points, pose, rectangle, sigma), pose),
+      pose,
+      to_lidar * CovarianceInTarget(filling.points, pose, rectangle, sigma) * to_lidar.transpose(),
       false};
   for (std::size_t i = 0; i < members.crossings.size(); ++i) {
     if (rectangle.side[i] < 0) continue;

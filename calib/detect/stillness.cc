@@ -189,16 +189,6 @@ double MedianShift(const Sight& sight, const Rigid3& later) {
   return *middle;
 }
 
-// Covariance of where the target's centre is [m^2], camera axes: delta turns about the camera.
-Eigen::Matrix3d CentreCovariance(const TargetPose& pose) {
-  const Eigen::Vector3d p = pose.sensor_from_target.translation;
-  Eigen::Matrix<double, 3, 6> j;
-  j << 0, p.z(), -p.y(), 1, 0, 0,  //
-      -p.z(), 0, p.x(), 0, 1, 0,   //
-      p.y(), -p.x(), 0, 0, 0, 1;
-  return j * pose.covariance * j.transpose();
-}
-
 // How far the board's centre went [m]. Along the line of sight an image tells little: that part
 // counts only where it is beyond 3 sigma.
 double CentreShift(const TargetPose& before, const TargetPose& after) {
@@ -207,7 +197,9 @@ double CentreShift(const TargetPose& before, const TargetPose& after) {
   const Eigen::Vector3d sight = before.sensor_from_target.translation.normalized();
   const double along = shift.dot(sight);
   const double across = (shift - along * sight).norm();
-  const Eigen::Matrix3d covariance = CentreCovariance(before) + CentreCovariance(after);
+  const Eigen::Matrix3d covariance =
+      PointCovariance(before.covariance, before.sensor_from_target.translation) +
+      PointCovariance(after.covariance, after.sensor_from_target.translation);
   const double sigma = std::sqrt(sight.dot(covariance * sight));
   return std::abs(along) > 3 * sigma ? std::hypot(along, across) : across;
 }

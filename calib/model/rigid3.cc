@@ -51,6 +51,31 @@ Vector6d Log(const Rigid3& motion) {
   return delta;
 }
 
+namespace {
+
+Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+}  // namespace
+
+Matrix6d Adjoint(const Rigid3& a_from_b) {
+  const Eigen::Matrix3d r = a_from_b.rotation.toRotationMatrix();
+  Matrix6d out = Matrix6d::Zero();
+  out.topLeftCorner<3, 3>() = r;
+  out.bottomRightCorner<3, 3>() = r;
+  out.bottomLeftCorner<3, 3>() = CrossMatrix(a_from_b.translation) * r;
+  return out;
+}
+
+Eigen::Matrix3d PointCovariance(const Matrix6d& covariance, const Eigen::Vector3d& point) {
+  Eigen::Matrix<double, 3, 6> j;
+  j << -CrossMatrix(point), Eigen::Matrix3d::Identity();
+  return j * covariance * j.transpose();
+}
+
 Rigid3 RotationAbout(const Eigen::Vector3d& axis, double angle) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())), Eigen::Vector3d::Zero()};
 }

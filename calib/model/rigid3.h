@@ -33,6 +33,14 @@ Rigid3 Exp(const Vector6d& delta);
 /// The inverse of Exp for rotations below 180 degrees.
 Vector6d Log(const Rigid3& motion);
 
+/// The adjoint of SE(3): Exp(Adjoint(a_from_b) * delta) * a_from_b = a_from_b * Exp(delta). Takes
+/// an error in frame b's axes, about its origin, into frame a's.
+Matrix6d Adjoint(const Rigid3& a_from_b);
+
+/// Of a covariance of delta, the part of a point's place [m^2]: the point moves by
+/// delta's rotation x point + delta's translation.
+Eigen::Matrix3d PointCovariance(const Matrix6d& covariance, const Eigen::Vector3d& point);
+
 /// Rotation about one axis by `angle` [rad], no translation.
 Rigid3 RotationAbout(const Eigen::Vector3d& axis, double angle);
 

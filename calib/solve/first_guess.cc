@@ -11,30 +11,16 @@ namespace {
 
 const Rigid3 kHalfTurn{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
 
-// delta in frame b, as it is in frame a.
-Matrix6d Adjoint(const Rigid3& a_from_b) {
-  const Eigen::Matrix3d r = a_from_b.rotation.toRotationMatrix();
-  const Eigen::Vector3d& t = a_from_b.translation;
-  Eigen::Matrix3d cross;
-  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  Matrix6d out = Matrix6d::Zero();
-  out.topLeftCorner<3, 3>() = r;
-  out.bottomRightCorner<3, 3>() = r;
-  out.bottomLeftCorner<3, 3>() = cross * r;
-  return out;
-}
-
 // How well a board's angle [rad] and centre [m] are known.
 struct Spread {
   double angle = 0, centre = 0;
 };
 
 Spread SpreadOf(const TargetPose& pose) {
-  const Eigen::Vector3d& c = pose.sensor_from_target.translation;
-  Eigen::Matrix<double, 3, 6> j;
-  j << 0, c.z(), -c.y(), 1, 0, 0, -c.z(), 0, c.x(), 0, 1, 0, c.y(), -c.x(), 0, 0, 0, 1;
+  const Eigen::Matrix3d centre =
+      PointCovariance(pose.covariance, pose.sensor_from_target.translation);
   return {std::sqrt(std::max(0.0, pose.covariance.topLeftCorner<3, 3>().trace())),
-          std::sqrt(std::max(0.0, (j * pose.covariance * j.transpose()).trace()))};
+          std::sqrt(std::max(0.0, centre.trace()))};
 }
 
 // A board seen by both, and what each makes of it.

@@ -120,6 +120,31 @@ TEST(Rigid3, RotationAboutNormalisesItsAxis) {
   EXPECT_THAT(RotationAbout({0, 0, 7}, 0.3), Rigid3Near(RotationAbout({0, 0, 1}, 0.3), 1e-15, 0.0));
 }
 
+TEST(Rigid3, TheAdjointTakesADeltaFromOneFrameToTheOther) {
+  Vector6d delta;
+  delta << 0.1, -0.2, 0.3, 1, -2, 0.5;
+  Vector6d pose;
+  pose << -0.7, 0.4, 1.1, 3, 2, -4;
+  const Rigid3 a_from_b = Exp(pose);
+  const Rigid3 left = Exp(Adjoint(a_from_b) * delta) * a_from_b;
+  const Rigid3 right = a_from_b * Exp(delta);
+  EXPECT_LT(Log(left * right.Inverse()).norm(), 1e-12);
+}
+
+TEST(Rigid3, APointsCovarianceIsThatOfHowItMoves) {
+  Matrix6d root = Matrix6d::Zero();
+  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = std::sin(i * i + 1.0);
+  const Eigen::Vector3d point(2, -1, 4);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  constexpr double kSmall = 1e-6;
+  for (int i = 0; i < 6; ++i) {  // the columns of a root add up to the covariance
+    const Eigen::Vector3d moved = (Exp(kSmall * root.col(i)) * point - point) / kSmall;
+    expected += moved * moved.transpose();
+  }
+  EXPECT_LT((PointCovariance(root * root.transpose(), point) - expected).norm(),
+            1e-4 * expected.norm());
+}
+
 TEST(RotationDistance, IsTheAngleBetweenTwoPoses) {
   Random random(5);
   for (const double angle : {0.0, 1e-9, 1e-4, 0.5, 3.0, M_PI}) {
