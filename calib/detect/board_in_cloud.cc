@@ -310,6 +310,31 @@ PlaneRegionOptions RegionOptions(const Target& target, const BoardInCloudOptions
   return out;
 }
 
+BoardsInCloud FindAtNoise(const RangeGrid& grid, const Target& target,
+                          const BoardInCloudOptions& options) {
+  std::vector<Candidate> found;
+  Likeness likeness;
+  for (const PlaneRegion& region : FindPlaneRegions(grid, RegionOptions(target, options))) {
+    if (!MayBe(region, target)) continue;
+    for (Candidate& board : LookCloser(grid, region, target, options, &likeness)) {
+      found.push_back(std::move(board));
+    }
+  }
+  if (found.empty()) return {{}, likeness.Why(target)};
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  BoardsInCloud boards;
+  for (Candidate& c : found) {
+    if (static_cast<int>(boards.candidates.size()) == options.max_candidates) break;
+    if (std::any_of(boards.candidates.begin(), boards.candidates.end(),
+                    [&](const CloudEdges& kept) { return IsSame(kept, c.edges); })) {
+      continue;
+    }
+    boards.candidates.push_back(std::move(c.edges));
+  }
+  return boards;
+}
+
 }  // namespace
 
 void BoardInCloudOptions::Check() const {
@@ -338,27 +363,16 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
             "the cloud has " + std::to_string(grid.hits()) +
                 " points; is the LIDAR connected and the view not covered?"};
   }
-  std::vector<Candidate> found;
-  Likeness likeness;
-  for (const PlaneRegion& region : FindPlaneRegions(grid, RegionOptions(target, options))) {
-    if (!MayBe(region, target)) continue;
-    for (Candidate& board : LookCloser(grid, region, target, options, &likeness)) {
-      found.push_back(std::move(board));
-    }
+  // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
+  constexpr double kMostSigma = 0.045;
+  BoardInCloudOptions noisier = options;
+  const BoardsInCloud as_told = FindAtNoise(grid, target, noisier);
+  BoardsInCloud boards = as_told;
+  while (boards.candidates.empty() && 2 * noisier.range_sigma_m <= kMostSigma) {
+    noisier.range_sigma_m *= 2;
+    boards = FindAtNoise(grid, target, noisier);
   }
-  if (found.empty()) return {{}, likeness.Why(target)};
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  BoardsInCloud boards;
-  for (Candidate& c : found) {
-    if (static_cast<int>(boards.candidates.size()) == options.max_candidates) break;
-    if (std::any_of(boards.candidates.begin(), boards.candidates.end(),
-                    [&](const CloudEdges& kept) { return IsSame(kept, c.edges); })) {
-      continue;
-    }
-    boards.candidates.push_back(std::move(c.edges));
-  }
-  return boards;
+  return boards.candidates.empty() ? as_told : boards;
 }
 
 }  // namespace rgbdt

@@ -10,7 +10,7 @@
 namespace rgbdt {
 
 struct BoardInCloudOptions {
-  double range_sigma_m = 0.01;  ///< noise of a range (the rig file's)
+  double range_sigma_m = 0.01;  ///< noise of a range (the rig file's); up to 45 mm is tried, too
   double max_range_m = 12;      ///< boards farther away are not looked for
   int max_candidates = 4;       ///< the likeliest are kept
   BeamEdgeOptions edge;

@@ -253,6 +253,17 @@ TEST(BoardInCloud, TheSameCloudGivesTheSameBits) {
   EXPECT_EQ(a.candidates[0].pose->covariance, b.candidates[0].pose->covariance);
 }
 
+TEST(BoardInCloud, ANoisierLidarThanTheRigSaysIsNoHindrance) {
+  for (const int rings : {0, 32}) {
+    simulate::Options options = Physics(rings, 9);
+    (rings == 0 ? options.scanner.range_sigma_m : options.spinning->range_sigma_m) = 0.03;
+    const CloudWorld world(options, 0);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));  // 10 mm
+    ASSERT_FALSE(boards.candidates.empty()) << rings << ": " << boards.why;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+  }
+}
+
 TEST(BoardInCloud, BadOptionsAreNamed) {
   BoardInCloudOptions options;
   options.edge.side_sigma_rad = 0;
