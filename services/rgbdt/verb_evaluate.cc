@@ -43,7 +43,9 @@ int Run(const Flags& flags) {
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const Calibration calibration =
       ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
-  const SessionDetection detection = DetectSession(session, calibration.method);
+  // A calibration that was made elsewhere is judged on what is found without it.
+  const bool by_paper = calibration.method == kPaperMethod;
+  const SessionDetection detection = DetectSession(session, by_paper ? kPaperMethod : kAutoMethod);
   Report report = Evaluate(session.rig, detection.observations, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const std::string wrote = "wrote to " + out.string() + ":";
