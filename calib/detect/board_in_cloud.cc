@@ -126,6 +126,20 @@ Plane PlaneAlongRays(const PlaneMembers& members, const Filling& filling, double
   return plane;
 }
 
+// See CloudEdges::scatter.
+Eigen::Matrix4d Scatter(const PlaneMembers& members, const Filling& filling,
+                        const Eigen::Vector3d& centre) {
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < filling.points.size(); ++i) {
+    Eigen::Vector4d q;
+    q << members.frame.Solid(filling.flat[i]) +
+             members.plane.Signed(filling.points[i]) * members.plane.normal - centre,
+        1;
+    scatter += q * q.transpose();
+  }
+  return scatter;
+}
+
 // Of delta in the target's own axes about its centre: tilt and distance from the points' scatter
 // about the plane, place and turn in the plane from the crossings.
 Matrix6d CovarianceInTarget(const std::vector<Eigen::Vector3d>& points, const Rigid3& pose,
@@ -213,6 +227,8 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   out.edges.width_m = size.longer;
   out.edges.height_m = size.shorter;
   const double sigma = std::max(rms, 0.3 * options.range_sigma_m);
+  out.edges.scatter = Scatter(members, filling, out.edges.centre);
+  out.edges.scatter_sigma_m = sigma;
   const Matrix6d to_lidar = Adjoint(pose);
   out.edges.pose = TargetPose{
       pose,
@@ -222,7 +238,7 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
     if (rectangle.side[i] < 0) continue;
     const FlatCrossing& c = members.crossings[i];
     out.edges.crossings.push_back(
-        {members.frame.Solid(c.middle), c.half_m, rectangle.side[i], c.kind});
+        {members.frame.Solid(c.middle), c.half_m, rectangle.side[i], c.kind, rectangle.sigma_m[i]});
   }
   return out;
 }

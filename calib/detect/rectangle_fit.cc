@@ -314,6 +314,14 @@ class Refiner {
     out.thickness_m = x[kThickness];
     out.thickness_sigma_m = std::sqrt(covariance(kThickness, kThickness));
     out.side = side_;
+    const Axes axes(x[2]);
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+      const int side = side_[i];
+      out.sigma_m.push_back(
+          side < 0
+              ? 0.0
+              : std::sqrt(shared_[i] * Variance(crossings_[i], NormalOf(axes, side), same_[i])));
+    }
     Cover(x, &out);
     return out;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,12 +57,49 @@ struct RejectedView {
   std::string why;
 };
 
+/// An unknown of the solve besides the poses.
+struct Nuisance {
+  std::string name;  ///< e.g. "beam edge, no return"
+  std::string unit;  ///< "mrad" or "mm"
+  Estimate estimate;
+};
+
 /// How one view fits.
 struct ViewQuality {
   std::string view;
   bool heldout = false;
   double distance_transform_px = 0;
   double edge_rms_px = 0;
+  std::optional<double> edge_rms_whitened;  ///< in sigmas; absent: the method has no crossings
+};
+
+/// 1 sigma of where a point's colour is taken from.
+struct ColouringSigma {
+  double distance_m = 0;  ///< of the point from the camera
+  double centre_px = 0;   ///< in the image's middle
+  double worst_px = 0;    ///< anywhere in the image
+};
+
+/// 1 sigma of a camera's pose, from its covariance.
+struct PoseSigma {
+  std::array<double, 3> rotation_deg{};  ///< about the camera's x, y, z
+  std::array<double, 3> centre_mm{};     ///< of the camera's centre, along the LIDAR's x, y, z
+  std::vector<ColouringSigma> colouring;
+};
+
+/// One part of the views left out, solved from the others and judged on it.
+struct Fold {
+  std::vector<std::string> heldout;
+  double edge_rms_whitened = 0;   ///< of the views left out
+  double misfit = 0;              ///< of the views left out: chi-square for each
+  double first_guess_misfit = 0;  ///< the same for the first guess from the same views
+  PoseError from_result;          ///< against the reported calibration
+};
+
+/// Two halves of the views, each solved apart.
+struct Halves {
+  PoseError difference;
+  double chi2 = 0;  ///< by the stated covariances, six degrees of freedom
 };
 
 /// The same solve from another start: how much the start matters.
@@ -80,8 +118,13 @@ struct CameraReport {
   std::vector<RejectedView> rejected;
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
+  TrainHeldout edge_rms_whitened;      ///< RMS of the crossings' distances, each in its sigmas
   std::vector<ViewQuality> views;
   std::vector<StartResult> other_starts;
+  std::optional<PoseSigma> sigma;  ///< absent: the method has no covariance
+  std::vector<Nuisance> nuisance;
+  std::vector<Fold> folds;
+  std::optional<Halves> halves;
   std::optional<Estimate> range_offset;  ///< [m] true range minus measured; absent: not asked for
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
@@ -91,11 +134,30 @@ struct CameraReport {
   bool solved() const { return distance_transform_px.train.has_value(); }
 };
 
+/// Two cameras' pose relative to each other, by way of the LIDAR against by their images alone.
+struct Closure {
+  std::string from, to;         ///< cameras; the pose is to_from_from
+  Rigid3 by_lidar;              ///< each camera solved by itself, the two put together
+  Rigid3 by_images;             ///< from the views that both see (stereo calibration)
+  PoseError difference, sigma;  ///< between the two, and what is to be expected of it (1 sigma)
+  double chi2 = 0;              ///< of the difference, six degrees of freedom
+};
+
+/// Where to hold the board next, to learn most.
+struct NextView {
+  std::string words;
+  Rigid3 lidar_from_target;
+  std::string camera;                              ///< whose sigma is the worst
+  double sigma_before_px = 0, sigma_after_px = 0;  ///< worst colouring sigma, before and after it
+};
+
 struct Report {
   std::string method;
   std::string rig_hash;
   Utime utime = 0;
   std::vector<CameraReport> cameras;
+  std::vector<Closure> closure;
+  std::optional<NextView> next_view;
 
   /// The cameras that were solved: a guess is no calibration.
   Calibration ToCalibration() const;

@@ -5,8 +5,8 @@
 namespace rgbdt {
 
 void RequireMethod(const std::string& method) {
-  if (method == kAutoMethod || method == kPaperMethod) return;
-  throw InputError("unknown method \"" + method + "\"; there are: auto, paper");
+  if (method == kAutoMethod || method == kPlaneMethod || method == kPaperMethod) return;
+  throw InputError("unknown method \"" + method + "\"; there are: auto, plane, paper");
 }
 
 }  // namespace rgbdt

@@ -69,6 +69,8 @@ struct Crossing {
   double half_width_m = 0;         ///< half of the interval, across the side
   int side = 0;                    ///< 0 top, 1 right, 2 bottom, 3 left of the target
   CrossingKind kind = CrossingKind::kNoReturn;
+  /// Of the side's place across it, what its neighbours tell again counted once; 0: unknown.
+  double sigma_m = 0;
 };
 
 /// What one cloud shows of the target. LIDAR frame, metres.
@@ -82,6 +84,11 @@ struct CloudEdges {
   /// In the LIDAR frame, from the crossings; absent by the paper's method.
   std::optional<TargetPose> pose;
   std::vector<Crossing> crossings;
+  /// All that its points tell of the plane they lie on: the sum over them of q q^T with
+  /// q = (p - centre, 1), in metres; p is where the beam meets the fitted plane, moved along the
+  /// normal by the point's distance from it, so noise on slanted beams does not lean the plane.
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
 };
 
 /// One camera's view of the target together with the cloud's. Either both edges or a reason.
