@@ -196,6 +196,18 @@ bool IsSame(const CloudEdges& a, const CloudEdges& b) {
   return (a.centre - b.centre).norm() < 0.04 && a.normal.dot(b.normal) > 0.97;
 }
 
+// Those that lie on a side.
+std::vector<Crossing> CrossingsOf(const PlaneMembers& members, const FlatRectangle& rectangle) {
+  std::vector<Crossing> out;
+  for (std::size_t i = 0; i < members.crossings.size(); ++i) {
+    if (rectangle.side[i] < 0) continue;
+    const FlatCrossing& c = members.crossings[i];
+    out.push_back({members.frame.Solid(c.middle), rectangle.half_width_m[i], rectangle.side[i],
+                   c.kind, rectangle.sigma_m[i]});
+  }
+  return out;
+}
+
 std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectangle& voted,
                                   const Target& target, const BoardInCloudOptions& options) {
   const FlatRectangle rectangle =
@@ -234,12 +246,7 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
       pose,
       to_lidar * CovarianceInTarget(filling.points, pose, rectangle, sigma) * to_lidar.transpose(),
       false};
-  for (std::size_t i = 0; i < members.crossings.size(); ++i) {
-    if (rectangle.side[i] < 0) continue;
-    const FlatCrossing& c = members.crossings[i];
-    out.edges.crossings.push_back(
-        {members.frame.Solid(c.middle), c.half_m, rectangle.side[i], c.kind, rectangle.sigma_m[i]});
-  }
+  out.edges.crossings = CrossingsOf(members, rectangle);
   return out;
 }
 

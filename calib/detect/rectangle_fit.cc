@@ -316,11 +316,11 @@ class Refiner {
     out.side = side_;
     const Axes axes(x[2]);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
-      const int side = side_[i];
-      out.sigma_m.push_back(
-          side < 0
-              ? 0.0
-              : std::sqrt(shared_[i] * Variance(crossings_[i], NormalOf(axes, side), same_[i])));
+      const FlatCrossing& c = crossings_[i];
+      const Eigen::Vector2d normal = NormalOf(axes, std::max(0, side_[i]));
+      const bool on_side = side_[i] >= 0;
+      out.half_width_m.push_back(on_side ? c.half_m * normal.dot(c.outward) : 0);
+      out.sigma_m.push_back(on_side ? std::sqrt(shared_[i] * Variance(c, normal, same_[i])) : 0);
     }
     Cover(x, &out);
     return out;

@@ -31,8 +31,9 @@ struct FlatRectangle {
   /// of another size makes itself fit by them.
   double strain = 0;
   std::vector<int> side;  ///< by crossing: the side that it lies on; -1: none
-  /// By crossing: of the side's place along its normal, what others tell again counted once.
-  std::vector<double> sigma_m;
+  /// By crossing: half of its interval across its side, and the sigma of the side's place that it
+  /// gives, what others tell again counted once.
+  std::vector<double> half_width_m, sigma_m;
 };
 
 /// The rectangle that most crossings lie on, by voting: for each direction the crossings that face
