@@ -1,13 +1,12 @@
 #include "calib/detect/target_pose.h"
 
-#include <ceres/jet.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "calib/camera/pixel_by_point.h"
 #include "calib/detect/corner_order.h"
 
 namespace rgbdt {
@@ -97,12 +96,7 @@ Pixels Residuals(const Camera& camera, const Rigid3& pose, const Points& model,
 
 // Of a projected point's pixel by delta at zero: pixel by point, and point by delta = [-[p]x, I].
 Jacobian PixelByDelta(const Camera& camera, const Eigen::Vector3d& p) {
-  using Jet = ceres::Jet<double, 3>;
-  Jet u;
-  Jet v;
-  ProjectUnchecked(camera.lens(), Jet(p.x(), 0), Jet(p.y(), 1), Jet(p.z(), 2), &u, &v);
-  Eigen::Matrix<double, 2, 3> by_point;
-  by_point << u.v.transpose(), v.v.transpose();
+  const Eigen::Matrix<double, 2, 3> by_point = PixelByPoint(camera.lens(), p);
   Eigen::Matrix3d cross;
   cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
   Jacobian out;

@@ -29,14 +29,16 @@ struct CalibrateOptions {
   void Check() const;
 };
 
-/// Calibrates every camera of the rig that was observed, each by itself, and judges the result on
-/// used and held-out views. "auto" takes the mean of what the views' boards tell (first_guess.h),
-/// with its covariance; that
-/// also chooses the board among each view's candidates. "paper" starts from the hand-measured
-/// guess; with wide_start it solves a second time from a start turned away by wide_roll and
-/// wide_yaw and reports where that ends. The order of the observations does not matter. A camera
-/// without enough views gets its guess and a status that says so. Throws InputError for an unknown
-/// method.
+/// Calibrates every camera of the rig that was observed and judges the result on used and held-out
+/// views. "auto": the first guess (first_guess.h) chooses each view's board; then all cameras,
+/// boards and nuisances are solved for together (board_problem.h), views and sides that contradict
+/// the others are left out by name, and the result has a covariance. Where views left out in turn
+/// fit it worse than the first guess, the first guess is kept and the status says so. "plane": each
+/// camera by the boards' planes alone (by_planes.h). "paper" starts from the hand-measured guess;
+/// with wide_start it solves a second time from a start turned away by wide_roll and wide_yaw and
+/// reports where that ends. The order of the observations does not matter. A camera without enough
+/// views gets its guess and a status that says so; one whose views leave its pose loose a status
+/// "degenerate: ..." and no covariance. Throws InputError for an unknown method.
 Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
                  const CalibrateOptions& options = {});
 
@@ -44,6 +46,9 @@ Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
 /// parameters. `used` are usable observations of one camera.
 CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const Observation*>& used,
                              const Rigid3& start, const CalibrateOptions& options);
+
+/// The status of a camera without enough views.
+std::string TooFewViews(std::size_t usable, const CalibrateOptions& options);
 
 /// The guess turned by roll about the LIDAR's x, then yaw about its z.
 Rigid3 TurnedStart(const Rigid3& camera_from_lidar, double roll_rad, double yaw_rad);

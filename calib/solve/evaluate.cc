@@ -4,6 +4,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/solve/distance_field.h"
+#include "calib/solve/first_guess.h"
 
 namespace rgbdt {
 namespace {
@@ -53,7 +54,7 @@ Sums Judge(const Camera& camera, const Observation& observation, const Rigid3& c
 
 ViewQuality QualityOf(const Observation& observation, const Sums& sums) {
   return {observation.view, observation.heldout, sums.transform / sums.points,
-          std::sqrt(sums.squared / sums.points)};
+          std::sqrt(sums.squared / sums.points), std::nullopt};
 }
 
 }  // namespace
@@ -82,6 +83,58 @@ void JudgeCamera(const CameraSpec& spec, const std::vector<const Observation*>& 
   };
   fill(train, &report->distance_transform_px.train, &report->edge_rms_px.train);
   fill(heldout, &report->distance_transform_px.heldout, &report->edge_rms_px.heldout);
+}
+
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
+                         const CameraCalibration& calibration) {
+  EdgeMisfit misfit;
+  if (!observation.image->pose || !observation.cloud->pose) return misfit;
+  const TargetPose& seen = *observation.image->pose;
+  const Rigid3 lidar_from_camera = calibration.camera_from_lidar.Inverse();
+  // The crossings' sides are told in the axes of the cloud's pose.
+  Rigid3 camera_from_target = seen.sensor_from_target;
+  if (HalfTurned(lidar_from_camera * camera_from_target, *observation.cloud->pose)) {
+    camera_from_target = camera_from_target * kHalfTurn;
+  }
+  Matrix6d covariance = seen.covariance;
+  if (calibration.covariance) covariance += *calibration.covariance;
+  const Matrix6d to_target = Adjoint(camera_from_target.Inverse());
+  const Matrix6d in_target = to_target * covariance * to_target.transpose();
+  const Rigid3 lidar_from_target = lidar_from_camera * camera_from_target;
+  for (const Crossing& crossing : observation.cloud->crossings) {
+    if (!(crossing.sigma_m > 0)) continue;
+    const CrossingResidual r =
+        ResidualOf(model.target, model.priors, crossing, lidar_from_target, model.shared, 0);
+    if (!(r.per_rad > 0)) continue;
+    const double side = r.per_rad * model.priors.side_sigma_rad;
+    const double variance = r.sigma_m * r.sigma_m + side * side +
+                            (r.by_target * in_target * r.by_target.transpose()).value();
+    misfit.squared += r.beyond_m * r.beyond_m / variance;
+    misfit.count += 1;
+  }
+  return misfit;
+}
+
+void JudgeEdges(const EdgeModel& model, const std::vector<const Observation*>& usable,
+                CameraReport* report) {
+  EdgeMisfit train;
+  EdgeMisfit heldout;
+  for (const Observation* observation : usable) {
+    const EdgeMisfit one = MisfitOfEdges(model, *observation, report->calibration);
+    if (one.count == 0) continue;
+    EdgeMisfit& sum = observation->heldout ? heldout : train;
+    sum.squared += one.squared;
+    sum.count += one.count;
+    for (ViewQuality& view : report->views) {
+      if (view.view == observation->view) {
+        view.edge_rms_whitened = std::sqrt(one.squared / one.count);
+      }
+    }
+  }
+  if (train.count > 0) report->edge_rms_whitened.train = std::sqrt(train.squared / train.count);
+  if (heldout.count > 0) {
+    report->edge_rms_whitened.heldout = std::sqrt(heldout.squared / heldout.count);
+  }
 }
 
 }  // namespace rgbdt

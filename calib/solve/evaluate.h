@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "calib/model/calibration.h"
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
+#include "calib/solve/board_problem.h"
 
 namespace rgbdt {
 
@@ -15,6 +17,31 @@ namespace rgbdt {
 /// cannot see counts half the image's width.
 ViewQuality JudgeView(const CameraSpec& camera, const Observation& observation,
                       const Rigid3& camera_from_lidar);
+
+/// What the distances of a board's crossings from its sides are held against.
+struct EdgeModel {
+  Target target;
+  /// By the solve; without one, as they are likeliest beforehand.
+  std::array<double, kSharedUnknowns> shared = BoardPriors().Means();
+  BoardPriors priors{};
+};
+
+/// A board's crossings against its sides, laid there by one camera's image and its calibration.
+struct EdgeMisfit {
+  double squared = 0;  ///< sum of squared distances, each in its sigmas
+  double count = 0;
+};
+
+/// Each crossing's distance from its side, where the image's pose and `calibration` put it, over
+/// its sigma: of the crossing's interval, the side's own shift, the image's pose and the
+/// calibration (where it has a covariance). Zero crossings where the view has none with sigmas.
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
+                         const CameraCalibration& calibration);
+
+/// Fills in `edge_rms_whitened` of a camera's report and of its views, which JudgeCamera has
+/// filled in before.
+void JudgeEdges(const EdgeModel& model, const std::vector<const Observation*>& usable,
+                CameraReport* report);
 
 /// Fills in `views`, `distance_transform_px` and `edge_rms_px` of a camera's report from its
 /// calibration: means over all points of the views used, and of those held out.

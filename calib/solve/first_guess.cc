@@ -9,8 +9,6 @@
 namespace rgbdt {
 namespace {
 
-const Rigid3 kHalfTurn{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
-
 // How well a board's angle [rad] and centre [m] are known.
 struct Spread {
   double angle = 0, centre = 0;
@@ -234,6 +232,7 @@ FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
     return guess;
   }
   if (vote.other.views >= vote.best.views && vote.other.cost < 4 * vote.best.cost + 0.1) {
+    guess.ambiguous = true;
     guess.status =
         "two poses of the camera fit the views alike; add views with the board elsewhere, tilted "
         "and turned otherwise";
@@ -244,6 +243,11 @@ FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
   guess.status =
       std::to_string(guess.agreeing) + " of " + std::to_string(views.size()) + " views agree";
   return guess;
+}
+
+bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other) {
+  return RotationDistance(lidar_from_target * kHalfTurn, other.sensor_from_target) <
+         RotationDistance(lidar_from_target, other.sensor_from_target);
 }
 
 CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,

@@ -29,6 +29,12 @@ struct FirstGuessOptions {
   void Check() const;
 };
 
+/// Half a turn about a target's z: how a board's pose may be told otherwise.
+inline const Rigid3 kHalfTurn{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
+
+/// Whether a board's pose, both in one frame, is nearer to `other` once turned by half a turn.
+bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other);
+
 /// Which of a view's candidates is the board, if the camera sits where it is said to.
 struct CandidateChoice {
   int candidate = -1;      ///< index into Observation::candidates; -1: none fits
@@ -46,6 +52,7 @@ struct FirstGuess {
   double range_offset_m = 0;               ///< true range minus measured; 0: not estimated
   double range_offset_sigma_m = 0;         ///< 0: not estimated
   int agreeing = 0;                        ///< views that agree on it
+  bool ambiguous = false;                  ///< there is none because two fit alike
   std::string status;                      ///< in words; why there is none
 };
 
