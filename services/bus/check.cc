@@ -116,7 +116,7 @@ void CheckCovariance(std::string_view field, const double* rows, int size) {
   CheckFinite(field, rows, static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   const auto at = [&](int row, int column) { return rows[row * size + column]; };
   for (int row = 0; row < size; ++row) {
-    if (at(row, row) < 0) Fail("variance in " + std::string(field), at(row, row), "0 or more");
+    if (at(row, row) < 0) Fail("diagonal of " + std::string(field), at(row, row), "0 or more");
     for (int column = 0; column < row; ++column) {
       const double scale = std::sqrt(at(row, row)) * std::sqrt(at(column, column));
       const double difference = std::abs(at(row, column) - at(column, row));

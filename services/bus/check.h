@@ -49,7 +49,7 @@ void CheckFinite(std::string_view field, const double* values, std::size_t size)
 void CheckUnitVector(std::string_view field, const Eigen::Vector3d& v);
 
 /// `size` rows of `size` numbers: finite, no variance below zero, symmetric to 1e-6 of the two
-/// sigmas' product.
+/// sigmas' product. So for a scatter, too, a covariance before its division by a count.
 void CheckCovariance(std::string_view field, const double* rows, int size);
 
 /// As the rig file has it: 1 to 32 of a-z, 0-9 and _.

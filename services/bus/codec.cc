@@ -34,13 +34,17 @@ Message DecodeAs(const std::string& channel, std::string_view layout, const std:
   return FromWire(wire);
 }
 
-// Logs from before observation_v2_t hold the observation_t that it begins with.
+// Logs from before observation_v3_t hold the observation_v2_t that it begins with, or the
+// observation_t that this begins with.
 Message DecodeObservation(const std::string& channel, std::string_view layout,
                           const std::uint8_t* data, std::size_t size) {
-  if (!IsA<observation_t>(data, size)) {
-    return DecodeAs<observation_v2_t>(channel, layout, data, size);
+  if (IsA<observation_t>(data, size)) {
+    return DecodeAs<observation_t>(channel, "observation_t", data, size);
   }
-  return DecodeAs<observation_t>(channel, "observation_t", data, size);
+  if (IsA<observation_v2_t>(data, size)) {
+    return DecodeAs<observation_v2_t>(channel, "observation_v2_t", data, size);
+  }
+  return DecodeAs<observation_v3_t>(channel, layout, data, size);
 }
 
 struct Kind {
@@ -61,8 +65,8 @@ constexpr std::array<Kind, 13> kKinds = {{
      "num_misses*f num_misses*f num_misses*f b 2i"},
     {"CORNER_SELECTION", DecodeAs<corner_selection_t>, "2q s q 8d"},
     {"OBSERVATION", DecodeObservation,
-     "observation_t d b target_pose_t 4image_side_t b target_pose_t #num_cloud_crossings "
-     "num_cloud_crossings*board_crossing_t #num_candidates num_candidates*cloud_board_t"},
+     "observation_v2_t board_scatter_t #num_candidate_scatters "
+     "num_candidate_scatters*board_scatter_t"},
     {"CALIBRATION", DecodeAs<calibration_t>, "2q 3s b s 7d b 36d"},
     {"RGBDT_CLOUD", DecodeAs<rgbdt_cloud_t>,
      "3q b q #num_cameras num_cameras*s #num_points num_points*f num_points*f num_points*f "

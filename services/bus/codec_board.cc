@@ -92,4 +92,32 @@ CloudEdges FromWire(const cloud_board_t& wire) {
   return cloud;
 }
 
+board_scatter_t ScatterToWire(const CloudEdges& cloud) {
+  board_scatter_t wire;
+  wire.num_crossings = CountOf(cloud.crossings.size(), "num_crossings");
+  wire.crossing_sigma_m.reserve(cloud.crossings.size());
+  for (const Crossing& crossing : cloud.crossings) {
+    wire.crossing_sigma_m.push_back(crossing.sigma_m);
+  }
+  MatrixToWire(cloud.scatter, wire.scatter);
+  wire.scatter_sigma_m = cloud.scatter_sigma_m;
+  return wire;
+}
+
+void Check(const board_scatter_t& wire) {
+  for (std::size_t i = 0; i < wire.crossing_sigma_m.size(); ++i) {
+    CheckNotNegative(At("crossing_sigma_m", i), wire.crossing_sigma_m[i]);
+  }
+  CheckCovariance("scatter", wire.scatter[0], 4);
+  CheckNotNegative("scatter_sigma_m", wire.scatter_sigma_m);
+}
+
+void ScatterFromWire(const board_scatter_t& wire, CloudEdges* cloud) {
+  for (std::size_t i = 0; i < cloud->crossings.size(); ++i) {
+    cloud->crossings[i].sigma_m = wire.crossing_sigma_m[i];
+  }
+  cloud->scatter = MatrixFromWire(wire.scatter);
+  cloud->scatter_sigma_m = wire.scatter_sigma_m;
+}
+
 }  // namespace rgbdt

@@ -4,6 +4,7 @@
 // cloud, which two types tell under the same names. As in codec_types.h: ToWire, Check, FromWire.
 
 #include <lcmtypes/rgbdt/board_crossing_t.hpp>
+#include <lcmtypes/rgbdt/board_scatter_t.hpp>
 #include <lcmtypes/rgbdt/cloud_board_t.hpp>
 #include <lcmtypes/rgbdt/image_side_t.hpp>
 #include <lcmtypes/rgbdt/target_pose_t.hpp>
@@ -33,6 +34,12 @@ Crossing FromWire(const board_crossing_t& wire);
 cloud_board_t ToWire(const CloudEdges& cloud);
 void Check(const cloud_board_t& wire);
 CloudEdges FromWire(const cloud_board_t& wire);
+
+/// Of a board whose other fields another type tells: ScatterFromWire adds to them.
+board_scatter_t ScatterToWire(const CloudEdges& cloud);
+void Check(const board_scatter_t& wire);
+/// `cloud` has as many crossings as `wire` has sigmas.
+void ScatterFromWire(const board_scatter_t& wire, CloudEdges* cloud);
 
 /// Check, and what is wrong is told with the part that it lies in: "candidate[2]: width_m is ...".
 template <typename Wire>

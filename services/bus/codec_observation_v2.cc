@@ -45,7 +45,7 @@ void CloudFromWire(const observation_v2_t& wire, CloudEdges* cloud) {
 
 }  // namespace
 
-observation_v2_t ToWire(const Observation& observation) {
+observation_v2_t ToSecondVersion(const Observation& observation) {
   observation_v2_t wire{};
   wire.observation = ToFirstVersion(observation);
   if (observation.image) ImageToWire(*observation.image, &wire);

@@ -15,6 +15,7 @@
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
 #include <lcmtypes/rgbdt/observation_t.hpp>
 #include <lcmtypes/rgbdt/observation_v2_t.hpp>
+#include <lcmtypes/rgbdt/observation_v3_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
@@ -60,9 +61,15 @@ void Check(const observation_t& wire);
 Observation FromWire(const observation_t& wire);
 
 // codec_observation_v2.cc
-observation_v2_t ToWire(const Observation& observation);
+/// What the second version carries: no crossings' sigmas and no scatter.
+observation_v2_t ToSecondVersion(const Observation& observation);
 void Check(const observation_v2_t& wire);
 Observation FromWire(const observation_v2_t& wire);
+
+// codec_observation_v3.cc
+observation_v3_t ToWire(const Observation& observation);
+void Check(const observation_v3_t& wire);
+Observation FromWire(const observation_v3_t& wire);
 
 // codec_calibration.cc
 calibration_t ToWire(const CalibrationMessage& message);

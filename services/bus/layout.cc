@@ -20,16 +20,20 @@ struct Struct {
 };
 
 // What lies within other types.
-constexpr std::array<Struct, 5> kStructs = {{
+constexpr std::array<Struct, 7> kStructs = {{
     {"observation_t",
      "2q 2s q b s b 2i b 8d #num_corners num_corners*2d #num_edge_pixels num_edge_pixels*2h "
      "#num_outline num_outline*2d b #num_boundary num_boundary*3d 3d 3d 3d i 2d"},
+    {"observation_v2_t",
+     "observation_t d b target_pose_t 4image_side_t b target_pose_t #num_cloud_crossings "
+     "num_cloud_crossings*board_crossing_t #num_candidates num_candidates*cloud_board_t"},
     {"target_pose_t", "43d b"},
     {"image_side_t", "b s #num_curve num_curve*2d 4d"},
     {"board_crossing_t", "4d 2b"},
     {"cloud_board_t",
      "#num_boundary num_boundary*3d 3d 3d 3d i b target_pose_t #num_crossings "
      "num_crossings*board_crossing_t"},
+    {"board_scatter_t", "#num_crossings num_crossings*d 17d"},
 }};
 
 std::string_view LayoutOf(std::string_view name) {

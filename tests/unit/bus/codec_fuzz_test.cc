@@ -60,6 +60,7 @@ class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
       samples.push_back({ChannelOf(message), Encode(message)});
     }
     samples.push_back({"OBSERVATION", BytesOf(ToFirstVersion(random_.Seen()))});
+    samples.push_back({"OBSERVATION", BytesOf(ToSecondVersion(random_.Seen()))});
     samples.push_back({"OBSERVATION", Encode(SmallButWhole())});
     return samples;
   }

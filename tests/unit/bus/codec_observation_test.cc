@@ -9,7 +9,7 @@
 #include "tests/unit/bus/codec_testing.h"
 #include "tests/unit/bus/random_messages.h"
 
-// OBSERVATION: observation_v2_t is sent; logs from before hold observation_t.
+// OBSERVATION: observation_v3_t is sent; logs from before hold observation_v2_t or observation_t.
 
 namespace rgbdt {
 namespace {
@@ -65,7 +65,8 @@ void ExpectSameFirstVersion(const CloudEdges& a, const CloudEdges& b) {
   EXPECT_EQ(a.points, b.points);
 }
 
-void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
+// What observation_v2_t carries of it.
+void ExpectSameSecondVersion(const CloudEdges& a, const CloudEdges& b) {
   ExpectSameFirstVersion(a, b);
   ExpectSamePose(a.pose, b.pose);
   ASSERT_EQ(a.crossings.size(), b.crossings.size());
@@ -75,6 +76,21 @@ void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
     EXPECT_EQ(a.crossings[i].side, b.crossings[i].side);
     EXPECT_EQ(a.crossings[i].kind, b.crossings[i].kind);
   }
+}
+
+void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
+  ASSERT_NO_FATAL_FAILURE(ExpectSameSecondVersion(a, b));
+  for (std::size_t i = 0; i < a.crossings.size(); ++i) {
+    EXPECT_EQ(a.crossings[i].sigma_m, b.crossings[i].sigma_m);
+  }
+  EXPECT_EQ(a.scatter, b.scatter);
+  EXPECT_EQ(a.scatter_sigma_m, b.scatter_sigma_m);
+}
+
+void ExpectNoScatter(const CloudEdges& cloud) {
+  for (const Crossing& crossing : cloud.crossings) EXPECT_EQ(crossing.sigma_m, 0);
+  EXPECT_EQ(cloud.scatter, Eigen::Matrix4d::Zero());
+  EXPECT_EQ(cloud.scatter_sigma_m, 0);
 }
 
 void ExpectSameHead(const Observation& a, const Observation& b) {
@@ -108,6 +124,17 @@ class ObservationOnTheWire : public ::testing::Test {
     observation.rejected = "";
     return observation;
   }
+
+  /// Held to the same rules where the second version lies alone and where it is nested.
+  template <typename Change>
+  std::string ErrorInSecondVersion(const Observation& observation, const Change& change) {
+    const Bytes second = BytesOf(ToSecondVersion(observation));
+    std::string alone = ErrorAfter<observation_v2_t>("OBSERVATION", second, change);
+    EXPECT_EQ(alone,
+              ErrorAfter<observation_v3_t>(observation, [&](auto& w) { change(w.observation); }));
+    return alone;
+  }
+
   RandomMessages random_{3};
 };
 
@@ -143,6 +170,28 @@ TEST_F(ObservationOnTheWire, TheFirstVersion) {
       ExpectSameFirstVersion(*a.cloud, *b.cloud);
       EXPECT_FALSE(b.cloud->pose);
       EXPECT_TRUE(b.cloud->crossings.empty());
+      ExpectNoScatter(*b.cloud);
+    }
+    ExpectSameHead(b, ThroughTheWire(b));  // and it can be sent on
+  }
+}
+
+// Logs from before observation_v3_t: what it added is as if never known.
+TEST_F(ObservationOnTheWire, TheSecondVersion) {
+  for (int round = 0; round < kRounds; ++round) {
+    const Observation a = random_.Seen();
+    const Bytes bytes = BytesOf(ToSecondVersion(a));
+    const auto b = std::get<Observation>(Decode("OBSERVATION", bytes.data(), bytes.size()));
+    ASSERT_NO_FATAL_FAILURE(ExpectSameHead(a, b));
+    if (a.image) ExpectSame(*a.image, *b.image);
+    if (a.cloud) {
+      ExpectSameSecondVersion(*a.cloud, *b.cloud);
+      ExpectNoScatter(*b.cloud);
+    }
+    ASSERT_EQ(a.candidates.size(), b.candidates.size());
+    for (std::size_t i = 0; i < a.candidates.size(); ++i) {
+      ExpectSameSecondVersion(a.candidates[i], b.candidates[i]);
+      ExpectNoScatter(b.candidates[i]);
     }
     ExpectSameHead(b, ThroughTheWire(b));  // and it can be sent on
   }
@@ -167,8 +216,7 @@ TEST_F(ObservationOnTheWire, BadFieldsOfTheFirstVersion) {
   // Held to the same rules where it lies alone and where it is nested.
   const auto error = [&](auto change) {
     const std::string alone = ErrorAfter<observation_t>("OBSERVATION", first, change);
-    EXPECT_EQ(alone,
-              ErrorAfter<observation_v2_t>(observation, [&](auto& w) { change(w.observation); }));
+    EXPECT_EQ(alone, ErrorInSecondVersion(observation, [&](auto& w) { change(w.observation); }));
     return alone;
   };
   EXPECT_EQ(error([](auto&) {}), "no error");
@@ -182,8 +230,7 @@ TEST_F(ObservationOnTheWire, BadFieldsOfTheFirstVersion) {
 }
 
 TEST_F(ObservationOnTheWire, BadPoses) {
-  const Observation observation = Whole();
-  const auto error = [&](auto change) { return ErrorAfter<observation_v2_t>(observation, change); };
+  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
   EXPECT_EQ(error([](auto&) {}), "no error");
   EXPECT_THAT(error([](auto& w) { w.image_pose.quaternion_wxyz[0] += 0.1; }),
               HasSubstr("image_pose: norm of quaternion_wxyz"));
@@ -194,7 +241,7 @@ TEST_F(ObservationOnTheWire, BadPoses) {
   EXPECT_THAT(error([](auto& w) { w.cloud_pose.covariance[2][1] = NAN; }),
               HasSubstr("cloud_pose: covariance[13] is nan"));
   EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[5][5] = -1e-9; }),
-              HasSubstr("image_pose: variance in covariance is -1e-09"));
+              HasSubstr("image_pose: diagonal of covariance is -1e-09"));
   EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[4][0] += 1; }),
               HasSubstr("image_pose: asymmetry of covariance is 1"));
   EXPECT_THAT(error([](auto& w) { w.candidate[1].pose.translation_m[0] = NAN; }),
@@ -207,7 +254,7 @@ TEST_F(ObservationOnTheWire, BadPoses) {
 }
 
 TEST_F(ObservationOnTheWire, BadSides) {
-  const auto error = [&](auto change) { return ErrorAfter<observation_v2_t>(Whole(), change); };
+  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
   EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = -1; }), HasSubstr("corner_sigma_px is -1"));
   EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = NAN; }), HasSubstr("corner_sigma_px is nan"));
   EXPECT_THAT(error([](auto& w) { w.side[2].why = "\x1b"; }), HasSubstr("side[2]: why is"));
@@ -220,13 +267,13 @@ TEST_F(ObservationOnTheWire, BadSides) {
               }),
               HasSubstr("side[0]: num_curve is 1; expected 2 or more"));
   EXPECT_THAT(error([](auto& w) { w.side[1].covariance_px2[1][1] = -1; }),
-              HasSubstr("side[1]: variance in covariance_px2 is -1"));
+              HasSubstr("side[1]: diagonal of covariance_px2 is -1"));
   EXPECT_THAT(error([](auto& w) { w.side[1].covariance_px2[0][1] += 1; }),
               HasSubstr("side[1]: asymmetry of covariance_px2 is 1"));
 }
 
 TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
-  const auto error = [&](auto change) { return ErrorAfter<observation_v2_t>(Whole(), change); };
+  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
   EXPECT_THAT(error([](auto& w) { w.cloud_crossing[1].point_m[2] = NAN; }),
               HasSubstr("cloud_crossing[1]: point_m[2] is nan"));
   EXPECT_THAT(error([](auto& w) { w.cloud_crossing[0].half_width_m = -0.1; }),
@@ -243,6 +290,57 @@ TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
   EXPECT_THAT(
       error([](auto& w) { w.candidate.resize(101, w.candidate[0]), w.num_candidates = 101; }),
       HasSubstr("num_candidates is 101"));
+}
+
+TEST_F(ObservationOnTheWire, BadScatters) {
+  const Observation observation = Whole();
+  const auto error = [&](auto change) { return ErrorAfter<observation_v3_t>(observation, change); };
+  EXPECT_EQ(error([](auto&) {}), "no error");
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.crossing_sigma_m[1] = -0.1; }),
+              HasSubstr("cloud_scatter: crossing_sigma_m[1] is -0.1"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.crossing_sigma_m[0] = INFINITY; }),
+              HasSubstr("cloud_scatter: crossing_sigma_m[0] is inf"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[2][1] = NAN; }),
+              HasSubstr("cloud_scatter: scatter[9] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[0][0] = -2; }),
+              HasSubstr("cloud_scatter: diagonal of scatter is -2"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[3][3] = -1; }),
+              HasSubstr("cloud_scatter: diagonal of scatter is -1"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[3][0] = 1e3; }),
+              HasSubstr("cloud_scatter: asymmetry of scatter is"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter_sigma_m = NAN; }),
+              HasSubstr("cloud_scatter: scatter_sigma_m is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate_scatter[1].scatter_sigma_m = -1; }),
+              HasSubstr("candidate_scatter[1]: scatter_sigma_m is -1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate_scatter[0].scatter[1][1] = INFINITY; }),
+              HasSubstr("candidate_scatter[0]: scatter[5] is inf"));
+  // What is not there is not read.
+  EXPECT_EQ(error([](auto& w) {
+              w.observation.observation.has_cloud = 0;
+              w.observation.observation.rejected = "no board in view";
+              w.cloud_scatter.scatter_sigma_m = NAN;
+              w.cloud_scatter.num_crossings = 1, w.cloud_scatter.crossing_sigma_m = {NAN};
+            }),
+            "no error");
+}
+
+TEST_F(ObservationOnTheWire, ScattersOfOtherCounts) {
+  const Observation observation = Whole();
+  const auto error = [&](auto change) { return ErrorAfter<observation_v3_t>(observation, change); };
+  const auto resize = [](int size, board_scatter_t* w) {
+    w->num_crossings = size;
+    w->crossing_sigma_m.resize(static_cast<std::size_t>(size));
+  };
+  EXPECT_THAT(error([&](auto& w) { resize(3, &w.cloud_scatter); }),
+              HasSubstr("length of cloud_scatter.crossing_sigma_m is 3; expected 2"));
+  EXPECT_THAT(error([&](auto& w) { resize(0, &w.cloud_scatter); }),
+              HasSubstr("length of cloud_scatter.crossing_sigma_m is 0; expected 2"));
+  EXPECT_THAT(error([&](auto& w) { resize(1, &w.candidate_scatter[1]); }),
+              HasSubstr("length of candidate_scatter[1].crossing_sigma_m is 1; expected 2"));
+  EXPECT_THAT(error([](auto& w) { w.candidate_scatter.pop_back(), w.num_candidate_scatters = 1; }),
+              HasSubstr("length of candidate_scatter is 1; expected 2"));
+  EXPECT_THAT(error([](auto& w) { w.candidate_scatter.clear(), w.num_candidate_scatters = 0; }),
+              HasSubstr("length of candidate_scatter is 0; expected 2"));
 }
 
 TEST_F(ObservationOnTheWire, ASideThatNoByteHoldsIsRefusedWhereItWasMade) {

@@ -185,7 +185,15 @@ class RandomMessages {
   }
   Crossing WhereAScanLeaves() {
     return {Rows<Eigen::Vector3d>(1)[0], Number(0, 0.1), Int(0, 3),
-            static_cast<CrossingKind>(Int(1, 3))};
+            static_cast<CrossingKind>(Int(1, 3)), Number(0, 0.1)};
+  }
+  Eigen::Matrix4d Scatter() {
+    Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+    for (const Eigen::Vector3d& point : Rows<Eigen::Vector3d>(Int(0, 20), -1, 1)) {
+      const Eigen::Vector4d q = point.homogeneous();
+      scatter += q * q.transpose();
+    }
+    return scatter;
   }
   ImageEdges Edges() {
     ImageEdges image;
@@ -212,6 +220,8 @@ class RandomMessages {
     cloud.points = Int(0, 10000);
     if (Coin()) cloud.pose = PoseOfTarget();
     for (int i = Int(0, 20); i > 0; --i) cloud.crossings.push_back(WhereAScanLeaves());
+    cloud.scatter = Scatter();
+    cloud.scatter_sigma_m = Number(0, 0.1);
     return cloud;
   }
 
