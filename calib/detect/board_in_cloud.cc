@@ -140,6 +140,17 @@ Eigen::Matrix4d Scatter(const PlaneMembers& members, const Filling& filling,
   return scatter;
 }
 
+Eigen::Matrix4d RawScatter(const std::vector<Eigen::Vector3d>& points,
+                           const Eigen::Vector3d& centre) {
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    Eigen::Vector4d q;
+    q << point - centre, 1;
+    scatter += q * q.transpose();
+  }
+  return scatter;
+}
+
 // Of delta in the target's own axes about its centre: tilt and distance from the points' scatter
 // about the plane, place and turn in the plane from the crossings.
 Matrix6d CovarianceInTarget(const std::vector<Eigen::Vector3d>& points, const Rigid3& pose,
@@ -240,6 +251,7 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   out.edges.height_m = size.shorter;
   const double sigma = std::max(rms, 0.3 * options.range_sigma_m);
   out.edges.scatter = Scatter(members, filling, out.edges.centre);
+  out.edges.raw_scatter = RawScatter(filling.points, out.edges.centre);
   out.edges.scatter_sigma_m = sigma;
   const Matrix6d to_lidar = Adjoint(pose);
   out.edges.pose = TargetPose{

@@ -88,6 +88,8 @@ struct CloudEdges {
   /// q = (p - centre, 1), in metres; p is where the beam meets the fitted plane, moved along the
   /// normal by the point's distance from it, so noise on slanted beams does not lean the plane.
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+  /// The same of the points where they were measured.
+  Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();
   double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
 };
 

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "calib/solve/by_planes.h"
+#include "calib/solve/colouring.h"
 #include "calib/solve/cross_check.h"
 #include "calib/solve/degenerate.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/joint_solve.h"
+#include "calib/solve/next_view.h"
 
 namespace rgbdt {
 namespace {
@@ -182,6 +184,10 @@ void JudgeAll(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras)
   for (const GuessedCamera& camera : cameras) {
     JudgeCamera(*camera.views->spec, camera.views->Usable(), &camera.views->report);
     JudgeEdges(edges, camera.views->Usable(), &camera.views->report);
+    const CameraCalibration& calibration = camera.views->report.calibration;
+    if (!calibration.covariance) continue;
+    camera.views->report.sigma =
+        SigmaOf(*camera.views->spec, calibration.camera_from_lidar, *calibration.covariance);
   }
 }
 
@@ -191,9 +197,16 @@ void ShareTime(double seconds, const std::vector<GuessedCamera>& cameras) {
   }
 }
 
+// Of cameras that are solved apart, the worst one's.
+void TakeNextView(std::optional<NextView> next, Report* report) {
+  if (!next) return;
+  if (report->next_view && report->next_view->sigma_before_px >= next->sigma_before_px) return;
+  report->next_view = std::move(next);
+}
+
 // Cameras that are solved together, from their guesses to their reports.
 void SolveGroup(const Target& target, const CalibrateOptions& options,
-                const std::vector<GuessedCamera>& cameras) {
+                const std::vector<GuessedCamera>& cameras, Report* report) {
   const Stopwatch watch;
   JointProblem joint = MakeJointProblem(
       target, cameras,
@@ -201,7 +214,10 @@ void SolveGroup(const Target& target, const CalibrateOptions& options,
   const JointResult result = SolveJointly(&joint);
   TakeJoint(options, joint, result);
   ShareTime(watch.Seconds(), cameras);
-  if (options.diagnostics) CrossValidate(joint, result, options.folds);
+  if (options.diagnostics) {
+    CrossValidate(joint, result, options.folds);
+    TakeNextView(FindNextView(joint, result), report);
+  }
   for (const GuessedCamera& camera : cameras) CheckDegenerate(camera.views);
   ShiftRanges(cameras);
   JudgeAll({target, result.solution.state.shared, joint.problem.priors}, cameras);
@@ -241,9 +257,9 @@ void CalibrateByBoards(const Target& target, const CalibrateOptions& options,
   if (options.method == kPlaneMethod) {
     SolveByPlanes(target, guessed);
   } else if (options.joint && !guessed.empty()) {
-    SolveGroup(target, options, guessed);
+    SolveGroup(target, options, guessed, report);
   } else {
-    for (const GuessedCamera& camera : guessed) SolveGroup(target, options, {camera});
+    for (const GuessedCamera& camera : guessed) SolveGroup(target, options, {camera}, report);
   }
   if (options.diagnostics) report->closure = CloseLoops(guessed);
 }

@@ -28,10 +28,10 @@ void Add(const Observation& o, const Rigid3& camera_from_lidar, Sums* sums) {
   j.topLeftCorner<3, 3>() = turn_back * cross;
   j.block<1, 3>(3, 0) = centre.cross(n).transpose();
   j.block<1, 3>(3, 3) = n.transpose();
-  sums->h += j.transpose() * o.cloud->scatter * j;
-  sums->g -= j.transpose() * o.cloud->scatter * x;
-  sums->squares += x.dot(o.cloud->scatter * x);
-  sums->points += o.cloud->scatter(3, 3);
+  sums->h += j.transpose() * o.cloud->raw_scatter * j;
+  sums->g -= j.transpose() * o.cloud->raw_scatter * x;
+  sums->squares += x.dot(o.cloud->raw_scatter * x);
+  sums->points += o.cloud->raw_scatter(3, 3);
 }
 
 Sums SumsAt(const std::vector<const Observation*>& used, const Rigid3& camera_from_lidar) {

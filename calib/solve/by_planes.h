@@ -10,7 +10,8 @@ namespace rgbdt {
 /// Point-to-plane over board views (Unnikrishnan and Hebert, Fast Extrinsic Calibration of a Laser
 /// Rangefinder to a Camera, 2005): the sum over all points on all boards of their squared distances
 /// from the plane in which the camera sees the board, least squares over camera_from_lidar from a
-/// start nearby. Every point counts the same; the planes count as exact; edges have no say. The
+/// start nearby. Every point counts the same, where it
+/// was measured; the planes count as exact; edges have no say. The
 /// covariance is the usual one, by the residuals. `used`: usable observations of one camera with
 /// image poses and scatters.
 CameraCalibration SolvePlanes(const std::vector<const Observation*>& used, const Rigid3& start);

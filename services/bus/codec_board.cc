@@ -100,6 +100,7 @@ board_scatter_t ScatterToWire(const CloudEdges& cloud) {
     wire.crossing_sigma_m.push_back(crossing.sigma_m);
   }
   MatrixToWire(cloud.scatter, wire.scatter);
+  MatrixToWire(cloud.raw_scatter, wire.raw_scatter);
   wire.scatter_sigma_m = cloud.scatter_sigma_m;
   return wire;
 }
@@ -109,6 +110,7 @@ void Check(const board_scatter_t& wire) {
     CheckNotNegative(At("crossing_sigma_m", i), wire.crossing_sigma_m[i]);
   }
   CheckCovariance("scatter", wire.scatter[0], 4);
+  CheckCovariance("raw_scatter", wire.raw_scatter[0], 4);
   CheckNotNegative("scatter_sigma_m", wire.scatter_sigma_m);
 }
 
@@ -117,6 +119,7 @@ void ScatterFromWire(const board_scatter_t& wire, CloudEdges* cloud) {
     cloud->crossings[i].sigma_m = wire.crossing_sigma_m[i];
   }
   cloud->scatter = MatrixFromWire(wire.scatter);
+  cloud->raw_scatter = MatrixFromWire(wire.raw_scatter);
   cloud->scatter_sigma_m = wire.scatter_sigma_m;
 }
 

@@ -33,7 +33,7 @@ constexpr std::array<Struct, 7> kStructs = {{
     {"cloud_board_t",
      "#num_boundary num_boundary*3d 3d 3d 3d i b target_pose_t #num_crossings "
      "num_crossings*board_crossing_t"},
-    {"board_scatter_t", "#num_crossings num_crossings*d 17d"},
+    {"board_scatter_t", "#num_crossings num_crossings*d 33d"},
 }};
 
 std::string_view LayoutOf(std::string_view name) {

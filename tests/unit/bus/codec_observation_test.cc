@@ -84,6 +84,7 @@ void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
     EXPECT_EQ(a.crossings[i].sigma_m, b.crossings[i].sigma_m);
   }
   EXPECT_EQ(a.scatter, b.scatter);
+  EXPECT_EQ(a.raw_scatter, b.raw_scatter);
   EXPECT_EQ(a.scatter_sigma_m, b.scatter_sigma_m);
 }
 
@@ -302,6 +303,8 @@ TEST_F(ObservationOnTheWire, BadScatters) {
               HasSubstr("cloud_scatter: crossing_sigma_m[0] is inf"));
   EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[2][1] = NAN; }),
               HasSubstr("cloud_scatter: scatter[9] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.raw_scatter[1][2] = NAN; }),
+              HasSubstr("cloud_scatter: raw_scatter[6] is nan"));
   EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[0][0] = -2; }),
               HasSubstr("cloud_scatter: diagonal of scatter is -2"));
   EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[3][3] = -1; }),

@@ -221,6 +221,7 @@ class RandomMessages {
     if (Coin()) cloud.pose = PoseOfTarget();
     for (int i = Int(0, 20); i > 0; --i) cloud.crossings.push_back(WhereAScanLeaves());
     cloud.scatter = Scatter();
+    cloud.raw_scatter = Scatter();
     cloud.scatter_sigma_m = Number(0, 0.1);
     return cloud;
   }
