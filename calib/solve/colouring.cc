@@ -1,0 +1,76 @@
+#include "calib/solve/colouring.h"
+
+#include <ceres/jet.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rgbdt {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kGridX = 25, kGridY = 19;  // the image's border is on the grid: the worst is there
+
+Eigen::Matrix<double, 2, 3> PixelByPoint(const Camera& camera, const Eigen::Vector3d& p) {
+  using Jet = ceres::Jet<double, 3>;
+  Jet u;
+  Jet v;
+  ProjectUnchecked(camera.lens(), Jet(p.x(), 0), Jet(p.y(), 1), Jet(p.z(), 2), &u, &v);
+  Eigen::Matrix<double, 2, 3> by_point;
+  by_point << u.v.transpose(), v.v.transpose();
+  return by_point;
+}
+
+// Rounding may leave a variance of nothing below zero. NaN stays NaN.
+double Root(double variance) { return variance < 0 ? 0 : std::sqrt(variance); }
+
+std::array<double, 3> Sigmas(const Eigen::Matrix3d& covariance, double scale) {
+  return {scale * Root(covariance(0, 0)), scale * Root(covariance(1, 1)),
+          scale * Root(covariance(2, 2))};
+}
+
+double WorstPx(const Camera& camera, const Matrix6d& covariance, double distance_m) {
+  double worst = kNan;
+  for (int y = 0; y < kGridY; ++y) {
+    for (int x = 0; x < kGridX; ++x) {
+      const Eigen::Vector2d pixel(x * (camera.width() - 1.0) / (kGridX - 1),
+                                  y * (camera.height() - 1.0) / (kGridY - 1));
+      const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
+      if (sigma) worst = std::fmax(worst, *sigma);  // of a NaN and a number, the number
+    }
+  }
+  return worst;
+}
+
+ColouringSigma ColouringAt(const Camera& camera, const Matrix6d& covariance, double distance_m) {
+  const Eigen::Vector2d middle(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
+  return {distance_m, ColouringSigmaAt(camera, covariance, middle, distance_m).value_or(kNan),
+          WorstPx(camera, covariance, distance_m)};
+}
+
+}  // namespace
+
+std::optional<double> ColouringSigmaAt(const Camera& camera, const Matrix6d& covariance,
+                                       const Eigen::Vector2d& pixel, double distance_m) {
+  const auto direction = camera.Unproject(pixel);
+  if (!direction) return std::nullopt;
+  const Eigen::Vector3d point = distance_m * *direction;
+  const Eigen::Matrix<double, 2, 3> j = PixelByPoint(camera, point);
+  return Root((j * PointCovariance(covariance, point) * j.transpose()).trace());
+}
+
+PoseSigma SigmaOf(const CameraSpec& spec, const Rigid3& camera_from_lidar,
+                  const Matrix6d& covariance) {
+  const Camera camera(spec);
+  const Eigen::Matrix3d r = camera_from_lidar.rotation.toRotationMatrix();
+  PoseSigma sigma;
+  sigma.rotation_deg = Sigmas(covariance.topLeftCorner<3, 3>(), 180 / M_PI);
+  sigma.centre_mm = Sigmas(r.transpose() * covariance.bottomRightCorner<3, 3>() * r, 1000);
+  for (const double distance_m : kColouringDistancesM) {
+    sigma.colouring.push_back(ColouringAt(camera, covariance, distance_m));
+  }
+  return sigma;
+}
+
+}  // namespace rgbdt
