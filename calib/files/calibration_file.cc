@@ -35,7 +35,9 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
 void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) {
   out->set_camera(text::ValidUtf8(camera.camera));
   text::FromRigid3(camera.camera_from_lidar, out->mutable_camera_from_lidar());
-  if (camera.covariance) text::FromMatrix(*camera.covariance, out->mutable_covariance());
+  if (camera.covariance && camera.covariance->allFinite()) {
+    text::FromMatrix(*camera.covariance, out->mutable_covariance());
+  }
   out->set_converged(camera.converged);
   out->set_status(text::ValidUtf8(camera.status));
 }

@@ -99,6 +99,10 @@ std::string Number(double value, int decimals) {
   return text;
 }
 
+std::string PoseErrorText(const PoseError& error) {
+  return Number(error.rotation_deg, 3) + "° and " + Number(error.translation_mm, 1) + " mm";
+}
+
 std::string Page(const std::string& title, const std::string& body) {
   return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

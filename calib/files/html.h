@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/calibration.h"
+
 namespace rgbdt::html {
 
 /// Text so that it shows as it is, in an element or a quoted attribute.
@@ -18,6 +20,9 @@ std::string Table(const std::vector<std::string>& head,
 
 /// The number with so many digits behind the point; "–" where it is not finite.
 std::string Number(double value, int decimals);
+
+/// "0.012° and 3.4 mm"
+std::string PoseErrorText(const PoseError& error);
 
 /// The page around `body` (HTML), with its style.
 std::string Page(const std::string& title, const std::string& body);

@@ -73,7 +73,7 @@ Rigid3 ToRigid3(const proto::Pose& pose, const Place& place) {
           ToTranslation(pose.translation_m(), place)};
 }
 
-Rigid3 ToRigid3(const proto::CameraFromLidar& pose, const Place& place) {
+Rigid3 ToRigid3(const proto::RigidMotion& pose, const Place& place) {
   return {ToQuaternion(pose.quaternion_wxyz(), place), ToTranslation(pose.translation_m(), place)};
 }
 
@@ -85,7 +85,7 @@ Matrix6d ToMatrix(const proto::Covariance& covariance, const Place& place) {
 }
 
 void FromRigid3(const Rigid3& pose, proto::Pose* out) { Fill(pose, out); }
-void FromRigid3(const Rigid3& pose, proto::CameraFromLidar* out) { Fill(pose, out); }
+void FromRigid3(const Rigid3& pose, proto::RigidMotion* out) { Fill(pose, out); }
 
 void FromMatrix(const Matrix6d& covariance, proto::Covariance* out) {
   out->clear_row_by_row();

@@ -24,12 +24,12 @@ void RequireFinite(double number, const Place& place, const std::string& field);
 /// All throw InputError where counts are wrong, numbers are not finite, or the quaternion's norm is
 /// more than 1e-3 away from 1.
 Rigid3 ToRigid3(const proto::Pose& pose, const Place& place);
-Rigid3 ToRigid3(const proto::CameraFromLidar& pose, const Place& place);
+Rigid3 ToRigid3(const proto::RigidMotion& pose, const Place& place);
 Matrix6d ToMatrix(const proto::Covariance& covariance, const Place& place);
 
 /// Both with a normalised quaternion.
 void FromRigid3(const Rigid3& pose, proto::Pose* out);
-void FromRigid3(const Rigid3& pose, proto::CameraFromLidar* out);
+void FromRigid3(const Rigid3& pose, proto::RigidMotion* out);
 void FromMatrix(const Matrix6d& covariance, proto::Covariance* out);
 
 /// Gain, offset and so on; emissivity and reflected temperature are the caller's.

@@ -12,36 +12,17 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/proto/report.pb.h"
 #include "calib/files/proto_convert.h"
+#include "calib/files/report_parts.h"
 #include "calib/files/text_proto.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
 namespace {
 
+using text::FromPoseError;
 using text::Place;
+using text::ToPoseError;
 using text::ValidUtf8;
-
-void FromPoseError(const PoseError& error, proto::PoseError* out) {
-  out->set_rotation_deg(error.rotation_deg);
-  out->set_translation_mm(error.translation_mm);
-}
-
-PoseError ToPoseError(const proto::PoseError& error) {
-  return {error.rotation_deg(), error.translation_mm()};
-}
-
-// JSON knows no NaN: a figure that is not to be had is absent.
-void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out) {
-  if (figure.train && std::isfinite(*figure.train)) out->set_train(*figure.train);
-  if (figure.heldout && std::isfinite(*figure.heldout)) out->set_heldout(*figure.heldout);
-}
-
-TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure) {
-  TrainHeldout out;
-  if (figure.has_train()) out.train = figure.train();
-  if (figure.has_heldout()) out.heldout = figure.heldout();
-  return out;
-}
 
 void FromViews(const CameraReport& camera, proto::CameraReport* out) {
   for (const std::string& view : camera.used) out->mutable_views()->add_used(ValidUtf8(view));
@@ -60,6 +41,9 @@ void FromViews(const CameraReport& camera, proto::CameraReport* out) {
     quality->set_heldout(view.heldout);
     quality->set_distance_transform_px(view.distance_transform_px);
     quality->set_edge_rms_px(view.edge_rms_px);
+    if (view.edge_rms_whitened && std::isfinite(*view.edge_rms_whitened)) {
+      quality->set_edge_rms_whitened(*view.edge_rms_whitened);
+    }
   }
 }
 
@@ -71,8 +55,11 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
     camera->rejected.push_back({view.view(), view.why()});
   }
   for (const proto::ViewQuality& view : message.view_quality()) {
-    camera->views.push_back(
-        {view.view(), view.heldout(), view.distance_transform_px(), view.edge_rms_px()});
+    camera->views.push_back({view.view(), view.heldout(), view.distance_transform_px(),
+                             view.edge_rms_px(), std::nullopt});
+    if (view.has_edge_rms_whitened()) {
+      camera->views.back().edge_rms_whitened = view.edge_rms_whitened();
+    }
   }
 }
 
@@ -110,20 +97,22 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   text::FromRigid3(calibration.camera_from_lidar, out->mutable_camera_from_lidar());
   out->set_converged(calibration.converged);
   out->set_status(ValidUtf8(calibration.status));
-  if (calibration.covariance) text::FromMatrix(*calibration.covariance, out->mutable_covariance());
+  if (calibration.covariance && calibration.covariance->allFinite()) {
+    text::FromMatrix(*calibration.covariance, out->mutable_covariance());
+  }
   if (camera.first_guess) text::FromRigid3(*camera.first_guess, out->mutable_first_guess());
   FromViews(camera, out);
-  FromTrainHeldout(camera.distance_transform_px, out->mutable_distance_transform_px());
-  FromTrainHeldout(camera.edge_rms_px, out->mutable_edge_rms_px());
+  text::FromTrainHeldout(camera.distance_transform_px, out->mutable_distance_transform_px());
+  text::FromTrainHeldout(camera.edge_rms_px, out->mutable_edge_rms_px());
   for (const StartResult& start : camera.other_starts) FromStart(start, out->add_other_starts());
   if (camera.first_guess_error) {
     FromPoseError(*camera.first_guess_error, out->mutable_first_guess_error());
   }
   if (camera.truth_error) FromPoseError(*camera.truth_error, out->mutable_truth_error());
   if (camera.range_offset) {
-    out->mutable_range_offset_m()->set_value(camera.range_offset->value);
-    out->mutable_range_offset_m()->set_sigma(camera.range_offset->sigma);
+    text::FromEstimate(*camera.range_offset, out->mutable_range_offset_m());
   }
+  text::FromSureness(camera, out);
   out->mutable_seconds()->set_detect_image(camera.detect_image_s);
   out->mutable_seconds()->set_detect_cloud(camera.detect_cloud_s);
   out->mutable_seconds()->set_solve(camera.solve_s);
@@ -144,20 +133,20 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
     camera.first_guess = text::ToRigid3(message.first_guess(), place.In("first_guess"));
   }
   ToViews(message, &camera);
-  camera.distance_transform_px = ToTrainHeldout(message.distance_transform_px());
-  camera.edge_rms_px = ToTrainHeldout(message.edge_rms_px());
+  camera.distance_transform_px = text::ToTrainHeldout(message.distance_transform_px());
+  camera.edge_rms_px = text::ToTrainHeldout(message.edge_rms_px());
   for (int i = 0; i < message.other_starts_size(); ++i) {
     camera.other_starts.push_back(
         ToStart(message.other_starts(i), name, place.In("other_starts", i)));
   }
   if (message.has_range_offset_m()) {
-    camera.range_offset =
-        Estimate{message.range_offset_m().value(), message.range_offset_m().sigma()};
+    camera.range_offset = text::ToEstimate(message.range_offset_m());
   }
   if (message.has_first_guess_error()) {
     camera.first_guess_error = ToPoseError(message.first_guess_error());
   }
   if (message.has_truth_error()) camera.truth_error = ToPoseError(message.truth_error());
+  text::ToSureness(message, place, &camera);
   camera.detect_image_s = message.seconds().detect_image();
   camera.detect_cloud_s = message.seconds().detect_cloud();
   camera.solve_s = message.seconds().solve();
@@ -213,6 +202,7 @@ std::string ReportToJson(const Report& report) {
   for (const CameraReport& camera : report.cameras) {
     FromCamera(camera, &(*message.mutable_cameras())[ValidUtf8(camera.calibration.camera)]);
   }
+  text::FromRigWide(report, &message);
   return ToJson(message);
 }
 
@@ -233,6 +223,7 @@ Report ReportFromJson(const std::string& json, const std::string& where) {
     const Place place(at, camera.GetDescriptor(), nullptr);
     report.cameras.push_back(ToCamera(name, camera, place));
   }
+  text::ToRigWide(message, where, &report);
   std::sort(report.cameras.begin(), report.cameras.end(),
             [](const CameraReport& a, const CameraReport& b) {
               return a.calibration.camera < b.calibration.camera;

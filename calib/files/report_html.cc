@@ -7,6 +7,7 @@
 #include "calib/files/html.h"
 #include "calib/files/image_files.h"
 #include "calib/files/session_dir.h"
+#include "calib/files/sureness_html.h"
 #include "calib/files/text_proto.h"
 #include "calib/files/verdict.h"
 
@@ -15,6 +16,7 @@ namespace {
 
 using html::Escape;
 using html::Number;
+using html::PoseErrorText;
 
 using Row = std::vector<std::string>;
 using Rows = std::vector<Row>;
@@ -38,10 +40,6 @@ std::string Optional(const std::optional<double>& value, int decimals) {
   return value ? Number(*value, decimals) : "–";
 }
 
-std::string ErrorText(const PoseError& error) {
-  return Number(error.rotation_deg, 3) + "° and " + Number(error.translation_mm, 1) + " mm";
-}
-
 std::string FiguresHtml(const CameraReport& camera) {
   const auto row = [](const char* name, const TrainHeldout& figure) {
     return Row{name, Optional(figure.train, 2) + " px", Optional(figure.heldout, 2) + " px"};
@@ -54,15 +52,19 @@ std::string FiguresHtml(const CameraReport& camera) {
                    row("mean distance-transform value (the 2015 paper's quality)",
                        camera.distance_transform_px)});
   Rows rows;
-  if (camera.truth_error) rows.push_back({"result against truth", ErrorText(*camera.truth_error)});
+  if (camera.truth_error) {
+    rows.push_back({"result against truth", PoseErrorText(*camera.truth_error)});
+  }
   if (camera.first_guess_error) {
-    rows.push_back({"first guess against truth", ErrorText(*camera.first_guess_error)});
+    rows.push_back({"first guess against truth", PoseErrorText(*camera.first_guess_error)});
   }
   if (camera.first_guess) {
-    rows.push_back({"result against first guess",
-                    ErrorText(ErrorOf(camera.calibration.camera_from_lidar, *camera.first_guess))});
+    rows.push_back(
+        {"result against first guess",
+         PoseErrorText(ErrorOf(camera.calibration.camera_from_lidar, *camera.first_guess))});
   }
-  if (camera.calibration.covariance) {
+  // SurenessHtml says it better.
+  if (camera.calibration.covariance && !camera.sigma) {
     const Vector6d sigma = camera.calibration.covariance->diagonal().cwiseMax(0).cwiseSqrt();
     rows.push_back({"1 sigma about and along the camera's x, y, z",
                     Number(sigma[0] * 180 / M_PI, 3) + ", " + Number(sigma[1] * 180 / M_PI, 3) +
@@ -103,6 +105,12 @@ std::string PoseHtml(const CameraReport& camera) {
          MatrixText(lidar_from_camera) + "</pre>\n";
 }
 
+std::string EdgeRmsText(const ViewQuality& quality) {
+  const std::string px = Number(quality.edge_rms_px, 2);
+  if (!quality.edge_rms_whitened) return px;
+  return px + " (" + Number(*quality.edge_rms_whitened, 2) + " sigmas)";
+}
+
 // Every view once: its figures where there are some, else why not.
 std::string ViewsHtml(const CameraReport& camera) {
   struct Line {
@@ -116,7 +124,7 @@ std::string ViewsHtml(const CameraReport& camera) {
                                         [&](const ViewQuality& q) { return q.view == view; });
       const bool known = quality != camera.views.end();
       lines.push_back({view,
-                       {Escape(view), role, known ? Number(quality->edge_rms_px, 2) : "–",
+                       {Escape(view), role, known ? EdgeRmsText(*quality) : "–",
                         known ? Number(quality->distance_transform_px, 2) : "–", ""}});
     }
   };
@@ -140,8 +148,8 @@ std::string StartsHtml(const CameraReport& camera) {
   for (const StartResult& start : camera.other_starts) {
     rows.push_back({Escape(start.start),
                     start.calibration.converged ? "yes" : "no: " + Escape(start.calibration.status),
-                    Optional(start.distance_transform_px, 2), ErrorText(start.from_result),
-                    start.truth_error ? ErrorText(*start.truth_error) : "–"});
+                    Optional(start.distance_transform_px, 2), PoseErrorText(start.from_result),
+                    start.truth_error ? PoseErrorText(*start.truth_error) : "–"});
   }
   return Heading(3, "The same solve from other starts") +
          html::Table({"start", "converged", "distance transform [px]", "away from the result",
@@ -184,19 +192,20 @@ std::string IntroHtml(const Report& report) {
   return out + "</p>\n";
 }
 
-std::string CameraHtml(const CameraReport& camera) {
+std::string CameraHtml(const CameraReport& camera, const std::optional<NextView>& next_view) {
   return "<section>\n" + Heading(2, "Camera " + camera.calibration.camera) +
-         VerdictHtml(Judge(camera)) + Heading(3, "Figures") + FiguresHtml(camera) +
-         PoseHtml(camera) + ViewsHtml(camera) + StartsHtml(camera) + SecondsHtml(camera) +
-         "</section>\n";
+         VerdictHtml(Judge(camera, next_view)) + Heading(3, "Figures") + FiguresHtml(camera) +
+         SurenessHtml(camera) + PoseHtml(camera) + ViewsHtml(camera) + StartsHtml(camera) +
+         SecondsHtml(camera) + "</section>\n";
 }
 
 }  // namespace
 
 std::string ReportHtml(const Report& report, const std::vector<ReportPicture>& pictures) {
   std::string body = IntroHtml(report);
-  for (const CameraReport& camera : report.cameras) body += CameraHtml(camera);
+  for (const CameraReport& camera : report.cameras) body += CameraHtml(camera, report.next_view);
   if (report.cameras.empty()) body += "<p>No camera could be calibrated.</p>\n";
+  body += ClosureHtml(report) + NextViewHtml(report);
   if (!pictures.empty()) body += Heading(2, "Pictures");
   for (const ReportPicture& picture : pictures) body += PictureHtml(picture);
   return html::Page("rgbdt calibration report", text::ValidUtf8(body));

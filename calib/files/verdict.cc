@@ -1,6 +1,7 @@
 #include "calib/files/verdict.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "calib/files/html.h"
 
@@ -14,6 +15,9 @@ constexpr std::size_t kFewViews = 5;
 constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
+constexpr double kJudgedAtM = 5, kUnsurePx = 1;
+// Of the held-out crossings' RMS in their sigmas: beyond these the sigmas are not what was stated.
+constexpr double kLeastWhitened = 0.7, kMostWhitened = 1.4;
 
 class Judgement {
  public:
@@ -26,7 +30,10 @@ class Judgement {
     verdict_.grade = Grade::kBad;
     Say(sentence);
   }
+  /// Nothing else matters beside it.
+  void Headline(const std::string& headline) { verdict_.headline = headline; }
   Verdict Finish() {
+    if (!verdict_.headline.empty()) return verdict_;
     verdict_.headline = verdict_.grade == Grade::kGood ? "Consistent: no sign that it is wrong."
                         : verdict_.grade == Grade::kCaution ? "Take care before using it."
                                                             : "Do not use it.";
@@ -94,15 +101,65 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
   }
 }
 
+void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextView>& next_view,
+                 Judgement* judgement) {
+  const std::string& status = calibration.status;
+  if (status.rfind("degenerate", 0) == 0) {
+    judgement->Headline("Do not use it: the pose cannot be told from these views.");
+    judgement->Bad("The solve says: " + status);
+    if (next_view) judgement->Say("Next: " + next_view->words);
+  } else if (!calibration.converged) {
+    judgement->Bad("The solve did not converge" + (status.empty() ? "." : ": " + status));
+  } else if (!status.empty() && status != "converged") {
+    judgement->Caution("The solve says: " + status);  // e.g. that it kept the first guess
+  }
+}
+
+void JudgeColouring(const PoseSigma& sigma, Judgement* judgement) {
+  for (const ColouringSigma& at : sigma.colouring) {
+    if (std::abs(at.distance_m - kJudgedAtM) > 1e-6 || !std::isfinite(at.worst_px)) continue;
+    const std::string far = "1 sigma of where the colour of a point " +
+                            html::Number(kJudgedAtM, 0) + " m away is taken from is " +
+                            html::Number(at.worst_px, 2) + " px where it is worst in the image";
+    if (at.worst_px > kUnsurePx) {
+      judgement->Caution(far + ", more than " + html::Number(kUnsurePx, 0) +
+                         " px: take more views in that part of the image, some about as far away.");
+    } else {
+      judgement->Say(far + ".");
+    }
+  }
+}
+
+void JudgeHalves(const Halves& halves, Judgement* judgement) {
+  const std::string differ = "Two halves of the views, each solved by itself, differ by " +
+                             html::PoseErrorText(halves.difference);
+  if (halves.chi2 > kUnlikelyChi2) {
+    judgement->Caution(differ + ", more than their sigmas allow (chi-square " +
+                       html::Number(halves.chi2, 1) + ", by chance above " +
+                       html::Number(kUnlikelyChi2, 1) +
+                       " once in a thousand times): the stated sigma is not to be believed.");
+  } else {
+    judgement->Say(differ + (std::isnan(halves.chi2) ? "." : ", no more than their sigmas allow."));
+  }
+}
+
+void JudgeWhitened(const std::optional<double>& rms, Judgement* judgement) {
+  if (!rms || (*rms >= kLeastWhitened && *rms <= kMostWhitened)) return;
+  judgement->Caution("On the views held out the beams miss the board's edge by " +
+                     html::Number(*rms, 2) + " of their sigmas (RMS; expected: 1): they are " +
+                     (*rms > 1 ? "less" : "more") +
+                     " exact than stated, and the stated sigma is not to be believed.");
+}
+
 }  // namespace
 
-Verdict Judge(const CameraReport& camera) {
+Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
-  if (!camera.calibration.converged) {
-    const std::string& status = camera.calibration.status;
-    judgement.Bad("The solve did not converge" + (status.empty() ? "." : ": " + status));
-  }
+  JudgeStatus(camera.calibration, next_view, &judgement);
   JudgeFit(camera, &judgement);
+  JudgeWhitened(camera.edge_rms_whitened.heldout, &judgement);
+  if (camera.halves) JudgeHalves(*camera.halves, &judgement);
+  if (camera.sigma) JudgeColouring(*camera.sigma, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {
     judgement.Caution("Views used: only " + std::to_string(camera.used.size()) + "; take " +

@@ -1,26 +1,16 @@
 #include "calib/solve/colouring.h"
 
-#include <ceres/jet.h>
-
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "calib/camera/pixel_by_point.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kGridX = 25, kGridY = 19;  // the image's border is on the grid: the worst is there
-
-Eigen::Matrix<double, 2, 3> PixelByPoint(const Camera& camera, const Eigen::Vector3d& p) {
-  using Jet = ceres::Jet<double, 3>;
-  Jet u;
-  Jet v;
-  ProjectUnchecked(camera.lens(), Jet(p.x(), 0), Jet(p.y(), 1), Jet(p.z(), 2), &u, &v);
-  Eigen::Matrix<double, 2, 3> by_point;
-  by_point << u.v.transpose(), v.v.transpose();
-  return by_point;
-}
 
 // Rounding may leave a variance of nothing below zero. NaN stays NaN.
 double Root(double variance) { return variance < 0 ? 0 : std::sqrt(variance); }
@@ -56,7 +46,7 @@ std::optional<double> ColouringSigmaAt(const Camera& camera, const Matrix6d& cov
   const auto direction = camera.Unproject(pixel);
   if (!direction) return std::nullopt;
   const Eigen::Vector3d point = distance_m * *direction;
-  const Eigen::Matrix<double, 2, 3> j = PixelByPoint(camera, point);
+  const Eigen::Matrix<double, 2, 3> j = PixelByPoint(camera.lens(), point);
   return Root((j * PointCovariance(covariance, point) * j.transpose()).trace());
 }
 

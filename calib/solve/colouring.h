@@ -17,7 +17,7 @@ inline constexpr double kColouringDistancesM[] = {2, 5, 10, 50};
 /// centre_mm is in the LIDAR's axes: the centre lies at -R^T t, so that delta's translation moves
 /// it by -R^T (tx, ty, tz) to first order, and its rotation not at all. A number that is not to be
 /// had is NaN: centre_px where the lens model ends before the image's middle.
-PoseSigma SigmaOf(const CameraSpec& camera, const Rigid3& camera_from_lidar,
+PoseSigma SigmaOf(const CameraSpec& spec, const Rigid3& camera_from_lidar,
                   const Matrix6d& covariance);
 
 /// 1 sigma [px] of where the colour of a point is taken from, the point being where `pixel` looks,

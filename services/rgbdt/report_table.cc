@@ -32,6 +32,30 @@ std::string Sigma(const CameraCalibration& calibration) {
                          worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
+// 1 sigma of a colour 5 m away, in the image's middle and where it is worst.
+std::string ColourSigma(const CameraReport& camera) {
+  if (!camera.sigma) return "-";
+  for (const ColouringSigma& at : camera.sigma->colouring) {
+    if (std::abs(at.distance_m - 5) > 1e-6) continue;
+    return fmt::format("{:.2f} / {:.2f}", at.centre_px, at.worst_px);
+  }
+  return "-";
+}
+
+// What a camera's column has no room for.
+std::string Remarks(const CameraReport& camera) {
+  const std::string& name = camera.calibration.camera;
+  const std::string& status = camera.calibration.status;
+  std::string text;
+  if (!camera.calibration.converged || (!status.empty() && status != "converged")) {
+    text += name + ": " + status + "\n";
+  }
+  for (const RejectedView& view : camera.rejected) {
+    text += name + ": view " + view.view + " rejected: " + view.why + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ReportTable(const Report& report) {
@@ -70,6 +94,9 @@ std::string ReportTable(const Report& report) {
   if (any([](const CameraReport& c) { return c.calibration.covariance.has_value(); })) {
     row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
   }
+  if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
+    row("1 sigma of a colour at 5 m, mid/worst [px]", ColourSigma);
+  }
   if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
     row("ranges are short by [mm]", [](const CameraReport& c) {
       return !c.range_offset ? std::string("-")
@@ -85,14 +112,8 @@ std::string ReportTable(const Report& report) {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  for (const CameraReport& camera : report.cameras) {
-    if (!camera.calibration.converged) {
-      text += camera.calibration.camera + ": " + camera.calibration.status + "\n";
-    }
-    for (const RejectedView& view : camera.rejected) {
-      text += camera.calibration.camera + ": view " + view.view + " rejected: " + view.why + "\n";
-    }
-  }
+  for (const CameraReport& camera : report.cameras) text += Remarks(camera);
+  if (report.next_view) text += "next view: " + report.next_view->words + "\n";
   return text;
 }
 

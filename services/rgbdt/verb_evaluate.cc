@@ -17,25 +17,43 @@ struct Flags {
   std::string dir, calibration, out, truth;
 };
 
-// What only the solve could tell is kept from the report that it wrote.
+// The same camera with the same pose; nothing where there is none.
+const CameraReport* FindSame(const Report& report, const CameraCalibration& calibration) {
+  const auto same =
+      std::find_if(report.cameras.begin(), report.cameras.end(), [&](const CameraReport& other) {
+        const Rigid3& pose = other.calibration.camera_from_lidar;
+        return other.calibration.camera == calibration.camera &&
+               RotationDistance(pose, calibration.camera_from_lidar) < 1e-9 &&
+               CentreDistance(pose, calibration.camera_from_lidar) < 1e-9;
+      });
+  return same == report.cameras.end() ? nullptr : &*same;
+}
+
+void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
+  camera->first_guess = before.first_guess;
+  camera->range_offset = before.range_offset;
+  camera->other_starts = before.other_starts;
+  camera->sigma = before.sigma;
+  camera->nuisance = before.nuisance;
+  camera->folds = before.folds;
+  camera->halves = before.halves;
+  camera->solve_s = before.solve_s;
+}
+
+// What only the solve could tell is kept from the report that it wrote; what it tells of the
+// cameras together, where all of them are still the same.
 void KeepFromSolve(const std::filesystem::path& path, Report* report) {
   if (!std::filesystem::exists(path)) return;
   const Report before = ReadReport(path);
+  bool all_same = true;
   for (CameraReport& camera : report->cameras) {
-    const auto same =
-        std::find_if(before.cameras.begin(), before.cameras.end(), [&](const CameraReport& other) {
-          return other.calibration.camera == camera.calibration.camera &&
-                 RotationDistance(other.calibration.camera_from_lidar,
-                                  camera.calibration.camera_from_lidar) < 1e-9 &&
-                 CentreDistance(other.calibration.camera_from_lidar,
-                                camera.calibration.camera_from_lidar) < 1e-9;
-        });
-    if (same == before.cameras.end()) continue;
-    camera.first_guess = same->first_guess;
-    camera.range_offset = same->range_offset;
-    camera.other_starts = same->other_starts;
-    camera.solve_s = same->solve_s;
+    const CameraReport* same = FindSame(before, camera.calibration);
+    if (same != nullptr) KeepFromSolve(*same, &camera);
+    all_same = all_same && same != nullptr;
   }
+  if (!all_same) return;
+  report->closure = before.closure;
+  report->next_view = before.next_view;
 }
 
 int Run(const Flags& flags) {

@@ -11,6 +11,7 @@
 #include "calib/files/report_file.h"
 #include "calib/files/report_html.h"
 #include "calib/solve/first_guess.h"
+#include "services/rgbdt/colouring_picture.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/report_table.h"
 
@@ -68,19 +69,32 @@ std::optional<Observation> ToShow(const CameraCalibration& camera,
   return best;
 }
 
+void AddOverlay(const Session& session, const std::vector<Observation>& observations,
+                const CameraCalibration& camera, std::vector<ReportPicture>* pictures) {
+  const auto shown = ToShow(camera, observations);
+  if (!shown) return;
+  pictures->push_back(
+      {camera.camera + ", view " + shown->view + (shown->heldout ? ", held out" : ""),
+       "The board's boundary points in the cloud, laid on the image by the calibration. Green: "
+       "within 1 px of the board's outline; yellow: within 4 px; red: beyond.",
+       Overlay(session, *shown, camera.camera_from_lidar)});
+}
+
+void AddColouring(const Session& session, const CameraCalibration& camera,
+                  std::vector<ReportPicture>* pictures) {
+  if (!camera.covariance) return;
+  cv::Mat picture = ColouringPicture(session.rig.Camera(camera.camera), *camera.covariance);
+  if (picture.empty()) return;
+  pictures->push_back({camera.camera + ": how sure a colour is", kColouringCaption, picture});
+}
+
 void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
                       const std::vector<Observation>& observations, const Report& report) {
   WriteReport(dir / "report.json", report);
   std::vector<ReportPicture> pictures;
   for (const CameraReport& camera : report.cameras) {
-    const std::string& name = camera.calibration.camera;
-    const auto shown = ToShow(camera.calibration, observations);
-    if (!shown) continue;
-    pictures.push_back(
-        {name + ", view " + shown->view + (shown->heldout ? ", held out" : ""),
-         "The board's boundary points in the cloud, laid on the image by the calibration. Green: "
-         "within 1 px of the board's outline; yellow: within 4 px; red: beyond.",
-         Overlay(session, *shown, camera.calibration.camera_from_lidar)});
+    AddOverlay(session, observations, camera.calibration, &pictures);
+    AddColouring(session, camera.calibration, &pictures);
   }
   WriteFileAtomically(dir / "report.html", ReportHtml(report, pictures));
 }

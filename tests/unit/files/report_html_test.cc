@@ -23,6 +23,30 @@ TEST(ReportHtml, HoldsVerdictFiguresTransformsAndViews) {
   EXPECT_THAT(page, Not(HasSubstr("https:")));
 }
 
+TEST(ReportHtml, SaysHowSureItIs) {
+  const std::string page = ReportHtml(test::MakeReport(), {});
+  for (const char* part :
+       {"How sure it is", "0.0333°", "0.67 mm", "50 m", "0.60 px", "0.97 of their sigmas",
+        "1 means that the data are as exact as stated", "0.62 (1.06 sigmas)", "0001, 0002",
+        "misfit of the first guess", "chi-square 5.2", "beam edge, no return", "mrad",
+        "rgb to thermal", "they agree", "Where to hold the board next",
+        "Hold the board 6 m ahead, at the image&#39;s top left.", "from 0.88 to 0.09 px"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+}
+
+TEST(ReportHtml, SaysNothingOfWhatNobodyWorkedOut) {
+  Report report = test::MakeReport();
+  report.cameras.erase(report.cameras.begin());
+  report.closure.clear();
+  report.next_view.reset();
+  const std::string page = ReportHtml(report, {});
+  for (const char* part : {"How sure it is", "sigma", "left out", "halves", "besides the pose",
+                           "Camera against camera", "Where to hold the board next"}) {
+    EXPECT_THAT(page, Not(HasSubstr(part)));
+  }
+}
+
 TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   const std::string evil = "<b onload=\"x\">&'</b><script>";
   Report report = test::MakeReport();
@@ -32,6 +56,9 @@ TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   camera.calibration.converged = false;
   camera.used[0] = camera.heldout[0] = camera.rejected[0].view = camera.rejected[0].why = evil;
   camera.other_starts[0].start = camera.other_starts[0].calibration.status = evil;
+  camera.nuisance[0].name = camera.nuisance[0].unit = camera.folds[0].heldout[0] = evil;
+  report.closure[0].from = report.closure[0].to = evil;
+  report.next_view->words = report.next_view->camera = evil;
   const std::string page =
       ReportHtml(report, {{evil, evil, cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}});
   EXPECT_THAT(page, Not(HasSubstr("<b ")));

@@ -61,7 +61,8 @@ CameraReport MakeCameraReport(const std::string& name) {
   camera.rejected = {{"0006", "the board is not in view"}};
   camera.distance_transform_px = {1.25, 1.0 / 3};
   camera.edge_rms_px = {0.5, 0.625};
-  camera.views = {{"0001", false, 1.5, 0.5}, {"0003", true, 1.0 / 3, 0.625}};
+  camera.views = {{"0001", false, 1.5, 0.5, std::nullopt},
+                  {"0003", true, 1.0 / 3, 0.625, std::nullopt}};
   StartResult start;
   start.start = "30 deg about x, 40 deg about z";
   start.calibration = {name, MakePose(0.5, {0, 0, 1}), std::nullopt, false, "stopped"};
@@ -72,6 +73,22 @@ CameraReport MakeCameraReport(const std::string& name) {
   camera.detect_cloud_s = 0.25;
   camera.solve_s = 0.125;
   return camera;
+}
+
+// What a method with crossings and a covariance tells as well; no two numbers alike.
+void AddSureness(CameraReport* camera) {
+  camera->views[1].edge_rms_whitened = 1.0625;
+  camera->edge_rms_whitened = {0.96875, 1.0 / 0.95};
+  PoseSigma sigma;
+  sigma.rotation_deg = {0.01, 0.02, 1.0 / 30};
+  sigma.centre_mm = {0.4, 0.5, 2.0 / 3};
+  sigma.colouring = {{2, 0.3, 0.7}, {5, 0.1, 0.6}, {10, 0.2, 0.61}, {50, 0.25, 2.0 / 3}};
+  camera->sigma = sigma;
+  camera->nuisance = {{"beam edge, no return", "mrad", {-0.21, 0.05}},
+                      {"board's thickness", "mm", {1.0 / 7, 3}}};
+  camera->folds = {{{"0001", "0002"}, 1.01, 1.02, 1.03, {0.004, 0.104}},
+                   {{"0004"}, 0.91, 1.0 / 9, 0.93, {0.005, 0.105}}};
+  camera->halves = Halves{{0.013, 1.0 / 3}, 5.25};
 }
 
 }  // namespace
@@ -158,6 +175,16 @@ Report MakeReport() {
   Matrix6d covariance;
   for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = 1e-8 / (i + 3);
   report.cameras[0].calibration.covariance = covariance;
+  AddSureness(&report.cameras[0]);
+  report.closure = {{"rgb",
+                     "thermal",
+                     MakePose(0.11, {0.1, 0, 0}),
+                     MakePose(0.12, {0.2, 0, 0}),
+                     {0.03, 1.25},
+                     {0.02, 1.0 / 6},
+                     7.5}};
+  report.next_view = NextView{"Hold the board 6 m ahead, at the image's top left.",
+                              MakePose(0.2, {6, 1.5, 1.25}), "thermal", 0.875, 1.0 / 11};
   report.cameras[1].first_guess_error = PoseError{2.5, 50.125};
   report.cameras[1].truth_error = PoseError{0.1, 1.0 / 3};
   report.cameras[1].other_starts[0].truth_error = PoseError{0.25, 3};
