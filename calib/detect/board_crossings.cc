@@ -91,6 +91,7 @@ class MemberFinder {
           if (std::abs(plane.Signed(q)) > tolerance) return;
           members->points.push_back(q);
           members->flat.push_back(flat_[i]);
+          members->row.push_back(row);
         });
       } else if (behind < 0) {
         beams_[i] = Beam::kBefore;
@@ -228,7 +229,7 @@ PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region,
   const double tolerance = std::max(0.03, 3.5 * options.sigma_m);
   MemberFinder finder(grid, Around(grid, region));
   const Plane plane = finder.Refit(region.plane, options.middle, options.fit_reach_m, tolerance);
-  PlaneMembers members{plane, PlaneFrame(plane, options.middle), {}, {}, {}, {}, 0, 0};
+  PlaneMembers members{plane, PlaneFrame(plane, options.middle), {}, {}, {}, {}, {}, 0, 0};
   finder.Classify(options.middle, options.reach_m, tolerance, &members);
   finder.Spacings(&members);
   finder.Cross(true, &members);

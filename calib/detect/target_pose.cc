@@ -225,8 +225,41 @@ bool SamePose(const Rigid3& a, const Rigid3& b) {
          (a.translation - b.translation).norm() < 1e-6 * a.translation.norm();
 }
 
-std::optional<CornerPose> ToCornerPose(const Camera& camera, const Points& model,
-                                       const Pixels& corners, const Fit& fit) {
+// Errors that are alike over neighbouring corners count as fewer: the sum of the residuals'
+// autocorrelation over the grid, lags weighed by Bartlett's triangle (Newey and West 1987). What
+// the pose itself has taken up of them is not in the residuals, so it is rather too small.
+double Alike(const Target& target, const Pixels& residuals, const std::vector<double>& weights) {
+  constexpr int kLags = 4;
+  const int columns = target.corners_x();
+  const int rows = target.corners_y();
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * columns + x); };
+  double alone = 0;
+  double count = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    alone += weights[i] * residuals[i].squaredNorm();
+    count += weights[i];
+  }
+  double sum = 1;
+  for (int dy = 0; dy < std::min(kLags, rows); ++dy) {
+    for (int dx = dy == 0 ? 1 : 1 - kLags; dx < kLags; ++dx) {
+      double together = 0;
+      for (int y = 0; y + dy < rows; ++y) {
+        for (int x = std::max(0, -dx); x + std::max(0, dx) < columns; ++x) {
+          const std::size_t i = at(x, y);
+          const std::size_t k = at(x + dx, y + dy);
+          together += weights[i] * weights[k] * residuals[i].dot(residuals[k]);
+        }
+      }
+      const double weight =
+          (1 - std::abs(dx) / static_cast<double>(kLags)) * (1 - dy / static_cast<double>(kLags));
+      sum += 2 * weight * together / alone;  // of both directions
+    }
+  }
+  return std::sqrt(std::clamp(sum, 1.0, 0.25 * count));
+}
+
+std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& target,
+                                       const Points& model, const Pixels& corners, const Fit& fit) {
   const auto used = std::count(fit.weights.begin(), fit.weights.end(), 1.0);
   if (5 * static_cast<std::size_t>(used) < 4 * model.size()) return std::nullopt;
   const Pixels residuals = Residuals(camera, fit.pose, model, corners);
@@ -235,7 +268,8 @@ std::optional<CornerPose> ToCornerPose(const Camera& camera, const Points& model
   if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return std::nullopt;
   CornerPose out;
   out.pose.sensor_from_target = fit.pose;
-  out.pose.covariance = fit.sigma * fit.sigma * ldlt.solve(Matrix6d::Identity());
+  out.alike = Alike(target, residuals, fit.weights);
+  out.pose.covariance = std::pow(out.alike * fit.sigma, 2) * ldlt.solve(Matrix6d::Identity());
   if (!out.pose.covariance.allFinite()) return std::nullopt;
   out.pose.covariance = 0.5 * (out.pose.covariance + out.pose.covariance.transpose()).eval();
   out.corner_sigma_px = fit.sigma;
@@ -258,7 +292,7 @@ std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& ta
   if (fits.empty()) return std::nullopt;
   const auto less = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
   std::stable_sort(fits.begin(), fits.end(), less);
-  auto out = ToCornerPose(camera, model, corners, fits.front());
+  auto out = ToCornerPose(camera, target, model, corners, fits.front());
   if (!out) return std::nullopt;
   out->second_pose_chi2 = std::numeric_limits<double>::infinity();
   if (fits.size() > 1 && !SamePose(fits[0].pose, fits[1].pose)) {

@@ -16,7 +16,10 @@ struct CornerPose {
   /// half_turn_known is false: corners alone do not tell.
   TargetPose pose;
   double corner_sigma_px = 0;  ///< of a corner along x or y, from the residuals of those used
-  std::vector<bool> used;      ///< for each corner: false is off the rest, and left out
+  /// By how much neighbours' residuals being alike (a lens not quite known, uneven light) makes the
+  /// pose less certain than independent ones would; 1 or more. The covariance has it in.
+  double alike = 1;
+  std::vector<bool> used;  ///< for each corner: false is off the rest, and left out
   /// A plane has a second pose that looks much alike, its tilt mirrored. Sum of squared residuals
   /// of that one minus that of this one, over sigma^2; infinite where there is no such second pose.
   /// Below some 10 the tilt is not certain.

@@ -50,7 +50,7 @@ struct ImageEdges {
   std::vector<Eigen::Vector2i> edge_pixels;  ///< the target's edge pixels (paper II-A.1)
   /// The fitted outline, closed, as a chain of points through the lens; for `edge_rms_px`.
   std::vector<Eigen::Vector2d> outline;
-  double corner_sigma_px = 0;      ///< of a corner along x or y, from the pose fit's residuals
+  double corner_sigma_px = 0;      ///< of a corner along x or y, as if they were independent
   std::optional<TargetPose> pose;  ///< in the camera; from the corners
   std::array<ImageSide, 4> sides;  ///< top, right, bottom, left; without a pose none is seen
 };
@@ -87,6 +87,7 @@ struct CloudEdges {
   /// All that its points tell of the plane they lie on: the sum over them of q q^T with
   /// q = (p - centre, 1), in metres; p is where the beam meets the fitted plane, moved along the
   /// normal by the point's distance from it, so noise on slanted beams does not lean the plane.
+  /// Where the points of a ring share an error, what they tell again is taken off.
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
   /// The same of the points where they were measured.
   Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();

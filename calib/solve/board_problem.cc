@@ -13,9 +13,6 @@ namespace {
 
 constexpr int kLocal = 10;     // a view's own unknowns: the board's pose, four side shifts
 constexpr double kRobust = 3;  // sigmas; farther off, a residual counts less
-// A detector's errors within one image are partly alike: poses from rendered images are off by half
-// as much again as independent corners would have it (scripts/study detection, corners).
-constexpr double kCornersAlike = 1.5;
 constexpr double kLeastCornerPx = 0.01;
 
 using Row6 = Eigen::Matrix<double, 1, 6>;
@@ -92,7 +89,7 @@ class ViewEquations {
     const auto model = problem_.target.InnerCorners();
     const auto& seen = sight.image->corners;
     if (seen.size() != model.size()) return;
-    const double sigma = kCornersAlike * std::max(kLeastCornerPx, sight.image->corner_sigma_px);
+    const double sigma = std::max(kLeastCornerPx, sight.image->corner_sigma_px);
     Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
     Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
     for (std::size_t i = 0; i < model.size(); ++i) {
@@ -497,7 +494,8 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
 }
 
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) {
-  constexpr int kIterations = 30;
+  constexpr int kIterations = 100;
+  constexpr double kSettled = 1e-4;  // a hundredth of a sigma
   BoardSolution solution;
   double damping = 0;
   auto here = std::make_unique<Step>(problem, start);
@@ -507,11 +505,11 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) 
     if (!(there->cost() <= here->cost() * (1 + 1e-12))) {
       damping = std::max(1e-4, 10 * damping);
       // Where not even a small step helps, this is the minimum as far as rounding tells.
-      solution.converged = damping > 1e4 || size < 1e-6;
+      solution.converged = damping > 1e4 || size < kSettled;
       continue;
     }
     damping = damping < 1e-3 ? 0 : 0.1 * damping;
-    solution.converged = size < 1e-6;  // a thousandth of a sigma
+    solution.converged = size < kSettled;
     here = std::move(there);
   }
   solution.state = here->state();

@@ -78,7 +78,7 @@ std::vector<const Observation*> ViewsOf(const JointProblem& joint, std::size_t c
 // A camera's part in one fold.
 struct Judged {
   Fold fold;
-  std::vector<double> worse;  // by view left out: the refined misfit minus the guess's
+  double worse = 0;  // the refined misfit minus the guess's, over the views left out
 };
 
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
@@ -103,21 +103,10 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
     const auto share = 1 / static_cast<double>(left_out.size());
     judged.fold.misfit += refined * share;
     judged.fold.first_guess_misfit += guessed * share;
-    judged.worse.push_back(refined - guessed);
+    judged.worse += refined - guessed;
   }
   judged.fold.edge_rms_whitened = sum.count > 0 ? std::sqrt(sum.squared / sum.count) : 0;
   return judged;
-}
-
-// Whether the guess fits better by more than chance: the sum against its own scatter.
-bool GuessIsBetter(const std::vector<double>& worse) {
-  double sum = 0;
-  double squares = 0;
-  for (const double w : worse) {
-    sum += w;
-    squares += w * w;
-  }
-  return sum > 0 && sum > std::sqrt(squares);
 }
 
 void KeepGuess(const GuessedCamera& camera) {
@@ -138,8 +127,8 @@ void KeepGuess(const GuessedCamera& camera) {
   report.calibration.status = text;
 }
 
-void Fold_(const JointProblem& joint, const JointResult& result, std::size_t parts) {
-  std::vector<std::vector<double>> worse(joint.cameras.size());
+void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::size_t parts) {
+  std::vector<double> worse(joint.cameras.size(), 0.0);
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t count = joint.problem.views.size();
     const auto kept = Others(count, part, parts, false);
@@ -149,12 +138,12 @@ void Fold_(const JointProblem& joint, const JointResult& result, std::size_t par
       const FirstGuess guess = GuessFromBoards(ViewsOf(joint, c, kept));
       if (left_out.empty() || !guess.camera_from_lidar || !solution.converged) continue;
       Judged judged = JudgeFold(joint, solution, c, left_out, guess);
-      worse[c].insert(worse[c].end(), judged.worse.begin(), judged.worse.end());
+      worse[c] += judged.worse;
       joint.cameras[c].views->report.folds.push_back(std::move(judged.fold));
     }
   }
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-    if (GuessIsBetter(worse[c])) KeepGuess(joint.cameras[c]);
+    if (worse[c] > 0) KeepGuess(joint.cameras[c]);
   }
 }
 
@@ -185,7 +174,7 @@ double MisfitOf(const Observation& view, const Rigid3& camera_from_lidar) {
 void CrossValidate(const JointProblem& joint, const JointResult& result, int folds) {
   const std::size_t views = joint.problem.views.size();
   if (views < 4) return;
-  Fold_(joint, result, std::min(views, static_cast<std::size_t>(folds)));
+  LeaveOutParts(joint, result, std::min(views, static_cast<std::size_t>(folds)));
   if (views >= 6) Halve(joint, result);
 }
 

@@ -14,8 +14,8 @@ double MisfitOf(const Observation& view, const Rigid3& camera_from_lidar);
 
 /// Fills in `folds` and `halves` of the cameras' reports: each part of the views left out once,
 /// solved from the others and judged on it, beside the first guess from the same others; and two
-/// halves of the views solved apart. Where the first guess fits what was left out better, beyond
-/// chance, the guess is kept: it becomes the report's calibration, and the status says so. Nothing
+/// halves of the views solved apart. Where the first guess fits what was left out better, the
+/// guess is kept: it becomes the report's calibration, and the status says so. Nothing
 /// with fewer than 4 views.
 void CrossValidate(const JointProblem& joint, const JointResult& result, int folds);
 

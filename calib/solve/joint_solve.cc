@@ -226,17 +226,48 @@ const Contradiction* WorstToReject(const JointProblem& joint,
   return worst;
 }
 
-// One-sided: views that scatter less than stated are luck. Only what chance hardly does counts.
-double VarianceFactor(const std::vector<Contradiction>& contradictions, std::size_t cameras) {
-  double sum = 0;
-  for (const Contradiction& c : contradictions) sum += std::min(c.chi2, kChanceChi2);
-  // Cameras share the clouds: as many views as one camera has are independent.
-  const double independent = static_cast<double>(contradictions.size()) /
-                             static_cast<double>(std::max<std::size_t>(1, cameras));
-  if (independent < 3) return 1;
-  const double mean = sum / (6 * static_cast<double>(contradictions.size()));
-  const double chance = 1 + 2.5 * std::sqrt(2 / (6 * (independent - 1)));
-  return mean > chance ? mean : 1;
+// The result without one view.
+BoardSolution Without(const JointProblem& joint, const BoardState& near, std::size_t view) {
+  std::vector<std::size_t> others;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    if (v != view) others.push_back(v);
+  }
+  BoardState start;
+  const BoardProblem part = Part(joint.problem, others, near, &start);
+  return SolveBoards(part, start);
+}
+
+// How the result moves when each view is left out in turn, against how it should: nuisances, robust
+// weights and all, whatever makes views differ. Of an efficient estimate with covariance C the move
+// has covariance C_without - C (Hausman 1978), so the sum of move' C^-1 move is that of
+// tr(C^-1 C_without - I): the quotient is the factor of variance. One-sided, since views that
+// scatter less than stated are luck; and only what chance hardly does counts.
+double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) {
+  const std::size_t views = joint.problem.views.size();
+  if (views < 4) return 1;
+  double moved = 0;
+  double expected = 0;
+  double expected2 = 0;
+  for (std::size_t v = 0; v < views; ++v) {
+    const BoardSolution without = Without(joint, solution.state, v);
+    for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
+      const auto at = static_cast<Index>(6 * c);
+      const Eigen::LDLT<Matrix6d> covariance(Matrix6d(solution.covariance.block<6, 6>(at, at)));
+      const Matrix6d more =
+          covariance.solve(Matrix6d(without.covariance.block<6, 6>(at, at))) - Matrix6d::Identity();
+      const Vector6d move =
+          Log(without.state.camera_from_lidar[c] * solution.state.camera_from_lidar[c].Inverse());
+      moved += move.dot(covariance.solve(move));
+      expected += more.trace();
+      expected2 += (more * more).trace();
+    }
+  }
+  if (!(expected > 0) || !std::isfinite(moved)) return 1;
+  // Cameras share the clouds: their moves are alike, and tell but once.
+  const double chance =
+      std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
+  const double factor = moved / expected;
+  return factor > 1 + 2 * chance ? factor : 1;
 }
 
 }  // namespace
@@ -277,7 +308,7 @@ JointResult SolveJointly(JointProblem* joint) {
       continue;
     }
     if (DropSide(joint, state)) continue;
-    result.variance_factor = VarianceFactor(contradictions, joint->cameras.size());
+    result.variance_factor = VarianceFactor(*joint, result.solution);
     break;
   }
   return result;

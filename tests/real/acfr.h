@@ -1,0 +1,57 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "calib/detect/detect.h"
+#include "calib/files/rig_file.h"
+#include "calib/files/session_dir.h"
+
+namespace rgbdt {
+
+namespace fs = std::filesystem;
+
+/// point_in_lidar = R point_in_camera + t, R = Rz(yaw) Ry(pitch) Rx(roll): README of the data.
+inline Rigid3 PublishedCameraFromLidar() {
+  const Rigid3 rotation = RotationAbout({0, 0, 1}, -1.4929) * RotationAbout({0, 1, 0}, -0.0209) *
+                          RotationAbout({1, 0, 0}, -1.695);
+  return Rigid3{rotation.rotation, {0.063, 0.004, -0.196}}.Inverse();
+}
+
+struct Detected {
+  Session session;
+  std::vector<Observation> observations;
+};
+
+/// Nothing where the data is absent.
+inline std::optional<Detected> DetectReal(const std::string& method) {
+  const char* real = std::getenv("RGBDT_REAL_DATA");
+  const fs::path source = fs::path(real == nullptr ? "" : real) / "acfr_vlp16";
+  if (real == nullptr || !fs::exists(source)) return std::nullopt;
+  const fs::path dir = fs::path(::testing::TempDir()) /
+                       ("rgbdt_acfr_" + method + "_" +
+                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  fs::remove_all(dir);
+  const std::string command = std::string(RGBDT_SOURCE_DIR) + "/scripts/session-from-acfr '" +
+                              source.string() + "' '" + dir.string() + "' > /dev/null";
+  if (std::system(command.c_str()) != 0) throw std::runtime_error(command + " failed");
+  Detected detected{OpenSession(dir), {}};
+  for (const std::string& view : detected.session.views) {
+    for (Observation& o :
+         DetectView(detected.session.rig, ReadView(detected.session, view), method)) {
+      detected.observations.push_back(std::move(o));
+    }
+  }
+  fs::remove_all(dir);
+  return detected;
+}
+
+inline constexpr const char* kAbsent = "RGBDT_REAL_DATA is not set, or has no acfr_vlp16";
+
+}  // namespace rgbdt

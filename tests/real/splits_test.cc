@@ -1,0 +1,96 @@
+// Halves of the real views, solved apart: how well a calibration repeats, and whether it knows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+#include <random>
+
+#include "calib/solve/calibrate.h"
+#include "tests/real/acfr.h"
+
+namespace rgbdt {
+namespace {
+
+struct Splits {
+  std::vector<double> rotation_deg, translation_mm, chi2;
+
+  /// Share of the differences in their stated 95% region, six degrees of freedom.
+  double Inside() const {
+    const auto inside =
+        std::count_if(chi2.begin(), chi2.end(), [](double c) { return c < 12.592; });
+    return static_cast<double>(inside) / static_cast<double>(chi2.size());
+  }
+};
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+Splits Split(const Rig& rig, const std::vector<Observation>& all, const std::string& method) {
+  CalibrateOptions options;
+  options.method = method;
+  options.diagnostics = false;
+  std::mt19937 random(1);
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), 0U);
+  Splits out;
+  for (int i = 0; i < 100; ++i) {
+    std::shuffle(order.begin(), order.end(), random);
+    std::vector<CameraCalibration> halves;
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<Observation> views;
+      for (std::size_t k = half * all.size() / 2; k < (half + 1) * all.size() / 2; ++k) {
+        views.push_back(all[order[k]]);
+        views.back().heldout = false;
+      }
+      halves.push_back(Calibrate(rig, views, options).cameras.at(0).calibration);
+    }
+    if (!halves[0].covariance || !halves[1].covariance) continue;
+    const Matrix6d covariance = *halves[0].covariance + *halves[1].covariance;
+    const Vector6d delta = Log(halves[0].camera_from_lidar * halves[1].camera_from_lidar.Inverse());
+    const PoseError error = ErrorOf(halves[0].camera_from_lidar, halves[1].camera_from_lidar);
+    out.rotation_deg.push_back(error.rotation_deg);
+    out.translation_mm.push_back(error.translation_mm);
+    out.chi2.push_back(delta.dot(covariance.ldlt().solve(delta)));
+  }
+  return out;
+}
+
+TEST(Acfr, HalvesOfTheViewsAgreeAsTheStatedSigmaSays) {
+  const auto detected = DetectReal(kAutoMethod);
+  if (!detected) GTEST_SKIP() << kAbsent;
+  const Splits joint = Split(detected->session.rig, detected->observations, kAutoMethod);
+  const Splits plane = Split(detected->session.rig, detected->observations, kPlaneMethod);
+  ASSERT_EQ(joint.chi2.size(), 100U);
+  ASSERT_EQ(plane.chi2.size(), 100U);
+  std::printf(
+      "halves differ by a median of %.2f deg, %.1f mm (plane: %.2f deg, %.1f mm); %.0f%% lie in "
+      "the stated 95%% region\n",
+      Median(joint.rotation_deg), Median(joint.translation_mm), Median(plane.rotation_deg),
+      Median(plane.translation_mm), 100 * joint.Inside());
+  EXPECT_LE(Median(joint.rotation_deg), 0.6);
+  EXPECT_LE(Median(joint.translation_mm), 20);
+  EXPECT_LE(Median(joint.rotation_deg), 0.7 * Median(plane.rotation_deg));
+  EXPECT_LE(Median(joint.translation_mm), 0.7 * Median(plane.translation_mm));
+  EXPECT_GE(joint.Inside(), 0.85);
+  EXPECT_LE(joint.Inside(), 0.99);
+}
+
+TEST(Acfr, TheResultLiesByThePublishedMean) {
+  auto detected = DetectReal(kAutoMethod);
+  if (!detected) GTEST_SKIP() << kAbsent;
+  for (Observation& o : detected->observations) o.heldout = false;
+  const Report report = Calibrate(detected->session.rig, detected->observations);
+  const CameraCalibration& calibration = report.cameras.at(0).calibration;
+  const PoseError error = ErrorOf(calibration.camera_from_lidar, PublishedCameraFromLidar());
+  std::printf("%s: %.2f deg, %.1f mm from the published mean\n", calibration.status.c_str(),
+              error.rotation_deg, error.translation_mm);
+  ASSERT_TRUE(calibration.converged) << calibration.status;
+  EXPECT_LE(error.rotation_deg, 1.0);
+  EXPECT_LE(error.translation_mm, 40);
+}
+
+}  // namespace
+}  // namespace rgbdt
