@@ -20,7 +20,8 @@ using Views = std::vector<const Observation*>;
 // Share of points in the image below which the paper saw no convergence (section III).
 constexpr double kMinShareInImage = 0.5;
 
-// Share of the views' boundary points that fall into the image: elsewhere the objective is flat.
+// Share of the views' boundary points that fall into the image: elsewhere the paper's objective is
+// flat.
 double ShareInImage(const Camera& camera, const Views& views, const Rigid3& camera_from_lidar) {
   double inside = 0;
   double all = 0;
@@ -61,12 +62,14 @@ Rigid3 TurnedStart(const Rigid3& camera_from_lidar, double roll_rad, double yaw_
 CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Rigid3& start,
                              const CalibrateOptions& options) {
   const Camera camera(spec);
+  const FieldBeyond beyond =
+      options.smooth_field ? FieldBeyond::kSmooth : FieldBeyond::kBorderValue;
   std::vector<std::unique_ptr<DistanceField>> fields;
   ceres::Problem problem;
   Vector6d delta = Vector6d::Zero();
   for (const Observation* o : used) {
-    fields.push_back(
-        std::make_unique<DistanceField>(o->image->width, o->image->height, o->image->edge_pixels));
+    fields.push_back(std::make_unique<DistanceField>(o->image->width, o->image->height,
+                                                     o->image->edge_pixels, beyond));
     problem.AddResidualBlock(
         PaperCost::Create(&camera, fields.back().get(), &o->cloud->boundary, start).release(),
         nullptr, delta.data());
@@ -93,9 +96,10 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   result.camera_from_lidar = Exp(delta) * start;
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   result.status = result.converged ? "converged" : "not converged: " + summary.message;
-  // Where most points miss the image the gradient vanishes, which Ceres takes for a minimum.
+  // Where most points miss the image the gradient vanishes, which Ceres takes for a minimum; not so
+  // where the field goes on.
   const double share = ShareInImage(camera, used, result.camera_from_lidar);
-  if (share < kMinShareInImage) {
+  if (!options.smooth_field && share < kMinShareInImage) {
     result.converged = false;
     result.status = "not converged: only " + std::to_string(std::lround(100 * share)) +
                     "% of the boundary points project into the image; start nearer";

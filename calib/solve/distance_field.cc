@@ -57,9 +57,9 @@ int Round(double value, int size) {
 
 }  // namespace
 
-DistanceField::DistanceField(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels)
-    : transform_(Transform(width, height, edge_pixels)),
-      lookup_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), -1) {}
+DistanceField::DistanceField(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels,
+                             FieldBeyond beyond)
+    : beyond_(beyond), transform_(Transform(width, height, edge_pixels)) {}
 
 DistanceField::Surface DistanceField::Fit(int x, int y) const {
   Eigen::Matrix<double, kWindow, 1> values;
@@ -72,6 +72,8 @@ DistanceField::Surface DistanceField::Fit(int x, int y) const {
 }
 
 const DistanceField::Surface& DistanceField::SurfaceAt(int x, int y) const {
+  // Who only asks for the transform itself needs no table.
+  if (lookup_.empty()) lookup_.assign(transform_.total(), -1);
   std::int32_t& entry =
       lookup_[static_cast<std::size_t>(y) * static_cast<std::size_t>(transform_.cols) +
               static_cast<std::size_t>(x)];
@@ -83,15 +85,31 @@ const DistanceField::Surface& DistanceField::SurfaceAt(int x, int y) const {
 }
 
 double DistanceField::Value(const Eigen::Vector2d& pixel) const {
-  const double u = std::clamp(pixel.x(), 0.0, transform_.cols - 1.0);
-  const double v = std::clamp(pixel.y(), 0.0, transform_.rows - 1.0);
-  if (u != pixel.x() || v != pixel.y()) return Nearest(pixel);
-  const int column = Round(u, transform_.cols);
-  const int row = Round(v, transform_.rows);
+  const Eigen::Vector2d border(std::clamp(pixel.x(), 0.0, transform_.cols - 1.0),
+                               std::clamp(pixel.y(), 0.0, transform_.rows - 1.0));
+  if (border == pixel) return Inside(pixel, nullptr);
+  return beyond_ == FieldBeyond::kSmooth ? Smooth(border, pixel - border) : Nearest(pixel);
+}
+
+double DistanceField::Inside(const Eigen::Vector2d& pixel, Eigen::Vector2d* slope) const {
+  const int column = Round(pixel.x(), transform_.cols);
+  const int row = Round(pixel.y(), transform_.rows);
   const Surface& s = SurfaceAt(column, row);
-  const double x = u - column;
-  const double y = v - row;
+  const double x = pixel.x() - column;
+  const double y = pixel.y() - row;
+  if (slope != nullptr) *slope << s[1] + 2 * s[3] * x + s[4] * y, s[2] + s[4] * x + 2 * s[5] * y;
   return s[0] + s[1] * x + s[2] * y + s[3] * x * x + s[4] * x * y + s[5] * y * y;
+}
+
+// The border's value and, fading, its slope; what is added has no slope at the border and one of 1
+// far away.
+double DistanceField::Smooth(const Eigen::Vector2d& border, const Eigen::Vector2d& off) const {
+  constexpr double kReachPx = 10;  // within which the one slope becomes the other
+  Eigen::Vector2d slope;
+  const double value = Inside(border, &slope);
+  const double distance = off.norm();
+  return value + slope.dot(off) * std::exp(-distance / kReachPx) + std::hypot(distance, kReachPx) -
+         kReachPx;
 }
 
 double DistanceField::Nearest(const Eigen::Vector2d& pixel) const {

@@ -7,6 +7,13 @@
 
 namespace rgbdt {
 
+/// What a distance field is worth outside its image.
+enum class FieldBeyond {
+  kBorderValue,  ///< the border pixel's value, as in the paper: flat, nothing leads back
+  /// Grows with the distance from the border; value and slope go on where it is crossed.
+  kSmooth,
+};
+
 /// Distance [px] from any place in an image to the target's nearest edge pixel (paper II-A.3), made
 /// continuous by a second-degree polynomial fitted to the 10x10 window (offsets -5..+4) round the
 /// pixel that a point falls on. Surfaces are computed only where points fall and kept in a look-up
@@ -14,9 +21,10 @@ namespace rgbdt {
 class DistanceField {
  public:
   /// At least one edge pixel inside the image. Throws InputError otherwise.
-  DistanceField(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels);
+  DistanceField(int width, int height, const std::vector<Eigen::Vector2i>& edge_pixels,
+                FieldBeyond beyond = FieldBeyond::kBorderValue);
 
-  /// Value of the surface at a pixel position. Outside the image: the border pixel's value.
+  /// Value of the surface at a pixel position; outside the image as FieldBeyond says.
   double Value(const Eigen::Vector2d& pixel) const;
 
   /// The distance transform itself at the nearest pixel; outside the image the border's value.
@@ -24,13 +32,17 @@ class DistanceField {
 
   int width() const { return transform_.cols; }
   int height() const { return transform_.rows; }
+  FieldBeyond beyond() const { return beyond_; }
 
  private:
   // Coefficients of 1, x, y, x^2, xy, y^2 about the pixel.
   using Surface = Eigen::Matrix<double, 6, 1>;
   const Surface& SurfaceAt(int x, int y) const;
   Surface Fit(int x, int y) const;
+  double Inside(const Eigen::Vector2d& pixel, Eigen::Vector2d* slope) const;
+  double Smooth(const Eigen::Vector2d& border, const Eigen::Vector2d& off) const;
 
+  FieldBeyond beyond_;
   cv::Mat transform_;                         // CV_32F
   mutable std::vector<std::int32_t> lookup_;  // by pixel: index into surfaces_, -1: not yet
   mutable std::vector<Surface> surfaces_;

@@ -13,14 +13,19 @@ PaperCost::PaperCost(const Camera* camera, const DistanceField* field,
     : camera_(camera), field_(field), points_(points), start_(start) {
   set_num_residuals(static_cast<int>(points->size()));
   mutable_parameter_block_sizes()->push_back(6);
+  if (field->beyond() == FieldBeyond::kSmooth) wide_.emplace(camera);
+}
+
+double PaperCost::Residual(const Eigen::Vector3d& point_in_camera) const {
+  return wide_ ? field_->Value(wide_->Project(point_in_camera))
+               : PaperResidual(*camera_, *field_, point_in_camera);
 }
 
 void PaperCost::Residuals(const Vector6d& delta, double* residuals) const {
   const Rigid3 camera_from_lidar = Exp(delta) * start_;
   const Eigen::Matrix3d rotation = camera_from_lidar.rotation.toRotationMatrix();
   for (std::size_t i = 0; i < points_->size(); ++i) {
-    residuals[i] =
-        PaperResidual(*camera_, *field_, rotation * (*points_)[i] + camera_from_lidar.translation);
+    residuals[i] = Residual(rotation * (*points_)[i] + camera_from_lidar.translation);
   }
 }
 

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "calib/camera/camera.h"
 #include "calib/model/rigid3.h"
 #include "calib/solve/distance_field.h"
+#include "calib/solve/wide_camera.h"
 
 namespace rgbdt {
 
@@ -19,7 +21,8 @@ namespace rgbdt {
 ///
 /// delta the 6 parameters (rx, ry, rz [rad], tx, ty, tz [m], camera axes) about the start. A point
 /// outside the image takes the border pixel's value, one that no lens could see (behind the camera)
-/// half the image's width. Derivatives by central differences of 1e-6 (paper II-A.3).
+/// half the image's width; with a field that goes on smoothly, each takes what the field says where
+/// WideCamera puts it. Derivatives by central differences of 1e-6 (paper II-A.3).
 class PaperCost : public ceres::CostFunction {
  public:
   static constexpr double kDelta = 1e-6;
@@ -40,14 +43,16 @@ class PaperCost : public ceres::CostFunction {
 
  private:
   void Residuals(const Vector6d& delta, double* residuals) const;
+  double Residual(const Eigen::Vector3d& point_in_camera) const;
 
   const Camera* camera_;
   const DistanceField* field_;
   const std::vector<Eigen::Vector3d>* points_;
   Rigid3 start_;
+  std::optional<WideCamera> wide_;  // with a smooth field only
 };
 
-/// The residual of one point: see PaperCost.
+/// The residual of one point with the paper's own field: see PaperCost.
 double PaperResidual(const Camera& camera, const DistanceField& field,
                      const Eigen::Vector3d& point_in_camera);
 

@@ -84,6 +84,33 @@ TEST(SolvePaper, WhereNothingProjectsIntoTheImageItHasNotConverged) {
   EXPECT_THAT(result.status, HasSubstr("only 0% of the boundary points project into the image"));
 }
 
+// Of starts so far off that points lie outside the images: the paper's field is flat there.
+TEST(SolvePaper, TheSmoothFieldLeadsBackFromWhereThePapersIsFlat) {
+  const BoardWorld world = MakeBoardWorld(9);
+  CalibrateOptions smooth = Patient();
+  smooth.smooth_field = true;
+  // All points behind the camera, or beside the image.
+  for (const double angle : {M_PI, 0.6 * M_PI}) {
+    const Rigid3 start = RotationAbout({0, 1, 0}, angle) * world.camera_from_lidar;
+    const CameraCalibration paper = SolvePaper(world.spec, world.Used(), start, Patient());
+    EXPECT_FALSE(paper.converged);
+    EXPECT_GT(RotationDistance(paper.camera_from_lidar, world.camera_from_lidar), 1);
+    const CameraCalibration found = SolvePaper(world.spec, world.Used(), start, smooth);
+    EXPECT_TRUE(found.converged) << found.status;
+    EXPECT_LT(ReprojectionRms(world, found.camera_from_lidar, world.camera_from_lidar), 0.5);
+  }
+}
+
+TEST(SolvePaper, WithTheSmoothFieldPointsNeedNotLieInTheImage) {
+  const BoardWorld world = MakeBoardWorld(6);
+  CalibrateOptions options;
+  options.smooth_field = true;
+  const Rigid3 start = RotationAbout({0, 1, 0}, M_PI) * world.camera_from_lidar;
+  options.max_iterations = 2;
+  const CameraCalibration result = SolvePaper(world.spec, world.Used(), start, options);
+  EXPECT_THAT(result.status, testing::Not(HasSubstr("project into the image")));
+}
+
 TEST(SolvePaper, RunningOutOfIterationsIsAStatus) {
   const BoardWorld world = MakeBoardWorld(6);
   CalibrateOptions options;

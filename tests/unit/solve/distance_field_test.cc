@@ -124,6 +124,95 @@ TEST(DistanceField, OutsideTheImageTheBorderPixelCounts) {
   expect(1e15, 1e15, kWidth - 1, kHeight - 1);
 }
 
+class SmoothDistanceField : public testing::TestWithParam<std::uint32_t> {
+ protected:
+  // Where a person stands on the border, and which way is out of the image.
+  struct Place {
+    Eigen::Vector2d border, outwards;
+  };
+
+  // All round, corners with slanted ways out included.
+  static std::vector<Place> Places(std::uint32_t seed) {
+    constexpr double kRight = kWidth - 1;
+    constexpr double kBottom = kHeight - 1;
+    Random random(seed);
+    std::vector<Place> places;
+    for (int i = 0; i < 100; ++i) {
+      const double u = random.Uniform(0, kRight);
+      const double v = random.Uniform(0, kBottom);
+      places.push_back({{0, v}, {-1, 0}});
+      places.push_back({{kRight, v}, {1, 0}});
+      places.push_back({{u, 0}, {0, -1}});
+      places.push_back({{u, kBottom}, {0, 1}});
+      const double a = random.Uniform(0, M_PI / 2);
+      places.push_back({{kRight, kBottom}, {std::cos(a), std::sin(a)}});
+      places.push_back({{0, 0}, {-std::cos(a), -std::sin(a)}});
+    }
+    return places;
+  }
+
+  const Pixels edges_ = RandomEdges(8, GetParam());
+  const DistanceField flat_{kWidth, kHeight, edges_};
+  const DistanceField smooth_{kWidth, kHeight, edges_, FieldBeyond::kSmooth};
+  const std::vector<Place> places_ = Places(GetParam());
+};
+
+TEST_P(SmoothDistanceField, ChangesNothingInTheImageToTheLastBit) {
+  EXPECT_EQ(flat_.beyond(), FieldBeyond::kBorderValue);
+  Random random(GetParam());
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector2d pixel(random.Uniform(0, kWidth - 1), random.Uniform(0, kHeight - 1));
+    ASSERT_EQ(smooth_.Value(pixel), flat_.Value(pixel));
+    const Eigen::Vector2d anywhere = 3 * pixel - Eigen::Vector2d(kWidth, kHeight);
+    ASSERT_EQ(smooth_.Nearest(anywhere), flat_.Nearest(anywhere));
+  }
+  for (const Place& place : places_) {
+    ASSERT_EQ(smooth_.Value(place.border), flat_.Value(place.border));
+  }
+}
+
+// From just outside to the border: the distance alone makes the difference.
+TEST_P(SmoothDistanceField, ItsValueGoesOnAcrossTheBorder) {
+  for (const Place& place : places_) {
+    for (const double step : {1e-3, 1e-6, 1e-9}) {
+      // The surface's slope is below 2 px/px, even where the transform has a ridge.
+      ASSERT_NEAR(smooth_.Value(place.border + step * place.outwards), smooth_.Value(place.border),
+                  2 * step);
+    }
+  }
+}
+
+TEST_P(SmoothDistanceField, ItsSlopeGoesOnAcrossTheBorder) {
+  constexpr double kStep = 1e-5;
+  for (const Place& place : places_) {
+    const auto at = [&](double step) {
+      return smooth_.Value(place.border + step * place.outwards);
+    };
+    const double inside = (at(0) - at(-kStep)) / kStep;
+    const double outside = (at(kStep) - at(0)) / kStep;
+    // Second derivatives of some 0.2 per pixel at most, times the step; rounding of 1e-14 / step.
+    ASSERT_NEAR(inside, outside, 1e-5) << place.border.transpose();
+  }
+}
+
+// Neighbouring pixels' surfaces differ a little (by what two fits differ), so is asked how much is
+// gained over some pixels: at the border as much as in the image at least, farther out nearly all.
+TEST_P(SmoothDistanceField, GrowsWithTheDistanceFromTheBorder) {
+  for (const Place& place : places_) {
+    double before = smooth_.Value(place.border);
+    for (const double distance : {5.0, 10.0, 20.0, 40.0, 80.0, 1000.0, 1e6, 1e12}) {
+      const double value = smooth_.Value(place.border + distance * place.outwards);
+      ASSERT_GT(value, before) << distance << " px from " << place.border.transpose();
+      before = value;
+    }
+    const double far = smooth_.Value(place.border + 1000 * place.outwards);
+    ASSERT_NEAR(far - smooth_.Value(place.border), 1000, 11);
+    ASSERT_NEAR(smooth_.Value(place.border + 1001 * place.outwards) - far, 1, 1e-3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, SmoothDistanceField, testing::Range(1U, 5U));
+
 TEST(DistanceField, EdgePixelsOutsideTheImageDoNotCount) {
   const DistanceField field(kWidth, kHeight, {{-1, 5}, {kWidth, 5}, {5, kHeight}, {40, 5}});
   EXPECT_EQ(field.Nearest({0, 5}), 40);

@@ -197,5 +197,54 @@ TEST_F(PaperCostTest, OutsideTheImageTheBorderPixelCounts) {
   EXPECT_EQ(PaperResidual(camera_, field_, right), field_.Nearest({639, pixel.y()}));
 }
 
+class SmoothPaperCostTest : public PaperCostTest {
+ protected:
+  double Smooth(const Eigen::Vector3d& point_in_camera) const {
+    const std::vector<Eigen::Vector3d> points{point_in_camera};
+    const PaperCost cost(&camera_, &smooth_, &points, Rigid3());
+    const Vector6d zero = Vector6d::Zero();
+    const double* parameters[] = {zero.data()};
+    double residual = -1;
+    EXPECT_TRUE(cost.Evaluate(parameters, &residual, nullptr));
+    return residual;
+  }
+
+  // Off the axis by an angle, towards the image's right and a little down.
+  static Eigen::Vector3d Towards(double angle) {
+    return 3 * Eigen::Vector3d(std::sin(angle) * std::cos(0.3), std::sin(angle) * std::sin(0.3),
+                               std::cos(angle));
+  }
+
+  const DistanceField smooth_{view_.image->width, view_.image->height, view_.image->edge_pixels,
+                              FieldBeyond::kSmooth};
+};
+
+TEST_F(SmoothPaperCostTest, InTheImageItIsThePapersToTheLastBit) {
+  for (double u = 0.5; u < 638; u += 13.7) {
+    const Eigen::Vector3d point = 2.5 * *camera_.Unproject({u, 0.7 * u});
+    ASSERT_EQ(Smooth(point), PaperResidual(camera_, field_, point)) << u;
+  }
+}
+
+TEST_F(SmoothPaperCostTest, GrowsAllTheWayRoundToStraightBehind) {
+  double before = Smooth(Towards(35 * M_PI / 180));  // outside the image
+  for (double degrees = 37; degrees < 180; degrees += 2) {
+    const double here = Smooth(Towards(degrees * M_PI / 180));
+    ASSERT_GT(here, before + 5) << degrees;  // f = 500 px: 17 px in 2 degrees
+    before = here;
+  }
+  // Nowhere more than some image widths: behind is far, not everything.
+  EXPECT_LT(Smooth({0, 0, -2}), 6 * 640);
+}
+
+TEST_F(SmoothPaperCostTest, IsFiniteEverywhere) {
+  for (const Eigen::Vector3d& point :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1e-12, 0, -1e-12),
+        Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, -1, 1e-15), Eigen::Vector3d(1e9, 1e9, -1e9)}) {
+    EXPECT_TRUE(std::isfinite(Smooth(point))) << point.transpose();
+    EXPECT_GE(Smooth(point), 0) << point.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt
