@@ -35,6 +35,9 @@ void FromViews(const CameraReport& camera, proto::CameraReport* out) {
     rejected->set_view(ValidUtf8(view.view));
     rejected->set_why(ValidUtf8(view.why));
   }
+  for (const std::string& remark : camera.remarks) {
+    out->mutable_views()->add_remarks(ValidUtf8(remark));
+  }
   for (const ViewQuality& view : camera.views) {
     proto::ViewQuality* quality = out->add_view_quality();
     quality->set_view(ValidUtf8(view.view));
@@ -51,6 +54,7 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
   const proto::Views& views = message.views();
   camera->used.assign(views.used().begin(), views.used().end());
   camera->heldout.assign(views.heldout().begin(), views.heldout().end());
+  camera->remarks.assign(views.remarks().begin(), views.remarks().end());
   for (const proto::RejectedView& view : views.rejected()) {
     camera->rejected.push_back({view.view(), view.why()});
   }

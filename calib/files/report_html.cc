@@ -137,7 +137,9 @@ std::string ViewsHtml(const CameraReport& camera) {
                    [](const Line& a, const Line& b) { return NaturalLess(a.view, b.view); });
   Rows rows;
   for (const Line& line : lines) rows.push_back(line.cells);
-  return Heading(3, "Views") +
+  std::string remarks;
+  for (const std::string& remark : camera.remarks) remarks += "<p>" + Escape(remark) + "</p>\n";
+  return Heading(3, "Views") + remarks +
          html::Table({"view", "role", "edge RMS [px]", "distance transform [px]", "why rejected"},
                      rows);
 }

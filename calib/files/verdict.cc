@@ -111,7 +111,7 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
   } else if (!calibration.converged) {
     judgement->Bad("The solve did not converge" + (status.empty() ? "." : ": " + status));
   } else if (!status.empty() && status != "converged") {
-    judgement->Caution("The solve says: " + status);  // e.g. that it kept the first guess
+    judgement->Say("The solve says: " + status);  // e.g. that it kept the first guess
   }
 }
 

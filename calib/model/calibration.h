@@ -116,6 +116,7 @@ struct CameraReport {
   std::optional<Rigid3> first_guess;  ///< camera_from_lidar that the solve began from
   std::vector<std::string> used, heldout;
   std::vector<RejectedView> rejected;
+  std::vector<std::string> remarks;    ///< what a person should know of the views, in words
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
   TrainHeldout edge_rms_whitened;      ///< RMS of the crossings' distances, each in its sigmas

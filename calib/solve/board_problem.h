@@ -33,12 +33,17 @@ struct BoardPriors {
   double side_sigma_rad = 0.3e-3;   ///< further shift of each side in each view
   double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside
   double thickness_m = 0.010, thickness_sigma_m = 0.010;  ///< of the board: its rim may be seen
-  double outline_sigma_m = 0.001;     ///< each side's place against the pattern, as cut
+  double outline_sigma_m = 0.001;      ///< each side's place against the pattern, as cut
   double range_offset_sigma_m = 1e-9;  ///< true range minus measured; next to nothing: known as 0
 
   std::array<double, kSharedUnknowns> Means() const;
   double Sigma(int unknown) const;
 };
+
+/// A detector's errors within one image are partly alike, more than their residuals show: poses
+/// from rendered images are off by about half as much again as the corners' scatter has it
+/// (scripts/study detection, corners). Sigmas of corners are enlarged by this.
+inline constexpr double kCornersAlike = 1.4;
 
 /// One camera's image of a board.
 struct BoardSight {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "calib/solve/by_planes.h"
 #include "calib/solve/colouring.h"
@@ -47,6 +48,34 @@ bool EnoughViews(const CalibrateOptions& options, CameraViews* camera) {
   return false;
 }
 
+std::string Place(const Eigen::Vector3d& p) {
+  char text[60];
+  std::snprintf(text, sizeof text, "x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
+  return text;
+}
+
+// Names what else in the clouds looks like the target: a second board, a door, a poster.
+void RemarkOthers(CameraViews* camera) {
+  int views = 0;
+  std::string example;
+  for (const Observation* o : camera->Usable()) {
+    if (o->candidates.size() < 2) continue;
+    ++views;
+    const auto other = std::find_if(
+        o->candidates.begin(), o->candidates.end(),
+        [&](const CloudEdges& c) { return (c.centre - o->cloud->centre).norm() > 0.01; });
+    if (!example.empty() || other == o->candidates.end()) continue;
+    example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
+              Place(other->centre) + " (LIDAR frame)";
+  }
+  if (example.empty()) return;
+  camera->report.remarks.push_back(
+      "something else of the target's size stands in " + std::to_string(views) + " of " +
+      std::to_string(camera->Usable().size()) +
+      " clouds, e.g. a second board; the views together chose the target. " + example +
+      ". If that is wrong, take the other thing away");
+}
+
 // The first guess, from the views used; the views held out have no say, but they choose their board
 // by it, too. Without a pose: the status says why.
 FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
@@ -66,6 +95,7 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
     return guess;
   }
   camera->report.first_guess = guess.camera_from_lidar;
+  RemarkOthers(camera);
   return guess;
 }
 

@@ -25,6 +25,11 @@ struct Alone {
   }
 };
 
+// Of the board's pose in the image.
+Matrix6d ByImage(const Observation& view) {
+  return kCornersAlike * kCornersAlike * view.image->pose->covariance;
+}
+
 Alone FromOneView(const Observation& view, const Rigid3& near) {
   const TargetPose& seen = *view.image->pose;
   const TargetPose& cloud = *view.cloud->pose;
@@ -35,7 +40,7 @@ Alone FromOneView(const Observation& view, const Rigid3& near) {
   Alone alone;
   alone.camera_from_lidar = camera_from_target * cloud.sensor_from_target.Inverse();
   const Matrix6d adjoint = Adjoint(near);
-  alone.by_camera = seen.covariance;
+  alone.by_camera = ByImage(view);
   alone.by_cloud = adjoint * cloud.covariance * adjoint.transpose();
   return alone;
 }
@@ -246,9 +251,8 @@ std::optional<Closure> CloseLoop(const GuessedCamera& camera_a, const GuessedCam
     Vector6d gradient = Vector6d::Zero();
     weights.clear();
     for (const auto& [a, b] : shared) {
-      const Matrix6d covariance = b->image->pose->covariance +
-                                  b_by_a * a->image->pose->covariance * b_by_a.transpose() +
-                                  1e-10 * Matrix6d::Identity();
+      const Matrix6d covariance =
+          ByImage(*b) + b_by_a * ByImage(*a) * b_by_a.transpose() + 1e-10 * Matrix6d::Identity();
       const Vector6d off = Log(ByImages(*a, *b, stereo) * stereo.Inverse());
       const Matrix6d weight = covariance.ldlt().solve(Matrix6d::Identity());
       const double robust = std::min(1.0, 25 / std::max(1e-12, off.dot(weight * off)));
@@ -281,9 +285,9 @@ std::optional<Closure> CloseLoop(const GuessedCamera& camera_a, const GuessedCam
     const Matrix6d weight_a = b_by_a * weight_of(mean_a, view);
     const Matrix6d weight_b = weight_of(mean_b, view);
     if (a != nullptr) {
-      add(weight_a - by_stereo * b_by_a, FromOneView(*a, mean_a.camera_from_lidar).by_camera);
+      add(weight_a - by_stereo * b_by_a, ByImage(*a));
     }
-    if (b != nullptr) add(weight_b - by_stereo, b->image->pose->covariance);
+    if (b != nullptr) add(weight_b - by_stereo, ByImage(*b));
     const Matrix6d cloud_a = a == nullptr ? Matrix6d(Matrix6d::Zero())
                                           : Matrix6d(weight_a * Adjoint(mean_a.camera_from_lidar));
     const Matrix6d cloud_b = b == nullptr ? Matrix6d(Matrix6d::Zero())

@@ -99,9 +99,12 @@ struct Vote {
   Agreement best, other;
 };
 
+// All views vote; of many, some spread evenly propose, or time would grow with their square.
 Vote VoteAmong(const Views& views) {
+  constexpr std::size_t kProposing = 40;
   std::vector<Agreement> all;
-  for (const Observation* view : views) {
+  for (std::size_t v = 0; v < views.size(); v += (views.size() + kProposing - 1) / kProposing) {
+    const Observation* view = views[v];
     for (const CloudEdges& candidate : view->candidates) {
       for (const bool half_turn : {false, true}) {
         const Pair pair{&*view->image->pose, &*candidate.pose, half_turn};

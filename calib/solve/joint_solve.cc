@@ -204,10 +204,10 @@ bool DropSide(JointProblem* joint, const BoardState& state) {
   if (worst <= most) return false;
   joint->problem.views[view].sides[side] = false;
   for (const BoardSight& sight : joint->problem.views[view].sights) {
-    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.rejected.push_back(
-        {joint->problem.views[view].name + ", " + kSideNames[side] + " side in the cloud",
-         "lies " + Fixed(worst * 1000, 1) +
-             " mrad from where the other sides put it; left out, the view is used"});
+    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.remarks.push_back(
+        "view " + joint->problem.views[view].name + ": the board's " + kSideNames[side] +
+        " side in the cloud lies " + Fixed(worst * 1000, 1) +
+        " mrad from where the other sides put it; that side is left out, the view is used");
   }
   return true;
 }
@@ -267,7 +267,7 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
   const double chance =
       std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
   const double factor = moved / expected;
-  return factor > 1 + 2 * chance ? factor : 1;
+  return factor > 1 + 2.5 * chance ? factor : 1;
 }
 
 }  // namespace

@@ -76,11 +76,12 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   return out;
 }
 
-void SolverNode::Solve(bool wide_start) {
+void SolverNode::Solve(bool for_report) {
   std::vector<Observation> all;
   for (const auto& [key, observation] : observations_) all.push_back(observation);
   CalibrateOptions options = options_;
-  options.wide_start &= wide_start;
+  options.wide_start &= for_report;
+  options.diagnostics &= for_report;
   report_ = Calibrate(*rig_, all, options);
 }
 

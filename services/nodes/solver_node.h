@@ -33,7 +33,7 @@ class SolverNode : public Node {
   const std::optional<Report>& report() const { return report_; }
 
  private:
-  void Solve(bool wide_start);  // the second start is for the report alone
+  void Solve(bool for_report);  // for a report: with a second start, folds, the next view
   Messages Calibrations() const;
   Messages OnCommand(const SessionCommand& command);
 

@@ -53,6 +53,9 @@ std::string Remarks(const CameraReport& camera) {
   for (const RejectedView& view : camera.rejected) {
     text += name + ": view " + view.view + " rejected: " + view.why + "\n";
   }
+  for (const std::string& remark : camera.remarks) {
+    text += name + ": " + remark + "\n";
+  }
   return text;
 }
 

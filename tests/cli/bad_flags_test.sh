@@ -27,7 +27,7 @@ says=("front" "rgb" "thermal")
 refuses "picks for a camera that is not there" "$bin/rgbdt" simulate "$scratch/new" --picked front
 mkdir "$scratch/out"
 echo "what an earlier run found" >"$scratch/out/calibration.textproto"
-says=("1 usable views" "calibration.textproto was not written")
+says=("degenerate: only one view" "calibration.textproto was not written")
 refuses "too few views" "$bin/rgbdt" calibrate "$good" --out "$scratch/out"
 grep -q "an earlier run" "$scratch/out/calibration.textproto" ||
   complain "a guess took the place of a calibration"
