@@ -1,0 +1,198 @@
+#include "calib/solve/joint_solve.h"
+
+#include "calib/solve/calibrate.h"
+#include "tests/unit/solve/solve_world.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+CalibrateOptions Brief() {
+  CalibrateOptions options;
+  options.diagnostics = false;
+  return options;
+}
+
+SolveWorldOptions Views(int views) {
+  SolveWorldOptions options;
+  options.views = views;
+  return options;
+}
+
+double Chi2(const SolveWorld& world, const Report& report, std::size_t camera) {
+  const CameraCalibration& c = report.cameras[camera].calibration;
+  return Chi2Of(world.camera_from_lidar[camera], c.camera_from_lidar, *c.covariance);
+}
+
+constexpr double kMostChi2 = 22.5;  // of six degrees of freedom: one in a thousand lies beyond
+
+TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
+  const SolveWorld world(Views(10));
+  const Report report = Calibrate(world.rig, world.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    EXPECT_TRUE(camera.calibration.converged);
+    EXPECT_EQ(camera.calibration.status, "converged");
+    EXPECT_EQ(camera.used.size(), 10U);
+    EXPECT_THAT(camera.rejected, IsEmpty());
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    ASSERT_TRUE(camera.sigma);
+    EXPECT_LT(camera.sigma->centre_mm[0], 10);
+  }
+}
+
+TEST(CalibrateJointly, AViewWhoseBoardMovedIsRejectedByNameAndTheResultAsGoodAsWithoutIt) {
+  SolveWorld world(Views(12));
+  SolveWorld without(Views(12));
+  without.observations.erase(without.observations.begin() + 8, without.observations.begin() + 10);
+  // By 20 mm sideways, between the sweep and the image.
+  const Eigen::Vector3d move =
+      0.02 * (world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0));
+  world.ChangeCloud(4, [&](CloudEdges* cloud) {
+    cloud->pose->sensor_from_target.translation += move;
+    cloud->centre += move;
+    for (Crossing& crossing : cloud->crossings) crossing.point += move;
+    for (Eigen::Vector3d& p : cloud->boundary) p += move;
+  });
+  const Report report = Calibrate(world.rig, world.observations, Brief());
+  const Report good = Calibrate(without.rig, without.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_THAT(report.cameras[c].rejected,
+                ElementsAre(AllOf(Field(&RejectedView::view, "0005"),
+                                  Field(&RejectedView::why, HasSubstr("contradicts the other")))));
+    EXPECT_THAT(report.cameras[c].used, Not(Contains("0005")));
+    EXPECT_THAT(report.cameras[c].calibration.camera_from_lidar,
+                Rigid3Near(good.cameras[c].calibration.camera_from_lidar, 1e-6, 1e-6));
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+  }
+}
+
+TEST(CalibrateJointly, ASideWithSomethingAgainstItIsLeftOutByNameAndTheViewIsUsed) {
+  SolveWorld world(Views(12));
+  const SolveWorld clean(Views(12));
+  const Eigen::Vector3d right = world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0);
+  world.ChangeCloud(4, [&](CloudEdges* cloud) {
+    ASSERT_THAT(cloud->pose->sensor_from_target, Rigid3Near(world.lidar_from_target[4], 0.1, 0.1));
+    for (Crossing& crossing : cloud->crossings) {
+      if (crossing.side == 1) crossing.point += 0.010 * right;
+    }
+  });
+  const Report report = Calibrate(world.rig, world.observations, Brief());
+  const Report good = Calibrate(clean.rig, clean.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    EXPECT_THAT(camera.rejected,
+                ElementsAre(AllOf(Field(&RejectedView::view, "0005, right side in the cloud"),
+                                  Field(&RejectedView::why, HasSubstr("the view is used")))));
+    EXPECT_THAT(camera.used, Contains("0005"));
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    EXPECT_LT(Chi2Of(good.cameras[c].calibration.camera_from_lidar,
+                     camera.calibration.camera_from_lidar, *camera.calibration.covariance),
+              3);
+  }
+}
+
+TEST(CalibrateJointly, CamerasMayTellTheBoardFromOppositeEnds) {
+  const SolveWorld world(Views(10));
+  SolveWorld turned(Views(10));
+  for (std::size_t v = 0; v < 10; ++v) TurnImage(&*turned.At(v, 1).image);
+  const Report a = Calibrate(world.rig, world.observations, Brief());
+  const Report b = Calibrate(turned.rig, turned.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_THAT(b.cameras[c].calibration.camera_from_lidar,
+                Rigid3Near(a.cameras[c].calibration.camera_from_lidar, 1e-8, 1e-8));
+  }
+}
+
+TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
+  SolveWorld world(Views(6));
+  for (std::size_t v = 0; v < 6; ++v) {
+    world.At(v, 0).image->pose->half_turn_known = false;
+    TurnImage(&*world.At(v, 0).image);
+  }
+  const SolveSession session(world);
+  const JointProblem joint = session.Joint();
+  ASSERT_EQ(joint.problem.views.size(), 6U);
+  for (std::size_t v = 0; v < 6; ++v) {
+    const BoardView& view = joint.problem.views[v];
+    EXPECT_THAT(view.cloud.pose->sensor_from_target,
+                Rigid3Near(world.lidar_from_target[v], 0.1, 0.1));
+    EXPECT_TRUE(view.sights[0].turned);
+    EXPECT_FALSE(view.sights[1].turned);
+    for (const Crossing& crossing : view.cloud.crossings) {
+      const CrossingResidual r = ResidualOf(world.rig.target, {}, crossing,
+                                            world.lidar_from_target[v], joint.start.shared, 0);
+      EXPECT_LT(std::abs(r.beyond_m), 0.02);
+    }
+  }
+}
+
+TEST(MakeJointProblem, ACameraThatTakesAnotherBoardOfTheCloudIsRejected) {
+  SolveWorld world(Views(6));
+  world.At(2, 1).cloud->centre += Eigen::Vector3d(0, 0.5, 0);
+  const SolveSession session(world);
+  const JointProblem joint = session.Joint();
+  EXPECT_EQ(joint.problem.views[2].sights.size(), 1U);
+  EXPECT_THAT(session.cameras[1].views->all[2].rejected, HasSubstr("another board of the cloud"));
+}
+
+TEST(CalibrateApart, GivesEachCameraWhatItWouldHaveAlone) {
+  const SolveWorld world(Views(10));
+  CalibrateOptions apart = Brief();
+  apart.joint = false;
+  const Report report = Calibrate(world.rig, world.observations, apart);
+  const Report together = Calibrate(world.rig, world.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    Rig alone = world.rig;
+    alone.cameras = {world.rig.cameras[c]};
+    const Report one = Calibrate(alone, world.observations, Brief());
+    EXPECT_THAT(report.cameras[c].calibration.camera_from_lidar,
+                Rigid3Near(one.cameras[0].calibration.camera_from_lidar, 1e-12, 1e-12));
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    // Together they differ, if little.
+    const Rigid3& joint = together.cameras[c].calibration.camera_from_lidar;
+    EXPECT_THAT(report.cameras[c].calibration.camera_from_lidar,
+                AllOf(Rigid3Near(joint, 0.005, 0.015), Not(Rigid3Near(joint, 1e-7, 1e-7))));
+  }
+}
+
+TEST(CalibrateJointly, TheOrderOfTheObservationsDoesNotMatter) {
+  const SolveWorld world(Views(8));
+  std::vector<Observation> shuffled(world.observations.rbegin(), world.observations.rend());
+  std::swap(shuffled[2], shuffled[11]);
+  const Report a = Calibrate(world.rig, world.observations, Brief());
+  const Report b = Calibrate(world.rig, shuffled, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_EQ(a.cameras[c].calibration.camera_from_lidar.translation,
+              b.cameras[c].calibration.camera_from_lidar.translation);
+    EXPECT_EQ(*a.cameras[c].calibration.covariance, *b.cameras[c].calibration.covariance);
+    EXPECT_EQ(a.cameras[c].used, b.cameras[c].used);
+  }
+}
+
+TEST(SolveJointly, ViewsThatScatterMoreThanTheyStateEnlargeTheCovariance) {
+  SolveWorldOptions options = Views(12);
+  const SolveWorld honest(options);
+  options.noise = 2.5;
+  const SolveWorld noisy(options);
+  const SolveSession honest_session(honest);
+  const SolveSession noisy_session(noisy);
+  JointProblem a = honest_session.Joint();
+  JointProblem b = noisy_session.Joint();
+  EXPECT_EQ(SolveJointly(&a).variance_factor, 1);
+  const JointResult enlarged = SolveJointly(&b);
+  EXPECT_GT(enlarged.variance_factor, 2.5 * 2.5 / 2);
+  EXPECT_LT(enlarged.variance_factor, 2.5 * 2.5 * 2);
+  EXPECT_NEAR(CovarianceOf(enlarged, 1)(3, 3),
+              enlarged.variance_factor * enlarged.solution.covariance(9, 9), 1e-12);
+}
+
+}  // namespace
+}  // namespace rgbdt
