@@ -239,6 +239,7 @@ double Alike(const Target& target, const Pixels& residuals, const std::vector<do
     alone += weights[i] * residuals[i].squaredNorm();
     count += weights[i];
   }
+  if (!(alone > 0)) return 1;
   double sum = 1;
   for (int dy = 0; dy < std::min(kLags, rows); ++dy) {
     for (int dx = dy == 0 ? 1 : 1 - kLags; dx < kLags; ++dx) {

@@ -417,6 +417,9 @@ class Step {
     Eigen::MatrixXd h = prior_.information;
     for (const ViewEquations& e : equations_) {
       solution->views.push_back(Reduce(e, 0).shared);
+      const Eigen::Matrix<double, kLocal, kLocal> local =
+          e.h().topLeftCorner<kLocal, kLocal>().inverse();
+      solution->side_variance.push_back({local(6, 6), local(7, 7), local(8, 8), local(9, 9)});
       h += solution->views.back().information;
     }
     solution->covariance = h.ldlt().solve(Eigen::MatrixXd::Identity(Size(), Size()));
@@ -520,6 +523,25 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) 
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
                               std::size_t view) {
   return Reduce(ViewEquations(problem, state, view), 0).shared;
+}
+
+double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera) {
+  constexpr int kIterations = 20;
+  for (int i = 0; i < kIterations; ++i) {
+    const ViewEquations equations(problem, state, view);
+    const Eigen::Matrix<double, kLocal, 1> step =
+        equations.h().topLeftCorner<kLocal, kLocal>().ldlt().solve(equations.g().head<kLocal>());
+    state.lidar_from_target[view] = state.lidar_from_target[view] * Exp(Vector6d(step.head<6>()));
+    for (int side = 0; side < 4; ++side) {
+      state.side_shift[view][static_cast<std::size_t>(side)] += step[6 + side];
+    }
+    if (step.head<6>().norm() < 1e-8) break;
+  }
+  const ViewInformation reduced = Reduce(ViewEquations(problem, state, view), 0).shared;
+  const Eigen::Index at = 6 * camera;
+  const Matrix6d information = reduced.information.block<6, 6>(at, at);
+  const Vector6d gradient = reduced.gradient.segment<6>(at);
+  return gradient.dot(information.ldlt().solve(gradient));
 }
 
 }  // namespace rgbdt

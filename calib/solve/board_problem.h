@@ -85,8 +85,9 @@ struct ViewInformation {
 
 struct BoardSolution {
   BoardState state;
-  Eigen::MatrixXd covariance;          ///< of the shared unknowns, cameras first
-  std::vector<ViewInformation> views;  ///< at the solution
+  Eigen::MatrixXd covariance;                        ///< of the shared unknowns, cameras first
+  std::vector<ViewInformation> views;                ///< at the solution
+  std::vector<std::array<double, 4>> side_variance;  ///< by view and side, of its shift [rad^2]
   bool converged = false;
   int iterations = 0;
 };
@@ -115,6 +116,11 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
 /// What a view would tell of the shared unknowns at this state; its residuals do not matter.
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
                               std::size_t view);
+
+/// How badly a pose of a camera fits a view that had no say in it: the chi-square of the step that
+/// the view by itself would make it, the shared unknowns kept, the view's own ones at their best.
+/// Six on average where all is as stated.
+double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera);
 
 /// A crossing against its side. All on the board, metres and radians.
 struct CrossingResidual {

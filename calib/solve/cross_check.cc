@@ -45,7 +45,6 @@ Alone FromOneView(const Observation& view, const Rigid3& near) {
   return alone;
 }
 
-// The cloud's pose moved by a range offset, for views judged by their poses.
 const Observation* FindView(const GuessedCamera& camera, const std::string& view) {
   for (const Observation* o : camera.views->Used()) {
     if (o->view == view) return o;
@@ -83,11 +82,30 @@ std::vector<const Observation*> ViewsOf(const JointProblem& joint, std::size_t c
 // A camera's part in one fold.
 struct Judged {
   Fold fold;
-  double worse = 0;  // the refined misfit minus the guess's, over the views left out
+  std::vector<double> worse;  // by view left out: the refined misfit minus the guess's
 };
 
+// A view left out against a camera's pose, by that camera's image alone; bounded, so that one wrong
+// view does not decide.
+double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
+                std::size_t camera, const Rigid3& camera_from_lidar) {
+  BoardState state;
+  BoardProblem alone = Part(joint.problem, {view}, joint.start, &state);
+  std::vector<BoardSight>& sights = alone.views[0].sights;
+  sights.erase(
+      std::remove_if(sights.begin(), sights.end(),
+                     [&](const BoardSight& s) { return s.camera != static_cast<int>(camera); }),
+      sights.end());
+  state.camera_from_lidar = fold.state.camera_from_lidar;
+  state.camera_from_lidar[camera] = camera_from_lidar;
+  state.shared = fold.state.shared;
+  state.lidar_from_target[0] = alone.views[0].cloud.pose->sensor_from_target;
+  state.side_shift[0] = {};
+  return std::min(kMostMisfit, MisfitOf(alone, state, 0, static_cast<int>(camera)));
+}
+
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
-                 const std::vector<const Observation*>& left_out, const FirstGuess& guess) {
+                 const std::vector<std::size_t>& left_out, const FirstGuess& guess) {
   const CameraReport& report = joint.cameras[camera].views->report;
   const auto at = static_cast<Index>(6 * camera);
   const CameraCalibration fold_calibration{
@@ -98,20 +116,38 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
   judged.fold.from_result =
       ErrorOf(fold_calibration.camera_from_lidar, report.calibration.camera_from_lidar);
   EdgeMisfit sum;
-  for (const Observation* o : left_out) {
+  std::size_t judges = 0;
+  for (const std::size_t view : left_out) {
+    const Observation* o = FindView(joint.cameras[camera], joint.problem.views[view].name);
+    if (o == nullptr) continue;
+    ++judges;
     judged.fold.heldout.push_back(o->view);
     const EdgeMisfit edge = MisfitOfEdges(edges, *o, fold_calibration);
     sum.squared += edge.squared;
     sum.count += edge.count;
-    const double refined = MisfitOf(*o, fold_calibration.camera_from_lidar);
-    const double guessed = MisfitOf(*o, *guess.camera_from_lidar);
-    const auto share = 1 / static_cast<double>(left_out.size());
-    judged.fold.misfit += refined * share;
-    judged.fold.first_guess_misfit += guessed * share;
-    judged.worse += refined - guessed;
+    const double refined =
+        MisfitOf(joint, solution, view, camera, fold_calibration.camera_from_lidar);
+    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar);
+    judged.fold.misfit += refined;
+    judged.fold.first_guess_misfit += guessed;
+    judged.worse.push_back(refined - guessed);
   }
+  judged.fold.misfit /= static_cast<double>(std::max<std::size_t>(1, judges));
+  judged.fold.first_guess_misfit /= static_cast<double>(std::max<std::size_t>(1, judges));
   judged.fold.edge_rms_whitened = sum.count > 0 ? std::sqrt(sum.squared / sum.count) : 0;
   return judged;
+}
+
+// Whether the guess fits better by more than chance: the sum against twice its own scatter. What a
+// view says by itself is far coarser than these two poses differ.
+bool GuessIsBetter(const std::vector<double>& worse) {
+  double sum = 0;
+  double squares = 0;
+  for (const double w : worse) {
+    sum += w;
+    squares += w * w;
+  }
+  return sum > 2 * std::sqrt(squares);
 }
 
 void KeepGuess(const GuessedCamera& camera) {
@@ -133,22 +169,23 @@ void KeepGuess(const GuessedCamera& camera) {
 }
 
 void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::size_t parts) {
-  std::vector<double> worse(joint.cameras.size(), 0.0);
+  std::vector<std::vector<double>> worse(joint.cameras.size());
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t count = joint.problem.views.size();
     const auto kept = Others(count, part, parts, false);
     const BoardSolution solution = SolvePart(joint, result.solution.state, kept);
     for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-      const auto left_out = ViewsOf(joint, c, Others(count, part, parts, true));
+      const auto left_out = Others(count, part, parts, true);
       const FirstGuess guess = GuessFromBoards(ViewsOf(joint, c, kept));
-      if (left_out.empty() || !guess.camera_from_lidar || !solution.converged) continue;
+      if (!guess.camera_from_lidar || !solution.converged) continue;
       Judged judged = JudgeFold(joint, solution, c, left_out, guess);
-      worse[c] += judged.worse;
+      if (judged.worse.empty()) continue;
+      worse[c].insert(worse[c].end(), judged.worse.begin(), judged.worse.end());
       joint.cameras[c].views->report.folds.push_back(std::move(judged.fold));
     }
   }
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-    if (worse[c] > 0) KeepGuess(joint.cameras[c]);
+    KeepTheBetter(joint.cameras[c], worse[c]);
   }
 }
 
@@ -170,10 +207,8 @@ void Halve(const JointProblem& joint, const JointResult& result) {
 
 }  // namespace
 
-double MisfitOf(const Observation& view, const Rigid3& camera_from_lidar) {
-  const Alone alone = FromOneView(view, camera_from_lidar);
-  const Vector6d delta = Log(alone.camera_from_lidar * camera_from_lidar.Inverse());
-  return std::min(kMostMisfit, delta.dot(alone.Covariance().ldlt().solve(delta)));
+void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse) {
+  if (GuessIsBetter(worse)) KeepGuess(camera);
 }
 
 void CrossValidate(const JointProblem& joint, const JointResult& result, int folds) {

@@ -7,17 +7,16 @@
 
 namespace rgbdt {
 
-/// How well a pose fits a view that had no say in it: chi-square of the difference between the pose
-/// that the view gives by itself and this one, by the view's own covariance; bounded, so that one
-/// wrong view does not decide. `view` is usable, with the poses of its board.
-double MisfitOf(const Observation& view, const Rigid3& camera_from_lidar);
-
 /// Fills in `folds` and `halves` of the cameras' reports: each part of the views left out once,
 /// solved from the others and judged on it, beside the first guess from the same others; and two
-/// halves of the views solved apart. Where the first guess fits what was left out better, the
-/// guess is kept: it becomes the report's calibration, and the status says so. Nothing
-/// with fewer than 4 views.
+/// halves of the views solved apart. Where the first guess fits what was left out better by
+/// more than chance, it is kept: it becomes the report's calibration, and the status says so.
+/// Nothing with fewer than 4 views.
 void CrossValidate(const JointProblem& joint, const JointResult& result, int folds);
+
+/// The first guess becomes the report's calibration where it fits views left out better than the
+/// refined pose by more than chance: `worse` is, by view, how much larger the refined misfit is.
+void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse);
 
 /// Each pair of cameras: their relative pose by way of the LIDAR, each camera by itself, against
 /// stereo calibration from the views that both see. Both from the boards' poses, weighed by their

@@ -291,6 +291,35 @@ BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& v
   return part;
 }
 
+// How far sides differ among themselves, by the data: never less than the physics says. Each
+// side's shift as found and what is left open of it (Dempster, Laird and Rubin 1977).
+double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
+  double sum = 0;
+  double count = 0;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    for (std::size_t side = 0; side < 4; ++side) {
+      if (!joint.problem.views[v].sides[side]) continue;
+      const double shift = solution.state.side_shift[v][side];
+      sum += shift * shift + solution.side_variance[v][side];
+      count += 1;
+    }
+  }
+  return count > 0 ? std::max(BoardPriors().side_sigma_rad, std::sqrt(sum / count)) : 0;
+}
+
+// Solves again until the sides' sigma agrees with the sides.
+void FitSides(JointProblem* joint, BoardState* state, JointResult* result) {
+  constexpr int kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = joint->problem.priors.side_sigma_rad;
+    const double now = SideSigma(*joint, result->solution);
+    if (!(std::abs(now - before) > 0.03 * before)) return;
+    joint->problem.priors.side_sigma_rad = now;
+    result->solution = SolveBoards(joint->problem, *state);
+    *state = result->solution.state;
+  }
+}
+
 JointResult SolveJointly(JointProblem* joint) {
   std::vector<int> at_first;
   for (std::size_t c = 0; c < joint->cameras.size(); ++c) {
@@ -308,6 +337,7 @@ JointResult SolveJointly(JointProblem* joint) {
       continue;
     }
     if (DropSide(joint, state)) continue;
+    FitSides(joint, &state, &result);
     result.variance_factor = VarianceFactor(*joint, result.solution);
     break;
   }

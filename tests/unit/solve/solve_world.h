@@ -152,10 +152,12 @@ class SolveWorld {
     ImageEdges image;
     image.width = camera.width();
     image.height = camera.height();
-    image.corner_sigma_px = c == 0 ? 0.08 : 0.2;
+    // Errors are larger than the corners' scatter tells by what is taken for granted of them.
+    image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornersAlike;
     for (const Eigen::Vector3d& corner : rig.target.InnerCorners()) {
       image.corners.push_back(*camera.Project(camera_from_target * corner) +
-                              image.corner_sigma_px * Eigen::Vector2d(Noise(), Noise()));
+                              kCornersAlike * image.corner_sigma_px *
+                                  Eigen::Vector2d(Noise(), Noise()));
     }
     const auto corners = rig.target.OutlineCorners();
     for (std::size_t s = 0; s < 4; ++s) {
