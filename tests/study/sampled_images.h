@@ -24,9 +24,21 @@ std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& camera
                                                         const Target& target,
                                                         const Rigid3& camera_from_target);
 
-/// Corners with noise, in the target's order or turned by half a turn, as the noise draws.
+/// Of all corners' x and y, one after the other [px^2]: each has a noise of its own, and an affine
+/// part is common to the image's.
+Eigen::MatrixXd CornerCovariance(const std::vector<Eigen::Vector2d>& corners, double sigma_px);
+
+/// Corners with that noise, in the target's order or turned by half a turn, as the noise draws.
 std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& corners,
                                             double sigma_px, const simulate::Noise& noise);
+
+/// All that a detector would make of the board in one image, its corners with the noise of
+/// SampledCorners: pose, outline, edge pixels along it, and in colour the sides, each
+/// end off by some 0.1 px. What a thermal image does not tell, the half turn and the sides, stays
+/// unknown. Nothing where the board is not wholly in the image.
+std::optional<ImageEdges> SampledEdges(const CameraSpec& camera, const Target& target,
+                                       const Rigid3& camera_from_target,
+                                       const simulate::Noise& noise);
 
 /// How far detected corners are off, up to half a turn: root mean square along x or y [px].
 double CornerRms(const std::vector<Eigen::Vector2d>& corners,

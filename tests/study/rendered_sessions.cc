@@ -1,0 +1,119 @@
+#include "tests/study/rendered_sessions.h"
+
+#include <string>
+
+#include "calib/detect/detect.h"
+#include "calib/scan_assembly/assembler.h"
+#include "calib/simulate/noise.h"
+#include "calib/simulate/simulator.h"
+#include "tests/study/sampled_sessions.h"
+
+namespace rgbdt::study {
+namespace {
+
+using simulate::Simulator;
+
+constexpr Utime kEpoch = 1'433'160'000'000'000;
+constexpr Utime kEncoderPeriod = 10'000;
+
+// One sweep of the scanner, assembled as on the bus.
+Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
+  const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
+  const Utime end = sweep_utime + simulator.sweep_lines() * simulator.line_period();
+  EncoderTrack track;
+  for (Utime t = sweep_utime; t <= end; t += kEncoderPeriod) {
+    track.Add(simulator.Encoder(t, sweep_utime));
+  }
+  std::vector<CloudChunk> chunks;
+  for (int i = 0; i < simulator.sweep_lines(); ++i) {
+    const LineScan line = simulator.Line(sweep_utime, i);
+    const auto angles = BeamAngles(scanner, track, line, kMicrosecondsPerSecond);
+    CloudChunk chunk;
+    chunk.cloud = LineToCloud(scanner, line, angles.value());
+    chunk.cloud.first_line = i;
+    chunks.push_back(std::move(chunk));
+  }
+  Cloud cloud = JoinChunks(chunks);
+  cloud.sweep_utime = sweep_utime;
+  return cloud;
+}
+
+simulate::Options OptionsOf(const RenderedOptions& rendered, std::uint64_t seed) {
+  simulate::Options options;
+  options.seed = seed;
+  options.scene = static_cast<simulate::Scene>(seed % 3);
+  options.threads = 1;  // the study runs one program on each core
+  simulate::UseLidar(rendered.rings, &options);
+  if (rendered.random_physics) DrawPhysics(RandomPhysics(), seed, &options);
+  return options;
+}
+
+View TakeView(const Simulator& simulator, bool spinning, const std::string& name, Utime* now) {
+  View view;
+  view.name = name;
+  if (spinning) {
+    view.cloud = simulator.Revolution(*now);
+    *now += kMicrosecondsPerSecond;
+  } else {
+    view.cloud = Sweep(simulator, *now);
+    *now += simulator.sweep_lines() * simulator.line_period() + kMicrosecondsPerSecond;
+  }
+  for (const CameraSpec& camera : simulator.rig().cameras) {
+    view.images.push_back(simulator.TakeImage(camera.name, *now));
+  }
+  *now += kMicrosecondsPerSecond;
+  return view;
+}
+
+}  // namespace
+
+void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Options* options) {
+  const simulate::Noise noise(seed, 0, "physics");
+  std::uint64_t next = 0;
+  const auto draw = [&](const RandomPhysics::Range& range) {
+    return noise.Uniform(next++, range.low, range.high);
+  };
+  const double divergence = draw(ranges.divergence_rad);
+  options->scanner.divergence_rad = divergence;
+  if (options->spinning) options->spinning->divergence_rad = divergence;
+  simulate::BoardOptions& board = options->board;
+  board.black_reflectivity = draw(ranges.black_reflectivity);
+  board.white_reflectivity = draw(ranges.white_reflectivity);
+  board.black_minus_white_k = draw(ranges.black_minus_white_k);
+  board.thickness_m = draw(ranges.thickness_m);
+  const RandomPhysics::Board& size = ranges.boards[noise.Bits(next++) % ranges.boards.size()];
+  board.squares_x = size.squares_x;
+  board.squares_y = size.squares_y;
+  board.square_m = size.square_m;
+  board.width_m = size.width_m;
+  board.height_m = size.height_m;
+  for (simulate::CameraOptions& camera : options->cameras) {
+    camera.blur_px *= draw(ranges.blur_times);
+    const double focal = draw(ranges.focal_times);
+    camera.lens.fx *= focal;
+    camera.lens.fy *= focal;
+    const double distortion = draw(ranges.distortion_times);
+    for (double& k : camera.lens.distortion) k *= distortion;
+  }
+}
+
+RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t seed) {
+  const simulate::Options options = OptionsOf(rendered, seed);
+  Simulator simulator(options);
+  RenderedSession session;
+  session.rig = simulator.rig();
+  Utime now = kEpoch;
+  for (int i = 0; i < rendered.views + rendered.heldout; ++i) {
+    const std::string name = ViewName(i);
+    simulator.ShowView(i, name);
+    View view = TakeView(simulator, options.spinning.has_value(), name, &now);
+    view.heldout = IsHeldOut(i, rendered.views, rendered.heldout);
+    for (Observation& observation : DetectView(session.rig, view)) {
+      session.observations.push_back(std::move(observation));
+    }
+  }
+  session.truth = simulator.truth();
+  return session;
+}
+
+}  // namespace rgbdt::study

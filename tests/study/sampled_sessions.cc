@@ -1,0 +1,137 @@
+#include "tests/study/sampled_sessions.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "calib/detect/board_in_cloud.h"
+#include "calib/model/errors.h"
+#include "calib/simulate/board_poses.h"
+#include "calib/simulate/rig_defaults.h"
+#include "calib/simulate/scene.h"
+#include "tests/study/sampled_images.h"
+
+namespace rgbdt::study {
+namespace {
+
+using simulate::Noise;
+
+constexpr Utime kUtime = 1'433'160'000'000'000;
+
+simulate::Options OptionsOf(const SampledOptions& sampled, std::uint64_t seed) {
+  simulate::Options options;
+  options.seed = seed;
+  options.scene = static_cast<simulate::Scene>(seed % 3);
+  options.threads = 1;
+  simulate::UseLidar(sampled.rings, &options);
+  return options;
+}
+
+BeamModel ModelOf(const simulate::Options& options) {
+  BeamModel model;
+  model.range_sigma_m =
+      options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
+  model.thickness_m = options.board.thickness_m;
+  return model;
+}
+
+class SessionSampler {
+ public:
+  SessionSampler(const SampledOptions& sampled, std::uint64_t seed)
+      : sampled_(sampled),
+        options_(OptionsOf(sampled, seed)),
+        scene_(std::make_shared<simulate::SceneModel>(MakeScene(options_))),
+        empty_(scene_, std::nullopt, options_),
+        scanner_(options_.scanner, seed) {
+    session_.model = ModelOf(options_);
+    shifts_ = DrawClassShifts(session_.model, Noise(seed, 0, "sampled classes"));
+    std::vector<Rigid3> mounts;
+    for (const simulate::CameraOptions& camera : options_.cameras) {
+      mounts.push_back(DrawCameraFromLidar(camera, seed));
+      session_.truth.camera_from_lidar[camera.name] = mounts.back();
+      renderers_.emplace_back(camera, mounts.back(), options_.supersampling, 1);
+    }
+    session_.rig = MakeRig(options_, scanner_, *scene_, mounts);
+  }
+
+  SampledSession Run() {
+    const int wanted = sampled_.views + sampled_.heldout;
+    for (int pose = 0; static_cast<int>(session_.views.size()) < wanted; ++pose) {
+      if (pose > 3 * wanted + 10) throw InputError("study: the board is not found");
+      AddView(pose);
+    }
+    return std::move(session_);
+  }
+
+ private:
+  // Nothing, where no board is found in the cloud; it has not happened.
+  void AddView(int pose) {
+    const int index = static_cast<int>(session_.views.size());
+    SampledView view;
+    view.name = ViewName(index);
+    view.heldout = IsHeldOut(index, sampled_.views, sampled_.heldout);
+    view.lidar_from_target = BoardPose(options_, empty_, scanner_, renderers_, pose);
+    SampledCloud cloud =
+        SampleCloud(options_, session_.rig.target, view.lidar_from_target, session_.model, shifts_,
+                    Noise(options_.seed, pose + 1, "sampled cloud"));
+    view.beams = std::move(cloud.beams);
+    view.behind = cloud.behind;
+    BoardInCloudOptions detector;
+    detector.range_sigma_m = session_.rig.lidar.range_sigma_m;
+    const BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
+    if (boards.candidates.empty()) return;
+    for (const CameraSpec& camera : session_.rig.cameras) {
+      session_.observations.push_back(Observe(camera, view, boards, pose));
+    }
+    session_.truth.lidar_from_target[view.name] = view.lidar_from_target;
+    session_.views.push_back(std::move(view));
+  }
+
+  Observation Observe(const CameraSpec& camera, const SampledView& view,
+                      const BoardsInCloud& boards, int pose) const {
+    Observation observation;
+    observation.view = view.name;
+    observation.camera = camera.name;
+    observation.heldout = view.heldout;
+    observation.sweep_utime = observation.image_utime = kUtime + pose;
+    const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
+    observation.image = SampledEdges(
+        camera, session_.rig.target,
+        session_.truth.camera_from_lidar.at(camera.name) * view.lidar_from_target, noise);
+    if (!observation.image) observation.rejected = "no pose from the corners";
+    observation.candidates = boards.candidates;
+    observation.cloud = boards.candidates.front();
+    return observation;
+  }
+
+  SampledOptions sampled_;
+  simulate::Options options_;
+  std::shared_ptr<const simulate::SceneModel> scene_;
+  simulate::World empty_;
+  simulate::Scanner scanner_;
+  std::vector<simulate::CameraRenderer> renderers_;  // only to ask what lies in an image
+  ClassShifts shifts_{};
+  SampledSession session_;
+};
+
+}  // namespace
+
+std::string ViewName(int index) {
+  char name[16];
+  std::snprintf(name, sizeof(name), "%04d", index + 1);
+  return name;
+}
+
+bool IsHeldOut(int index, int views, int heldout) {
+  const int all = views + heldout;
+  return (index + 1) * heldout / all > index * heldout / all;
+}
+
+std::optional<SampledSession> SampleSession(const SampledOptions& options, std::uint64_t seed) {
+  try {
+    return SessionSampler(options, seed).Run();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace rgbdt::study

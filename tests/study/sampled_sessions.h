@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/calibration.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+#include "tests/study/sampled_clouds.h"
+
+namespace rgbdt::study {
+
+struct SampledOptions {
+  int rings = 0;  ///< of the LIDAR; 0: the turned scanner
+  int views = 8, heldout = 4;
+};
+
+/// What the noise model drew in one view.
+struct SampledView {
+  std::string name;
+  bool heldout = false;
+  Rigid3 lidar_from_target;
+  BeamWindow beams;
+  std::array<CrossingKind, 4> behind{};
+};
+
+struct SampledSession {
+  Rig rig;
+  BeamModel model;
+  Truth truth;
+  std::vector<SampledView> views;
+  std::vector<Observation> observations;  ///< one a camera and view
+};
+
+/// "0001" for view 0: as `rgbdt simulate` names them.
+std::string ViewName(int index);
+
+/// Whether view `index` of so many is held out: every third of 8 + 4.
+bool IsHeldOut(int index, int views, int heldout);
+
+/// A whole session from the noise model, nothing rendered: the simulator's default cameras, mounts
+/// and board poses as it draws them, wholly in all sensors. Corners are sampled; the board in the
+/// cloud is found and its crossings are made by the library's own detector. Nothing where this
+/// seed's scene has no room for so many views.
+std::optional<SampledSession> SampleSession(const SampledOptions& options, std::uint64_t seed);
+
+}  // namespace rgbdt::study
