@@ -134,6 +134,32 @@ TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
   }
 }
 
+// A second board that nobody declared, likelier by itself, here and there about the target.
+TEST(CalibrateJointly, ASecondBoardIsNotUsedAndIsNamed) {
+  SolveWorld world(Views(8));
+  const Report alone = Calibrate(world.rig, world.observations, Brief());
+  double aside = 1;
+  for (Observation& o : world.observations) {
+    CloudEdges other = o.candidates.at(0);
+    const Rigid3 moved{Eigen::Quaterniond::Identity(), {0, aside, 0}};
+    other.pose->sensor_from_target = moved * other.pose->sensor_from_target;
+    other.centre = moved * other.centre;
+    for (Crossing& crossing : other.crossings) crossing.point = moved * crossing.point;
+    o.candidates.insert(o.candidates.begin(), other);
+    aside = aside > 1.5 ? 1 : aside + 0.13;
+  }
+  const Report report = Calibrate(world.rig, world.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    EXPECT_THAT(alone.cameras[c].remarks, IsEmpty());
+    EXPECT_THAT(camera.remarks,
+                ElementsAre(AllOf(HasSubstr("8 of 8 clouds"), HasSubstr("a second board"),
+                                  HasSubstr("the target at"), HasSubstr("the other at"))));
+    EXPECT_THAT(camera.calibration.camera_from_lidar,
+                Rigid3Near(alone.cameras[c].calibration.camera_from_lidar, 1e-9, 1e-9));
+  }
+}
+
 TEST(MakeJointProblem, ACameraThatTakesAnotherBoardOfTheCloudIsRejected) {
   SolveWorld world(Views(6));
   world.At(2, 1).cloud->centre += Eigen::Vector3d(0, 0.5, 0);
