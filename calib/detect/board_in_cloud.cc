@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "calib/detect/board_crossings.h"
+#include "calib/detect/board_plane.h"
 #include "calib/detect/plane_regions.h"
 #include "calib/detect/range_grid.h"
 #include "calib/model/errors.h"
@@ -61,9 +62,7 @@ struct Filling {
   double inside = 0;  // of the beams well inside that were not stopped before: those on the plane
   double seen = 0;    // how densely its inside is on the plane, against the beams' spacing
   double beyond = 0;  // how densely a band round the rectangle is on the plane, against its inside
-  std::vector<Eigen::Vector3d> points;  // on the board, its rim left out
-  std::vector<Eigen::Vector2d> flat;    // where their beams meet the plane
-  std::vector<int> row;                 // their rows in the grid
+  BoardPoints on;     // its rim left out
 };
 
 Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const Target& target) {
@@ -83,16 +82,16 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
   for (std::size_t i = 0; i < members.flat.size(); ++i) {
     const double off = outside(members.flat[i]);
     if (off < -kMargin) {
-      filling.points.push_back(members.points[i]);
-      filling.flat.push_back(members.flat[i]);
-      filling.row.push_back(members.row[i]);
+      filling.on.points.push_back(members.points[i]);
+      filling.on.flat.push_back(members.flat[i]);
+      filling.on.row.push_back(members.row[i]);
     }
     if (off > kMargin && off < kMargin + kBand) ++band;
   }
   for (const Eigen::Vector2d& p : members.through) {
     if (outside(p) < -kMargin) ++through;
   }
-  const auto on = static_cast<double>(filling.points.size());
+  const auto on = static_cast<double>(filling.on.points.size());
   filling.inside = on / std::max(1.0, on + through);
   const double band_area =
       (target.width_m + 2 * (kMargin + kBand)) * (target.height_m + 2 * (kMargin + kBand)) -
@@ -104,149 +103,9 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
   return filling;
 }
 
-// What the points of one row (a ring) have in common, and what they have not.
-struct RowNoise {
-  double within_m = 0;   // sigma of a point about its row
-  double between_m = 0;  // sigma of a row about the plane: its range bias
-
-  // Of points in one row, how much of what they tell is told again by each: the inverse of
-  // within^2 I + between^2 11' is (I - repeated 11') / within^2.
-  double Repeated(double points) const {
-    const double between = between_m * between_m;
-    return between / (within_m * within_m + points * between);
-  }
-};
-
-// Sums over the points, row by row: sum of j j' and j z, less what rows tell again.
-template <int kSize>
-struct RowSums {
-  using Vector = Eigen::Matrix<double, kSize, 1>;
-  using Matrix = Eigen::Matrix<double, kSize, kSize>;
-  Matrix h = Matrix::Zero();
-  Vector g = Vector::Zero();
-
-  template <typename J, typename Z>
-  RowSums(const std::vector<int>& rows, const RowNoise& noise, J j_of, Z z_of) {
-    for (std::size_t first = 0; first < rows.size();) {
-      Vector sum = Vector::Zero();
-      double sum_z = 0;
-      std::size_t i = first;
-      for (; i < rows.size() && rows[i] == rows[first]; ++i) {
-        const Vector j = j_of(i);
-        const double z = z_of(i);
-        h.noalias() += j * j.transpose();
-        g.noalias() += z * j;
-        sum += j;
-        sum_z += z;
-      }
-      const double repeated = noise.Repeated(static_cast<double>(i - first));
-      h.noalias() -= repeated * sum * sum.transpose();
-      g.noalias() -= repeated * sum_z * sum;
-      first = i;
-    }
-  }
-};
-
-// One-way analysis of variance of distances from the plane, rows against points; a bias of rows
-// only where chance hardly makes one.
-RowNoise NoiseOf(const std::vector<int>& rows, const std::vector<double>& off, double least) {
-  double within = 0;
-  double between = 0;
-  double count = 0;
-  for (std::size_t first = 0; first < rows.size();) {
-    double sum = 0;
-    double squares = 0;
-    std::size_t i = first;
-    for (; i < rows.size() && rows[i] == rows[first]; ++i) {
-      sum += off[i];
-      squares += off[i] * off[i];
-    }
-    const auto n = static_cast<double>(i - first);
-    within += squares - sum * sum / n;
-    between += sum * sum / n;
-    count += 1;
-    first = i;
-  }
-  const auto n = static_cast<double>(rows.size());
-  const double all = std::sqrt((within + between) / n);
-  if (count < 4 || n - count < 10) return {std::max(all, least), 0};
-  const double within_mean = std::max(within / (n - count), least * least);
-  const double between_mean = between / (count - 2);  // the plane took two of the rows' freedoms
-  const double chance = 1 + 4 * std::sqrt(2 / (count - 2));
-  if (between_mean < chance * within_mean) return {std::max(all, least), 0};
-  return {std::sqrt(within_mean), std::sqrt((between_mean - within_mean) * count / n)};
-}
-
-// A board's plane and what its points tell of it.
-struct PointsOnPlane {
-  Plane plane;
-  RowNoise noise;
-  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();  // see CloudEdges
-  Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();
-};
-
-// The plane of least squares, noise lying along the beams. The plane of least distances would lean
-// by sigma^2 sin cos / extent^2 (angles of incidence), since noise moves the points of a slanted
-// board along it, too. Where the beams meet the plane is free of it.
-Plane PlaneAlongRays(const PlaneMembers& members, const Filling& filling, const RowNoise& noise) {
-  const auto j_of = [&](std::size_t i) {
-    return Eigen::Vector3d(filling.flat[i].x(), filling.flat[i].y(), 1);
-  };
-  const auto z_of = [&](std::size_t i) { return members.plane.Signed(filling.points[i]); };
-  const RowSums<3> sums(filling.row, noise, j_of, z_of);
-  const Eigen::Vector3d lean = sums.h.ldlt().solve(sums.g);
-  Plane plane;
-  plane.normal =
-      (members.plane.normal - lean.x() * members.frame.u - lean.y() * members.frame.v).normalized();
-  plane.offset = plane.normal.dot(members.frame.origin + lean.z() * members.plane.normal);
-  return plane;
-}
-
-// Where a point's beam meets the members' plane, moved along the normal by the point's distance.
-Eigen::Vector3d AlongNormal(const PlaneMembers& members, const Filling& filling, std::size_t i) {
-  return members.frame.Solid(filling.flat[i]) +
-         members.plane.Signed(filling.points[i]) * members.plane.normal;
-}
-
-PointsOnPlane FitPlane(const PlaneMembers& members, const Filling& filling, double least_sigma) {
-  PointsOnPlane out;
-  out.noise = {1, 0};
-  out.plane = PlaneAlongRays(members, filling, out.noise);
-  std::vector<double> off;
-  for (std::size_t i = 0; i < filling.points.size(); ++i) {
-    off.push_back(out.plane.Signed(AlongNormal(members, filling, i)));
-  }
-  out.noise = NoiseOf(filling.row, off, least_sigma);
-  if (out.noise.between_m > 0) out.plane = PlaneAlongRays(members, filling, out.noise);
-  return out;
-}
-
-void AddScatters(const PlaneMembers& members, const Filling& filling, const Eigen::Vector3d& centre,
-                 PointsOnPlane* out) {
-  const auto zero = [](std::size_t) { return 0.0; };
-  out->scatter = RowSums<4>(
-                     filling.row, out->noise,
-                     [&](std::size_t i) {
-                       Eigen::Vector4d q;
-                       q << AlongNormal(members, filling, i) - centre, 1;
-                       return q;
-                     },
-                     zero)
-                     .h;
-  out->raw_scatter = RowSums<4>(
-                         filling.row, RowNoise{1, 0},
-                         [&](std::size_t i) {
-                           Eigen::Vector4d q;
-                           q << filling.points[i] - centre, 1;
-                           return q;
-                         },
-                         zero)
-                         .h;
-}
-
 // Of delta in the target's own axes about its centre: tilt and distance from the points' scatter
 // about the plane, place and turn in the plane from the crossings.
-Matrix6d CovarianceInTarget(const PointsOnPlane& points, const Rigid3& pose,
+Matrix6d CovarianceInTarget(const Eigen::Matrix4d& by_points, const Rigid3& pose,
                             const FlatRectangle& rectangle) {
   // A point at (x, y) on the board is moved off the plane by rx y - ry x + tz.
   const Eigen::Matrix3d axes = pose.rotation.toRotationMatrix();
@@ -254,8 +113,7 @@ Matrix6d CovarianceInTarget(const PointsOnPlane& points, const Rigid3& pose,
   by_point.block<1, 3>(0, 0) = axes.col(1).transpose();
   by_point.block<1, 3>(1, 0) = -axes.col(0).transpose();
   by_point(2, 3) = 1;
-  const Eigen::Matrix3d plane = points.noise.within_m * points.noise.within_m *
-                                (by_point * points.scatter * by_point.transpose()).inverse();
+  const Eigen::Matrix3d plane = (by_point * by_points * by_point.transpose()).inverse();
   // The rectangle's covariance is of (u, v, angle); turned into the target's axes.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-rectangle.angle_rad).toRotationMatrix();
@@ -325,29 +183,33 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   }
   Filling filling = Fill(members, rectangle, target);
   if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 ||
-      filling.points.size() < 12) {
+      filling.on.points.size() < 12) {
     return std::nullopt;
   }
   // What sticks out of the rectangle has no say in where its plane lies.
-  PointsOnPlane points = FitPlane(members, filling, 0.3 * options.range_sigma_m);
-  const Rigid3 pose = PoseOf(members.frame, rectangle, points.plane);
-  AddScatters(members, filling, pose.translation, &points);
+  const BoardPlane points(members.plane, members.frame, filling.on, 0.3 * options.range_sigma_m);
+  const Rigid3 pose = PoseOf(members.frame, rectangle, points.plane());
+  const Eigen::Matrix4d scatter = points.Scatter(pose.translation);
   Candidate out;
   out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
   out.edges.boundary = Outline(target, rectangle, pose);
   out.edges.centre = pose.translation;
-  out.edges.normal = points.plane.normal;
+  out.edges.normal = points.plane().normal;
   out.edges.spacing_m = Spacing(members);
-  out.edges.points = static_cast<int>(filling.points.size());
+  out.edges.points = static_cast<int>(filling.on.points.size());
   const Size size = Measure(members.flat, 0);
   out.edges.width_m = size.longer;
   out.edges.height_m = size.shorter;
-  out.edges.scatter = points.scatter;
-  out.edges.raw_scatter = points.raw_scatter;
-  out.edges.scatter_sigma_m = points.noise.within_m;
+  out.edges.scatter = scatter;
+  out.edges.raw_scatter = points.RawScatter(pose.translation);
+  out.edges.scatter_sigma_m = points.sigma_m();
   const Matrix6d to_lidar = Adjoint(pose);
   out.edges.pose = TargetPose{
-      pose, to_lidar * CovarianceInTarget(points, pose, rectangle) * to_lidar.transpose(), false};
+      pose,
+      to_lidar *
+          CovarianceInTarget(scatter / (points.sigma_m() * points.sigma_m()), pose, rectangle) *
+          to_lidar.transpose(),
+      false};
   out.edges.crossings = CrossingsOf(members, rectangle);
   return out;
 }

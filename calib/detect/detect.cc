@@ -1,7 +1,6 @@
 #include "calib/detect/detect.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "calib/camera/pixels.h"
@@ -9,20 +8,10 @@
 #include "calib/detect/cloud_edges.h"
 #include "calib/detect/image_edges.h"
 #include "calib/detect/stillness.h"
+#include "calib/model/stopwatch.h"
 
 namespace rgbdt {
 namespace {
-
-// Computing time goes into the report only, never into a result.
-class Stopwatch {
- public:
-  double Seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Observation Empty(const View& view, const std::string& camera) {
   Observation observation;

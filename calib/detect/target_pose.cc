@@ -97,10 +97,8 @@ Pixels Residuals(const Camera& camera, const Rigid3& pose, const Points& model,
 // Of a projected point's pixel by delta at zero: pixel by point, and point by delta = [-[p]x, I].
 Jacobian PixelByDelta(const Camera& camera, const Eigen::Vector3d& p) {
   const Eigen::Matrix<double, 2, 3> by_point = PixelByPoint(camera.lens(), p);
-  Eigen::Matrix3d cross;
-  cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
   Jacobian out;
-  out << -by_point * cross, by_point;
+  out << -by_point * CrossMatrix(p), by_point;
   return out;
 }
 

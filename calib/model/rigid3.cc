@@ -3,18 +3,19 @@
 #include <cmath>
 
 namespace rgbdt {
-namespace {
 
-Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
+Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
 
+namespace {
+
 // The left Jacobian of SO(3): translation = LeftJacobian(rotation vector) * (tx, ty, tz).
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const double angle = w.norm();
-  const Eigen::Matrix3d k = Skew(w);
+  const Eigen::Matrix3d k = CrossMatrix(w);
   if (angle < 1e-5) return Eigen::Matrix3d::Identity() + 0.5 * k + k * k / 6.0;
   const double a2 = angle * angle;
   const double half_sine = std::sin(0.5 * angle);  // 1 - cos(angle) would lose its digits
@@ -50,16 +51,6 @@ Vector6d Log(const Rigid3& motion) {
   delta << w, LeftJacobian(w).inverse() * motion.translation;
   return delta;
 }
-
-namespace {
-
-Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-}  // namespace
 
 Matrix6d Adjoint(const Rigid3& a_from_b) {
   const Eigen::Matrix3d r = a_from_b.rotation.toRotationMatrix();

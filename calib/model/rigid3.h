@@ -26,6 +26,9 @@ struct Rigid3 {
   }
 };
 
+/// The matrix of the cross product: CrossMatrix(a) * b = a x b.
+Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v);
+
 /// The exponential map of SE(3): delta = (rx, ry, rz [rad], tx, ty, tz [m]).
 /// A calibration's error is defined by camera_from_lidar = Exp(delta) * estimate.
 Rigid3 Exp(const Vector6d& delta);

@@ -1,21 +1,15 @@
 #include "calib/solve/board_objective.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "calib/solve/first_guess.h"
 
 namespace rgbdt {
 namespace {
 
-constexpr double kRobust = 3;          // sigmas; cost and its limit as in board_problem.cc
 constexpr double kMostSquared = 1e8;   // of a whitened residual
 constexpr double kLeastWeight = 1e-9;  // of a crossing that the cloud's own pose cannot explain
 
 double BoundedCost(double squared) {
-  constexpr double kLimit = kRobust * kRobust;
-  const double bounded = squared < kMostSquared ? squared : kMostSquared;  // NaN, too
-  return bounded <= kLimit ? bounded : kLimit * (1 + std::log(bounded / kLimit));
+  return RobustCost(squared < kMostSquared ? squared : kMostSquared);  // NaN, too
 }
 
 // A view and what is known of its sides; `state` index and all.

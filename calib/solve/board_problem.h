@@ -8,42 +8,9 @@
 #include "calib/camera/camera.h"
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
+#include "calib/solve/board_model.h"
 
 namespace rgbdt {
-
-/// The unknowns that all views share, in this order: 6 for each camera (delta about its pose, see
-/// rigid3.h), then these.
-enum SharedUnknown {
-  kNoReturnShift,
-  kFarShift,
-  kMergedShift,
-  kThickness,
-  kOutlineTop,
-  kOutlineRight,
-  kOutlineBottom,
-  kOutlineLeft,
-  kRangeOffset,
-  kSharedUnknowns
-};
-
-/// What is known beforehand of the solve's unknowns besides the poses. All but the thickness about
-/// zero. What a beam's width does to an edge is an angle, outwards positive.
-struct BoardPriors {
-  double class_sigma_rad = 1.5e-3;  ///< shift of each class of crossing (CrossingKind)
-  double side_sigma_rad = 0.3e-3;   ///< further shift of each side in each view
-  double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside
-  double thickness_m = 0.010, thickness_sigma_m = 0.010;  ///< of the board: its rim may be seen
-  double outline_sigma_m = 0.001;      ///< each side's place against the pattern, as cut
-  double range_offset_sigma_m = 1e-9;  ///< true range minus measured; next to nothing: known as 0
-
-  std::array<double, kSharedUnknowns> Means() const;
-  double Sigma(int unknown) const;
-};
-
-/// A detector's errors within one image are partly alike, more than their residuals show: poses
-/// from rendered images are off by about half as much again as the corners' scatter has it
-/// (scripts/study detection, corners). Sigmas of corners are enlarged by this.
-inline constexpr double kCornersAlike = 1.4;
 
 /// One camera's image of a board.
 struct BoardSight {
@@ -121,17 +88,5 @@ ViewInformation InformationOf(const BoardProblem& problem, const BoardState& sta
 /// the view by itself would make it, the shared unknowns kept, the view's own ones at their best.
 /// Six on average where all is as stated.
 double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera);
-
-/// A crossing against its side. All on the board, metres and radians.
-struct CrossingResidual {
-  double beyond_m = 0;                    ///< outwards of the side, shifts taken off
-  double sigma_m = 0;                     ///< of this crossing alone
-  Eigen::Matrix<double, 1, 6> by_target;  ///< d beyond / d delta, lidar_from_target * Exp(delta)
-  double per_rad = 0;        ///< metres that a side seems farther out for each radian of shift
-  double per_thickness = 0;  ///< the same for each metre of thickness
-};
-CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
-                            const Crossing& crossing, const Rigid3& lidar_from_target,
-                            const std::array<double, kSharedUnknowns>& shared, double side_shift);
 
 }  // namespace rgbdt

@@ -1,11 +1,12 @@
 #include "calib/solve/by_boards.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "calib/model/stopwatch.h"
 #include "calib/solve/by_planes.h"
+#include "calib/solve/closure.h"
 #include "calib/solve/colouring.h"
 #include "calib/solve/cross_check.h"
 #include "calib/solve/degenerate.h"
@@ -17,16 +18,6 @@ namespace rgbdt {
 namespace {
 
 using Views = std::vector<const Observation*>;
-
-class Stopwatch {
- public:
-  double Seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Metres more along each boundary point's beam.
 void AddToRanges(double offset_m, CloudEdges* cloud) {
@@ -100,10 +91,12 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
 }
 
 // Whether every view used says all that a solve needs; observations in old logs do not.
-bool CanRefine(const CameraViews& camera) {
+bool CanRefine(const Target& target, const CameraViews& camera) {
+  const std::size_t corners = target.InnerCorners().size();
   const Views used = camera.Used();
-  return std::all_of(used.begin(), used.end(),
-                     [](const Observation* o) { return o->cloud->scatter_sigma_m > 0; });
+  return std::all_of(used.begin(), used.end(), [&](const Observation* o) {
+    return o->cloud->scatter_sigma_m > 0 && o->image->corners.size() == corners;
+  });
 }
 
 void TakeGuess(const GuessedCamera& camera, const std::string& status) {
@@ -164,21 +157,17 @@ void FillNuisances(const JointProblem& joint, const JointResult& result, CameraR
 }
 
 // How far the sides differ among each other: what no class explains.
-void FillSideSpread(const JointProblem& joint, const JointResult& result, CameraReport* report) {
-  double squares = 0;
-  double count = 0;
-  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    for (std::size_t side = 0; side < 4; ++side) {
-      if (!joint.problem.views[v].sides[side]) continue;
-      squares += std::pow(result.solution.state.side_shift[v][side], 2);
-      count += 1;
-    }
+// How much single sides differ: the solve's own estimate, from so many sides.
+void FillSideSpread(const JointProblem& joint, CameraReport* report) {
+  double sides = 0;
+  for (const BoardView& view : joint.problem.views) {
+    sides += static_cast<double>(std::count(view.sides.begin(), view.sides.end(), true));
   }
-  if (count == 0) return;
-  const double rms = std::sqrt(squares / count);
-  report->nuisance.push_back({"beam edge, single sides (RMS; 1 sigma beforehand)",
+  if (sides == 0) return;
+  const double sigma = joint.problem.priors.side_sigma_rad;
+  report->nuisance.push_back({"beam edge, scatter of single sides",
                               "mrad",
-                              {1000 * rms, 1000 * joint.problem.priors.side_sigma_rad}});
+                              {1000 * sigma, 1000 * sigma / std::sqrt(2 * sides)}});
 }
 
 // The joint solve's result into the cameras' reports.
@@ -192,7 +181,7 @@ void TakeJoint(const CalibrateOptions& options, const JointProblem& joint,
         CovarianceOf(result, c), converged,
         converged ? "converged" : "not converged: the joint solve did not settle"};
     FillNuisances(joint, result, &report);
-    FillSideSpread(joint, result, &report);
+    FillSideSpread(joint, &report);
     if (!options.first_guess.range_offset) continue;
     const auto at = static_cast<Eigen::Index>(6 * joint.cameras.size()) + kRangeOffset;
     report.range_offset =
@@ -275,12 +264,13 @@ void CalibrateByBoards(const Target& target, const CalibrateOptions& options,
     const FirstGuess guess = Guess(options, &camera);
     camera.report.solve_s += watch.Seconds();
     if (!guess.camera_from_lidar) continue;
-    if (CanRefine(camera)) {
+    if (CanRefine(target, camera)) {
       guessed.push_back({&camera, guess});
       continue;
     }
     TakeGuess({&camera, guess},
-              "converged; not refined: the observations are of an older rgbdt, without sigmas");
+              "converged; not refined: the observations are of an older rgbdt, without sigmas or "
+              "corners");
     CheckDegenerate(&camera);
     JudgeAll(EdgeModel{target, BoardPriors().Means(), {}}, {{&camera, guess}});
   }

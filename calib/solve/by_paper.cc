@@ -4,11 +4,11 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "calib/camera/camera.h"
+#include "calib/model/stopwatch.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/paper_cost.h"
 
@@ -120,9 +120,9 @@ void CalibrateByPaper(const CalibrateOptions& options, CameraViews* views) {
         (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
     return;
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   report.calibration = SolvePaper(camera, used, guess, options);
-  report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.solve_s = watch.Seconds();
   JudgeCamera(camera, views->Usable(), &report);
   if (options.wide_start) {
     report.other_starts.push_back(FromWideStart(camera, used, guess, report, options));

@@ -22,10 +22,8 @@ void Add(const Observation& o, const Rigid3& camera_from_lidar, Sums* sums) {
   Eigen::Vector4d x;
   x << turn_back * n, n.dot(centre - board.translation);
   // A turn w of the camera moves R p by w x R p, so n . (w x R p) = (R' (n x w)) . p.
-  Eigen::Matrix3d cross;
-  cross << 0, -n.z(), n.y(), n.z(), 0, -n.x(), -n.y(), n.x(), 0;
   Eigen::Matrix<double, 4, 6> j = Eigen::Matrix<double, 4, 6>::Zero();
-  j.topLeftCorner<3, 3>() = turn_back * cross;
+  j.topLeftCorner<3, 3>() = turn_back * CrossMatrix(n);
   j.block<1, 3>(3, 0) = centre.cross(n).transpose();
   j.block<1, 3>(3, 3) = n.transpose();
   sums->h += j.transpose() * o.cloud->raw_scatter * j;

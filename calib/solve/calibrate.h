@@ -33,7 +33,8 @@ struct CalibrateOptions {
 /// views. "auto": the first guess (first_guess.h) chooses each view's board; then all cameras,
 /// boards and nuisances are solved for together (board_problem.h), views and sides that contradict
 /// the others are left out by name, and the result has a covariance. Where views left out in turn
-/// fit it worse than the first guess, the first guess is kept and the status says so. "plane": each
+/// fit it worse than the first guess by more than chance, the first guess is kept and the status
+/// says so. "plane": each
 /// camera by the boards' planes alone (by_planes.h). "paper" starts from the hand-measured guess;
 /// with wide_start it solves a second time from a start turned away by wide_roll and wide_yaw and
 /// reports where that ends. The order of the observations does not matter. A camera without enough

@@ -41,6 +41,13 @@ std::vector<const Observation*> CameraViews::Used() const {
   return used;
 }
 
+const Observation* CameraViews::Find(const std::string& view) const {
+  for (const Observation* o : Used()) {
+    if (o->view == view) return o;
+  }
+  return nullptr;
+}
+
 void CameraViews::Describe() {
   for (const Observation& o : all) {
     report.detect_image_s += o.detect_image_s;

@@ -20,6 +20,8 @@ struct CameraViews {
   std::vector<const Observation*> Usable() const;
   /// Usable and not held out: the solver's.
   std::vector<const Observation*> Used() const;
+  /// The solver's observation of a view, null if there is none.
+  const Observation* Find(const std::string& view) const;
   /// Fills in which views are used, held out and rejected, and the time that detection took.
   void Describe();
 };

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "calib/model/calibration.h"
 #include "calib/solve/joint_solve.h"
 
 namespace rgbdt {
@@ -17,11 +16,5 @@ void CrossValidate(const JointProblem& joint, const JointResult& result, int fol
 /// The first guess becomes the report's calibration where it fits views left out better than the
 /// refined pose by more than chance: `worse` is, by view, how much larger the refined misfit is.
 void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse);
-
-/// Each pair of cameras: their relative pose by way of the LIDAR, each camera by itself, against
-/// stereo calibration from the views that both see. Both from the boards' poses, weighed by their
-/// covariances, so that the difference's own covariance can be told: the clouds' errors are common
-/// to both cameras and mostly cancel.
-std::vector<Closure> CloseLoops(const std::vector<GuessedCamera>& cameras);
 
 }  // namespace rgbdt

@@ -270,27 +270,6 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
   return factor > 1 + 2.5 * chance ? factor : 1;
 }
 
-}  // namespace
-
-JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
-                              double range_offset_sigma_m) {
-  Builder builder(target);
-  for (const GuessedCamera& camera : cameras) builder.Add(camera);
-  return builder.Finish(range_offset_sigma_m);
-}
-
-BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                  const BoardState& state, BoardState* start) {
-  BoardProblem part{problem.target, problem.cameras, {}, problem.priors};
-  *start = {state.camera_from_lidar, state.shared, {}, {}};
-  for (const std::size_t v : views) {
-    part.views.push_back(problem.views[v]);
-    start->lidar_from_target.push_back(state.lidar_from_target[v]);
-    start->side_shift.push_back(state.side_shift[v]);
-  }
-  return part;
-}
-
 // How far sides differ among themselves, by the data: never less than the physics says. Each
 // side's shift as found and what is left open of it (Dempster, Laird and Rubin 1977).
 double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
@@ -318,6 +297,27 @@ void FitSides(JointProblem* joint, BoardState* state, JointResult* result) {
     result->solution = SolveBoards(joint->problem, *state);
     *state = result->solution.state;
   }
+}
+
+}  // namespace
+
+JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
+                              double range_offset_sigma_m) {
+  Builder builder(target);
+  for (const GuessedCamera& camera : cameras) builder.Add(camera);
+  return builder.Finish(range_offset_sigma_m);
+}
+
+BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                  const BoardState& state, BoardState* start) {
+  BoardProblem part{problem.target, problem.cameras, {}, problem.priors};
+  *start = {state.camera_from_lidar, state.shared, {}, {}};
+  for (const std::size_t v : views) {
+    part.views.push_back(problem.views[v]);
+    start->lidar_from_target.push_back(state.lidar_from_target[v]);
+    start->side_shift.push_back(state.side_shift[v]);
+  }
+  return part;
 }
 
 JointResult SolveJointly(JointProblem* joint) {

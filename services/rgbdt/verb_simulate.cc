@@ -4,8 +4,8 @@
 #include "calib/files/rig_file.h"
 #include "calib/files/session_dir.h"
 #include "calib/model/errors.h"
-#include "calib/scan_assembly/assembler.h"
 #include "calib/simulate/simulator.h"
+#include "services/nodes/simulated_sweep.h"
 #include "services/nodes/simulator_node.h"
 #include "services/rgbdt/verbs.h"
 
@@ -22,28 +22,6 @@ struct Flags {
   simulate::Options options;
 };
 
-// One sweep of the scanner, assembled as on the bus.
-Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
-  const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
-  const Utime end = sweep_utime + simulator.sweep_lines() * simulator.line_period();
-  EncoderTrack track;
-  for (Utime t = sweep_utime; t <= end; t += SimulatorNode::kEncoderPeriod) {
-    track.Add(simulator.Encoder(t, sweep_utime));
-  }
-  std::vector<CloudChunk> chunks;
-  for (int i = 0; i < simulator.sweep_lines(); ++i) {
-    const LineScan line = simulator.Line(sweep_utime, i);
-    const auto angles = BeamAngles(scanner, track, line, kMicrosecondsPerSecond);
-    CloudChunk chunk;
-    chunk.cloud = LineToCloud(scanner, line, angles.value());
-    chunk.cloud.first_line = i;
-    chunks.push_back(std::move(chunk));
-  }
-  Cloud cloud = JoinChunks(chunks);
-  cloud.sweep_utime = sweep_utime;
-  return cloud;
-}
-
 // The LIDAR's cloud from this time on; `now` becomes when it ends.
 Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Utime* now) {
   const Utime begin = *now;
@@ -52,7 +30,7 @@ Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Ut
     return simulator.Revolution(begin);
   }
   *now += simulator.sweep_lines() * simulator.line_period();
-  return Sweep(simulator, begin);
+  return TakeSweep(simulator, begin);
 }
 
 int Run(const Flags& flags) {

@@ -3,40 +3,16 @@
 #include <string>
 
 #include "calib/detect/detect.h"
-#include "calib/scan_assembly/assembler.h"
 #include "calib/simulate/noise.h"
 #include "calib/simulate/simulator.h"
+#include "services/nodes/simulated_sweep.h"
+#include "services/nodes/simulator_node.h"
 #include "tests/study/sampled_sessions.h"
 
 namespace rgbdt::study {
 namespace {
 
 using simulate::Simulator;
-
-constexpr Utime kEpoch = 1'433'160'000'000'000;
-constexpr Utime kEncoderPeriod = 10'000;
-
-// One sweep of the scanner, assembled as on the bus.
-Cloud Sweep(const Simulator& simulator, Utime sweep_utime) {
-  const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
-  const Utime end = sweep_utime + simulator.sweep_lines() * simulator.line_period();
-  EncoderTrack track;
-  for (Utime t = sweep_utime; t <= end; t += kEncoderPeriod) {
-    track.Add(simulator.Encoder(t, sweep_utime));
-  }
-  std::vector<CloudChunk> chunks;
-  for (int i = 0; i < simulator.sweep_lines(); ++i) {
-    const LineScan line = simulator.Line(sweep_utime, i);
-    const auto angles = BeamAngles(scanner, track, line, kMicrosecondsPerSecond);
-    CloudChunk chunk;
-    chunk.cloud = LineToCloud(scanner, line, angles.value());
-    chunk.cloud.first_line = i;
-    chunks.push_back(std::move(chunk));
-  }
-  Cloud cloud = JoinChunks(chunks);
-  cloud.sweep_utime = sweep_utime;
-  return cloud;
-}
 
 simulate::Options OptionsOf(const RenderedOptions& rendered, std::uint64_t seed) {
   simulate::Options options;
@@ -55,7 +31,7 @@ View TakeView(const Simulator& simulator, bool spinning, const std::string& name
     view.cloud = simulator.Revolution(*now);
     *now += kMicrosecondsPerSecond;
   } else {
-    view.cloud = Sweep(simulator, *now);
+    view.cloud = TakeSweep(simulator, *now);
     *now += simulator.sweep_lines() * simulator.line_period() + kMicrosecondsPerSecond;
   }
   for (const CameraSpec& camera : simulator.rig().cameras) {
@@ -102,7 +78,7 @@ RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t see
   Simulator simulator(options);
   RenderedSession session;
   session.rig = simulator.rig();
-  Utime now = kEpoch;
+  Utime now = SimulatorNode::kEpoch;
   for (int i = 0; i < rendered.views + rendered.heldout; ++i) {
     const std::string name = ViewName(i);
     simulator.ShowView(i, name);

@@ -1,6 +1,7 @@
 #include "calib/solve/cross_check.h"
 
 #include "calib/solve/calibrate.h"
+#include "calib/solve/closure.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {

@@ -1,0 +1,85 @@
+#include "calib/solve/board_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rgbdt {
+namespace {
+
+constexpr double kRobust = 3;  // sigmas; farther off, a residual counts less
+
+double HalfExtent(const Target& target, int side) {
+  return side % 2 == 1 ? target.width_m / 2 : target.height_m / 2;
+}
+
+}  // namespace
+
+std::array<double, kSharedUnknowns> BoardPriors::Means() const {
+  std::array<double, kSharedUnknowns> means{};
+  means[kThickness] = thickness_m;
+  return means;
+}
+
+double BoardPriors::Sigma(int unknown) const {
+  if (unknown <= kMergedShift) return class_sigma_rad;
+  if (unknown == kThickness) return thickness_sigma_m;
+  if (unknown == kRangeOffset) return range_offset_sigma_m;
+  return outline_sigma_m;
+}
+
+Eigen::Vector2d OutwardOf(int side) {
+  switch (side) {
+    case 0:
+      return {0, -1};
+    case 1:
+      return {1, 0};
+    case 2:
+      return {0, 1};
+    default:
+      return {-1, 0};
+  }
+}
+
+double RobustWeight(double squared) {
+  return squared <= kRobust * kRobust ? 1.0 : kRobust * kRobust / squared;
+}
+
+double RobustCost(double squared) {
+  constexpr double kLimit = kRobust * kRobust;
+  return squared <= kLimit ? squared : kLimit * (1 + std::log(squared / kLimit));
+}
+
+CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
+                            const Crossing& crossing, const Rigid3& lidar_from_target,
+                            const std::array<double, kSharedUnknowns>& shared, double side_shift) {
+  CrossingResidual out;
+  out.by_target.setZero();
+  const Eigen::Matrix3d rotation = lidar_from_target.rotation.toRotationMatrix();
+  const Eigen::Vector3d beam = rotation.transpose() * crossing.point.normalized();
+  const Eigen::Vector3d origin = -(rotation.transpose() * lidar_from_target.translation);
+  if (!(beam.z() > 0.02)) return out;  // the beam does not meet the board's front
+  const double range = -origin.z() / beam.z();
+  const Eigen::Vector2d at = (origin + range * beam).head<2>();
+  const Eigen::Vector2d slope = beam.head<2>() / beam.z();
+  const Eigen::Vector2d outward = OutwardOf(crossing.side);
+  const double sideways = slope.dot(outward) / std::sqrt(1 + slope.squaredNorm());
+  // A beam that meets the plane at a slant is drawn out on it; a rim that faces the LIDAR is seen
+  // beside the front.
+  out.per_rad = range / std::sqrt(1 - sideways * sideways);
+  out.per_thickness = std::max(0.0, -slope.dot(outward));
+  const auto kind = static_cast<std::size_t>(crossing.kind) - 1;
+  out.beyond_m = outward.dot(at) - HalfExtent(target, crossing.side) -
+                 shared[static_cast<std::size_t>(kOutlineTop + crossing.side)] -
+                 out.per_rad * (shared[kNoReturnShift + kind] + side_shift) -
+                 out.per_thickness * shared[kThickness];
+  const double blur = priors.blur_rad * out.per_rad;
+  out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
+  // The board moves by delta under the beam: a point at (x, y, 0) goes the other way in its axes,
+  // and the beam meets the plane elsewhere by the slope.
+  const double across = outward.dot(slope);
+  out.by_target << across * at.y(), -across * at.x(), outward.x() * at.y() - outward.y() * at.x(),
+      -outward.x(), -outward.y(), across;
+  return out;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "calib/solve/board_problem.h"
+
+namespace rgbdt {
+
+inline constexpr int kOwnUnknowns = 10;  ///< of a view: its board's pose, its four sides' shifts
+
+/// One view's normal equations about a state: h x = g, x the step. Its own unknowns come first
+/// (board's pose: right delta, lidar_from_target * Exp(delta); then sides' shifts [rad]), then each
+/// camera's six, then SharedUnknown. Problem and state must outlive it.
+class ViewEquations {
+ public:
+  ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view);
+
+  double cost() const { return cost_; }  ///< robust, whitened, squared
+  const Eigen::MatrixXd& h() const { return h_; }
+  const Eigen::VectorXd& g() const { return g_; }
+
+ private:
+  using Row6 = Eigen::Matrix<double, 1, 6>;
+
+  int Size() const { return kOwnUnknowns + 6 * cameras_ + kSharedUnknowns; }
+  int Shared(int unknown) const { return kOwnUnknowns + 6 * cameras_ + unknown; }
+
+  void AddCorners(const BoardSight& sight);
+  void Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
+              const Eigen::Matrix<double, 12, 1>& g);
+  void AddImageSides(const BoardSight& sight);
+  void AddImageSide(const BoardSight& sight, const ImageSide& side, int on_board);
+  bool CurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
+                const Eigen::Vector2d& along, double* residual, Row6* by_camera, Row6* by_target,
+                double* by_outline) const;
+  void AddCrossings();
+  void SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
+                       const Eigen::Matrix<double, 9, 1>& g);
+  void AddPlane();
+  void AddSidePriors();
+
+  const BoardProblem& problem_;
+  const BoardView& view_;
+  const BoardState& state_;
+  const Rigid3& lidar_from_target_;
+  const std::array<double, 4>& side_shift_;
+  int cameras_;
+  Eigen::MatrixXd h_;
+  Eigen::VectorXd g_;
+  double cost_ = 0;
+};
+
+}  // namespace rgbdt
