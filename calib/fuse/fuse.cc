@@ -103,6 +103,7 @@ RgbdtCloud Fuse(const Cloud& cloud, const std::vector<FusionCamera>& cameras) {
   }
   fused.rgb.assign(fused.size(), {0, 0, 0});
   fused.temperature_k.assign(fused.size(), kNone);
+  fused.temperature_sigma_k.assign(fused.size(), kNone);
   fused.thermal_counts.assign(fused.size(), kNone);
   fused.valid.assign(fused.size(), 0);
   std::uint32_t earlier_color = 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -85,7 +86,10 @@ rgbdt_cloud_t ToWire(const RgbdtCloud& cloud) {
   wire.seq = cloud.seq;
   wire.sweep_utime = cloud.sweep_utime;
   wire.sweep_end = static_cast<std::int8_t>(cloud.sweep_end);
-  wire.calibration_utime = cloud.calibration_utime;
+  wire.calibration_utime =
+      cloud.calibration_utime.empty()
+          ? 0
+          : *std::max_element(cloud.calibration_utime.begin(), cloud.calibration_utime.end());
   wire.num_cameras = CountOf(cloud.cameras.size(), "num_cameras");
   wire.camera = cloud.cameras;
   wire.num_points = CountOf(cloud.size(), "num_points");
@@ -113,12 +117,13 @@ RgbdtCloud FromWire(const rgbdt_cloud_t& wire) {
   RgbdtCloud cloud;
   cloud.seq = wire.seq;
   cloud.sweep_utime = wire.sweep_utime;
-  cloud.calibration_utime = wire.calibration_utime;
+  cloud.calibration_utime.assign(wire.camera.size(), wire.calibration_utime);
   cloud.sweep_end = wire.sweep_end != 0;
   cloud.cameras = wire.camera;
   cloud.intensity = wire.intensity;
   cloud.temperature_k = wire.temperature_k;
   cloud.thermal_counts = wire.thermal_counts;
+  cloud.temperature_sigma_k.assign(wire.x_m.size(), std::numeric_limits<float>::quiet_NaN());
   const std::size_t size = wire.x_m.size();
   cloud.points.resize(size);
   cloud.utime.resize(size);

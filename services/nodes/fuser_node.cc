@@ -70,7 +70,7 @@ void FuserNode::OnCalibration(const CalibrationMessage& message) {
 Messages FuserNode::OnChunk(const CloudChunk& chunk) {
   RgbdtCloud fused = Fuse(chunk.cloud, cameras_);
   fused.sweep_end = chunk.sweep_end;
-  fused.calibration_utime = calibration_utime_;
+  fused.calibration_utime.assign(fused.cameras.size(), calibration_utime_);
   points_ += static_cast<std::int64_t>(fused.size());
   coloured_ += std::count_if(fused.valid.begin(), fused.valid.end(),
                              [](std::uint32_t valid) { return valid != 0; });

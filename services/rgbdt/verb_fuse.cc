@@ -40,7 +40,7 @@ RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
   }
   RgbdtCloud fused = Fuse(view.cloud, cameras);
   fused.sweep_end = true;
-  fused.calibration_utime = calibration.utime;
+  fused.calibration_utime.assign(fused.cameras.size(), calibration.utime);
   return fused;
 }
 

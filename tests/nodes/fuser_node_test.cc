@@ -74,7 +74,7 @@ TEST_F(FuserNodeTest, WithoutACalibrationNoColour) {
   node_.Handle(Plain("rgb", kNow, 100));
   const RgbdtCloud cloud = FuseAt(kNow + kSecond);
   EXPECT_EQ(cloud.size(), 4U);
-  EXPECT_EQ(cloud.calibration_utime, 0);
+  EXPECT_EQ(cloud.calibration_utime, (std::vector<Utime>{0, 0}));
   for (const std::uint32_t valid : cloud.valid) EXPECT_EQ(valid, 0U);
   EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
 }
@@ -85,7 +85,7 @@ TEST_F(FuserNodeTest, ColoursWhatACameraSees) {
   node_.Handle(Plain("rgb", kNow, 100));
   node_.Handle(Plain("thermal", kNow, 3000));
   const RgbdtCloud cloud = FuseAt(kNow + kSecond);
-  EXPECT_EQ(cloud.calibration_utime, kNow - 10 * kSecond);
+  EXPECT_EQ(cloud.calibration_utime, (std::vector<Utime>(2, kNow - 10 * kSecond)));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(cloud.valid[i], 3U);
     EXPECT_EQ(cloud.rgb[i][1], 100);

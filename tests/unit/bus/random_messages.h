@@ -244,9 +244,9 @@ class RandomMessages {
     RgbdtCloud cloud;
     cloud.seq = Seq();
     cloud.sweep_utime = Time();
-    cloud.calibration_utime = Coin() ? Time() : 0;
     cloud.sweep_end = Coin();
     cloud.cameras = {"rgb", "thermal"};
+    cloud.calibration_utime.assign(2, Coin() ? Time() : 0);
     const int size = Int(0, 100);
     cloud.points = Rows<Eigen::Vector3f>(size, -50, 50);
     cloud.intensity = Numbers(size, 0, 1);
