@@ -108,6 +108,8 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed le
   spec.radiometry = ToRadiometry(camera, place);
   text::RequireFinite(camera.readout_s(), place, "readout_s");
   spec.readout_s = camera.readout_s();
+  text::RequireFinite(camera.rolling_s(), place, "rolling_s");
+  spec.rolling_s = camera.rolling_s();
   text::RequireFinite(camera.netd_k(), place, "netd_k");
   spec.netd_k = camera.netd_k();
   if (camera.has_camera_from_lidar_guess()) {
@@ -200,6 +202,7 @@ void FromCamera(const CameraSpec& spec, proto::Camera* out) {
   if (spec.radiometry.emissivity != 1) out->set_emissivity(spec.radiometry.emissivity);
   out->set_reflected_temperature_k(spec.radiometry.reflected_temperature_k);
   out->set_readout_s(spec.readout_s);
+  out->set_rolling_s(spec.rolling_s);
   out->set_netd_k(spec.netd_k);
   if (spec.camera_from_lidar_guess) {
     text::FromRigid3(*spec.camera_from_lidar_guess, out->mutable_camera_from_lidar_guess());

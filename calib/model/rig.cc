@@ -52,6 +52,8 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
   if (lenses == LensNeed::kKnown || camera.lens.known()) CheckLens(camera.lens, field);
   Require(camera.readout_s >= 0 && camera.readout_s <= 60, field + "readout_s",
           std::to_string(camera.readout_s), "0 to 60 seconds");
+  Require(camera.rolling_s >= 0 && camera.rolling_s <= 1, field + "rolling_s",
+          std::to_string(camera.rolling_s), "0 to 1 second");
   const double emissivity = camera.radiometry.emissivity;
   Require(emissivity > 0 && emissivity <= 1, field + "radiometry.emissivity",
           std::to_string(emissivity), "more than 0, at most 1");

@@ -1,11 +1,21 @@
 #include "services/nodes/fuser_node.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "calib/files/rig_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
+namespace {
+
+Messages MessagesOf(std::vector<RgbdtCloud> clouds) {
+  Messages messages;
+  for (RgbdtCloud& cloud : clouds) messages.emplace_back(std::move(cloud));
+  return messages;
+}
+
+}  // namespace
 
 Messages FuserNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
@@ -14,10 +24,13 @@ Messages FuserNode::Handle(const Message& message) {
   }
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* chunk = std::get_if<CloudChunk>(&message)) return OnChunk(*chunk);
+  if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
+    return OnCalibration(*calibration);
+  }
   if (const auto* image = std::get_if<Image>(&message)) {
     OnImage(*image);
-  } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
-    OnCalibration(*calibration);
+  } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
+    OnPose(*pose);
   }
   return {};
 }
@@ -25,14 +38,17 @@ Messages FuserNode::Handle(const Message& message) {
 void FuserNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = ParseRig(text.text, "RIG message");
-  cameras_.clear();
-  for (const CameraSpec& camera : rig_->cameras) cameras_.emplace_back(camera);
+  fuser_.emplace(rig_->cameras, rig_->lidar.range_sigma_m);
   newest_image_.clear();
-  calibration_utime_ = 0;
+}
+
+std::size_t FuserNode::IndexOf(const std::string& camera) const {
+  const CameraSpec& spec = rig_->Camera(camera);  // throws with the names that there are
+  return static_cast<std::size_t>(&spec - rig_->cameras.data());
 }
 
 void FuserNode::OnImage(const Image& image) {
-  FusionCamera& camera = CameraOf(image.camera);
+  FusionCamera& camera = fuser_->camera(IndexOf(image.camera));
   if (image.shutter_correcting) {
     ++shutter_frames_;
     return;
@@ -40,57 +56,72 @@ void FuserNode::OnImage(const Image& image) {
   PreparedImage prepared = Prepare(camera.spec(), image);
   Utime& newest = newest_image_[image.camera];
   if (image.utime < newest - kClockReset) {
-    FusionCamera anew(camera.spec());
-    anew.calibrated = camera.calibrated;
-    anew.camera_from_lidar = camera.camera_from_lidar;
-    camera = std::move(anew);
+    camera.ForgetImages();
     newest = 0;
   }
   newest = std::max(newest, image.utime);
   camera.AddImage(std::move(prepared));
 }
 
-FusionCamera& FuserNode::CameraOf(const std::string& name) {
-  rig_->Camera(name);  // throws with the names that there are
-  return *std::find_if(cameras_.begin(), cameras_.end(),
-                       [&](const FusionCamera& c) { return c.spec().name == name; });
+void FuserNode::OnPose(const StampedPose& pose) {
+  switch (fuser_->AddPose(pose)) {
+    case PoseTrack::Added::kYes:
+      break;
+    case PoseTrack::Added::kOld:
+      ++old_poses_;
+      break;
+    case PoseTrack::Added::kJump:
+      ++pose_jumps_;
+      throw InputError("POSE of " + pose.source + " jumps to (" +
+                       std::to_string(pose.map_from_lidar.translation.x()) + ", " +
+                       std::to_string(pose.map_from_lidar.translation.y()) + ", " +
+                       std::to_string(pose.map_from_lidar.translation.z()) +
+                       ") m, faster than any rig moves; what was seen before it is given up");
+  }
 }
 
-void FuserNode::OnCalibration(const CalibrationMessage& message) {
+Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
   if (message.rig_hash != rig_->hash) {
     throw InputError("calibration was made with rig " + message.rig_hash + ", this is rig " +
                      rig_->hash);
   }
-  FusionCamera& camera = CameraOf(message.calibration.camera);
-  camera.camera_from_lidar = message.calibration.camera_from_lidar;
-  camera.calibrated = true;
-  calibration_utime_ = message.utime;
+  return MessagesOf(fuser_->SetCalibration(IndexOf(message.calibration.camera),
+                                           message.calibration.camera_from_lidar, message.utime));
 }
 
 Messages FuserNode::OnChunk(const CloudChunk& chunk) {
-  RgbdtCloud fused = Fuse(chunk.cloud, cameras_);
+  RgbdtCloud fused = fuser_->FuseChunk(chunk.cloud);
   fused.sweep_end = chunk.sweep_end;
-  fused.calibration_utime.assign(fused.cameras.size(), calibration_utime_);
-  points_ += static_cast<std::int64_t>(fused.size());
-  coloured_ += std::count_if(fused.valid.begin(), fused.valid.end(),
-                             [](std::uint32_t valid) { return valid != 0; });
-  // What served only points well before this chunk serves no more.
-  if (!fused.utime.empty()) {
-    for (FusionCamera& camera : cameras_) {
-      camera.ForgetBefore(fused.utime.front() - kMicrosecondsPerSecond);
-    }
+  // What served only points well before this chunk serves no more. A cloud from the future does not
+  // take the present's images away.
+  for (std::size_t i = 0; i < fuser_->cameras() && !fused.utime.empty(); ++i) {
+    FusionCamera& camera = fuser_->camera(i);
+    const Utime now = std::min(fused.utime.front(), newest_image_[camera.spec().name]);
+    camera.ForgetBefore(now - kMicrosecondsPerSecond);
   }
-  return {std::move(fused)};
+  Messages messages;
+  messages.emplace_back(std::move(fused));
+  if (!chunk.sweep_end) return messages;
+  for (Message& part : MessagesOf(fuser_->EndSweep())) messages.push_back(std::move(part));
+  return messages;
 }
 
 Status FuserNode::GetStatus() const {
   Status status;
   status.ready = rig_.has_value();
-  status.text = !rig_                     ? "waits for the rig (RIG)"
-                : calibration_utime_ == 0 ? "no calibration yet: clouds go out without colour"
-                                          : "fusing";
+  bool calibrated = false;
+  for (std::size_t i = 0; fuser_ && i < fuser_->cameras(); ++i) {
+    calibrated |= fuser_->camera(i).calibrated;
+  }
+  status.text = !rig_         ? "waits for the rig (RIG)"
+                : !calibrated ? "no calibration yet: clouds go out without colour"
+                              : "fusing";
+  const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
   status.counters = {
-      {"points", points_}, {"coloured", coloured_}, {"shutter frames", shutter_frames_}};
+      {"points", counts.points},           {"coloured", counts.coloured},
+      {"hidden", counts.hidden},           {"without an image of their time", counts.untimely},
+      {"without a pose", counts.unplaced}, {"shutter frames", shutter_frames_},
+      {"pose jumps", pose_jumps_},         {"old poses", old_poses_}};
   return status;
 }
 

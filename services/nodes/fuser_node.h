@@ -5,43 +5,44 @@
 #include <string>
 #include <vector>
 
-#include "calib/fuse/fuse.h"
+#include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
 #include "services/nodes/node.h"
 
 namespace rgbdt {
 
-/// CLOUD + <CAMERA>_IMAGE + CALIBRATION -> RGBDT_CLOUD, one message for each chunk, at once:
-/// nothing waits for the future. A point is coloured by the image that serves its time (fuse.h), so
-/// live and replay agree as long as `readout_s` in the rig file is not below the true delay. Before
-/// a calibration comes the cloud goes out without colour. A calibration of another rig is refused.
-/// An image older than the camera's newest by more than kClockReset means that the clock was set
-/// back: the camera's images go.
+/// CLOUD + <CAMERA>_IMAGE + CALIBRATION + POSE -> RGBDT_CLOUD, one message for each chunk, at once,
+/// and RGBDT_SWEEP, each sweep once more at its end, judged as a whole (SweepFuser). Nothing waits
+/// for the future: a point is coloured by the image that serves its time, so live and replay agree
+/// as long as `readout_s` in the rig file is not below the true delay. Before a calibration comes
+/// the cloud goes out without colour; a new one holds from the next chunk on. A calibration of
+/// another rig is refused. An image older than the camera's newest by more than kClockReset means
+/// that the clock was set back: the camera's images go. Memory is bounded.
 class FuserNode : public Node {
  public:
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
 
   std::string name() const override { return "fuser"; }
   std::vector<std::string> Subscriptions() const override {
-    return {"RIG", "CLOUD", ".*_IMAGE", "CALIBRATION"};
+    return {"RIG", "CLOUD", ".*_IMAGE", "CALIBRATION", "POSE"};
   }
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
 
  private:
   void OnRig(const RigText& text);
-  void OnCalibration(const CalibrationMessage& message);
+  Messages OnCalibration(const CalibrationMessage& message);
   void OnImage(const Image& image);
-  FusionCamera& CameraOf(const std::string& name);
+  void OnPose(const StampedPose& pose);
   Messages OnChunk(const CloudChunk& chunk);
+  std::size_t IndexOf(const std::string& camera) const;
 
   std::optional<Rig> rig_;
-  std::vector<FusionCamera> cameras_;
+  std::optional<SweepFuser> fuser_;            // while there is a rig
   std::map<std::string, Utime> newest_image_;  // by camera
-  Utime calibration_utime_ = 0;
-  std::int64_t points_ = 0;
-  std::int64_t coloured_ = 0;
   std::int64_t shutter_frames_ = 0;
+  std::int64_t pose_jumps_ = 0;
+  std::int64_t old_poses_ = 0;
 };
 
 }  // namespace rgbdt

@@ -31,6 +31,7 @@ RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
     const CameraCalibration* found = calibration.Find(spec.name);
     if (found != nullptr) {
       camera.camera_from_lidar = found->camera_from_lidar;
+      camera.calibration_utime = calibration.utime;
       camera.calibrated = true;
     }
     const auto image = std::find_if(view.images.begin(), view.images.end(),
@@ -38,9 +39,8 @@ RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
     if (image != view.images.end()) camera.AddImage(Prepare(spec, *image));
     cameras.push_back(std::move(camera));
   }
-  RgbdtCloud fused = Fuse(view.cloud, cameras);
+  RgbdtCloud fused = Fuse(view.cloud, cameras, session.rig.lidar.range_sigma_m);
   fused.sweep_end = true;
-  fused.calibration_utime.assign(fused.cameras.size(), calibration.utime);
   return fused;
 }
 

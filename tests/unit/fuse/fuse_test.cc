@@ -180,7 +180,7 @@ std::array<std::uint8_t, 3> RgbAt(int x, int y) {
 
 TEST(Fuse, APointTakesThePixelsColourAndCounts) {
   const RgbdtCloud fused = Fuse(CloudOf({Seen(7, 22, 4), Seen(20, 15, 2)}),
-                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)}, 0.01);
   ASSERT_EQ(fused.size(), 2U);
   EXPECT_THAT(fused.cameras, ElementsAre("rgb", "thermal"));
   EXPECT_EQ(fused.sweep_utime, kNow);
@@ -196,7 +196,7 @@ TEST(Fuse, APointTakesThePixelsColourAndCounts) {
 
 TEST(Fuse, BetweenPixelsItTakesTheBilinearValue) {
   const RgbdtCloud fused = Fuse(CloudOf({Seen(7.25, 22.75, 1)}),
-                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+                                {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)}, 0.01);
   const auto bilinear = [](auto at) {
     return 0.25 * (0.75 * at(7, 22) + 0.25 * at(8, 22)) +
            0.75 * (0.75 * at(7, 23) + 0.25 * at(8, 23));
@@ -222,7 +222,7 @@ TEST(Fuse, TheImagesBorderPixelsCount) {
   camera.AddImage({kNow, picture, spec.radiometry});
   camera.calibrated = true;
   const RgbdtCloud fused =
-      Fuse(CloudOf({{-20.F / 64, -15.F / 64, 1}, {20.F / 64, 15.F / 64, 1}}), {camera});
+      Fuse(CloudOf({{-20.F / 64, -15.F / 64, 1}, {20.F / 64, 15.F / 64, 1}}), {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(1U, 1U));
   EXPECT_EQ(fused.thermal_counts[0], CountsPicture().at<float>(0, 0));
   EXPECT_EQ(fused.thermal_counts[1], CountsPicture().at<float>(30, 40));
@@ -237,14 +237,14 @@ TEST(Fuse, UsesTheCalibration) {
   camera_from_lidar.translation = -(axes * Eigen::Vector3d(0, 0.5, 0));
   // 5 m ahead, 0.25 m left of the camera and 0.1 m above it: 5 px left and 2 px up.
   const RgbdtCloud fused =
-      Fuse(CloudOf({{5, 0.75F, 0.1F}}), {Ready(CameraKind::kColor, camera_from_lidar)});
+      Fuse(CloudOf({{5, 0.75F, 0.1F}}), {Ready(CameraKind::kColor, camera_from_lidar)}, 0.01);
   EXPECT_EQ(fused.rgb[0], RgbAt(15, 13));
 }
 
 TEST(Fuse, NoColourBehindOrOutside) {
   const RgbdtCloud fused =
       Fuse(CloudOf({Seen(7, 22, -4), Seen(-0.1, 15, 3), Seen(40.1, 15, 3), Seen(20, 30.1, 3)}),
-           {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)});
+           {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)}, 0.01);
   ASSERT_EQ(fused.size(), 4U);  // the points themselves stay
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(fused.valid[i], 0U) << i;
@@ -261,13 +261,13 @@ TEST(Fuse, NoColourBeyondTheFold) {
   FusionCamera camera(spec);
   camera.AddImage({kNow, ColourPicture(), {}});
   camera.calibrated = true;
-  const RgbdtCloud fused = Fuse(CloudOf({{1.4F, 0, 1}, {0.028F, 0, 1}}), {camera});
+  const RgbdtCloud fused = Fuse(CloudOf({{1.4F, 0, 1}, {0.028F, 0, 1}}), {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0U, 1U));
 }
 
 TEST(Fuse, MissesAreLeftOut) {
   Cloud cloud = CloudOf({Seen(7, 22, 4), {kNan, kNan, kNan}, Seen(20, 15, 2), {1, kNan, 1}});
-  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)});
+  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)}, 0.01);
   ASSERT_EQ(fused.size(), 2U);
   EXPECT_EQ(fused.points[1], cloud.points[2]);
   EXPECT_EQ(fused.intensity[1], 0.2F);
@@ -277,7 +277,7 @@ TEST(Fuse, MissesAreLeftOut) {
 TEST(Fuse, WithoutACalibrationNothingIsColoured) {
   FusionCamera camera = Ready(CameraKind::kColor);
   camera.calibrated = false;
-  const RgbdtCloud fused = Fuse(CloudOf({Seen(20, 15, 2)}), {camera});
+  const RgbdtCloud fused = Fuse(CloudOf({Seen(20, 15, 2)}), {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0U));
   EXPECT_THAT(fused.cameras, ElementsAre("rgb"));  // what the bits stand for stays the same
 }
@@ -289,33 +289,104 @@ TEST(Fuse, EveryPointIsServedByTheImageOfItsOwnTime) {
   camera.AddImage({kNow + 100, cv::Mat(31, 41, CV_8UC3, cv::Scalar(2, 2, 2)), {}});
   Cloud cloud = CloudOf({Seen(20, 15, 2), Seen(20, 15, 2), Seen(20, 15, 2)});
   cloud.utime = {kNow - 1, kNow + 99, kNow + 100};
-  const RgbdtCloud fused = Fuse(cloud, {camera});
+  const RgbdtCloud fused = Fuse(cloud, {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0U, 1U, 1U));
   EXPECT_EQ(fused.rgb[1][0], 1);
   EXPECT_EQ(fused.rgb[2][0], 2);
 }
 
-TEST(Fuse, OfSeveralCamerasOfAKindTheFirstThatSeesThePointCounts) {
-  // The second of each kind sees another pixel, and also what the first does not see.
+// A camera with a picture of one value, looking from the side; all see the points squarely alike.
+FusionCamera Even(CameraKind kind, double value, const Rigid3& camera_from_lidar = {}) {
+  FusionCamera camera(SpecOf(kind));
+  const int type = kind == CameraKind::kThermal ? CV_32FC1 : CV_8UC3;
+  camera.AddImage({kNow, cv::Mat(31, 41, type, cv::Scalar::all(value)), camera.spec().radiometry});
+  camera.calibrated = true;
+  camera.camera_from_lidar = camera_from_lidar;
+  return camera;
+}
+
+Rigid3 Beside(double metres) {
   Rigid3 beside;
-  beside.translation = {-0.2, 0, 0};  // 10 px to the left at 2 m
-  const std::vector<FusionCamera> cameras = {Ready(CameraKind::kColor), Ready(CameraKind::kThermal),
-                                             Ready(CameraKind::kColor, beside),
-                                             Ready(CameraKind::kThermal, beside)};
+  beside.translation = {metres, 0, 0};
+  return beside;
+}
+
+TEST(Fuse, WhatSeveralCamerasSeeIsBlended) {
+  // The second of each kind sees another pixel, and also what the first does not see.
+  const Rigid3 beside = Beside(-0.2);  // 10 px to the left at 2 m
+  const std::vector<FusionCamera> cameras = {
+      Even(CameraKind::kColor, 100), Even(CameraKind::kThermal, 7000),
+      Even(CameraKind::kColor, 120, beside), Even(CameraKind::kThermal, 7100, beside)};
   const RgbdtCloud fused =
-      Fuse(CloudOf({Seen(20, 15, 2), Seen(45, 15, 2), Seen(3, 15, 2)}), cameras);
+      Fuse(CloudOf({Seen(25, 15, 2), Seen(45, 15, 2), Seen(3, 15, 2)}), cameras, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0b1111U, 0b1100U, 0b0011U));
-  EXPECT_EQ(fused.rgb[0], RgbAt(20, 15));
-  EXPECT_EQ(fused.rgb[1], RgbAt(35, 15));
-  EXPECT_NEAR(fused.thermal_counts[0], CountsPicture().at<float>(15, 20), 0.01);
-  EXPECT_NEAR(fused.thermal_counts[1], CountsPicture().at<float>(15, 35), 0.01);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(fused.rgb[0][c], 110);
+    EXPECT_EQ(fused.rgb[1][c], 120);
+    EXPECT_EQ(fused.rgb[2][c], 100);
+  }
+  EXPECT_NEAR(fused.temperature_k[0], 0.04 * 7050, 1e-3);
+  EXPECT_NEAR(fused.temperature_k[1], 0.04 * 7100, 1e-3);
+  EXPECT_THAT(fused.thermal_counts[0], testing::AnyOf(7000, 7100));
+}
+
+TEST(Fuse, TheImagesBorderCountsLessAndSaturationNextToNothing) {
+  const std::vector<FusionCamera> at_border = {Even(CameraKind::kColor, 100),
+                                               Even(CameraKind::kColor, 200, Beside(-0.2))};
+  // At 39.5 of 40 px of the first image, in the middle of the second.
+  const RgbdtCloud border = Fuse(CloudOf({Seen(39.5, 15, 2)}), at_border, 0.01);
+  EXPECT_GT(border.rgb[0][0], 175);
+  EXPECT_LT(border.rgb[0][0], 199);
+  const std::vector<FusionCamera> saturated = {Even(CameraKind::kColor, 100),
+                                               Even(CameraKind::kColor, 255, Beside(-0.1))};
+  EXPECT_NEAR(Fuse(CloudOf({Seen(22, 15, 2)}), saturated, 0.01).rgb[0][0], 103, 1);
+  // But where nobody else sees the point, saturated is what it is.
+  EXPECT_EQ(Fuse(CloudOf({Seen(43, 15, 2)}), saturated, 0.01).rgb[0][0], 255);
+}
+
+// A board 1 m wide at 2 m, and one behind it whose middle it hides; a camera to the left sees more
+// of the left.
+TEST(Fuse, WhatIsBehindSomethingElseIsNotColoured) {
+  Cloud cloud;
+  cloud.sweep_utime = kNow;
+  cloud.lines = 25;
+  cloud.beams = 35;
+  std::vector<bool> hidden;
+  const double aside = 0.3;
+  for (int line = 0; line < cloud.lines; ++line) {
+    for (int beam = 0; beam < cloud.beams; ++beam) {
+      const bool near = beam >= 12 && beam < 23;
+      const double z = near ? 2 : 4;
+      cloud.points.push_back(Seen(3 + beam, 3 + line, z));
+      // Where the line of sight from the camera, `aside` to the left, meets the near board's plane.
+      const double x = cloud.points.back().x();
+      const double at_near = 0.5 * (x - aside);
+      hidden.push_back(!near && at_near > -0.01 * 5.5 * 2 && at_near < 0.01 * 5.5 * 2);
+    }
+  }
+  FusionCamera camera = Ready(CameraKind::kColor, Beside(aside));
+  const RgbdtCloud fused = Fuse(cloud, {camera}, 0.01);
+  int wrong = 0;
+  int seen = 0;
+  int behind = 0;
+  for (std::size_t i = 0; i < fused.size(); ++i) {
+    const Eigen::Vector3f p = fused.points[i];
+    const double u = 20 + 100 * (p.x() + aside) / p.z();
+    if (u < 0 || u > 40) continue;
+    behind += hidden[i] ? 1 : 0;
+    seen += hidden[i] ? 0 : 1;
+    wrong += (fused.valid[i] != 0) == hidden[i] ? 1 : 0;
+  }
+  EXPECT_GT(behind, 50);
+  EXPECT_GT(seen, 400);
+  EXPECT_LE(wrong, 3 * cloud.lines);  // within a beam of the edge nobody knows
 }
 
 TEST(Fuse, ACloudThatTellsNoTimesIsAsOldAsItsSweep) {
   Cloud cloud = CloudOf({Seen(20, 15, 2)});
   cloud.utime.clear();
   cloud.intensity.clear();
-  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)});
+  const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)}, 0.01);
   EXPECT_THAT(fused.utime, ElementsAre(kNow));
   EXPECT_TRUE(std::isnan(fused.intensity[0]));
   EXPECT_THAT(fused.valid, ElementsAre(1U));

@@ -1,0 +1,65 @@
+#include "calib/fuse/fusion_camera.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib/camera/pixels.h"
+
+namespace rgbdt {
+
+PreparedImage Prepare(const CameraSpec& camera, const Image& image) {
+  CheckImage(camera, image);
+  if (camera.kind == CameraKind::kColor) return {image.utime, ToBgr(image), {}};
+  const bool own = image.radiometry.kind != Radiometry::Kind::kNone;
+  return {image.utime, ToGrey(image), own ? image.radiometry : camera.radiometry};
+}
+
+FusionCamera::FusionCamera(const CameraSpec& spec)
+    : spec_(spec), camera_(spec), readout_(FromSeconds(spec.readout_s)) {}
+
+void FusionCamera::AddImage(PreparedImage image) {
+  const auto later = std::find_if(images_.begin(), images_.end(), [&](const PreparedImage& other) {
+    return other.utime >= image.utime;
+  });
+  if (later != images_.end() && later->utime == image.utime) return;  // the same image again
+  if (spec_.kind == CameraKind::kThermal) {
+    if (temperatures_ == nullptr || !temperatures_->IsFor(image.radiometry)) {
+      temperatures_ = std::make_shared<TemperatureTable>(image.radiometry, spec_.netd_k);
+    }
+    image.temperatures = temperatures_;
+  }
+  images_.insert(later, std::move(image));
+  if (images_.size() > kMaxImages) images_.pop_front();
+}
+
+Serving FusionCamera::ServingAt(Utime point_utime) const {
+  Serving serving;
+  if (images_.empty()) return serving;
+  if (all_times_) {
+    serving.image = &images_.back();
+    return serving;
+  }
+  for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
+    const Utime from = image->utime + readout_;
+    if (from > point_utime) {
+      serving.until = from;
+      continue;
+    }
+    const Utime end = image->utime + kMaxAge;
+    if (point_utime <= end) {
+      serving.image = &*image;
+      serving.from = from;
+      serving.until = std::min(serving.until, end + 1);
+    } else {
+      serving.from = end + 1;
+    }
+    break;
+  }
+  return serving;
+}
+
+void FusionCamera::ForgetBefore(Utime utime) {
+  while (images_.size() > 1 && images_[1].utime + readout_ <= utime) images_.pop_front();
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,348 @@
+#include "calib/fuse/sweep_fuser.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "calib/fuse/motion.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+const float* FloatsOf(const std::vector<Eigen::Vector3f>& points) {
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  return points.empty() ? nullptr : points.front().data();
+}
+
+template <typename T>
+std::vector<T> Slice(const std::vector<T>& all, std::size_t first, std::size_t end) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(first),
+          all.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+void TransformPoints(const Rigid3& to_from, std::vector<Eigen::Vector3f>* points) {
+  const Eigen::Matrix3f rotation = to_from.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = to_from.translation.cast<float>();
+  for (Eigen::Vector3f& p : *points) p = rotation * p + translation;
+}
+
+}  // namespace
+
+SweepFuser::SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigma_m)
+    : range_sigma_m_(range_sigma_m) {
+  for (const CameraSpec& camera : cameras) eyes_.emplace_back(camera);
+}
+
+PoseTrack::Added SweepFuser::AddPose(const StampedPose& pose) {
+  const auto added = poses_.Add(pose);
+  if (added == PoseTrack::Added::kJump) {
+    // Nothing from before the jump has a known place any more.
+    NextSweep();
+    past_points_.clear();
+    for (Eye& eye : eyes_) eye.now = eye.past = std::nullopt;
+  }
+  return added;
+}
+
+std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t index,
+                                                   const Rigid3& camera_from_lidar, Utime utime) {
+  Eye& eye = eyes_[index];
+  const bool same =
+      eye.camera.calibrated && eye.camera.calibration_utime == utime &&
+      eye.camera.camera_from_lidar.translation == camera_from_lidar.translation &&
+      eye.camera.camera_from_lidar.rotation.coeffs() == camera_from_lidar.rotation.coeffs();
+  if (same) return {};
+  std::vector<RgbdtCloud> parts = Parts();
+  eye.camera.calibrated = true;
+  eye.camera.camera_from_lidar = camera_from_lidar;
+  eye.camera.calibration_utime = utime;
+  eye.spacing = PointSpacing(eye.camera.camera());
+  eye.now = eye.past = std::nullopt;  // made again by the next chunk, from the points kept
+  return parts;
+}
+
+RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
+  RgbdtCloud hits = HitsOf(chunk);
+  counts_.points += static_cast<std::int64_t>(hits.size());
+  if (!sweep_.points.empty() && sweep_.sweep_utime != chunk.sweep_utime) NextSweep();  // end lost
+  if (sweep_.points.empty() && !hits.points.empty()) BeginSweep(hits);
+  const bool placed = Place(&hits);
+  if (!placed) counts_.unplaced += static_cast<std::int64_t>(hits.size());
+  for (Eye& eye : eyes_) {
+    eye.chunk.Clear();
+    if (placed && eye.camera.calibrated) Look(chunk, hits, &eye);
+  }
+  const BlendCounts blended = Blend(BlendCameras(&Eye::chunk), 0, &hits);
+  counts_.coloured += blended.coloured;
+  counts_.hidden += blended.hidden;
+  if (!placed || hits.points.empty()) return hits;
+  Keep(hits);
+  if (map_from_sweep_) {
+    hits.frame_utime = hits.utime.front();
+    hits.map_from_lidar = poses_.At(hits.frame_utime);
+    TransformPoints(hits.map_from_lidar->Inverse() * *map_from_sweep_, &hits.points);
+  }
+  return hits;
+}
+
+// The chunk's points that returned, in the frames of their own times, and where they stand in it.
+RgbdtCloud SweepFuser::HitsOf(const Cloud& chunk) {
+  RgbdtCloud hits;
+  hits.sweep_utime = chunk.sweep_utime;
+  for (const Eye& eye : eyes_) {
+    hits.cameras.push_back(eye.camera.spec().name);
+    hits.calibration_utime.push_back(eye.camera.calibration_utime);
+  }
+  grid_.clear();
+  for (std::size_t i = 0; i < chunk.size(); ++i) {
+    if (chunk.points[i].allFinite()) grid_.push_back(static_cast<std::uint32_t>(i));
+  }
+  hits.points.reserve(grid_.size());
+  for (const std::uint32_t i : grid_) hits.points.push_back(chunk.points[i]);
+  hits.intensity.assign(grid_.size(), kNone);
+  hits.utime.assign(grid_.size(), chunk.sweep_utime);
+  for (std::size_t k = 0; k < grid_.size() && !chunk.intensity.empty(); ++k) {
+    hits.intensity[k] = chunk.intensity[grid_[k]];
+  }
+  for (std::size_t k = 0; k < grid_.size() && !chunk.utime.empty(); ++k) {
+    hits.utime[k] = chunk.utime[grid_[k]];
+  }
+  return hits;
+}
+
+void SweepFuser::BeginSweep(const RgbdtCloud& hits) {
+  sweep_.sweep_utime = hits.sweep_utime;
+  sweep_.frame_utime = hits.utime.front();
+  moved_ = false;
+  too_long_ = false;
+  map_from_sweep_ = poses_.At(sweep_.frame_utime);
+  if (!map_from_sweep_ || !map_from_past_) return;
+  const Rigid3 past_from_sweep = map_from_past_->Inverse() * *map_from_sweep_;
+  TransformPoints(past_from_sweep.Inverse(), &past_points_);
+  for (Eye& eye : eyes_) eye.camera_from_sweep = eye.camera_from_sweep * past_from_sweep;
+  map_from_past_ = map_from_sweep_;
+}
+
+// The sweep becomes the one before.
+void SweepFuser::NextSweep() {
+  past_points_ = std::move(sweep_.points);
+  map_from_past_ = map_from_sweep_;
+  sweep_ = {};
+  parted_ = 0;
+  for (Eye& eye : eyes_) {
+    eye.sweep.Clear();
+    eye.past = std::move(eye.now);
+    eye.now = std::nullopt;
+  }
+}
+
+// From the frames of the points' own times to that of the sweep. False: not known.
+bool SweepFuser::Place(RgbdtCloud* hits) const {
+  if (poses_.empty()) return true;
+  if (!map_from_sweep_) return hits->points.empty();
+  return PlaceInSweep(poses_, *map_from_sweep_, hits->utime, &hits->points);
+}
+
+std::optional<Rigid3> SweepFuser::CameraFromSweep(const FusionCamera& camera, Utime utime) const {
+  if (!map_from_sweep_) return camera.camera_from_lidar;
+  const auto map_from_lidar = poses_.At(utime);
+  if (!map_from_lidar) return std::nullopt;
+  return camera.camera_from_lidar * map_from_lidar->Inverse() * *map_from_sweep_;
+}
+
+// The points from `first` on that the same image serves, and where it was taken.
+SweepFuser::Run SweepFuser::NextRun(const RgbdtCloud& hits, std::size_t first,
+                                    const Eye& eye) const {
+  const Serving serving = eye.camera.ServingAt(hits.utime[first]);
+  Run run{first, first + 1, serving.image, eye.camera_from_sweep};
+  while (run.end < hits.size() && hits.utime[run.end] >= serving.from &&
+         hits.utime[run.end] < serving.until) {
+    ++run.end;
+  }
+  const Utime utime = run.image != nullptr ? run.image->utime : hits.utime[first];
+  const auto camera_from_sweep = CameraFromSweep(eye.camera, utime);
+  if (camera_from_sweep) {
+    run.camera_from_sweep = *camera_from_sweep;
+  } else {
+    run.image = nullptr;  // taken where nobody knows
+  }
+  return run;
+}
+
+PointProjector SweepFuser::ProjectorOf(const FusionCamera& camera, const Run& run) const {
+  PointProjector projector(camera.camera(), run.camera_from_sweep);
+  const double rolling_s = camera.spec().rolling_s;
+  if (!map_from_sweep_ || run.image == nullptr || rolling_s <= 0) return projector;
+  const Utime half = FromSeconds(0.5 * rolling_s);
+  const auto first = CameraFromSweep(camera, run.image->utime - half);
+  const auto last = CameraFromSweep(camera, run.image->utime + half);
+  if (first && last) {
+    projector.SetMotion(Log(*last * first->Inverse()) / std::max(1, camera.spec().height - 1));
+  }
+  return projector;
+}
+
+// By more than a part of a cell, for what is 2 m away.
+bool SweepFuser::HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const {
+  constexpr double kNearM = 2;
+  constexpr double kPart = 0.25;
+  const double angle = RotationDistance(camera_from_sweep, eye.camera_from_sweep) +
+                       CentreDistance(camera_from_sweep, eye.camera_from_sweep) / kNearM;
+  const Lens& lens = eye.camera.camera().lens();
+  return angle * std::max(lens.fx, lens.fy) > kPart * eye.cell_px.minCoeff();
+}
+
+// Sees to buffers that are made for this place. True: made anew, the chunk is not in them.
+bool SweepFuser::StandAt(const Rigid3& camera_from_sweep, Eye* eye) {
+  const bool any = eye->now || eye->past;
+  const bool moved = any && HasMoved(*eye, camera_from_sweep);
+  if (any && !moved) {
+    if (!eye->now) eye->now.emplace(eye->camera.camera(), eye->cell_px, range_sigma_m_);
+    return false;
+  }
+  moved_ |= moved;
+  if (!any) eye->cell_px = eye->spacing.CellPx();
+  eye->camera_from_sweep = camera_from_sweep;
+  MakeBuffers(eye);
+  return true;
+}
+
+// What hides things from eye.camera_from_sweep, as far as kept points show it.
+void SweepFuser::MakeBuffers(Eye* eye) const {
+  const PointProjector projector(eye->camera.camera(), eye->camera_from_sweep);
+  const auto make = [&](const std::vector<Eigen::Vector3f>& points) {
+    DepthBuffer buffer(eye->camera.camera(), eye->cell_px, range_sigma_m_);
+    PixelColumns pixels;
+    pixels.Resize(points.size());
+    projector.Project(FloatsOf(points), 0, points.size(), &pixels);
+    buffer.Add(pixels, 0, points.size());
+    buffer.Close();
+    return buffer;
+  };
+  eye->now.emplace(make(sweep_.points));
+  eye->past = std::nullopt;
+  if (!past_points_.empty()) eye->past.emplace(make(past_points_));
+}
+
+void SweepFuser::AddToBuffer(const RgbdtCloud& hits, Eye* eye) const {
+  if (!map_from_sweep_) {  // all runs are looked at from one place: this one
+    eye->now->Add(eye->chunk.pixels, 0, hits.size());
+  } else {
+    PixelColumns pixels;
+    pixels.Resize(hits.size());
+    PointProjector(eye->camera.camera(), eye->camera_from_sweep)
+        .Project(FloatsOf(hits.points), 0, hits.size(), &pixels);
+    eye->now->Add(pixels, 0, hits.size());
+  }
+  eye->now->Close();
+}
+
+// All points' places in the images that serve them, what these show there, and what hides it.
+void SweepFuser::Look(const Cloud& chunk, const RgbdtCloud& hits, Eye* eye) {
+  eye->chunk.pixels.Resize(hits.size());
+  std::vector<Run> runs;
+  for (std::size_t first = 0; first < hits.size(); first = runs.back().end) {
+    runs.push_back(NextRun(hits, first, *eye));
+    const Run& run = runs.back();
+    ProjectorOf(eye->camera, run)
+        .Project(FloatsOf(hits.points), run.first, run.end - run.first, &eye->chunk.pixels);
+  }
+  eye->spacing.Add(chunk, grid_, eye->chunk.pixels);
+  for (const Run& run : runs) {
+    const bool anew = StandAt(run.camera_from_sweep, eye);
+    if (anew || run.first == 0) AddToBuffer(hits, eye);
+    if (run.image != nullptr) {
+      SampleImage(eye->camera, *run.image, run.first, run.end, &eye->chunk);
+    } else {
+      counts_.untimely += static_cast<std::int64_t>(run.end - run.first);
+      SampleNothing(run.end, &eye->chunk);
+    }
+    Judge(*eye->now, eye->past ? &*eye->past : nullptr, run.first, run.end, &eye->chunk);
+  }
+}
+
+std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) const {
+  std::vector<BlendCamera> cameras;
+  for (const Eye& eye : eyes_) {
+    const Sightings& seen = eye.*sightings;
+    cameras.push_back(
+        {&eye.camera, seen.samples.empty() ? nullptr : &seen, eye.now ? &*eye.now : nullptr});
+  }
+  return cameras;
+}
+
+void SweepFuser::Keep(const RgbdtCloud& hits) {
+  if (too_long_ || sweep_.size() + hits.size() > kMaxSweepPoints) {
+    too_long_ = true;
+    return;
+  }
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(hits.points, &sweep_.points);
+  append(hits.intensity, &sweep_.intensity);
+  append(hits.utime, &sweep_.utime);
+  for (Eye& eye : eyes_) {
+    if (eye.chunk.samples.empty()) {  // not calibrated
+      eye.chunk.pixels.Resize(hits.size());
+      eye.chunk.hidden.assign(hits.size(), 0);
+      SampleNothing(hits.size(), &eye.chunk);
+    }
+    eye.sweep.Append(eye.chunk);
+  }
+}
+
+// Cells that suit the points' spacing as the whole sweep shows it: a first line alone does not.
+void SweepFuser::FitCells() {
+  constexpr double kEnough = 1.15;
+  for (Eye& eye : eyes_) {
+    if (!eye.now) continue;
+    const Eigen::Vector2d cell = eye.spacing.CellPx();
+    const Eigen::Array2d ratio = cell.array() / eye.cell_px.array();
+    if (ratio.maxCoeff() < kEnough && ratio.minCoeff() > 1 / kEnough) continue;
+    eye.cell_px = cell;
+    MakeBuffers(&eye);
+  }
+}
+
+RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
+  RgbdtCloud part;
+  part.sweep_utime = sweep_.sweep_utime;
+  part.whole_sweep = true;
+  part.points = Slice(sweep_.points, first, end);
+  part.intensity = Slice(sweep_.intensity, first, end);
+  part.utime = Slice(sweep_.utime, first, end);
+  for (const Eye& eye : eyes_) {
+    part.cameras.push_back(eye.camera.spec().name);
+    part.calibration_utime.push_back(eye.camera.calibration_utime);
+  }
+  part.map_from_lidar = map_from_sweep_;
+  part.frame_utime = map_from_sweep_ ? sweep_.frame_utime : 0;
+  Blend(BlendCameras(&Eye::sweep), first, &part);
+  return part;
+}
+
+// What was kept since the last parts.
+std::vector<RgbdtCloud> SweepFuser::Parts() {
+  for (Eye& eye : eyes_) {
+    if (!moved_ && eye.now) Judge(*eye.now, nullptr, parted_, sweep_.size(), &eye.sweep);
+  }
+  std::vector<RgbdtCloud> parts;
+  for (; parted_ < sweep_.size(); parted_ += parts.back().size()) {
+    parts.push_back(Part(parted_, std::min(sweep_.size(), parted_ + kPartPoints)));
+  }
+  return parts;
+}
+
+std::vector<RgbdtCloud> SweepFuser::EndSweep() {
+  FitCells();
+  std::vector<RgbdtCloud> parts;
+  if (!too_long_) parts = Parts();
+  if (!parts.empty()) parts.back().sweep_end = true;
+  NextSweep();
+  return parts;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/fuse/blend.h"
+#include "calib/fuse/point_spacing.h"
+#include "calib/model/cloud.h"
+#include "calib/model/pose_track.h"
+#include "calib/model/rgbdt_cloud.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// What happened to points since the start.
+struct FusionCounts {
+  std::int64_t points = 0;
+  std::int64_t coloured = 0;  ///< seen by at least one camera
+  std::int64_t hidden = 0;    ///< by camera: in its image, but behind something
+  std::int64_t untimely = 0;  ///< by camera: calibrated, but without an image of the point's time
+  std::int64_t unplaced = 0;  ///< the pose stream does not tell where the rig was
+};
+
+/// Colours a cloud that comes in chunks, as it comes, and each sweep once more at its end.
+///
+/// Each hit is projected into the image of each camera that serves its time (FusionCamera), through
+/// the full lens model, and sampled bilinearly; it is coloured where nothing of this sweep so far
+/// and of the sweep before is in the way (DepthBuffer). At a sweep's end all of its points are
+/// judged by the whole sweep: what hides a point may have come after it.
+///
+/// While poses come (AddPose) the rig's motion is taken out: all points of a chunk are in the LIDAR
+/// frame of its first one's time, all points of a sweep in that of its own first, and images are
+/// looked at from where they were taken, row by row where the camera rolls (CameraSpec::rolling_s).
+/// Points of times that the poses do not tell stay uncoloured, in the frame of their own time.
+/// While the rig moves, a sweep's end keeps its chunks' verdicts on what is hidden.
+class SweepFuser {
+ public:
+  /// Points of a sweep that are kept until its end; longer ones have none.
+  static constexpr std::size_t kMaxSweepPoints = 2'000'000;
+  /// Points in one message of a whole sweep.
+  static constexpr std::size_t kPartPoints = 40'000;
+
+  /// `range_sigma_m`: noise of the LIDAR's ranges.
+  SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigma_m);
+
+  std::size_t cameras() const { return eyes_.size(); }
+  FusionCamera& camera(std::size_t index) { return eyes_[index].camera; }
+  const FusionCamera& camera(std::size_t index) const { return eyes_[index].camera; }
+  const FusionCounts& counts() const { return counts_; }
+
+  PoseTrack::Added AddPose(const StampedPose& pose);
+
+  /// From the next chunk on. What the sweep has so far is judged and given back as if it ended
+  /// here: no message mixes two calibrations.
+  std::vector<RgbdtCloud> SetCalibration(std::size_t camera, const Rigid3& camera_from_lidar,
+                                         Utime utime);
+
+  /// A chunk of a sweep, coloured at once; in the order of its points, misses left out.
+  RgbdtCloud FuseChunk(const Cloud& chunk);
+
+  /// The sweep's points, judged as a whole, in messages of kPartPoints; the last has sweep_end.
+  std::vector<RgbdtCloud> EndSweep();
+
+ private:
+  // What a camera sees, and what hides things from it.
+  struct Eye {
+    explicit Eye(const CameraSpec& spec) : camera(spec), spacing(camera.camera()) {}
+    FusionCamera camera;
+    PointSpacing spacing;
+    std::optional<DepthBuffer> now, past;  // of this sweep, of the one before
+    Rigid3 camera_from_sweep;              // where they were made for
+    Eigen::Vector2d cell_px{0, 0};         // theirs
+    Sightings chunk, sweep;
+  };
+  // Points of the chunk that one image serves; or none.
+  struct Run {
+    std::size_t first = 0, end = 0;
+    const PreparedImage* image = nullptr;
+    Rigid3 camera_from_sweep;
+  };
+
+  RgbdtCloud HitsOf(const Cloud& chunk);
+  void BeginSweep(const RgbdtCloud& hits);
+  void NextSweep();
+  bool Place(RgbdtCloud* hits) const;
+  void Look(const Cloud& chunk, const RgbdtCloud& hits, Eye* eye);
+  Run NextRun(const RgbdtCloud& hits, std::size_t first, const Eye& eye) const;
+  std::optional<Rigid3> CameraFromSweep(const FusionCamera& camera, Utime utime) const;
+  PointProjector ProjectorOf(const FusionCamera& camera, const Run& run) const;
+  bool HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const;
+  bool StandAt(const Rigid3& camera_from_sweep, Eye* eye);
+  void MakeBuffers(Eye* eye) const;
+  void AddToBuffer(const RgbdtCloud& hits, Eye* eye) const;
+  void FitCells();
+  void Keep(const RgbdtCloud& hits);
+  std::vector<RgbdtCloud> Parts();
+  RgbdtCloud Part(std::size_t first, std::size_t end) const;
+  std::vector<BlendCamera> BlendCameras(Sightings Eye::*sightings) const;
+
+  std::vector<Eye> eyes_;
+  double range_sigma_m_;
+  FusionCounts counts_;
+  PoseTrack poses_;
+  std::vector<std::uint32_t> grid_;  // where the chunk's hits stand in it
+
+  // The sweep so far, in its own frame; colours are not kept but made at its end.
+  RgbdtCloud sweep_;
+  std::size_t parted_ = 0;                // points of it that Parts() gave back before its end
+  std::optional<Rigid3> map_from_sweep_;  // nothing: no pose stream
+  bool moved_ = false;                    // a camera did, within the sweep
+  bool too_long_ = false;
+  std::vector<Eigen::Vector3f> past_points_;
+  std::optional<Rigid3> map_from_past_;
+};
+
+}  // namespace rgbdt
