@@ -11,9 +11,12 @@ namespace {
 constexpr double kZeroCelsius = 273.15;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 
-cv::Mat Table(int colour_map) {
+// 256 colours from `first` of 256 on: what is too dark would not stand out from the background.
+cv::Mat Table(int colour_map, int first) {
   cv::Mat grey(1, 256, CV_8UC1);
-  for (int i = 0; i < 256; ++i) grey.at<unsigned char>(i) = static_cast<unsigned char>(i);
+  for (int i = 0; i < 256; ++i) {
+    grey.at<unsigned char>(i) = static_cast<unsigned char>(first + i * (255 - first) / 255);
+  }
   cv::Mat table;
   cv::applyColorMap(grey, table, colour_map);
   return table;
@@ -31,8 +34,8 @@ void SetRange(std::vector<float> values, ColourScale* scale) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
     return static_cast<double>(values[k]);
   };
-  scale->low = percentile(0.02);
-  scale->high = percentile(0.98);
+  scale->low = percentile(0.01);
+  scale->high = percentile(0.99);
   if (!(scale->high > scale->low)) scale->high = scale->low + 1;
 }
 
@@ -45,7 +48,7 @@ cv::Vec3b Look(const ColourScale& scale, double value) {
 // Grey and unobtrusive, on either ground; brighter where more light came back.
 cv::Vec3b Grey(float intensity, bool white_background) {
   const double light = std::isfinite(intensity) ? std::sqrt(std::clamp(intensity, 0.f, 1.f)) : 0.3;
-  const double value = white_background ? 205 - 60 * light : 48 + 60 * light;
+  const double value = white_background ? 205 - 60 * light : 56 + 64 * light;
   return cv::Vec3b::all(static_cast<unsigned char>(value));
 }
 
@@ -63,26 +66,30 @@ std::vector<float> Values(const RgbdtCloud& cloud, CloudColour colour, ColourSca
   if (colour == CloudColour::kIntensity) {
     values = cloud.intensity;
     scale->unit = "intensity";
-    scale->table = Table(cv::COLORMAP_VIRIDIS);
+    scale->table = Table(cv::COLORMAP_VIRIDIS, 0);
   } else {
     const bool kelvin = std::any_of(cloud.temperature_k.begin(), cloud.temperature_k.end(),
                                     [](float t) { return std::isfinite(t); });
     values = kelvin ? Celsius(cloud.temperature_k) : cloud.thermal_counts;
     scale->unit = kelvin ? "C" : "counts";
-    scale->table = Table(cv::COLORMAP_INFERNO);
+    scale->table = Table(cv::COLORMAP_INFERNO, 36);
   }
   SetRange(values, scale);
   return values;
 }
 
-cv::Scalar TextColour(bool white_background) {
-  return white_background ? cv::Scalar::all(20) : cv::Scalar::all(235);
+// 1, 2 or 5 times a power of ten, such that some five steps fit into the range.
+double RoundStep(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range / 4)));
+  const double factor = range / 4 / power;
+  return power * (factor < 1.5 ? 1 : factor < 3.5 ? 2 : factor < 7.5 ? 5 : 10);
 }
 
-// A number with as many decimals as the step between two of them needs.
-std::string Label(double value, double range) {
+// With as many decimals as the step between two of them needs.
+std::string Label(double value, double step) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.*f", range >= 20 ? 0 : range >= 2 ? 1 : 2, value);
+  const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 6);
+  std::snprintf(text, sizeof text, "%.*f", decimals, std::abs(value) < 1e-9 * step ? 0 : value);
   return text;
 }
 
@@ -93,6 +100,12 @@ void DrawUnit(const std::string& unit, cv::Point at, bool white_background, cv::
     at.x += 10;
   }
   DrawText(unit, at, white_background, picture);
+}
+
+// A pane that what is written on it stands out from.
+void Dim(const cv::Rect& pane, bool white_background, cv::Mat* picture) {
+  cv::Mat part = (*picture)(pane & cv::Rect({0, 0}, picture->size()));
+  part = 0.35 * part + cv::Scalar::all(white_background ? 166 : 10);
 }
 
 }  // namespace
@@ -120,16 +133,23 @@ PointColours ColourPoints(const RgbdtCloud& cloud, CloudColour colour, bool whit
   return colours;
 }
 
+cv::Scalar TextColour(bool white_background) {
+  return white_background ? cv::Scalar::all(20) : cv::Scalar::all(235);
+}
+
 void DrawText(const std::string& text, cv::Point at, bool white_background, cv::Mat* picture) {
+  // On a rim of the other colour it can be read whatever lies behind.
+  cv::putText(*picture, text, at, kFont, 0.6, TextColour(!white_background), 4, cv::LINE_AA);
   cv::putText(*picture, text, at, kFont, 0.6, TextColour(white_background), 1, cv::LINE_AA);
 }
 
 void DrawLegend(const ColourScale& scale, bool white_background, cv::Mat* picture) {
-  constexpr int kWidth = 18, kTicks = 5;
+  constexpr int kWidth = 18;
   const int height = picture->rows / 2;
   const int left = picture->cols - 110, top = picture->rows / 4;
   // A picture too small for a legend goes without.
   if (!scale.used || left < picture->cols / 2 || height < 60) return;
+  Dim(cv::Rect(left - 14, top - 40, 124, height + 58), white_background, picture);
   for (int y = 0; y < height; ++y) {
     const int index = 255 - y * 255 / (height - 1);
     const cv::Vec3b c = scale.table.at<cv::Vec3b>(index);
@@ -137,14 +157,13 @@ void DrawLegend(const ColourScale& scale, bool white_background, cv::Mat* pictur
   }
   cv::rectangle(*picture, cv::Rect(left - 1, top - 1, kWidth + 3, height + 2),
                 TextColour(white_background));
-  const double range = scale.high - scale.low;
-  for (int i = 0; i < kTicks; ++i) {
-    const double fraction = static_cast<double>(i) / (kTicks - 1);
+  const double range = scale.high - scale.low, step = RoundStep(range);
+  for (double value = std::ceil(scale.low / step) * step; value <= scale.high; value += step) {
+    const double fraction = (value - scale.low) / range;
     const int y = top + static_cast<int>((1 - fraction) * (height - 1));
     cv::line(*picture, {left + kWidth + 2, y}, {left + kWidth + 6, y},
              TextColour(white_background));
-    DrawText(Label(scale.low + fraction * range, range), {left + kWidth + 10, y + 6},
-             white_background, picture);
+    DrawText(Label(value, step), {left + kWidth + 10, y + 6}, white_background, picture);
   }
   DrawUnit(scale.unit, {left - 2, top - 14}, white_background, picture);
 }

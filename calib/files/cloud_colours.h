@@ -29,6 +29,9 @@ PointColours ColourPoints(const RgbdtCloud& cloud, CloudColour colour, bool whit
 /// Draws the scale as a bar with numbers at the right edge.
 void DrawLegend(const ColourScale& scale, bool white_background, cv::Mat* picture);
 
+/// Of text and lines on the picture.
+cv::Scalar TextColour(bool white_background);
+
 /// Draws small text with its baseline's left end at `at`.
 void DrawText(const std::string& text, cv::Point at, bool white_background, cv::Mat* picture);
 

@@ -29,12 +29,28 @@ Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_u
 /// the cloud has. Throws InputError for a cloud that is empty or whose vectors differ in length.
 void WritePcd(const std::filesystem::path& path, const Cloud& cloud);
 
-/// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us], temperature
-/// [K], thermal_counts, valid (bit i: camera i saw the point).
+/// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us, UTC],
+/// temperature [K], temperature_sigma [K], thermal_counts, valid (bit i: camera i saw the point).
+/// Comments hold the frame, the cameras with their bits and calibrations' times, the sweep, and the
+/// pose map_from_lidar where there is one. Throws InputError where vectors differ in length.
 void WritePcd(const std::filesystem::path& path, const RgbdtCloud& cloud);
 
-/// Writes a binary little-endian PLY: x y z [m], red green blue, intensity, temperature [K],
-/// thermal_counts, valid.
+/// The same as a binary little-endian PLY, with red green blue.
 void WritePly(const std::filesystem::path& path, const RgbdtCloud& cloud);
+
+/// Reads a fused cloud from PLY (ascii or binary_little_endian) or PCD, told apart by their first
+/// bytes: what WritePly and WritePcd wrote, to the bit (only `seq` is of the bus and not kept), or
+/// anybody's file with x y z [m]. Fields besides, each of any numeric type:
+///  - red green blue, or r g b: 0 to 255, or real numbers 0 to 1; or packed into rgb or rgba.
+///  - intensity, utime (or timestamp, time, t): as in ReadPcd.
+///  - temperature or temperature_k [K], temperature_sigma or temperature_sigma_k [K],
+///    thermal_counts; valid, if comments name the cameras.
+/// Other fields are skipped; what the file does not have is unknown: NaN, 0 0 0, the sweep's time.
+/// Points without finite coordinates, or at 0 0 0, are left out. Throws InputError naming the file,
+/// the line or byte, and what was expected.
+RgbdtCloud ReadFused(const std::filesystem::path& path);
+
+/// The same from bytes; `where` stands for the file in error messages.
+RgbdtCloud ParseFused(const std::string& bytes, const std::string& where);
 
 }  // namespace rgbdt

@@ -2,6 +2,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/cloud_files.h"
+#include "calib/files/fused_comments.h"
 #include "calib/files/records.h"
 #include "calib/model/errors.h"
 
@@ -29,7 +30,7 @@ void AddVectors(const std::string& prefix, const std::vector<Eigen::Vector3f>& v
 }
 
 std::string PcdBytes(const std::vector<Column>& columns, std::size_t width, std::size_t height,
-                     const std::string& comment) {
+                     const std::vector<std::string>& comments) {
   std::string fields, sizes, types, counts;
   for (const Column& column : columns) {
     fields += " " + column.name;
@@ -37,9 +38,10 @@ std::string PcdBytes(const std::vector<Column>& columns, std::size_t width, std:
     types += std::string(" ") + column.type;
     counts += " 1";
   }
-  return "# .PCD v0.7 - Point Cloud Data file format\n# " + comment + "\nVERSION 0.7\nFIELDS" +
-         fields + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts + "\nWIDTH " +
-         std::to_string(width) + "\nHEIGHT " + std::to_string(height) +
+  std::string header = "# .PCD v0.7 - Point Cloud Data file format\n";
+  for (const std::string& comment : comments) header += "# " + comment + "\n";
+  return header + "VERSION 0.7\nFIELDS" + fields + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" +
+         counts + "\nWIDTH " + std::to_string(width) + "\nHEIGHT " + std::to_string(height) +
          "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(width * height) + "\nDATA binary\n" +
          records::Pack(columns, width * height);
 }
@@ -72,20 +74,14 @@ void CheckCloud(const RgbdtCloud& cloud, const std::filesystem::path& path) {
   RequireLength(cloud.utime.size(), n, "utime", path);
   RequireLength(cloud.rgb.size(), n, "rgb", path);
   RequireLength(cloud.temperature_k.size(), n, "temperature", path);
+  RequireLength(cloud.temperature_sigma_k.size(), n, "temperature's sigma", path);
   RequireLength(cloud.thermal_counts.size(), n, "thermal counts", path);
   RequireLength(cloud.valid.size(), n, "valid", path);
-}
-
-std::string Describe(const RgbdtCloud& cloud) {
-  std::string text = "LIDAR frame: x forward, y left, z up [m]; temperature [K]; bits of valid:";
-  for (std::size_t i = 0; i < cloud.cameras.size(); ++i) {
-    text += " " + std::to_string(i) + " = " + cloud.cameras[i];
+  if (cloud.calibration_utime.size() != cloud.cameras.size()) {
+    throw InputError("cannot write " + path.string() + ": the cloud has " +
+                     std::to_string(cloud.cameras.size()) + " cameras but " +
+                     std::to_string(cloud.calibration_utime.size()) + " times of calibrations");
   }
-  // One line, whatever a camera is called.
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ') c = '?';
-  }
-  return text;
 }
 
 // Red, green and blue in the three lower bytes of an integer that PCL calls a float.
@@ -93,8 +89,22 @@ std::uint32_t PackRgb(const std::array<std::uint8_t, 3>& rgb) {
   return (std::uint32_t{rgb[0]} << 16) | (std::uint32_t{rgb[1]} << 8) | rgb[2];
 }
 
+// What PCD and PLY have in common, after the colour.
+void AddMeasurements(const RgbdtCloud& cloud, std::vector<Column>* columns) {
+  const auto add = [columns](const char* name, const std::vector<float>& values) {
+    columns->push_back(MakeColumn<float>(name, [&values](std::size_t i) { return values[i]; }));
+  };
+  add("intensity", cloud.intensity);
+  columns->push_back(MakeColumn<double>("utime", [&](std::size_t i) { return cloud.utime[i]; }));
+  add("temperature", cloud.temperature_k);
+  add("temperature_sigma", cloud.temperature_sigma_k);
+  add("thermal_counts", cloud.thermal_counts);
+  columns->push_back(
+      MakeColumn<std::uint32_t>("valid", [&](std::size_t i) { return cloud.valid[i]; }));
+}
+
 std::string PlyType(const Column& column) {
-  if (column.type == 'F') return "float";
+  if (column.type == 'F') return column.size == 8 ? "double" : "float";
   return column.size == 1 ? "uchar" : "uint";
 }
 
@@ -127,7 +137,7 @@ void WritePcd(const std::filesystem::path& path, const Cloud& cloud) {
   if (!cloud.origins.empty()) AddVectors("origin_", cloud.origins, beams, &columns);
   WriteFileAtomically(
       path, PcdBytes(columns, beams, cloud.size() / beams,
-                     "LIDAR frame: x forward, y left, z up [m]; NaN: the beam returned nothing"));
+                     {"LIDAR frame: x forward, y left, z up [m]; NaN: the beam returned nothing"}));
 }
 
 void WritePcd(const std::filesystem::path& path, const RgbdtCloud& cloud) {
@@ -137,16 +147,8 @@ void WritePcd(const std::filesystem::path& path, const RgbdtCloud& cloud) {
   columns.push_back(
       MakeColumn<std::uint32_t>("rgb", [&](std::size_t i) { return PackRgb(cloud.rgb[i]); }));
   columns.back().type = 'F';
-  const auto add = [&columns](const char* name, const std::vector<float>& values) {
-    columns.push_back(MakeColumn<float>(name, [&values](std::size_t i) { return values[i]; }));
-  };
-  add("intensity", cloud.intensity);
-  columns.push_back(MakeColumn<double>("utime", [&](std::size_t i) { return cloud.utime[i]; }));
-  add("temperature", cloud.temperature_k);
-  add("thermal_counts", cloud.thermal_counts);
-  columns.push_back(
-      MakeColumn<std::uint32_t>("valid", [&](std::size_t i) { return cloud.valid[i]; }));
-  WriteFileAtomically(path, PcdBytes(columns, cloud.size(), 1, Describe(cloud)));
+  AddMeasurements(cloud, &columns);
+  WriteFileAtomically(path, PcdBytes(columns, cloud.size(), 1, FusedComments(cloud)));
 }
 
 void WritePly(const std::filesystem::path& path, const RgbdtCloud& cloud) {
@@ -158,16 +160,10 @@ void WritePly(const std::filesystem::path& path, const RgbdtCloud& cloud) {
     columns.push_back(
         MakeColumn<std::uint8_t>(names[c], [&cloud, c](std::size_t i) { return cloud.rgb[i][c]; }));
   }
-  const auto add = [&columns](const char* name, const std::vector<float>& values) {
-    columns.push_back(MakeColumn<float>(name, [&values](std::size_t i) { return values[i]; }));
-  };
-  add("intensity", cloud.intensity);
-  add("temperature", cloud.temperature_k);
-  add("thermal_counts", cloud.thermal_counts);
-  columns.push_back(
-      MakeColumn<std::uint32_t>("valid", [&](std::size_t i) { return cloud.valid[i]; }));
-  std::string header = "ply\nformat binary_little_endian 1.0\ncomment " + Describe(cloud) +
-                       "\nelement vertex " + std::to_string(cloud.size()) + "\n";
+  AddMeasurements(cloud, &columns);
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : FusedComments(cloud)) header += "comment " + comment + "\n";
+  header += "element vertex " + std::to_string(cloud.size()) + "\n";
   for (const Column& column : columns) {
     header += "property " + PlyType(column) + " " + column.name + "\n";
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calib/model/time.h"
 
@@ -46,6 +48,20 @@ void CheckRange(std::string_view field, std::int64_t value, std::int64_t low, st
 void CheckFinite(std::string_view field, double value);
 void CheckNotNegative(std::string_view field, double value);  ///< finite and >= 0
 void CheckFinite(std::string_view field, const double* values, std::size_t size);
+
+/// Every value is good(value), which is not so for a NaN unless it says so. One pass without
+/// branches, as the clouds on the live path are long; the culprit is looked for only if there is.
+template <typename T, typename Good>
+void CheckEach(std::string_view field, const std::vector<T>& values, const Good& good,
+               const char* expected) {
+  unsigned bad = 0;
+  for (const T value : values) bad |= static_cast<unsigned>(!good(value));
+  if (bad == 0) return;
+  const auto culprit = std::find_if_not(values.begin(), values.end(), good);
+  Fail(At(field, static_cast<std::size_t>(culprit - values.begin())), static_cast<double>(*culprit),
+       expected);
+}
+
 void CheckUnitVector(std::string_view field, const Eigen::Vector3d& v);
 
 /// `size` rows of `size` numbers: finite, no variance below zero, symmetric to 1e-6 of the two

@@ -31,7 +31,7 @@ Message DecodeAs(const std::string& channel, std::string_view layout, const std:
     throw InputError(std::string("the message does not decode as ") + Wire::getTypeName());
   }
   Check(wire);
-  return FromWire(wire);
+  return FromWire(std::move(wire));
 }
 
 // Logs from before observation_v3_t hold the observation_v2_t that it begins with, or the
@@ -47,6 +47,15 @@ Message DecodeObservation(const std::string& channel, std::string_view layout,
   return DecodeAs<observation_v3_t>(channel, layout, data, size);
 }
 
+// Logs from before rgbdt_cloud_v2_t hold the rgbdt_cloud_t that it begins with.
+Message DecodeRgbdtCloud(const std::string& channel, std::string_view layout,
+                         const std::uint8_t* data, std::size_t size) {
+  if (IsA<rgbdt_cloud_t>(data, size)) {
+    return DecodeAs<rgbdt_cloud_t>(channel, "rgbdt_cloud_t", data, size);
+  }
+  return DecodeAs<rgbdt_cloud_v2_t>(channel, layout, data, size);
+}
+
 struct Kind {
   std::string_view channel;
   Message (*decode)(const std::string& channel, std::string_view layout, const std::uint8_t* data,
@@ -56,7 +65,10 @@ struct Kind {
 
 constexpr Kind kImage = {"_IMAGE", DecodeAs<image_t>, "2q s 2q d 4i b 8d b #size size*b"};
 
-constexpr std::array<Kind, 13> kKinds = {{
+constexpr std::string_view kRgbdtCloud =
+    "rgbdt_cloud_t b #num_calibrations num_calibrations*q b q 7d #num_sigmas num_sigmas*f";
+
+constexpr std::array<Kind, 14> kKinds = {{
     {"LINE_SCAN", DecodeAs<line_scan_t>, "2q 3d #num_beams num_beams*f num_beams*f"},
     {"ENCODER", DecodeAs<encoder_t>, "4q"},
     {"CLOUD", DecodeAs<cloud_t>,
@@ -68,10 +80,8 @@ constexpr std::array<Kind, 13> kKinds = {{
      "observation_v2_t board_scatter_t #num_candidate_scatters "
      "num_candidate_scatters*board_scatter_t"},
     {"CALIBRATION", DecodeAs<calibration_t>, "2q 3s b s 7d b 36d"},
-    {"RGBDT_CLOUD", DecodeAs<rgbdt_cloud_t>,
-     "3q b q #num_cameras num_cameras*s #num_points num_points*f num_points*f num_points*f "
-     "num_points*f num_points*i num_points*b num_points*b num_points*b num_points*f num_points*f "
-     "num_points*i"},
+    {"RGBDT_CLOUD", DecodeRgbdtCloud, kRgbdtCloud},
+    {"RGBDT_SWEEP", DecodeAs<rgbdt_cloud_v2_t>, kRgbdtCloud},
     {"POSE", DecodeAs<pose_t>, "2q s 7d"},
     {"RIG", DecodeAs<rig_t>, "2q 2s"},
     {"SESSION_COMMAND", DecodeAs<session_command_t>, "3q b s q b #num_picked num_picked*s"},

@@ -19,6 +19,7 @@ namespace rgbdt {
 // - a JPEG or PNG arrives decoded, as kMono8, kMono16 or kBgr8. To send one, give an Image the
 //   format kJpeg or kPng and plain pixels: Encode compresses them.
 // - a radiometry of kind kNone comes back as the default.
+// - a fused cloud without a pose has the frame_utime 0.
 // - a rig's own time is not known here and travels as 0.
 
 /// The message as bytes of its LCM type. Throws InputError, naming field and value, where it does

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "services/bus/check.h"
 #include "services/bus/codec_types.h"
@@ -12,6 +13,7 @@ constexpr std::int64_t kMaxCameras = 32;  // bits of `valid`
 
 void CheckLengths(const RgbdtCloud& cloud) {
   const std::size_t size = cloud.size();
+  CheckLength("calibration_utime", cloud.calibration_utime.size(), cloud.cameras.size(), false);
   CheckLength("intensity", cloud.intensity.size(), size, false);
   CheckLength("utime", cloud.utime.size(), size, false);
   CheckLength("rgb", cloud.rgb.size(), size, false);
@@ -31,17 +33,25 @@ void Resize(std::size_t size, rgbdt_cloud_t* wire) {
   wire->valid.resize(size);
 }
 
+// The earliest and the latest stand for those between them.
+void CheckTimes(const std::vector<Utime>& utime, Utime first) {
+  if (utime.empty()) return;
+  const auto [low, high] = std::minmax_element(utime.begin(), utime.end());
+  for (const Utime extreme : {*low, *high}) {
+    CheckUtime("utime", extreme);
+    CheckRange("utime_offset_us", extreme - first, std::numeric_limits<std::int32_t>::min(),
+               std::numeric_limits<std::int32_t>::max());
+  }
+}
+
 void PointsToWire(const RgbdtCloud& cloud, rgbdt_cloud_t* wire) {
+  CheckTimes(cloud.utime, wire->utime);
   Resize(cloud.size(), wire);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     wire->x_m[i] = cloud.points[i].x();
     wire->y_m[i] = cloud.points[i].y();
     wire->z_m[i] = cloud.points[i].z();
-    CheckUtime("utime", cloud.utime[i]);
-    const std::int64_t offset = cloud.utime[i] - wire->utime;
-    CheckRange("utime_offset_us", offset, std::numeric_limits<std::int32_t>::min(),
-               std::numeric_limits<std::int32_t>::max());
-    wire->utime_offset_us[i] = static_cast<std::int32_t>(offset);
+    wire->utime_offset_us[i] = static_cast<std::int32_t>(cloud.utime[i] - wire->utime);
     wire->red[i] = cloud.rgb[i][0];
     wire->green[i] = cloud.rgb[i][1];
     wire->blue[i] = cloud.rgb[i][2];
@@ -49,36 +59,51 @@ void PointsToWire(const RgbdtCloud& cloud, rgbdt_cloud_t* wire) {
   }
 }
 
-bool Within(float v) { return std::abs(v) <= kMaxMetres; }  // not so for NaN
-
-void CheckPoint(const rgbdt_cloud_t& wire, std::size_t i, std::uint32_t cameras) {
-  if (!Within(wire.x_m[i]) || !Within(wire.y_m[i]) || !Within(wire.z_m[i])) {
+void CheckCoordinates(const rgbdt_cloud_t& wire) {
+  const auto within = [](float v) { return std::abs(v) <= kMaxMetres; };  // not so for NaN
+  unsigned bad = 0;
+  for (std::size_t i = 0; i < wire.x_m.size(); ++i) {
+    bad |= static_cast<unsigned>(!within(wire.x_m[i])) |
+           static_cast<unsigned>(!within(wire.y_m[i])) |
+           static_cast<unsigned>(!within(wire.z_m[i]));
+  }
+  for (std::size_t i = 0; bad != 0; ++i) {
+    if (within(wire.x_m[i]) && within(wire.y_m[i]) && within(wire.z_m[i])) continue;
     Fail(At("point", i),
          "(" + std::to_string(wire.x_m[i]) + ", " + std::to_string(wire.y_m[i]) + ", " +
              std::to_string(wire.z_m[i]) + ") m",
          "finite numbers up to 1e6");
   }
-  const float intensity = wire.intensity[i];
-  if (!std::isnan(intensity) && !(intensity >= 0 && intensity <= 1)) {
-    Fail(At("intensity", i), intensity, "0 to 1, or NaN: unknown");
-  }
-  if (wire.temperature_k[i] < 0 || std::isinf(wire.temperature_k[i])) {
-    Fail(At("temperature_k", i), wire.temperature_k[i], "0 or more, or NaN: unknown");
-  }
-  if (std::isinf(wire.thermal_counts[i])) {
-    Fail(At("thermal_counts", i), wire.thermal_counts[i], "a number, or NaN: unknown");
-  }
-  if (wire.utime + wire.utime_offset_us[i] <= 0) {
-    Fail(At("utime_offset_us", i), wire.utime_offset_us[i], "a time after 1970");
-  }
-  if ((static_cast<std::uint32_t>(wire.valid[i]) & ~cameras) != 0) {
-    Fail(At("valid", i), wire.valid[i], "bits of the cameras named only");
-  }
+}
+
+// A NaN compares as neither too small nor too large: it says that the value is unknown.
+void CheckPoints(const rgbdt_cloud_t& wire) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  CheckCoordinates(wire);
+  CheckEach(
+      "intensity", wire.intensity, [](float v) { return !(v < 0) & !(v > 1); },
+      "0 to 1, or NaN: unknown");
+  CheckEach(
+      "temperature_k", wire.temperature_k, [](float v) { return !(v < 0) & !(v > kMost); },
+      "0 or more, or NaN: unknown");
+  CheckEach(
+      "thermal_counts", wire.thermal_counts, [](float v) { return !(std::abs(v) > kMost); },
+      "a number, or NaN: unknown");
+  const Utime earliest = std::max<Utime>(1 - wire.utime, std::numeric_limits<std::int32_t>::min());
+  CheckEach(
+      "utime_offset_us", wire.utime_offset_us,
+      [least = static_cast<std::int32_t>(earliest)](std::int32_t v) { return v >= least; },
+      "a time after 1970");
+  const auto cameras = static_cast<std::uint32_t>((std::uint64_t{1} << wire.num_cameras) - 1);
+  CheckEach(
+      "valid", wire.valid,
+      [cameras](std::int32_t v) { return (static_cast<std::uint32_t>(v) & ~cameras) == 0; },
+      "bits of the cameras named only");
 }
 
 }  // namespace
 
-rgbdt_cloud_t ToWire(const RgbdtCloud& cloud) {
+rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud) {
   CheckLengths(cloud);
   rgbdt_cloud_t wire;
   wire.utime = cloud.utime.empty() ? cloud.sweep_utime : cloud.utime.front();
@@ -109,22 +134,20 @@ void Check(const rgbdt_cloud_t& wire) {
   for (std::size_t i = 0; i < wire.camera.size(); ++i) {
     CheckCameraName(At("camera", i), wire.camera[i]);
   }
-  const auto cameras = static_cast<std::uint32_t>((std::uint64_t{1} << wire.num_cameras) - 1);
-  for (std::size_t i = 0; i < wire.x_m.size(); ++i) CheckPoint(wire, i, cameras);
+  CheckPoints(wire);
 }
 
-RgbdtCloud FromWire(const rgbdt_cloud_t& wire) {
+RgbdtCloud FromWire(rgbdt_cloud_t wire) {
+  const std::size_t size = wire.x_m.size();
   RgbdtCloud cloud;
   cloud.seq = wire.seq;
   cloud.sweep_utime = wire.sweep_utime;
-  cloud.calibration_utime.assign(wire.camera.size(), wire.calibration_utime);
   cloud.sweep_end = wire.sweep_end != 0;
-  cloud.cameras = wire.camera;
-  cloud.intensity = wire.intensity;
-  cloud.temperature_k = wire.temperature_k;
-  cloud.thermal_counts = wire.thermal_counts;
-  cloud.temperature_sigma_k.assign(wire.x_m.size(), std::numeric_limits<float>::quiet_NaN());
-  const std::size_t size = wire.x_m.size();
+  cloud.calibration_utime.assign(wire.camera.size(), wire.calibration_utime);
+  cloud.cameras = std::move(wire.camera);
+  cloud.intensity = std::move(wire.intensity);
+  cloud.temperature_k = std::move(wire.temperature_k);
+  cloud.thermal_counts = std::move(wire.thermal_counts);
   cloud.points.resize(size);
   cloud.utime.resize(size);
   cloud.rgb.resize(size);
@@ -135,6 +158,7 @@ RgbdtCloud FromWire(const rgbdt_cloud_t& wire) {
     cloud.rgb[i] = {wire.red[i], wire.green[i], wire.blue[i]};
     cloud.valid[i] = static_cast<std::uint32_t>(wire.valid[i]);
   }
+  cloud.temperature_sigma_k.assign(size, std::numeric_limits<float>::quiet_NaN());
   return cloud;
 }
 

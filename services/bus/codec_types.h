@@ -4,7 +4,7 @@
 // `Message` and its LCM type W:
 //   W ToWire(const S&)     copies; throws InputError where vectors differ in length
 //   void Check(const W&)   semantics, the same when sending and when receiving (check.h)
-//   S FromWire(const W&)   after Check
+//   S FromWire(const W&)   after Check; by value where the struct takes over long vectors
 // ToWire guards sizes before it allocates: no array is longer than a message has bytes.
 
 #include <lcmtypes/rgbdt/calibration_t.hpp>
@@ -19,6 +19,7 @@
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
+#include <lcmtypes/rgbdt/rgbdt_cloud_v2_t.hpp>
 #include <lcmtypes/rgbdt/rig_t.hpp>
 #include <lcmtypes/rgbdt/session_command_t.hpp>
 #include <lcmtypes/rgbdt/session_event_t.hpp>
@@ -47,9 +48,15 @@ void Check(const cloud_t& wire);
 CloudChunk FromWire(const cloud_t& wire);
 
 // codec_rgbdt_cloud.cc
-rgbdt_cloud_t ToWire(const RgbdtCloud& cloud);
+/// What the first version carries: of the calibrations' times the newest, no pose and no sigmas.
+rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud);
 void Check(const rgbdt_cloud_t& wire);
-RgbdtCloud FromWire(const rgbdt_cloud_t& wire);
+RgbdtCloud FromWire(rgbdt_cloud_t wire);
+
+// codec_rgbdt_cloud_v2.cc
+rgbdt_cloud_v2_t ToWire(const RgbdtCloud& cloud);
+void Check(const rgbdt_cloud_v2_t& wire);
+RgbdtCloud FromWire(rgbdt_cloud_v2_t wire);
 
 // codec_observation.cc
 corner_selection_t ToWire(const CornerSelection& selection);

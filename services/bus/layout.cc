@@ -20,7 +20,7 @@ struct Struct {
 };
 
 // What lies within other types.
-constexpr std::array<Struct, 7> kStructs = {{
+constexpr std::array<Struct, 8> kStructs = {{
     {"observation_t",
      "2q 2s q b s b 2i b 8d #num_corners num_corners*2d #num_edge_pixels num_edge_pixels*2h "
      "#num_outline num_outline*2d b #num_boundary num_boundary*3d 3d 3d 3d i 2d"},
@@ -34,6 +34,10 @@ constexpr std::array<Struct, 7> kStructs = {{
      "#num_boundary num_boundary*3d 3d 3d 3d i b target_pose_t #num_crossings "
      "num_crossings*board_crossing_t"},
     {"board_scatter_t", "#num_crossings num_crossings*d 33d"},
+    {"rgbdt_cloud_t",
+     "3q b q #num_cameras num_cameras*s #num_points num_points*f num_points*f num_points*f "
+     "num_points*f num_points*i num_points*b num_points*b num_points*b num_points*f num_points*f "
+     "num_points*i"},
 }};
 
 std::string_view LayoutOf(std::string_view name) {

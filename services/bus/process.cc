@@ -1,5 +1,6 @@
 #include "services/bus/process.h"
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -26,6 +27,14 @@ void CatchSignals() {
   action.sa_handler = OnSignal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+}
+
+// A message takes megabytes for a moment. By default malloc gives them back to the system and asks
+// anew for the next one, and the pages' first touch costs more than all coding of a cloud.
+void KeepMemoryForTheNextMessage() {
+  constexpr int kKeptBytes = 64 * 1024 * 1024;
+  mallopt(M_MMAP_THRESHOLD, kKeptBytes / 2);
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 }
 
 double Now() {
@@ -63,6 +72,7 @@ void Loop(Node& node, const std::string& url, const Idle& idle) {
 
 int RunOnLcm(Node& node, const std::string& url, const Idle& idle) {
   CatchSignals();
+  KeepMemoryForTheNextMessage();
   try {
     const std::string advice = ReceiveBufferAdvice();
     if (!advice.empty()) spdlog::warn("{}: {}", node.name(), advice);

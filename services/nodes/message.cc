@@ -19,7 +19,9 @@ struct Channel {
   std::string operator()(const CornerSelection&) const { return "CORNER_SELECTION"; }
   std::string operator()(const Observation&) const { return "OBSERVATION"; }
   std::string operator()(const CalibrationMessage&) const { return "CALIBRATION"; }
-  std::string operator()(const RgbdtCloud&) const { return "RGBDT_CLOUD"; }
+  std::string operator()(const RgbdtCloud& cloud) const {
+    return cloud.whole_sweep ? "RGBDT_SWEEP" : "RGBDT_CLOUD";
+  }
   std::string operator()(const StampedPose&) const { return "POSE"; }
   std::string operator()(const RigText&) const { return "RIG"; }
   std::string operator()(const SessionCommand&) const { return "SESSION_COMMAND"; }

@@ -44,6 +44,21 @@ RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
   return fused;
 }
 
+void DrawPictures(const RgbdtCloud& fused, const std::string& title,
+                  const std::filesystem::path& out) {
+  DrawOptions options;
+  options.title = title;
+  WritePng(out / "fused_rgb.png", DrawCloud(fused, CloudColour::kRgb, options));
+  std::printf(", fused_rgb.png");
+  const bool thermal = std::any_of(fused.thermal_counts.begin(), fused.thermal_counts.end(),
+                                   [](float counts) { return std::isfinite(counts); });
+  if (!thermal) return;
+  WritePng(out / "fused_thermal.png", DrawCloud(fused, CloudColour::kThermal, options));
+  options.width = 1200;
+  WritePng(out / "fused.png", DrawSideBySide(fused, options));
+  std::printf(", fused_thermal.png, fused.png");
+}
+
 int Run(const Flags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
@@ -63,15 +78,7 @@ int Run(const Flags& flags) {
   std::printf("view %s: %zu points, %.0f%% seen by a camera; wrote fused.ply, fused.pcd",
               view.c_str(), fused.size(),
               100.0 * static_cast<double>(coloured) / static_cast<double>(fused.size()));
-  if (flags.png) {
-    WritePng(out / "fused_rgb.png", DrawCloud(fused, CloudColour::kRgb, {}));
-    std::printf(", fused_rgb.png");
-    if (std::any_of(fused.thermal_counts.begin(), fused.thermal_counts.end(),
-                    [](float counts) { return std::isfinite(counts); })) {
-      WritePng(out / "fused_thermal.png", DrawCloud(fused, CloudColour::kThermal, {}));
-      std::printf(", fused_thermal.png");
-    }
-  }
+  if (flags.png) DrawPictures(fused, "view " + view, out);
   std::printf(" to %s\n", out.c_str());
   return 0;
 }
@@ -90,7 +97,9 @@ void AddFuse(CLI::App* app, int* exit_code) {
   verb->add_option("--view", flags->view, "which view; default: the last");
   verb->add_option("--calibration", flags->calibration, "default: DIR/calibration.textproto");
   verb->add_option("--out", flags->out, "where to write; default: DIR");
-  verb->add_flag("--png", flags->png, "also draw the cloud: fused_rgb.png, fused_thermal.png");
+  verb->add_flag("--png", flags->png,
+                 "also draw the cloud: fused_rgb.png, fused_thermal.png,\n"
+                 "and both in one, fused.png");
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }
 

@@ -62,6 +62,8 @@ class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
     samples.push_back({"OBSERVATION", BytesOf(ToFirstVersion(random_.Seen()))});
     samples.push_back({"OBSERVATION", BytesOf(ToSecondVersion(random_.Seen()))});
     samples.push_back({"OBSERVATION", Encode(SmallButWhole())});
+    samples.push_back({"RGBDT_CLOUD", BytesOf(ToFirstVersion(random_.Fused()))});
+    samples.push_back({"RGBDT_SWEEP", Encode(SmallSweep())});
     return samples;
   }
 
@@ -81,6 +83,16 @@ class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
     observation.cloud->crossings.assign(2, random_.WhereAScanLeaves());
     observation.candidates.assign(2, *observation.cloud);
     return observation;
+  }
+
+  // With a pose, and its last count within the bytes whose counts are forged.
+  RgbdtCloud SmallSweep() {
+    RgbdtCloud sweep = random_.Fused();
+    while (sweep.size() > 50) sweep = random_.Fused();
+    sweep.whole_sweep = true;
+    sweep.map_from_lidar = random_.Rigid();
+    sweep.frame_utime = random_.Time();
+    return sweep;
   }
 
   RandomMessages random_{GetParam() + 1000};
@@ -171,7 +183,12 @@ TEST_P(Fuzz, BrokenImageFiles) {
 
 TEST(FuzzChannels, EveryTypeOnEveryOtherChannelIsRefused) {
   RandomMessages random(1);
-  const Messages messages = random.OneOfEach();
+  Messages messages = random.OneOfEach();
+  for (Message& message : messages) {
+    if (auto* cloud = std::get_if<RgbdtCloud>(&message)) cloud->whole_sweep = false;
+  }
+  messages.emplace_back(random.Fused());
+  std::get<RgbdtCloud>(messages.back()).whole_sweep = true;
   for (const Message& a : messages) {
     const Bytes bytes = Encode(a);
     for (const Message& b : messages) {

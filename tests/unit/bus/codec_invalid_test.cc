@@ -126,19 +126,6 @@ TEST_F(Invalid, Cloud) {
   EXPECT_THAT(ErrorOf([&] { Encode(chunk); }), HasSubstr("length of ring is 5; expected 6"));
 }
 
-TEST_F(Invalid, RgbdtCloud) {
-  RgbdtCloud cloud = random_.Fused();
-  while (cloud.size() < 3) cloud = random_.Fused();
-  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_t>(cloud, change); };
-  EXPECT_THAT(error([](auto& w) { w.z_m[2] = NAN; }), HasSubstr("point[2]"));
-  EXPECT_THAT(error([](auto& w) { w.valid[1] = 4; }), HasSubstr("valid[1] is 4"));
-  EXPECT_THAT(error([](auto& w) { w.temperature_k[0] = -3; }), HasSubstr("temperature_k[0] is -3"));
-  EXPECT_THAT(error([](auto& w) { w.camera.assign(33, "rgb"), w.num_cameras = 33; }),
-              HasSubstr("num_cameras is 33"));
-  cloud.valid.pop_back();
-  EXPECT_THAT(ErrorOf([&] { Encode(cloud); }), HasSubstr("length of valid"));
-}
-
 TEST_F(Invalid, CalibrationAndPose) {
   CalibrationMessage message = random_.Calibrated();
   message.calibration.covariance = Matrix6d::Identity();

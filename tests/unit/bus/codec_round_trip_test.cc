@@ -150,24 +150,6 @@ TEST_F(RoundTrip, Calibration) {
   }
 }
 
-TEST_F(RoundTrip, RgbdtCloud) {
-  for (int round = 0; round < kRounds; ++round) {
-    const RgbdtCloud a = random_.Fused();
-    const RgbdtCloud b = ThroughTheWire(a);
-    EXPECT_EQ(a.sweep_utime, b.sweep_utime);
-    EXPECT_EQ(a.calibration_utime, b.calibration_utime);
-    EXPECT_EQ(a.sweep_end, b.sweep_end);
-    EXPECT_EQ(a.cameras, b.cameras);
-    EXPECT_TRUE(SameRows(a.points, b.points));
-    EXPECT_TRUE(SameNumbers(a.intensity, b.intensity));
-    EXPECT_EQ(a.utime, b.utime);
-    EXPECT_EQ(a.rgb, b.rgb);
-    EXPECT_TRUE(SameNumbers(a.temperature_k, b.temperature_k));
-    EXPECT_TRUE(SameNumbers(a.thermal_counts, b.thermal_counts));
-    EXPECT_EQ(a.valid, b.valid);
-  }
-}
-
 TEST_F(RoundTrip, Pose) {
   for (int round = 0; round < kRounds; ++round) {
     const StampedPose a = random_.Pose();

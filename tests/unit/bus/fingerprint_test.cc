@@ -27,6 +27,7 @@ TEST(Fingerprint, IsWhatItWas) {
   EXPECT_EQ(static_cast<std::uint64_t>(radiometry_t::getHash()), 0x2570e4bcc16de0dbU);
   EXPECT_EQ(static_cast<std::uint64_t>(report_t::getHash()), 0x5c2dc84a6180ae4dU);
   EXPECT_EQ(static_cast<std::uint64_t>(rgbdt_cloud_t::getHash()), 0xd7bb8efddb8b9255U);
+  EXPECT_EQ(static_cast<std::uint64_t>(rgbdt_cloud_v2_t::getHash()), 0x8b533415a1cd35d9U);
   EXPECT_EQ(static_cast<std::uint64_t>(rig_t::getHash()), 0x9c564d644627e935U);
   EXPECT_EQ(static_cast<std::uint64_t>(session_command_t::getHash()), 0x259249a63234a765U);
   EXPECT_EQ(static_cast<std::uint64_t>(session_event_t::getHash()), 0x20babb8a4ce9fbb5U);

@@ -246,11 +246,17 @@ class RandomMessages {
     cloud.sweep_utime = Time();
     cloud.sweep_end = Coin();
     cloud.cameras = {"rgb", "thermal"};
-    cloud.calibration_utime.assign(2, Coin() ? Time() : 0);
+    cloud.whole_sweep = Coin();
+    for (int i = 0; i < 2; ++i) cloud.calibration_utime.push_back(Coin() ? Time() : 0);
+    if (Coin()) {
+      cloud.map_from_lidar = Rigid();
+      cloud.frame_utime = Time();
+    }
     const int size = Int(0, 100);
     cloud.points = Rows<Eigen::Vector3f>(size, -50, 50);
     cloud.intensity = Numbers(size, 0, 1);
     cloud.temperature_k = Numbers(size, 200, 400);
+    cloud.temperature_sigma_k = Numbers(size, 0, 5);
     cloud.thermal_counts = Numbers(size, 0, 16383);
     const Utime start = Time();
     for (int i = 0; i < size; ++i) {

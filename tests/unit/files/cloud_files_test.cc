@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::NanSensitiveFloatEq;
 
 std::string Ascii(const std::string& fields, const std::string& types, int width, int height,
                   const std::string& rows) {
@@ -164,7 +165,9 @@ TEST(CloudFiles, BadFilesGiveOneClearLine) {
   EXPECT_THAT(error(Ascii("x y z", "F F F", 2, 1, "nan nan nan\n0 0 0\n")), HasSubstr("finite"));
   EXPECT_THAT(error(Ascii("x y z", "F F F", 3, 1, "1 2 3\n4 5 6\n")),
               HasSubstr("promises 3 points, 2 are there"));
-  EXPECT_THAT(error(Ascii("x y z", "F F F", 1, 1, "1 2 abc\n")), HasSubstr("z is \"abc\""));
+  EXPECT_THAT(error(Ascii("x y z", "F F F", 2, 1, "1 2 3\n1 2 abc\n")),
+              HasSubstr("bad.pcd: line 13: z is \"abc\"; expected a number"));
+  EXPECT_THAT(error("FIELDS x y z\nSIZE 4 4 nine\n"), HasSubstr("line 2: SIZE is \"nine\""));
   EXPECT_THAT(error(""), HasSubstr("not a PCD file"));
   EXPECT_THAT(error("ply\nformat ascii 1.0\n"), HasSubstr("not a PCD file"));
   EXPECT_THAT(error(Ascii("x y z", "F F Q", 1, 1, "1 2 3\n")), HasSubstr("field z has TYPE Q"));
@@ -182,6 +185,19 @@ TEST(CloudFiles, AForgedSizeAllocatesNothing) {
         std::string(kind) + "\n" + std::string(100, '\x7f');
     test::ErrorOf([&] { ParsePcd(bytes, "forged.pcd"); });
   }
+}
+
+// So many fields that the bytes of a point times the points overflow.
+TEST(CloudFiles, AForgedProductOfSizesAllocatesNothing) {
+  std::string fields = "FIELDS x y z", sizes = "SIZE 8 8 8", types = "TYPE F F F",
+              counts = "COUNT 65536 65536 65536";
+  for (int i = 3; i < 1 << 18; ++i) {
+    fields += " a", sizes += " 8", types += " F", counts += " 65536";
+  }
+  // 2^18 fields of 2^19 bytes each, 2^27 points: 2^64 bytes.
+  const std::string bytes = fields + "\n" + sizes + "\n" + types + "\n" + counts +
+                            "\nWIDTH 134217728\nHEIGHT 1\nDATA binary\n" + std::string(100, 'x');
+  EXPECT_THAT(test::ErrorOf([&] { ParsePcd(bytes, "forged.pcd"); }), HasSubstr("is cut short"));
 }
 
 TEST(CloudFiles, DamagedFilesNeverCrash) {
@@ -227,9 +243,10 @@ TEST(CloudFiles, FusedPcdHoldsEveryField) {
     EXPECT_EQ(rgb & 255, cloud.rgb[i][2]);
     EXPECT_EQ(static_cast<Utime>(field("utime", 0.0, i)), cloud.utime[i]);
     EXPECT_EQ(field("valid", std::uint32_t{99}, i), cloud.valid[i]);
-    const float temperature = field("temperature", 0.f, i);
-    EXPECT_TRUE(temperature == cloud.temperature_k[i] ||
-                (std::isnan(temperature) && std::isnan(cloud.temperature_k[i])));
+    EXPECT_THAT(field("temperature", 0.f, i), NanSensitiveFloatEq(cloud.temperature_k[i]));
+    EXPECT_THAT(field("temperature_sigma", 0.f, i),
+                NanSensitiveFloatEq(cloud.temperature_sigma_k[i]));
+    EXPECT_THAT(field("thermal_counts", 0.f, i), NanSensitiveFloatEq(cloud.thermal_counts[i]));
   }
 }
 
@@ -242,13 +259,16 @@ TEST(CloudFiles, PlyHasItsHeaderAndAllItsBytes) {
   const std::size_t at = bytes.find(end) + end.size();
   const std::string header = bytes.substr(0, at);
   EXPECT_THAT(header, ::testing::StartsWith("ply\nformat binary_little_endian 1.0\n"));
-  EXPECT_THAT(header, HasSubstr("0 = rgb 1 = thermal"));
+  EXPECT_THAT(header, HasSubstr("\ncomment LIDAR frame: x forward, y left, z up [m]"));
+  EXPECT_THAT(header, HasSubstr("\ncomment rgbdt valid_bit 1 camera thermal calibration_utime "));
+  EXPECT_THAT(header, HasSubstr("\ncomment rgbdt map_from_lidar quaternion_wxyz "));
   EXPECT_THAT(header, HasSubstr("element vertex 30\nproperty float x\nproperty float y\n"
                                 "property float z\nproperty uchar red\nproperty uchar green\n"
                                 "property uchar blue\nproperty float intensity\n"
-                                "property float temperature\nproperty float thermal_counts\n"
+                                "property double utime\nproperty float temperature\n"
+                                "property float temperature_sigma\nproperty float thermal_counts\n"
                                 "property uint valid\nend_header\n"));
-  const std::size_t stride = 12 + 3 + 12 + 4;
+  const std::size_t stride = 12 + 3 + 4 + 8 + 12 + 4;
   ASSERT_EQ(bytes.size() - at, 30 * stride);
   float x;
   std::memcpy(&x, &bytes[at + 29 * stride], sizeof x);

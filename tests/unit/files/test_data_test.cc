@@ -194,7 +194,11 @@ Report MakeReport() {
 RgbdtCloud MakeRgbdtCloud(int columns, int rows) {
   RgbdtCloud cloud;
   cloud.sweep_utime = kNow;
+  cloud.sweep_end = cloud.whole_sweep = true;
   cloud.cameras = {"rgb", "thermal"};
+  cloud.calibration_utime = {kNow - 2, kNow - 1};
+  cloud.map_from_lidar = MakePose(0.7, {12.5, -3, 1.0 / 3});
+  cloud.frame_utime = kNow + 1;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       const double azimuth = (static_cast<double>(column) / columns - 0.5);
@@ -215,6 +219,7 @@ RgbdtCloud MakeRgbdtCloud(int columns, int rows) {
                                : std::array<std::uint8_t, 3>{0, 0, 0});
       const bool warm = seen && std::abs(azimuth) < 0.25;
       cloud.temperature_k.push_back(warm ? (board ? 305.f : 290.f + 5.f * row / rows) : kNan);
+      cloud.temperature_sigma_k.push_back(warm ? 0.5f + 0.001f * i : kNan);
       cloud.thermal_counts.push_back(warm ? 7000.f + i : kNan);
       cloud.valid.push_back((seen ? 1u : 0u) | (warm ? 2u : 0u));
     }
