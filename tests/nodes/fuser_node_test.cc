@@ -174,6 +174,85 @@ TEST_F(FuserNodeTest, WrongImagesAreRefused) {
   EXPECT_THAT(ErrorOf([&] { node_.Handle(image); }), HasSubstr("front"));
 }
 
+TEST_F(FuserNodeTest, ASweepGoesOutOnceMoreAtItsEnd) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Plain("rgb", kNow, 100));
+  FuseAt(kNow + kSecond);
+  CloudChunk end = Chunk(kNow + kSecond + 100'000);
+  end.cloud.first_line = 1;
+  end.sweep_end = true;
+  const Messages out = node_.Handle(end);
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(ChannelOf(out[0]), "RGBDT_CLOUD");
+  EXPECT_EQ(ChannelOf(out[1]), "RGBDT_SWEEP");
+  const auto whole = std::get<RgbdtCloud>(out[1]);
+  EXPECT_EQ(whole.size(), 8U);
+  EXPECT_TRUE(whole.sweep_end);
+  EXPECT_EQ(whole.valid[0], 1U);
+  Encode(whole);
+}
+
+TEST_F(FuserNodeTest, ACalibrationHoldsFromTheNextChunkOn) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Plain("rgb", kNow, 100));
+  FuseAt(kNow + kSecond);
+  EXPECT_TRUE(node_.Handle(Calibrated("rgb")).empty()) << "it is republished every second";
+  CalibrationMessage other = Calibrated("rgb");
+  other.utime = kNow;
+  other.calibration.camera_from_lidar.translation.x() += 0.5;
+  const auto parts = Only<RgbdtCloud>(node_.Handle(other));
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_TRUE(parts[0].whole_sweep);
+  EXPECT_EQ(parts[0].calibration_utime, (std::vector<Utime>{kNow - 10 * kSecond, 0}));
+  EXPECT_EQ(FuseAt(kNow + kSecond).calibration_utime, (std::vector<Utime>{kNow, 0}));
+}
+
+StampedPose PoseAt(Utime utime, double x) {
+  StampedPose pose;
+  pose.utime = utime;
+  pose.source = "gps_ins";
+  pose.map_from_lidar.translation.x() = x;
+  return pose;
+}
+
+TEST_F(FuserNodeTest, WithPosesTheMessageSaysWhereTheRigWas) {
+  node_.Handle(Calibrated("rgb"));
+  for (int i = -20; i <= 20; ++i) node_.Handle(PoseAt(kNow + kSecond + i * 50'000, 7 + 0.05 * i));
+  node_.Handle(Plain("rgb", kNow + kSecond - 100'000, 100));
+  const RgbdtCloud cloud = FuseAt(kNow + kSecond);
+  ASSERT_TRUE(cloud.map_from_lidar);
+  EXPECT_NEAR(cloud.map_from_lidar->translation.x(), 7, 1e-9);
+  EXPECT_EQ(cloud.frame_utime, kNow + kSecond);
+  // 1 m/s ahead: what is seen 20 ms later is 2 cm farther from where the rig was.
+  EXPECT_NEAR(cloud.points[2].x(), 5.02, 1e-5);
+  EXPECT_EQ(cloud.valid[0], 1U);
+}
+
+TEST_F(FuserNodeTest, APoseThatJumpsIsNamedAndCounted) {
+  node_.Handle(PoseAt(kNow, 0));
+  node_.Handle(PoseAt(kNow + 50'000, 0));
+  node_.Handle(PoseAt(kNow, 0));
+  EXPECT_EQ(Counter(node_.GetStatus(), "old poses"), 1);
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(PoseAt(kNow + 100'000, 100)); }),
+              ::testing::AllOf(HasSubstr("gps_ins"), HasSubstr("jumps")));
+  EXPECT_EQ(Counter(node_.GetStatus(), "pose jumps"), 1);
+}
+
+TEST_F(FuserNodeTest, ACloudFromTheFutureTakesNothingAway) {
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Plain("rgb", kNow, 100));
+  node_.Handle(Plain("rgb", kNow + kSecond, 200));
+  CloudChunk future = Chunk(kNow + 10'000 * kSecond);
+  future.cloud.sweep_utime = kNow + 10'000 * kSecond;
+  for (const auto& cloud : Only<RgbdtCloud>(node_.Handle(future))) {
+    for (const std::uint32_t valid : cloud.valid) EXPECT_EQ(valid, 0U);
+  }
+  EXPECT_EQ(Counter(node_.GetStatus(), "without an image of their time"), 4);
+  const RgbdtCloud cloud = FuseAt(kNow + kSecond / 2);
+  EXPECT_EQ(cloud.valid[0], 1U);
+  EXPECT_EQ(cloud.rgb[0][1], 100);
+}
+
 TEST_F(FuserNodeTest, AClockSetBackForgetsTheImagesFromBefore) {
   node_.Handle(Calibrated("rgb"));
   for (int i = 0; i < 40; ++i) node_.Handle(Plain("rgb", kNow + 1000 * kSecond + i, 50));

@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(RollingSeconds, Moving, testing::Values(0.0, 0.06));
 
 TEST(SweepFuser, ARollingCameraTakenForAGlobalOneIsWrong) {
   const Drive drive;
-  const CameraSpec rolls = SpecOf(0.06);
+  const CameraSpec rolls = SpecOf(0.1);
   SweepFuser fuser({SpecOf(0)}, 0.005);
   fuser.SetCalibration(0, CameraFromLidar(), 1);
   for (Utime t = -100'000; t <= 100'000; t += 20'000) fuser.AddPose(PoseAt(drive, kNow + t));
