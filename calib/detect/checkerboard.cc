@@ -75,7 +75,8 @@ Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<doub
   std::vector<double> lefts;
   for (int row = match.row; row < match.row + match.rows(target); ++row) {
     for (int column = match.column; column < match.column + match.columns(target); ++column) {
-      const auto fit = FitCorner(grey, model.At(column, row), model.Steps(column, row), blur_px);
+      const auto fit = FitCorner(grey, model.At(column, row), model.Steps(column, row),
+                                 model.Bends(column, row), blur_px);
       if (!fit) continue;
       measured.corners[{column, row}] = fit->place;
       measured.contrasts[{column, row}] = fit->contrast;

@@ -39,10 +39,11 @@ struct Step {
   double value, slope;
 };
 
-// Which of the unknowns stay as they are.
+// What is not solved for.
 struct Fixed {
-  bool shape = false;  ///< angles and blur
-  bool cubic = true;
+  bool shape = false;                     ///< angles and blur stay as they are
+  bool cubic = true;                      ///< and so do b's terms of third degree
+  double curvature1 = 0, curvature2 = 0;  ///< of the edges, towards rising e1 and e2 [1/px]
 };
 
 Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed fixed) {
@@ -52,16 +53,18 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
   for (const Pixel& p : pixels) {
     const double x = p.x - u[0];
     const double y = p.y - u[1];
-    const double e1 = c1 * x + s1 * y;
-    const double e2 = c2 * x + s2 * y;
+    const double t1 = c1 * y - s1 * x;  // along the edges
+    const double t2 = c2 * y - s2 * x;
+    const double e1 = c1 * x + s1 * y - 0.5 * fixed.curvature1 * t1 * t1;
+    const double e2 = c2 * x + s2 * y - 0.5 * fixed.curvature2 * t2 * t2;
     const Step first(e1, u[4]);
     const Step second(e2, u[4]);
     const double g1 = u[5] * first.slope * second.value;
     const double g2 = u[5] * first.value * second.slope;
     Unknowns j;
-    j << -(g1 * c1 + g2 * c2), -(g1 * s1 + g2 * s2), g1 * (c1 * y - s1 * x), g2 * (c2 * y - s2 * x),
-        -(g1 * e1 + g2 * e2) / u[4], first.value * second.value, 1, p.x, p.y, p.x * p.x, p.x * p.y,
-        p.y * p.y, p.x * p.x * p.x, p.x * p.x * p.y, p.x * p.y * p.y, p.y * p.y * p.y;
+    j << -(g1 * c1 + g2 * c2), -(g1 * s1 + g2 * s2), g1 * t1, g2 * t2, -(g1 * e1 + g2 * e2) / u[4],
+        first.value * second.value, 1, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y, p.x * p.x * p.x,
+        p.x * p.x * p.y, p.x * p.y * p.y, p.y * p.y * p.y;
     if (fixed.shape) j.segment<3>(2).setZero();
     if (fixed.cubic) j.tail<kCubic>().setZero();
     const double left = p.value - j.tail<kLinear>().dot(u.tail<kLinear>());
@@ -104,6 +107,12 @@ double AngleAcross(const Eigen::Vector2d& edge, const Eigen::Vector2d& towards) 
   return std::atan2(normal.y(), normal.x());
 }
 
+// Of the edge that runs along `step` and bends by `bend` over it, towards AngleAcross.
+double Curvature(double angle_across, const Eigen::Vector2d& step, const Eigen::Vector2d& bend) {
+  return Eigen::Vector2d(std::cos(angle_across), std::sin(angle_across)).dot(bend) /
+         step.squaredNorm();
+}
+
 struct Solution {
   Unknowns unknowns;
   Equations at;
@@ -139,12 +148,15 @@ Solution Solve(const std::vector<Pixel>& pixels, const Unknowns& start, Fixed fi
 }
 
 // With contrast and background that fit best.
-Unknowns Start(const std::vector<Pixel>& pixels, const Eigen::Matrix2d& steps, double blur) {
+Unknowns Start(const std::vector<Pixel>& pixels, const Eigen::Matrix2d& steps, double blur,
+               const Fixed& fixed) {
   Unknowns u = Unknowns::Zero();
   u[2] = AngleAcross(steps.col(1), steps.col(0));
   u[3] = AngleAcross(steps.col(0), steps.col(1));
   u[4] = blur;
-  const Equations at = EquationsAt(pixels, u, {});
+  Fixed all = fixed;
+  all.shape = all.cubic = false;
+  const Equations at = EquationsAt(pixels, u, all);
   u.tail<kLinear>() =
       at.normal.bottomRightCorner<kLinear, kLinear>().ldlt().solve(at.right.tail<kLinear>());
   return u;
@@ -153,7 +165,8 @@ Unknowns Start(const std::vector<Pixel>& pixels, const Eigen::Matrix2d& steps, d
 }  // namespace
 
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
-                                   const Eigen::Matrix2d& steps, std::optional<double> blur_px) {
+                                   const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
+                                   std::optional<double> blur_px) {
   const double spacing = steps.colwise().norm().minCoeff();
   if (!(spacing > 3) || !(std::abs(steps.determinant()) > 0.2 * spacing * spacing)) {
     return std::nullopt;
@@ -163,7 +176,9 @@ std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& p
   const double blur = std::clamp(blur_px.value_or(1), kLeastBlur, 0.5 * spacing);
   Fixed fixed;
   fixed.shape = blur_px.has_value();
-  Solution s = Solve(pixels, Start(pixels, steps, blur), fixed, spacing);
+  fixed.curvature1 = Curvature(AngleAcross(steps.col(1), steps.col(0)), steps.col(1), bends.col(1));
+  fixed.curvature2 = Curvature(AngleAcross(steps.col(0), steps.col(1)), steps.col(0), bends.col(0));
+  Solution s = Solve(pixels, Start(pixels, steps, blur, fixed), fixed, spacing);
   auto spare = static_cast<double>(pixels.size()) - (kUnknowns - kCubic);
   if (fixed.shape) {  // a background that bends more sharply, where the pixels clearly say so
     fixed.cubic = false;

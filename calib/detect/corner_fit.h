@@ -19,14 +19,17 @@ struct CornerFit {
 
 /// Fits to the pixels round a corner
 ///   b(x, y) + contrast * erf(e1 / (sqrt(2) s)) * erf(e2 / (sqrt(2) s))
-/// with b a polynomial of second degree (glow), e1 and e2 the distances to two straight edges and s
-/// the blur, by least squares. With `blur_px` given, blur and the edges' directions (along `steps`)
-/// are taken as known, which helps weak corners, and b is of third degree where that clearly fits
+/// with b a polynomial of second degree (glow), e1 and e2 the distances to two edges and s the
+/// blur, by least squares. The edges bend as the lens makes the grid's lines bend (`bends`): taken
+/// for straight ones, they draw every corner towards the image's middle, by 1e-5 to 1e-4 of its
+/// distance from there. With `blur_px` given, blur and the edges' directions (along `steps`) are
+/// taken as known, which helps weak corners, and b is of third degree where that clearly fits
 /// better. `grey` is CV_32FC1, dead pixels repaired. `steps`: image
-/// shift from this corner to the next column (first) and to the next row [px]. Nothing where the
+/// shift from this corner to the next column (first) and to the next row [px]; `bends`: second
+/// differences of the grid's places, likewise (GridModel::Bends). Nothing where the
 /// fit leaves the neighbourhood of `place`, the pixels are not all seen or do not look like that.
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
-                                   const Eigen::Matrix2d& steps,
+                                   const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
                                    std::optional<double> blur_px = std::nullopt);
 
 }  // namespace rgbdt

@@ -30,6 +30,14 @@ Eigen::Matrix2d GridModel::Steps(double column, double row) const {
   return steps;
 }
 
+Eigen::Matrix2d GridModel::Bends(double column, double row) const {
+  const Eigen::Vector2d here = At(column, row);
+  Eigen::Matrix2d bends;
+  bends << At(column + 1, row) - 2 * here + At(column - 1, row),
+      At(column, row + 1) - 2 * here + At(column, row - 1);
+  return bends;
+}
+
 double GridModel::Spacing(double column, double row) const {
   return Steps(column, row).colwise().norm().minCoeff();
 }

@@ -19,7 +19,10 @@ class GridModel {
   Eigen::Vector2d At(double column, double row) const;
   /// Image shift of one column (first) and one row (second) there [px].
   Eigen::Matrix2d Steps(double column, double row) const;
-  /// Length of the shorter of the two [px].
+  /// How the grid's lines bend there: second difference over columns (first) and rows (second)
+  /// [px].
+  Eigen::Matrix2d Bends(double column, double row) const;
+  /// Length of the shorter of the two steps [px].
   double Spacing(double column, double row) const;
   /// Whether a place lies within `tolerance` (of the distance of neighbours) of where it should.
   bool Agrees(const CornerGrid::value_type& corner, double tolerance) const;

@@ -15,14 +15,16 @@ Eigen::Matrix2d StepsAt(const PaintedCheckerboard& board, int column, int row) {
   return steps;
 }
 
+const Eigen::Matrix2d kStraight = Eigen::Matrix2d::Zero();
+
 double WorstError(const PaintedCheckerboard& board, std::optional<double> blur) {
   const cv::Mat image = board.Paint();
   double worst = 0;
   for (int row = 1; row < board.squares_y; ++row) {
     for (int column = 1; column < board.squares_x; ++column) {
       const Eigen::Vector2d truth = board.Pixel(column, row);
-      const auto fit =
-          FitCorner(image, truth + Eigen::Vector2d(0.6, -0.5), StepsAt(board, column, row), blur);
+      const auto fit = FitCorner(image, truth + Eigen::Vector2d(0.6, -0.5),
+                                 StepsAt(board, column, row), kStraight, blur);
       if (!fit) return 1e9;
       worst = std::max(worst, (fit->place - truth).norm());
     }
@@ -45,6 +47,32 @@ TEST(CornerFit, AGlowTenTimesTheContrastDoesNotMoveThem) {
   EXPECT_LT(WorstError(board, 1.1), 0.05);
 }
 
+// Edges that a lens bends, 1 px over 80 px: nothing is drawn towards their hollow side.
+TEST(CornerFit, BentEdgesDoNotMoveTheCorner) {
+  constexpr double kCurvature = 3e-4;  // [1/px]
+  constexpr double kStep = 30;
+  const Eigen::Vector2d truth(50.3, 40.7);
+  cv::Mat image(90, 100, CV_32FC1);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const double dx = x - truth.x();
+      const double dy = y - truth.y();
+      const auto step = [](double e) { return std::erf(e / (std::sqrt(2.0) * 1.1)); };
+      image.at<float>(y, x) = static_cast<float>(100 + 40 * step(dx - 0.5 * kCurvature * dy * dy) *
+                                                           step(dy - 0.5 * kCurvature * dx * dx));
+    }
+  }
+  const Eigen::Matrix2d steps = kStep * Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d bends;  // along x the place moves in y, and the other way round
+  bends << 0, kCurvature * kStep * kStep, kCurvature * kStep * kStep, 0;
+  const auto error = [&](const Eigen::Matrix2d& told) {
+    const auto fit = FitCorner(image, truth + Eigen::Vector2d(0.4, -0.3), steps, told, 1.1);
+    return fit ? (fit->place - truth).norm() : 1e9;
+  };
+  EXPECT_LT(error(bends), 2e-4);
+  EXPECT_GT(error(kStraight), 2e-3);  // what it is for
+}
+
 // Warmth that changes within a square, as where an edge is as warm as its background.
 TEST(CornerFit, ABendInTheBackgroundIsFollowedWhereTheBlurIsKnown) {
   PaintedCheckerboard board;
@@ -54,7 +82,7 @@ TEST(CornerFit, ABendInTheBackgroundIsFollowedWhereTheBlurIsKnown) {
   };
   const Eigen::Vector2d truth = board.Pixel(6, 4);
   ASSERT_NEAR(truth.x(), 320, 10);
-  const auto fit = FitCorner(board.Paint(), truth, StepsAt(board, 6, 4), 1.04);
+  const auto fit = FitCorner(board.Paint(), truth, StepsAt(board, 6, 4), kStraight, 1.04);
   ASSERT_TRUE(fit.has_value());
   EXPECT_LT((fit->place - truth).norm(), 0.1);
 }
@@ -63,7 +91,7 @@ TEST(CornerFit, ContrastTellsWhichPatchesAreLight) {
   PaintedCheckerboard board;
   for (const bool inverted : {false, true}) {
     board.contrast = inverted ? -50 : 50;
-    const auto fit = FitCorner(board.Paint(), board.Pixel(5, 4), StepsAt(board, 5, 4));
+    const auto fit = FitCorner(board.Paint(), board.Pixel(5, 4), StepsAt(board, 5, 4), kStraight);
     ASSERT_TRUE(fit.has_value());
     // Square (5, 4) has an odd sum: white.
     EXPECT_NEAR(fit->contrast, inverted ? -25 : 25, 1);
@@ -76,9 +104,10 @@ TEST(CornerFit, NothingWhereThereIsNoCorner) {
   const PaintedCheckerboard board;
   const cv::Mat image = board.Paint();
   const Eigen::Matrix2d steps = StepsAt(board, 5, 4);
-  EXPECT_FALSE(FitCorner(image, {2, 240}, steps).has_value());          // at the image's border
-  EXPECT_FALSE(FitCorner(image, {320, 240}, 0.1 * steps).has_value());  // squares of 2 px
-  const auto edge = FitCorner(image, board.Pixel(5.5, 4), steps);
+  EXPECT_FALSE(FitCorner(image, {2, 240}, steps, kStraight).has_value());  // at the image's border
+  EXPECT_FALSE(
+      FitCorner(image, {320, 240}, 0.1 * steps, kStraight).has_value());  // squares of 2 px
+  const auto edge = FitCorner(image, board.Pixel(5.5, 4), steps, kStraight);
   EXPECT_TRUE(!edge || edge->sigma_px > 0.2 || std::abs(edge->contrast) < 5);
 }
 
