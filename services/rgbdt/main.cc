@@ -19,6 +19,8 @@ int main(int argc, char** argv) {
   rgbdt::AddSimulate(&app, &exit_code);
   rgbdt::AddReplay(&app, &exit_code);
   rgbdt::AddIntrinsics(&app, &exit_code);
+  rgbdt::AddMap(&app, &exit_code);
+  rgbdt::AddTerrain(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);
   const auto is_it = [&](const CLI::App* candidate) { return candidate->get_name() == verb; };
   if (!verb.empty() && verb[0] != '-' && app.get_subcommands(is_it).empty()) {

@@ -12,6 +12,8 @@ void AddFuse(CLI::App* app, int* exit_code);
 void AddSimulate(CLI::App* app, int* exit_code);
 void AddReplay(CLI::App* app, int* exit_code);
 void AddIntrinsics(CLI::App* app, int* exit_code);
+void AddMap(CLI::App* app, int* exit_code);
+void AddTerrain(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);
 
 }  // namespace rgbdt

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
+#include "calib/files/map_files.h"
+#include "calib/terrain/terrain.h"
+#include "services/rgbdt/terrain_json.h"
+#include "services/rgbdt/terrain_picture.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+struct Flags {
+  std::string input, out = "out/terrain";
+  TerrainOptions options;
+  double max_slope_deg = 20, site_max_slope_deg = 15;
+};
+
+void PrintSites(const std::vector<LandingSite>& sites) {
+  if (sites.empty()) {
+    std::printf("no landing site: nowhere is a disc of that radius flat, seen all over and free\n");
+    return;
+  }
+  std::printf(
+      "site      x m      y m      z m  radius m  slope deg  rough mm  clear m  temp C  score\n");
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const LandingSite& site = sites[i];
+    const auto number = [](double value, const char* format) {
+      char text[32] = "-";
+      if (std::isfinite(value)) std::snprintf(text, sizeof text, format, value);
+      return std::string(text);
+    };
+    std::printf("%4zu %8.2f %8.2f %8.2f %9.2f %10.1f %9.0f %8s %7s %6.2f\n", i + 1, site.centre.x(),
+                site.centre.y(), site.centre.z(), site.radius_m, site.slope_rad / kDegree,
+                1000 * site.roughness_m, number(site.clearance_m, "%.2f").c_str(),
+                number(site.temperature_k - 273.15, "%.1f").c_str(), site.score);
+  }
+}
+
+void PrintCells(const TerrainGrid& grid, const std::string& frame) {
+  const auto count = [&](CellState state) {
+    return static_cast<long long>(std::count(grid.state.begin(), grid.state.end(), state));
+  };
+  std::printf(
+      "%d x %d cells of %g m, frame %s: %lld traversable, %lld obstacle, the others unknown\n",
+      grid.columns, grid.rows, grid.cell_m, frame.c_str(), count(CellState::kTraversable),
+      count(CellState::kObstacle));
+}
+
+int Run(Flags flags) {
+  flags.options.max_slope_rad = flags.max_slope_deg * kDegree;
+  flags.options.site_max_slope_rad = flags.site_max_slope_deg * kDegree;
+  flags.options.Check();
+  const MapCloud cloud = ReadMapOrCloud(flags.input);
+  const Terrain terrain = FindTerrain(cloud, flags.options);
+  const std::filesystem::path out = flags.out;
+  WriteFileAtomically(out / "terrain.json",
+                      TerrainJson(terrain, flags.options, cloud.frame, flags.input));
+  WritePng(out / "terrain.png", TerrainPicture(terrain, flags.options, cloud.frame));
+  PrintCells(terrain.grid, cloud.frame);
+  PrintSites(terrain.sites);
+  std::printf("wrote terrain.json, terrain.png to %s; look at terrain.png\n", flags.out.c_str());
+  return 0;
+}
+
+void AddLimits(Flags* flags, CLI::App* verb) {
+  TerrainOptions& options = flags->options;
+  verb->add_option("--cell", options.cell_m, "edge of a cell [m]")->capture_default_str();
+  verb->add_option("--max-slope", flags->max_slope_deg, "the vehicle climbs [degrees]")
+      ->capture_default_str();
+  verb->add_option("--max-step", options.max_step_m, "and crosses [m]")->capture_default_str();
+  verb->add_option("--max-roughness", options.max_roughness_m, "RMS of the ground [m]")
+      ->capture_default_str();
+  verb->add_option("--vehicle-width", options.vehicle_width_m, "passes through no narrower gap [m]")
+      ->capture_default_str();
+  verb->add_option("--vehicle-height", options.vehicle_height_m, "passes under what is higher [m]")
+      ->capture_default_str();
+  verb->add_option("--site-radius", options.site_radius_m, "of a landing site, at least [m]")
+      ->capture_default_str();
+  verb->add_option("--site-slope", flags->site_max_slope_deg, "of a landing site [degrees]")
+      ->capture_default_str();
+  verb->add_option("--headroom", options.site_headroom_m, "nothing hangs over a site so high [m]")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void AddTerrain(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "terrain",
+      "Where can a vehicle drive, and where land? From a map (rgbdt map) or one fused cloud "
+      "(rgbdt\n"
+      "fuse), any PLY or PCD with z up: slope, roughness, step and temperature of each cell,\n"
+      "landing sites ranked. Writes terrain.json and terrain.png.\n"
+      "Example: rgbdt terrain out/demo/fused.ply --out out/terrain --cell 0.2");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("INPUT", flags->input, "PLY or PCD file")->required();
+  verb->add_option("--out", flags->out, "where to write")->capture_default_str();
+  AddLimits(flags.get(), verb);
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# rgbdt map and rgbdt terrain: good runs, help, and files that are none. Usage: map_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+mkdir "$scratch/kept"
+log=$scratch/fused.lcmlog
+
+# An LCM log of fused clouds (lcmtypes/rgbdt_cloud_t.lcm) over level ground with a crate on it.
+"$bin/map_test_log" "$log" "$scratch/other.lcmlog"
+
+accepts "map" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/kept/map.ply"
+grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
+head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment voxel_m: 0.1$' || complain "no voxel_m"
+head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment frame: lidar$' || complain "no frame"
+accepts "the map again" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/again.ply"
+cmp "$scratch/kept/map.ply" "$scratch/again.ply" || complain "the same log, another map"
+
+accepts "terrain" "$bin/rgbdt" terrain "$scratch/kept/map.ply" --out "$scratch/kept/terrain"
+grep -qE '^ +1 ' "$scratch/output" || complain "no site in the table"
+[ -s "$scratch/kept/terrain/terrain.png" ] || complain "no picture"
+python3 - "$scratch/kept/terrain/terrain.json" <<'END' >"$scratch/output" 2>&1 || complain "terrain.json"
+import json, math, sys
+terrain = json.load(open(sys.argv[1]))
+grid, sites = terrain["grid"], terrain["sites"]
+cells = grid["columns"] * grid["rows"]
+for name in ("state", "height_m", "slope_deg", "roughness_m", "step_m", "temperature_k", "points"):
+    assert len(grid[name]) == cells, name
+def state(x, y):
+    column = int((x - grid["origin_x_m"]) / grid["cell_m"])
+    row = int((y - grid["origin_y_m"]) / grid["cell_m"])
+    return grid["states"][grid["state"][row * grid["columns"] + column]]
+assert state(3.05, 0.05) == "obstacle", state(3.05, 0.05)
+assert state(6.05, 2.05) == "traversable", state(6.05, 2.05)
+assert sites and sites[0]["rank"] == 1 and sites[0]["radius_m"] >= 1
+assert all(math.hypot(s["x_m"] - 3, s["y_m"]) > s["radius_m"] + 0.3 for s in sites)
+assert abs(sites[0]["temperature_c"] - 26.85) < 0.1, sites[0]
+END
+
+for verb in map terrain; do
+  accepts "help of $verb" "$bin/rgbdt" "$verb" --help
+  grep -q 'Example: rgbdt' "$scratch/output" || complain "$verb --help has no example"
+  says=("nowhere")
+  refuses "a missing file ($verb)" "$bin/rgbdt" "$verb" "$scratch/nowhere" --out "$scratch/kept/x"
+  head -c 100000 /dev/urandom >"$scratch/noise"
+  says=("noise")
+  refuses "noise ($verb)" "$bin/rgbdt" "$verb" "$scratch/noise" --out "$scratch/kept/x"
+done
+says=("RGBDT_CLOUD" "record")
+refuses "a log without fused clouds" "$bin/rgbdt" map "$scratch/other.lcmlog" --out "$scratch/kept/map.ply"
+says=("voxel_m" "-1")
+refuses "a negative voxel" "$bin/rgbdt" map "$log" --voxel -1 --out "$scratch/kept/map.ply"
+says=("cell_m")
+refuses "a cell of nothing" "$bin/rgbdt" terrain "$scratch/kept/map.ply" --cell 0 --out "$scratch/kept"
+head -c 1000 "$scratch/kept/map.ply" >"$scratch/short.ply"
+says=("short.ply" "cut short")
+refuses "a truncated map" "$bin/rgbdt" terrain "$scratch/short.ply" --out "$scratch/kept"
+
+verdict

@@ -1,0 +1,59 @@
+// Writes two LCM logs for map_test.sh: one of fused clouds over level ground with a crate, 27 C
+// warm, and one of poses only. Usage: map_test_log FUSED OTHER
+#include <cmath>
+
+#include "services/bus/codec.h"
+#include "services/bus/log.h"
+
+namespace {
+
+using rgbdt::RgbdtCloud;
+using rgbdt::Utime;
+
+constexpr Utime kNow = 1'500'000'000'000'000;
+
+void AddPoint(float x, float y, float z, Utime utime, RgbdtCloud* cloud) {
+  cloud->points.emplace_back(x, y, z);
+  cloud->intensity.push_back(0.5F);
+  cloud->utime.push_back(utime);
+  cloud->rgb.push_back({100, 120, 90});
+  cloud->temperature_k.push_back(300);
+  cloud->thermal_counts.push_back(3000);
+  cloud->valid.push_back(3);
+}
+
+// A line along y; the crate stands at x 2.7 to 3.3, y -0.3 to 0.3, and is 0.5 m high.
+RgbdtCloud Line(int number) {
+  RgbdtCloud cloud;
+  cloud.seq = number;
+  cloud.sweep_utime = kNow;
+  cloud.cameras = {"rgb", "thermal"};
+  cloud.calibration_utime = {kNow, kNow};
+  const float x = 1 + 0.05F * static_cast<float>(number);
+  for (float y = -4; y < 4; y += 0.05F) {
+    const bool crate = std::abs(x - 3) < 0.3F && std::abs(y) < 0.3F;
+    AddPoint(x, y, crate ? -0.7F : -1.2F, kNow + number * 1000, &cloud);
+  }
+  cloud.temperature_sigma_k.assign(cloud.size(), NAN);
+  return cloud;
+}
+
+void Write(rgbdt::LogWriter* log, const rgbdt::Message& message) {
+  log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 1;
+  rgbdt::LogWriter fused(argv[1]);
+  for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
+  fused.Close();
+  rgbdt::LogWriter other(argv[2]);
+  rgbdt::StampedPose pose;
+  pose.utime = kNow;
+  pose.source = "odometry";
+  Write(&other, pose);
+  other.Close();
+  return 0;
+}

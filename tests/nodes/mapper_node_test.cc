@@ -1,0 +1,72 @@
+#include "services/nodes/mapper_node.h"
+
+#include <limits>
+
+#include "tests/nodes/nodes_testing.h"
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using test::Counter;
+
+using ::testing::HasSubstr;
+
+constexpr Utime kNow = 1'500'000'000'000'000;
+
+RgbdtCloud Chunk(float x, Utime utime = kNow) {
+  RgbdtCloud cloud;
+  cloud.sweep_utime = kNow;
+  cloud.points = {{x, 0.01F, 0.01F}, {x, 0.02F, 0.02F}};
+  cloud.intensity = {0.5F, 0.5F};
+  cloud.utime = {utime, utime};
+  cloud.rgb = {{{10, 20, 30}, {0, 0, 0}}};
+  cloud.temperature_k = {300, std::numeric_limits<float>::quiet_NaN()};
+  cloud.thermal_counts = cloud.temperature_k;
+  cloud.valid = {0, 0};
+  return cloud;
+}
+
+MapperNode Node() {
+  VoxelMapOptions options;
+  options.voxel_m = 0.1;
+  return MapperNode(options);
+}
+
+TEST(MapperNode, MapsChunksAndSaysNothing) {
+  MapperNode node = Node();
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("RGBDT_CLOUD"));
+  EXPECT_TRUE(node.Handle(Chunk(1.05F)).empty());
+  EXPECT_TRUE(node.Handle(Chunk(2.05F)).empty());
+  EXPECT_EQ(node.map().size(), 2U);
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("LIDAR frame"));
+  EXPECT_EQ(Counter(node.GetStatus(), "clouds"), 2);
+  EXPECT_EQ(Counter(node.GetStatus(), "points"), 4);
+  EXPECT_EQ(Counter(node.GetStatus(), "voxels"), 2);
+}
+
+TEST(MapperNode, AWholeSweepIsNotTakenAgain) {
+  MapperNode node = Node();
+  RgbdtCloud whole = Chunk(1.05F);
+  whole.whole_sweep = true;
+  node.Handle(whole);
+  EXPECT_EQ(node.map().points(), 2) << "where there are no chunks, sweeps are all there is";
+  node.Handle(Chunk(1.05F));
+  node.Handle(whole);
+  EXPECT_EQ(node.map().points(), 4);
+  EXPECT_EQ(Counter(node.GetStatus(), "whole sweeps left out"), 1);
+}
+
+TEST(MapperNode, APoseThatIsMissingIsRefusedAndTheMapStays) {
+  MapperNode node = Node();
+  RgbdtCloud posed = Chunk(1.05F);
+  posed.map_from_lidar = Rigid3();
+  posed.frame_utime = kNow;
+  node.Handle(posed);
+  EXPECT_THAT(InputErrorOf([&] { node.Handle(Chunk(2.05F)); }), HasSubstr("pose"));
+  EXPECT_EQ(node.map().size(), 1U);
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("pose stream"));
+}
+
+}  // namespace
+}  // namespace rgbdt
