@@ -21,6 +21,21 @@ class EncoderTrack {
   /// Readings must come in the order of their times; one that does not is refused (false).
   bool Add(const EncoderReading& reading);
 
+  /// Between two readings the motor turns evenly.
+  struct Stretch {
+    Utime from = 0, until = 0;  ///< `until` is the next one's
+    double angle = 0;           ///< [rad] at `from`
+    double turn = 0;            ///< [rad] up to `until`
+
+    bool Contains(Utime utime) const { return from <= utime && utime < until; }
+    double AngleAt(Utime utime) const {
+      return angle + static_cast<double>(utime - from) / static_cast<double>(until - from) * turn;
+    }
+  };
+
+  /// The stretch that holds a time, of two readings at most `max_gap` apart; nothing otherwise.
+  std::optional<Stretch> StretchAt(const TurnedScanner& scanner, Utime utime, Utime max_gap) const;
+
   /// Angle [rad] at a time between two readings at most `max_gap` apart; nothing otherwise.
   std::optional<double> AngleAt(const TurnedScanner& scanner, Utime utime, Utime max_gap) const;
 

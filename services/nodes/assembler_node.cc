@@ -92,7 +92,14 @@ bool AssemblerNode::IsReady(const LineScan& line) const {
   if (EndOf(line) > track_.newest()) return false;
   const Utime sweep = SweepOf(line);
   const bool first = sweep != 0 && !(sweep_ && sweep_->utime == sweep);
-  return !first || EndOf(line) + kGrace <= track_.newest();
+  return !first || FollowsAllBefore(line) || EndOf(line) + kGrace <= track_.newest();
+}
+
+// Whether nothing that is still to come can lie before the line, in its sweep or the one before.
+bool AssemblerNode::FollowsAllBefore(const LineScan& line) const {
+  if (!sweep_) return newest_ && line.seq == newest_->seq + 1;
+  return static_cast<int>(sweep_->sent.size()) == sweep_->lines &&
+         line.seq == sweep_->first_seq + sweep_->lines;
 }
 
 Messages AssemblerNode::Drain() {
@@ -109,6 +116,7 @@ Messages AssemblerNode::Drain() {
 }
 
 void AssemblerNode::Add(const LineScan& line, Messages* out) {
+  if (!newest_ || line.utime > newest_->utime) newest_ = Place{line.utime, line.seq};
   const Utime sweep_utime = SweepOf(line);
   if (sweep_utime == 0) return;
   if (sweep_utime <= ended_) {  // not known yet when the line came
@@ -154,6 +162,7 @@ void AssemblerNode::Forget() {
   waiting_.clear();
   sweep_.reset();
   ended_ = 0;
+  newest_.reset();
 }
 
 Status AssemblerNode::GetStatus() const {

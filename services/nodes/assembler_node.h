@@ -46,6 +46,11 @@ class AssemblerNode : public Node {
     int lines = 0;       // up to the last that came, sent or not
   };
 
+  struct Place {
+    Utime utime = 0;
+    std::int64_t seq = 0;
+  };
+
   void OnRig(const RigText& rig);
   void OnReading(const EncoderReading& reading);
   void OnLine(const LineScan& line);
@@ -53,6 +58,7 @@ class AssemblerNode : public Node {
   bool FitsSweep(const LineScan& line) const;
   Utime SweepOf(const LineScan& line) const;
   bool IsReady(const LineScan& line) const;
+  bool FollowsAllBefore(const LineScan& line) const;
   Messages Drain();
   void Add(const LineScan& line, Messages* out);
   void EndSweep(Messages* out);
@@ -62,7 +68,8 @@ class AssemblerNode : public Node {
   EncoderTrack track_;
   std::map<Utime, LineScan> waiting_;
   std::optional<Sweep> sweep_;
-  Utime ended_ = 0;  // the newest sweep that has ended
+  Utime ended_ = 0;              // the newest sweep that has ended
+  std::optional<Place> newest_;  // of the lines that are done with
   std::int64_t lines_used_ = 0;
   std::int64_t lines_lost_ = 0;
   std::int64_t sweeps_ = 0;

@@ -31,6 +31,33 @@ bool IsInput(const std::string& channel) {
           channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
 }
 
+// What is taken from a log, as far as it has been read.
+class InputChannels {
+ public:
+  bool Takes(const std::string& channel) {
+    has_lines_ |= channel == "LINE_SCAN";
+    has_session_ |= channel == "SESSION_COMMAND";
+    // A log of clouds only (a 3D LIDAR) has no lines; one with lines gets its clouds from them.
+    if (channel == "CLOUD") return !has_lines_;
+    // A log of a session gets its calibration from its views; any other brings it along.
+    if (channel == "CALIBRATION") return !has_session_;
+    return IsInput(channel);
+  }
+
+ private:
+  bool has_lines_ = false, has_session_ = false;
+};
+
+void PrintFused(const Status& fuser) {
+  std::printf("fuser: %s", fuser.text.c_str());
+  for (const auto& [name, value] : fuser.counters) {
+    if (name == "points" || name == "coloured") {
+      std::printf(", %s %lld", name.c_str(), static_cast<long long>(value));
+    }
+  }
+  std::printf("\n");
+}
+
 void PrintProblems(const NodeRunner& runner) {
   const Status status = runner.GetStatus();
   if (runner.dropped() == 0 && runner.gaps() == 0) return;
@@ -52,13 +79,13 @@ int Run(const Flags& flags) {
   NodeRunner detector_runner(&detector, &bus);
   NodeRunner solver_runner(&solver, &bus);
   NodeRunner fuser_runner(&fuser, &bus);
-  // A log of clouds only (a 3D LIDAR) has no lines; one with lines gets its clouds from them.
-  bool has_lines = false;
+  InputChannels input;
+  bool has_calibration = false;
   std::int64_t events = 0;
   int percent = -1;
   while (const auto event = log.Next()) {
-    has_lines |= event->channel == "LINE_SCAN";
-    if (IsInput(event->channel) || (event->channel == "CLOUD" && !has_lines)) {
+    if (input.Takes(event->channel)) {
+      has_calibration |= event->channel == "CALIBRATION";
       bus.Publish(event->channel, event->bytes);
       bus.Run();
     }
@@ -75,16 +102,21 @@ int Run(const Flags& flags) {
     std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
                  flags.log.c_str(), static_cast<long long>(log.unreadable_bytes()));
   }
+  if (!solver.report() && has_calibration) {
+    PrintFused(fuser_runner.GetStatus());
+    return 0;
+  }
   if (!solver.report()) {
-    throw InputError(flags.log + ": " + std::to_string(events) +
-                     " messages, but no view was captured in them; solver: " +
-                     solver.GetStatus().text + "; detector: " + detector.GetStatus().text);
+    throw InputError(
+        flags.log + ": " + std::to_string(events) +
+        " messages, but no view was captured in them, nor do they hold a calibration; solver: " +
+        solver.GetStatus().text + "; detector: " + detector.GetStatus().text);
   }
   const std::filesystem::path out = flags.out;
   const std::string written = WriteIfSolved(out, *solver.report());
   WriteReport(out / "report.json", *solver.report());
   std::fputs(ReportTable(*solver.report()).c_str(), stdout);
-  std::printf("fuser: %s\n", fuser_runner.GetStatus().text.c_str());
+  PrintFused(fuser_runner.GetStatus());
   std::printf("%s report.json\n", written.c_str());
   return AllConverged(*solver.report()) ? 0 : 1;
 }
@@ -95,7 +127,8 @@ void AddReplay(CLI::App* app, int* exit_code) {
   CLI::App* verb = app->add_subcommand(
       "replay",
       "Runs the nodes of the live processes on a log of lcm-logger, in one process, in order, as\n"
-      "fast as it goes. The same log gives the same bytes.\n"
+      "fast as it goes. The same log gives the same bytes. A log without a session is fused\n"
+      "by the CALIBRATION in it.\n"
       "Example: rgbdt replay out/demo/session.lcm --out out/replay");
   auto flags = std::make_shared<Flags>();
   verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();

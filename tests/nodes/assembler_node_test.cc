@@ -353,6 +353,49 @@ TEST_F(AssemblerNodeTest, LinesOfTheNextSweepEndTheOneBefore) {
   EXPECT_EQ((end + 1)->cloud.first_line, 0);
 }
 
+TEST_F(AssemblerNodeTest, AFirstLineDoesNotWaitWhereAllBeforeItHasCome) {
+  const Utime second = kSweep + 5 * kMicrosecondsPerSecond;
+  const auto first_chunk = [&](std::int64_t first_seq) {
+    Utime newest = 0;
+    for (const Message& message : SweepInOrder(second, first_seq)) {
+      if (std::holds_alternative<EncoderReading>(message)) newest = UtimeOf(message);
+      if (!Only<CloudChunk>(Feed({message})).empty()) return newest;
+    }
+    return Utime{0};
+  };
+  const Utime end = second + 8 * 4 * kMs;
+  Feed(SweepInOrder());
+  EXPECT_LT(first_chunk(kLines), end + 10 * kMs + kLinePeriod);
+  // Where a number is missing before it, it could be that of the sweep's first line.
+  AssemblerNode other;
+  other.Handle(MakeRigText());
+  std::swap(node_, other);
+  Feed(SweepInOrder());
+  EXPECT_GE(first_chunk(kLines + 1), end + AssemblerNode::kGrace);
+}
+
+// Without a pause, the first sweep's last lines late: they still have their time to come.
+TEST_F(AssemblerNodeTest, AnIncompleteSweepKeepsItsGraceWhenTheNextBegins) {
+  Messages messages;
+  for (Utime t = kSweep; t <= kSweepEnd + 400 * kMs; t += 10 * kMs) {
+    EncoderReading reading = Reading(t);
+    reading.sweep_utime = t < kSweepEnd ? kSweep : kSweepEnd;
+    const int line = static_cast<int>((t - kSweep) / kLinePeriod) - 1;
+    if ((t - kSweep) % kLinePeriod == 0 && line >= 0 && line != kLines - 2) {
+      messages.push_back(Line(line));
+    }
+    messages.push_back(reading);
+    if (t == kSweepEnd + 60 * kMs) messages.push_back(Line(kLines - 2));
+  }
+  const auto chunks = Only<CloudChunk>(Feed(messages));
+  const auto end = std::find_if(chunks.begin(), chunks.end(),
+                                [](const CloudChunk& chunk) { return chunk.sweep_end; });
+  ASSERT_NE(end, chunks.end());
+  EXPECT_EQ(end - chunks.begin(), kLines);
+  EXPECT_EQ(end->lines_lost, 0);
+  EXPECT_THAT(problems_, ::testing::IsEmpty());
+}
+
 TEST_F(AssemblerNodeTest, LinesWithoutReadingsAreBounded) {
   const int many = static_cast<int>(AssemblerNode::kMaxWaiting) + 200;
   for (int i = 0; i < many; ++i) EXPECT_TRUE(Feed({Line(i)}).empty());

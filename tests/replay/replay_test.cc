@@ -203,6 +203,33 @@ TEST_F(ReplayTest, TheReplayVerbGivesTheSameBytesTwice) {
   }
 }
 
+// A drive with a calibrated rig: nobody held a session, the calibration is on the bus.
+TEST_F(ReplayTest, ALogWithoutASessionIsFusedByTheCalibrationInIt) {
+  const std::vector<std::size_t> calibrations = PlacesOf("CALIBRATION");
+  ASSERT_GE(calibrations.size(), 2U);
+  Recording drive = {run_->recording[PlacesOf("RIG").front()]};
+  for (const Recorded& message : run_->recording) {
+    if (test::IsInput(message.channel) && message.channel != "SESSION_COMMAND") {
+      drive.push_back(message);
+    }
+  }
+  const std::string command =
+      "replay " + (*dir_ / "drive.lcmlog").string() + " --out " + (*dir_ / "drive").string();
+  WriteLog(drive, *dir_ / "drive.lcmlog");
+  ToolResult tool = RunTool(command);
+  EXPECT_EQ(tool.code, 1);
+  EXPECT_THAT(tool.output, HasSubstr("nor do they hold a calibration"));
+
+  drive.insert(drive.begin() + 1,
+               {run_->recording[calibrations.end()[-2]], run_->recording[calibrations.back()]});
+  WriteLog(drive, *dir_ / "drive.lcmlog");
+  tool = RunTool(command);
+  EXPECT_EQ(tool.code, 0) << tool.output;
+  EXPECT_THAT(tool.output,
+              ::testing::ContainsRegex("fuser: fusing, points [1-9].*, coloured [1-9]"));
+  EXPECT_FALSE(std::filesystem::exists(*dir_ / "drive/calibration.textproto")) << tool.output;
+}
+
 TEST_F(ReplayTest, ATruncatedLogGivesWhatItHolds) {
   const std::string bytes = Contents(LogPath());
   const std::filesystem::path path = *dir_ / "short.lcmlog";

@@ -84,6 +84,42 @@ TEST(LineToCloud, IsItsFormulaForEveryBeamWithItsOwnMotorAngle) {
   }
 }
 
+// Half of what a float can tell apart at a coordinate.
+double HalfUlp(double v) {
+  const auto f = static_cast<float>(std::abs(v));
+  return 0.5 * static_cast<double>(std::nextafter(f, std::numeric_limits<float>::max()) - f);
+}
+
+// 100 m away, with a motor that stands, creeps, runs or jumps: but for the rounding to float, which
+// is 4 um there, nothing is lost, and lines of any length are whole.
+TEST(LineToCloud, IsItsFormulaToAMillionthOfAMillimetre) {
+  constexpr double kTolerance = 1e-9;
+  const TurnedScanner scanner = SkewedScanner();
+  Random random(3);
+  for (const double per_beam : {0.0, 1e-7, -1e-5, 2e-3, 0.3}) {
+    for (const std::size_t beams : {1U, 15U, 16U, 17U, 401U}) {
+      LineScan line = LineOf(beams, 100.F);
+      std::vector<double> angles(beams, random.Uniform(-3, 3));
+      for (std::size_t i = 1; i < beams; ++i) angles[i] = angles[i - 1] + per_beam;
+      if (beams > 100) angles[100] += 1.5;
+      const Cloud cloud = LineToCloud(scanner, line, angles);
+      ASSERT_EQ(cloud.size(), beams);
+      for (std::size_t i = 0; i < beams; ++i) {
+        const double a = line.first_angle_rad + static_cast<double>(i) * line.angle_step_rad;
+        const Eigen::Vector3d point = ByFormula(scanner, angles[i], a, 100);
+        const Eigen::Vector3d direction = (point - ByFormula(scanner, angles[i], a, 0)) / 100;
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_NEAR(cloud.points[i][k], point[k], HalfUlp(point[k]) + kTolerance)
+              << per_beam << " rad a beam, beam " << i << " of " << beams;
+          EXPECT_NEAR(cloud.directions[i][k], direction[k], HalfUlp(direction[k]) + kTolerance);
+        }
+        EXPECT_EQ(cloud.utime[i], line.utime + 100 * static_cast<Utime>(i));
+        EXPECT_EQ(cloud.ring[i], i);
+      }
+    }
+  }
+}
+
 TEST(LineToCloud, MissesKeepTheDirectionThatAHitWouldHave) {
   const TurnedScanner scanner = SkewedScanner();
   const std::vector<double> angles(10, 0.4);
@@ -196,6 +232,34 @@ TEST_F(EncoderTrackTest, ForgettingKeepsWhatLaterTimesNeed) {
   track_.ForgetBefore(9999);  // the newest stays: the next reading interpolates from it
   EXPECT_EQ(track_.newest(), 2000);
   EXPECT_TRUE(At(2000));
+}
+
+// Each beam's angle is the one that its time has by itself, across readings and their gaps.
+TEST_F(EncoderTrackTest, ALinesAnglesAreThoseOfItsBeamsTimes) {
+  for (const Utime t : {1'000'000, 1'000'350, 1'000'400, 1'001'000, 1'003'000, 1'003'700}) {
+    ASSERT_TRUE(track_.Add(ReadingAt(t, t % 977)));
+  }
+  for (const Utime start : {1'000'000, 1'000'299, 1'000'350, 1'003'001}) {
+    for (const std::size_t beams : {0U, 1U, 2U, 7U, 8U, 40U}) {
+      for (const double period : {1e-4, 3.3e-5, 1e-7, -1e-4}) {
+        LineScan line = LineOf(beams, 1.F);
+        line.utime = start;
+        line.beam_period_s = period;
+        const auto angles = BeamAngles(scanner_, track_, line, 1000);
+        std::vector<double> expected;
+        for (std::size_t i = 0; i < beams; ++i) {
+          const double after = static_cast<double>(i) * period;
+          const auto angle = track_.AngleAt(scanner_, start + FromSeconds(after), 1000);
+          if (!angle) break;
+          expected.push_back(*angle);
+        }
+        ASSERT_EQ(angles.has_value(), expected.size() == beams);
+        if (angles) {
+          EXPECT_EQ(*angles, expected);
+        }
+      }
+    }
+  }
 }
 
 // A chunk of `lines` lines whose points' x is their line in the sweep.

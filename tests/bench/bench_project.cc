@@ -1,0 +1,58 @@
+// Points of the LIDAR's frame to pixels of the colour camera.
+#include <memory>
+
+#include "calib/camera/camera.h"
+#include "tests/bench/by_opencv.h"
+#include "tests/bench/measure.h"
+#include "tests/bench/scanned_room.h"
+#include "tests/bench/stages.h"
+
+namespace rgbdt::bench {
+namespace {
+
+constexpr Utime kStart = 1'433'160'000'000'000;
+
+struct Input {
+  CameraSpec spec;
+  Rigid3 camera_from_lidar;
+  std::vector<Eigen::Vector3f> points;
+};
+
+std::shared_ptr<const Input> MakeInput(std::int64_t points) {
+  const BenchRig rig = MakeBenchRig();
+  return std::make_shared<Input>(Input{rig.rig.cameras.at(0), rig.camera_from_lidar.at(0),
+                                       ScannedRoom(kInView, points, kStart).points});
+}
+
+std::function<void()> Ours(std::int64_t points) {
+  return [input = MakeInput(points)] {
+    const Camera camera(input->spec);
+    const Eigen::Matrix3d rotation = input->camera_from_lidar.rotation.toRotationMatrix();
+    std::vector<Eigen::Vector2f> pixels;
+    pixels.reserve(input->points.size());
+    for (const Eigen::Vector3f& point : input->points) {
+      const auto pixel =
+          camera.Project(rotation * point.cast<double>() + input->camera_from_lidar.translation);
+      if (pixel) pixels.push_back(pixel->cast<float>());
+    }
+    benchmark::DoNotOptimize(pixels);
+  };
+}
+
+std::function<void()> ByOpenCv(std::int64_t points) {
+  return [input = MakeInput(points)] {
+    auto pixels = ProjectByOpenCv(input->spec, input->camera_from_lidar, input->points);
+    benchmark::DoNotOptimize(pixels);
+  };
+}
+
+}  // namespace
+
+void RegisterProject(std::int64_t most) {
+  for (const std::int64_t size : Decades(most)) {
+    Register({"project", "rgbdt", size, "points"}, [=] { return Ours(size); });
+    Register({"project", "cv::projectPoints", size, "points"}, [=] { return ByOpenCv(size); });
+  }
+}
+
+}  // namespace rgbdt::bench
