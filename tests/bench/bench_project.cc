@@ -1,7 +1,7 @@
 // Points of the LIDAR's frame to pixels of the colour camera.
 #include <memory>
 
-#include "calib/camera/camera.h"
+#include "calib/camera/project_points.h"
 #include "tests/bench/by_opencv.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
@@ -26,15 +26,10 @@ std::shared_ptr<const Input> MakeInput(std::int64_t points) {
 
 std::function<void()> Ours(std::int64_t points) {
   return [input = MakeInput(points)] {
-    const Camera camera(input->spec);
-    const Eigen::Matrix3d rotation = input->camera_from_lidar.rotation.toRotationMatrix();
-    std::vector<Eigen::Vector2f> pixels;
-    pixels.reserve(input->points.size());
-    for (const Eigen::Vector3f& point : input->points) {
-      const auto pixel =
-          camera.Project(rotation * point.cast<double>() + input->camera_from_lidar.translation);
-      if (pixel) pixels.push_back(pixel->cast<float>());
-    }
+    const PointProjector projector(Camera(input->spec), input->camera_from_lidar);
+    PixelColumns pixels;
+    pixels.Resize(input->points.size());
+    projector.Project(input->points[0].data(), 0, input->points.size(), &pixels);
     benchmark::DoNotOptimize(pixels);
   };
 }

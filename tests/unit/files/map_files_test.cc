@@ -99,11 +99,13 @@ TEST(MapFiles, ReadsFusedClouds) {
   const TempDir dir;
   RgbdtCloud fused;
   fused.cameras = {"rgb"};
+  fused.calibration_utime = {kNow};
   fused.points = {{1, 2, 3}, {4, 5, 6}};
   fused.intensity = {0.5F, 0.5F};
   fused.utime = {kNow, kNow};
   fused.rgb = {{{1, 2, 3}, {4, 5, 6}}};
   fused.temperature_k = {301, kNan};
+  fused.temperature_sigma_k = {0.05F, kNan};
   fused.thermal_counts = {kNan, kNan};
   fused.valid = {1, 1};
   WritePly(dir / "fused.ply", fused);
