@@ -29,7 +29,7 @@ inline float AngleOf(float x, float y) {
   return x < 0 ? kPi - p : p;
 }
 
-constexpr std::size_t kBlock = 512;  // points at a time, side by side in columns
+constexpr std::size_t kBlock = 512;  // points at a time, side by side in columns: PixelBlock's
 
 struct Pixel {
   float u, v;
@@ -113,17 +113,15 @@ __attribute__((target_clones("arch=haswell", "default")))
 #endif
 void ProjectKernel(const KernelProjection& k, const float* points, std::size_t count,
                    const PixelArrays& out) {
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t n = count - first < kBlock ? count - first : kBlock;
-    const float* p = points + 3 * first;
-    float* u = out.u + first;
-    float* v = out.v + first;
-    float* w = out.inverse_range + first;
-    if (k.fisheye) {
-      k.rolls ? Run<true, true>(k, p, n, u, v, w) : Run<true, false>(k, p, n, u, v, w);
-    } else {
-      k.rolls ? Run<false, true>(k, p, n, u, v, w) : Run<false, false>(k, p, n, u, v, w);
-    }
+  float* u = out.u;
+  float* v = out.v;
+  float* w = out.inverse_range;
+  if (k.fisheye) {
+    k.rolls ? Run<true, true>(k, points, count, u, v, w)
+            : Run<true, false>(k, points, count, u, v, w);
+  } else {
+    k.rolls ? Run<false, true>(k, points, count, u, v, w)
+            : Run<false, false>(k, points, count, u, v, w);
   }
 }
 

@@ -19,6 +19,7 @@ struct KernelProjection {
   float delta_per_row[6], middle_row;
 };
 
+/// As many points as PixelBlock holds, at most.
 void ProjectKernel(const KernelProjection& projection, const float* points, std::size_t count,
                    const PixelArrays& out);
 

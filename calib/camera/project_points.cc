@@ -4,13 +4,64 @@
 
 namespace rgbdt {
 
-void PixelColumns::Resize(std::size_t size) {
-  u.resize(size);
-  v.resize(size);
-  inverse_range.resize(size);
+// And of a margin round the image: what lies there may hide what lies inside.
+ViewBounds::ViewBounds(const Camera& camera) {
+  constexpr double kMargin = 0.15;  // of the image's width and height, as slopes
+  constexpr int kSteps = 24;        // along each border
+  if (camera.lens().model == Lens::Model::kFisheye) return;
+  const Eigen::Vector2d size(camera.width() - 1, camera.height() - 1);
+  Eigen::Array2d least = Eigen::Array2d::Constant(1e9);
+  Eigen::Array2d most = -least;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double along = static_cast<double>(i) / kSteps;
+    for (const double across : {0.0, 1.0}) {
+      for (const Eigen::Vector2d& place : {Eigen::Vector2d(along, across), {across, along}}) {
+        const auto ray = camera.Unproject(place.cwiseProduct(size));
+        if (!ray) return;  // the lens folds back before that
+        const Eigen::Array2d slope = ray->head<2>().array() / ray->z();
+        least = least.min(slope);
+        most = most.max(slope);
+      }
+    }
+  }
+  const Eigen::Array2d margin = kMargin * (most - least);
+  bounded_ = true;
+  left_ = static_cast<float>(least.x() - margin.x());
+  right_ = static_cast<float>(most.x() + margin.x());
+  top_ = static_cast<float>(least.y() - margin.y());
+  bottom_ = static_cast<float>(most.y() + margin.y());
 }
 
-PointProjector::PointProjector(const Camera& camera, const Rigid3& camera_from_points) : kernel_{} {
+bool ViewBounds::MayShow(const Eigen::Vector3f& middle, const Eigen::Vector3f& half) const {
+  if (!bounded_) return true;
+  const float far = middle.z() + half.z();
+  if (!(far > 0)) return std::isnan(far);
+  const float near = std::max(0.0F, middle.z() - half.z());
+  const Eigen::Vector3f least = middle - half;
+  const Eigen::Vector3f most = middle + half;
+  return !(least.x() > std::max(right_ * near, right_ * far) ||
+           most.x() < std::min(left_ * near, left_ * far) ||
+           least.y() > std::max(bottom_ * near, bottom_ * far) ||
+           most.y() < std::min(top_ * near, top_ * far));
+}
+
+BlockedPoints::BlockedPoints(const std::vector<Eigen::Vector3f>& points) : points_(points) {
+  for (std::size_t first = 0; first < points.size(); first += PixelBlock::kSize) {
+    Eigen::Array3f least = points[first].array();
+    Eigen::Array3f most = least;
+    const std::size_t end = std::min(points.size(), first + PixelBlock::kSize);
+    for (std::size_t i = first + 1; i < end; ++i) {
+      least = least.min(points[i].array());
+      most = most.max(points[i].array());
+    }
+    boxes_.push_back({0.5F * (least + most), 0.5F * (most - least)});
+  }
+}
+
+PointProjector::PointProjector(const Camera& camera, const Rigid3& camera_from_points)
+    : kernel_{},
+      rotation_(camera_from_points.rotation.toRotationMatrix().cast<float>()),
+      translation_(camera_from_points.translation.cast<float>()) {
   const Lens& lens = camera.lens();
   kernel_.fisheye = lens.model == Lens::Model::kFisheye;
   kernel_.fx = static_cast<float>(lens.fx);
@@ -36,11 +87,15 @@ void PointProjector::SetMotion(const Vector6d& delta_per_row) {
   for (int i = 0; i < 6; ++i) kernel_.delta_per_row[i] = static_cast<float>(delta_per_row[i]);
 }
 
-void PointProjector::Project(const float* points, std::size_t first, std::size_t count,
-                             PixelColumns* pixels) const {
-  ProjectKernel(
-      kernel_, points + 3 * first, count,
-      {pixels->u.data() + first, pixels->v.data() + first, pixels->inverse_range.data() + first});
+void PointProjector::Project(const Eigen::Vector3f* points, std::size_t count,
+                             PixelBlock* block) const {
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  ProjectKernel(kernel_, points->data(), count, {block->u, block->v, block->inverse_range});
+}
+
+bool PointProjector::MayShow(const ViewBounds& view, const BlockedPoints::Box& box) const {
+  return kernel_.rolls ||
+         view.MayShow(rotation_ * box.middle + translation_, rotation_.cwiseAbs() * box.half);
 }
 
 }  // namespace rgbdt

@@ -25,19 +25,19 @@ bool IsSaturated(CameraKind kind, std::uint32_t sample) {
   return std::max({rgb[0], rgb[1], rgb[2]}) > 250;
 }
 
-// How far this camera's word goes where another sees the point, too.
+// How far sighting i of this camera counts where another camera sees the point, too.
 float WeightOf(const BlendCamera& camera, std::size_t i) {
   constexpr float kBorder = 0.05F;  // of the image's width: less and less from there to the border
   constexpr float kSaturated = 0.02F;
-  const float u = camera.sightings->pixels.u[i];
-  const float v = camera.sightings->pixels.v[i];
+  const float u = camera.sightings->u[i];
+  const float v = camera.sightings->v[i];
   const CameraSpec& spec = camera.camera->spec();
   const auto width = static_cast<float>(spec.width);
   const float border =
       std::min({u, v, width - 1 - u, static_cast<float>(spec.height) - 1 - v}) / (kBorder * width);
   float weight = std::min(1.0F, border);
   if (camera.surfaces != nullptr) weight *= camera.surfaces->CosineAt(u, v);
-  if (IsSaturated(spec.kind, camera.sightings->samples[i])) weight *= kSaturated;
+  if (IsSaturated(spec.kind, camera.sightings->sample[i])) weight *= kSaturated;
   return std::max(kLeastWeight, weight);
 }
 
@@ -68,8 +68,9 @@ class Blender {
       if (camera.sightings != nullptr && camera.camera->spec().kind == kind) of_kind.push_back(c);
     }
     if (of_kind.size() == 1) {
-      ForSeen(of_kind[0], [&](std::size_t i, std::uint32_t sample, const TemperatureTable* table) {
-        kind == CameraKind::kThermal ? SetThermal(i, sample, table) : SetColour(i, sample);
+      const std::vector<std::uint32_t>& samples = cameras_[of_kind[0]].sightings->sample;
+      ForSeen(of_kind[0], [&](std::size_t i, std::size_t s, const TemperatureTable* table) {
+        kind == CameraKind::kThermal ? SetThermal(i, samples[s], table) : SetColour(i, samples[s]);
       });
       return;
     }
@@ -78,8 +79,9 @@ class Blender {
     best_.assign(fused_.size(), 0);
     sums_.assign(fused_.size(), {0, 0, 0});
     for (const std::size_t c : of_kind) {
-      ForSeen(c, [&](std::size_t i, std::uint32_t sample, const TemperatureTable* table) {
-        const float weight = WeightOf(cameras_[c], first_ + i);
+      ForSeen(c, [&](std::size_t i, std::size_t s, const TemperatureTable* table) {
+        const float weight = WeightOf(cameras_[c], s);
+        const std::uint32_t sample = cameras_[c].sightings->sample[s];
         kind == CameraKind::kThermal ? AddThermal(i, weight, sample, table)
                                      : AddColour(i, weight, sample);
       });
@@ -89,23 +91,24 @@ class Blender {
     }
   }
 
-  // Points that lie in a camera's image with nothing in the way.
+  // Sightings with nothing in the way: take(point of the cloud, sighting, its radiometry).
   template <typename Take>
   void ForSeen(std::size_t index, Take take) {
     const BlendCamera& camera = cameras_[index];
     const Sightings& sightings = *camera.sightings;
     const std::uint32_t bit = 1U << index;
+    const auto begin = std::lower_bound(sightings.point.begin(), sightings.point.end(), first_);
     std::size_t run = 0;
-    for (std::size_t i = 0; i < fused_.size(); ++i) {
-      const std::uint32_t sample = sightings.samples[first_ + i];
-      if (sample == Sightings::kUnseen) continue;
-      if (sightings.hidden[first_ + i] != 0) {
+    for (auto s = static_cast<std::size_t>(begin - sightings.point.begin());
+         s < sightings.size() && sightings.point[s] < first_ + fused_.size(); ++s) {
+      if (sightings.hidden[s] != 0) {
         ++counts_.hidden;
         continue;
       }
-      while (sightings.runs[run].end <= first_ + i) ++run;
+      while (sightings.runs[run].end <= s) ++run;
+      const std::size_t i = sightings.point[s] - first_;
       fused_.valid[i] |= bit;
-      take(i, sample, sightings.runs[run].temperatures.get());
+      take(i, s, sightings.runs[run].temperatures.get());
     }
   }
 

@@ -22,9 +22,9 @@ struct BlendCounts {
 };
 
 /// Fills colour, temperature, counts and `valid` of all of the cloud's points, which are points
-/// [first, first + size) of the cameras' sightings. Of several cameras of a kind that see a point,
-/// each counts by how squarely and how far from its border it looks, little where it is saturated;
-/// temperatures also by their sigmas. Counts are those of the camera that counts most.
+/// [first, first + size) of those that the sightings number. Of several cameras of a kind that see
+/// a point, each counts by how squarely and how far from its border it looks, little where it is
+/// saturated; temperatures also by their sigmas. Counts are those of the camera that counts most.
 BlendCounts Blend(const std::vector<BlendCamera>& cameras, std::size_t first, RgbdtCloud* fused);
 
 }  // namespace rgbdt

@@ -53,11 +53,11 @@ void DepthBuffer::Clear() {
   std::fill(planes_.begin(), planes_.end(), Plane{});
 }
 
-void DepthBuffer::Add(const PixelColumns& pixels, std::size_t begin, std::size_t end) {
-  for (std::size_t i = begin; i < end; ++i) {
-    const float u = pixels.u[i];
-    const float v = pixels.v[i];
-    const float w = pixels.inverse_range[i];
+void DepthBuffer::Add(const PixelBlock& block, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = block.u[i];
+    const float v = block.v[i];
+    const float w = block.inverse_range[i];
     if (!(w > 0) || !InGrid(u, v)) continue;
     const std::size_t cell = CellOf(u, v);
     Layer& layer = layers_[cell];
@@ -109,7 +109,9 @@ void DepthBuffer::Close() {
     ForTouched([&](std::size_t cell) { MakeSlopes(cell); });
   }
   GrowTouched();
-  ForTouched([&](std::size_t cell) { MakePlane(cell); });
+  ForTouched([&](std::size_t cell) { planes_[cell] = {}; });
+  GrowTouched();
+  ForTouched([&](std::size_t cell) { Offer(cell); });  // what others have taken, they take again
   first_row_ = rows_;
   end_row_ = 0;
   first_column_ = columns_;
@@ -139,34 +141,30 @@ void DepthBuffer::MakeSlopes(std::size_t cell) {
   s.by_u = Flatter(by_u(surfels_[cell - 1]), by_u(surfels_[cell + 1]), most * per_u_);
 }
 
-// Of the surfaces in and beside a cell that reach its middle, the nearest there.
-void DepthBuffer::MakePlane(std::size_t cell) {
-  const float u = (static_cast<float>(cell % columns_) - kMargin + 0.5F) * cell_u_;
-  const float v = (static_cast<float>(cell / columns_) - kMargin + 0.5F) * cell_v_;
-  const float reach_u = kReach * cell_u_;
-  const float reach_v = kReach * cell_v_;
-  float best_w = 0;
-  const Surfel* best = nullptr;
-  for (const std::size_t row : {cell - columns_, cell, cell + columns_}) {
-    for (std::size_t i = row - 1; i <= row + 1; ++i) {
-      const Surfel& s = surfels_[i];
-      const float du = u - s.u;
-      const float dv = v - s.v;
-      if (s.w == 0 || std::abs(du) > reach_u || std::abs(dv) > reach_v) continue;
-      const float w = s.w + s.by_u * du + s.by_v * dv;
-      if (w <= best_w) continue;
-      best_w = w;
-      best = &s;
+// Of the surfaces in and beside a cell that reach its middle, the nearest there counts: each offers
+// itself to the cells that it reaches.
+void DepthBuffer::Offer(std::size_t cell) {
+  const Surfel& s = surfels_[cell];
+  if (s.w == 0) return;
+  const auto column = static_cast<float>(cell % columns_) - kMargin + 0.5F;
+  const auto row = static_cast<float>(cell / columns_) - kMargin + 0.5F;
+  const float right = s.u * per_u_ - column;  // of the cell's middle [cells]
+  const float below = s.v * per_v_ - row;
+  const Plane plane{s.w - s.by_u * s.u - s.by_v * s.v, s.by_u, s.by_v};
+  for (int dr = 1 + below <= kReach ? -1 : 0; dr <= (1 - below <= kReach ? 1 : 0); ++dr) {
+    for (int dc = 1 + right <= kReach ? -1 : 0; dc <= (1 - right <= kReach ? 1 : 0); ++dc) {
+      const float u = (column + static_cast<float>(dc)) * cell_u_;
+      const float v = (row + static_cast<float>(dr)) * cell_v_;
+      Plane& best =
+          planes_[cell + static_cast<std::size_t>(dr) * columns_ + static_cast<std::size_t>(dc)];
+      if (plane.At(u, v) > best.At(u, v)) best = plane;
     }
   }
-  planes_[cell] = best == nullptr ? Plane{}
-                                  : Plane{best->w - best->by_u * best->u - best->by_v * best->v,
-                                          best->by_u, best->by_v};
 }
 
 float DepthBuffer::CosineAt(float u, float v) const {
   const Plane& plane = planes_[CellOf(u, v)];
-  const float w = plane.w + plane.by_u * u + plane.by_v * v;
+  const float w = plane.At(u, v);
   if (!(w > 0)) return 1;
   // Of a plane, the relative change of 1/range by angle is the tangent of the incidence.
   const float tangent_u = plane.by_u * focal_u_ / w;

@@ -16,18 +16,16 @@ class DepthBuffer {
   /// Cells of this size [px], along u and v; `range_sigma_m`: noise of a range.
   DepthBuffer(const Camera& camera, const Eigen::Vector2d& cell_px, double range_sigma_m);
 
-  /// Points [begin, end) of `pixels`. Those a little outside of the image count, too: they hide
+  /// The block's first `count` points. Those a little outside of the image count, too: they hide
   /// what lies inside.
-  void Add(const PixelColumns& pixels, std::size_t begin, std::size_t end);
+  void Add(const PixelBlock& block, std::size_t count);
 
   /// Makes surfaces of what was added since the last call.
   void Close();
 
   /// Whether a point at this pixel of the image is hidden by what was added and closed.
   bool Hides(float u, float v, float inverse_range) const {
-    const std::size_t i = CellOf(u, v);
-    const Plane& plane = planes_[i];
-    const float nearer = plane.w + plane.by_u * u + plane.by_v * v - inverse_range;
+    const float nearer = planes_[CellOf(u, v)].At(u, v) - inverse_range;
     return nearer > inverse_range * (kBehind + inverse_range * absolute_m_);
   }
 
@@ -50,6 +48,7 @@ class DepthBuffer {
   };
   struct Plane {
     float w = 0, by_u = 0, by_v = 0;  // inverse range at pixel (0, 0) and its slopes
+    float At(float u, float v) const { return w + by_u * u + by_v * v; }
   };
 
   std::size_t CellOf(float u, float v) const {
@@ -66,7 +65,7 @@ class DepthBuffer {
   void ForTouched(Make make);
   void MakeSurfel(std::size_t cell);
   void MakeSlopes(std::size_t cell);
-  void MakePlane(std::size_t cell);
+  void Offer(std::size_t cell);
 
   static constexpr int kMargin = 3;         // cells round the image
   static constexpr float kBehind = 0.005F;  // how far behind a surface hides, besides the noise

@@ -13,9 +13,8 @@ constexpr double kMostCells = 480;  // along the image's width: finer ones cost 
 
 }  // namespace
 
-void PointSpacing::Histogram::Add(float distance_px) {
-  const double bin =
-      std::log(std::max(kLeastPx, double(distance_px)) / kLeastPx) / std::log(kBinRatio);
+void PointSpacing::Histogram::Add(double distance_px) {
+  const double bin = std::log(std::max(kLeastPx, distance_px) / kLeastPx) / std::log(kBinRatio);
   ++bins_[static_cast<std::size_t>(std::min(63.0, bin))];
   ++count_;
 }
@@ -29,76 +28,71 @@ double PointSpacing::Histogram::Median() const {
   return 0;
 }
 
-void PointSpacing::Pair::Add(const PixelColumns& pixels, std::size_t i, float other_u,
-                             float other_v) {
-  u.Add(std::abs(pixels.u[i] - other_u));
-  v.Add(std::abs(pixels.v[i] - other_v));
+void PointSpacing::Pair::Add(const std::optional<Eigen::Vector2d>& a,
+                             const std::optional<Eigen::Vector2d>& b) {
+  if (!a || !b) return;
+  u.Add(std::abs(a->x() - b->x()));
+  v.Add(std::abs(a->y() - b->y()));
 }
 
-PointSpacing::PointSpacing(const Camera& camera)
-    : width_(camera.width()), height_(camera.height()) {}
-
-bool PointSpacing::InImage(const PixelColumns& pixels, std::size_t i) const {
-  return pixels.inverse_range[i] > 0 && pixels.u[i] >= 0 && pixels.v[i] >= 0 &&
-         pixels.u[i] < static_cast<float>(width_) && pixels.v[i] < static_cast<float>(height_);
+// Within the image; nothing for a miss.
+std::optional<Eigen::Vector2d> PointSpacing::PixelOf(const Eigen::Vector3f& point,
+                                                     const Rigid3& camera_from_lidar) const {
+  if (!point.allFinite()) return std::nullopt;
+  const auto pixel = camera_.Project(camera_from_lidar * point.cast<double>());
+  return pixel && camera_.Contains(*pixel) ? pixel : std::nullopt;
 }
 
-void PointSpacing::Add(const Cloud& cloud, const std::vector<std::uint32_t>& grid,
-                       const PixelColumns& pixels) {
+void PointSpacing::Add(const Cloud& cloud, const Rigid3& camera_from_lidar) {
   if (cloud.organised && cloud.beams > 1) {
-    AddOrganised(cloud, grid, pixels);
+    AddOrganised(cloud, camera_from_lidar);
   } else {
-    AddUnorganised(pixels);
+    AddUnorganised(cloud, camera_from_lidar);
   }
 }
 
-void PointSpacing::AddOrganised(const Cloud& cloud, const std::vector<std::uint32_t>& grid,
-                                const PixelColumns& pixels) {
-  // A sample is enough: of many lines every eighth and the one after it.
-  constexpr std::size_t kEvery = 7;  // beams
-  constexpr int kFewLines = 16;
+void PointSpacing::AddOrganised(const Cloud& cloud, const Rigid3& camera_from_lidar) {
+  // Some 40 lines of a cloud, every seventh beam.
+  constexpr std::size_t kEvery = 7;
   const auto beams = static_cast<std::size_t>(cloud.beams);
-  std::vector<Pixel> line(beams);
-  std::size_t i = 0;
-  for (std::size_t number = 0; number < static_cast<std::size_t>(cloud.lines); ++number) {
-    if (cloud.lines > kFewLines && number % 8 > 1) continue;
-    i = static_cast<std::size_t>(std::lower_bound(grid.begin() + static_cast<std::ptrdiff_t>(i),
-                                                  grid.end(), number * beams) -
-                                 grid.begin());
-    std::fill(line.begin(), line.end(), Pixel{});
-    for (; i < grid.size() && grid[i] / beams == number; ++i) {
-      const std::size_t beam = grid[i] % beams;
-      line[beam] = {pixels.u[i], pixels.v[i], InImage(pixels, i)};
-      if (beam % kEvery != 0 || !line[beam].seen) continue;
-      if (beam > 0 && line[beam - 1].seen)
-        beams_.Add(pixels, i, line[beam - 1].u, line[beam - 1].v);
-      const bool follows = line_before_.size() == beams &&
-                           line_before_number_ + 1 == cloud.first_line + static_cast<int>(number);
-      if (follows && line_before_[beam].seen) {
-        lines_.Add(pixels, i, line_before_[beam].u, line_before_[beam].v);
-      }
+  const auto lines = static_cast<std::size_t>(cloud.lines);
+  const std::size_t step = std::max<std::size_t>(1, lines / 40);
+  const bool follows = line_before_.size() == beams && line_before_number_ + 1 == cloud.first_line;
+  for (std::size_t line = 0; line < lines; line += step) {
+    const Eigen::Vector3f* points = &cloud.points[line * beams];
+    const Eigen::Vector3f* before = line > 0  ? points - beams
+                                    : follows ? line_before_.data()
+                                              : nullptr;
+    for (std::size_t beam = 1; beam < beams; beam += kEvery) {
+      const auto here = PixelOf(points[beam], camera_from_lidar);
+      if (!here) continue;
+      beams_.Add(here, PixelOf(points[beam - 1], camera_from_lidar));
+      if (before != nullptr) lines_.Add(here, PixelOf(before[beam], camera_from_lidar));
     }
-    line_before_.swap(line);
-    line.resize(beams);
-    line_before_number_ = cloud.first_line + static_cast<int>(number);
   }
+  line_before_.clear();
+  if (lines == 1) line_before_ = cloud.points;
+  line_before_number_ = cloud.first_line;
 }
 
 // From how densely points fill those parts of the image that they fill at all.
-void PointSpacing::AddUnorganised(const PixelColumns& pixels) {
+void PointSpacing::AddUnorganised(const Cloud& cloud, const Rigid3& camera_from_lidar) {
   constexpr int kParts = 32;
+  constexpr std::size_t kSample = 20'000;
   std::vector<bool> filled(kParts * kParts);
   double count = 0;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (!InImage(pixels, i)) continue;
-    const auto column = static_cast<std::size_t>(pixels.u[i] * kParts / static_cast<float>(width_));
-    const auto row = static_cast<std::size_t>(pixels.v[i] * kParts / static_cast<float>(height_));
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSample);
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    const auto pixel = PixelOf(cloud.points[i], camera_from_lidar);
+    if (!pixel) continue;
+    const auto column = static_cast<std::size_t>(pixel->x() * kParts / camera_.width());
+    const auto row = static_cast<std::size_t>(pixel->y() * kParts / camera_.height());
     filled[row * kParts + column] = true;
-    ++count;
+    count += static_cast<double>(step);
   }
   if (count == 0) return;
   const auto parts = static_cast<double>(std::count(filled.begin(), filled.end(), true));
-  const double area = parts * width_ * height_ / (kParts * kParts);
+  const double area = parts * camera_.width() * camera_.height() / (kParts * kParts);
   constexpr double kUneven = 1.3;  // such points lie by chance, not in a grid
   unorganised_px_ = kUneven * std::sqrt(area / count);
 }
@@ -109,8 +103,8 @@ Eigen::Vector2d PointSpacing::CellPx() const {
   // One line says nothing of the way across.
   if (lines_.u.empty()) cell.setConstant(cell.maxCoeff());
   if (beams_.u.empty() && lines_.u.empty()) cell.setConstant(unorganised_px_);
-  const double least = std::max(2.0, width_ / kMostCells);
-  return (kCell * cell).cwiseMax(least).cwiseMin(width_ / 8.0);
+  const double least = std::max(2.0, camera_.width() / kMostCells);
+  return (kCell * cell).cwiseMax(least).cwiseMin(camera_.width() / 8.0);
 }
 
 }  // namespace rgbdt

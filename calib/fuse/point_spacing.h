@@ -2,22 +2,23 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
+#include <optional>
 #include <vector>
 
-#include "calib/camera/project_points.h"
+#include "calib/camera/camera.h"
 #include "calib/model/cloud.h"
+#include "calib/model/rigid3.h"
 
 namespace rgbdt {
 
 /// How far apart a LIDAR's neighbouring points lie in a camera's image: medians over beams of a
-/// line and over lines. Takes clouds line by line or as a whole; bounded in memory.
+/// line and over lines. Takes clouds line by line or as a whole and looks at a sample of their
+/// points; bounded in memory.
 class PointSpacing {
  public:
-  explicit PointSpacing(const Camera& camera);
+  explicit PointSpacing(const Camera& camera) : camera_(camera) {}
 
-  /// `grid`: where each of the pixels' points stands in the cloud.
-  void Add(const Cloud& cloud, const std::vector<std::uint32_t>& grid, const PixelColumns& pixels);
+  void Add(const Cloud& cloud, const Rigid3& camera_from_lidar);
 
   /// The cells that hold about one point of a surface each [px], for DepthBuffer.
   Eigen::Vector2d CellPx() const;
@@ -26,7 +27,7 @@ class PointSpacing {
   // Of distances, by their logarithm.
   class Histogram {
    public:
-    void Add(float distance_px);
+    void Add(double distance_px);
     double Median() const;  // 0: none
     bool empty() const { return count_ == 0; }
 
@@ -36,22 +37,18 @@ class PointSpacing {
   };
   struct Pair {
     Histogram u, v;
-    void Add(const PixelColumns& pixels, std::size_t i, float u, float v);
-  };
-  struct Pixel {
-    float u = 0, v = 0;
-    bool seen = false;
+    void Add(const std::optional<Eigen::Vector2d>& a, const std::optional<Eigen::Vector2d>& b);
   };
 
-  void AddOrganised(const Cloud& cloud, const std::vector<std::uint32_t>& grid,
-                    const PixelColumns& pixels);
-  void AddUnorganised(const PixelColumns& pixels);
-  bool InImage(const PixelColumns& pixels, std::size_t i) const;
+  void AddOrganised(const Cloud& cloud, const Rigid3& camera_from_lidar);
+  void AddUnorganised(const Cloud& cloud, const Rigid3& camera_from_lidar);
+  std::optional<Eigen::Vector2d> PixelOf(const Eigen::Vector3f& point,
+                                         const Rigid3& camera_from_lidar) const;
 
-  int width_, height_;
+  Camera camera_;
   Pair beams_, lines_;
   double unorganised_px_ = 0;
-  std::vector<Pixel> line_before_;
+  std::vector<Eigen::Vector3f> line_before_;  // where clouds are single lines
   int line_before_number_ = -2;
 };
 

@@ -10,40 +10,39 @@
 
 namespace rgbdt {
 
-/// What one camera's images show where the points of a cloud lie in them, hidden or not: by point.
+/// Those points of a cloud that lie in one camera's image, hidden or not, and what the image shows
+/// there.
 struct Sightings {
-  static constexpr std::uint32_t kUnseen = 0xFFFFFFFF;  ///< outside of the image; a NaN as a float
-
-  PixelColumns pixels;
+  std::vector<std::uint32_t> point;  ///< which of the cloud's points, rising
+  std::vector<float> u, v;           ///< [px]
+  std::vector<float> inverse_range;  ///< from the camera's centre [1/m]
   /// Of a colour camera red | green << 8 | blue << 16; of a thermal one the bits of a float,
   /// counts.
-  std::vector<std::uint32_t> samples;
+  std::vector<std::uint32_t> sample;
   std::vector<std::uint8_t> hidden;  ///< 1: something is in the way; Judge()
-  /// Points before `end`, and after the run before, were sampled from one image.
+  /// Sightings before `end`, and after the run before, are of one image.
   struct Run {
     std::size_t end = 0;
     std::shared_ptr<const TemperatureTable> temperatures;
   };
   std::vector<Run> runs;
 
-  std::size_t size() const { return samples.size(); }
+  std::size_t size() const { return point.size(); }
   void Clear();
-  /// Goes on with another's points.
-  void Append(const Sightings& other);
+  /// Goes on with those of a cloud whose first point is number `first_point` of this one's.
+  void Append(const Sightings& other, std::size_t first_point);
 };
 
-/// Samples points [first, end) of `sightings->pixels` in an image, bilinearly; goes on with a run.
-void SampleImage(const FusionCamera& camera, const PreparedImage& image, std::size_t first,
-                 std::size_t end, Sightings* sightings);
+/// Adds the block's points that lie in the image, sampled bilinearly; goes on with a run.
+/// `first_point`: the number of the block's first one.
+void SampleImage(const FusionCamera& camera, const PreparedImage& image, const PixelBlock& block,
+                 std::size_t first_point, std::size_t count, Sightings* sightings);
 
-/// The same where no image serves: none of the points is seen.
-void SampleNothing(std::size_t end, Sightings* sightings);
-
-/// Fills in which of points [first, end) are hidden by `now`, or by `past` if there is one.
-void Judge(const DepthBuffer& now, const DepthBuffer* past, std::size_t first, std::size_t end,
+/// Fills in which of sightings [first, size) are hidden by `now`, or by `past` if there is one.
+void Judge(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
            Sightings* sightings);
 
-/// A thermal sample's counts; NaN where unseen.
+/// A thermal sample's counts.
 float CountsOf(std::uint32_t sample);
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #include "calib/fuse/sweep_fuser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -10,11 +11,6 @@ namespace rgbdt {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-
-const float* FloatsOf(const std::vector<Eigen::Vector3f>& points) {
-  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
-  return points.empty() ? nullptr : points.front().data();
-}
 
 template <typename T>
 std::vector<T> Slice(const std::vector<T>& all, std::size_t first, std::size_t end) {
@@ -70,9 +66,12 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
   if (sweep_.points.empty() && !hits.points.empty()) BeginSweep(hits);
   const bool placed = Place(&hits);
   if (!placed) counts_.unplaced += static_cast<std::int64_t>(hits.size());
+  const BlockedPoints points(hits.points);
   for (Eye& eye : eyes_) {
     eye.chunk.Clear();
-    if (placed && eye.camera.calibrated) Look(chunk, hits, &eye);
+    if (!placed || !eye.camera.calibrated) continue;
+    eye.spacing.Add(chunk, eye.camera.camera_from_lidar);
+    Look(hits, points, &eye);
   }
   const BlendCounts blended = Blend(BlendCameras(&Eye::chunk), 0, &hits);
   counts_.coloured += blended.coloured;
@@ -87,28 +86,30 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
   return hits;
 }
 
-// The chunk's points that returned, in the frames of their own times, and where they stand in it.
-RgbdtCloud SweepFuser::HitsOf(const Cloud& chunk) {
+// The chunk's points that returned, in the frames of their own times.
+RgbdtCloud SweepFuser::HitsOf(const Cloud& chunk) const {
   RgbdtCloud hits;
   hits.sweep_utime = chunk.sweep_utime;
   for (const Eye& eye : eyes_) {
     hits.cameras.push_back(eye.camera.spec().name);
     hits.calibration_utime.push_back(eye.camera.calibration_utime);
   }
-  grid_.clear();
+  hits.points.resize(chunk.size());
+  hits.intensity.resize(chunk.size());
+  hits.utime.resize(chunk.size());
+  std::size_t count = 0;
   for (std::size_t i = 0; i < chunk.size(); ++i) {
-    if (chunk.points[i].allFinite()) grid_.push_back(static_cast<std::uint32_t>(i));
+    const Eigen::Vector3f& p = chunk.points[i];
+    hits.points[count] = p;
+    hits.intensity[count] = chunk.intensity.empty() ? kNone : chunk.intensity[i];
+    hits.utime[count] = chunk.utime.empty() ? chunk.sweep_utime : chunk.utime[i];
+    // Finite: not so for NaN and infinity.
+    count += static_cast<std::size_t>(std::abs(p.x()) + std::abs(p.y()) + std::abs(p.z()) <
+                                      std::numeric_limits<float>::max());
   }
-  hits.points.reserve(grid_.size());
-  for (const std::uint32_t i : grid_) hits.points.push_back(chunk.points[i]);
-  hits.intensity.assign(grid_.size(), kNone);
-  hits.utime.assign(grid_.size(), chunk.sweep_utime);
-  for (std::size_t k = 0; k < grid_.size() && !chunk.intensity.empty(); ++k) {
-    hits.intensity[k] = chunk.intensity[grid_[k]];
-  }
-  for (std::size_t k = 0; k < grid_.size() && !chunk.utime.empty(); ++k) {
-    hits.utime[k] = chunk.utime[grid_[k]];
-  }
+  hits.points.resize(count);
+  hits.intensity.resize(count);
+  hits.utime.resize(count);
   return hits;
 }
 
@@ -127,14 +128,20 @@ void SweepFuser::BeginSweep(const RgbdtCloud& hits) {
 
 // The sweep becomes the one before.
 void SweepFuser::NextSweep() {
-  past_points_ = std::move(sweep_.points);
+  std::swap(past_points_, sweep_.points);
   map_from_past_ = map_from_sweep_;
-  sweep_ = {};
+  sweep_.points.clear();
+  sweep_.intensity.clear();
+  sweep_.utime.clear();
   parted_ = 0;
   for (Eye& eye : eyes_) {
     eye.sweep.Clear();
-    eye.past = std::move(eye.now);
-    eye.now = std::nullopt;
+    std::swap(eye.past, eye.now);
+    if (!eye.past) {
+      eye.now = std::nullopt;
+    } else if (eye.now) {
+      eye.now->Clear();  // its memory serves again
+    }
   }
 }
 
@@ -211,14 +218,9 @@ bool SweepFuser::StandAt(const Rigid3& camera_from_sweep, Eye* eye) {
 
 // What hides things from eye.camera_from_sweep, as far as kept points show it.
 void SweepFuser::MakeBuffers(Eye* eye) const {
-  const PointProjector projector(eye->camera.camera(), eye->camera_from_sweep);
   const auto make = [&](const std::vector<Eigen::Vector3f>& points) {
     DepthBuffer buffer(eye->camera.camera(), eye->cell_px, range_sigma_m_);
-    PixelColumns pixels;
-    pixels.Resize(points.size());
-    projector.Project(FloatsOf(points), 0, points.size(), &pixels);
-    buffer.Add(pixels, 0, points.size());
-    buffer.Close();
+    AddToBuffer(BlockedPoints(points), *eye, &buffer);
     return buffer;
   };
   eye->now.emplace(make(sweep_.points));
@@ -226,41 +228,47 @@ void SweepFuser::MakeBuffers(Eye* eye) const {
   if (!past_points_.empty()) eye->past.emplace(make(past_points_));
 }
 
-void SweepFuser::AddToBuffer(const RgbdtCloud& hits, Eye* eye) const {
-  if (!map_from_sweep_) {  // all runs are looked at from one place: this one
-    eye->now->Add(eye->chunk.pixels, 0, hits.size());
-  } else {
-    PixelColumns pixels;
-    pixels.Resize(hits.size());
-    PointProjector(eye->camera.camera(), eye->camera_from_sweep)
-        .Project(FloatsOf(hits.points), 0, hits.size(), &pixels);
-    eye->now->Add(pixels, 0, hits.size());
-  }
-  eye->now->Close();
+void SweepFuser::AddToBuffer(const BlockedPoints& points, const Eye& eye,
+                             DepthBuffer* buffer) const {
+  PointProjector(eye.camera.camera(), eye.camera_from_sweep)
+      .ForBlocks(eye.view, points, 0, points.size(),
+                 [&](std::size_t, std::size_t count, const PixelBlock& block) {
+                   buffer->Add(block, count);
+                 });
+  buffer->Close();
 }
 
-// All points' places in the images that serve them, what these show there, and what hides it.
-void SweepFuser::Look(const Cloud& chunk, const RgbdtCloud& hits, Eye* eye) {
-  eye->chunk.pixels.Resize(hits.size());
-  std::vector<Run> runs;
-  for (std::size_t first = 0; first < hits.size(); first = runs.back().end) {
-    runs.push_back(NextRun(hits, first, *eye));
-    const Run& run = runs.back();
-    ProjectorOf(eye->camera, run)
-        .Project(FloatsOf(hits.points), run.first, run.end - run.first, &eye->chunk.pixels);
-  }
-  eye->spacing.Add(chunk, grid_, eye->chunk.pixels);
-  for (const Run& run : runs) {
+// What the images that serve the points show of them, and what hides it.
+void SweepFuser::Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye) {
+  for (std::size_t first = 0; first < hits.size();) {
+    const Run run = NextRun(hits, first, *eye);
     const bool anew = StandAt(run.camera_from_sweep, eye);
-    if (anew || run.first == 0) AddToBuffer(hits, eye);
-    if (run.image != nullptr) {
-      SampleImage(eye->camera, *run.image, run.first, run.end, &eye->chunk);
-    } else {
-      counts_.untimely += static_cast<std::int64_t>(run.end - run.first);
-      SampleNothing(run.end, &eye->chunk);
-    }
-    Judge(*eye->now, eye->past ? &*eye->past : nullptr, run.first, run.end, &eye->chunk);
+    // While nothing moves, what is looked at goes into the buffer on the way.
+    const bool still = !map_from_sweep_;
+    if (!still && (anew || first == 0)) AddToBuffer(points, *eye, &*eye->now);
+    const std::size_t before = eye->chunk.size();
+    LookAtRun(points, run, still, eye);
+    if (!still) JudgeFrom(before, eye);
+    first = run.end;
   }
+  if (map_from_sweep_ || hits.size() == 0) return;
+  eye->now->Close();
+  JudgeFrom(0, eye);
+}
+
+void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye) {
+  if (run.image == nullptr) counts_.untimely += static_cast<std::int64_t>(run.end - run.first);
+  ProjectorOf(eye->camera, run)
+      .ForBlocks(eye->view, points, run.first, run.end,
+                 [&](std::size_t first, std::size_t count, const PixelBlock& block) {
+                   if (add) eye->now->Add(block, count);
+                   if (run.image == nullptr) return;
+                   SampleImage(eye->camera, *run.image, block, first, count, &eye->chunk);
+                 });
+}
+
+void SweepFuser::JudgeFrom(std::size_t first, Eye* eye) {
+  Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &eye->chunk);
 }
 
 std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) const {
@@ -268,7 +276,7 @@ std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) con
   for (const Eye& eye : eyes_) {
     const Sightings& seen = eye.*sightings;
     cameras.push_back(
-        {&eye.camera, seen.samples.empty() ? nullptr : &seen, eye.now ? &*eye.now : nullptr});
+        {&eye.camera, seen.size() == 0 ? nullptr : &seen, eye.now ? &*eye.now : nullptr});
   }
   return cameras;
 }
@@ -281,17 +289,10 @@ void SweepFuser::Keep(const RgbdtCloud& hits) {
   const auto append = [](const auto& from, auto* to) {
     to->insert(to->end(), from.begin(), from.end());
   };
+  for (Eye& eye : eyes_) eye.sweep.Append(eye.chunk, sweep_.size());
   append(hits.points, &sweep_.points);
   append(hits.intensity, &sweep_.intensity);
   append(hits.utime, &sweep_.utime);
-  for (Eye& eye : eyes_) {
-    if (eye.chunk.samples.empty()) {  // not calibrated
-      eye.chunk.pixels.Resize(hits.size());
-      eye.chunk.hidden.assign(hits.size(), 0);
-      SampleNothing(hits.size(), &eye.chunk);
-    }
-    eye.sweep.Append(eye.chunk);
-  }
 }
 
 // Cells that suit the points' spacing as the whole sweep shows it: a first line alone does not.
@@ -327,7 +328,10 @@ RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
 // What was kept since the last parts.
 std::vector<RgbdtCloud> SweepFuser::Parts() {
   for (Eye& eye : eyes_) {
-    if (!moved_ && eye.now) Judge(*eye.now, nullptr, parted_, sweep_.size(), &eye.sweep);
+    if (moved_ || !eye.now) continue;
+    const auto& point = eye.sweep.point;
+    const auto first = std::lower_bound(point.begin(), point.end(), parted_);
+    Judge(*eye.now, nullptr, static_cast<std::size_t>(first - point.begin()), &eye.sweep);
   }
   std::vector<RgbdtCloud> parts;
   for (; parted_ < sweep_.size(); parted_ += parts.back().size()) {

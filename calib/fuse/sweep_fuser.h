@@ -66,8 +66,10 @@ class SweepFuser {
  private:
   // What a camera sees, and what hides things from it.
   struct Eye {
-    explicit Eye(const CameraSpec& spec) : camera(spec), spacing(camera.camera()) {}
+    explicit Eye(const CameraSpec& spec)
+        : camera(spec), view(camera.camera()), spacing(camera.camera()) {}
     FusionCamera camera;
+    ViewBounds view;
     PointSpacing spacing;
     std::optional<DepthBuffer> now, past;  // of this sweep, of the one before
     Rigid3 camera_from_sweep;              // where they were made for
@@ -81,18 +83,20 @@ class SweepFuser {
     Rigid3 camera_from_sweep;
   };
 
-  RgbdtCloud HitsOf(const Cloud& chunk);
+  RgbdtCloud HitsOf(const Cloud& chunk) const;
   void BeginSweep(const RgbdtCloud& hits);
   void NextSweep();
   bool Place(RgbdtCloud* hits) const;
-  void Look(const Cloud& chunk, const RgbdtCloud& hits, Eye* eye);
+  void Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye);
+  void LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye);
+  static void JudgeFrom(std::size_t first, Eye* eye);
   Run NextRun(const RgbdtCloud& hits, std::size_t first, const Eye& eye) const;
   std::optional<Rigid3> CameraFromSweep(const FusionCamera& camera, Utime utime) const;
   PointProjector ProjectorOf(const FusionCamera& camera, const Run& run) const;
   bool HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const;
   bool StandAt(const Rigid3& camera_from_sweep, Eye* eye);
   void MakeBuffers(Eye* eye) const;
-  void AddToBuffer(const RgbdtCloud& hits, Eye* eye) const;
+  void AddToBuffer(const BlockedPoints& points, const Eye& eye, DepthBuffer* buffer) const;
   void FitCells();
   void Keep(const RgbdtCloud& hits);
   std::vector<RgbdtCloud> Parts();
@@ -103,7 +107,6 @@ class SweepFuser {
   double range_sigma_m_;
   FusionCounts counts_;
   PoseTrack poses_;
-  std::vector<std::uint32_t> grid_;  // where the chunk's hits stand in it
 
   // The sweep so far, in its own frame; colours are not kept but made at its end.
   RgbdtCloud sweep_;

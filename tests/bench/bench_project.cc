@@ -26,10 +26,15 @@ std::shared_ptr<const Input> MakeInput(std::int64_t points) {
 
 std::function<void()> Ours(std::int64_t points) {
   return [input = MakeInput(points)] {
-    const PointProjector projector(Camera(input->spec), input->camera_from_lidar);
-    PixelColumns pixels;
-    pixels.Resize(input->points.size());
-    projector.Project(input->points[0].data(), 0, input->points.size(), &pixels);
+    const Camera camera(input->spec);
+    const PointProjector projector(camera, input->camera_from_lidar);
+    std::vector<Eigen::Vector2f> pixels(input->points.size());
+    projector.ForBlocks(ViewBounds(camera), BlockedPoints(input->points), 0, input->points.size(),
+                        [&](std::size_t first, std::size_t count, const PixelBlock& block) {
+                          for (std::size_t i = 0; i < count; ++i) {
+                            pixels[first + i] = {block.u[i], block.v[i]};
+                          }
+                        });
     benchmark::DoNotOptimize(pixels);
   };
 }

@@ -34,6 +34,26 @@ std::vector<Eigen::Vector3f> PointsAllRound(std::size_t count) {
   return points;
 }
 
+// Of all points; what ForBlocks leaves out is 0.
+struct Columns {
+  std::vector<float> u, v, inverse_range;
+  std::size_t blocks = 0;
+
+  Columns(const PointProjector& projector, const Camera& camera,
+          const std::vector<Eigen::Vector3f>& points)
+      : u(points.size()), v(points.size()), inverse_range(points.size()) {
+    projector.ForBlocks(ViewBounds(camera), BlockedPoints(points), 0, points.size(),
+                        [&](std::size_t first, std::size_t count, const PixelBlock& block) {
+                          ++blocks;
+                          for (std::size_t i = 0; i < count; ++i) {
+                            u[first + i] = block.u[i];
+                            v[first + i] = block.v[i];
+                            inverse_range[first + i] = block.inverse_range[i];
+                          }
+                        });
+  }
+};
+
 class ProjectPoints : public testing::TestWithParam<Lens::Model> {};
 
 TEST_P(ProjectPoints, IsCameraProject) {
@@ -41,12 +61,7 @@ TEST_P(ProjectPoints, IsCameraProject) {
   Rigid3 camera_from_points = RotationAbout(Eigen::Vector3d(1, -2, 3).normalized(), 1.1);
   camera_from_points.translation = {0.1, -0.2, 0.3};
   const auto points = PointsAllRound(5000);
-  PixelColumns pixels;
-  pixels.Resize(points.size());
-  const PointProjector projector(camera, camera_from_points);
-  // In two pieces, neither a whole number of blocks.
-  projector.Project(points[0].data(), 0, 1700, &pixels);
-  projector.Project(points[0].data(), 1700, points.size() - 1700, &pixels);
+  const Columns pixels(PointProjector(camera, camera_from_points), camera, points);
   int seen = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = camera_from_points * points[i].cast<double>();
@@ -68,15 +83,16 @@ TEST_P(ProjectPoints, WhatTheLensDoesNotSeeIsZero) {
   points[5] = {kNan, 1, 1};
   points[6] = {0, 0, kInfinity};
   points[7] = {0, 0, 0};
-  PixelColumns pixels;
-  pixels.Resize(points.size());
-  PointProjector(camera, Rigid3()).Project(points[0].data(), 0, points.size(), &pixels);
+  const Columns pixels(PointProjector(camera, Rigid3()), camera, points);
   int unseen = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = points[i].cast<double>();
     const double angle = std::acos(p.z() / p.norm());
     if (std::abs(angle - camera.max_angle()) < 1e-3) continue;  // single precision may differ
-    const bool sees = points[i].allFinite() && camera.Project(p).has_value();
+    const auto pixel = camera.Project(p);
+    const bool sees = points[i].allFinite() && pixel.has_value();
+    // What lies far from the image may be left out.
+    if (sees && !camera.Contains(*pixel)) continue;
     unseen += sees ? 0 : 1;
     EXPECT_EQ(pixels.inverse_range[i] > 0, sees) << i;
     if (!sees) {
@@ -97,11 +113,9 @@ TEST_P(ProjectPoints, AMovingCameraIsReadOutRowByRow) {
   for (float x = -2; x <= 2; x += 0.5F) {
     for (float y = -1.5F; y <= 1.5F; y += 0.5F) points.emplace_back(x, y, 4.F);
   }
-  PixelColumns pixels;
-  pixels.Resize(points.size());
   PointProjector projector(camera, Rigid3());
   projector.SetMotion(delta_per_row);
-  projector.Project(points[0].data(), 0, points.size(), &pixels);
+  const Columns pixels(projector, camera, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Rigid3 moved = Exp((pixels.v[i] - 727.5) * delta_per_row);
     const auto pixel = camera.Project(moved * points[i].cast<double>());
@@ -109,6 +123,33 @@ TEST_P(ProjectPoints, AMovingCameraIsReadOutRowByRow) {
     // To first order: over the image 10 to 20 px, of which 0.3 px may be left.
     EXPECT_NEAR(pixels.u[i], pixel->x(), 0.3);
     EXPECT_NEAR(pixels.v[i], pixel->y(), 0.3);
+  }
+}
+
+// Columns of a scanner all round: those that the camera cannot see are not looked at.
+TEST(ViewBounds, LeavesOutWhatLiesElsewhereAndNothingElse) {
+  CameraSpec spec = SpecOf(Lens::Model::kPinhole);
+  for (double& k : spec.lens.distortion) k *= 0.3;  // as it is, its corners see nothing
+  const Camera camera(spec);
+  Rigid3 camera_from_lidar;
+  camera_from_lidar.rotation =
+      Eigen::Quaterniond((Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished());
+  camera_from_lidar.translation = {0.3, 0.1, 0.05};
+  std::vector<Eigen::Vector3f> points;
+  for (int line = 0; line < 360; ++line) {
+    for (int beam = 0; beam < 512; ++beam) {
+      const double azimuth = line * M_PI / 180;
+      const double elevation = 0.002 * (beam - 256);
+      points.emplace_back(6 * std::cos(azimuth), 6 * std::sin(azimuth), 6 * std::tan(elevation));
+    }
+  }
+  const Columns pixels(PointProjector(camera, camera_from_lidar), camera, points);
+  EXPECT_LT(pixels.blocks, 140U);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = camera.Project(camera_from_lidar * points[i].cast<double>());
+    if (pixel && camera.Contains(*pixel)) {
+      ASSERT_GT(pixels.inverse_range[i], 0);
+    }
   }
 }
 
