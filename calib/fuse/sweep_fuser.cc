@@ -33,13 +33,16 @@ SweepFuser::SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigm
 
 PoseTrack::Added SweepFuser::AddPose(const StampedPose& pose) {
   const auto added = poses_.Add(pose);
-  if (added == PoseTrack::Added::kJump) {
-    // Nothing from before the jump has a known place any more.
-    NextSweep();
-    past_points_.clear();
-    for (Eye& eye : eyes_) eye.now = eye.past = std::nullopt;
-  }
+  // Nothing from before a jump has a known place any more; nor has what came before the first pose.
+  if (added == PoseTrack::Added::kJump || !map_from_sweep_) Forget();
   return added;
+}
+
+void SweepFuser::Forget() {
+  if (sweep_.points.empty() && past_points_.empty()) return;
+  NextSweep();
+  past_points_.clear();
+  for (Eye& eye : eyes_) eye.now = eye.past = std::nullopt;
 }
 
 std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t index,

@@ -86,6 +86,7 @@ class SweepFuser {
   RgbdtCloud HitsOf(const Cloud& chunk) const;
   void BeginSweep(const RgbdtCloud& hits);
   void NextSweep();
+  void Forget();
   bool Place(RgbdtCloud* hits) const;
   void Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye);
   void LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye);

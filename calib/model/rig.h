@@ -41,10 +41,10 @@ struct CameraSpec {
   Lens lens;
   Radiometry radiometry;  ///< thermal; used where an image brings none
   double readout_s = 0;   ///< D: read-out and transfer time; an image serves points from utime + D
-  /// Rolling read-out: from the first row's exposure to the last one's; the image's utime is that of
-  /// the middle row. 0: all rows at once.
+  /// Rolling read-out: from the first row's exposure to the last one's; the image's utime is that
+  /// of the middle row. 0: all rows at once.
   double rolling_s = 0;
-  double netd_k = 0;      ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
+  double netd_k = 0;  ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
   std::optional<Rigid3> camera_from_lidar_guess;  ///< measured by hand
 };
 

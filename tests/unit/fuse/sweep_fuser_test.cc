@@ -199,6 +199,23 @@ TEST(SweepFuser, WhereThePosesDoNotTellNothingIsColoured) {
   EXPECT_THAT(fuser.EndSweep(), SizeIs(0));
 }
 
+TEST(SweepFuser, PosesThatBeginWithinASweepServeFromThenOn) {
+  const Drive drive;
+  const CameraSpec spec = SpecOf(0);
+  SweepFuser fuser({spec}, 0.005);
+  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.camera(0).AddImage(Photograph(drive, spec, kNow - 50'000));
+  EXPECT_FALSE(fuser.FuseChunk(LineAt(drive, kNow, 0, kNow, 0)).map_from_lidar);
+  for (Utime t = -100'000; t <= 100'000; t += 20'000) fuser.AddPose(PoseAt(drive, kNow + t));
+  const RgbdtCloud fused = fuser.FuseChunk(LineAt(drive, kNow, 4, kNow + 80'000, 0.05));
+  ASSERT_TRUE(fused.map_from_lidar);
+  EXPECT_THAT(fused.valid, Each(1U));
+  EXPECT_LT(WorstOf(drive, {fused}).metres, 1e-3);
+  const auto parts = fuser.EndSweep();
+  ASSERT_THAT(parts, SizeIs(1));
+  EXPECT_EQ(parts[0].size(), 40U) << "of one frame only";
+}
+
 TEST(SweepFuser, AfterAJumpTheStreamGoesOn) {
   const Drive drive;
   const CameraSpec spec = SpecOf(0);
