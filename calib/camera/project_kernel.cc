@@ -35,10 +35,12 @@ struct Pixel {
   float u, v;
 };
 
-template <bool kFisheye>
+enum class Bend { kPolynomial, kRational, kFisheye };
+
+template <Bend kBend>
 inline Pixel Lens(const KernelProjection& k, float x, float y, float z) {
   const float* d = k.distortion;
-  if (kFisheye) {
+  if (kBend == Bend::kFisheye) {
     const float r = std::sqrt(x * x + y * y);
     const float theta = AngleOf(z, r);
     const float t2 = theta * theta;
@@ -51,15 +53,15 @@ inline Pixel Lens(const KernelProjection& k, float x, float y, float z) {
   const float a = x * iz;
   const float b = y * iz;
   const float r2 = a * a + b * b;
-  const float radial =
-      (1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]))) / (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
+  float radial = 1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+  if (kBend == Bend::kRational) radial /= 1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7]));
   const float ab2 = 2 * a * b;
   const float bent_a = a * radial + d[2] * ab2 + d[3] * (r2 + 2 * a * a);
   const float bent_b = b * radial + d[2] * (r2 + 2 * b * b) + d[3] * ab2;
   return {k.fx * bent_a + k.cx, k.fy * bent_b + k.cy};
 }
 
-template <bool kFisheye, bool kRolls>
+template <Bend kBend, bool kRolls>
 inline __attribute__((always_inline)) void Run(const KernelProjection& k,
                                                const float* __restrict points, std::size_t count,
                                                float* __restrict u, float* __restrict v,
@@ -82,7 +84,7 @@ inline __attribute__((always_inline)) void Run(const KernelProjection& k,
     float x = r[0] * px + r[1] * py + r[2] * pz + t[0];
     float y = r[3] * px + r[4] * py + r[5] * pz + t[1];
     float z = r[6] * px + r[7] * py + r[8] * pz + t[2];
-    Pixel pixel = Lens<kFisheye>(k, x, y, z);
+    Pixel pixel = Lens<kBend>(k, x, y, z);
     if (kRolls) {
       // To first order; the row hardly changes by it, so once is enough.
       const float rows = pixel.v - k.middle_row;
@@ -92,7 +94,7 @@ inline __attribute__((always_inline)) void Run(const KernelProjection& k,
       x = sx;
       y = sy;
       z = sz;
-      pixel = Lens<kFisheye>(k, x, y, z);
+      pixel = Lens<kBend>(k, x, y, z);
     }
     const float inverse = 1 / std::sqrt(x * x + y * y + z * z);
     // Not so for NaN, nor for a point in the camera's centre. As numbers: no branches.
@@ -116,12 +118,17 @@ void ProjectKernel(const KernelProjection& k, const float* points, std::size_t c
   float* u = out.u;
   float* v = out.v;
   float* w = out.inverse_range;
+  const float* d = k.distortion;
+  const bool rational = d[5] != 0 || d[6] != 0 || d[7] != 0;
   if (k.fisheye) {
-    k.rolls ? Run<true, true>(k, points, count, u, v, w)
-            : Run<true, false>(k, points, count, u, v, w);
+    k.rolls ? Run<Bend::kFisheye, true>(k, points, count, u, v, w)
+            : Run<Bend::kFisheye, false>(k, points, count, u, v, w);
+  } else if (rational) {
+    k.rolls ? Run<Bend::kRational, true>(k, points, count, u, v, w)
+            : Run<Bend::kRational, false>(k, points, count, u, v, w);
   } else {
-    k.rolls ? Run<false, true>(k, points, count, u, v, w)
-            : Run<false, false>(k, points, count, u, v, w);
+    k.rolls ? Run<Bend::kPolynomial, true>(k, points, count, u, v, w)
+            : Run<Bend::kPolynomial, false>(k, points, count, u, v, w);
   }
 }
 

@@ -5,12 +5,8 @@ namespace rgbdt {
 Messages MapperNode::Handle(const Message& message) {
   const auto* cloud = std::get_if<RgbdtCloud>(&message);
   if (cloud == nullptr) return {};
-  if (cloud->whole_sweep && chunks_seen_) {
-    ++repeated_;
-    return {};
-  }
+  if (cloud->map_from_lidar && map_.frame() == "lidar") map_ = VoxelMap(options_);
   map_.Add(*cloud);
-  chunks_seen_ |= !cloud->whole_sweep;
   ++clouds_;
   return {};
 }
@@ -27,8 +23,7 @@ Status MapperNode::GetStatus() const {
                      {"points", map_.points()},
                      {"voxels", static_cast<std::int64_t>(map_.size())},
                      {"voxels gone, map full", map_.evicted()},
-                     {"points skipped", map_.skipped()},
-                     {"whole sweeps left out", repeated_}};
+                     {"points skipped", map_.skipped()}};
   return status;
 }
 

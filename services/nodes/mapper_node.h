@@ -8,13 +8,12 @@
 
 namespace rgbdt {
 
-/// RGBDT_CLOUD -> a voxel map; publishes nothing. Chunks are taken as they come, whole sweeps
-/// (`whole_sweep`: the same points once more, better coloured) are left out and counted where
-/// chunks came before. Nothing waits; a late or repeated chunk is taken like any other. A cloud
-/// with a pose after clouds without, or the reverse, is refused (voxel_map.h).
+/// RGBDT_CLOUD -> a voxel map; publishes nothing. Nothing waits; a late or repeated chunk is taken
+/// like any other. With the first pose the map begins anew, in the pose stream's frame: what came
+/// before lies nobody knows where. From then on a cloud without a pose is refused.
 class MapperNode : public Node {
  public:
-  explicit MapperNode(const VoxelMapOptions& options) : map_(options) {}
+  explicit MapperNode(const VoxelMapOptions& options) : options_(options), map_(options) {}
 
   std::string name() const override { return "mapper"; }
   std::vector<std::string> Subscriptions() const override { return {"RGBDT_CLOUD"}; }
@@ -24,9 +23,9 @@ class MapperNode : public Node {
   const VoxelMap& map() const { return map_; }
 
  private:
+  VoxelMapOptions options_;
   VoxelMap map_;
-  std::int64_t clouds_ = 0, repeated_ = 0;
-  bool chunks_seen_ = false;
+  std::int64_t clouds_ = 0;
 };
 
 }  // namespace rgbdt

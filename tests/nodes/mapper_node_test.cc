@@ -45,16 +45,16 @@ TEST(MapperNode, MapsChunksAndSaysNothing) {
   EXPECT_EQ(Counter(node.GetStatus(), "voxels"), 2);
 }
 
-TEST(MapperNode, AWholeSweepIsNotTakenAgain) {
+TEST(MapperNode, WithTheFirstPoseItBeginsAnew) {
   MapperNode node = Node();
-  RgbdtCloud whole = Chunk(1.05F);
-  whole.whole_sweep = true;
-  node.Handle(whole);
-  EXPECT_EQ(node.map().points(), 2) << "where there are no chunks, sweeps are all there is";
   node.Handle(Chunk(1.05F));
-  node.Handle(whole);
-  EXPECT_EQ(node.map().points(), 4);
-  EXPECT_EQ(Counter(node.GetStatus(), "whole sweeps left out"), 1);
+  RgbdtCloud posed = Chunk(2.05F);
+  posed.map_from_lidar = Rigid3();
+  posed.frame_utime = kNow;
+  node.Handle(posed);
+  EXPECT_EQ(node.map().size(), 1U);
+  EXPECT_EQ(node.map().points(), 2);
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("pose stream"));
 }
 
 TEST(MapperNode, APoseThatIsMissingIsRefusedAndTheMapStays) {

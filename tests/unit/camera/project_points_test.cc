@@ -56,6 +56,20 @@ struct Columns {
 
 class ProjectPoints : public testing::TestWithParam<Lens::Model> {};
 
+TEST(ProjectPoints5, ALensOfFiveCoefficientsIsCameraProject) {
+  CameraSpec spec = SpecOf(Lens::Model::kPinhole);
+  std::fill(spec.lens.distortion.begin() + 5, spec.lens.distortion.end(), 0);
+  const Camera camera(spec);
+  const auto points = PointsAllRound(2000);
+  const Columns pixels(PointProjector(camera, Rigid3()), camera, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = camera.Project(points[i].cast<double>());
+    if (!pixel || !camera.Contains(*pixel)) continue;
+    EXPECT_NEAR(pixels.u[i], pixel->x(), 0.002) << i;
+    EXPECT_NEAR(pixels.v[i], pixel->y(), 0.002) << i;
+  }
+}
+
 TEST_P(ProjectPoints, IsCameraProject) {
   const Camera camera(SpecOf(GetParam()));
   Rigid3 camera_from_points = RotationAbout(Eigen::Vector3d(1, -2, 3).normalized(), 1.1);
