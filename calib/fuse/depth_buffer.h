@@ -25,9 +25,12 @@ class DepthBuffer {
 
   /// Whether a point at this pixel of the image is hidden by what was added and closed.
   bool Hides(float u, float v, float inverse_range) const {
-    const float nearer = planes_[CellOf(u, v)].At(u, v) - inverse_range;
+    const float nearer = SurfaceAt(u, v) - inverse_range;
     return nearer > inverse_range * (kBehind + inverse_range * absolute_m_);
   }
+
+  /// Inverse range of the surface at a pixel of the image; 0 or less: none.
+  float SurfaceAt(float u, float v) const { return planes_[CellOf(u, v)].At(u, v); }
 
   /// Cosine of the angle between the line of sight and the surface's normal at a pixel of the
   /// image; 1 where nothing is known.

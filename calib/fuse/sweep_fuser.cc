@@ -27,7 +27,7 @@ void TransformPoints(const Rigid3& to_from, std::vector<Eigen::Vector3f>* points
 }  // namespace
 
 SweepFuser::SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigma_m)
-    : range_sigma_m_(range_sigma_m) {
+    : range_sigma_m_(range_sigma_m), seen_through_(range_sigma_m) {
   for (const CameraSpec& camera : cameras) eyes_.emplace_back(camera);
 }
 
@@ -133,6 +133,8 @@ void SweepFuser::BeginSweep(const RgbdtCloud& hits) {
 void SweepFuser::NextSweep() {
   std::swap(past_points_, sweep_.points);
   map_from_past_ = map_from_sweep_;
+  if (seen_points_ > 0) seen_through_.Clear();
+  seen_points_ = 0;
   sweep_.points.clear();
   sweep_.intensity.clear();
   sweep_.utime.clear();
@@ -251,12 +253,12 @@ void SweepFuser::Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* 
     if (!still && (anew || first == 0)) AddToBuffer(points, *eye, &*eye->now);
     const std::size_t before = eye->chunk.size();
     LookAtRun(points, run, still, eye);
-    if (!still) JudgeFrom(before, eye);
+    if (!still) JudgeFrom(hits, before, eye);
     first = run.end;
   }
   if (map_from_sweep_ || hits.size() == 0) return;
   eye->now->Close();
-  JudgeFrom(0, eye);
+  JudgeFrom(hits, 0, eye);
 }
 
 void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye) {
@@ -270,8 +272,33 @@ void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add
                  });
 }
 
-void SweepFuser::JudgeFrom(std::size_t first, Eye* eye) {
-  Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &eye->chunk);
+void SweepFuser::JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye) {
+  Sightings& seen = eye->chunk;
+  Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &seen);
+  if (!eye->past || map_from_sweep_) return;
+  for (std::size_t i = first; i < seen.size(); ++i) {
+    if (seen.hidden[i] == 0 || eye->now->Hides(seen.u[i], seen.v[i], seen.inverse_range[i]))
+      continue;
+    LookThrough(hits);
+    if (IsGone(*eye, hits.points[seen.point[i]], i)) seen.hidden[i] = 0;
+  }
+}
+
+// Only where it is asked for.
+void SweepFuser::LookThrough(const RgbdtCloud& hits) {
+  const std::size_t all = sweep_.size() + hits.size();
+  if (seen_points_ == all) return;
+  seen_through_.Add(sweep_.points, std::min(seen_points_, sweep_.size()));
+  seen_through_.Add(hits.points);
+  seen_points_ = all;
+}
+
+// Whether what the sweep before saw in front of a point is there no more.
+bool SweepFuser::IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const {
+  const Sightings& seen = eye.chunk;
+  const float surface = eye.past->SurfaceAt(seen.u[sighting], seen.v[sighting]);
+  const Eigen::Vector3f centre = eye.camera_from_sweep.Inverse().translation.cast<float>();
+  return seen_through_.IsGone(centre + seen.inverse_range[sighting] / surface * (point - centre));
 }
 
 std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) const {

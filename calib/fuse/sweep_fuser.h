@@ -7,6 +7,7 @@
 
 #include "calib/fuse/blend.h"
 #include "calib/fuse/point_spacing.h"
+#include "calib/fuse/seen_through.h"
 #include "calib/model/cloud.h"
 #include "calib/model/pose_track.h"
 #include "calib/model/rgbdt_cloud.h"
@@ -27,7 +28,8 @@ struct FusionCounts {
 ///
 /// Each hit is projected into the image of each camera that serves its time (FusionCamera), through
 /// the full lens model, and sampled bilinearly; it is coloured where nothing of this sweep so far
-/// and of the sweep before is in the way (DepthBuffer). At a sweep's end all of its points are
+/// and of the sweep before is in the way (DepthBuffer); while the rig stands, what this sweep has
+/// seen through is taken for gone (SeenThrough). At a sweep's end all of its points are
 /// judged by the whole sweep: what hides a point may have come after it.
 ///
 /// While poses come (AddPose) the rig's motion is taken out: all points of a chunk are in the LIDAR
@@ -90,7 +92,9 @@ class SweepFuser {
   bool Place(RgbdtCloud* hits) const;
   void Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye);
   void LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye);
-  static void JudgeFrom(std::size_t first, Eye* eye);
+  void JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye);
+  void LookThrough(const RgbdtCloud& hits);
+  bool IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const;
   Run NextRun(const RgbdtCloud& hits, std::size_t first, const Eye& eye) const;
   std::optional<Rigid3> CameraFromSweep(const FusionCamera& camera, Utime utime) const;
   PointProjector ProjectorOf(const FusionCamera& camera, const Run& run) const;
@@ -116,6 +120,8 @@ class SweepFuser {
   bool moved_ = false;                    // a camera did, within the sweep
   bool too_long_ = false;
   std::vector<Eigen::Vector3f> past_points_;
+  SeenThrough seen_through_;     // by this sweep
+  std::size_t seen_points_ = 0;  // so many of it and the chunk
   std::optional<Rigid3> map_from_past_;
 };
 

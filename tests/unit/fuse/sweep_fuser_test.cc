@@ -306,6 +306,48 @@ TEST(SweepFuser, TheSweepsEndKnowsWhatCameLater) {
   EXPECT_GT(hidden, 30);
 }
 
+// A pillar in the first sweep, at the left, which hides the wall to the right of it. The second
+// sweep comes from the left: the pillar's place first.
+TEST(SweepFuser, WhatHasGoneHidesNothing) {
+  const Drive still{false};
+  const CameraSpec spec = SpecOf(0);
+  constexpr int kLines = 100;
+  const auto line = [&](Utime sweep, int number, bool pillar) {
+    Cloud cloud;
+    cloud.sweep_utime = sweep;
+    cloud.first_line = number;
+    cloud.lines = 1;
+    cloud.beams = 60;
+    const double azimuth = -0.2 + 0.004 * number;
+    const bool near = pillar && number >= 75 && number < 95;
+    for (int beam = 0; beam < cloud.beams; ++beam) {
+      const Eigen::Vector3d ray(1, std::tan(azimuth), 0.004 * (beam - 30) / std::cos(azimuth));
+      cloud.points.push_back(((near ? 2 : 5) * ray).cast<float>());
+    }
+    return cloud;
+  };
+  for (const bool stays : {true, false}) {
+    SweepFuser fuser({spec}, 0.005);
+    Rigid3 beside = CameraFromLidar();
+    beside.translation.x() += 0.5;
+    fuser.SetCalibration(0, beside, 1);
+    fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
+    fuser.camera(0).ServeAllTimes();
+    for (int number = 0; number < kLines; ++number) fuser.FuseChunk(line(kNow, number, true));
+    fuser.EndSweep();
+    int hidden = 0;
+    for (int number = kLines - 1; number >= 0; --number) {
+      const auto fused = fuser.FuseChunk(line(kNow + 20 * kSecond, number, stays));
+      for (const std::uint32_t valid : fused.valid) hidden += valid == 0 ? 1 : 0;
+    }
+    if (stays) {
+      EXPECT_GT(hidden, 800);
+    } else {
+      EXPECT_LT(hidden, 200);  // at the rim of what was looked at, nobody knows
+    }
+  }
+}
+
 TEST(SweepFuser, BadPointsAreLeftOutAndHarmNothing) {
   const Drive still{false};
   const CameraSpec spec = SpecOf(0);
