@@ -38,8 +38,9 @@ struct BoardPriors {
 };
 
 /// A detector's errors within one image are partly alike, more than their residuals show: poses
-/// from rendered images are off by about half as much again as the corners' scatter has it
-/// (scripts/study detection, corners). Sigmas of corners are enlarged by this.
+/// from rendered colour images are off by about half as much again as the corners' scatter has it
+/// (scripts/study detection, corners; those from thermal ones are not). Sigmas of corners are
+/// enlarged by this.
 inline constexpr double kCornersAlike = 1.4;
 
 /// A crossing against its side. All on the board, metres and radians.
