@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/device_convert.h"
 #include "calib/files/proto/rig.pb.h"
 #include "calib/files/proto_convert.h"
 #include "calib/files/text_proto.h"
@@ -116,6 +117,7 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed le
     spec.camera_from_lidar_guess =
         text::ToRigid3(camera.camera_from_lidar_guess(), place.In("camera_from_lidar_guess"));
   }
+  if (camera.has_device()) spec.device = text::ToDevice(camera.device(), place.In("device"));
   return spec;
 }
 
@@ -124,6 +126,13 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
   spec.name = lidar.name();
   if (spec.name.empty()) place.Fail("name", "is missing; expected a name such as \"lidar\"");
   if (lidar.range_sigma_m() != 0) spec.range_sigma_m = lidar.range_sigma_m();
+  if (lidar.has_hokuyo()) {
+    spec.device = text::ToDevice(lidar.hokuyo(), place.In("hokuyo"));
+  } else if (lidar.has_velodyne()) {
+    spec.device = text::ToDevice(lidar.velodyne(), place.In("velodyne"));
+  } else if (lidar.has_pcd_folder()) {
+    spec.device = text::ToDevice(lidar.pcd_folder(), place.In("pcd_folder"));
+  }
   if (lidar.has_turned_scanner()) {
     const proto::TurnedScanner& scanner = lidar.turned_scanner();
     const Place at = place.In("turned_scanner");
@@ -135,7 +144,12 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
     text::RequireFinite(scanner.zero_ticks(), at, "zero_ticks");
     spec.turned_scanner =
         TurnedScanner{text::ToRigid3(scanner.motor_from_scanner(), at.In("motor_from_scanner")),
-                      scanner.ticks_per_degree() * kDegreesPerRadian, scanner.zero_ticks()};
+                      scanner.ticks_per_degree() * kDegreesPerRadian,
+                      scanner.zero_ticks(),
+                      {}};
+    if (scanner.has_dynamixel()) {
+      spec.turned_scanner->motor = text::ToDevice(scanner.dynamixel(), at.In("dynamixel"));
+    }
   }
   return spec;
 }
@@ -207,16 +221,21 @@ void FromCamera(const CameraSpec& spec, proto::Camera* out) {
   if (spec.camera_from_lidar_guess) {
     text::FromRigid3(*spec.camera_from_lidar_guess, out->mutable_camera_from_lidar_guess());
   }
+  if (spec.device) text::FromDevice(*spec.device, out->mutable_device());
 }
 
 void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   out->set_name(text::ValidUtf8(spec.name));
   out->set_range_sigma_m(spec.range_sigma_m);
+  text::FromLidarDevice(spec, out);
   if (!spec.turned_scanner) return;
   proto::TurnedScanner* scanner = out->mutable_turned_scanner();
   text::FromRigid3(spec.turned_scanner->motor_from_scanner, scanner->mutable_motor_from_scanner());
   scanner->set_ticks_per_degree(TicksPerDegree(spec.turned_scanner->ticks_per_rad));
   scanner->set_zero_ticks(spec.turned_scanner->zero_ticks);
+  if (spec.turned_scanner->motor) {
+    text::FromDevice(*spec.turned_scanner->motor, scanner->mutable_dynamixel());
+  }
 }
 
 void FromTarget(const Target& spec, proto::Target* out) {

@@ -4,8 +4,10 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "calib/model/devices.h"
 #include "calib/model/image.h"
 #include "calib/model/rigid3.h"
 
@@ -46,6 +48,7 @@ struct CameraSpec {
   double rolling_s = 0;
   double netd_k = 0;  ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
   std::optional<Rigid3> camera_from_lidar_guess;  ///< measured by hand
+  std::optional<CameraDevice> device;             ///< for rgbdt-camera
 };
 
 /// A 2D scanner on a motor. LIDAR frame: the motor's base, motor axis z, at encoder zero x forward.
@@ -53,13 +56,16 @@ struct CameraSpec {
 struct TurnedScanner {
   Rigid3 motor_from_scanner;
   double ticks_per_rad = 0;
-  double zero_ticks = 0;  ///< reading at which the motor's angle is zero
+  double zero_ticks = 0;                 ///< reading at which the motor's angle is zero
+  std::optional<DynamixelDevice> motor;  ///< for rgbdt-motor
 };
 
 struct LidarSpec {
   std::string name;
   std::optional<TurnedScanner> turned_scanner;  ///< absent: the sensor gives 3D clouds itself
   double range_sigma_m = 0.01;
+  /// For rgbdt-lidar; std::monostate: none.
+  std::variant<std::monostate, HokuyoDevice, VelodyneDevice, PcdFolderDevice> device;
 };
 
 /// The checkerboard. Target frame: origin in the board's centre, x to the right along the width,

@@ -119,7 +119,11 @@ void NodeRunner::Drop(const std::string& channel, const std::string& what) {
   if (dropped_by_channel_.size() < kMaxKeys || dropped_by_channel_.count(channel) != 0) {
     ++dropped_by_channel_[channel];
   }
-  last_problem_ = Printable(channel + ": " + what, kMaxProblemBytes);
+  NameProblem(channel + ": " + what);
+}
+
+void NodeRunner::NameProblem(const std::string& problem) {
+  last_problem_ = Printable(problem, kMaxProblemBytes);
   if (problem_handler_) problem_handler_(last_problem_);
 }
 

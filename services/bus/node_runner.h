@@ -31,6 +31,9 @@ class NodeRunner {
   /// Numbers and publishes, as if the node had said it.
   void Publish(Messages messages);
 
+  /// Names a problem of the node's own: in the status and to the problem handler.
+  void NameProblem(const std::string& problem);
+
   /// At 1 Hz: what the node repeats, and its status.
   void Tick();
 

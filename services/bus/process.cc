@@ -84,6 +84,15 @@ int RunOnLcm(Node& node, const std::string& url, const Idle& idle) {
   return 1;
 }
 
+int RunDevice(DeviceNode& node, const std::string& url) {
+  return RunOnLcm(node, url, [&](NodeRunner& runner) {
+    DeviceNews news = node.TakeNews();
+    for (const std::string& problem : news.problems) runner.NameProblem(problem);
+    runner.Publish(std::move(news.messages));
+    return !node.ended();
+  });
+}
+
 void ProblemLog::Add(const std::string& problem, double now_s) {
   if (entries_.size() >= kMaxEntries && entries_.count(problem) == 0) entries_.clear();
   const auto [entry, is_new] = entries_.try_emplace(problem, Entry{now_s, 0});

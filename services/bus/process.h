@@ -4,6 +4,7 @@
 #include <string>
 
 #include "services/bus/node_runner.h"
+#include "services/drivers/device_thread.h"
 
 namespace rgbdt {
 
@@ -16,6 +17,10 @@ using Idle = std::function<bool(NodeRunner& runner)>;
 /// and each problem, the same one at most every five seconds. Returns the exit code: 0, or 1 with
 /// one line on stderr where the bus cannot be opened or `idle` throws.
 int RunOnLcm(Node& node, const std::string& url, const Idle& idle = {});
+
+/// The main loop of a device's process: what the device says is published, what it complains about
+/// is named in the status and on the log. Ends with a device that has nothing more to say.
+int RunDevice(DeviceNode& node, const std::string& url);
 
 /// Says a problem, unless it said the same within five seconds; then it counts. Time [s] comes
 /// from the caller.
