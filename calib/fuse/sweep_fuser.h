@@ -41,7 +41,7 @@ class SweepFuser {
  public:
   /// Points of a sweep that are kept until its end; longer ones have none.
   static constexpr std::size_t kMaxSweepPoints = 2'000'000;
-  /// Points in one message of a whole sweep.
+  /// Points in one message.
   static constexpr std::size_t kPartPoints = 40'000;
 
   /// `range_sigma_m`: noise of the LIDAR's ranges.

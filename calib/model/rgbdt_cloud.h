@@ -40,4 +40,8 @@ struct RgbdtCloud {
   std::size_t size() const { return points.size(); }
 };
 
+/// The cloud in parts of `most` points at most, in their order; the last keeps `sweep_end`. A cloud
+/// without points is one part.
+std::vector<RgbdtCloud> PartsOf(RgbdtCloud cloud, std::size_t most);
+
 }  // namespace rgbdt

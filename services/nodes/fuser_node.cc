@@ -99,8 +99,7 @@ Messages FuserNode::OnChunk(const CloudChunk& chunk) {
     const Utime now = std::min(fused.utime.front(), newest_image_[camera.spec().name]);
     camera.ForgetBefore(now - kMicrosecondsPerSecond);
   }
-  Messages messages;
-  messages.emplace_back(std::move(fused));
+  Messages messages = MessagesOf(PartsOf(std::move(fused), SweepFuser::kPartPoints));
   if (!chunk.sweep_end) return messages;
   for (Message& part : MessagesOf(fuser_->EndSweep())) messages.push_back(std::move(part));
   return messages;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/bus/codec.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
 
@@ -96,6 +97,26 @@ TEST_F(FuserNodeTest, ColoursWhatACameraSees) {
   EXPECT_EQ(Counter(node_.GetStatus(), "points"), 4);
   EXPECT_EQ(Counter(node_.GetStatus(), "coloured"), 3);
   EXPECT_EQ(node_.GetStatus().text, "fusing");
+}
+
+TEST_F(FuserNodeTest, ALargeChunkLeavesInMessagesThatFitTheBus) {
+  CloudChunk chunk = Chunk(kNow + kSecond);
+  const std::size_t points = 2 * SweepFuser::kPartPoints + 5;
+  chunk.cloud.points.assign(points, {5, 0, 0});
+  chunk.cloud.utime.assign(points, kNow + kSecond);
+  chunk.cloud.intensity.assign(points, 0.5F);
+  chunk.cloud.beams = static_cast<int>(points);
+  chunk.sweep_end = true;
+  std::vector<RgbdtCloud> parts;
+  for (const RgbdtCloud& cloud : Only<RgbdtCloud>(node_.Handle(chunk))) {
+    EXPECT_LT(Encode(cloud).size(), 3'000'000U);
+    if (!cloud.whole_sweep) parts.push_back(cloud);
+  }
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts[0].size() + parts[1].size() + parts[2].size(), points);
+  EXPECT_FALSE(parts[0].sweep_end || parts[1].sweep_end);
+  EXPECT_TRUE(parts[2].sweep_end);
+  EXPECT_EQ(parts[2].cameras, parts[0].cameras);
 }
 
 TEST_F(FuserNodeTest, AnImageServesFromItsTimePlusReadout) {
