@@ -48,8 +48,6 @@ CameraDevice ToDevice(const proto::CameraDevice& device, const Place& place) {
   }
   spec.trigger = static_cast<CameraDevice::Trigger>(device.trigger());
   spec.wire = static_cast<CameraDevice::Wire>(device.wire());
-  spec.jpeg_quality =
-      OrDefault(device.jpeg_quality(), spec.jpeg_quality, 1, 100, place, "jpeg_quality");
   spec.packet_bytes =
       OrDefault(device.packet_bytes(), 0, 576, 65535 - kHeaders, place, "packet_bytes");
   return spec;
@@ -123,9 +121,6 @@ void FromDevice(const CameraDevice& device, proto::CameraDevice* out) {
   }
   out->set_trigger(static_cast<proto::CameraDevice::Trigger>(device.trigger));
   out->set_wire(static_cast<proto::CameraDevice::Wire>(device.wire));
-  if (device.jpeg_quality != CameraDevice().jpeg_quality) {
-    out->set_jpeg_quality(device.jpeg_quality);
-  }
   out->set_packet_bytes(device.packet_bytes);
 }
 

@@ -23,8 +23,7 @@ struct CameraDevice {
   std::vector<std::pair<std::string, std::string>> features;  ///< GenICam name, value; in order
   Trigger trigger = Trigger::kFree;
   Wire wire = Wire::kRaw;
-  int jpeg_quality = 90;  ///< 1 to 100
-  int packet_bytes = 0;   ///< GigE Vision stream packets; 0: the largest that arrives
+  int packet_bytes = 0;  ///< GigE Vision stream packets; 0: the largest that arrives
 };
 
 /// A Hokuyo scanner with SCIP 2.0 over TCP.

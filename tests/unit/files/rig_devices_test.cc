@@ -31,7 +31,7 @@ TEST(RigDevices, ACameraComesBack) {
   const Rig rig = Again("",
                         "device { address: \"10.0.0.3\" feature { name: \"PixelFormat\" value: "
                         "\"BayerRG8\" } feature { name: \"ExposureTime\" value: \"5000\" } "
-                        "trigger: SOFTWARE wire: JPEG jpeg_quality: 80 packet_bytes: 8228 }");
+                        "trigger: SOFTWARE wire: JPEG packet_bytes: 8228 }");
   ASSERT_TRUE(rig.cameras[0].device);
   const CameraDevice& device = *rig.cameras[0].device;
   EXPECT_EQ(device.address, "10.0.0.3");
@@ -41,7 +41,6 @@ TEST(RigDevices, ACameraComesBack) {
   EXPECT_EQ(device.features[1].second, "5000");
   EXPECT_EQ(device.trigger, CameraDevice::Trigger::kSoftware);
   EXPECT_EQ(device.wire, CameraDevice::Wire::kJpeg);
-  EXPECT_EQ(device.jpeg_quality, 80);
   EXPECT_EQ(device.packet_bytes, 8228);
 }
 
@@ -83,8 +82,8 @@ TEST(RigDevices, WhatIsMissingOrWrongIsNamedWithItsLine) {
   EXPECT_THAT(ErrorOf("pcd_folder { folder: \"x\" period_s: -1 }", ""),
               HasSubstr("period_s is -1"));
   EXPECT_THAT(ErrorOf("", "device {}"), HasSubstr("camera.device.serial is missing"));
-  EXPECT_THAT(ErrorOf("", "device { serial: \"1\" jpeg_quality: 101 }"),
-              HasSubstr("jpeg_quality is 101; expected 1 to 100"));
+  EXPECT_THAT(ErrorOf("", "device { serial: \"1\" packet_bytes: 101 }"),
+              HasSubstr("packet_bytes is 101; expected 576 to"));
   EXPECT_THAT(ErrorOf("", "device { serial: \"1\" feature { value: \"2\" } }"),
               HasSubstr("feature.name is missing"));
   std::string still = kMotor;

@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "calib/files/rig_file.h"
+#include "calib/model/errors.h"
+#include "services/bus/process.h"
+#include "services/drivers/camera_node.h"
+
+namespace {
+
+// The one named, or the only one that has a device.
+const rgbdt::CameraSpec& CameraOf(const rgbdt::Rig& rig, const std::string& name) {
+  if (!name.empty()) return rig.Camera(name);
+  const rgbdt::CameraSpec* found = nullptr;
+  for (const rgbdt::CameraSpec& camera : rig.cameras) {
+    if (!camera.device) continue;
+    if (found != nullptr) {
+      throw rgbdt::InputError("the rig has more than one camera with a device; which? --camera " +
+                              found->name + " or --camera " + camera.name);
+    }
+    found = &camera;
+  }
+  if (found == nullptr) {
+    throw rgbdt::InputError(
+        "no camera in the rig file has device { ... }; scripts/rigs/README.md has examples");
+  }
+  return *found;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "A GigE Vision or USB3 Vision camera, colour or thermal, on the bus: <CAMERA>_IMAGE.\n"
+      "One process a camera; how to reach and set it stands in the rig file.\n"
+      "Example: rgbdt-camera --rig field.rig.textproto --camera thermal",
+      "rgbdt-camera"};
+  std::string url;
+  std::string rig_file;
+  std::string name;
+  std::string captures = "out/captures";
+  app.add_option("--rig", rig_file, "rig.textproto")->required();
+  app.add_option("--camera", name, "which of its cameras; not needed where only one has a device");
+  app.add_option("--captures", captures,
+                 "where captured views stay raw when JPEG or PNG goes over the bus")
+      ->capture_default_str();
+  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const rgbdt::Rig rig = rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown);
+    rgbdt::CameraNode node(CameraOf(rig, name), captures);
+    return rgbdt::RunDevice(node, url);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rgbdt-camera: %s\n", e.what());
+    return 1;
+  }
+}
