@@ -1,9 +1,13 @@
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 
 #include "calib/files/rig_file.h"
 #include "calib/files/session_script.h"
+#include "calib/model/errors.h"
 #include "services/bus/process.h"
 #include "services/nodes/session_node.h"
 
@@ -40,6 +44,40 @@ class ProgressPrinter {
   std::string text_;
 };
 
+// A person is not hurried.
+void GiveTime(rgbdt::SessionScript* script) {
+  for (rgbdt::SessionStep& step : script->steps) {
+    if (step.kind == rgbdt::SessionStep::Kind::kNextPose) step.timeout_s = 1e9;
+  }
+}
+
+// Who carries the board, at the keyboard.
+class Person {
+ public:
+  // Asks once for each pose; true once Enter was pressed. Never waits. Throws where there is
+  // nobody: standard input has ended.
+  bool SaysDone() {
+    if (!asked_) {
+      std::printf("Put the board where the next view wants it, step aside, then press Enter.\n");
+      std::fflush(stdout);
+      asked_ = true;
+    }
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (poll(&input, 1, 0) <= 0) return false;
+    char key = 0;
+    if (read(STDIN_FILENO, &key, 1) != 1) {
+      throw rgbdt::InputError(
+          "standard input has ended, nobody can press Enter; leave out --by-hand");
+    }
+    if (key != '\n') return false;
+    asked_ = false;
+    return true;
+  }
+
+ private:
+  bool asked_ = false;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,17 +90,23 @@ int main(int argc, char** argv) {
   std::string script_file;
   std::string rig_file;
   std::string out = "out/session";
+  bool by_hand = false;
   app.add_option("FILE", script_file, "session.textproto")->required();
   app.add_option("--rig", rig_file, "rig.textproto; default: the one that the script names");
   app.add_option("--out", out, "session directory to write")->capture_default_str();
+  app.add_flag("--by-hand", by_hand,
+               "you carry the board: asks for each pose and waits for Enter, however long");
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
   CLI11_PARSE(app, argc, argv);
   try {
-    const rgbdt::SessionScript script = rgbdt::ReadSessionScript(script_file, rig_file);
+    rgbdt::SessionScript script = rgbdt::ReadSessionScript(script_file, rig_file);
+    if (by_hand) GiveTime(&script);
     rgbdt::SessionNode node(script, rgbdt::ReadRig(script.rig), out, ProgressPrinter());
+    Person person;
     const double began = Seconds();
     const int code = rgbdt::RunOnLcm(node, url, [&](rgbdt::NodeRunner& runner) {
       runner.Publish(node.Advance(Seconds() - began));
+      if (by_hand && node.WaitsForPose() && person.SaysDone()) node.PoseIsSet();
       return !node.finished();
     });
     if (!node.failure().empty()) {

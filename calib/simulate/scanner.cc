@@ -61,8 +61,16 @@ BeamReturn Scanner::Beam(const World& world, int beam, double motor_angle) const
 }
 
 LineScan Scanner::Line(const World& world, Utime sweep_utime, int line) const {
+  const Utime utime = sweep_utime + line * line_period();
+  return LineAt(world, utime, [&](double seconds) {
+    return MotorAngle(ToSeconds(utime - sweep_utime) + seconds);
+  });
+}
+
+LineScan Scanner::LineAt(const World& world, Utime utime,
+                         const std::function<double(double seconds)>& motor_angle) const {
   LineScan scan;
-  scan.utime = sweep_utime + line * line_period();
+  scan.utime = utime;
   scan.beam_period_s = options_.beam_period_s;
   scan.first_angle_rad = options_.first_angle_rad;
   scan.angle_step_rad = options_.angle_step_rad;
@@ -70,8 +78,7 @@ LineScan Scanner::Line(const World& world, Utime sweep_utime, int line) const {
   scan.intensity.resize(scan.range.size());
   const Noise noise(seed_, scan.utime, "lidar");
   for (int beam = 0; beam < options_.beams; ++beam) {
-    const double seconds = ToSeconds(scan.utime - sweep_utime) + beam * options_.beam_period_s;
-    const BeamReturn back = Beam(world, beam, MotorAngle(seconds));
+    const BeamReturn back = Beam(world, beam, motor_angle(beam * options_.beam_period_s));
     const auto i = static_cast<std::size_t>(beam);
     scan.range[i] = static_cast<float>(back.range + options_.range_sigma_m * noise.Normal(2 * i));
     scan.intensity[i] = NoisyIntensity(options_, back, noise.Normal(2 * i + 1));

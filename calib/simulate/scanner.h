@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "calib/model/cloud.h"
@@ -29,6 +30,9 @@ class Scanner {
   /// One beam without noise, at a motor angle.
   BeamReturn Beam(const World& world, int beam, double motor_angle) const;
   LineScan Line(const World& world, Utime sweep_utime, int line) const;
+  /// A line that begins at `utime`, wherever the motor is: its angle [rad] so many seconds later.
+  LineScan LineAt(const World& world, Utime utime,
+                  const std::function<double(double seconds)>& motor_angle) const;
   /// A whole sweep, line x beam, with the motor's true angles (an encoder reads whole ticks).
   Cloud Sweep(const World& world, Utime sweep_utime, int threads) const;
 

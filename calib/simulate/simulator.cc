@@ -104,6 +104,11 @@ LineScan Simulator::Line(Utime sweep_utime, int line) const {
   return impl_->scanner.Line(impl_->world(), sweep_utime, line);
 }
 
+LineScan Simulator::LineAt(Utime utime,
+                           const std::function<double(double seconds)>& motor_angle) const {
+  return impl_->scanner.LineAt(impl_->world(), utime, motor_angle);
+}
+
 Cloud Simulator::Revolution(Utime utime) const {
   const Options& o = impl_->options;
   if (!o.spinning) throw InputError("simulator: the rig has a turned scanner; call Line");

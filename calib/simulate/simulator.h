@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,8 @@ class Simulator {
   int sweep_lines() const;
   Utime line_period() const;
   LineScan Line(Utime sweep_utime, int line) const;
+  /// A line that begins at `utime`, wherever the motor is: its angle [rad] so many seconds later.
+  LineScan LineAt(Utime utime, const std::function<double(double seconds)>& motor_angle) const;
   /// A revolution of the spinning LIDAR; throws InputError where the rig has none.
   Cloud Revolution(Utime utime) const;
   /// The encoder at a time; sweep_utime 0: standing still between sweeps.

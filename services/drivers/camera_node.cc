@@ -55,6 +55,10 @@ void CameraNode::Serve(DeviceThread& thread) {
     GenicamCamera camera(spec_);
     for (const std::string& remark : camera.remarks()) Complain(thread, remark);
     ptp_ = camera.FollowsPtp();
+    if (spec_.device->trigger != CameraDevice::Trigger::kFree) {  // it may send nothing for long
+      const std::lock_guard<std::mutex> lock(mutex_);
+      health_.streaming = true;
+    }
     Utime asked = 0;
     const Utime opened = HostUtime();
     while (!thread.Stopping()) {

@@ -47,7 +47,7 @@ class CameraNode : public DeviceNode {
  private:
   // What the status tells.
   struct Health {
-    bool streaming = false;
+    bool streaming = false;  // or ready to, where a trigger is waited for
     double rate_hz = 0;
     std::optional<double> celsius;
     std::int64_t frames = 0, incomplete = 0, unfit = 0, lost = 0, shutter = 0;

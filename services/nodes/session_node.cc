@@ -1,6 +1,5 @@
 #include "services/nodes/session_node.h"
 
-#include <array>
 #include <cstdio>
 
 #include "calib/camera/pixels.h"
@@ -13,7 +12,6 @@ namespace rgbdt {
 namespace {
 
 constexpr double kStartTimeout = 30;  // s, until everybody is ready
-constexpr std::array<const char*, 4> kNeeded = {"assembler", "detector", "solver", "fuser"};
 
 std::string ViewName(int number) {
   char name[16];
@@ -261,9 +259,28 @@ void SessionNode::Say(const std::string& text, double fraction) {
              (of_view ? "view " + view_ + ": " : "") + text, fraction});
 }
 
+bool SessionNode::WaitsForPose() const {
+  return waiting_ && !answered_ && step().kind == SessionStep::Kind::kNextPose;
+}
+
+void SessionNode::PoseIsSet() {
+  if (WaitsForPose()) answered_ = true;
+}
+
+// Processes without which a session leads nowhere.
+std::vector<std::string> SessionNode::Needed() const {
+  std::vector<std::string> needed = {"assembler", "detector", "solver", "fuser"};
+  for (const CameraSpec& camera : rig_.cameras) {
+    if (camera.device) needed.push_back("camera-" + camera.name);
+  }
+  if (rig_.lidar.device.index() != 0) needed.push_back("lidar");
+  if (rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor) needed.push_back("motor");
+  return needed;
+}
+
 std::string SessionNode::WhoIsNotReady() const {
   std::string who;
-  for (const char* process : kNeeded) {
+  for (const std::string& process : Needed()) {
     const auto found = statuses_.find(process);
     if (found != statuses_.end() && found->second.ready) continue;
     who += (who.empty() ? "" : ", ") + std::string("rgbdt-") + process +
@@ -276,7 +293,12 @@ std::string SessionNode::WhatIsMissing() const {
   const std::string wanted = AnsweredBy(step().kind);
   if (answered_) return "this process still lacks " + collector_.Missing(rig_);
   const auto found = statuses_.find(wanted);
-  if (wanted.empty()) return "is the rig's motor (or rgbdt-simulator) running?";
+  if (step().kind == SessionStep::Kind::kNextPose) {
+    return "nobody said that the board stands; where you carry it: rgbdt-session --by-hand";
+  }
+  if (wanted.empty()) {
+    return "is rgbdt-motor, rgbdt-lidar (or rgbdt-simulator) running, whichever turns or sweeps?";
+  }
   if (found == statuses_.end()) return "rgbdt-" + wanted + " was not heard; is it running?";
   return "rgbdt-" + wanted + " says: " + found->second.text +
          (found->second.last_problem.empty() ? ""

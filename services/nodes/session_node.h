@@ -24,7 +24,8 @@ struct SessionProgress {
 /// Runs a scripted session: sends commands, waits for the answering events, writes the session
 /// directory (the one node that writes files). STATUS, SESSION_EVENT, CLOUD, <CAMERA>_IMAGE,
 /// CORNER_SELECTION, REPORT -> RIG, SESSION_COMMAND.
-/// It begins when assembler, detector, solver and fuser say that they are ready. next_pose and
+/// It begins when assembler, detector, solver, fuser and the processes of the devices that the rig
+/// file names say that they are ready. next_pose and
 /// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
 /// evaluate with the solver's. Save writes the report, and the calibration
 /// of the cameras that were solved. A failed event, no answer in the step's time, a camera that
@@ -49,6 +50,11 @@ class SessionNode : public Node {
   /// Goes on as far as possible; `wall_s` [s] only grows.
   Messages Advance(double wall_s);
 
+  /// The board is to be carried to its next place; PoseIsSet() says that it stands there, where
+  /// nobody on the bus does.
+  bool WaitsForPose() const;
+  void PoseIsSet();
+
   bool finished() const { return finished_; }
   const std::string& failure() const { return failure_; }  ///< empty: none so far
 
@@ -64,6 +70,7 @@ class SessionNode : public Node {
   void Save();
   void Fail(const std::string& why);
   void Say(const std::string& text, double fraction);
+  std::vector<std::string> Needed() const;
   std::string WhoIsNotReady() const;
   std::string WhatIsMissing() const;
 

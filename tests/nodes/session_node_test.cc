@@ -219,6 +219,47 @@ TEST_F(SessionNodeTest, WaitsUntilEverybodyIsReady) {
   EXPECT_EQ(commands[1].verb, SessionVerb::kNextPose);
 }
 
+TEST_F(SessionNodeTest, TheDevicesOfTheRigFileAreWaitedForToo) {
+  Rig rig = TinyRig();
+  rig.cameras[0].device = CameraDevice();
+  rig.lidar.device = HokuyoDevice();
+  rig.lidar.turned_scanner->motor = DynamixelDevice();
+  SessionNode node(Script(kOneView), rig, dir_ / "session", {});
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(Ready(process));
+  }
+  EXPECT_TRUE(node.Advance(1).empty());
+  EXPECT_THAT(node.GetStatus().text,
+              AllOf(HasSubstr("rgbdt-camera-rgb (not heard)"), HasSubstr("rgbdt-lidar"),
+                    HasSubstr("rgbdt-motor"), ::testing::Not(HasSubstr("thermal"))));
+  for (const char* process : {"camera-rgb", "lidar", "motor"}) node.Handle(Ready(process));
+  EXPECT_FALSE(node.Advance(2).empty());
+}
+
+TEST_F(SessionNodeTest, APersonWhoCarriesTheBoardSaysSo) {
+  Start(Script({Kind::kNextPose, Kind::kSweep}));
+  EXPECT_FALSE(node_->WaitsForPose());
+  EverybodyReady();
+  node_->Advance(0);
+  EXPECT_TRUE(node_->WaitsForPose());
+  EXPECT_TRUE(node_->Advance(1).empty());
+  node_->PoseIsSet();
+  EXPECT_FALSE(node_->WaitsForPose());
+  const auto commands = Only<SessionCommand>(node_->Advance(2));
+  ASSERT_EQ(commands.size(), 1U);
+  EXPECT_EQ(commands[0].verb, SessionVerb::kSweep);
+  node_->PoseIsSet();  // too late, of no effect
+  EXPECT_TRUE(node_->Advance(3).empty());
+}
+
+TEST_F(SessionNodeTest, ABoardThatNobodyCarriesIsNamedWithWhatToDo) {
+  world_.silent_at = SessionVerb::kNextPose;
+  Start(Script(kOneView));
+  EverybodyReady();
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("next pose"), HasSubstr("--by-hand")));
+}
+
 TEST_F(SessionNodeTest, NobodyThereIsNamedAfterHalfAMinute) {
   Start(Script(kOneView));
   node_->Handle(Ready("assembler"));

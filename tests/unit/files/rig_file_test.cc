@@ -213,7 +213,8 @@ TEST(RigFile, EveryShippedRigLoads) {
   int count = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs")) {
-    EXPECT_NO_THROW(ReadRig(entry.path())) << entry.path();
+    if (entry.path().extension() != ".textproto") continue;
+    EXPECT_NO_THROW(ReadRig(entry.path(), LensNeed::kMayBeUnknown)) << entry.path();
     ++count;
   }
   EXPECT_GT(count, 0);
