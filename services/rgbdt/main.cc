@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   rgbdt::AddMap(&app, &exit_code);
   rgbdt::AddTerrain(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);
+  rgbdt::AddDoctor(&app, &exit_code);
   const auto is_it = [&](const CLI::App* candidate) { return candidate->get_name() == verb; };
   if (!verb.empty() && verb[0] != '-' && app.get_subcommands(is_it).empty()) {
     std::fprintf(stderr, "rgbdt: there is no verb \"%s\"; see rgbdt --help\n", verb.c_str());

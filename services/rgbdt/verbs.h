@@ -15,5 +15,6 @@ void AddIntrinsics(CLI::App* app, int* exit_code);
 void AddMap(CLI::App* app, int* exit_code);
 void AddTerrain(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);
+void AddDoctor(CLI::App* app, int* exit_code);
 
 }  // namespace rgbdt

@@ -1,0 +1,93 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "calib/files/rig_file.h"
+#include "calib/model/errors.h"
+#include "services/bus/bus.h"
+#include "services/rgbdt/doctor_checks.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+struct Flags {
+  std::string rig, url;
+};
+
+Findings CheckBus(const SystemRoots& roots, const std::string& text,
+                  const std::vector<NetworkInterface>& interfaces) {
+  const BusUrl url = ParseBusUrl(CompleteUrl(text));
+  if (!url.error.empty()) return CheckBusUrl(url, {});
+  const MulticastFacts multicast = GatherMulticast(url.group, interfaces);
+  Findings findings = CheckBusUrl(url, multicast.route);
+  findings.push_back(CheckMulticast(multicast));
+  findings.push_back(CheckPort(GatherPort(roots, url.port, "LCM", true)));
+  return findings;
+}
+
+Findings CheckMachine(const SystemRoots& roots, const std::string& url,
+                      const std::vector<NetworkInterface>& interfaces) {
+  Findings findings{CheckBuffer(GatherBuffer(roots))};
+  Append(CheckBus(roots, url, interfaces), &findings);
+  findings.push_back(CheckClock(GatherClock(roots)));
+  findings.push_back(CheckDisk(GatherDisk(std::filesystem::current_path())));
+  return findings;
+}
+
+Findings CheckLidar(const SystemRoots& roots, const LidarSpec& lidar,
+                    const std::vector<NetworkInterface>& interfaces) {
+  Findings findings;
+  if (const auto* hokuyo = std::get_if<HokuyoDevice>(&lidar.device)) {
+    findings.push_back(CheckHokuyo(GatherHokuyo(*hokuyo, interfaces)));
+  } else if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
+    if (velodyne->pcap.empty()) {
+      findings.push_back(CheckPort(GatherPort(roots, velodyne->port, "Velodyne", false)));
+    }
+  }
+  if (lidar.turned_scanner && lidar.turned_scanner->motor) {
+    findings.push_back(CheckSerial(GatherSerial(roots, lidar.turned_scanner->motor->port)));
+  }
+  return findings;
+}
+
+Findings CheckRig(const SystemRoots& roots, const std::string& file,
+                  const std::vector<NetworkInterface>& interfaces) {
+  try {
+    const Rig rig = ReadRig(file, LensNeed::kMayBeUnknown);
+    Findings findings = CheckLidar(roots, rig.lidar, interfaces);
+    const CameraNetwork network = GatherCameras(roots, rig, interfaces);
+    Append(CheckCameras(network), &findings);
+    Append(CheckPackets(network), &findings);
+    Append(CheckLinks(network), &findings);
+    return findings;
+  } catch (const InputError& e) {
+    return {Problem("rig", e.what())};
+  }
+}
+
+int Run(const Flags& flags) {
+  const SystemRoots roots;
+  const std::vector<NetworkInterface> interfaces = ListInterfaces();
+  Findings findings = CheckMachine(roots, flags.url, interfaces);
+  if (!flags.rig.empty()) Append(CheckRig(roots, flags.rig, interfaces), &findings);
+  std::fputs(FindingsText(findings).c_str(), stdout);
+  return HasProblem(findings) ? 1 : 0;
+}
+
+}  // namespace
+
+void AddDoctor(CLI::App* app, int* exit_code) {
+  CLI::App* verb =
+      app->add_subcommand("doctor",
+                          "Looks for what would go wrong with the live system, on this machine\n"
+                          "and with a rig's devices, and names the command that mends it.\n"
+                          "Exit code 1 where there is a problem.\n"
+                          "Example: rgbdt doctor --rig rig.textproto");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("--rig", flags->rig, "rig.textproto; default: only the machine is looked at");
+  verb->add_option("--lcm-url", flags->url, "the bus; default: LCM_DEFAULT_URL");
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt
