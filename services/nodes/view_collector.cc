@@ -31,7 +31,16 @@ void SweepCollector::Add(const CloudChunk& chunk) {
   sweep.chunks.push_back(chunk);
   sweep.points += chunk.cloud.size();
   sweep.ended |= chunk.sweep_end;
-  while (sweeps_.size() > kMaxSweeps) sweeps_.erase(sweeps_.begin());
+  ForgetOldest();
+}
+
+void SweepCollector::ForgetOldest() {
+  std::size_t points = 0;
+  for (const auto& [utime, sweep] : sweeps_) points += sweep.points;
+  while (sweeps_.size() > kMinSweeps && points > kKeptPoints) {
+    points -= sweeps_.begin()->second.points;
+    sweeps_.erase(sweeps_.begin());
+  }
 }
 
 bool SweepCollector::Ended(Utime sweep_utime) const {

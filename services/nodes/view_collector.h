@@ -12,10 +12,13 @@
 
 namespace rgbdt {
 
-/// Sweeps by their name, as their chunks come in. Keeps the newest few.
+/// Sweeps by their name, as their chunks come in. Keeps the newest kMinSweeps, and of a LIDAR that
+/// sweeps many times a second as many as have kKeptPoints: a capture names a sweep that ended a
+/// while ago.
 class SweepCollector {
  public:
-  static constexpr std::size_t kMaxSweeps = 3;
+  static constexpr std::size_t kMinSweeps = 3;
+  static constexpr std::size_t kKeptPoints = 6'000'000;
   static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
 
@@ -33,6 +36,7 @@ class SweepCollector {
     bool ended = false;
   };
   static void Check(const Sweep& sweep, const CloudChunk& chunk);
+  void ForgetOldest();
 
   std::map<Utime, Sweep> sweeps_;
 };

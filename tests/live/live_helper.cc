@@ -32,6 +32,7 @@ int Usage() {
       "  calibration VIEWS      until the solver has them of two cameras; prints what it found\n"
       "  gaps LOG               messages that a log lacks, by channel; exit code 3 if any\n"
       "  print FILE             prints a calibration.textproto in the same way\n"
+      "  hears CHANNEL COUNT    until so many messages came there, each as it has to be\n"
       "Gives up after 90 s with exit code 1.\n",
       stderr);
   return 2;
@@ -197,12 +198,34 @@ int PrintGaps(const Arguments& arguments) {
   return code;
 }
 
+int Hears(const Arguments& arguments) {
+  const std::size_t wanted = std::stoul(arguments.at(1));
+  Listener listener;
+  std::vector<std::int64_t> numbers;
+  std::string wrong;
+  listener.bus.Subscribe(
+      arguments.at(0), [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        try {
+          numbers.push_back(SeqOf(Decode(channel, data, size)));
+        } catch (const InputError& e) {
+          wrong = e.what();
+        }
+      });
+  listener.RunUntil([&] { return numbers.size() >= wanted || !wrong.empty(); },
+                    arguments.at(0) + " (" + std::to_string(numbers.size()) + " came)");
+  if (!wrong.empty()) throw InputError(wrong);
+  std::printf("%zu messages, number %lld to %lld\n", numbers.size(),
+              static_cast<long long>(numbers.front()), static_cast<long long>(numbers.back()));
+  return 0;
+}
+
 int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
   if (verb == "garbage") return Garbage(arguments);
   if (verb == "calibration") return PrintLive(arguments);
   if (verb == "gaps") return PrintGaps(arguments);
   if (verb == "print") return PrintFile(arguments);
+  if (verb == "hears") return Hears(arguments);
   return Usage();
 }
 

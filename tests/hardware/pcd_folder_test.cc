@@ -1,0 +1,124 @@
+#include "services/drivers/pcd_folder.h"
+
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include <fstream>
+
+#include "calib/files/cloud_files.h"
+#include "calib/model/errors.h"
+#include "tests/hardware/device_harness.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr Utime kStart = 1'433'160'000'000'000;
+
+TEST(PcdNames, NumbersAreTimes) {
+  EXPECT_EQ(UtimeOfName("1433160000"), kStart);
+  EXPECT_EQ(UtimeOfName("1433160000.25"), kStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250"), kStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000"), kStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000999"), kStart + 250'000);
+  for (const char* name :
+       {"", "0001", "cloud", "1433160000a", "-5", "1433160000.2.5", "99999999999999999999", "."}) {
+    EXPECT_FALSE(UtimeOfName(name)) << name;
+  }
+}
+
+class PcdFolderTest : public ::testing::Test {
+ protected:
+  PcdFolderTest() {
+    std::string name = (fs::temp_directory_path() / "rgbdt_pcds_XXXXXX").string();
+    device_.folder = mkdtemp(name.data());
+    device_.period_s = 0.02;
+  }
+  ~PcdFolderTest() override { fs::remove_all(device_.folder); }
+
+  // Points whose x says which file they are of.
+  void Write(const std::string& name, float x, Utime utime = 0) const {
+    Cloud cloud;
+    cloud.lines = 2;
+    cloud.beams = 3;
+    for (int i = 0; i < 6; ++i) cloud.points.emplace_back(x, static_cast<float>(i), 1.0F);
+    if (utime != 0) {
+      for (int i = 0; i < 6; ++i) cloud.utime.push_back(utime + 100 * i);
+    }
+    WritePcd(fs::path(device_.folder) / name, cloud);
+  }
+
+  Told PlayAll() {
+    PcdFolder folder(device_);
+    Told told;
+    DeviceThread thread([&](DeviceThread& self) { folder.Serve(self); });
+    EXPECT_TRUE(Collect(&thread, &told, [&](const Told&) { return thread.ended(); }));
+    EXPECT_EQ(folder.report().count("sweeps"), static_cast<std::int64_t>(told.Count<CloudChunk>()));
+    return told;
+  }
+
+  PcdFolderDevice device_;
+};
+
+TEST_F(PcdFolderTest, InOrderWithTheirOwnTimes) {
+  Write("b.pcd", 2, kStart + 50'000);
+  Write("a.pcd", 1, kStart);
+  Write("c.pcd", 3, kStart + 120'000);
+  const auto begin = std::chrono::steady_clock::now();
+  const Told told = PlayAll();
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(119));
+  const auto chunks = told.All<CloudChunk>();
+  ASSERT_EQ(chunks.size(), 3u);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kStart);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kStart + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kStart + 120'000);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(chunks[static_cast<std::size_t>(i)].sweep_end);
+    EXPECT_EQ(chunks[static_cast<std::size_t>(i)].sweep_lines, 2);
+    EXPECT_EQ(chunks[static_cast<std::size_t>(i)].cloud.points[0].x(), static_cast<float>(i + 1));
+  }
+}
+
+TEST_F(PcdFolderTest, TimesFromNamesOrApart) {
+  Write("1433160000.00.pcd", 1);
+  Write("1433160000.05.pcd", 2);
+  Write("z.pcd", 3);
+  const auto chunks = PlayAll().All<CloudChunk>();
+  ASSERT_EQ(chunks.size(), 3u);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kStart);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kStart + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kStart + 70'000);
+}
+
+TEST_F(PcdFolderTest, BadOnesAreNamedAndPassedOver) {
+  Write("1.pcd", 1, kStart);
+  std::ofstream(fs::path(device_.folder) / "2.pcd") << "no cloud";
+  Write("3.pcd", 3, kStart - 10);
+  Write("4.pcd", 4, kStart + 10'000);
+  std::ofstream(fs::path(device_.folder) / "readme.txt") << "not looked at";
+  const Told told = PlayAll();
+  ASSERT_EQ(told.Count<CloudChunk>(), 2u);
+  ASSERT_EQ(told.problems.size(), 2u);
+  EXPECT_THAT(told.problems[0], HasSubstr("2.pcd"));
+  EXPECT_THAT(told.problems[1], HasSubstr("3.pcd: its time"));
+}
+
+TEST_F(PcdFolderTest, WithoutFilesOrFolderSaysSo) {
+  const auto why = [](const PcdFolderDevice& device) {
+    try {
+      PcdFolder folder(device);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(why(device_), HasSubstr("holds no *.pcd"));
+  PcdFolderDevice missing;
+  missing.folder = device_.folder + "/missing";
+  EXPECT_THAT(why(missing), HasSubstr("/missing: No such file"));
+}
+
+}  // namespace
+}  // namespace rgbdt
