@@ -37,7 +37,7 @@ void SweepCollector::Add(const CloudChunk& chunk) {
 void SweepCollector::ForgetOldest() {
   std::size_t points = 0;
   for (const auto& [utime, sweep] : sweeps_) points += sweep.points;
-  while (sweeps_.size() > kMinSweeps && points > kKeptPoints) {
+  while (sweeps_.size() > kMaxSweeps || (sweeps_.size() > kMinSweeps && points > kKeptPoints)) {
     points -= sweeps_.begin()->second.points;
     sweeps_.erase(sweeps_.begin());
   }

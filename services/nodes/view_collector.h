@@ -13,11 +13,11 @@
 namespace rgbdt {
 
 /// Sweeps by their name, as their chunks come in. Keeps the newest kMinSweeps, and of a LIDAR that
-/// sweeps many times a second as many as have kKeptPoints: a capture names a sweep that ended a
-/// while ago.
+/// sweeps many times a second as many as have kKeptPoints, kMaxSweeps at most: a capture names a
+/// sweep that ended a while ago.
 class SweepCollector {
  public:
-  static constexpr std::size_t kMinSweeps = 3;
+  static constexpr std::size_t kMinSweeps = 3, kMaxSweeps = 100;
   static constexpr std::size_t kKeptPoints = 6'000'000;
   static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included

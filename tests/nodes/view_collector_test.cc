@@ -283,13 +283,26 @@ TEST(SweepCollectorTest, ChunksInAnyOrderAndTwice) {
   EXPECT_FALSE(sweeps.Complete(kSweep + 1).has_value());
 }
 
-TEST(SweepCollectorTest, KeepsTheNewestFew) {
+// The oldest sweep that is kept after `count` of so many points.
+int OldestKept(int count, int points) {
   SweepCollector sweeps;
-  for (int i = 0; i < 5; ++i) sweeps.Add(End(kSweep + i, 0));
-  for (int i = 0; i < 5; ++i) {
-    EXPECT_EQ(sweeps.Complete(kSweep + i).has_value(),
-              i >= 5 - static_cast<int>(SweepCollector::kMaxSweeps));
+  for (int i = 0; i < count; ++i) {
+    CloudChunk chunk = End(kSweep + i, 1);
+    chunk.cloud.lines = 1;
+    chunk.cloud.beams = points;
+    chunk.cloud.points.assign(static_cast<std::size_t>(points), {1, 2, 3});
+    sweeps.Add(chunk);
   }
+  for (int i = 0; i < count; ++i) {
+    if (sweeps.Ended(kSweep + i)) return i;
+  }
+  return count;
+}
+
+TEST(SweepCollectorTest, KeepsTheNewestOnesBoundedByPointsAndByCount) {
+  EXPECT_EQ(OldestKept(5, 3'000'000), 2) << "large ones: kMinSweeps";
+  EXPECT_EQ(OldestKept(30, 500'000), 18) << "kKeptPoints";
+  EXPECT_EQ(OldestKept(130, 1), 30) << "kMaxSweeps";
 }
 
 // What would make the sweep impossible to join, or larger than memory, never gets in.
