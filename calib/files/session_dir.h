@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/model/cloud.h"
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
 
@@ -29,6 +30,9 @@ View ReadView(const Session& session, const std::string& view);
 
 /// The same without its cloud, which then need not be there.
 View ReadImages(const Session& session, const std::string& view);
+
+/// The cloud alone; the view then need not have images.
+Cloud ReadCloud(const Session& session, const std::string& view);
 
 /// Writes rig.textproto: the rig's own text where it has one, so that its hash stays.
 void WriteRig(const std::filesystem::path& session_dir, const Rig& rig);

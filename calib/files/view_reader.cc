@@ -133,42 +133,63 @@ void CheckTimes(const proto::View& message, const Image& image, const Place& pla
 
 enum class WithCloud { kYes, kNo };
 
-View Read(const Session& session, const std::string& view, WithCloud with_cloud) {
-  const std::size_t index = IndexOf(session, view);
-  const fs::path folder = session.root / "views" / view;
-  const fs::path file = folder / "view.textproto";
-  if (!fs::exists(file)) {
-    throw InputError(file.string() +
+// view.textproto, of which `place` says where its fields stand.
+struct ViewFile {
+  std::size_t index;  ///< of the view in its session
+  fs::path folder;
+  proto::View message;
+  Place::Tree tree;
+};
+
+// `file` is kept by who calls: the place refers to its tree.
+Place ReadViewFile(const Session& session, const std::string& view, ViewFile* file) {
+  file->index = IndexOf(session, view);
+  file->folder = session.root / "views" / view;
+  const fs::path path = file->folder / "view.textproto";
+  if (!fs::exists(path)) {
+    throw InputError(path.string() +
                      " is missing; it names the view's cloud and images, as "
                      "calib/files/README.md shows");
   }
-  proto::View message;
-  Place::Tree tree;
-  const Place place = text::ParseText(ReadWholeFile(file), file.string(), &message, &tree);
-  if (std::abs(ToSeconds(message.sweep_utime())) > 1e11) {
-    place.Fail("sweep_utime", "is " + std::to_string(message.sweep_utime()) +
+  const Place place =
+      text::ParseText(ReadWholeFile(path), path.string(), &file->message, &file->tree);
+  if (std::abs(ToSeconds(file->message.sweep_utime())) > 1e11) {
+    place.Fail("sweep_utime", "is " + std::to_string(file->message.sweep_utime()) +
                                   "; expected microseconds since 1970");
   }
+  return place;
+}
+
+void RequireCloud(const ViewFile& file, const Place& place) {
+  if (file.message.cloud().empty()) place.Fail("cloud", "is missing; expected the PCD file's path");
+}
+
+Cloud ReadCloudOf(const ViewFile& file, const Place& place) {
+  return ReadFor(place, "cloud", [&] {
+    return ReadPcd(file.folder / file.message.cloud(), file.message.sweep_utime());
+  });
+}
+
+View Read(const Session& session, const std::string& view, WithCloud with_cloud) {
+  ViewFile file;
+  const Place place = ReadViewFile(session, view, &file);
+  const proto::View& message = file.message;
   const bool cloud = with_cloud == WithCloud::kYes;
-  if (cloud && message.cloud().empty())
-    place.Fail("cloud", "is missing; expected the PCD file's path");
+  if (cloud) RequireCloud(file, place);
   if (message.image_size() == 0) place.Fail("image", "is missing; expected image { ... }");
 
   View result;
   result.name = view;
-  result.heldout = message.has_heldout() ? message.heldout() : index % 3 == 2;
+  result.heldout = message.has_heldout() ? message.heldout() : file.index % 3 == 2;
   for (int i = 0; i < message.image_size(); ++i) {
     const Place at = place.In("image", i);
-    result.images.push_back(ReadImage(message.image(i), session.rig, folder, at));
+    result.images.push_back(ReadImage(message.image(i), session.rig, file.folder, at));
     CheckTimes(message, result.images.back(), at);
     if (message.image(i).has_picked()) {
       result.picks.push_back(ReadPicks(message.image(i), result.images.back(), at));
     }
   }
-  if (cloud) {
-    result.cloud = ReadFor(
-        place, "cloud", [&] { return ReadPcd(folder / message.cloud(), message.sweep_utime()); });
-  }
+  if (cloud) result.cloud = ReadCloudOf(file, place);
   return result;
 }
 
@@ -180,6 +201,13 @@ View ReadView(const Session& session, const std::string& view) {
 
 View ReadImages(const Session& session, const std::string& view) {
   return Read(session, view, WithCloud::kNo);
+}
+
+Cloud ReadCloud(const Session& session, const std::string& view) {
+  ViewFile file;
+  const Place place = ReadViewFile(session, view, &file);
+  RequireCloud(file, place);
+  return ReadCloudOf(file, place);
 }
 
 }  // namespace rgbdt

@@ -12,10 +12,9 @@ namespace {
 
 void Check(const ScannerOptions& o) {
   Between(o.beams, 2, 10000, "scanner.beams");
-  Between(o.first_angle_rad, -90 * kDegree, 90 * kDegree, "scanner.first_angle_rad");
+  Between(o.first_angle_rad, -180 * kDegree, 90 * kDegree, "scanner.first_angle_rad");
   Positive(o.angle_step_rad, "scanner.angle_step_rad");
-  Between(o.first_angle_rad + o.angle_step_rad * (o.beams - 1), -90 * kDegree, 90 * kDegree,
-          "scanner's last angle [rad]");
+  Between(o.angle_step_rad * (o.beams - 1), 0, 360 * kDegree, "scanner's angle of a line [rad]");
   Positive(o.beam_period_s, "scanner.beam_period_s");
   const double line_us = o.beams * o.beam_period_s * 1e6;
   Require(std::abs(line_us - std::round(line_us)) < 1e-6, "scanner.beams * beam_period_s [us]",
@@ -30,6 +29,10 @@ void Check(const ScannerOptions& o) {
           "less than 1");
   Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),
           "less than 0.5");
+  Require(o.guess_lever_m.norm() < 0.1, "length of scanner.guess_lever_m", o.guess_lever_m.norm(),
+          "less than 0.1");
+  Require(o.guess_tilt_rad.norm() < 0.2, "length of scanner.guess_tilt_rad",
+          o.guess_tilt_rad.norm(), "less than 0.2");
   o.BeamOptions::Check("scanner.");
 }
 
@@ -116,6 +119,17 @@ ScannerOptions DenseScanner() {
   o.beams = 900;
   o.angle_step_rad = fan / (o.beams - 1);
   o.beam_period_s = o.sweep_rad / o.motor_speed_rad_s / kLines / o.beams;
+  return o;
+}
+
+ScannerOptions FullTurnScanner() {
+  ScannerOptions o;
+  o.beams = 540;
+  o.first_angle_rad = -45 * kDegree;
+  o.angle_step_rad = 0.5 * kDegree;
+  o.motor_speed_rad_s = 12 * kDegree;
+  o.sweep_start_rad = -180 * kDegree;
+  o.sweep_rad = 360 * kDegree;
   return o;
 }
 

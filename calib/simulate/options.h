@@ -21,7 +21,7 @@ inline const std::map<std::string, Scene> kSceneNames = {
 /// A 2D scanner (80 degree line, 10,000 beams/s) turned about the LIDAR's z.
 struct ScannerOptions : BeamOptions {
   int beams = 400;                         ///< per line
-  double first_angle_rad = -40 * kDegree;  ///< elevation of beam 0
+  double first_angle_rad = -40 * kDegree;  ///< elevation of beam 0; past 90 deg beams look back
   double angle_step_rad = 0.2 * kDegree;   ///< between two beams of a line
   double beam_period_s = 1e-4;             ///< between two beams; a line is whole microseconds
   double motor_speed_rad_s = 5 * kDegree;  ///< the motor turns while a line is fired
@@ -32,10 +32,17 @@ struct ScannerOptions : BeamOptions {
   Eigen::Vector3d lever_arm_m{0.02, 0.0, 0.05};  ///< scanner's origin in the motor's frame
   /// Rotation vector of motor_from_scanner [rad].
   Eigen::Vector3d tilt_rad{0.3 * kDegree, -0.4 * kDegree, 0.2 * kDegree};
+  /// The rig file's motor_from_scanner is the truth, turned by this rotation vector about the
+  /// motor's axes [rad], its lever arm off by this.
+  Eigen::Vector3d guess_lever_m{0, 0, 0}, guess_tilt_rad{0, 0, 0};
 };
 
 /// A fine, slow sweep: 800 lines of 900 beams, 720,000 points over the same field.
 ScannerOptions DenseScanner();
+
+/// All the way round with a line of 270 degrees over the vertical: 556 lines of 540 beams in half a
+/// minute. Every surface but the floor underneath is seen twice.
+ScannerOptions FullTurnScanner();
 
 /// One camera: lens, mount, noise. Lenses are pinhole with OpenCV's distortion.
 struct CameraOptions {

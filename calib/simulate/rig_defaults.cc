@@ -45,12 +45,31 @@ Rigid3 DrawGuess(const Options& options, const std::string& camera,
   return guess;
 }
 
+namespace {
+
+// What the rig file says of the scanner.
+TurnedScanner GuessOf(const ScannerOptions& options, TurnedScanner truth) {
+  Rigid3& guess = truth.motor_from_scanner;
+  const double angle = options.guess_tilt_rad.norm();
+  if (angle > 0) {
+    guess.rotation =
+        (RotationAbout(options.guess_tilt_rad / angle, angle).rotation * guess.rotation)
+            .normalized();
+  }
+  guess.translation += options.guess_lever_m;
+  return truth;
+}
+
+}  // namespace
+
 Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& scene,
             const std::vector<Rigid3>& camera_from_lidar) {
   Rig rig;
   rig.name = "simulated";
   rig.lidar.name = "lidar";
-  if (!options.spinning) rig.lidar.turned_scanner = scanner.geometry();
+  if (!options.spinning) {
+    rig.lidar.turned_scanner = GuessOf(options.scanner, scanner.geometry());
+  }
   rig.lidar.range_sigma_m =
       options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
   for (std::size_t i = 0; i < options.cameras.size(); ++i) {

@@ -12,7 +12,9 @@ Cloud TakeSweep(const simulate::Simulator& simulator, Utime sweep_utime) {
   const TurnedScanner& scanner = *simulator.rig().lidar.turned_scanner;
   const Utime end = sweep_utime + simulator.sweep_lines() * simulator.line_period();
   EncoderTrack track;
-  for (Utime t = sweep_utime; t <= end; t += SimulatorNode::kEncoderPeriod) {
+  // One reading after the last beam: between two of them the angle is known.
+  for (Utime t = sweep_utime; t < end + SimulatorNode::kEncoderPeriod;
+       t += SimulatorNode::kEncoderPeriod) {
     track.Add(simulator.Encoder(t, sweep_utime));
   }
   std::vector<CloudChunk> chunks;

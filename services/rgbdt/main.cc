@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   rgbdt::AddSimulate(&app, &exit_code);
   rgbdt::AddReplay(&app, &exit_code);
   rgbdt::AddIntrinsics(&app, &exit_code);
+  rgbdt::AddScanner(&app, &exit_code);
   rgbdt::AddMap(&app, &exit_code);
   rgbdt::AddTerrain(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);

@@ -19,8 +19,21 @@ struct Flags {
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
   int rings = 0;
+  bool full_turn = false, scanner_error = false;
   simulate::Options options;
 };
+
+// Of the turned scanner: how far it turns, and how wrong the rig file is about where it sits.
+void SetScanner(const Flags& flags, simulate::Options* options) {
+  if ((flags.full_turn || flags.scanner_error) && flags.rings != 0) {
+    throw InputError(
+        "--full-turn and --scanner-error are of the turned scanner; leave --lidar out");
+  }
+  if (flags.full_turn) options->scanner = simulate::FullTurnScanner();
+  if (!flags.scanner_error) return;
+  options->scanner.guess_lever_m = {0.005, -0.005, 0.005};
+  options->scanner.guess_tilt_rad = Eigen::Vector3d(0.5, 0.5, -0.5) * simulate::kDegree;
+}
 
 // The LIDAR's cloud from this time on; `now` becomes when it ends.
 Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Utime* now) {
@@ -39,6 +52,7 @@ int Run(const Flags& flags) {
   }
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
+  SetScanner(flags, &options);
   Simulator simulator(options);
   Rig rig = simulator.rig();
   for (const std::string& camera : flags.picked) rig.Camera(camera);
@@ -84,6 +98,12 @@ void AddSimulate(CLI::App* app, int* exit_code) {
       ->transform(CLI::CheckedTransformer(simulate::kSceneNames));
   verb->add_option("--lidar", flags->rings, "turned, vlp16, 32, 64 or 128: scanner or rings")
       ->transform(CLI::CheckedTransformer(simulate::kLidarRings));
+  verb->add_flag(
+      "--full-turn", flags->full_turn,
+      "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
+  verb->add_flag("--scanner-error", flags->scanner_error,
+                 "the rig file's motor_from_scanner is wrong by 5 mm and 0.5 degrees on each axis, "
+                 "and the clouds are made with it");
   verb->add_option("--picked", flags->picked, "cameras whose corners a person picks")
       ->capture_default_str();
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });

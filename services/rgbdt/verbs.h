@@ -12,6 +12,7 @@ void AddFuse(CLI::App* app, int* exit_code);
 void AddSimulate(CLI::App* app, int* exit_code);
 void AddReplay(CLI::App* app, int* exit_code);
 void AddIntrinsics(CLI::App* app, int* exit_code);
+void AddScanner(CLI::App* app, int* exit_code);
 void AddMap(CLI::App* app, int* exit_code);
 void AddTerrain(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);

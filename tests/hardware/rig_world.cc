@@ -58,6 +58,7 @@ class World {
     rig.lidar.device = HokuyoDevice{"127.0.0.1", scanner_.port()};
     DynamixelDevice motor;
     motor.port = motor_.port();
+    motor.baud = 1'000'000;
     motor.from_rad = -30 * kDegree;
     motor.to_rad = 30 * kDegree;
     motor.speed_rad_s = kSpeedDegPerS * kDegree;

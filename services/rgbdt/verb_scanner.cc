@@ -1,0 +1,89 @@
+#include <cstdio>
+#include <memory>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
+#include "calib/files/rig_file.h"
+#include "calib/scan_assembly/scanner_geometry.h"
+#include "services/rgbdt/scanner_picture.h"
+#include "services/rgbdt/scanner_sweeps.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Flags {
+  std::string input, out = "out/scanner/rig.textproto";
+};
+
+void PrintTransform(const TurnedScanner& before, const TurnedScanner& after) {
+  std::printf(
+      "motor_from_scanner: point_in_motor = R * point_in_scanner + t; in the scanner's frame the "
+      "scan plane is x-z, angles count from x towards z\n");
+  const auto print = [](const char* what, const TurnedScanner& scanner) {
+    const Eigen::Quaterniond& q = scanner.motor_from_scanner.rotation;
+    const Eigen::Vector3d t = 1000 * scanner.motor_from_scanner.translation;
+    std::printf("  %-7s quaternion_wxyz %.7f %.7f %.7f %.7f, t %.2f %.2f %.2f mm\n", what, q.w(),
+                q.x(), q.y(), q.z(), t.x(), t.y(), t.z());
+  };
+  print("before", before);
+  print("after", after);
+}
+
+void Write(const Flags& flags, const ScannerSweeps& input, const ScannerGeometry& found) {
+  Rig rig = input.rig;
+  rig.lidar.turned_scanner = found.scanner;
+  const fs::path out = flags.out, picture = out.parent_path() / "scanner.png";
+  WritePng(picture, ScannerPicture(*input.rig.lidar.turned_scanner, found, input.sweeps));
+  WriteFileAtomically(out, PrintRig(rig));
+  std::printf(
+      "wrote %s (comments of the old file are not kept) and %s\n"
+      "next: use that rig file from now on. Clouds and calibrations made with the old one keep its "
+      "error: replay their logs, or sweep and calibrate anew\n",
+      out.c_str(), picture.c_str());
+}
+
+int Run(const Flags& flags) {
+  const ScannerSweeps input = ReadScannerSweeps(flags.input);
+  for (const std::string& problem : input.problems) {
+    std::fprintf(stderr, "not used: %s\n", problem.c_str());
+  }
+  const TurnedScanner& before = *input.rig.lidar.turned_scanner;
+  ScannerGeometryOptions options;
+  options.range_sigma_m = input.rig.lidar.range_sigma_m;
+  const ScannerGeometry found = FindScannerGeometry(before, input.sweeps, options);
+  std::printf("%zu sweep%s of %s: %s", input.sweeps.size(), input.sweeps.size() == 1 ? "" : "s",
+              flags.input.c_str(), found.BriefReport().c_str());
+  if (!found.converged) {
+    std::printf("no rig file was written\n");
+    return 1;
+  }
+  PrintTransform(before, found.scanner);
+  Write(flags, input, found);
+  return 0;
+}
+
+}  // namespace
+
+void AddScanner(CLI::App* app, int* exit_code) {
+  CLI::App* verb = app->add_subcommand(
+      "scanner",
+      "Finds where the turned scanner sits on its motor (lever arm and tilt) from any room at "
+      "rest:\n"
+      "surfaces seen by both halves of the scan line, half a turn apart, must not be double. One\n"
+      "sweep by 360 degrees is enough, with a scan line that reaches over the vertical. Says what\n"
+      "the sweep does not tell. Writes the rig with the geometry, and scanner.png beside it.\n"
+      "Exit code 1: not converged, nothing was written.\n"
+      "Example: rgbdt scanner out/room");
+  auto flags = std::make_shared<Flags>();
+  verb->add_option("DIR", flags->input,
+                   "session directory (rig.textproto, views/ with organised clouds made with it; "
+                   "images are not needed), or a log with RIG, LINE_SCAN and ENCODER")
+      ->required();
+  verb->add_option("--out", flags->out, "the rig file to write")->capture_default_str();
+  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+}
+
+}  // namespace rgbdt
