@@ -20,7 +20,7 @@ namespace rgbdt {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr int kFrames = 4;             // of one view, each with noise of its own
+constexpr int kFrames = 4;                // of one view, each with noise of its own
 constexpr double kTicksPerTurn = 501923;  // H54-200-S500-R
 constexpr int kSteps = 1440, kFirstStep = 378, kLastStep = 701, kFrontStep = 540, kRpm = 2400;
 constexpr double kSpeedDegPerS = 8;
