@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "calib/camera/wide_loops.h"
+
 namespace rgbdt {
 namespace {
 
@@ -109,10 +111,7 @@ inline __attribute__((always_inline)) void Run(const KernelProjection& k,
 
 }  // namespace
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-__attribute__((target_clones("arch=haswell", "default")))
-#endif
+RGBDT_WIDE_LOOPS
 void ProjectKernel(const KernelProjection& k, const float* points, std::size_t count,
                    const PixelArrays& out) {
   float* u = out.u;
@@ -129,6 +128,34 @@ void ProjectKernel(const KernelProjection& k, const float* points, std::size_t c
   } else {
     k.rolls ? Run<Bend::kPolynomial, true>(k, points, count, u, v, w)
             : Run<Bend::kPolynomial, false>(k, points, count, u, v, w);
+  }
+}
+
+RGBDT_WIDE_LOOPS
+void FindBox(const float* points, std::size_t count, float* least, float* most) {
+  // Coordinates as they lie, as many side by side as both threes and SIMD registers go into.
+  constexpr std::size_t kSide = 48;
+  float low[kSide], high[kSide];
+  for (std::size_t j = 0; j < kSide; ++j) low[j] = high[j] = points[j % 3];
+  std::size_t i = 0;
+  for (; i + kSide <= 3 * count; i += kSide) {
+    for (std::size_t j = 0; j < kSide; ++j) {
+      const float value = points[i + j];
+      low[j] = value < low[j] ? value : low[j];
+      high[j] = value > high[j] ? value : high[j];
+    }
+  }
+  for (; i < 3 * count; ++i) {
+    low[i % 3] = points[i] < low[i % 3] ? points[i] : low[i % 3];
+    high[i % 3] = points[i] > high[i % 3] ? points[i] : high[i % 3];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    least[k] = low[k];
+    most[k] = high[k];
+    for (std::size_t j = k + 3; j < kSide; j += 3) {
+      least[k] = low[j] < least[k] ? low[j] : least[k];
+      most[k] = high[j] > most[k] ? high[j] : most[k];
+    }
   }
 }
 

@@ -23,4 +23,7 @@ struct KernelProjection {
 void ProjectKernel(const KernelProjection& projection, const float* points, std::size_t count,
                    const PixelArrays& out);
 
+/// Least and most x, y and z of points: one or more.
+void FindBox(const float* points, std::size_t count, float* least, float* most);
+
 }  // namespace rgbdt

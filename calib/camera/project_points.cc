@@ -47,13 +47,9 @@ bool ViewBounds::MayShow(const Eigen::Vector3f& middle, const Eigen::Vector3f& h
 
 BlockedPoints::BlockedPoints(const std::vector<Eigen::Vector3f>& points) : points_(points) {
   for (std::size_t first = 0; first < points.size(); first += PixelBlock::kSize) {
-    Eigen::Array3f least = points[first].array();
-    Eigen::Array3f most = least;
+    Eigen::Array3f least, most;
     const std::size_t end = std::min(points.size(), first + PixelBlock::kSize);
-    for (std::size_t i = first + 1; i < end; ++i) {
-      least = least.min(points[i].array());
-      most = most.max(points[i].array());
-    }
+    FindBox(points[first].data(), end - first, least.data(), most.data());
     boxes_.push_back({0.5F * (least + most), 0.5F * (most - least)});
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace rgbdt {
@@ -41,106 +42,198 @@ float WeightOf(const BlendCamera& camera, std::size_t i) {
   return std::max(kLeastWeight, weight);
 }
 
-// One camera after the other over the same points; sums only where a point needs them.
+// What is told of a few points in a row: written here, in the processor's nearest memory, and then
+// once to the cloud.
+struct Tile {
+  static constexpr std::size_t kSize = 512;
+  std::array<std::uint8_t, 3> rgb[kSize];
+  float temperature_k[kSize], temperature_sigma_k[kSize], thermal_counts[kSize];
+  std::uint32_t valid[kSize];
+
+  void Clear() {
+    std::memset(rgb, 0, sizeof rgb);
+    std::fill_n(temperature_k, kSize, kNone);
+    std::fill_n(temperature_sigma_k, kSize, kNone);
+    std::fill_n(thermal_counts, kSize, kNone);
+    std::fill_n(valid, kSize, 0U);
+  }
+};
+
+// One camera and how far its sightings are told.
+class View {
+ public:
+  View(const BlendCamera& camera, std::size_t index, std::size_t first_point)
+      : camera_(&camera),
+        seen_(camera.sightings),
+        bit_(1U << index),
+        next_(seen_->FirstFrom(first_point)) {}
+
+  bool ShowsAny(std::size_t end_point) const {
+    return next_ < seen_->size() && seen_->point[next_] < end_point;
+  }
+
+  // Goes to the next sightings of points before `end_point` that one radiometry goes for.
+  bool Next(std::size_t end_point) {
+    first_ = next_;
+    if (!ShowsAny(end_point)) return false;
+    const auto& runs = seen_->runs;
+    while (run_ + 1 < runs.size() && runs[run_ + 1].first <= first_) ++run_;
+    const std::size_t run_end = run_ + 1 < runs.size() ? runs[run_ + 1].first : seen_->size();
+    next_ = std::min(run_end, seen_->FirstFrom(end_point, first_));
+    return true;
+  }
+
+  // Of these sightings.
+  std::size_t first_point() const { return seen_->point[first_]; }
+  std::size_t end_point() const { return seen_->point[next_ - 1] + std::size_t{1}; }
+  const TemperatureTable& temperatures() const { return *seen_->runs[run_].temperatures; }
+
+  // By point from `begin` on: which cameras see it, and of those that this one does value(sample).
+  // Returns how many it does not see as something is in the way.
+  template <typename T, typename Value>
+  std::int64_t Take(std::size_t begin, Value value, std::uint32_t* valid, T* values) const {
+    const std::uint32_t* point = seen_->point.data();
+    const std::uint32_t* sample = seen_->sample.data();
+    const std::uint8_t* hidden = seen_->hidden.data();
+    const std::uint32_t bit = bit_;
+    std::int64_t all_hidden = 0;
+    for (std::size_t s = first_; s < next_; ++s) {
+      const std::size_t i = point[s] - begin;
+      const bool is_hidden = hidden[s] != 0;
+      valid[i] |= is_hidden ? 0U : bit;
+      values[i] = is_hidden ? values[i] : value(sample[s]);
+      all_hidden += is_hidden ? 1 : 0;
+    }
+    return all_hidden;
+  }
+
+  // take(point, its weight, sample) where nothing is in the way. Returns where something is.
+  template <typename Take>
+  std::int64_t ForSeen(Take take) const {
+    std::int64_t all_hidden = 0;
+    for (std::size_t s = first_; s < next_; ++s) {
+      if (seen_->hidden[s] != 0) {
+        ++all_hidden;
+      } else {
+        take(seen_->point[s], WeightOf(*camera_, s), seen_->sample[s]);
+      }
+    }
+    return all_hidden;
+  }
+
+  std::uint32_t bit() const { return bit_; }
+
+ private:
+  const BlendCamera* camera_;
+  const Sightings* seen_;
+  std::uint32_t bit_;
+  std::size_t next_, first_ = 0;  // sightings
+  std::size_t run_ = 0;           // of theirs
+};
+
+// Tile after tile, and in each one camera after the other; sums only where a point needs them.
 class Blender {
  public:
   Blender(const std::vector<BlendCamera>& cameras, std::size_t first, RgbdtCloud* fused)
-      : cameras_(cameras), first_(first), fused_(*fused) {
-    fused_.rgb.assign(fused_.size(), {0, 0, 0});
-    fused_.temperature_k.assign(fused_.size(), kNone);
-    fused_.temperature_sigma_k.assign(fused_.size(), kNone);
-    fused_.thermal_counts.assign(fused_.size(), kNone);
-    fused_.valid.assign(fused_.size(), 0);
+      : first_(first), fused_(*fused) {
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      const View view(cameras[c], c, first);
+      if (!view.ShowsAny(first + fused->size())) continue;
+      const bool thermal = cameras[c].camera->spec().kind == CameraKind::kThermal;
+      (thermal ? thermal_ : colour_).push_back(view);
+    }
   }
 
   BlendCounts Run() {
-    for (const CameraKind kind : {CameraKind::kColor, CameraKind::kThermal}) AddKind(kind);
-    counts_.coloured = std::count_if(fused_.valid.begin(), fused_.valid.end(),
-                                     [](std::uint32_t valid) { return valid != 0; });
+    const std::size_t size = fused_.size();
+    fused_.rgb.clear();
+    fused_.temperature_k.clear();
+    fused_.temperature_sigma_k.clear();
+    fused_.thermal_counts.clear();
+    fused_.valid.clear();
+    fused_.rgb.reserve(size);
+    fused_.temperature_k.reserve(size);
+    fused_.temperature_sigma_k.reserve(size);
+    fused_.thermal_counts.reserve(size);
+    fused_.valid.reserve(size);
+    for (std::size_t begin = 0; begin < size; begin += Tile::kSize) {
+      begin_ = first_ + begin;
+      count_ = std::min(Tile::kSize, size - begin);
+      tile_.Clear();
+      colour_.size() == 1 ? TakeColours(&colour_[0]) : BlendColours();
+      thermal_.size() == 1 ? TakeTemperatures(&thermal_[0]) : BlendTemperatures();
+      Append();
+    }
     return counts_;
   }
 
  private:
-  void AddKind(CameraKind kind) {
-    std::vector<std::size_t> of_kind;
-    for (std::size_t c = 0; c < cameras_.size(); ++c) {
-      const BlendCamera& camera = cameras_[c];
-      if (camera.sightings != nullptr && camera.camera->spec().kind == kind) of_kind.push_back(c);
+  std::size_t end() const { return begin_ + count_; }
+
+  void TakeColours(View* view) {
+    if (!view->ShowsAny(end())) return;
+    std::uint32_t samples[Tile::kSize] = {};
+    const auto same = [](std::uint32_t sample) { return sample; };
+    while (view->Next(end())) {
+      counts_.hidden += view->Take(begin_, same, tile_.valid, samples);
     }
-    if (of_kind.size() == 1) {
-      const std::vector<std::uint32_t>& samples = cameras_[of_kind[0]].sightings->sample;
-      ForSeen(of_kind[0], [&](std::size_t i, std::size_t s, const TemperatureTable* table) {
-        kind == CameraKind::kThermal ? SetThermal(i, samples[s], table) : SetColour(i, samples[s]);
-      });
-      return;
-    }
-    if (of_kind.empty()) return;
-    weight_.assign(fused_.size(), 0);
-    best_.assign(fused_.size(), 0);
-    sums_.assign(fused_.size(), {0, 0, 0});
-    for (const std::size_t c : of_kind) {
-      ForSeen(c, [&](std::size_t i, std::size_t s, const TemperatureTable* table) {
-        const float weight = WeightOf(cameras_[c], s);
-        const std::uint32_t sample = cameras_[c].sightings->sample[s];
-        kind == CameraKind::kThermal ? AddThermal(i, weight, sample, table)
-                                     : AddColour(i, weight, sample);
-      });
-    }
-    for (std::size_t i = 0; i < fused_.size(); ++i) {
-      if (weight_[i] > 0) kind == CameraKind::kThermal ? CloseThermal(i) : CloseColour(i);
+    for (std::size_t i = 0; i < count_; ++i) tile_.rgb[i] = RgbOf(samples[i]);
+  }
+
+  void TakeTemperatures(View* view) {
+    while (view->Next(end())) {
+      counts_.hidden += view->Take(begin_, CountsOf, tile_.valid, tile_.thermal_counts);
+      const std::size_t i = view->first_point() - begin_;
+      view->temperatures().At(&tile_.thermal_counts[i], view->end_point() - begin_ - i,
+                              &tile_.temperature_k[i], &tile_.temperature_sigma_k[i]);
     }
   }
 
-  // Sightings with nothing in the way: take(point of the cloud, sighting, its radiometry).
-  template <typename Take>
-  void ForSeen(std::size_t index, Take take) {
-    const BlendCamera& camera = cameras_[index];
-    const Sightings& sightings = *camera.sightings;
-    const std::uint32_t bit = 1U << index;
-    const auto begin = std::lower_bound(sightings.point.begin(), sightings.point.end(), first_);
-    std::size_t run = 0;
-    for (auto s = static_cast<std::size_t>(begin - sightings.point.begin());
-         s < sightings.size() && sightings.point[s] < first_ + fused_.size(); ++s) {
-      if (sightings.hidden[s] != 0) {
-        ++counts_.hidden;
-        continue;
+  void BlendColours() {
+    if (colour_.empty()) return;
+    ClearSums();
+    for (View& view : colour_) {
+      while (view.Next(end())) {
+        counts_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+          const std::size_t i = point - begin_;
+          const auto rgb = RgbOf(sample);
+          tile_.valid[i] |= view.bit();
+          weight_[i] += weight;
+          for (std::size_t c = 0; c < 3; ++c) sums_[i][c] += weight * static_cast<float>(rgb[c]);
+        });
       }
-      while (sightings.runs[run].end <= s) ++run;
-      const std::size_t i = sightings.point[s] - first_;
-      fused_.valid[i] |= bit;
-      take(i, s, sightings.runs[run].temperatures.get());
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!(weight_[i] > 0)) continue;
+      for (std::size_t c = 0; c < 3; ++c) {
+        tile_.rgb[i][c] = static_cast<std::uint8_t>(sums_[i][c] / weight_[i] + 0.5F);
+      }
     }
   }
 
-  void SetColour(std::size_t i, std::uint32_t sample) { fused_.rgb[i] = RgbOf(sample); }
-
-  void SetThermal(std::size_t i, std::uint32_t sample, const TemperatureTable* table) {
-    const float counts = CountsOf(sample);
-    const auto temperature = table->At(counts);
-    fused_.thermal_counts[i] = counts;
-    fused_.temperature_k[i] = temperature.kelvin;
-    fused_.temperature_sigma_k[i] = temperature.sigma_k;
-  }
-
-  void AddColour(std::size_t i, float weight, std::uint32_t sample) {
-    const auto rgb = RgbOf(sample);
-    weight_[i] += weight;
-    for (std::size_t c = 0; c < 3; ++c) sums_[i][c] += weight * static_cast<float>(rgb[c]);
-  }
-
-  void CloseColour(std::size_t i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      fused_.rgb[i][c] = static_cast<std::uint8_t>(sums_[i][c] / weight_[i] + 0.5F);
+  void BlendTemperatures() {
+    if (thermal_.empty()) return;
+    ClearSums();
+    for (View& view : thermal_) {
+      while (view.Next(end())) {
+        counts_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+          tile_.valid[point - begin_] |= view.bit();
+          AddTemperature(point - begin_, weight, CountsOf(sample), view.temperatures());
+        });
+      }
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (!(weight_[i] > 0)) continue;
+      tile_.temperature_k[i] = sums_[i][0] / weight_[i];
+      tile_.temperature_sigma_k[i] = std::sqrt(sums_[i][1]) / weight_[i];
     }
   }
 
-  void AddThermal(std::size_t i, float weight, std::uint32_t sample,
-                  const TemperatureTable* table) {
-    const float counts = CountsOf(sample);
-    const auto temperature = table->At(counts);
+  void AddTemperature(std::size_t i, float weight, float counts, const TemperatureTable& table) {
+    const auto temperature = table.At(counts);
     if (weight > best_[i]) {
       best_[i] = weight;
-      fused_.thermal_counts[i] = counts;
+      tile_.thermal_counts[i] = counts;
     }
     if (std::isnan(temperature.kelvin)) return;
     // A camera of unknown noise counts like one of 0.1 K.
@@ -151,17 +244,33 @@ class Blender {
     sums_[i][1] += weight * weight * temperature.sigma_k * temperature.sigma_k;
   }
 
-  void CloseThermal(std::size_t i) {
-    fused_.temperature_k[i] = sums_[i][0] / weight_[i];
-    fused_.temperature_sigma_k[i] = std::sqrt(sums_[i][1]) / weight_[i];
+  void ClearSums() {
+    weight_.fill(0);
+    best_.fill(0);
+    sums_.fill({0, 0, 0});
   }
 
-  const std::vector<BlendCamera>& cameras_;
+  void Append() {
+    const auto append = [this](const auto* from, auto* to) {
+      to->insert(to->end(), from, from + count_);
+    };
+    append(tile_.rgb, &fused_.rgb);
+    append(tile_.temperature_k, &fused_.temperature_k);
+    append(tile_.temperature_sigma_k, &fused_.temperature_sigma_k);
+    append(tile_.thermal_counts, &fused_.thermal_counts);
+    append(tile_.valid, &fused_.valid);
+    for (std::size_t i = 0; i < count_; ++i) counts_.coloured += tile_.valid[i] != 0 ? 1 : 0;
+  }
+
   std::size_t first_;
   RgbdtCloud& fused_;
+  std::vector<View> colour_, thermal_;
   BlendCounts counts_;
-  std::vector<float> weight_, best_;
-  std::vector<std::array<float, 3>> sums_;
+
+  Tile tile_;
+  std::size_t begin_ = 0, count_ = 0;  // the tile's points, numbered as the sightings number them
+  std::array<float, Tile::kSize> weight_, best_;
+  std::array<std::array<float, 3>, Tile::kSize> sums_;
 };
 
 }  // namespace

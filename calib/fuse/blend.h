@@ -9,7 +9,7 @@
 
 namespace rgbdt {
 
-/// What one camera of the rig brings in; without sightings: nothing.
+/// What one camera of the rig brings in.
 struct BlendCamera {
   const FusionCamera* camera = nullptr;
   const Sightings* sightings = nullptr;

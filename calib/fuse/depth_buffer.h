@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calib/camera/project_points.h"
+#include "calib/fuse/surface_kernel.h"
 
 namespace rgbdt {
 
@@ -23,14 +24,21 @@ class DepthBuffer {
   /// Makes surfaces of what was added since the last call.
   void Close();
 
-  /// Whether a point at this pixel of the image is hidden by what was added and closed.
+  /// hidden[i] = 1 where point i, a pixel of the image, is hidden by what was added and closed,
+  /// here or in another buffer of the same cells; otherwise 0.
+  void FindHidden(const DepthBuffer& other, const PixelColumns& points, std::size_t count,
+                  std::uint8_t* hidden) const;
+
+  /// Whether a point at this pixel of the image is hidden.
   bool Hides(float u, float v, float inverse_range) const {
-    const float nearer = SurfaceAt(u, v) - inverse_range;
-    return nearer > inverse_range * (kBehind + inverse_range * absolute_m_);
+    return IsBehind(SurfaceAt(u, v), inverse_range, absolute_m_);
   }
 
   /// Inverse range of the surface at a pixel of the image; 0 or less: none.
-  float SurfaceAt(float u, float v) const { return planes_[CellOf(u, v)].At(u, v); }
+  float SurfaceAt(float u, float v) const {
+    const float* plane = &planes_[kPlaneFloats * grid_.CellOf(u, v)];
+    return plane[0] + plane[1] * u + plane[2] * v;
+  }
 
   /// Cosine of the angle between the line of sight and the surface's normal at a pixel of the
   /// image; 1 where nothing is known.
@@ -40,48 +48,22 @@ class DepthBuffer {
   void Clear();
 
  private:
-  // The nearest points of a cell, within the noise of each other.
-  struct Layer {
-    float nearest = 0;  // inverse range
-    float count = 0, sum_u = 0, sum_v = 0, sum_w = 0;
-  };
-  // A layer's middle and how its inverse range changes from pixel to pixel.
-  struct Surfel {
-    float u = 0, v = 0, w = 0, by_u = 0, by_v = 0;
-  };
-  struct Plane {
-    float w = 0, by_u = 0, by_v = 0;  // inverse range at pixel (0, 0) and its slopes
-    float At(float u, float v) const { return w + by_u * u + by_v * v; }
-  };
-
-  std::size_t CellOf(float u, float v) const {
-    const int column = static_cast<int>(u * per_u_ + kMargin);
-    const int row = static_cast<int>(v * per_v_ + kMargin);
-    return static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
-  }
-  bool InGrid(float u, float v) const {
-    return u > least_u_ && v > least_v_ && u < most_u_ && v < most_v_;
-  }
   void Touch(std::size_t cell);
   void GrowTouched();
   template <typename Make>
-  void ForTouched(Make make);
-  void MakeSurfel(std::size_t cell);
-  void MakeSlopes(std::size_t cell);
-  void Offer(std::size_t cell);
+  void ForTouchedRows(Make make);
 
-  static constexpr int kMargin = 3;         // cells round the image
-  static constexpr float kBehind = 0.005F;  // how far behind a surface hides, besides the noise
+  // Of a cell's nearest points, within the noise of each other.
+  using Sums = float __attribute__((vector_size(16)));  // u, v, inverse range and 1
 
   Eigen::Vector2d cell_px_;
-  float cell_u_, cell_v_, per_u_, per_v_;  // of a cell [px], and cells a pixel
-  float focal_u_, focal_v_;                // [px]
-  float least_u_, least_v_, most_u_, most_v_;
-  float absolute_m_;  // of the noise
-  std::size_t columns_, rows_;
-  std::vector<Layer> layers_;
-  std::vector<Surfel> surfels_;
-  std::vector<Plane> planes_;
+  CellGrid grid_;
+  float focal_u_, focal_v_;  // [px]
+  float absolute_m_;         // of the noise
+  // By cell, row by row.
+  std::vector<float> nearest_;  // inverse range that the sums are about
+  std::vector<Sums> sums_;
+  std::vector<float> surfels_, planes_;
   std::size_t first_row_, end_row_, first_column_, end_column_;  // touched since Close
 };
 

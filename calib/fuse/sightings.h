@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -19,18 +20,20 @@ struct Sightings {
   /// Of a colour camera red | green << 8 | blue << 16; of a thermal one the bits of a float,
   /// counts.
   std::vector<std::uint32_t> sample;
-  std::vector<std::uint8_t> hidden;  ///< 1: something is in the way; Judge()
-  /// Sightings before `end`, and after the run before, are of one image.
+  std::vector<std::uint8_t> hidden;  ///< 1: something is in the way; as far as Judge() went
+  /// Sightings from `first` on, and before the next run, are of images with this radiometry.
   struct Run {
-    std::size_t end = 0;
+    std::size_t first = 0;
     std::shared_ptr<const TemperatureTable> temperatures;
   };
   std::vector<Run> runs;
 
   std::size_t size() const { return point.size(); }
-  void Clear();
-  /// Goes on with those of a cloud whose first point is number `first_point` of this one's.
-  void Append(const Sightings& other, std::size_t first_point);
+  /// The first sighting, from `begin` on, of this point or a later one; size(): none.
+  std::size_t FirstFrom(std::size_t point_number, std::size_t begin = 0) const;
+  void Clear() { CutBack(0); }
+  /// To the first `size`.
+  void CutBack(std::size_t size);
 };
 
 /// Adds the block's points that lie in the image, sampled bilinearly; goes on with a run.
@@ -38,11 +41,15 @@ struct Sightings {
 void SampleImage(const FusionCamera& camera, const PreparedImage& image, const PixelBlock& block,
                  std::size_t first_point, std::size_t count, Sightings* sightings);
 
-/// Fills in which of sightings [first, size) are hidden by `now`, or by `past` if there is one.
+/// Fills in which of sightings [first, size()) are hidden by `now`, or by `past` if there is one.
 void Judge(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
            Sightings* sightings);
 
 /// A thermal sample's counts.
-float CountsOf(std::uint32_t sample);
+inline float CountsOf(std::uint32_t sample) {
+  float counts = 0;
+  std::memcpy(&counts, &sample, sizeof counts);
+  return counts;
+}
 
 }  // namespace rgbdt

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "calib/fuse/hits.h"
 #include "calib/fuse/motion.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 template <typename T>
 std::vector<T> Slice(const std::vector<T>& all, std::size_t first, std::size_t end) {
@@ -71,12 +69,11 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
   if (!placed) counts_.unplaced += static_cast<std::int64_t>(hits.size());
   const BlockedPoints points(hits.points);
   for (Eye& eye : eyes_) {
-    eye.chunk.Clear();
     if (!placed || !eye.camera.calibrated) continue;
     eye.spacing.Add(chunk, eye.camera.camera_from_lidar);
     Look(hits, points, &eye);
   }
-  const BlendCounts blended = Blend(BlendCameras(&Eye::chunk), 0, &hits);
+  const BlendCounts blended = Blend(BlendCameras(), sweep_.size(), &hits);
   counts_.coloured += blended.coloured;
   counts_.hidden += blended.hidden;
   if (!placed || hits.points.empty()) return hits;
@@ -97,22 +94,7 @@ RgbdtCloud SweepFuser::HitsOf(const Cloud& chunk) const {
     hits.cameras.push_back(eye.camera.spec().name);
     hits.calibration_utime.push_back(eye.camera.calibration_utime);
   }
-  hits.points.resize(chunk.size());
-  hits.intensity.resize(chunk.size());
-  hits.utime.resize(chunk.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < chunk.size(); ++i) {
-    const Eigen::Vector3f& p = chunk.points[i];
-    hits.points[count] = p;
-    hits.intensity[count] = chunk.intensity.empty() ? kNone : chunk.intensity[i];
-    hits.utime[count] = chunk.utime.empty() ? chunk.sweep_utime : chunk.utime[i];
-    // Finite: not so for NaN and infinity.
-    count += static_cast<std::size_t>(std::abs(p.x()) + std::abs(p.y()) + std::abs(p.z()) <
-                                      std::numeric_limits<float>::max());
-  }
-  hits.points.resize(count);
-  hits.intensity.resize(count);
-  hits.utime.resize(count);
+  AppendHits(chunk, &hits);
   return hits;
 }
 
@@ -140,7 +122,7 @@ void SweepFuser::NextSweep() {
   sweep_.utime.clear();
   parted_ = 0;
   for (Eye& eye : eyes_) {
-    eye.sweep.Clear();
+    eye.seen.Clear();
     std::swap(eye.past, eye.now);
     if (!eye.past) {
       eye.now = std::nullopt;
@@ -245,20 +227,21 @@ void SweepFuser::AddToBuffer(const BlockedPoints& points, const Eye& eye,
 
 // What the images that serve the points show of them, and what hides it.
 void SweepFuser::Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye) {
+  const std::size_t before_chunk = eye->seen.size();
   for (std::size_t first = 0; first < hits.size();) {
     const Run run = NextRun(hits, first, *eye);
     const bool anew = StandAt(run.camera_from_sweep, eye);
     // While nothing moves, what is looked at goes into the buffer on the way.
     const bool still = !map_from_sweep_;
     if (!still && (anew || first == 0)) AddToBuffer(points, *eye, &*eye->now);
-    const std::size_t before = eye->chunk.size();
+    const std::size_t before_run = eye->seen.size();
     LookAtRun(points, run, still, eye);
-    if (!still) JudgeFrom(hits, before, eye);
+    if (!still) JudgeFrom(hits, before_run, eye);
     first = run.end;
   }
   if (map_from_sweep_ || hits.size() == 0) return;
   eye->now->Close();
-  JudgeFrom(hits, 0, eye);
+  JudgeFrom(hits, before_chunk, eye);
 }
 
 void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye) {
@@ -268,19 +251,24 @@ void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add
                  [&](std::size_t first, std::size_t count, const PixelBlock& block) {
                    if (add) eye->now->Add(block, count);
                    if (run.image == nullptr) return;
-                   SampleImage(eye->camera, *run.image, block, first, count, &eye->chunk);
+                   SampleImage(eye->camera, *run.image, block, sweep_.size() + first, count,
+                               &eye->seen);
                  });
 }
 
 void SweepFuser::JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye) {
-  Sightings& seen = eye->chunk;
+  Sightings& seen = eye->seen;
   Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &seen);
   if (!eye->past || map_from_sweep_) return;
-  for (std::size_t i = first; i < seen.size(); ++i) {
-    if (seen.hidden[i] == 0 || eye->now->Hides(seen.u[i], seen.v[i], seen.inverse_range[i]))
-      continue;
+  const auto next_hidden = [&seen](std::size_t from) {
+    const auto begin = seen.hidden.begin();
+    return static_cast<std::size_t>(
+        std::find(begin + static_cast<std::ptrdiff_t>(from), seen.hidden.end(), 1) - begin);
+  };
+  for (std::size_t i = next_hidden(first); i < seen.size(); i = next_hidden(i + 1)) {
+    if (eye->now->Hides(seen.u[i], seen.v[i], seen.inverse_range[i])) continue;
     LookThrough(hits);
-    if (IsGone(*eye, hits.points[seen.point[i]], i)) seen.hidden[i] = 0;
+    if (IsGone(*eye, hits.points[seen.point[i] - sweep_.size()], i)) seen.hidden[i] = 0;
   }
 }
 
@@ -295,18 +283,16 @@ void SweepFuser::LookThrough(const RgbdtCloud& hits) {
 
 // Whether what the sweep before saw in front of a point is there no more.
 bool SweepFuser::IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const {
-  const Sightings& seen = eye.chunk;
+  const Sightings& seen = eye.seen;
   const float surface = eye.past->SurfaceAt(seen.u[sighting], seen.v[sighting]);
   const Eigen::Vector3f centre = eye.camera_from_sweep.Inverse().translation.cast<float>();
   return seen_through_.IsGone(centre + seen.inverse_range[sighting] / surface * (point - centre));
 }
 
-std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) const {
+std::vector<BlendCamera> SweepFuser::BlendCameras() const {
   std::vector<BlendCamera> cameras;
   for (const Eye& eye : eyes_) {
-    const Sightings& seen = eye.*sightings;
-    cameras.push_back(
-        {&eye.camera, seen.size() == 0 ? nullptr : &seen, eye.now ? &*eye.now : nullptr});
+    cameras.push_back({&eye.camera, &eye.seen, eye.now ? &*eye.now : nullptr});
   }
   return cameras;
 }
@@ -314,12 +300,12 @@ std::vector<BlendCamera> SweepFuser::BlendCameras(Sightings Eye::*sightings) con
 void SweepFuser::Keep(const RgbdtCloud& hits) {
   if (too_long_ || sweep_.size() + hits.size() > kMaxSweepPoints) {
     too_long_ = true;
+    for (Eye& eye : eyes_) eye.seen.CutBack(eye.seen.FirstFrom(sweep_.size()));
     return;
   }
   const auto append = [](const auto& from, auto* to) {
     to->insert(to->end(), from.begin(), from.end());
   };
-  for (Eye& eye : eyes_) eye.sweep.Append(eye.chunk, sweep_.size());
   append(hits.points, &sweep_.points);
   append(hits.intensity, &sweep_.intensity);
   append(hits.utime, &sweep_.utime);
@@ -351,7 +337,7 @@ RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
   }
   part.map_from_lidar = map_from_sweep_;
   part.frame_utime = map_from_sweep_ ? sweep_.frame_utime : 0;
-  Blend(BlendCameras(&Eye::sweep), first, &part);
+  Blend(BlendCameras(), first, &part);
   return part;
 }
 
@@ -359,9 +345,7 @@ RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
 std::vector<RgbdtCloud> SweepFuser::Parts() {
   for (Eye& eye : eyes_) {
     if (moved_ || !eye.now) continue;
-    const auto& point = eye.sweep.point;
-    const auto first = std::lower_bound(point.begin(), point.end(), parted_);
-    Judge(*eye.now, nullptr, static_cast<std::size_t>(first - point.begin()), &eye.sweep);
+    Judge(*eye.now, nullptr, eye.seen.FirstFrom(parted_), &eye.seen);
   }
   std::vector<RgbdtCloud> parts;
   for (; parted_ < sweep_.size(); parted_ += parts.back().size()) {

@@ -76,7 +76,7 @@ class SweepFuser {
     std::optional<DepthBuffer> now, past;  // of this sweep, of the one before
     Rigid3 camera_from_sweep;              // where they were made for
     Eigen::Vector2d cell_px{0, 0};         // theirs
-    Sightings chunk, sweep;
+    Sightings seen;                        // of the sweep; points numbered as it numbers them
   };
   // Points of the chunk that one image serves; or none.
   struct Run {
@@ -106,7 +106,7 @@ class SweepFuser {
   void Keep(const RgbdtCloud& hits);
   std::vector<RgbdtCloud> Parts();
   RgbdtCloud Part(std::size_t first, std::size_t end) const;
-  std::vector<BlendCamera> BlendCameras(Sightings Eye::*sightings) const;
+  std::vector<BlendCamera> BlendCameras() const;
 
   std::vector<Eye> eyes_;
   double range_sigma_m_;

@@ -1,17 +1,15 @@
 #include "calib/fuse/temperature_table.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <tuple>
 
+#include "calib/camera/wide_loops.h"
 #include "calib/fuse/radiometry.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr std::size_t kCounts = 65536;
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 auto Fields(const Radiometry& r) {
   return std::tie(r.kind, r.gain, r.offset, r.r, r.b, r.f, r.o, r.emissivity,
@@ -50,17 +48,25 @@ TemperatureTable::TemperatureTable(const Radiometry& radiometry, double netd_k)
   }
 }
 
-TemperatureTable::Temperature TemperatureTable::At(float counts) const {
-  if (table_.empty() || !(counts >= 0) || !(counts <= static_cast<float>(kCounts - 1))) {
-    return {kNone, kNone};
+void TemperatureTable::At(const float* counts, std::size_t count, float* kelvin,
+                          float* sigma_k) const {
+  if (table_.empty()) {
+    std::fill_n(kelvin, count, kNone);
+    std::fill_n(sigma_k, count, kNone);
+  } else {
+    AtWide(table_.data(), counts, count, kelvin, sigma_k);
   }
-  const auto low = static_cast<std::size_t>(counts);
-  const Temperature& a = table_[low];
-  const Temperature& b = table_[low + 1 < kCounts ? low + 1 : low];
-  const float share = counts - static_cast<float>(low);
-  // Not a + share (b - a): where b is none and share 0, a stands.
-  if (share == 0) return a;
-  return {a.kelvin + share * (b.kelvin - a.kelvin), a.sigma_k + share * (b.sigma_k - a.sigma_k)};
+}
+
+RGBDT_WIDE_LOOPS
+void TemperatureTable::AtWide(const Temperature* table, const float* counts, std::size_t count,
+                              float* kelvin, float* sigma_k) {
+  RGBDT_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    const Temperature temperature = Between(table, counts[i]);
+    kelvin[i] = temperature.kelvin;
+    sigma_k[i] = temperature.sigma_k;
+  }
 }
 
 bool TemperatureTable::IsFor(const Radiometry& radiometry) const {

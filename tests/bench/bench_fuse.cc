@@ -1,4 +1,5 @@
 // All that touches calib/fuse: demosaicing and fusing, beside OpenCV.
+#include <algorithm>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -66,9 +67,9 @@ std::function<void()> Visibility(std::int64_t points) {
     buffer->Close();
     std::size_t hidden = 0;
     for (const auto& [block, count] : *blocks) {
-      for (std::size_t i = 0; i < count; ++i) {
-        hidden += buffer->Hides(block.u[i], block.v[i], block.inverse_range[i]) ? 1 : 0;
-      }
+      std::uint8_t is_hidden[PixelBlock::kSize];
+      buffer->FindHidden(*buffer, {block.u, block.v, block.inverse_range}, count, is_hidden);
+      hidden += static_cast<std::size_t>(std::count(is_hidden, is_hidden + count, 1));
     }
     benchmark::DoNotOptimize(hidden);
   };

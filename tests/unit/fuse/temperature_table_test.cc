@@ -1,9 +1,11 @@
 #include "calib/fuse/temperature_table.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "calib/fuse/radiometry.h"
 
@@ -46,6 +48,21 @@ TEST(TemperatureTable, WithoutRadiometryAndBeyondItsCountsThereIsNone) {
     EXPECT_TRUE(std::isnan(table.At(counts).sigma_k)) << counts;
   }
   EXPECT_NEAR(table.At(65535).kelvin, 0.04 * 65535, 1e-3);
+}
+
+TEST(TemperatureTable, ManyAtOnceAreTheSame) {
+  std::vector<float> counts = {-1, 65536, std::nanf(""), 0, 65535};
+  for (int i = 0; i < 40; ++i) counts.push_back(2000.F + 311.3F * static_cast<float>(i));
+  for (const Radiometry& r : {Radiometry{}, Linear(), Planck()}) {
+    const TemperatureTable table(r, 0.05);
+    std::vector<float> kelvin(counts.size()), sigma_k(counts.size());
+    table.At(counts.data(), counts.size(), kelvin.data(), sigma_k.data());
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      const auto one = table.At(counts[i]);
+      EXPECT_THAT(kelvin[i], testing::NanSensitiveFloatEq(one.kelvin)) << counts[i];
+      EXPECT_THAT(sigma_k[i], testing::NanSensitiveFloatEq(one.sigma_k)) << counts[i];
+    }
+  }
 }
 
 TEST(TemperatureTable, UnknownNoiseIsUnknown) {
