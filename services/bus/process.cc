@@ -62,7 +62,7 @@ void Loop(Node& node, const std::string& url, const Idle& idle) {
       runner.Tick();
       next_tick_s = std::max(next_tick_s + 1, Now());  // late after a long computation: no burst
     }
-    if (idle && !idle(runner)) return;
+    if (idle && !idle(runner)) break;
     bus.Run(idle ? kWaitWithIdleMs : kWaitMs);
   }
   SayGoodbye(runner.GetStatus());

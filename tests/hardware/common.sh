@@ -2,8 +2,14 @@
 # Sourced by the hardware tests' scripts: live processes, and devices behind cables.
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/../live/common.sh"
-# shellcheck source=tests/hardware/cables.sh
-source "$(dirname "${BASH_SOURCE[0]}")/cables.sh"
+# shellcheck source=tests/hardware/devices.sh
+source "$(dirname "${BASH_SOURCE[0]}")/devices.sh"
+
+if ! ip netns add "rgbdt-$$-probe" 2>/dev/null; then
+  echo "skipped: no network namespace may be made here; needs root"
+  exit 77
+fi
+ip netns delete "rgbdt-$$-probe"
 
 helper() { "$bin/hardware_helper" "$@"; }
 

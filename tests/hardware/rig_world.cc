@@ -67,7 +67,7 @@ class World {
     for (CameraSpec& camera : rig.cameras) {
       CameraDevice device;
       device.address = "10.77." + std::to_string(++number) + ".2";
-      device.features = {{"AcquisitionFrameRate", "5"}};
+      device.features = {{"AcquisitionFrameRate", "2"}};
       camera.device = device;
     }
     return rig;

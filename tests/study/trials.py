@@ -139,6 +139,10 @@ def write_rows(path, rows):
 
 def write(out, name, rows, figures, text):
     write_rows(out / f"{name}.csv", rows)
+    write_summary(out, name, figures, text)
+
+
+def write_summary(out, name, figures, text):
     (out / "summary.json").write_text(json.dumps({"figures": figures}, indent=2) + "\n")
     (out / "table.txt").write_text(text)
     print(text, end="")

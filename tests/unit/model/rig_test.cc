@@ -27,7 +27,7 @@ Rig GoodRig() {
   camera.kind = CameraKind::kThermal;
   camera.format = PixelFormat::kMono16;
   rig.cameras.push_back(camera);
-  rig.lidar.turned_scanner = TurnedScanner{{}, 80000, 0};
+  rig.lidar.turned_scanner = TurnedScanner{{}, 80000, 0, {}};
   rig.target = {11, 8, 0.1, 1.22, 0.91, {0, 0}};
   return rig;
 }
