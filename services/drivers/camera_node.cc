@@ -1,6 +1,7 @@
 #include "services/drivers/camera_node.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "calib/camera/pixels.h"
 #include "calib/files/image_files.h"
@@ -45,55 +46,71 @@ void CameraNode::Complain(DeviceThread& thread, const std::string& what) {
   thread.Complain(spec_.name + ": " + what);
 }
 
+CameraNode::~CameraNode() {
+  thread_.Stop();
+  if (closing_.joinable()) closing_.join();
+}
+
+void CameraNode::CloseLater(std::unique_ptr<GenicamCamera> camera) {
+  if (closing_.joinable()) closing_.join();
+  closing_ = std::thread([old = std::move(camera)]() mutable { old.reset(); });
+}
+
 void CameraNode::Serve(DeviceThread& thread) {
   newest_arrival_ = 0;
   clock_ = ClockFit();
   shutter_ = ShutterWatch();
   rate_since_ = HostUtime();
   rate_frames_ = 0;
+  std::unique_ptr<GenicamCamera> camera;
   try {
-    GenicamCamera camera(spec_);
-    for (const std::string& remark : camera.remarks()) Complain(thread, remark);
-    ptp_ = camera.FollowsPtp();
-    if (spec_.device->trigger != CameraDevice::Trigger::kFree) {  // it may send nothing for long
-      const std::lock_guard<std::mutex> lock(mutex_);
-      health_.streaming = true;
-    }
-    Utime asked = 0;
-    const Utime opened = HostUtime();
-    while (!thread.Stopping()) {
-      bool trigger = false;
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        std::swap(trigger, trigger_);
-      }
-      if (trigger) camera.Trigger();
-      const bool any =
-          camera.Next(kWaitMs, [&](const CameraFrame& frame) { TakeFrame(thread, frame); });
-      const Utime now = HostUtime();
-      const Utime silence = now - std::max(opened, newest_arrival_);
-      if (!any && spec_.device->trigger == CameraDevice::Trigger::kFree && silence > kSilence) {
-        throw DeviceError("no frame for " + Seconds(silence) + "; is its cable plugged in?");
-      }
-      if (now - asked < kAskEvery) continue;
-      asked = now;
-      AskHealth(camera);
-    }
+    camera = std::make_unique<GenicamCamera>(spec_);
+    Stream(camera.get(), &thread);
   } catch (const std::exception& e) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (health_.streaming) ++health_.lost;
-      health_.streaming = false;
-      health_.rate_hz = 0;
-    }
+    if (camera) CloseLater(std::move(camera));
     if (lost_since_ == 0 && newest_arrival_ != 0) lost_since_ = newest_arrival_;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (health_.streaming) ++health_.lost;
+    health_.streaming = false;
+    health_.rate_hz = 0;
     throw DeviceError(spec_.name + ": " + e.what());
   }
 }
 
-void CameraNode::AskHealth(GenicamCamera& camera) {
-  exposure_s_ = camera.ExposureSeconds().value_or(0);
-  const auto celsius = camera.TemperatureCelsius();
+// Until it is to stop, or the camera is lost.
+void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
+  using Trigger = CameraDevice::Trigger;
+  const bool free_running = spec_.device->trigger == Trigger::kFree;
+  for (const std::string& remark : camera->remarks()) Complain(*thread, remark);
+  ptp_ = camera->FollowsPtp();
+  if (!free_running) {  // it may send nothing for long
+    const std::lock_guard<std::mutex> lock(mutex_);
+    health_.streaming = true;
+  }
+  const Utime opened = HostUtime();
+  Utime asked = 0;
+  while (!thread->Stopping()) {
+    if (TakeTrigger()) camera->Trigger();
+    camera->Next(kWaitMs, [&](const CameraFrame& frame) { TakeFrame(*thread, frame); });
+    const Utime now = HostUtime();
+    const Utime silence = now - std::max(opened, newest_arrival_);
+    if (free_running && silence > kSilence) {
+      throw DeviceError("no frame for " + Seconds(silence) + "; is its cable plugged in?");
+    }
+    if (now - asked < kAskEvery) continue;
+    asked = now;
+    AskHealth(camera);
+  }
+}
+
+bool CameraNode::TakeTrigger() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(trigger_, false);
+}
+
+void CameraNode::AskHealth(GenicamCamera* camera) {
+  exposure_s_ = camera->ExposureSeconds().value_or(0);
+  const auto celsius = camera->TemperatureCelsius();
   const Utime now = HostUtime();
   const std::lock_guard<std::mutex> lock(mutex_);
   health_.celsius = celsius;

@@ -2,9 +2,11 @@
 
 #include <atomic>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "calib/model/rig.h"
 #include "services/drivers/clock_fit.h"
@@ -35,7 +37,7 @@ class CameraNode : public DeviceNode {
 
   /// Throws InputError where the rig file has no device for it.
   CameraNode(const CameraSpec& spec, std::filesystem::path captures);
-  ~CameraNode() override { thread_.Stop(); }
+  ~CameraNode() override;
 
   std::string name() const override { return "camera-" + spec_.name; }
   std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }
@@ -58,12 +60,15 @@ class CameraNode : public DeviceNode {
   };
 
   void Serve(DeviceThread& thread);
+  void Stream(GenicamCamera* camera, DeviceThread* thread);
+  void CloseLater(std::unique_ptr<GenicamCamera> camera);
   void TakeFrame(DeviceThread& thread, const CameraFrame& frame);
   void CheckFits(const Image& image) const;
+  bool TakeTrigger();
   Utime MiddleOfExposure(const CameraFrame& frame);
   void KeepRaw(const Image& image);
   void Pack(Image* image) const;
-  void AskHealth(GenicamCamera& camera);
+  void AskHealth(GenicamCamera* camera);
   void Complain(DeviceThread& thread, const std::string& what);
 
   CameraSpec spec_;
@@ -83,6 +88,7 @@ class CameraNode : public DeviceNode {
   Utime lost_since_ = 0;      // 0: it is not
   std::int64_t rate_frames_ = 0;
   Utime rate_since_ = 0;
+  std::thread closing_;  // of a camera that was lost: its farewells time out one after the other
 
   DeviceThread thread_;  // last: it uses all the others
 };

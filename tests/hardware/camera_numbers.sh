@@ -53,7 +53,7 @@ for name in rgb thermal; do
 done
 
 # From the cable's return to the first frame on the bus.
-for away in 0.5 1 2 2.7 3.1 3.5 4 5 6 8; do
+for away in 0.5 2 2.9 3.1 3.5 4 4.3 6; do
   ip link set cable-rgb down
   sleep "$away"  # how long somebody holds the plug: not a wait for anything
   ip link set cable-rgb up

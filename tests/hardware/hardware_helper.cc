@@ -28,7 +28,8 @@ int Usage() {
   std::fputs(
       "usage: hardware_helper VERB ...\n"
       "  frames FILE COUNT WIDTH HEIGHT BYTES  writes COUNT frames of noise, BYTES a pixel\n"
-      "  images CHANNEL FILE COUNT    hears COUNT images, each one of FILE's frames byte for "
+      "  images CHANNEL FILE COUNT [SECONDS]  hears COUNT images, each one of FILE's frames, byte "
+      "for "
       "byte;\n"
       "                               prints how many messages are missing and how even they come\n"
       "  counter PROCESS NAME LEAST   until a process counts so many; prints the number\n"
@@ -126,8 +127,9 @@ int HearImages(const Arguments& a) {
         }
         images.back().pixels.release();
       });
-  if (!listener.RunUntil(
-          [&] { return images.size() >= wanted || listener.bus.handler_failures() > 0; })) {
+  const auto done = [&] { return images.size() >= wanted || listener.bus.handler_failures() > 0; };
+  const auto patience = a.size() > 3 ? std::chrono::seconds(std::stoi(a[3])) : kPatience;
+  if (!listener.RunUntil(done, patience)) {
     std::fprintf(stderr, "%zu images of %zu in time\n", images.size(), wanted);
     return 1;
   }
