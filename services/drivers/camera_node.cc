@@ -121,7 +121,11 @@ void CameraNode::AskHealth(GenicamCamera* camera) {
 
 Utime CameraNode::MiddleOfExposure(const CameraFrame& frame) {
   const Utime exposure = FromSeconds(exposure_s_);
-  if (ptp_) return frame.device_utime + exposure / 2;
+  if (frame.device_utime == 0) return frame.arrival_utime - exposure / 2;  // it has no clock
+  if (ptp_) {
+    const auto start = PtpToUtc(frame.device_utime, frame.arrival_utime - exposure);
+    if (start) return *start + exposure / 2;
+  }
   clock_.Add(frame.device_utime, frame.arrival_utime, exposure);
   return clock_.ToHost(static_cast<double>(frame.device_utime)).value_or(frame.arrival_utime) +
          exposure / 2;

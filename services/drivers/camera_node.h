@@ -23,7 +23,7 @@ namespace rgbdt {
 /// `utime` is the exposure's middle on the host's clock: the device's stamps through ClockFit,
 /// where a frame's first packet leaves at the exposure's end at the earliest. So it does not matter
 /// whether a device stamps the exposure's start or its end. A device that follows PTP is taken at
-/// its word: its stamp is the exposure's start, UTC.
+/// its word (PtpToUtc): its stamp is the exposure's start.
 ///
 /// Where images go out as JPEG or PNG, SESSION_COMMAND capture leaves that view's image raw in
 /// `captures`, on this host. With software triggers a capture takes an image, and nothing else

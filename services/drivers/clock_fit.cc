@@ -27,6 +27,16 @@ Utime HostUtime() {
       .count();
 }
 
+std::optional<Utime> PtpToUtc(Utime stamp, Utime arrival) {
+  constexpr Utime kMostApart = 60 * kMicrosecondsPerSecond;
+  constexpr Utime kMostOff = kMicrosecondsPerSecond / 5;
+  const Utime ahead = stamp - arrival;
+  if (std::abs(ahead) > kMostApart) return std::nullopt;
+  const auto whole = static_cast<Utime>(std::llround(ToSeconds(ahead))) * kMicrosecondsPerSecond;
+  if (std::abs(ahead - whole) > kMostOff) return std::nullopt;
+  return stamp - whole;
+}
+
 std::int64_t CounterUnwrapper::Unwrap(std::int64_t reading) {
   if (last_) {
     const std::int64_t ahead = ((reading - *last_) % period_ + period_) % period_;

@@ -11,6 +11,12 @@ namespace rgbdt {
 /// This machine's clock: [us, UTC].
 Utime HostUtime();
 
+/// A stamp of a clock that follows PTP, in UTC. PTP counts TAI, whole seconds ahead of UTC (37
+/// since 2017), though some masters hand out UTC: how many, its arrival here tells. Nothing where
+/// the two clocks are more than a minute or, apart from whole seconds, more than 0.2 s apart: then
+/// it does not follow the same time.
+std::optional<Utime> PtpToUtc(Utime stamp, Utime arrival);
+
 /// A counter that wraps (SCIP: 24 bit of ms; Velodyne: us of the hour) as one that does not: each
 /// reading becomes the value nearest to the one before, so late readings may come. After a silence
 /// of half a period it can no longer tell: begin a new one.

@@ -47,7 +47,7 @@ class GenicamCamera {
   /// Asked of the camera; nothing where it does not tell.
   std::optional<double> ExposureSeconds();
   std::optional<double> TemperatureCelsius();
-  /// Its clock follows PTP: device_utime is UTC (or TAI, see the README).
+  /// Its clock follows PTP: device_utime is TAI or UTC (PtpToUtc).
   bool FollowsPtp();
 
  private:

@@ -177,5 +177,16 @@ TEST(CounterUnwrapper, GoesOnWhereTheCounterWraps) {
   EXPECT_EQ(counter.Unwrap(5), (1 << 24) + 5);
 }
 
+TEST(PtpToUtc, TakesWholeSecondsAway) {
+  EXPECT_EQ(PtpToUtc(kStart + 37'000'000, kStart + 900), kStart) << "TAI";
+  EXPECT_EQ(PtpToUtc(kStart, kStart + 900), kStart) << "UTC";
+  EXPECT_EQ(PtpToUtc(kStart + 37'000'000, kStart + 150'000), kStart) << "a late arrival";
+}
+
+TEST(PtpToUtc, AClockOfItsOwnIsNotBelieved) {
+  EXPECT_FALSE(PtpToUtc(5'000'000, kStart));
+  EXPECT_FALSE(PtpToUtc(kStart + 500'000, kStart));
+}
+
 }  // namespace
 }  // namespace rgbdt
