@@ -31,7 +31,7 @@ std::string Seconds(Utime duration) {
 CameraNode::CameraNode(const CameraSpec& spec, std::filesystem::path captures)
     : spec_(WithDevice(spec)),
       captures_(std::move(captures)),
-      thread_([this](DeviceThread& thread) { Serve(thread); }) {}
+      thread_([this](DeviceThread& thread) { Serve(thread); }, kMaxWaiting) {}
 
 Messages CameraNode::Handle(const Message& message) {
   const auto* command = std::get_if<SessionCommand>(&message);

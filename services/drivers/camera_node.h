@@ -35,6 +35,9 @@ class CameraNode : public DeviceNode {
   /// opened anew.
   static constexpr Utime kSilence = 3 * kMicrosecondsPerSecond;
 
+  /// Frames that wait for the bus, which packs them; the oldest go first.
+  static constexpr std::size_t kMaxWaiting = 8;
+
   /// Throws InputError where the rig file has no device for it.
   CameraNode(const CameraSpec& spec, std::filesystem::path captures);
   ~CameraNode() override;

@@ -4,7 +4,8 @@
 
 namespace rgbdt {
 
-DeviceThread::DeviceThread(Serve serve) : serve_(std::move(serve)), thread_([this] { Run(); }) {}
+DeviceThread::DeviceThread(Serve serve, std::size_t most_waiting)
+    : serve_(std::move(serve)), most_waiting_(most_waiting), thread_([this] { Run(); }) {}
 
 void DeviceThread::Run() {
   while (!stopping_) {
@@ -27,7 +28,7 @@ bool DeviceThread::Sleep(int ms) {
 
 void DeviceThread::Say(Message message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (news_.messages.size() >= kMaxWaiting) {
+  if (news_.messages.size() >= most_waiting_) {
     news_.messages.erase(news_.messages.begin());
     ++overflown_;
   }

@@ -36,7 +36,8 @@ class DeviceThread {
   static constexpr std::size_t kMaxWaiting = 1000;  ///< messages; the oldest go first
 
   using Serve = std::function<void(DeviceThread& thread)>;
-  explicit DeviceThread(Serve serve);
+  /// `most_waiting`: fewer, where messages are large.
+  explicit DeviceThread(Serve serve, std::size_t most_waiting = kMaxWaiting);
   /// Waits until `serve` has returned.
   ~DeviceThread() { Stop(); }
   DeviceThread(const DeviceThread&) = delete;
@@ -59,6 +60,7 @@ class DeviceThread {
   void Run();
 
   Serve serve_;
+  std::size_t most_waiting_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   DeviceNews news_;

@@ -5,13 +5,30 @@
 
 namespace rgbdt {
 
-bool ShutterWatch::IsFrozen(const cv::Mat& counts) const {
+bool ShutterWatch::IsSame(const cv::Mat& counts) const {
   if (last_.size() != counts.size() || last_.type() != counts.type()) return false;
   const std::size_t row_bytes = static_cast<std::size_t>(counts.cols) * counts.elemSize();
   for (int row = 0; row < counts.rows; ++row) {
     if (std::memcmp(counts.ptr(row), last_.ptr(row), row_bytes) != 0) return false;
   }
   return true;
+}
+
+bool ShutterWatch::IsFrozen(const cv::Mat& counts, Utime utime) {
+  constexpr double kForget = 0.3;  // of a change
+  const Utime period = utime - newest_;
+  const Utime stands = utime - changed_;
+  newest_ = utime;
+  if (IsSame(counts)) {
+    return static_cast<double>(stands) > usual_us_ - 0.5 * static_cast<double>(period) &&
+           stands < kLongest;
+  }
+  if (stands < kSlowest) {
+    usual_us_ += (usual_us_ > 0 ? kForget : 1) * (static_cast<double>(stands) - usual_us_);
+  }
+  changed_ = utime;
+  last_ = counts;
+  return false;
 }
 
 bool ShutterWatch::IsFlat(const cv::Mat& counts) {
@@ -26,9 +43,7 @@ bool ShutterWatch::IsFlat(const cv::Mat& counts) {
 }
 
 bool ShutterWatch::Add(const cv::Mat& counts, Utime utime) {
-  const bool frozen = IsFrozen(counts);
-  if (frozen || IsFlat(counts)) until_ = utime + kSettle;
-  if (!frozen) last_ = counts;
+  if (IsFrozen(counts, utime) || IsFlat(counts)) until_ = utime + kSettle;
   return utime <= until_;
 }
 

@@ -53,6 +53,26 @@ TEST_F(ShutterWatchTest, AFrozenPictureIsFlaggedFromItsFirstRepetitionUntilItHas
   EXPECT_EQ(flagged, ShutterWatch::kSettle / kPeriod);
 }
 
+TEST_F(ShutterWatchTest, ASlowCoresRepeatedFramesAreUsed) {
+  int flagged = 0;
+  for (int i = 0; i < 100; ++i) {
+    const cv::Mat picture = core_.Scene();
+    for (int k = 0; k < 4; ++k) flagged += Add(picture.clone()) && i >= 15 ? 1 : 0;
+  }
+  EXPECT_EQ(flagged, 0);
+  const cv::Mat frozen = core_.Scene();
+  for (int k = 0; k < 15; ++k) flagged += Add(frozen.clone()) ? 1 : 0;
+  EXPECT_EQ(flagged, 11) << "from when it ought to have changed";
+}
+
+TEST_F(ShutterWatchTest, WhatStandsForLongIsNoCorrection) {
+  const cv::Mat still = core_.Scene();
+  const Utime begun = now_;
+  while (now_ - begun < ShutterWatch::kLongest + ShutterWatch::kSettle + kPeriod)
+    Add(still.clone());
+  for (int i = 0; i < 30; ++i) EXPECT_FALSE(Add(still.clone()));
+}
+
 TEST_F(ShutterWatchTest, TheShuttersFaceIsFlagged) {
   for (int i = 0; i < 10; ++i) Add(core_.Scene());
   for (int i = 0; i < 15; ++i) EXPECT_TRUE(Add(core_.Shutter()));
