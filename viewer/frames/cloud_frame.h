@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "calib/model/rgbdt_cloud.h"
+
+namespace rgbdt::viewer {
+
+/// Bytes of one point in a cloud frame, see protocol.ts.
+inline constexpr std::size_t kPointBytes = 32;
+
+/// A fused cloud as a CloudFrame, `part` its number in the sweep. Its points come in an order that
+/// scatters them evenly: any first part of the records is an even sample. Deterministic.
+std::string CloudFrame(const RgbdtCloud& cloud, int part);
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/cloud.h"
+#include "calib/model/observation.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt::viewer {
+
+/// What is to be drawn on one image.
+struct Overlay {
+  std::string camera;
+  std::string view;  ///< empty: the newest, live
+  Utime utime = 0;   ///< of the image
+  bool calibrated = false;
+  std::string text;
+  std::vector<Eigen::Vector2d> corners;  ///< [px]
+  std::vector<Eigen::Vector2d> outline;  ///< closed chain [px]
+  std::vector<Eigen::Vector3d> edge;     ///< x, y, distance from the outline [px]
+  std::vector<Eigen::Vector3d> cloud;    ///< x, y [px], distance from the camera [m]
+};
+
+/// Lays points of the LIDAR frame on a camera's image: x, y [px], distance from the camera [m].
+/// Those that it does not see are left out, evenly thinned to `most`.
+std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& camera, const Rigid3& camera_from_lidar,
+                                        const std::vector<Eigen::Vector3f>& points,
+                                        std::size_t most = 20000);
+
+/// A view's overlay: what detection found in the image and, with a calibration, the board's edge in
+/// the cloud and the cloud itself, both laid on the image. `cloud` may be null.
+Overlay ViewOverlay(const CameraSpec& camera, const Observation& observation, const Cloud* cloud,
+                    const std::optional<Rigid3>& camera_from_lidar);
+
+/// As an OverlayFrame.
+std::string OverlayFrame(const Overlay& overlay, bool ack);
+
+/// A ThumbFrame of the board in the cloud, seen along its normal from the LIDAR's side: its points
+/// by intensity, what lies round it dimmer, crossings as marks. Empty where the observation has no
+/// board in the cloud.
+std::string BoardThumbFrame(const Observation& observation, const Cloud& cloud);
+
+}  // namespace rgbdt::viewer
