@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 
 #include "calib/files/rig_file.h"
 #include "calib/files/session_script.h"
@@ -78,30 +79,51 @@ class Person {
   bool asked_ = false;
 };
 
+std::unique_ptr<rgbdt::SessionNode> ByScript(const std::string& file, const std::string& rig,
+                                             const std::string& out, bool by_hand) {
+  rgbdt::SessionScript script = rgbdt::ReadSessionScript(file, rig);
+  if (by_hand) GiveTime(&script);
+  return std::make_unique<rgbdt::SessionNode>(script, rgbdt::ReadRig(script.rig), out,
+                                              ProgressPrinter());
+}
+
+std::unique_ptr<rgbdt::SessionNode> LedByThePage(const std::string& rig, const std::string& out,
+                                                 bool by_hand) {
+  if (rig.empty()) throw rgbdt::InputError("without a script --rig is needed: which rig?");
+  if (by_hand) throw rgbdt::InputError("--by-hand goes with a script; the page asks by itself");
+  std::printf("The viewer's page leads this session: rgbdt-viewer prints its address.\n");
+  std::fflush(stdout);
+  return std::make_unique<rgbdt::SessionNode>(rgbdt::ReadRig(rig), out, ProgressPrinter());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Runs a scripted calibration session on the bus and writes the session directory.\n"
+      "Runs a calibration session on the bus and writes the session directory: by a script, or,\n"
+      "without one, as you ask in the viewer's page (rgbdt-viewer).\n"
       "Example: rgbdt-session scripts/sessions/demo.session.textproto --rig out/rig.textproto "
-      "--out out/session",
+      "--out out/session\n"
+      "         rgbdt-session --rig out/rig.textproto --out out/session",
       "rgbdt-session"};
   std::string url;
   std::string script_file;
   std::string rig_file;
   std::string out = "out/session";
   bool by_hand = false;
-  app.add_option("FILE", script_file, "session.textproto")->required();
+  app.add_option("FILE", script_file, "session.textproto; without it the viewer's page leads");
   app.add_option("--rig", rig_file, "rig.textproto; default: the one that the script names");
   app.add_option("--out", out, "session directory to write")->capture_default_str();
   app.add_flag("--by-hand", by_hand,
-               "you carry the board: asks for each pose and waits for Enter, however long");
+               "you carry the board: asks for each pose and waits for Enter, or for the button in "
+               "the viewer, however long");
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
   CLI11_PARSE(app, argc, argv);
   try {
-    rgbdt::SessionScript script = rgbdt::ReadSessionScript(script_file, rig_file);
-    if (by_hand) GiveTime(&script);
-    rgbdt::SessionNode node(script, rgbdt::ReadRig(script.rig), out, ProgressPrinter());
+    const std::unique_ptr<rgbdt::SessionNode> session =
+        script_file.empty() ? LedByThePage(rig_file, out, by_hand)
+                            : ByScript(script_file, rig_file, out, by_hand);
+    rgbdt::SessionNode& node = *session;
     Person person;
     const double began = Seconds();
     const int code = rgbdt::RunOnLcm(node, url, [&](rgbdt::NodeRunner& runner) {

@@ -113,6 +113,18 @@ struct Observation {
   bool usable() const { return rejected.empty() && image && cloud; }
 };
 
+/// What one sensor sees of the target just now.
+struct Sighting {
+  std::int64_t seq = 0;
+  Utime utime = 0;     ///< of the image, or the sweep's start
+  std::string camera;  ///< empty: the LIDAR
+  bool seen = false;
+  std::string text;                      ///< where it is, or why it is not seen
+  std::vector<Eigen::Vector2d> corners;  ///< camera: inner corners, the target's order [px]
+  std::vector<Eigen::Vector2d> outline;  ///< camera: closed chain through the lens [px]
+  Eigen::Vector3d centre{0, 0, 0};       ///< LIDAR: of the board's points, LIDAR frame [m]
+};
+
 /// Everything detection needs for one view.
 struct View {
   std::string name;

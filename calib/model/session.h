@@ -44,6 +44,21 @@ struct SessionEvent {
   double fraction = 0;    ///< progress, 0 to 1
 };
 
+enum class SessionRequestKind {
+  kNextPose = 1,   ///< have the board carried to its next place
+  kPoseIsSet = 2,  ///< who carried it says that it stands
+  kCapture = 3,    ///< turn the scanner once, take the view and solve
+  kFinish = 4,     ///< judge, save, end the session
+};
+
+/// What a person asks of the session.
+struct SessionRequest {
+  std::int64_t seq = 0;
+  Utime utime = 0;  ///< newest sensor time that the sender knew; 0 before the first
+  SessionRequestKind request = SessionRequestKind::kCapture;
+  bool heldout = false;  ///< capture: keep this view from the solver
+};
+
 /// Health of a process; sent at 1 Hz and when something happens.
 struct Status {
   std::string process;

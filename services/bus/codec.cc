@@ -68,7 +68,7 @@ constexpr Kind kImage = {"_IMAGE", DecodeAs<image_t>, "2q s 2q d 4i b 8d b #size
 constexpr std::string_view kRgbdtCloud =
     "rgbdt_cloud_t b #num_calibrations num_calibrations*q b q 7d #num_sigmas num_sigmas*f";
 
-constexpr std::array<Kind, 14> kKinds = {{
+constexpr std::array<Kind, 16> kKinds = {{
     {"LINE_SCAN", DecodeAs<line_scan_t>, "2q 3d #num_beams num_beams*f num_beams*f"},
     {"ENCODER", DecodeAs<encoder_t>, "4q"},
     {"CLOUD", DecodeAs<cloud_t>,
@@ -86,6 +86,9 @@ constexpr std::array<Kind, 14> kKinds = {{
     {"RIG", DecodeAs<rig_t>, "2q 2s"},
     {"SESSION_COMMAND", DecodeAs<session_command_t>, "3q b s q b #num_picked num_picked*s"},
     {"SESSION_EVENT", DecodeAs<session_event_t>, "3q s b s q d"},
+    {"SESSION_REQUEST", DecodeAs<session_request_t>, "2q 2b"},
+    {"SIGHTING", DecodeAs<sighting_t>,
+     "2q s b s #num_corners num_corners*2d #num_outline num_outline*2d 3d"},
     {"STATUS", DecodeAs<status_t>, "2q s b 2s #num_counters num_counters*s num_counters*q"},
     {"REPORT", DecodeAs<report_t>, "2q s"},
 }};

@@ -111,6 +111,30 @@ SessionEvent FromWire(const session_event_t& wire) {
   return event;
 }
 
+session_request_t ToWire(const SessionRequest& request) {
+  session_request_t wire;
+  wire.utime = request.utime;
+  wire.seq = request.seq;
+  wire.request = static_cast<std::int8_t>(request.request);
+  wire.heldout = static_cast<std::int8_t>(request.heldout);
+  return wire;
+}
+
+void Check(const session_request_t& wire) {
+  CheckUtimeOrZero("utime", wire.utime);
+  CheckSeq(wire.seq);
+  CheckRange("request", wire.request, session_request_t::NEXT_POSE, session_request_t::FINISH);
+}
+
+SessionRequest FromWire(const session_request_t& wire) {
+  SessionRequest request;
+  request.utime = wire.utime;
+  request.seq = wire.seq;
+  request.request = static_cast<SessionRequestKind>(wire.request);
+  request.heldout = wire.heldout != 0;
+  return request;
+}
+
 status_t ToWire(const Status& status) {
   status_t wire;
   wire.utime = status.utime;

@@ -23,6 +23,8 @@
 #include <lcmtypes/rgbdt/rig_t.hpp>
 #include <lcmtypes/rgbdt/session_command_t.hpp>
 #include <lcmtypes/rgbdt/session_event_t.hpp>
+#include <lcmtypes/rgbdt/session_request_t.hpp>
+#include <lcmtypes/rgbdt/sighting_t.hpp>
 #include <lcmtypes/rgbdt/status_t.hpp>
 
 #include "services/nodes/message.h"
@@ -67,6 +69,10 @@ observation_t ToFirstVersion(const Observation& observation);
 void Check(const observation_t& wire);
 Observation FromWire(const observation_t& wire);
 
+sighting_t ToWire(const Sighting& sighting);
+void Check(const sighting_t& wire);
+Sighting FromWire(const sighting_t& wire);
+
 // codec_observation_v2.cc
 /// What the second version carries: no crossings' sigmas and no scatter.
 observation_v2_t ToSecondVersion(const Observation& observation);
@@ -96,6 +102,9 @@ SessionCommand FromWire(const session_command_t& wire);
 session_event_t ToWire(const SessionEvent& event);
 void Check(const session_event_t& wire);
 SessionEvent FromWire(const session_event_t& wire);
+session_request_t ToWire(const SessionRequest& request);
+void Check(const session_request_t& wire);
+SessionRequest FromWire(const session_request_t& wire);
 status_t ToWire(const Status& status);
 void Check(const status_t& wire);
 Status FromWire(const status_t& wire);

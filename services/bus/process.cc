@@ -51,8 +51,9 @@ void SayGoodbye(const Status& status) {
   spdlog::info("{}: stopped; {}{}", status.process, status.text, counters);
 }
 
-void Loop(Node& node, const std::string& url, const Idle& idle) {
+void Loop(Node& node, const std::string& url, const Idle& idle, const Bus::Handler& overhear) {
   LcmBus bus(url);
+  if (overhear) bus.Subscribe(".*", overhear);
   NodeRunner runner(&node, &bus);
   ProblemLog problems([&](const std::string& line) { spdlog::warn("{}: {}", node.name(), line); });
   runner.SetProblemHandler([&](const std::string& problem) { problems.Add(problem, Now()); });
@@ -70,13 +71,13 @@ void Loop(Node& node, const std::string& url, const Idle& idle) {
 
 }  // namespace
 
-int RunOnLcm(Node& node, const std::string& url, const Idle& idle) {
+int RunOnLcm(Node& node, const std::string& url, const Idle& idle, const Bus::Handler& overhear) {
   CatchSignals();
   KeepMemoryForTheNextMessage();
   try {
     const std::string advice = ReceiveBufferAdvice();
     if (!advice.empty()) spdlog::warn("{}: {}", node.name(), advice);
-    Loop(node, url, idle);
+    Loop(node, url, idle, overhear);
     return 0;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-%s: %s\n", node.name().c_str(), e.what());

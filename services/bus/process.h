@@ -15,8 +15,10 @@ using Idle = std::function<bool(NodeRunner& runner)>;
 /// The main loop of a process: the node on LCM until SIGINT, SIGTERM or a log's end, its status at
 /// 1 Hz of the machine's steady clock. Says on the log how large the receive buffer ought to be,
 /// and each problem, the same one at most every five seconds. Returns the exit code: 0, or 1 with
-/// one line on stderr where the bus cannot be opened or `idle` throws.
-int RunOnLcm(Node& node, const std::string& url, const Idle& idle = {});
+/// one line on stderr where the bus cannot be opened or `idle` throws. `overhear` gets every
+/// message that is on the bus, as bytes.
+int RunOnLcm(Node& node, const std::string& url, const Idle& idle = {},
+             const Bus::Handler& overhear = {});
 
 /// The main loop of a device's process: what the device says is published, what it complains about
 /// is named in the status and on the log. Ends with a device that has nothing more to say.

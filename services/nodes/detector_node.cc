@@ -4,6 +4,7 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/detect.h"
+#include "calib/detect/sighting.h"
 #include "calib/files/rig_file.h"
 #include "calib/model/errors.h"
 
@@ -27,6 +28,7 @@ Messages DetectorNode::Handle(const Message& message) {
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     rig_->Camera(picks->camera);
     view_.Add(*picks);
+    if (!view_.active()) return OnPicks(*picks);
   } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
     OnCommand(*command);
   }
@@ -37,10 +39,15 @@ void DetectorNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = ParseRig(text.text, "RIG message");
   view_ = {};
+  kept_.clear();
+  looked_.clear();
 }
 
 void DetectorNode::OnCommand(const SessionCommand& command) {
-  if (command.verb == SessionVerb::kReset) view_.Reset();
+  if (command.verb == SessionVerb::kReset) {
+    view_.Reset();
+    kept_.clear();
+  }
   if (command.verb == SessionVerb::kCapture) view_.Begin(command);
 }
 
@@ -53,8 +60,32 @@ Messages DetectorNode::DetectIfComplete() {
   const std::optional<View> view = view_.Take(*rig_);
   if (!view) return {};
   ++views_;
+  kept_.push_back({*view, event});
+  if (kept_.size() > kKeptViews) kept_.pop_front();
+  return DetectOrFail(*view, event);
+}
+
+// A person helps a view that was taken before.
+Messages DetectorNode::OnPicks(const CornerSelection& picks) {
+  for (Kept& kept : kept_) {
+    const auto& images = kept.view.images;
+    const bool its = std::any_of(images.begin(), images.end(), [&](const Image& image) {
+      return image.camera == picks.camera && image.utime == picks.image_utime;
+    });
+    if (!its) continue;
+    auto& all = kept.view.picks;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const CornerSelection& p) { return p.camera == picks.camera; }),
+              all.end());
+    all.push_back(picks);
+    return DetectOrFail(kept.view, kept.event);
+  }
+  return {};
+}
+
+Messages DetectorNode::DetectOrFail(const View& view, SessionEvent event) {
   try {
-    return Detect(*view, event);
+    return Detect(view, event);
   } catch (const InputError& e) {
     event.kind = EventKind::kFailed;
     event.text = e.what();
@@ -73,6 +104,24 @@ Messages DetectorNode::Detect(const View& view, SessionEvent event) {
   }
   out.push_back(std::move(event));
   return out;
+}
+
+Messages DetectorNode::Republish() {
+  if (!rig_ || view_.active()) return {};
+  const std::size_t sensors = rig_->cameras.size() + 1;
+  for (std::size_t i = 0; i < sensors; ++i) {
+    const std::size_t turn = next_look_++ % sensors;
+    if (turn == rig_->cameras.size()) {
+      const Utime sweep = view_.sweeps().NewestEnded();
+      if (sweep == 0 || std::exchange(looked_[""], sweep) == sweep) continue;
+      return {LookForTarget(*rig_, *view_.sweeps().Complete(sweep))};
+    }
+    const std::string& camera = rig_->cameras[turn].name;
+    const Image* image = view_.Newest(camera);
+    if (image == nullptr || std::exchange(looked_[camera], image->utime) == image->utime) continue;
+    return {LookForTarget(*rig_, *image)};
+  }
+  return {};
 }
 
 Status DetectorNode::GetStatus() const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <deque>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -14,8 +16,14 @@ namespace rgbdt {
 /// camera, then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
 /// view that never becomes complete is dropped when the next capture or a reset comes; the status
 /// says what it waits for. Another rig forgets everything.
+/// Corners that a person picks in an image of one of the newest kKeptViews views have that view
+/// detected once more, with them: its OBSERVATIONs come again, and the event of its capture.
+/// At 1 Hz, live only, it says who sees the board just now (SIGHTING): one sensor at a time, that
+/// whose turn it is and that has something new.
 class DetectorNode : public Node {
  public:
+  static constexpr std::size_t kKeptViews = 6;
+
   /// Throws InputError for an unknown method.
   explicit DetectorNode(std::string method = kAutoMethod);
   std::string name() const override { return "detector"; }
@@ -23,12 +31,15 @@ class DetectorNode : public Node {
     return {"RIG", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "SESSION_COMMAND"};
   }
   Messages Handle(const Message& message) override;
+  Messages Republish() override;
   Status GetStatus() const override;
 
  private:
   void OnRig(const RigText& rig);
   void OnCommand(const SessionCommand& command);
+  Messages OnPicks(const CornerSelection& picks);
   Messages DetectIfComplete();
+  Messages DetectOrFail(const View& view, SessionEvent event);
   Messages Detect(const View& view, SessionEvent event);
 
   std::string method_;
@@ -36,6 +47,14 @@ class DetectorNode : public Node {
   ViewCollector view_;
   std::int64_t views_ = 0;
   std::int64_t rejected_ = 0;
+
+  struct Kept {
+    View view;
+    SessionEvent event;  // as its capture is answered, without text
+  };
+  std::deque<Kept> kept_;
+  std::size_t next_look_ = 0;            // whose turn: a camera of the rig, or after them the LIDAR
+  std::map<std::string, Utime> looked_;  // newest looked at, by camera; "": the LIDAR
 };
 
 }  // namespace rgbdt

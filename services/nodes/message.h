@@ -23,9 +23,10 @@ struct CalibrationMessage {
 };
 
 /// Everything that crosses the bus, decoded and checked.
-using Message = std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection,
-                             Observation, CalibrationMessage, RgbdtCloud, StampedPose, RigText,
-                             SessionCommand, SessionEvent, Status, ReportText>;
+using Message =
+    std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, Observation,
+                 CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
+                 SessionRequest, Sighting, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

@@ -1,6 +1,8 @@
 #include "services/nodes/session_node.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 #include "calib/camera/pixels.h"
 #include "calib/files/calibration_file.h"
@@ -12,6 +14,7 @@ namespace rgbdt {
 namespace {
 
 constexpr double kStartTimeout = 30;  // s, until everybody is ready
+constexpr double kPatience = 1e9;     // s, with a person who carries the board
 
 std::string ViewName(int number) {
   char name[16];
@@ -52,6 +55,16 @@ std::string NameOf(SessionStep::Kind kind) {
   return "";
 }
 
+// Two sessions' views must not mix.
+void RequireNoViews(const std::filesystem::path& directory) {
+  std::error_code ignored;
+  const std::filesystem::path views = directory / "views";
+  if (std::filesystem::exists(views, ignored) && !std::filesystem::is_empty(views, ignored)) {
+    throw InputError(views.string() +
+                     " holds views of an earlier session; remove them or name another directory");
+  }
+}
+
 }  // namespace
 
 SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path directory,
@@ -61,12 +74,15 @@ SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path di
       directory_(std::move(directory)),
       progress_(std::move(progress)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
-  std::error_code ignored;
-  const std::filesystem::path views = directory_ / "views";
-  if (std::filesystem::exists(views, ignored) && !std::filesystem::is_empty(views, ignored)) {
-    throw InputError(views.string() +
-                     " holds views of an earlier session; remove them or name another directory");
-  }
+  RequireNoViews(directory_);
+}
+
+SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress)
+    : by_request_(true),
+      rig_(std::move(rig)),
+      directory_(std::move(directory)),
+      progress_(std::move(progress)) {
+  RequireNoViews(directory_);
 }
 
 Messages SessionNode::Handle(const Message& message) {
@@ -84,6 +100,8 @@ void SessionNode::Take(const Message& message) {
     statuses_[status->process] = *status;
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
     OnEvent(*event);
+  } else if (const auto* request = std::get_if<SessionRequest>(&message)) {
+    OnRequest(*request);
   } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
     collector_.Add(*chunk);
   } else if (const auto* image = std::get_if<Image>(&message)) {
@@ -92,12 +110,71 @@ void SessionNode::Take(const Message& message) {
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     rig_.Camera(picks->camera);
     collector_.Add(*picks);
+    if (!collector_.active()) OnPicks(*picks);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = *report;
   }
 }
 
+void SessionNode::OnRequest(const SessionRequest& request) {
+  if (request.request == SessionRequestKind::kPoseIsSet) {
+    PoseIsSet();
+    return;
+  }
+  if (!by_request_) throw InputError("a script leads this session; what is asked for is not done");
+  if (!started_) throw InputError("the session waits for: " + WhoIsNotReady());
+  if (!idle()) throw InputError("the session is busy; ask again when it is done");
+  failure_.clear();
+  switch (request.request) {
+    case SessionRequestKind::kNextPose:
+      Append(SessionStep::Kind::kNextPose);
+      break;
+    case SessionRequestKind::kCapture:
+      Append(SessionStep::Kind::kSweep);
+      Append(SessionStep::Kind::kCapture, request.heldout);
+      Append(SessionStep::Kind::kSolve);
+      Append(SessionStep::Kind::kEvaluate);
+      break;
+    case SessionRequestKind::kFinish:
+      Append(SessionStep::Kind::kEvaluate);
+      Append(SessionStep::Kind::kSave);
+      break;
+    case SessionRequestKind::kPoseIsSet:
+      break;
+  }
+}
+
+void SessionNode::Append(SessionStep::Kind kind, bool heldout) {
+  SessionStep step;
+  step.kind = kind;
+  step.heldout = heldout;
+  if (kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
+  script_.steps.push_back(std::move(step));
+}
+
+// Corners for a view that is on disk: it is written once more, with them.
+void SessionNode::OnPicks(const CornerSelection& picks) {
+  const auto found = images_.find({picks.camera, picks.image_utime});
+  if (found == images_.end()) return;
+  View view = ReadView({directory_, rig_, {found->second}}, found->second);
+  auto& all = view.picks;
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](const CornerSelection& p) { return p.camera == picks.camera; }),
+            all.end());
+  all.push_back(picks);
+  WriteView(directory_, view);
+}
+
 void SessionNode::OnEvent(const SessionEvent& event) {
+  if (event.source == name()) return;
+  const auto capture = captures_.find(event.command);
+  if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
+    Tell(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
+    if (!idle() || event.kind != EventKind::kDone) return;
+    Append(SessionStep::Kind::kSolve);
+    Append(SessionStep::Kind::kEvaluate);
+    return;
+  }
   if (!waiting_ || event.command != command_) return;
   if (event.kind == EventKind::kFailed) {
     Fail(event.source + ": " + event.text);
@@ -110,6 +187,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   const std::string wanted = AnsweredBy(step().kind);
   if (!wanted.empty() && event.source != wanted) return;
   answered_ = true;
+  last_answer_ = event.text;
   if (event.sweep_utime != 0) sweep_utime_ = event.sweep_utime;
   Say(event.text, 1);
 }
@@ -121,6 +199,7 @@ void SessionNode::SaveView() {
   try {
     WriteView(directory_, *view);
     view_saved_ = true;
+    for (const Image& image : view->images) images_[{image.camera, image.utime}] = view->name;
   } catch (const InputError& e) {
     Fail(e.what());
   }
@@ -128,20 +207,33 @@ void SessionNode::SaveView() {
 
 Messages SessionNode::Advance(double wall_s) {
   now_s_ = wall_s;
-  if (finished_) return {};
+  Messages out = GoOn();
+  std::move(told_.begin(), told_.end(), std::back_inserter(out));
+  told_.clear();
+  return out;
+}
+
+Messages SessionNode::GoOn() {
+  const double wall_s = now_s_;
+  if (finished_ || idle()) return {};
   if (!started_) {
     const std::string who = WhoIsNotReady();
     if (!who.empty()) {
-      if (wall_s > kStartTimeout) Fail("not ready after 30 s: " + who);
+      if (!by_request_ && wall_s > kStartTimeout) Fail("not ready after 30 s: " + who);
       return {};
     }
     started_ = true;
     WriteRig(directory_, rig_);
     Messages out = Send(SessionVerb::kReset);
+    if (by_request_) {
+      Tell(EventKind::kDone, "ready", 1);
+      return out;
+    }
     for (Message& message : Begin()) out.push_back(std::move(message));
     return out;
   }
-  if (waiting_ && !StepDone()) {
+  if (!waiting_) return Begin();
+  if (!StepDone()) {
     const bool waits = step().kind == SessionStep::Kind::kWait;
     if (!waits && wall_s - step_began_s_ > step().timeout_s) {
       Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
@@ -149,13 +241,18 @@ Messages SessionNode::Advance(double wall_s) {
     }
     return {};
   }
-  if (finished_) return {};
-  waiting_ = false;
-  if (++index_ >= script_.steps.size()) {
-    finished_ = true;
-    return {};
-  }
+  if (!finished_) EndStep();
+  if (finished_ || idle()) return {};
   return Begin();
+}
+
+void SessionNode::EndStep() {
+  waiting_ = false;
+  const bool saved = step().kind == SessionStep::Kind::kSave;
+  if (step().kind == SessionStep::Kind::kCapture) view_taken_ = true;
+  if (++index_ < script_.steps.size()) return;
+  finished_ = !by_request_ || saved;
+  Tell(EventKind::kDone, saved ? "saved to " + directory_.string() : last_answer_, 1);
 }
 
 Messages SessionNode::Begin() {
@@ -165,22 +262,24 @@ Messages SessionNode::Begin() {
   switch (step().kind) {
     case SessionStep::Kind::kNextPose:
       view_ = ViewName(++view_number_);
-      Say("asked for the next pose of the board", 0);
+      view_taken_ = false;
+      Announce("asked for the next pose of the board");
       return Send(SessionVerb::kNextPose);
     case SessionStep::Kind::kSweep:
-      if (view_.empty()) view_ = ViewName(++view_number_);
-      Say("asked for a sweep", 0);
+      if (view_.empty() || view_taken_) view_ = ViewName(++view_number_);
+      view_taken_ = false;
+      Announce("asked for a sweep");
       return Send(SessionVerb::kSweep);
     case SessionStep::Kind::kCapture:
       return BeginCapture();
     case SessionStep::Kind::kWait:
-      Say("waiting " + std::to_string(step().wait_s) + " s", 0);
+      Announce("waiting " + std::to_string(step().wait_s) + " s");
       return {};
     case SessionStep::Kind::kSolve:
-      Say("solving", 0);
+      Announce("solving");
       return Send(SessionVerb::kSolve);
     case SessionStep::Kind::kEvaluate:
-      Say("judging on the held-out views", 0);
+      Announce("judging on the held-out views");
       return Send(SessionVerb::kEvaluate);
     case SessionStep::Kind::kSave:
       Save();
@@ -191,8 +290,9 @@ Messages SessionNode::Begin() {
 
 Messages SessionNode::BeginCapture() {
   view_saved_ = false;
-  Say("looking for the board", 0);
+  Announce("looking for the board");
   Messages out = Send(SessionVerb::kCapture);
+  captures_[command_] = view_;
   collector_.Begin(std::get<SessionCommand>(out.front()));
   return out;
 }
@@ -244,19 +344,49 @@ void SessionNode::Save() {
 }
 
 void SessionNode::Fail(const std::string& why) {
-  failure_ = "step " + std::to_string(index_ + 1) + " of " + std::to_string(script_.steps.size()) +
-             ", " + (started_ ? NameOf(step().kind) : "start") +
+  const bool leads = by_request_ && started_;
+  const std::string which = leads ? ""
+                                  : "step " + std::to_string(index_ + 1) + " of " +
+                                        std::to_string(script_.steps.size()) + ", ";
+  failure_ = which + (index_ < script_.steps.size() && started_ ? NameOf(step().kind) : "start") +
              (view_.empty() ? "" : ", view " + view_) + ": " + why;
-  finished_ = true;
+  Tell(EventKind::kFailed, failure_, 1);
+  finished_ = !leads;
+  if (!leads) return;
+  // What was to follow is dropped; the person decides.
+  index_ = script_.steps.size();
+  waiting_ = false;
+  view_taken_ = true;
+}
+
+void SessionNode::Tell(EventKind kind, const std::string& text, double fraction) {
+  SessionEvent event;
+  event.command = command_;
+  event.utime = newest_utime_;
+  event.source = name();
+  event.kind = kind;
+  event.text = text;
+  event.fraction = fraction;
+  told_.push_back(std::move(event));
+}
+
+std::string SessionNode::WithView(const std::string& text) const {
+  const bool of_view = step().kind == SessionStep::Kind::kNextPose ||
+                       step().kind == SessionStep::Kind::kSweep ||
+                       step().kind == SessionStep::Kind::kCapture;
+  return (of_view ? "view " + view_ + ": " : "") + text;
 }
 
 void SessionNode::Say(const std::string& text, double fraction) {
   if (!progress_) return;
-  const bool of_view = step().kind == SessionStep::Kind::kNextPose ||
-                       step().kind == SessionStep::Kind::kSweep ||
-                       step().kind == SessionStep::Kind::kCapture;
-  progress_({static_cast<int>(index_) + 1, static_cast<int>(script_.steps.size()),
-             (of_view ? "view " + view_ + ": " : "") + text, fraction});
+  progress_({static_cast<int>(index_) + 1, static_cast<int>(script_.steps.size()), WithView(text),
+             fraction});
+}
+
+// How a step begins: for who watches this process, and for the bus.
+void SessionNode::Announce(const std::string& text) {
+  Say(text, 0);
+  Tell(EventKind::kProgress, WithView(text), 0);
 }
 
 bool SessionNode::WaitsForPose() const {
@@ -310,10 +440,18 @@ Messages SessionNode::Republish() { return {RigText{0, rig_.hash, rig_.text}}; }
 Status SessionNode::GetStatus() const {
   Status status;
   status.ready = true;
+  status.counters = {{"by request", by_request_},
+                     {"busy", !idle() && !finished_},
+                     {"waits for pose", WaitsForPose()}};
+  if (!by_request_) {
+    status.counters.emplace_back("step", static_cast<std::int64_t>(index_) + 1);
+    status.counters.emplace_back("steps", static_cast<std::int64_t>(script_.steps.size()));
+  }
   status.text = finished_   ? (failure_.empty() ? "finished" : "failed: " + failure_)
                 : !started_ ? "waits for: " + WhoIsNotReady()
+                : idle()    ? "waits for a person to ask for something (SESSION_REQUEST)"
                             : "step " + std::to_string(index_ + 1) + " of " +
-                                  std::to_string(script_.steps.size());
+                               std::to_string(script_.steps.size());
   return status;
 }
 

@@ -21,16 +21,20 @@ struct SessionProgress {
   double fraction = 0;  ///< of this step
 };
 
-/// Runs a scripted session: sends commands, waits for the answering events, writes the session
-/// directory (the one node that writes files). STATUS, SESSION_EVENT, CLOUD, <CAMERA>_IMAGE,
-/// CORNER_SELECTION, REPORT -> RIG, SESSION_COMMAND.
+/// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
+/// answering events, writes the session directory (the one node that writes files). STATUS,
+/// SESSION_EVENT, SESSION_REQUEST, CLOUD, <CAMERA>_IMAGE, CORNER_SELECTION, REPORT -> RIG,
+/// SESSION_COMMAND, SESSION_EVENT (how far it is).
 /// It begins when assembler, detector, solver, fuser and the processes of the devices that the rig
 /// file names say that they are ready. next_pose and
 /// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
 /// evaluate with the solver's. Save writes the report, and the calibration
 /// of the cameras that were solved. A failed event, no answer in the step's time, a camera that
-/// could not be solved, or a file that cannot be written ends the session with the reason. The wall
-/// clock is handed in, it serves time-outs only.
+/// could not be solved, or a file that cannot be written ends the session with the reason; one that
+/// a person leads says it and goes on. Each capture that a person asks for is followed by solve and
+/// evaluate, so that there always is a report. Corners that a person picks in an image of a view
+/// that is on disk are written to it, and once the detector has looked again, a session that a
+/// person leads solves again. The wall clock is handed in, it serves time-outs only.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
@@ -38,10 +42,13 @@ class SessionNode : public Node {
   /// Throws InputError where the script makes no sense, and where `directory` holds views already:
   /// two sessions' views must not mix.
   SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress);
+  /// A session that a person leads, by SESSION_REQUEST.
+  SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress);
 
   std::string name() const override { return "session"; }
   std::vector<std::string> Subscriptions() const override {
-    return {"STATUS", "SESSION_EVENT", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "REPORT"};
+    return {"STATUS",   "SESSION_EVENT",    "SESSION_REQUEST", "CLOUD",
+            ".*_IMAGE", "CORNER_SELECTION", "REPORT"};
   }
   Messages Handle(const Message& message) override;
   Messages Republish() override;
@@ -60,21 +67,31 @@ class SessionNode : public Node {
 
  private:
   const SessionStep& step() const { return script_.steps[index_]; }
+  Messages GoOn();
   Messages Begin();
   Messages BeginCapture();
   Messages Send(SessionVerb verb);
   bool StepDone();
   void Take(const Message& message);
+  void OnRequest(const SessionRequest& request);
+  void OnPicks(const CornerSelection& picks);
   void OnEvent(const SessionEvent& event);
   void SaveView();
   void Save();
   void Fail(const std::string& why);
+  void EndStep();
+  void Append(SessionStep::Kind kind, bool heldout = false);
+  bool idle() const { return by_request_ && started_ && index_ >= script_.steps.size(); }
+  void Tell(EventKind kind, const std::string& text, double fraction);
   void Say(const std::string& text, double fraction);
+  void Announce(const std::string& text);
+  std::string WithView(const std::string& text) const;
   std::vector<std::string> Needed() const;
   std::string WhoIsNotReady() const;
   std::string WhatIsMissing() const;
 
   SessionScript script_;
+  bool by_request_ = false;
   Rig rig_;
   std::filesystem::path directory_;
   OnProgress progress_;
@@ -90,6 +107,11 @@ class SessionNode : public Node {
   bool answered_ = false;
   int view_number_ = 0;
   std::string view_;
+  bool view_taken_ = false;  // captured: the next sweep is another view's
+  std::string last_answer_;  // of the newest step that was answered
+  std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
+  std::map<std::int64_t, std::string> captures_;                 // view by its capture's command
+  Messages told_;                                                // not yet sent
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;

@@ -48,6 +48,13 @@ bool SweepCollector::Ended(Utime sweep_utime) const {
   return found != sweeps_.end() && found->second.ended;
 }
 
+Utime SweepCollector::NewestEnded() const {
+  for (auto sweep = sweeps_.rbegin(); sweep != sweeps_.rend(); ++sweep) {
+    if (sweep->second.ended) return sweep->first;
+  }
+  return 0;
+}
+
 std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
   if (!Ended(sweep_utime)) return std::nullopt;
   Cloud cloud = JoinChunks(sweeps_.at(sweep_utime).chunks);
@@ -123,12 +130,17 @@ void ViewCollector::Reset() {
 
 const Image* ViewCollector::ImageOf(const std::string& camera) const {
   const auto kept = images_.find(camera);
-  if (kept == images_.end()) return nullptr;
+  if (kept == images_.end() || !capture_) return nullptr;
   for (const Image& image : kept->second) {
     if (image.utime < capture_->utime) continue;
     return image.utime - capture_->utime <= kImageWait ? &image : nullptr;
   }
   return nullptr;
+}
+
+const Image* ViewCollector::Newest(const std::string& camera) const {
+  const auto kept = images_.find(camera);
+  return kept == images_.end() || kept->second.empty() ? nullptr : &kept->second.back();
 }
 
 const CornerSelection* ViewCollector::PicksOf(const std::string& camera, Utime image_utime) const {

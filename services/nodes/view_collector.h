@@ -27,6 +27,8 @@ class SweepCollector {
   /// The complete sweep, or nothing while its end has not come.
   std::optional<Cloud> Complete(Utime sweep_utime) const;
   bool Ended(Utime sweep_utime) const;
+  /// Name of the newest sweep that is complete; 0: none is.
+  Utime NewestEnded() const;
   void Clear() { sweeps_.clear(); }
 
  private:
@@ -65,13 +67,18 @@ class ViewCollector {
 
   /// The view, once, as soon as it is complete.
   std::optional<View> Take(const Rig& rig);
+  /// The image that a camera has in the view of the capture at hand; null: it has not come yet, or
+  /// there is no capture.
+  const Image* ImageOf(const std::string& camera) const;
+  /// A camera's newest image; null: none came yet.
+  const Image* Newest(const std::string& camera) const;
+  const SweepCollector& sweeps() const { return sweeps_; }
   bool active() const { return capture_.has_value(); }
   const SessionCommand& capture() const { return *capture_; }
   /// What is missing, in words; empty when nothing is.
   std::string Missing(const Rig& rig) const;
 
  private:
-  const Image* ImageOf(const std::string& camera) const;
   std::vector<Image> DuringSweep(const Image& at_capture) const;
   void KeepForSweep(const Image& image);
   const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;

@@ -124,6 +124,50 @@ TEST_F(DetectorNodeTest, ImagesOfTheWrongKindAreRefusedAndChangeNothing) {
   EXPECT_EQ(node_.Handle(Blank("thermal")).size(), 3U);
 }
 
+TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  const Messages first = test::HandleAll(&node_, {Blank("rgb"), Blank("thermal")});
+  CornerSelection picks;
+  picks.camera = "thermal";
+  picks.utime = kCommand + 1;
+  picks.image_utime = kCommand + 1;
+  picks.corners = {{{5, 5}, {50, 5}, {50, 40}, {5, 40}}};
+  EXPECT_TRUE(node_.Handle(picks).empty()) << "no view has an image of that time";
+  picks.image_utime = kCommand;
+  const Messages again = node_.Handle(picks);
+  ASSERT_EQ(Only<Observation>(again).size(), 2U);
+  EXPECT_EQ(Only<Observation>(again)[1].view, "0001");
+  ASSERT_EQ(Only<SessionEvent>(again).size(), 1U);
+  EXPECT_EQ(Only<SessionEvent>(again)[0].command, Only<SessionEvent>(first)[0].command);
+  EXPECT_EQ(Counter(node_.GetStatus(), "views"), 1);
+  SessionCommand reset;
+  reset.verb = SessionVerb::kReset;
+  node_.Handle(reset);
+  EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is forgotten";
+}
+
+TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
+  EXPECT_TRUE(node_.Republish().empty());
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Blank("thermal"));
+  Messages said;
+  for (int tick = 0; tick < 10; ++tick) {
+    for (Message& message : node_.Republish()) said.push_back(std::move(message));
+  }
+  const auto sightings = Only<Sighting>(said);
+  ASSERT_EQ(sightings.size(), 2U);
+  EXPECT_EQ(sightings[0].camera, "thermal");
+  EXPECT_EQ(sightings[1].camera, "");
+  for (const Sighting& sighting : sightings) {
+    EXPECT_FALSE(sighting.seen);
+    EXPECT_NE(sighting.text, "");
+  }
+  node_.Handle(Capture());
+  node_.Handle(Blank("rgb", kCommand - 1));
+  EXPECT_TRUE(node_.Republish().empty()) << "a capture comes first";
+}
+
 TEST_F(DetectorNodeTest, ResetForgetsTheCapture) {
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Capture());
@@ -190,6 +234,25 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
     EXPECT_FALSE(observation.candidates.empty());
   }
   EXPECT_EQ(BytesOf(detect({{picks}, images, {command}, cloud})), BytesOf(expected));
+
+  DetectorNode watching;
+  test::HandleAll(&watching, {test::TextOf(rig)});
+  test::HandleAll(&watching, cloud);
+  test::HandleAll(&watching, images);
+  const auto observations = Only<Observation>(expected);
+  for (int tick = 0; tick < 3; ++tick) {
+    const Sighting sighting = Only<Sighting>(watching.Republish()).at(0);
+    EXPECT_TRUE(sighting.seen) << sighting.camera << ": " << sighting.text;
+    if (sighting.camera.empty()) {
+      EXPECT_LT((sighting.centre - observations[0].cloud->centre).norm(), 1e-6);
+      continue;
+    }
+    const auto& edges = *observations[sighting.camera == "rgb" ? 0 : 1].image;
+    ASSERT_EQ(sighting.corners.size(), edges.corners.size());
+    EXPECT_LT((sighting.corners[3] - edges.corners[3]).norm(), 1.0) << sighting.camera;
+    EXPECT_EQ(sighting.outline.size() % 4, 0U);
+    EXPECT_LT((sighting.outline[0] - edges.outline_corners[0]).norm(), 2.0) << sighting.camera;
+  }
 }
 
 }  // namespace

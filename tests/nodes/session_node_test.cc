@@ -7,141 +7,26 @@
 #include "calib/files/report_file.h"
 #include "calib/files/session_dir.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
 namespace {
 
+using test::Blank;
 using test::ErrorOf;
+using test::kStart;
 using test::Only;
+using test::Ready;
+using test::Script;
+using test::TinyRig;
+using test::World;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Kind = SessionStep::Kind;
 
-constexpr Utime kNow = 1'500'000'000'000'000;
-
-const Rig& TinyRig() {
-  static const Rig rig = test::RigOf(simulate::Simulator(test::TinyOptions()));
-  return rig;
-}
-
-SessionStep Step(Kind kind) {
-  SessionStep step;
-  step.kind = kind;
-  step.timeout_s = 10;
-  return step;
-}
-
-SessionScript Script(const std::vector<Kind>& kinds) {
-  SessionScript script;
-  for (const Kind kind : kinds) script.steps.push_back(Step(kind));
-  return script;
-}
-
 const std::vector<Kind> kOneView = {Kind::kNextPose, Kind::kSweep,    Kind::kCapture,
                                     Kind::kSolve,    Kind::kEvaluate, Kind::kSave};
-
-Status Ready(const std::string& process, const std::string& text = "fine", bool ready = true) {
-  Status status;
-  status.process = process;
-  status.ready = ready;
-  status.text = text;
-  return status;
-}
-
-Image Blank(const CameraSpec& camera, Utime utime) {
-  Image image;
-  image.camera = camera.name;
-  image.utime = utime;
-  image.format = camera.format;
-  image.pixels = cv::Mat(camera.height, camera.width,
-                         camera.kind == CameraKind::kThermal ? CV_16UC1 : CV_8UC1, cv::Scalar(90));
-  return image;
-}
-
-// Everybody else, in one: answers each command as its verb asks, unless told otherwise.
-class World {
- public:
-  Messages Answer(const SessionCommand& command) {
-    commands.push_back(command);
-    if (command.verb == silent_at) return {};
-    now += kMicrosecondsPerSecond;
-    switch (command.verb) {
-      case SessionVerb::kReset:
-        return {};
-      case SessionVerb::kNextPose:
-        return {Event(command, "simulator")};
-      case SessionVerb::kSweep:
-        return Sweep(command);
-      case SessionVerb::kCapture:
-        return Capture(command);
-      case SessionVerb::kSolve:
-      case SessionVerb::kEvaluate:
-        break;
-    }
-    Report report;
-    for (const CameraSpec& camera : TinyRig().cameras) {
-      report.cameras.emplace_back();
-      report.cameras.back().calibration.camera = camera.name;
-      report.cameras.back().calibration.converged = solved;
-      report.cameras.back().calibration.status = solved ? "converged" : "2 usable views";
-      if (solved) report.cameras.back().distance_transform_px.train = 1;
-    }
-    report.method = "paper";
-    report.rig_hash = TinyRig().hash;
-    return {ReportText{0, now, ReportToJson(report)}, Event(command, "solver")};
-  }
-
-  SessionEvent Event(const SessionCommand& command, const std::string& source) const {
-    SessionEvent event;
-    event.command = command.command;
-    event.source = source;
-    event.utime = now;
-    event.text = "done by " + source;
-    if (command.verb == failing_at) {
-      event.kind = EventKind::kFailed;
-      event.text = "the motor is stuck";
-    }
-    return event;
-  }
-
-  Utime now = kNow;
-  std::optional<SessionVerb> silent_at, failing_at;
-  bool images = true;
-  bool solved = true;
-  std::vector<SessionCommand> commands;
-
- private:
-  Messages Sweep(const SessionCommand& command) const {
-    CloudChunk chunk;
-    chunk.cloud.sweep_utime = now;
-    chunk.cloud.lines = 1;
-    chunk.cloud.beams = 2;
-    chunk.cloud.points = {{1, 2, 3}, {4, 5, 6}};
-    chunk.cloud.utime = {now, now + 1};
-    chunk.sweep_end = true;
-    chunk.sweep_lines = 1;
-    SessionEvent done = Event(command, "simulator");
-    done.sweep_utime = now;
-    return {chunk, done};
-  }
-  Messages Capture(const SessionCommand& command) const {
-    Messages out;
-    for (const CameraSpec& camera : TinyRig().cameras) {
-      if (images) out.push_back(Blank(camera, now));
-    }
-    for (const std::string& camera : command.picked_cameras) {
-      CornerSelection picks;
-      picks.camera = camera;
-      picks.utime = picks.image_utime = now;
-      picks.corners = {{{1, 1}, {9, 1}, {9, 9}, {1, 9}}};
-      out.push_back(picks);
-    }
-    out.push_back(Event(command, "simulator"));  // its images are taken: not what is waited for
-    out.push_back(Event(command, "detector"));
-    return out;
-  }
-};
 
 class SessionNodeTest : public ::testing::Test {
  protected:
@@ -186,7 +71,7 @@ TEST_F(SessionNodeTest, TheHappyPathWritesTheSessionDirectory) {
                                             SessionVerb::kSolve, SessionVerb::kEvaluate));
   const SessionCommand& capture = world_.commands[3];
   EXPECT_EQ(capture.view, "0001");
-  EXPECT_EQ(capture.sweep_utime, kNow + 3 * kMicrosecondsPerSecond);
+  EXPECT_EQ(capture.sweep_utime, kStart + 3 * kMicrosecondsPerSecond);
   EXPECT_GE(capture.utime, capture.sweep_utime) << "the newest sensor time that it knew";
 
   const Session session = OpenSession(dir_ / "session");
@@ -317,7 +202,7 @@ TEST_F(SessionNodeTest, AFailedEventEndsTheSessionWithItsReason) {
     ASSERT_TRUE(node_->finished());
     EXPECT_THAT(node_->failure(), HasSubstr("the motor is stuck"));
     EXPECT_EQ(world_.commands.back().verb, verb) << "nothing more is asked for";
-    EXPECT_TRUE(node_->Advance(70).empty());
+    EXPECT_TRUE(Only<SessionCommand>(node_->Advance(70)).empty());
   }
 }
 
@@ -388,10 +273,10 @@ TEST_F(SessionNodeTest, ViewsOfAnEarlierSessionStayUntouched) {
 
 TEST_F(SessionNodeTest, WrongImagesAndStrangersAreRefused) {
   Start(Script(kOneView));
-  Image image = Blank(TinyRig().cameras[0], kNow);
+  Image image = Blank(TinyRig().cameras[0], kStart);
   image.pixels = cv::Mat(4, 4, CV_8UC1, cv::Scalar(0));
   EXPECT_THAT(ErrorOf([&] { node_->Handle(image); }), HasSubstr("4x4"));
-  image = Blank(TinyRig().cameras[0], kNow);
+  image = Blank(TinyRig().cameras[0], kStart);
   image.camera = "front";
   EXPECT_THAT(ErrorOf([&] { node_->Handle(image); }), HasSubstr("front"));
   CornerSelection picks;

@@ -22,8 +22,9 @@ struct SigmaStep {
 struct ViewState {
   std::string name;
   bool heldout = false;
-  std::string waits;                                ///< what is missing; empty: nothing
-  std::map<std::string, Utime> images;              ///< by camera: the image that belongs to it
+  std::string waits;                      ///< what is missing; empty: nothing
+  std::vector<std::string> picks_wanted;  ///< cameras whose image waits for a person's picks
+  std::map<std::string, Utime> images;    ///< by camera: the image that belongs to it
   std::map<std::string, Observation> observations;  ///< by camera
 };
 

@@ -158,6 +158,16 @@ TEST_F(Invalid, Session) {
   EXPECT_THAT(event([](auto& w) { w.source = ""; }), HasSubstr("source is"));
   EXPECT_THAT(event([](auto& w) { w.text = "\x1b[2J"; }), HasSubstr("text is"));
   EXPECT_THAT(event([](auto& w) { w.text.assign(70000, 'x'); }), HasSubstr("length of text"));
+  const auto request = [&](auto change) {
+    return ErrorAfter<session_request_t>(random_.Request(), change);
+  };
+  EXPECT_THAT(request([](auto& w) { w.request = 0; }), HasSubstr("request is 0"));
+  EXPECT_THAT(request([](auto& w) { w.request = 5; }), HasSubstr("request is 5"));
+  const auto sighting = [&](auto change) {
+    return ErrorAfter<sighting_t>(random_.Sighted(), change);
+  };
+  EXPECT_THAT(sighting([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
+  EXPECT_THAT(sighting([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));

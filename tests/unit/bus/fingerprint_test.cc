@@ -31,6 +31,8 @@ TEST(Fingerprint, IsWhatItWas) {
   EXPECT_EQ(static_cast<std::uint64_t>(rig_t::getHash()), 0x9c564d644627e935U);
   EXPECT_EQ(static_cast<std::uint64_t>(session_command_t::getHash()), 0x259249a63234a765U);
   EXPECT_EQ(static_cast<std::uint64_t>(session_event_t::getHash()), 0x20babb8a4ce9fbb5U);
+  EXPECT_EQ(static_cast<std::uint64_t>(session_request_t::getHash()), 0xa4aca4bce278bf57U);
+  EXPECT_EQ(static_cast<std::uint64_t>(sighting_t::getHash()), 0x283a34272dbe5254U);
   EXPECT_EQ(static_cast<std::uint64_t>(status_t::getHash()), 0xcc7326579c48e529U);
   EXPECT_EQ(static_cast<std::uint64_t>(target_pose_t::getHash()), 0x9d6616d77af99f13U);
 }

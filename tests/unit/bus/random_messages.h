@@ -293,12 +293,27 @@ class RandomMessages {
     }
     return status;
   }
+  SessionRequest Request() {
+    return {Seq(), Time(), static_cast<SessionRequestKind>(Int(1, 4)), Coin()};
+  }
+  Sighting Sighted() {
+    Sighting sighting;
+    sighting.seq = Seq();
+    sighting.utime = Time();
+    if (Coin()) sighting.camera = Name();
+    sighting.seen = Coin();
+    sighting.text = Text();
+    sighting.corners = Rows<Eigen::Vector2d>(Int(0, 20));
+    sighting.outline = Rows<Eigen::Vector2d>(Int(0, 20));
+    sighting.centre = Rows<Eigen::Vector3d>(1)[0];
+    return sighting;
+  }
   ReportText Report() { return {Seq(), Time(), "{\"method\": \"paper\"}"}; }
 
   /// One of every alternative.
   Messages OneOfEach() {
-    return {Line(),  Encoder(), Picture(), Chunk(),   Corners(), Seen(),   Calibrated(),
-            Fused(), Pose(),    RigFile(), Command(), Event(),   Health(), Report()};
+    return {Line(), Encoder(), Picture(), Chunk(), Corners(), Seen(),    Calibrated(), Fused(),
+            Pose(), RigFile(), Command(), Event(), Request(), Sighted(), Health(),     Report()};
   }
 
  private:

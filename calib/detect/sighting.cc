@@ -1,0 +1,88 @@
+#include "calib/detect/sighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/camera/camera.h"
+#include "calib/camera/pixels.h"
+#include "calib/detect/board_in_cloud.h"
+#include "calib/detect/checkerboard.h"
+#include "calib/detect/target_pose.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kEnoughPixels = 1000;  // across the image
+constexpr int kPiecesOfASide = 16;
+
+// Pixel centres lie at integers: (x + 0.5) scales, not x.
+Eigen::Vector2d Scaled(const Eigen::Vector2d& place, double scale) {
+  return (place.array() + 0.5) * scale - 0.5;
+}
+
+std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Target& target,
+                                       const Rigid3& camera_from_target) {
+  std::vector<Eigen::Vector2d> outline;
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto side =
+        ProjectSegment(camera, camera_from_target * corners[i],
+                       camera_from_target * corners[(i + 1) % corners.size()], kPiecesOfASide);
+    outline.insert(outline.end(), side.begin(), side.end());
+  }
+  return outline;
+}
+
+std::string Metres(double distance) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.1f m away", distance);
+  return text;
+}
+
+}  // namespace
+
+Sighting LookForTarget(const Rig& rig, const Image& image) {
+  const CameraSpec& spec = rig.Camera(image.camera);
+  CheckImage(spec, image);
+  Sighting sighting;
+  sighting.camera = image.camera;
+  sighting.utime = image.utime;
+  cv::Mat grey = ToGrey(image);
+  const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
+  if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
+  const CheckerboardResult found = FindCheckerboard(grey, rig.target);
+  sighting.text = found.why;
+  if (!found.board) return sighting;
+  for (const Eigen::Vector2d& corner : found.board->corners) {
+    sighting.corners.push_back(Scaled(corner, shrink));
+  }
+  const Camera camera(spec);
+  const auto pose = PoseFromCorners(camera, rig.target, sighting.corners);
+  if (!pose) {
+    sighting.text = "a checkerboard that is not flat; check the lens in the rig file";
+    return sighting;
+  }
+  sighting.seen = true;
+  const Rigid3& camera_from_target = pose->pose.sensor_from_target;
+  sighting.outline = OutlineOf(camera, rig.target, camera_from_target);
+  sighting.text = Metres(camera_from_target.translation.norm());
+  return sighting;
+}
+
+Sighting LookForTarget(const Rig& rig, const Cloud& cloud) {
+  Sighting sighting;
+  sighting.utime = cloud.sweep_utime;
+  BoardInCloudOptions options;
+  options.range_sigma_m = rig.lidar.range_sigma_m;
+  const BoardsInCloud boards = FindBoards(cloud, rig.target, options);
+  sighting.text = boards.why;
+  if (boards.candidates.empty()) return sighting;
+  sighting.seen = true;
+  sighting.centre = boards.candidates.front().centre;
+  sighting.text = Metres(sighting.centre.norm());
+  return sighting;
+}
+
+}  // namespace rgbdt

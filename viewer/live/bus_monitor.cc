@@ -1,0 +1,80 @@
+#include "viewer/live/bus_monitor.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "services/bus/check.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+constexpr std::size_t kHeader = 24;  // fingerprint, utime, seq
+constexpr std::size_t kMaxArrivals = 10'000;
+
+std::int64_t Int64At(const std::uint8_t* data) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
+  return static_cast<std::int64_t>(value);
+}
+
+// Several processes count on these channels, each for itself; their name follows.
+bool IsShared(const std::string& channel) {
+  return channel == "STATUS" || channel == "POSE" || channel == "SESSION_EVENT";
+}
+
+// The sender's name, a string after the header (session_event_t: after `command`).
+std::string SenderOf(const std::string& channel, const std::uint8_t* data, std::size_t size) {
+  if (!IsShared(channel)) return "";
+  const std::size_t at = kHeader + (channel == "SESSION_EVENT" ? 8 : 0);
+  if (size < at + 4) return "";
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i) length = length << 8 | data[at + i];
+  if (length == 0 || length > kMaxNameBytes || size < at + 4 + length) return "";
+  return {reinterpret_cast<const char*>(data + at + 4), length - 1};
+}
+
+}  // namespace
+
+void BusMonitor::Add(const std::string& channel, const std::uint8_t* data, std::size_t size,
+                     double now_s, Utime now_utime) {
+  if (channels_.size() >= kMaxChannels && channels_.count(channel) == 0) return;
+  Channel& c = channels_[channel];
+  ++c.count;
+  c.size = size;
+  c.newest.push_back({now_s, size});
+  while (!c.newest.empty() &&
+         (c.newest.front().at_s < now_s - kWindow || c.newest.size() > kMaxArrivals)) {
+    c.newest.pop_front();
+  }
+  if (size < kHeader) return;
+  const Utime utime = Int64At(data + 8);
+  c.latency_s = ToSeconds(now_utime - utime);
+  c.has_latency = utime > 0 && std::abs(c.latency_s) < kSameClock;
+  const std::int64_t seq = Int64At(data + 16);
+  const std::string sender = SenderOf(channel, data, size);
+  if (seq < 0 || (c.senders.size() >= kMaxChannels && c.senders.count(sender) == 0)) return;
+  c.lost += c.senders[sender].Add(seq).gaps;
+}
+
+nlohmann::json BusMonitor::Channels(double now_s) const {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& [name, c] : channels_) {
+    std::size_t bytes = 0;
+    std::size_t count = 0;
+    for (const Arrival& arrival : c.newest) {
+      if (arrival.at_s < now_s - kWindow) continue;
+      bytes += arrival.bytes;
+      ++count;
+    }
+    all.push_back({{"name", Printable(name, 100)},
+                   {"count", c.count},
+                   {"rate_hz", static_cast<double>(count) / kWindow},
+                   {"bytes_per_s", static_cast<double>(bytes) / kWindow},
+                   {"size_bytes", c.size},
+                   {"latency_ms", c.has_latency ? nlohmann::json(c.latency_s * 1e3) : nullptr},
+                   {"lost", c.lost}});
+  }
+  return all;
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,97 @@
+#include "viewer/live/kept_view.h"
+
+#include <cmath>
+
+#include "viewer/frames/image_frame.h"
+#include "viewer/frames/overlay_frame.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+constexpr int kPictureWidth = 2000;  // [px]: corners are picked in it
+constexpr int kPictureQuality = 90;
+
+using SharedBytes = std::shared_ptr<const std::string>;
+
+SharedBytes Shared(std::string bytes) {
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
+std::shared_ptr<const Cloud> SomePoints(const Cloud& cloud) {
+  auto some = std::make_shared<Cloud>();
+  some->sweep_utime = cloud.sweep_utime;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / KeptView::kPoints);
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    if (!cloud.points[i].allFinite()) continue;
+    some->points.push_back(cloud.points[i]);
+    if (!cloud.intensity.empty()) some->intensity.push_back(cloud.intensity[i]);
+  }
+  some->lines = 1;
+  some->beams = static_cast<int>(some->points.size());
+  return some;
+}
+
+Post Ready(const std::string& topic, SharedBytes bytes, bool kept) {
+  Post post;
+  post.topic = topic;
+  post.kept = kept;
+  post.make = [bytes = std::move(bytes)] { return *bytes; };
+  return post;
+}
+
+}  // namespace
+
+KeptView KeepView(const View& view) {
+  KeptView kept;
+  kept.name = view.name;
+  ImageFrameOptions options;
+  options.max_width = kPictureWidth;
+  options.quality = kPictureQuality;
+  for (const Image& image : view.images) {
+    // Others of a camera were taken while the scanner turned.
+    if (!kept.images.emplace(image.camera, image.utime).second) continue;
+    kept.pictures[image.camera] = Shared(ImageFrame(image, view.name, false, options));
+    kept.thumbs[image.camera] = Shared(ThumbFrame(image, view.name));
+  }
+  kept.cloud = SomePoints(view.cloud);
+  return kept;
+}
+
+std::vector<Post> ThumbPosts(const KeptView& view) {
+  std::vector<Post> posts;
+  for (const auto& [camera, bytes] : view.thumbs) {
+    posts.push_back(Ready("thumb/" + view.name + "/" + camera, bytes, true));
+  }
+  return posts;
+}
+
+std::optional<Post> BoardPost(const KeptView& view, const Observation& observation) {
+  if (!observation.cloud || view.cloud == nullptr) return std::nullopt;
+  Post post;
+  post.topic = "thumb/" + view.name + "/";
+  post.make = [observation, cloud = view.cloud] { return BoardThumbFrame(observation, *cloud); };
+  return post;
+}
+
+std::vector<Post> PicturePosts(const KeptView& view, const CameraSpec& camera,
+                               const Observation* observation,
+                               const std::optional<Rigid3>& camera_from_lidar) {
+  const auto picture = view.pictures.find(camera.name);
+  if (picture == view.pictures.end()) return {};
+  std::vector<Post> posts;
+  posts.push_back(Ready("view/" + view.name + "/" + camera.name, picture->second, false));
+  Observation seen;
+  seen.view = view.name;
+  seen.camera = camera.name;
+  if (observation != nullptr) seen = *observation;
+  Post overlay;
+  overlay.topic = "overlay/" + view.name + "/" + camera.name;
+  overlay.kept = false;
+  overlay.make = [camera, seen, cloud = view.cloud, camera_from_lidar] {
+    return OverlayFrame(ViewOverlay(camera, seen, cloud.get(), camera_from_lidar), false);
+  };
+  posts.push_back(std::move(overlay));
+  return posts;
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,467 @@
+#include "viewer/live/live_node.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/camera/pixels.h"
+#include "calib/files/report_file.h"
+#include "calib/files/rig_file.h"
+#include "calib/model/errors.h"
+#include "viewer/live/clock.h"
+#include "viewer/live/kept_view.h"
+#include "viewer/frames/cloud_frame.h"
+#include "viewer/frames/frame.h"
+#include "viewer/frames/image_frame.h"
+#include "viewer/frames/overlay_frame.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+constexpr double kGone = 5;             // s without a STATUS: the process is gone
+constexpr double kBetweenStates = 0.1;  // s
+constexpr std::size_t kMaxViews = 200;
+constexpr std::size_t kMaxLog = 50;
+constexpr std::size_t kMaxProcesses = 100;
+constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
+
+// What the page shows of an observation; the rest is large.
+Observation Slim(Observation observation) {
+  observation.candidates.clear();
+  if (observation.image) observation.image->edge_pixels.clear();
+  return observation;
+}
+
+std::int64_t CounterOf(const Status& status, const std::string& name) {
+  for (const auto& [counter, value] : status.counters) {
+    if (counter == name) return value;
+  }
+  return 0;
+}
+
+SessionRequestKind RequestOf(const std::string& name) {
+  if (name == "next_pose") return SessionRequestKind::kNextPose;
+  if (name == "pose_is_set") return SessionRequestKind::kPoseIsSet;
+  if (name == "capture") return SessionRequestKind::kCapture;
+  if (name == "finish") return SessionRequestKind::kFinish;
+  throw InputError("request is \"" + name + "\"; expected next_pose, pose_is_set, capture, finish");
+}
+
+}  // namespace
+
+std::vector<std::string> LiveNode::Subscriptions() const {
+  return {"RIG",         "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "OBSERVATION",
+          "CALIBRATION", "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
+          "SIGHTING",    "STATUS", "SESSION_EVENT"};
+}
+
+Messages LiveNode::Handle(const Message& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  now_s_ = SteadySeconds();
+  Take(message);
+  if (!std::holds_alternative<Status>(message)) {
+    newest_utime_ = std::max(newest_utime_, UtimeOf(message));
+  }
+  CompleteView();
+  return {};
+}
+
+void LiveNode::Take(const Message& message) {
+  if (const auto* rig = std::get_if<RigText>(&message)) {
+    OnRig(*rig);
+  } else if (const auto* image = std::get_if<Image>(&message)) {
+    OnImage(*image);
+  } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
+    collector_.Add(*chunk);
+  } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
+    collector_.Add(*picks);
+  } else if (const auto* observation = std::get_if<Observation>(&message)) {
+    OnObservation(*observation);
+  } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
+    OnCalibration(*calibration);
+  } else if (const auto* report = std::get_if<ReportText>(&message)) {
+    state_.report = ReportFromJson(report->json, "REPORT message");
+    changed_ = true;
+  } else if (const auto* cloud = std::get_if<RgbdtCloud>(&message)) {
+    OnFused(*cloud);
+  } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
+    OnCommand(*command);
+  } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
+    OnEvent(*event);
+  } else if (const auto* sighting = std::get_if<Sighting>(&message)) {
+    OnSighting(*sighting);
+  } else if (const auto* status = std::get_if<Status>(&message)) {
+    OnStatus(*status);
+  }
+}
+
+void LiveNode::OnRig(const RigText& text) {
+  if (rig_ && rig_->hash == text.hash) return;
+  rig_ = std::make_shared<const Rig>(ParseRig(text.text, "RIG message"));
+  outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }, 0});
+  changed_ = true;
+}
+
+void LiveNode::OnCommand(const SessionCommand& command) {
+  if (command.verb == SessionVerb::kCapture) {
+    collector_.Begin(command);
+    ViewState* view = StateOf(command.view);
+    if (view == nullptr) return;
+    view->heldout = command.heldout;
+    view->picks_wanted = command.picked_cameras;
+    changed_ = true;
+  }
+  if (command.verb != SessionVerb::kReset) return;
+  collector_.Reset();
+  views_.clear();
+  outbox_->Forget("thumb/");
+  const SessionState before = std::move(state_);
+  state_ = {};
+  state_.mode = before.mode;
+  state_.can = before.can;
+  changed_ = true;
+}
+
+// Null where there are too many: a stranger's names do not fill the memory.
+ViewState* LiveNode::StateOf(const std::string& view) {
+  for (ViewState& state : state_.views) {
+    if (state.name == view) return &state;
+  }
+  if (state_.views.size() >= kMaxViews) return nullptr;
+  state_.views.emplace_back();
+  state_.views.back().name = view;
+  return &state_.views.back();
+}
+
+// The view that is being captured: what it waits for, and the images that a person is to pick in.
+void LiveNode::ShowCapture() {
+  if (!rig_ || !collector_.active()) return;
+  ViewState* state = StateOf(collector_.capture().view);
+  if (state == nullptr) return;
+  const std::string missing = collector_.Missing(*rig_);
+  if (missing == state->waits) return;
+  state->waits = missing;
+  changed_ = true;
+  if (state->picks_wanted.empty()) return;
+  View so_far;
+  so_far.name = state->name;
+  for (const CameraSpec& camera : rig_->cameras) {
+    if (const Image* image = collector_.ImageOf(camera.name)) so_far.images.push_back(*image);
+  }
+  auto kept = std::make_shared<KeptView>(KeepView(so_far));
+  state->images = kept->images;
+  views_[state->name] = kept;
+  for (Post& post : ThumbPosts(*kept)) outbox_->Send(std::move(post));
+}
+
+void LiveNode::CompleteView() {
+  if (!rig_ || !collector_.active()) return;
+  const std::optional<View> view = collector_.Take(*rig_);
+  if (!view) {
+    ShowCapture();
+    return;
+  }
+  ViewState* state = StateOf(view->name);
+  if (state == nullptr) return;
+  auto kept = std::make_shared<KeptView>(KeepView(*view));
+  state->waits.clear();
+  state->picks_wanted.clear();
+  state->images = kept->images;
+  changed_ = true;
+  for (Post& post : ThumbPosts(*kept)) outbox_->Send(std::move(post));
+  views_[view->name] = std::move(kept);
+}
+
+void LiveNode::OnImage(const Image& image) {
+  if (rig_) CheckImage(rig_->Camera(image.camera), image);
+  collector_.Add(image);
+  auto shared = std::make_shared<const Image>(image);
+  Post post;
+  post.topic = "image/" + image.camera;
+  post.watch = "camera/" + image.camera;
+  post.heavy = true;
+  post.make = [shared] { return ImageFrame(*shared, "", true); };
+  post.came_s = now_s_;
+  outbox_->Send(std::move(post));
+}
+
+void LiveNode::OnObservation(const Observation& observation) {
+  ViewState* view = StateOf(observation.view);
+  if (view == nullptr) return;
+  view->heldout = observation.heldout;
+  view->observations[observation.camera] = Slim(observation);
+  changed_ = true;
+  const auto kept = views_.find(observation.view);
+  if (kept == views_.end()) return;
+  if (auto post = BoardPost(*kept->second, view->observations[observation.camera])) {
+    outbox_->Send(std::move(*post));
+  }
+}
+
+void LiveNode::OnCalibration(const CalibrationMessage& message) {
+  const CameraCalibration& camera = message.calibration;
+  auto& all = state_.calibration.cameras;
+  const auto same = std::find_if(all.begin(), all.end(), [&](const CameraCalibration& c) {
+    return c.camera == camera.camera;
+  });
+  const bool repeated = same != all.end() &&
+                        RotationDistance(same->camera_from_lidar, camera.camera_from_lidar) == 0 &&
+                        CentreDistance(same->camera_from_lidar, camera.camera_from_lidar) == 0;
+  if (repeated && state_.calibration_utime[camera.camera] == message.utime) return;
+  state_.calibration.method = message.method;
+  state_.calibration.rig_hash = message.rig_hash;
+  state_.calibration_utime[camera.camera] = message.utime;
+  if (same != all.end()) {
+    *same = camera;
+  } else if (all.size() < 32) {
+    all.push_back(camera);
+  }
+  CountSigma(camera);
+  changed_ = true;
+  PostLiveOverlay(camera.camera);
+}
+
+void LiveNode::CountSigma(const CameraCalibration& calibration) {
+  const auto sigma = SigmaOf(calibration);
+  if (!sigma) return;
+  const auto used =
+      std::count_if(state_.views.begin(), state_.views.end(), [&](const ViewState& view) {
+        const auto seen = view.observations.find(calibration.camera);
+        return !view.heldout && seen != view.observations.end() && seen->second.usable();
+      });
+  if (used == 0) return;  // this viewer came after the views
+  auto& steps = state_.sigma;
+  if (steps.empty() || steps.back().views < used) steps.push_back({static_cast<int>(used), {}});
+  steps.back().cameras[calibration.camera] = *sigma;
+}
+
+void LiveNode::OnFused(const RgbdtCloud& cloud) {
+  auto shared = std::make_shared<const RgbdtCloud>(cloud);
+  if (!cloud.whole_sweep) {
+    const auto number = static_cast<int>(cloud.seq % 1'000'000'000);
+    outbox_->Send({"chunk/" + std::to_string(cloud.seq), "cloud", false, true, kPointBytes,
+                   [shared, number] { return CloudFrame(*shared, number); }, now_s_});
+    return;
+  }
+  if (cloud.sweep_utime != sweep_utime_) {
+    sweep_utime_ = cloud.sweep_utime;
+    sweep_part_ = 0;
+    sweep_points_.clear();
+    outbox_->Forget("sweep/");
+  }
+  const int part = sweep_part_++;
+  outbox_->Send({"sweep/" + std::to_string(part), "cloud", true, true, kPointBytes,
+                 [shared, part] { return CloudFrame(*shared, part); }, now_s_});
+  if (sweep_points_.size() < kMaxSweepPoints) {
+    sweep_points_.insert(sweep_points_.end(), cloud.points.begin(), cloud.points.end());
+  }
+  if (!cloud.sweep_end || !rig_) return;
+  using Points = std::vector<Eigen::Vector3f>;
+  whole_sweep_ = std::make_shared<const Points>(std::exchange(sweep_points_, {}));
+  for (const CameraSpec& camera : rig_->cameras) PostLiveOverlay(camera.name);
+}
+
+// The newest sighting's corners and the newest sweep, laid on a camera's image.
+void LiveNode::PostLiveOverlay(const std::string& camera) {
+  if (!rig_) return;
+  const CameraSpec& spec = rig_->Camera(camera);
+  const CameraCalibration* calibration = state_.calibration.Find(camera);
+  Overlay overlay;
+  overlay.camera = camera;
+  overlay.calibrated = calibration != nullptr;
+  const auto seen = sightings_.find(camera);
+  if (seen != sightings_.end()) {
+    const Sighting& sighting = seen->second.sighting;
+    overlay.utime = sighting.utime;
+    overlay.text = (sighting.seen ? "board seen, " : "") + sighting.text;
+    overlay.corners = sighting.corners;
+    overlay.outline = sighting.outline;
+  }
+  std::optional<Rigid3> camera_from_lidar;
+  if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
+  Post post;
+  post.topic = "overlay/" + camera;
+  post.watch = "camera/" + camera;
+  post.heavy = true;
+  post.make = [overlay, spec, camera_from_lidar, points = whole_sweep_]() mutable {
+    if (camera_from_lidar && points) overlay.cloud = LayOnImage(spec, *camera_from_lidar, *points);
+    return OverlayFrame(overlay, true);
+  };
+  outbox_->Send(std::move(post));
+}
+
+void LiveNode::OnSighting(const Sighting& sighting) {
+  if (sightings_.size() > 32) sightings_.clear();
+  sightings_[sighting.camera] = {sighting, now_s_};
+  PostSightings();
+  if (rig_ && !sighting.camera.empty()) PostLiveOverlay(sighting.camera);
+}
+
+void LiveNode::PostSightings() {
+  nlohmann::json sensors = nlohmann::json::array();
+  for (const auto& [camera, seen] : sightings_) {
+    std::string kind = "lidar";
+    if (!camera.empty() && rig_) {
+      kind = rig_->Camera(camera).kind == CameraKind::kColor ? "color" : "thermal";
+    }
+    sensors.push_back({{"sensor", camera.empty() ? "lidar" : camera},
+                       {"kind", kind},
+                       {"seen", seen.sighting.seen},
+                       {"text", seen.sighting.text},
+                       {"utime", seen.sighting.utime},
+                       {"age_s", now_s_ - seen.at_s}});
+  }
+  const nlohmann::json frame = {{"type", "sightings"}, {"sensors", sensors}};
+  outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }, 0});
+}
+
+void LiveNode::OnEvent(const SessionEvent& event) {
+  const bool of_session = event.source == "session";
+  changed_ = true;
+  state_.fraction = event.fraction;
+  if (event.kind == EventKind::kProgress) {
+    if (of_session) doing_ = event.text;
+    state_.busy = of_session || doing_.empty() ? event.text : doing_ + ": " + event.text;
+    if (of_session) state_.failure.clear();
+    if (!of_session) return;  // many, and each replaces the one before
+  } else if (of_session) {
+    doing_.clear();
+    state_.busy.clear();
+    if (event.kind == EventKind::kFailed) state_.failure = event.text;
+  }
+  state_.log.push_back(event);
+  if (state_.log.size() > kMaxLog) state_.log.erase(state_.log.begin());
+}
+
+void LiveNode::OnStatus(const Status& status) {
+  if (statuses_.size() >= kMaxProcesses && statuses_.count(status.process) == 0) return;
+  statuses_[status.process] = {status, now_s_};
+}
+
+bool LiveNode::Heard(const std::string& process) const {
+  const auto found = statuses_.find(process);
+  return found != statuses_.end() && now_s_ - found->second.at_s < kGone;
+}
+
+void LiveNode::NoteWhatCanBeAsked() {
+  std::string mode = "none";
+  std::vector<std::string> can;
+  if (Heard("session")) {
+    const Status& session = statuses_.at("session").status;
+    const bool by_request = CounterOf(session, "by request") != 0;
+    const bool busy = !state_.busy.empty();
+    mode = by_request ? "by_hand" : "script";
+    state_.step = static_cast<int>(CounterOf(session, "step"));
+    state_.steps = static_cast<int>(CounterOf(session, "steps"));
+    if (by_request && !busy && CounterOf(session, "busy") == 0) {
+      if (Heard("simulator")) can.push_back("next_pose");
+      can.push_back("capture");
+      if (!state_.views.empty()) can.push_back("finish");
+    }
+    if (CounterOf(session, "waits for pose") != 0) can.push_back("pose_is_set");
+  } else {
+    state_.busy.clear();
+  }
+  if (mode == state_.mode && can == state_.can) return;
+  state_.mode = mode;
+  state_.can = can;
+  changed_ = true;
+}
+
+void LiveNode::Tick(double now_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  now_s_ = now_s;
+  NoteWhatCanBeAsked();
+  if (!changed_ || now_s - posted_s_ < kBetweenStates) return;
+  changed_ = false;
+  posted_s_ = now_s;
+  outbox_->Send({"session", "", true, false, 0,
+                 [state = state_, rig = rig_] { return SessionFrame(state, rig.get()); }, 0});
+}
+
+Messages LiveNode::TakeMessages() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
+std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::string type = message.at("type");
+  if (type == "request") {
+    SessionRequest request;
+    request.utime = newest_utime_;
+    request.request = RequestOf(message.at("request"));
+    request.heldout = message.value("heldout", false);
+    if (!Heard("session")) {
+      throw InputError(
+          "no rgbdt-session is running; start one: rgbdt-session --rig FILE --out DIR");
+    }
+    messages_.push_back(request);
+  } else if (type == "pick") {
+    CornerSelection picks;
+    picks.camera = message.at("camera");
+    picks.image_utime = message.at("image_utime");
+    picks.utime = newest_utime_;
+    for (std::size_t i = 0; i < picks.corners.size(); ++i) {
+      const nlohmann::json& corner = message.at("corners").at(i);
+      picks.corners[i] = Eigen::Vector2d(corner.at(0).get<double>(), corner.at(1).get<double>());
+    }
+    if (rig_) rig_->Camera(picks.camera);
+    messages_.push_back(picks);
+  } else if (type == "view") {
+    const auto view = views_.find(message.at("view"));
+    if (view == views_.end())
+      throw InputError("there is no view " + std::string(message.at("view")));
+    return PostsOf(*view->second);
+  }
+  return {};
+}
+
+std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
+  std::vector<Post> posts;
+  if (!rig_) return posts;
+  const auto state = std::find_if(state_.views.begin(), state_.views.end(),
+                                  [&](const ViewState& v) { return v.name == view.name; });
+  for (const CameraSpec& camera : rig_->cameras) {
+    const Observation* observation = nullptr;
+    if (state != state_.views.end()) {
+      const auto seen = state->observations.find(camera.name);
+      if (seen != state->observations.end()) observation = &seen->second;
+    }
+    const CameraCalibration* calibration = state_.calibration.Find(camera.name);
+    std::optional<Rigid3> camera_from_lidar;
+    if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
+    for (Post& post : PicturePosts(view, camera, observation, camera_from_lidar)) {
+      posts.push_back(std::move(post));
+    }
+  }
+  return posts;
+}
+
+nlohmann::json LiveNode::Processes(double now_s) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& [process, heard] : statuses_) {
+    nlohmann::json counters = nlohmann::json::array();
+    for (const auto& [name, value] : heard.status.counters) {
+      counters.push_back({{"name", name}, {"value", value}});
+    }
+    all.push_back({{"process", process},
+                   {"ready", heard.status.ready},
+                   {"text", heard.status.text},
+                   {"last_problem", heard.status.last_problem},
+                   {"age_s", now_s - heard.at_s},
+                   {"counters", counters}});
+  }
+  return all;
+}
+
+Status LiveNode::GetStatus() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Status status;
+  status.ready = true;
+  status.text =
+      rig_ ? "shows " + std::to_string(state_.views.size()) + " views" : "waits for the rig (RIG)";
+  return status;
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/rig.h"
+#include "services/nodes/node.h"
+#include "services/nodes/view_collector.h"
+#include "viewer/live/kept_view.h"
+#include "viewer/server/outbox.h"
+#include "viewer/frames/session_state.h"
+
+namespace rgbdt::viewer {
+
+/// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
+/// RIG, <CAMERA>_IMAGE, CLOUD, CORNER_SELECTION, OBSERVATION, CALIBRATION, REPORT, RGBDT_CLOUD,
+/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, SIGHTING, STATUS -> SESSION_REQUEST,
+/// CORNER_SELECTION. Nothing large is encoded here: a post makes its bytes when a browser is about
+/// to get it. Of each view its images are kept as JPEG, and some points of its cloud.
+/// Handle, Tick and TakeMessages belong to the bus' thread, OnBrowser to the server's.
+class LiveNode : public Node {
+ public:
+  /// Where posts go from now on; it outlives the node. Before the first message.
+  void PostTo(Outbox* outbox) { outbox_ = outbox; }
+
+  std::string name() const override { return "viewer"; }
+  std::vector<std::string> Subscriptions() const override;
+  Messages Handle(const Message& message) override;
+  Status GetStatus() const override;
+
+  /// What a browser asked for. Throws InputError where it cannot be done, in words for a person.
+  std::vector<Post> OnBrowser(const nlohmann::json& message);
+
+  /// What is to be published for the browsers.
+  Messages TakeMessages();
+
+  /// Posts what has changed, the session's state at most ten times a second. `now_s` of the steady
+  /// clock.
+  void Tick(double now_s);
+
+  /// The processes of a BusFrame.
+  nlohmann::json Processes(double now_s) const;
+
+ private:
+  void Take(const Message& message);
+  void OnRig(const RigText& text);
+  void OnCommand(const SessionCommand& command);
+  void OnEvent(const SessionEvent& event);
+  void OnStatus(const Status& status);
+  void OnImage(const Image& image);
+  void OnObservation(const Observation& observation);
+  void OnCalibration(const CalibrationMessage& message);
+  void OnFused(const RgbdtCloud& cloud);
+  void OnSighting(const Sighting& sighting);
+  void CompleteView();
+  void ShowCapture();
+  void PostLiveOverlay(const std::string& camera);
+  void PostSightings();
+  void CountSigma(const CameraCalibration& calibration);
+  void NoteWhatCanBeAsked();
+  ViewState* StateOf(const std::string& view);
+  std::vector<Post> PostsOf(const KeptView& view) const;
+  bool Heard(const std::string& process) const;
+
+  Outbox* outbox_ = nullptr;
+  mutable std::mutex mutex_;  // guards all below
+  double now_s_ = 0;
+  Utime newest_utime_ = 0;
+  std::shared_ptr<const Rig> rig_;
+  SessionState state_;
+  bool changed_ = true;
+  double posted_s_ = -1;
+  std::string doing_;  // what the session itself says it does
+  ViewCollector collector_;
+  std::map<std::string, std::shared_ptr<KeptView>> views_;
+  struct Heard_ {
+    Status status;
+    double at_s;
+  };
+  std::map<std::string, Heard_> statuses_;
+  struct Seen {
+    Sighting sighting;
+    double at_s;
+  };
+  std::map<std::string, Seen> sightings_;  // by camera; "": the LIDAR
+  Utime sweep_utime_ = 0;                  // of the newest whole sweep
+  int sweep_part_ = 0;
+  std::vector<Eigen::Vector3f> sweep_points_;  // as far as it has come
+  std::shared_ptr<const std::vector<Eigen::Vector3f>> whole_sweep_;
+  Messages messages_;
+};
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,209 @@
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "calib/files/report_file.h"
+#include "calib/model/errors.h"
+#include "calib/solve/calibrate.h"
+#include "services/bus/bus.h"
+#include "services/bus/process.h"
+#include "services/rgbdt/session_detection.h"
+#include "viewer/frames/frame.h"
+#include "viewer/frames/page.h"
+#include "viewer/frames/session_frames.h"
+#include "viewer/live/bus_monitor.h"
+#include "viewer/live/clock.h"
+#include "viewer/live/live_node.h"
+#include "viewer/server/server.h"
+
+namespace {
+
+using rgbdt::viewer::Post;
+using rgbdt::viewer::Server;
+using rgbdt::viewer::ServerOptions;
+
+struct Flags {
+  std::string listen = "127.0.0.1:8080";
+  std::string url, session;
+  std::vector<std::string> run;
+};
+
+// "127.0.0.1:8080", "[::1]:8080", "8080"
+void ParseAddress(const std::string& listen, ServerOptions* options) {
+  const std::size_t colon = listen.rfind(':');
+  const std::string port = colon == std::string::npos ? listen : listen.substr(colon + 1);
+  if (colon != std::string::npos) options->address = listen.substr(0, colon);
+  if (options->address.size() > 2 && options->address.front() == '[') {
+    options->address = options->address.substr(1, options->address.size() - 2);
+  }
+  std::size_t used = 0;
+  try {
+    options->port = std::stoi(port, &used);
+  } catch (const std::exception&) {
+  }
+  if (used == 0 || used != port.size()) {
+    throw rgbdt::InputError("--listen is \"" + listen +
+                            "\"; expected ADDRESS:PORT, e.g. 0.0.0.0:8080");
+  }
+}
+
+ServerOptions OptionsFrom(const Flags& flags) {
+  ServerOptions options;
+  ParseAddress(flags.listen, &options);
+  options.socket = rgbdt::viewer::HandedInSocket();
+  options.page = rgbdt::viewer::Page();
+  options.hello = {{"type", "hello"}, {"version", RGBDT_VERSION}};
+  return options;
+}
+
+void SayWhere(const Server& server) {
+  std::printf("%s\n", server.Url().c_str());
+  std::fflush(stdout);
+}
+
+// The socket as its number 3, and the command in place of this process.
+int RunWithSocket(const Flags& flags) {
+  const int socket = rgbdt::viewer::Listen(OptionsFrom(flags));
+  if (dup2(socket, 3) < 0) throw rgbdt::InputError(std::string("dup2: ") + std::strerror(errno));
+  if (socket != 3) close(socket);
+  setenv("LISTEN_FDS", "1", 1);
+  std::vector<char*> arguments;
+  for (const std::string& word : flags.run) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  execvp(arguments.front(), arguments.data());
+  throw rgbdt::InputError(flags.run.front() + ": " + std::strerror(errno));
+}
+
+void WaitForSignal() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  int which = 0;
+  sigwait(&signals, &which);
+}
+
+nlohmann::json Browsers(const Server& server) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& browser : server.Browsers()) {
+    all.push_back({{"address", browser.address},
+                   {"waiting", browser.waiting},
+                   {"thinned", browser.thinned},
+                   {"share", browser.share}});
+  }
+  return all;
+}
+
+void PostBus(const rgbdt::viewer::LiveNode& node, const rgbdt::viewer::BusMonitor& monitor,
+             double now_s, Server* server) {
+  nlohmann::json frame = {{"type", "bus"},
+                          {"channels", monitor.Channels(now_s)},
+                          {"processes", node.Processes(now_s)},
+                          {"browsers", Browsers(*server)},
+                          {"screen_ms", nullptr}};
+  if (const auto screen = server->Screen()) {
+    frame["screen_ms"] = {{"p50", screen->p50}, {"p95", screen->p95}, {"count", screen->count}};
+  }
+  server->Send({"bus", "", true, false, 0, [frame] { return rgbdt::viewer::JsonFrame(frame); }, 0});
+}
+
+int ShowBus(const Flags& flags) {
+  ServerOptions options = OptionsFrom(flags);
+  options.hello["source"] = "live";
+  options.hello["title"] = rgbdt::CompleteUrl(flags.url);
+  rgbdt::viewer::LiveNode node;
+  Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
+  node.PostTo(&server);
+  SayWhere(server);
+  rgbdt::viewer::BusMonitor monitor;
+  double next_bus_s = 0;
+  return rgbdt::RunOnLcm(
+      node, flags.url,
+      [&](rgbdt::NodeRunner& runner) {
+        const double now_s = rgbdt::viewer::SteadySeconds();
+        runner.Publish(node.TakeMessages());
+        node.Tick(now_s);
+        if (now_s >= next_bus_s) {
+          next_bus_s = now_s + 1;
+          PostBus(node, monitor, now_s, &server);
+        }
+        return true;
+      },
+      [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        monitor.Add(channel, data, size, rgbdt::viewer::SteadySeconds(),
+                    rgbdt::viewer::WallUtime());
+      });
+}
+
+// What the session's report says; with none, what a calibration would say. Nothing is written.
+rgbdt::Report ReportOf(const rgbdt::Session& session,
+                       const std::vector<rgbdt::Observation>& observations) {
+  const auto path = session.root / "report.json";
+  if (std::filesystem::exists(path)) return rgbdt::ReadReport(path);
+  return rgbdt::Calibrate(session.rig, observations, {});
+}
+
+int ShowSession(const Flags& flags) {
+  ServerOptions options = OptionsFrom(flags);
+  const rgbdt::Session session = rgbdt::OpenSession(flags.session);
+  const auto observations = rgbdt::DetectSession(session, rgbdt::kAutoMethod).observations;
+  rgbdt::viewer::SessionFramesOptions what;
+  what.title = flags.session;
+  what.version = RGBDT_VERSION;
+  const auto frames =
+      rgbdt::viewer::SessionFrames(session, observations, ReportOf(session, observations), what);
+  options.hello["source"] = "session";
+  options.hello["title"] = flags.session;
+  Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
+  for (const auto& frame : frames) {
+    if (frame.topic == "hello") continue;  // the server says it
+    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
+  }
+  SayWhere(server);
+  WaitForSignal();
+  return 0;
+}
+
+void CheckFlags(const Flags& flags) {
+  if (!flags.session.empty() && !flags.url.empty()) {
+    throw rgbdt::InputError("--session shows files, --lcm-url a bus; give one of them");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Shows the rig, the session and the fused cloud in a browser, live from the bus or of a\n"
+      "finished session. Prints the address to open.\n"
+      "Example: rgbdt-viewer\n"
+      "         rgbdt-viewer --session out/demo/session\n"
+      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too",
+      "rgbdt-viewer"};
+  Flags flags;
+  app.add_option("--listen", flags.listen,
+                 "address and port; beyond loopback, commands need the token that the printed\n"
+                 "address has")
+      ->capture_default_str();
+  app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
+  app.add_option("--session", flags.session, "a session directory, in place of the bus");
+  app.add_option(
+         "--run", flags.run,
+         "run this command with the listening socket handed in (LISTEN_FDS), e.g. where it\n"
+         "goes into a network namespace and starts rgbdt-viewer there; must come last")
+      ->expected(-1);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    CheckFlags(flags);
+    if (!flags.run.empty()) return RunWithSocket(flags);
+    return flags.session.empty() ? ShowBus(flags) : ShowSession(flags);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "rgbdt-viewer: %s\n", e.what());
+    return 1;
+  }
+}
