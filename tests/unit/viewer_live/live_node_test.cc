@@ -1,0 +1,299 @@
+#include "viewer/live/live_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calib/model/errors.h"
+#include "tests/nodes/session_world.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+using nlohmann::json;
+using test::ErrorOf;
+using test::TinyRig;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// The header of a frame, as protocol.ts lays it out.
+json HeaderOf(const std::string& frame) {
+  std::uint32_t size = 0;
+  for (int i = 0; i < 4; ++i) {
+    size |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(frame.at(4 + i))) << (8 * i);
+  }
+  return json::parse(frame.substr(8, size));
+}
+
+class Posts : public Outbox {
+ public:
+  void Send(Post post) override { all.push_back(std::move(post)); }
+  void Forget(const std::string& prefix) override { forgotten.push_back(prefix); }
+
+  const Post* Newest(const std::string& topic) const {
+    for (auto post = all.rbegin(); post != all.rend(); ++post) {
+      if (post->topic == topic) return &*post;
+    }
+    return nullptr;
+  }
+  json Header(const std::string& topic) const {
+    const Post* post = Newest(topic);
+    return post == nullptr ? json() : HeaderOf(post->make());
+  }
+  std::vector<std::string> Topics() const {
+    std::vector<std::string> topics;
+    for (const Post& post : all) topics.push_back(post.topic);
+    return topics;
+  }
+
+  std::vector<Post> all;
+  std::vector<std::string> forgotten;
+};
+
+class LiveNodeTest : public ::testing::Test {
+ protected:
+  LiveNodeTest() {
+    node_.PostTo(&posts_);
+    node_.Handle(test::TextOf(TinyRig()));
+  }
+
+  // The newest state of the session.
+  json State() {
+    node_.Tick(tick_s_ += 1);
+    return posts_.Header("session");
+  }
+  SessionCommand Capture(const std::string& view, Utime sweep) const {
+    SessionCommand command;
+    command.verb = SessionVerb::kCapture;
+    command.command = 5;
+    command.utime = sweep + kMicrosecondsPerSecond;
+    command.view = view;
+    command.sweep_utime = sweep;
+    return command;
+  }
+  // All that a view is made of.
+  void TakeView(const std::string& view, Utime sweep) {
+    CloudChunk chunk;
+    chunk.cloud.sweep_utime = sweep;
+    chunk.cloud.lines = 1;
+    chunk.cloud.beams = 2;
+    chunk.cloud.points = {{3, 0, 0}, {3, 1, 0}};
+    chunk.cloud.utime = {sweep, sweep + 1};
+    chunk.sweep_end = true;
+    chunk.sweep_lines = 1;
+    node_.Handle(chunk);
+    node_.Handle(Capture(view, sweep));
+    for (const CameraSpec& camera : TinyRig().cameras) {
+      node_.Handle(test::Blank(camera, sweep + kMicrosecondsPerSecond));
+    }
+  }
+  void SessionRuns(bool by_request, bool busy = false) {
+    Status status = test::Ready("session");
+    status.counters = {{"by request", by_request}, {"busy", busy}, {"waits for pose", 0}};
+    node_.Handle(status);
+  }
+  void Said(EventKind kind, const std::string& source, const std::string& text,
+            double fraction = 0) {
+    SessionEvent event;
+    event.kind = kind;
+    event.source = source;
+    event.text = text;
+    event.fraction = fraction;
+    node_.Handle(event);
+  }
+
+  Posts posts_;
+  LiveNode node_;
+  double tick_s_ = 0;
+};
+
+TEST_F(LiveNodeTest, TheRigIsPostedOnce) {
+  EXPECT_EQ(posts_.Header("rig").at("hash"), TinyRig().hash);
+  EXPECT_EQ(posts_.Header("rig").at("cameras").size(), 2U);
+  const std::size_t before = posts_.all.size();
+  node_.Handle(test::TextOf(TinyRig()));
+  EXPECT_EQ(posts_.all.size(), before);
+}
+
+TEST_F(LiveNodeTest, AViewIsShownWithItsImagesAndCanBeLookedAt) {
+  TakeView("0001", test::kStart);
+  EXPECT_THAT(posts_.Topics(), Contains("thumb/0001/rgb"));
+  EXPECT_THAT(posts_.Topics(), Contains("thumb/0001/thermal"));
+  const json views = State().at("views");
+  ASSERT_EQ(views.size(), 1U);
+  EXPECT_EQ(views[0].at("name"), "0001");
+  EXPECT_EQ(views[0].at("cameras")[0].at("image_utime"), test::kStart + kMicrosecondsPerSecond);
+
+  std::vector<std::string> types;
+  for (const Post& post : node_.OnBrowser({{"type", "view"}, {"view", "0001"}})) {
+    const json header = HeaderOf(post.make());
+    EXPECT_EQ(header.at("view"), "0001");
+    types.push_back(header.at("type"));
+  }
+  EXPECT_THAT(types, ElementsAre("image", "overlay", "image", "overlay"));
+  EXPECT_THAT(ErrorOf([&] { node_.OnBrowser({{"type", "view"}, {"view", "7"}}); }),
+              HasSubstr("no view 7"));
+}
+
+TEST_F(LiveNodeTest, AViewThatWaitsSaysForWhat) {
+  node_.Handle(Capture("0001", test::kStart));
+  node_.Handle(test::Blank(TinyRig().cameras[0], test::kStart + kMicrosecondsPerSecond));
+  EXPECT_THAT(State().at("views")[0].at("waits"), HasSubstr("an image of camera thermal"));
+}
+
+// A script may ask for a person's picks: the image must be there to pick in before the view is.
+TEST_F(LiveNodeTest, AnImageThatWaitsForPicksCanBeLookedAt) {
+  SessionCommand capture = Capture("0001", test::kStart);
+  capture.picked_cameras = {"thermal"};
+  node_.Handle(capture);
+  for (const CameraSpec& camera : TinyRig().cameras) {
+    node_.Handle(test::Blank(camera, capture.utime));
+  }
+  const json state = State();
+  ASSERT_EQ(state.at("pick_wanted").size(), 1U);
+  EXPECT_EQ(state.at("pick_wanted")[0].at("camera"), "thermal");
+  EXPECT_EQ(state.at("pick_wanted")[0].at("image_utime"), capture.utime);
+  EXPECT_THAT(node_.OnBrowser({{"type", "view"}, {"view", "0001"}}), Not(IsEmpty()));
+}
+
+TEST_F(LiveNodeTest, AResetForgetsTheViews) {
+  TakeView("0001", test::kStart);
+  SessionCommand reset;
+  reset.verb = SessionVerb::kReset;
+  node_.Handle(reset);
+  EXPECT_THAT(State().at("views"), IsEmpty());
+  EXPECT_THAT(posts_.forgotten, Contains("thumb/"));
+}
+
+TEST_F(LiveNodeTest, WhatABrowserAsksForGoesToTheBus) {
+  const json request = {{"type", "request"}, {"request", "capture"}, {"heldout", true}};
+  EXPECT_THAT(ErrorOf([&] { node_.OnBrowser(request); }), HasSubstr("rgbdt-session"));
+  EXPECT_TRUE(node_.TakeMessages().empty());
+  SessionRuns(true);
+  node_.OnBrowser(request);
+  node_.OnBrowser({{"type", "pick"},
+                   {"camera", "thermal"},
+                   {"image_utime", test::kStart},
+                   {"corners", {{1.5, 2}, {30, 2}, {30, 20}, {1, 20}}}});
+  const Messages said = node_.TakeMessages();
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_EQ(std::get<SessionRequest>(said[0]).request, SessionRequestKind::kCapture);
+  EXPECT_TRUE(std::get<SessionRequest>(said[0]).heldout);
+  EXPECT_EQ(std::get<CornerSelection>(said[1]).image_utime, test::kStart);
+  EXPECT_EQ(std::get<CornerSelection>(said[1]).corners[0], Eigen::Vector2d(1.5, 2));
+  EXPECT_TRUE(node_.TakeMessages().empty());
+  EXPECT_THAT(ErrorOf([&] {
+                node_.OnBrowser({{"type", "pick"},
+                                 {"camera", "front"},
+                                 {"image_utime", 1},
+                                 {"corners", {{1, 2}, {3, 2}, {3, 4}, {1, 4}}}});
+              }),
+              HasSubstr("front"));
+}
+
+TEST_F(LiveNodeTest, WhatMayBeAskedForFollowsTheSession) {
+  EXPECT_EQ(State().at("mode"), "none");
+  SessionRuns(false);
+  tick_s_ = SteadySeconds();
+  EXPECT_EQ(State().at("mode"), "script");
+  EXPECT_THAT(State().at("can"), IsEmpty());
+  SessionRuns(true);
+  EXPECT_EQ(State().at("mode"), "by_hand");
+  EXPECT_EQ(State().at("can"), json({"capture"}));
+  Said(EventKind::kProgress, "session", "view 0001: asked for a sweep");
+  Said(EventKind::kProgress, "simulator", "sweeping", 0.5);
+  json state = State();
+  EXPECT_EQ(state.at("busy"), "view 0001: asked for a sweep: sweeping");
+  EXPECT_EQ(state.at("fraction"), 0.5);
+  EXPECT_THAT(state.at("can"), IsEmpty());
+  Said(EventKind::kFailed, "session", "the motor is stuck");
+  state = State();
+  EXPECT_EQ(state.at("busy"), "");
+  EXPECT_EQ(state.at("failure"), "the motor is stuck");
+  EXPECT_EQ(state.at("can"), json({"capture"}));
+  tick_s_ += 100;
+  EXPECT_EQ(State().at("mode"), "none") << "it was not heard for long";
+}
+
+RgbdtCloud Fused(Utime sweep, bool whole, bool end) {
+  RgbdtCloud cloud;
+  cloud.sweep_utime = sweep;
+  cloud.whole_sweep = whole;
+  cloud.sweep_end = end;
+  cloud.points = {{4, 0, 0}};
+  cloud.intensity = {0.5F};
+  cloud.utime = {sweep};
+  cloud.rgb = {{1, 2, 3}};
+  cloud.temperature_k = cloud.temperature_sigma_k = cloud.thermal_counts = {NAN};
+  cloud.valid = {0};
+  return cloud;
+}
+
+TEST_F(LiveNodeTest, ChunksPassByAndWholeSweepsAreKeptPartByPart) {
+  node_.Handle(Fused(1000, false, false));
+  EXPECT_FALSE(posts_.all.back().kept);
+  EXPECT_TRUE(posts_.all.back().heavy);
+  EXPECT_EQ(posts_.all.back().watch, "cloud");
+  node_.Handle(Fused(1000, true, false));
+  node_.Handle(Fused(1000, true, true));
+  EXPECT_EQ(posts_.Header("sweep/0").at("part"), 0);
+  EXPECT_EQ(posts_.Header("sweep/1").at("part"), 1);
+  EXPECT_TRUE(posts_.Newest("sweep/1")->kept);
+  posts_.forgotten.clear();
+  node_.Handle(Fused(2000, true, true));
+  EXPECT_EQ(posts_.Header("sweep/0").at("sweep_utime"), 2000);
+  EXPECT_THAT(posts_.forgotten, ElementsAre("sweep/"));
+}
+
+TEST_F(LiveNodeTest, AnImageThatIsNotTheRigsIsRefused) {
+  Image small = test::Blank(TinyRig().cameras[0], test::kStart);
+  small.pixels = cv::Mat(10, 20, CV_8UC1, cv::Scalar(0));
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(small); }), HasSubstr("20x10"));
+  EXPECT_EQ(posts_.Newest("image/rgb"), nullptr);
+}
+
+TEST_F(LiveNodeTest, SigmaIsCountedByTheViewsUsed) {
+  for (int view = 1; view <= 3; ++view) {
+    Observation observation;
+    observation.view = "000" + std::to_string(view);
+    observation.camera = "rgb";
+    observation.heldout = view == 2;
+    observation.image.emplace();
+    observation.cloud.emplace();
+    node_.Handle(observation);
+    CalibrationMessage message;
+    message.utime = test::kStart + view;
+    message.calibration.camera = "rgb";
+    message.calibration.covariance = Matrix6d::Identity() * 1e-8 / view;
+    node_.Handle(message);
+    node_.Handle(message);  // as it comes again at 1 Hz
+  }
+  const json sigma = State().at("sigma");
+  ASSERT_EQ(sigma.size(), 2U);
+  EXPECT_EQ(sigma[0].at("views"), 1);
+  EXPECT_EQ(sigma[1].at("views"), 2);
+  EXPECT_LT(sigma[1].at("cameras")[0].at("rotation_deg"),
+            sigma[0].at("cameras")[0].at("rotation_deg"));
+}
+
+TEST_F(LiveNodeTest, SightingsSayWhoSeesTheBoard) {
+  Sighting sighting;
+  sighting.camera = "thermal";
+  sighting.utime = test::kStart;
+  sighting.seen = true;
+  sighting.text = "3.1 m away";
+  node_.Handle(sighting);
+  sighting.camera = "";
+  node_.Handle(sighting);
+  const json sensors = posts_.Header("sightings").at("sensors");
+  ASSERT_EQ(sensors.size(), 2U);
+  EXPECT_EQ(sensors[0].at("sensor"), "lidar");
+  EXPECT_EQ(sensors[1].at("kind"), "thermal");
+  EXPECT_EQ(sensors[1].at("text"), "3.1 m away");
+}
+
+}  // namespace
+}  // namespace rgbdt::viewer
