@@ -256,12 +256,12 @@ export function decodeFrame(bytes: ArrayBuffer): Frame {
   return { id: view.getUint32(0, true), header, bytes, arrays };
 }
 
-export function floats(frame: Frame, name: string): Float32Array {
+export function floats(frame: Frame, name: string): Float32Array<ArrayBuffer> {
   const at = frame.arrays.get(name);
   return at ? new Float32Array(frame.bytes, at.offset, at.length) : new Float32Array();
 }
 
-export function octets(frame: Frame, name: string): Uint8Array {
+export function octets(frame: Frame, name: string): Uint8Array<ArrayBuffer> {
   const at = frame.arrays.get(name);
   return at ? new Uint8Array(frame.bytes, at.offset, at.length) : new Uint8Array();
 }

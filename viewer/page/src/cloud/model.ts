@@ -1,0 +1,123 @@
+// Cloud frames in, the scene out. It outlives the panel: what came while another tab was shown is
+// there when this one is.
+import { effect } from "@preact/signals";
+import type { CloudFrame, Frame, Vec3 } from "../protocol";
+import { ack, onCloud, watched } from "../store";
+import { theme } from "../theme";
+import { kZeroCelsius } from "../format";
+import { partOf, valuesOf, type PointValues } from "./points";
+import { percentiles } from "./range";
+import { CloudScene } from "./scene";
+import { colour, isRanged, mode, picked, pointSize, ranges, setRange, stats, voxel } from "./settings";
+import { Sweeps } from "./sweeps";
+import { VoxelMap } from "./voxel_map";
+
+const kDefaultBudget = 100_000; // until it is known what draws
+
+const sweeps = new Sweeps();
+const map = new VoxelMap(kDefaultBudget, voxel.peek());
+let undrawn: Frame[] = [];
+let visible = false;
+let pose: number[] | null = null; // of the newest frame: map from LIDAR
+let cameras: string[] = [];
+let scene: CloudScene | null = null;
+
+function ackAll(): void {
+  undrawn.forEach(ack);
+  undrawn = [];
+}
+
+function take(header: CloudFrame, frame: Frame): void {
+  const part = partOf(header, frame);
+  sweeps.add(part);
+  if (mode.peek() === "map") map.add(part);
+  [pose, cameras] = [header.map_from_lidar, header.cameras];
+  if (header.ack) undrawn.push(frame);
+  if (!visible || !scene || document.hidden) ackAll();
+  else show();
+}
+
+function tell(): void {
+  const frame = mode.peek() === "map" ? map.frame : "lidar" as const;
+  const now = { ...stats.peek(), points: scene?.points ?? 0, voxel_m: map.voxel_m, frame, cameras };
+  if (JSON.stringify(now) !== JSON.stringify(stats.peek())) stats.value = now;
+}
+
+/// The legend's ends in the scene's units.
+function sceneRange(): [number, number] {
+  const which = colour.peek();
+  if (!isRanged(which)) return [0, 1];
+  const { low, high } = ranges.peek()[which];
+  const zero = which === "temperature" ? kZeroCelsius : 0;
+  return [low + zero, high + zero];
+}
+
+function autoRange(): void {
+  const which = colour.peek();
+  if (!isRanged(which) || !ranges.peek()[which].auto) return;
+  const inMap = mode.peek() === "map";
+  const lidar: Vec3 = inMap && map.frame === "map" && pose ? [pose[3], pose[7], pose[11]] : [0, 0, 0];
+  const ends = percentiles(inMap ? [map] : sweeps.shown(), which, lidar);
+  const { low, high } = ranges.peek()[which];
+  if (ends && (ends[0] !== low || ends[1] !== high)) setRange(which, { low: ends[0], high: ends[1] });
+}
+
+function show(): void {
+  if (!scene) return;
+  const inMap = mode.peek() === "map";
+  scene.setLidar(inMap && map.frame === "map" ? pose : null);
+  if (inMap) scene.showMap(map);
+  else scene.showParts(sweeps.shown());
+  autoRange();
+}
+
+/// Begins the map with what is known now.
+function restartMap(): void {
+  map.reset(scene?.budget ?? kDefaultBudget, voxel.peek());
+  sweeps.shown().forEach((part) => map.add(part));
+}
+
+export function clearMap(): void {
+  map.clear();
+  picked.value = null;
+  show();
+}
+
+/// The scene on a canvas, once; throws where the browser has no WebGL 2. `onDrawn` follows each frame.
+export function startScene(canvas: HTMLCanvasElement, onDrawn: () => void): CloudScene {
+  const made = new CloudScene(canvas);
+  scene = made;
+  stats.value = { ...stats.peek(), budget: made.budget, renderer: made.renderer };
+  watched.value = { ...watched.peek(), points: made.budget };
+  made.onDrawn = () => { ackAll(); tell(); onDrawn(); };
+  effect(() => made.setGround(theme.value === "dark"));
+  effect(() => made.setPointSize(pointSize.value));
+  effect(() => { void ranges.value; made.setColour(colour.value, sceneRange()); });
+  effect(() => { void colour.value; autoRange(); });
+  effect(() => {
+    void voxel.value;
+    picked.value = null;
+    if (mode.value === "map") restartMap();
+    show();
+  });
+  return made;
+}
+
+export const sceneNow = (): CloudScene | null => scene;
+
+export function setVisible(now: boolean): void {
+  visible = now;
+  watched.value = { ...watched.peek(), cloud: now };
+  if (now) show();
+  else ackAll();
+}
+
+/// The point at a pixel of the window becomes the picked one.
+export function pickAt(x: number, y: number): PointValues | null {
+  const found = scene?.pickAt(x, y);
+  picked.value = found ? valuesOf(found.points, found.index) : null;
+  return picked.value;
+}
+
+onCloud(take);
+document.addEventListener("visibilitychange", () => { if (document.hidden) ackAll(); });

@@ -1,0 +1,44 @@
+import type { BusFrame, SightingsFrame } from "../protocol";
+
+const wave = (base: number, seconds: number): number => base * (1 + 0.05 * Math.sin(seconds) + 0.03 * (Math.random() - 0.5));
+
+function process(name: string, text: string, age_s: number, counts: Record<string, number>,
+  last_problem = ""): BusFrame["processes"][number] {
+  const counters = Object.entries(counts).map(([key, value]) => ({ name: key, value }));
+  return { process: name, ready: true, text, last_problem, age_s, counters };
+}
+
+export function busFrame(seconds: number): BusFrame {
+  const channel = (name: string, rate: number, size_bytes: number, latency_ms: number | null, lost = 0) => {
+    const rate_hz = wave(rate, seconds);
+    return { name, count: Math.floor(rate * seconds), rate_hz, bytes_per_s: rate_hz * size_bytes, size_bytes, latency_ms, lost };
+  };
+  return {
+    type: "bus",
+    channels: [
+      channel("CLOUD", 12, 1_310_000, wave(8, seconds)), channel("RGBDT_CLOUD", 12, 1_900_000, wave(15, seconds)),
+      channel("RGB_IMAGE", 10, 2_818_000, wave(5, seconds), 3), channel("THERMAL_IMAGE", 9, 655_000, wave(4, seconds)),
+      channel("LINE_SCAN", 40, 17_000, wave(2, seconds)), channel("STATUS", 6, 400, 1), channel("RIG", 1, 4_200, null),
+    ],
+    processes: [
+      process("rgbdt-assembler", "sweep of 4.2 s, 1081 beams", 0.4, { sweeps: 17, lines_lost: 0 }),
+      process("rgbdt-fuser", "rgb, thermal calibrated", 0.7, { points: 1_234_567 }, "thermal: image 250 ms late"),
+      { ...process("rgbdt-detector", "waits for a rig", 6.1, {}, "no RIG message for 5 s"), ready: false },
+    ],
+    browsers: [{ address: "127.0.0.1:40112", waiting: 0, thinned: 12, share: 0.8 }],
+    screen_ms: { p50: wave(60, seconds), p95: wave(110, seconds), count: 200 },
+  };
+}
+
+export function sightingsFrame(seconds: number): SightingsFrame {
+  const utime = Date.now() * 1000;
+  const seen = Math.sin(seconds / 5) > 0;
+  return {
+    type: "sightings",
+    sensors: [
+      { sensor: "lidar", kind: "lidar", seen: true, text: "board 3.42 m away", utime, age_s: 0.8 },
+      { sensor: "rgb", kind: "color", seen: true, text: "board found, 35 corners", utime, age_s: 0.2 },
+      { sensor: "thermal", kind: "thermal", seen, text: seen ? "board found" : "no board: contrast 0.3 K", utime, age_s: 0.3 },
+    ],
+  };
+}

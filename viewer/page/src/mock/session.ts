@@ -1,0 +1,97 @@
+// A session by hand that has six views of ten; requests and picks change it as a real one would.
+import type { Board } from "./scene";
+import { boardOfView, camera_from_lidar, kCameras } from "./scene";
+import { outlineOf } from "./pictures";
+import type { CameraState, RequestName, SessionFrame, Vec3, View, ViewCamera } from "../protocol";
+
+const kStart = Date.now() * 1000;
+
+function viewCamera(index: number, board: Board, camera: (typeof kCameras)[number]): ViewCamera {
+  const rejected = camera.kind === "thermal" && index % 3 === 2;
+  return {
+    camera: camera.name, image_utime: kStart + index * 60e6, state: rejected ? "rejected" : "accepted",
+    why: rejected ? "no checkerboard: 31 of 35 corners; the board is too even in temperature" : "",
+    picked: camera.kind === "thermal" && index === 1, outline: rejected ? [] : outlineOf(camera, board),
+    edge_rms_px: rejected ? null : 0.4 + 0.13 * index, edge_rms_sigmas: rejected ? null : 0.9 + 0.15 * index,
+  };
+}
+
+export const viewName = (index: number): string => String(index + 1).padStart(4, "0");
+
+function view(index: number): View {
+  const board = boardOfView(index);
+  const normal: Vec3 = [-Math.cos(board.yaw), Math.sin(board.yaw), 0];
+  return {
+    name: viewName(index), heldout: index % 4 === 3, waits: "",
+    board: { centre_m: board.centre, normal, distance_m: Math.hypot(...board.centre) },
+    cameras: kCameras.map((camera) => viewCamera(index, board, camera)),
+  };
+}
+
+function cameraState(views: number, camera: (typeof kCameras)[number]): CameraState {
+  const thermal = camera.kind === "thermal";
+  return {
+    camera: camera.name, calibrated: views > 3, status: views > 3 ? "converged" : "3 views are too few: 4 are needed",
+    utime: kStart + views * 60e6, camera_from_lidar: camera_from_lidar(camera),
+    rotation_sigma_deg: 0.2 / views, centre_sigma_mm: (thermal ? 30 : 12) / views,
+    verdict: thermal
+      ? { grade: "caution", headline: "Usable, with care", reasons: ["the upper left of the image has no view", "held-out edge 1.6 sigma"] }
+      : { grade: "good", headline: "Good", reasons: [] },
+    heldout_edge_px: thermal ? 1.1 : 0.7, heldout_edge_sigmas: thermal ? 1.6 : 1.05,
+  };
+}
+
+export class MockSession {
+  private views = Array.from({ length: 6 }, (_, index) => view(index));
+  private log: SessionFrame["log"] = [];
+  private can: RequestName[] = ["capture", "finish"];
+  private busy = "";
+
+  constructor() { this.say("session", "done", "6 views read"); }
+
+  say(source: string, kind: "progress" | "done" | "failed", text: string): void {
+    this.log = [...this.log.slice(-50), { utime: Date.now() * 1000, source, kind, text }];
+  }
+
+  get viewCount(): number { return this.views.length; }
+
+  frame(): SessionFrame {
+    const wanted = this.views.flatMap(({ name, cameras }) => cameras.filter(({ state }) => state === "rejected")
+      .map(({ camera, image_utime, why }) => ({ view: name, camera, image_utime, why })));
+    const cameras = kCameras.map((camera) => cameraState(this.views.length, camera));
+    return {
+      type: "session", mode: "by_hand", can: this.busy ? [] : this.can, busy: this.busy, fraction: this.busy ? 0.4 : 0,
+      step: 0, steps: 0, failure: "", log: this.log, views: this.views, pick_wanted: wanted,
+      sigma: Array.from({ length: Math.max(0, this.views.length - 3) }, (_, step) => ({
+        views: step + 4,
+        cameras: cameras.map(({ camera }, i) => ({ camera, rotation_deg: 0.2 / (step + 4), centre_mm: (i ? 30 : 12) / (step + 4) })),
+      })),
+      cameras,
+      verdict: { grade: "caution", headline: "thermal: usable, with care", reasons: ["thermal: the upper left of the image has no view"] },
+      next_view: {
+        words: "Board 4 m away, left and high in the thermal image, turned 30° to the right",
+        camera: "thermal", before_px: 1.1, after_px: 0.8,
+      },
+      report: null,
+    };
+  }
+
+  /// Begins what was asked for; `done` when it would be.
+  begin(request: RequestName): void {
+    this.busy = request === "capture" ? "taking a whole sweep" : request;
+    this.say("session", "progress", this.busy);
+  }
+
+  end(request: RequestName): void {
+    this.busy = "";
+    if (request === "capture") this.views = [...this.views, view(this.views.length)];
+    this.say("session", "done", request === "capture" ? `view ${viewName(this.views.length - 1)} taken` : request);
+  }
+
+  pick(camera: string, image_utime: number): void {
+    this.views = this.views.map((one) => ({ ...one, cameras: one.cameras.map((state) =>
+      state.camera === camera && state.image_utime === image_utime
+        ? { ...state, state: "accepted", why: "", picked: true, edge_rms_px: 0.8, edge_rms_sigmas: 1.2 } : state) }));
+    this.say("detector", "done", `${camera}: corners picked`);
+  }
+}

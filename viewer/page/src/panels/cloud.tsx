@@ -1,0 +1,72 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import { pickAt, setVisible, startScene } from "../cloud/model";
+import type { CloudScene } from "../cloud/scene";
+import { picked } from "../cloud/settings";
+import { hello } from "../store";
+import { Controls, Status } from "./cloud/controls";
+import { Legend } from "./cloud/legend";
+import { PointCard } from "./cloud/point_card";
+import "./cloud/cloud.css";
+
+const kTap = { px: 6, ms: 700 }; // what moved less, and took no longer, is no drag
+
+/// Calls `onTap` with the window's pixel.
+function listenToTaps(canvas: HTMLCanvasElement, onTap: (x: number, y: number) => void): void {
+  let down: PointerEvent | null = null;
+  canvas.addEventListener("pointerdown", (event) => { down = event.isPrimary && event.button === 0 ? event : null; });
+  canvas.addEventListener("pointerup", (event) => {
+    const still = down && Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) < kTap.px;
+    if (down && still && event.timeStamp - down.timeStamp < kTap.ms) onTap(event.clientX, event.clientY);
+    down = null;
+  });
+}
+
+function placeMarker(marker: HTMLElement, scene: CloudScene, canvas: HTMLCanvasElement): void {
+  const point = picked.peek();
+  const at = point && scene.project(point.position);
+  const box = canvas.getBoundingClientRect();
+  marker.hidden = !at?.inFront;
+  if (at) marker.style.transform = `translate(${at.x - box.left}px, ${at.y - box.top}px)`;
+}
+
+function start(canvas: HTMLCanvasElement, marker: HTMLElement): () => void {
+  const scene = startScene(canvas, () => placeMarker(marker, scene, canvas));
+  listenToTaps(canvas, pickAt);
+  const stopMarker = picked.subscribe(() => placeMarker(marker, scene, canvas));
+  const forget = (event: KeyboardEvent) => { if (event.key === "Escape") picked.value = null; };
+  addEventListener("keydown", forget);
+  const sizes = new ResizeObserver(([entry]) => scene.resize(entry.contentRect.width, entry.contentRect.height));
+  sizes.observe(canvas.parentElement!);
+  return () => { stopMarker(); removeEventListener("keydown", forget); sizes.disconnect(); };
+}
+
+export function CloudPanel({ visible }: { visible: boolean }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const marker = useRef<HTMLDivElement>(null);
+  const [failure, setFailure] = useState("");
+  useEffect(() => {
+    try {
+      return start(canvas.current!, marker.current!);
+    } catch (error) {
+      setFailure(`The cloud cannot be drawn: this browser has no WebGL 2 (${error})`);
+    }
+  }, []);
+  useEffect(() => setVisible(visible), [visible]);
+  return (
+    <div class="cloud">
+      <div class="cloud-canvas">
+        <canvas ref={canvas} tabIndex={0} data-testid="cloud-canvas"
+          aria-label="The fused cloud. Arrow keys shift it, with Shift turn it; plus and minus come nearer and go back." />
+        <div ref={marker} class="cloud-marker" hidden data-testid="cloud-marker" />
+        {failure && <p class="empty bad" role="alert">{failure}</p>}
+      </div>
+      <Controls />
+      <div class="cloud-foot">
+        <Legend />
+        <Status />
+      </div>
+      <PointCard />
+      {!hello.value && <p class="cloud-wait empty">Nothing yet.</p>}
+    </div>
+  );
+}

@@ -1,0 +1,31 @@
+// Whether a person may ask for something now, and if not, why.
+import type { Hello, RequestName, SessionFrame } from "../../protocol";
+import type { Connection } from "../../store";
+
+const kModeWords: Record<SessionFrame["mode"], string> = {
+  none: "No session runs: start rgbdt-session.",
+  script: "A script leads this session; it asks when it needs you.",
+  by_hand: "Not possible just now.",
+  finished: "This session is finished.",
+};
+
+/// Why this browser may not command the rig; "": it may.
+export function whyNotCommand(connection: Connection, hello: Hello | null): string {
+  if (connection === "embedded") return "This is a report: nothing can be asked for.";
+  if (connection !== "open" || !hello) return "Not connected to the bridge.";
+  return hello.may_command ? "" : hello.why_not || "This browser may not command the rig.";
+}
+
+/// "": it may be asked for.
+export function whyNot(
+  request: RequestName, session: SessionFrame, connection: Connection, hello: Hello | null,
+): string {
+  const command = whyNotCommand(connection, hello);
+  if (command !== "" || session.can.includes(request)) return command;
+  return session.busy ? `Busy: ${session.busy}.` : kModeWords[session.mode];
+}
+
+/// Every third view is kept for the check, as long as nobody says otherwise.
+export function heldoutByDefault(views: number): boolean {
+  return (views + 1) % 3 === 0;
+}
