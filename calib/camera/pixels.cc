@@ -14,6 +14,8 @@ std::string Size(int width, int height) {
   return std::to_string(width) + "x" + std::to_string(height);
 }
 
+std::string Where(const std::string& camera) { return "image of camera \"" + camera + "\": "; }
+
 // Whether pixels can be of that format at all: OpenCV's own complaint would name no camera.
 bool Fits(PixelFormat format, const cv::Mat& pixels) {
   switch (format) {
@@ -49,16 +51,22 @@ float Percentile(const cv::Mat& grey, double fraction) {
   return *nth;
 }
 
-cv::Mat Stretch(const cv::Mat& grey) {
+std::pair<float, float> StretchLimits(const cv::Mat& grey) {
   const float low = Percentile(grey, 0.01);
-  const float high = std::max(Percentile(grey, 0.99), low + 1e-3F);
+  return {low, std::max(Percentile(grey, 0.99), low + 1e-3F)};
+}
+
+cv::Mat Stretch(const cv::Mat& grey) { return Stretch(grey, StretchLimits(grey)); }
+
+cv::Mat Stretch(const cv::Mat& grey, const std::pair<float, float>& limits) {
+  const auto [low, high] = limits;
   cv::Mat out;
   grey.convertTo(out, CV_8U, 255.0 / (high - low), -255.0 * low / (high - low));
   return out;
 }
 
 void CheckImage(const CameraSpec& camera, const Image& image) {
-  const std::string where = "image of camera \"" + camera.name + "\": ";
+  const std::string where = Where(camera.name);
   if (image.pixels.cols != camera.width || image.pixels.rows != camera.height) {
     throw InputError(where + "size is " + Size(image.pixels.cols, image.pixels.rows) +
                      ", the rig file says " + Size(camera.width, camera.height));
@@ -68,12 +76,16 @@ void CheckImage(const CameraSpec& camera, const Image& image) {
                      std::to_string(image.pixels.channels()) +
                      "; save counts, not a coloured picture");
   }
-  if (!Fits(image.format, image.pixels)) {
-    throw InputError(where + std::to_string(image.pixels.channels()) + " channels of " +
-                     std::to_string(8 * image.pixels.elemSize1()) +
-                     " bits do not make an image of format " +
-                     std::to_string(static_cast<int>(image.format)) + " (image_t.lcm)");
-  }
+  CheckPixels(image);
+}
+
+void CheckPixels(const Image& image) {
+  if (!image.pixels.empty() && Fits(image.format, image.pixels)) return;
+  throw InputError(Where(image.camera) + std::to_string(image.pixels.channels()) + " channels of " +
+                   std::to_string(8 * image.pixels.elemSize1()) + " bits, " +
+                   Size(image.pixels.cols, image.pixels.rows) +
+                   ", do not make an image of format " +
+                   std::to_string(static_cast<int>(image.format)) + " (image_t.lcm)");
 }
 
 cv::Mat ToBgr(const Image& image) {
@@ -107,7 +119,7 @@ cv::Mat ToBgr(const Image& image) {
     case PixelFormat::kPng:
       break;
   }
-  throw InputError("image of camera \"" + image.camera + "\": compressed pixels were not decoded");
+  throw InputError(Where(image.camera) + "compressed pixels were not decoded");
 }
 
 cv::Mat ToGrey(const Image& image) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: small pieces of HTML.
+// For calib/files and the viewer: small pieces of HTML.
 
 #include <string>
 #include <vector>

@@ -73,6 +73,22 @@ int TypeOf(PixelFormat format) {
   }
 }
 
+[[noreturn]] void Refuse(const cv::Mat& pixels, const std::string& format,
+                         const std::string& bits) {
+  throw InputError("cannot write a " + format + " of a " + std::to_string(pixels.cols) + "x" +
+                   std::to_string(pixels.rows) + " image of OpenCV type " +
+                   std::to_string(pixels.type()) + "; expected " + bits + " with 1 or 3 channels");
+}
+
+std::string Encode(const std::string& extension, const cv::Mat& pixels,
+                   const std::vector<int>& options) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(extension, pixels, bytes, options)) {
+    throw InputError("OpenCV could not encode the image as " + extension);
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 cv::Mat DecodeImageFile(const std::filesystem::path& path) {
@@ -100,15 +116,16 @@ std::string EncodePng(const cv::Mat& pixels, int compression) {
   const int depth = pixels.depth();
   const int channels = pixels.channels();
   if (pixels.empty() || (depth != CV_8U && depth != CV_16U) || (channels != 1 && channels != 3)) {
-    throw InputError("cannot write a PNG of a " + std::to_string(pixels.cols) + "x" +
-                     std::to_string(pixels.rows) + " image of OpenCV type " +
-                     std::to_string(pixels.type()) + "; expected 8 or 16 bit with 1 or 3 channels");
+    Refuse(pixels, "PNG", "8 or 16 bit");
   }
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, compression})) {
-    throw InputError("OpenCV could not encode the image as PNG");
+  return Encode(".png", pixels, {cv::IMWRITE_PNG_COMPRESSION, compression});
+}
+
+std::string EncodeJpeg(const cv::Mat& pixels, int quality) {
+  if (pixels.empty() || (pixels.type() != CV_8UC1 && pixels.type() != CV_8UC3)) {
+    Refuse(pixels, "JPEG", "8 bit");
   }
-  return {bytes.begin(), bytes.end()};
+  return Encode(".jpg", pixels, {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
 void WritePng(const std::filesystem::path& path, const cv::Mat& pixels) {

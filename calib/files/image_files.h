@@ -20,6 +20,9 @@ cv::Mat DecodeImage(const std::string& bytes, const std::string& where);
 /// is for speed: a raw camera image is mostly noise, and more takes seconds to save little.
 std::string EncodePng(const cv::Mat& pixels, int compression = 1);
 
+/// `pixels` (8 bit; 1 or 3 channels) as the bytes of a JPEG; `quality` 1 to 100.
+std::string EncodeJpeg(const cv::Mat& pixels, int quality);
+
 /// EncodePng into a file, atomically.
 void WritePng(const std::filesystem::path& path, const cv::Mat& pixels);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Inside calib/files only: Protobuf text with error messages that name file, line and key.
+// For calib/files (and, ValidUtf8 alone, the viewer): Protobuf text with error messages that name
+// file, line and key.
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: a camera's report in plain words.
+// For calib/files and the viewer: a camera's report in plain words.
 
 #include <optional>
 #include <string>

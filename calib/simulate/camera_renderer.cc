@@ -4,8 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/model/parallel.h"
 #include "calib/simulate/noise.h"
-#include "calib/simulate/parallel.h"
 #include "calib/simulate/shading.h"
 
 namespace rgbdt::simulate {

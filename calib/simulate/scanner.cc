@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/parallel.h"
 #include "calib/simulate/noise.h"
-#include "calib/simulate/parallel.h"
 
 namespace rgbdt::simulate {
 Scanner::Scanner(const ScannerOptions& options, std::uint64_t seed)

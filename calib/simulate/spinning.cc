@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "calib/model/parallel.h"
 #include "calib/simulate/beam.h"
 #include "calib/simulate/noise.h"
-#include "calib/simulate/parallel.h"
 
 namespace rgbdt::simulate {
 namespace {

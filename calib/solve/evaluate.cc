@@ -17,14 +17,6 @@ double DistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
   return (p - a - t * along).norm();
 }
 
-double DistanceToChain(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& chain) {
-  double best = 1e300;
-  for (std::size_t i = 0; i < chain.size(); ++i) {
-    best = std::min(best, DistanceToSegment(p, chain[i], chain[(i + 1) % chain.size()]));
-  }
-  return best;
-}
-
 struct Sums {
   double transform = 0;  // sum of distance-transform values [px]
   double squared = 0;    // sum of squared distances to the outline [px^2]
@@ -44,7 +36,7 @@ Sums Judge(const Camera& camera, const Observation& observation, const Rigid3& c
   Sums sums;
   for (const Eigen::Vector3d& point : observation.cloud->boundary) {
     const auto pixel = camera.Project(camera_from_lidar * point);
-    const double distance = pixel ? DistanceToChain(*pixel, image.outline) : unseen;
+    const double distance = pixel ? DistanceToOutline(*pixel, image.outline) : unseen;
     sums.transform += pixel ? field.Nearest(*pixel) : unseen;
     sums.squared += distance * distance;
     sums.points += 1;
@@ -58,6 +50,15 @@ ViewQuality QualityOf(const Observation& observation, const Sums& sums) {
 }
 
 }  // namespace
+
+double DistanceToOutline(const Eigen::Vector2d& pixel,
+                         const std::vector<Eigen::Vector2d>& outline) {
+  double best = 1e300;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    best = std::min(best, DistanceToSegment(pixel, outline[i], outline[(i + 1) % outline.size()]));
+  }
+  return best;
+}
 
 ViewQuality JudgeView(const CameraSpec& camera, const Observation& observation,
                       const Rigid3& camera_from_lidar) {

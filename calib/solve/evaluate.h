@@ -11,6 +11,9 @@
 
 namespace rgbdt {
 
+/// Distance of a pixel from a closed chain of pixels, a board's outline; 1e300 without one.
+double DistanceToOutline(const Eigen::Vector2d& pixel, const std::vector<Eigen::Vector2d>& outline);
+
 /// How well a calibration lays a view's boundary points on the image. The view must be usable.
 /// distance_transform_px: mean of the distance transform at the projected points (the paper's
 /// reprojection error). edge_rms_px: RMS distance to the fitted outline. A point that the lens

@@ -1,13 +1,11 @@
 #include "services/rgbdt/session_detection.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cstdio>
 #include <exception>
 #include <mutex>
-#include <thread>
 
 #include "calib/detect/detect.h"
+#include "calib/model/parallel.h"
 
 namespace rgbdt {
 namespace {
@@ -40,28 +38,21 @@ SessionDetection DetectSession(const Session& session, const std::string& method
   const std::size_t count = session.views.size();
   std::vector<std::vector<Observation>> by_view(count);
   std::vector<std::string> unreadable(count);
-  std::atomic<std::size_t> next{0};
   std::size_t done = 0;
   std::mutex mutex;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      const std::string& name = session.views[i];
-      try {
-        by_view[i] = DetectView(session.rig, ReadView(session, name), method);
-      } catch (const std::exception& e) {
-        unreadable[i] = e.what();
-        by_view[i] = Rejected(session.rig, name, e.what());
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      std::fprintf(stderr, "[%zu/%zu] view %s: %s\n", ++done, count, name.c_str(),
-                   Summary(by_view[i]).c_str());
+  ForEach(static_cast<int>(count), 0, [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    const std::string& name = session.views[i];
+    try {
+      by_view[i] = DetectView(session.rig, ReadView(session, name), method);
+    } catch (const std::exception& e) {
+      unreadable[i] = e.what();
+      by_view[i] = Rejected(session.rig, name, e.what());
     }
-  };
-  std::vector<std::thread> threads;
-  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
-    threads.emplace_back(work);
-  }
-  for (std::thread& thread : threads) thread.join();
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::fprintf(stderr, "[%zu/%zu] view %s: %s\n", ++done, count, name.c_str(),
+                 Summary(by_view[i]).c_str());
+  });
 
   SessionDetection detection;
   for (std::size_t i = 0; i < count; ++i) {

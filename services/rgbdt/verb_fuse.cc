@@ -21,29 +21,6 @@ struct Flags {
   bool png = false;
 };
 
-RgbdtCloud FuseView(const Session& session, const Calibration& calibration,
-                    const std::string& name) {
-  const View view = ReadView(session, name);
-  std::vector<FusionCamera> cameras;
-  for (const CameraSpec& spec : session.rig.cameras) {
-    FusionCamera camera(spec);
-    camera.ServeAllTimes();
-    const CameraCalibration* found = calibration.Find(spec.name);
-    if (found != nullptr) {
-      camera.camera_from_lidar = found->camera_from_lidar;
-      camera.calibration_utime = calibration.utime;
-      camera.calibrated = true;
-    }
-    const auto image = std::find_if(view.images.begin(), view.images.end(),
-                                    [&](const Image& i) { return i.camera == spec.name; });
-    if (image != view.images.end()) camera.AddImage(Prepare(spec, *image));
-    cameras.push_back(std::move(camera));
-  }
-  RgbdtCloud fused = Fuse(view.cloud, cameras, session.rig.lidar.range_sigma_m);
-  fused.sweep_end = true;
-  return fused;
-}
-
 void DrawPictures(const RgbdtCloud& fused, const std::string& title,
                   const std::filesystem::path& out) {
   DrawOptions options;
@@ -69,7 +46,7 @@ int Run(const Flags& flags) {
     throw InputError("session " + session.root.string() + " has no view \"" + view + "\"; it has " +
                      session.views.front() + " to " + session.views.back());
   }
-  const RgbdtCloud fused = FuseView(session, calibration, view);
+  const RgbdtCloud fused = FuseView(session.rig, calibration, ReadView(session, view));
   if (fused.points.empty()) throw InputError("view " + view + " has no points that returned");
   const auto coloured = std::count_if(fused.valid.begin(), fused.valid.end(),
                                       [](std::uint32_t valid) { return valid != 0; });

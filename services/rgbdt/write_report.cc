@@ -10,10 +10,13 @@
 #include "calib/files/calibration_file.h"
 #include "calib/files/report_file.h"
 #include "calib/files/report_html.h"
+#include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
 #include "services/rgbdt/colouring_picture.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/report_table.h"
+#include "viewer/frames/image_frame.h"
+#include "viewer/frames/page.h"
 
 namespace rgbdt {
 namespace {
@@ -23,15 +26,6 @@ cv::Scalar ColourOf(double distance) {
   if (distance <= 1) return {80, 220, 60};
   if (distance <= 4) return {40, 210, 250};
   return {60, 60, 250};
-}
-
-double DistanceToOutline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
-  std::vector<cv::Point2f> polygon;
-  for (const Eigen::Vector2d& q : outline) {
-    polygon.emplace_back(static_cast<float>(q.x()), static_cast<float>(q.y()));
-  }
-  return std::abs(
-      cv::pointPolygonTest(polygon, {static_cast<float>(p.x()), static_cast<float>(p.y())}, true));
 }
 
 cv::Mat Overlay(const Session& session, const Observation& observation,
@@ -88,15 +82,51 @@ void AddColouring(const Session& session, const CameraCalibration& camera,
   pictures->push_back({camera.camera + ": how sure a colour is", kColouringCaption, picture});
 }
 
-void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
-                      const std::vector<Observation>& observations, const Report& report) {
-  WriteReport(dir / "report.json", report);
+std::string PlainPage(const Session& session, const std::vector<Observation>& observations,
+                      const Report& report) {
   std::vector<ReportPicture> pictures;
   for (const CameraReport& camera : report.cameras) {
     AddOverlay(session, observations, camera.calibration, &pictures);
     AddColouring(session, camera.calibration, &pictures);
   }
-  WriteFileAtomically(dir / "report.html", ReportHtml(report, pictures));
+  return ReportHtml(report, pictures);
+}
+
+// The picture of how sure a colour is, as the image of a view "sigma".
+void AddSigmaFrame(const Session& session, const CameraCalibration& camera,
+                   std::vector<viewer::NamedFrame>* frames) {
+  std::vector<ReportPicture> pictures;
+  AddColouring(session, camera, &pictures);
+  for (const ReportPicture& picture : pictures) {
+    Image image;
+    image.camera = camera.camera;
+    image.format = PixelFormat::kBgr8;
+    image.pixels = picture.bgr;
+    frames->push_back(
+        {"image/sigma/" + camera.camera, viewer::ImageFrame(image, "sigma", false, {1280, 90})});
+  }
+}
+
+// The viewer's page with the whole session in it.
+std::string ViewerPage(const Session& session, const std::vector<Observation>& observations,
+                       const Report& report) {
+  viewer::SessionFramesOptions options;
+  options.title = session.root.lexically_normal().string();
+  options.version = RGBDT_VERSION;
+  std::vector<viewer::NamedFrame> frames =
+      viewer::SessionFrames(session, observations, report, options);
+  for (const CameraReport& camera : report.cameras) {
+    AddSigmaFrame(session, camera.calibration, &frames);
+  }
+  return viewer::PageWithFrames(viewer::Page(), frames);
+}
+
+void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
+                      const std::vector<Observation>& observations, const Report& report) {
+  WriteReport(dir / "report.json", report);
+  WriteFileAtomically(dir / "report.html", viewer::Page().empty()
+                                               ? PlainPage(session, observations, report)
+                                               : ViewerPage(session, observations, report));
 }
 
 }  // namespace

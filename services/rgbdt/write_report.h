@@ -14,7 +14,8 @@ namespace rgbdt {
 /// where there is one), writes report.json and report.html, and prints the table, the files (after
 /// `wrote`, what was written before) and the views that could not be read. For each camera the page
 /// shows one held-out view (or, with none, one used) with the cloud's boundary points laid on the
-/// image by the calibration. Returns whether all the views could be read.
+/// image by the calibration; where the viewer's page was built, it is that page with the whole
+/// session in it. Returns whether all the views could be read.
 bool FinishReport(const std::filesystem::path& dir, const std::string& truth,
                   const std::string& wrote, const Session& session,
                   const SessionDetection& detection, Report* report);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/rigid3.h"
+
 namespace rgbdt::viewer {
 
 /// Bytes for the page, laid out as viewer/page/src/protocol.ts says: id (0; the bridge puts a
@@ -20,9 +22,13 @@ class FrameWriter {
 
   std::string Finish();
 
+  /// With one array more, "u8" and the last: zeros, which the caller writes over. They are the
+  /// frame's last bytes; a cloud is not copied so.
+  std::string FinishWith(const std::string& name, std::size_t bytes);
+
  private:
-  void Add(const std::string& name, const char* type, std::size_t elements, const void* data,
-           std::size_t bytes);
+  std::string Together(std::size_t space);
+  void Describe(const std::string& name, const char* type, std::size_t elements);
 
   nlohmann::json header_;
   nlohmann::json arrays_ = nlohmann::json::array();
@@ -31,6 +37,9 @@ class FrameWriter {
 
 /// A frame without arrays.
 std::string JsonFrame(const nlohmann::json& header);
+
+/// JSON of a pose as a 4x4 matrix, row by row.
+nlohmann::json MatrixOf(const Rigid3& a_from_b);
 
 /// JSON of a number: null where it is not finite.
 nlohmann::json FiniteOrNull(double value);

@@ -20,6 +20,8 @@ struct SessionFramesOptions {
   std::string version;
   int image_width = 960;         ///< [px] of the views' JPEGs
   std::size_t points = 100'000;  ///< of the fused cloud
+  /// Of the cloud laid on each image: there are many of them in one file.
+  std::size_t overlay_points = 6'000;
 };
 
 /// All panels of a finished session, in the order in which a page is to take them: hello, rig,

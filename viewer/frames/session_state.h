@@ -47,6 +47,11 @@ struct SessionState {
 /// 1 sigma of a calibration: rotation, RMS of the three axes [deg], and centre, likewise [mm].
 std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration);
 
+/// What a view shows of the board in the cloud: the observation whose candidate the calibration
+/// chooses or, without one, the first that has any. Nothing where no camera has one.
+std::optional<Observation> ObservedBoard(const std::map<std::string, Observation>& by_camera,
+                                         const Calibration& calibration);
+
 /// A RigFrame.
 std::string RigFrame(const Rig& rig);
 

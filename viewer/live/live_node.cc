@@ -24,9 +24,8 @@ constexpr std::size_t kMaxLog = 50;
 constexpr std::size_t kMaxProcesses = 100;
 constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
 
-// What the page shows of an observation; the rest is large.
+// Without what the page does not show and is large.
 Observation Slim(Observation observation) {
-  observation.candidates.clear();
   if (observation.image) observation.image->edge_pixels.clear();
   return observation;
 }
@@ -375,7 +374,7 @@ void LiveNode::Tick(double now_s) {
   changed_ = false;
   posted_s_ = now_s;
   outbox_->Send({"session", "", true, false, 0,
-                 [state = state_, rig = rig_] { return SessionFrame(state, rig.get()); }, 0});
+                 [bytes = SessionFrame(state_, rig_.get())] { return bytes; }, 0});
 }
 
 Messages LiveNode::TakeMessages() {

@@ -38,6 +38,21 @@ TEST(ImageFiles, RefusesWhatAPngCannotHold) {
   EXPECT_FALSE(std::filesystem::exists(dir / "a.png"));
 }
 
+TEST(ImageFiles, AJpegIsNearlyTheSamePicture) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    cv::Mat image(40, 60, type, cv::Scalar(40, 90, 200));
+    image.colRange(0, 30) = cv::Scalar(200, 60, 30);
+    const std::string good = EncodeJpeg(image, 95);
+    const cv::Mat back = DecodeImage(good, "a.jpg");
+    ASSERT_EQ(back.type(), type);
+    ASSERT_EQ(back.size(), image.size());
+    EXPECT_LT(cv::norm(back.colRange(0, 24), image.colRange(0, 24), cv::NORM_INF), 6);
+    EXPECT_LT(EncodeJpeg(image, 20).size(), good.size());
+  }
+  EXPECT_THAT(test::ErrorOf([] { EncodeJpeg(cv::Mat(3, 4, CV_16UC1), 90); }), HasSubstr("4x3"));
+  test::ErrorOf([] { EncodeJpeg(cv::Mat(), 90); });
+}
+
 TEST(ImageFiles, FormatFollowsTheTypeOrWhatIsTold) {
   const auto format = [](int type, PixelFormat told = PixelFormat{}) {
     cv::Mat image = Random(type);

@@ -52,7 +52,7 @@ export interface RigFrame {
 export interface ImageFrame {
   type: "image";
   camera: string;
-  view: string; // "" for the newest, live
+  view: string; // "" for the newest, live; "sigma" in a finished session: how sure a colour is
   utime: number;
   width: number; // of the camera's image [px]; the JPEG may be smaller
   height: number;

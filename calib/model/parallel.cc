@@ -1,11 +1,11 @@
-#include "calib/simulate/parallel.h"
+#include "calib/model/parallel.h"
 
 #include <algorithm>
 #include <atomic>
 #include <thread>
 #include <vector>
 
-namespace rgbdt::simulate {
+namespace rgbdt {
 
 void ForEach(int count, int threads, const std::function<void(int)>& work) {
   if (threads == 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -19,4 +19,4 @@ void ForEach(int count, int threads, const std::function<void(int)>& work) {
   for (std::thread& helper : helpers) helper.join();
 }
 
-}  // namespace rgbdt::simulate
+}  // namespace rgbdt
