@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -5,7 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <memory>
+#include <random>
 
 #include "calib/files/report_file.h"
 #include "calib/model/errors.h"
@@ -19,6 +20,7 @@
 #include "viewer/live/bus_monitor.h"
 #include "viewer/live/clock.h"
 #include "viewer/live/live_node.h"
+#include "viewer/server/listening_socket.h"
 #include "viewer/server/server.h"
 
 namespace {
@@ -27,8 +29,10 @@ using rgbdt::viewer::Post;
 using rgbdt::viewer::Server;
 using rgbdt::viewer::ServerOptions;
 
+constexpr const char* kUsual = "127.0.0.1:8080";
+
 struct Flags {
-  std::string listen = "127.0.0.1:8080";
+  std::string listen = kUsual;
   std::string url, session;
   std::vector<std::string> run;
 };
@@ -52,10 +56,25 @@ void ParseAddress(const std::string& listen, ServerOptions* options) {
   }
 }
 
+// Who may command where others than this machine's users may look. Not guessable.
+std::string NewToken() {
+  std::random_device random;
+  std::string token;
+  char digits[9];
+  for (int i = 0; i < 4; ++i) {
+    std::snprintf(digits, sizeof digits, "%08x", random());
+    token += digits;
+  }
+  return token;
+}
+
 ServerOptions OptionsFrom(const Flags& flags) {
   ServerOptions options;
   ParseAddress(flags.listen, &options);
   options.socket = rgbdt::viewer::HandedInSocket();
+  const bool local = options.socket >= 0 ? rgbdt::viewer::IsLoopback(options.socket)
+                                         : rgbdt::viewer::IsLoopback(options.address);
+  if (!local) options.token = NewToken();
   options.page = rgbdt::viewer::Page();
   options.hello = {{"type", "hello"}, {"version", RGBDT_VERSION}};
   return options;
@@ -66,11 +85,23 @@ void SayWhere(const Server& server) {
   std::fflush(stdout);
 }
 
+// Where the usual port is taken, any will do: what runs prints the address.
+int SocketToHandOn(const Flags& flags) {
+  ServerOptions options;
+  ParseAddress(flags.listen, &options);
+  try {
+    return rgbdt::viewer::ListeningSocket(options.address, options.port);
+  } catch (const rgbdt::InputError&) {
+    if (flags.listen != kUsual) throw;
+    return rgbdt::viewer::ListeningSocket(options.address, 0);
+  }
+}
+
 // The socket as its number 3, and the command in place of this process.
 int RunWithSocket(const Flags& flags) {
-  const int socket = rgbdt::viewer::Listen(OptionsFrom(flags));
+  const int socket = SocketToHandOn(flags);
   if (dup2(socket, 3) < 0) throw rgbdt::InputError(std::string("dup2: ") + std::strerror(errno));
-  if (socket != 3) close(socket);
+  if (socket == 3) fcntl(socket, F_SETFD, 0);  // it is to stay open
   setenv("LISTEN_FDS", "1", 1);
   std::vector<char*> arguments;
   for (const std::string& word : flags.run) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -79,14 +110,23 @@ int RunWithSocket(const Flags& flags) {
   throw rgbdt::InputError(flags.run.front() + ": " + std::strerror(errno));
 }
 
-void WaitForSignal() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  int which = 0;
-  sigwait(&signals, &which);
-}
+// SIGINT or SIGTERM, kept back from all threads that start after it was made.
+class Goodbye {
+ public:
+  Goodbye() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  }
+  void Wait() const {
+    int which = 0;
+    sigwait(&signals_, &which);
+  }
+
+ private:
+  sigset_t signals_;
+};
 
 nlohmann::json Browsers(const Server& server) {
   nlohmann::json all = nlohmann::json::array();
@@ -157,6 +197,7 @@ int ShowSession(const Flags& flags) {
   what.version = RGBDT_VERSION;
   const auto frames =
       rgbdt::viewer::SessionFrames(session, observations, ReportOf(session, observations), what);
+  const Goodbye goodbye;
   options.hello["source"] = "session";
   options.hello["title"] = flags.session;
   Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
@@ -165,7 +206,7 @@ int ShowSession(const Flags& flags) {
     server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
   }
   SayWhere(server);
-  WaitForSignal();
+  goodbye.Wait();
   return 0;
 }
 

@@ -150,7 +150,8 @@ json ViewsOf(const SessionState& state, const std::vector<std::string>& cameras)
 std::string WhyPicks(const ViewState& view, const std::string& camera) {
   if (ImageOf(view, camera) == 0) return "";
   const auto& asked = view.picks_wanted;
-  if (std::find(asked.begin(), asked.end(), camera) != asked.end()) return "the session asks for it";
+  if (std::find(asked.begin(), asked.end(), camera) != asked.end())
+    return "the session asks for it";
   const Observation* observation = ObservationOf(view, camera);
   if (observation == nullptr || observation->image) return "";
   return observation->rejected;

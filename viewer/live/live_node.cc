@@ -7,12 +7,12 @@
 #include "calib/files/report_file.h"
 #include "calib/files/rig_file.h"
 #include "calib/model/errors.h"
-#include "viewer/live/clock.h"
-#include "viewer/live/kept_view.h"
 #include "viewer/frames/cloud_frame.h"
 #include "viewer/frames/frame.h"
 #include "viewer/frames/image_frame.h"
 #include "viewer/frames/overlay_frame.h"
+#include "viewer/live/clock.h"
+#include "viewer/live/kept_view.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -11,9 +11,9 @@
 #include "calib/model/rig.h"
 #include "services/nodes/node.h"
 #include "services/nodes/view_collector.h"
+#include "viewer/frames/session_state.h"
 #include "viewer/live/kept_view.h"
 #include "viewer/server/outbox.h"
-#include "viewer/frames/session_state.h"
 
 namespace rgbdt::viewer {
 

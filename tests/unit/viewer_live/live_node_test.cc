@@ -6,6 +6,7 @@
 #include "calib/model/errors.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"
+#include "viewer/live/clock.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -134,7 +135,9 @@ TEST_F(LiveNodeTest, AViewIsShownWithItsImagesAndCanBeLookedAt) {
     types.push_back(header.at("type"));
   }
   EXPECT_THAT(types, ElementsAre("image", "overlay", "image", "overlay"));
-  EXPECT_THAT(ErrorOf([&] { node_.OnBrowser({{"type", "view"}, {"view", "7"}}); }),
+  EXPECT_THAT(ErrorOf([&] {
+                node_.OnBrowser({{"type", "view"}, {"view", "7"}});
+              }),
               HasSubstr("no view 7"));
 }
 

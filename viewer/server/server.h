@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/bridge/outbox.h"
+#include "viewer/server/outbox.h"
 
 namespace rgbdt::viewer {
 

@@ -1,0 +1,188 @@
+#include "viewer/server/browser_queue.h"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "test_browser.h"
+#include "viewer/frames/frame.h"
+#include "viewer/server/frame_layout.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr std::int64_t kAllPoints = 10'000'000;
+
+void Offer(BrowserQueue* queue, Post post) {
+  queue->Offer(std::make_shared<LazyPost>(std::move(post)));
+}
+
+std::string NameOf(const BrowserQueue::Outgoing& out) {
+  const std::string& frame = *out.frame;
+  return nlohmann::json::parse(frame.substr(8, HeaderBytes(frame) - 8)).at("name");
+}
+
+// All that may be sent now.
+std::vector<std::string> Names(BrowserQueue* queue) {
+  std::vector<std::string> names;
+  while (const auto out = queue->Next()) names.push_back(NameOf(*out));
+  return names;
+}
+
+Post HeavyPost(const std::string& topic, std::size_t bytes = 0) {
+  Post post;
+  post.topic = topic;
+  post.heavy = true;
+  post.make = [topic, bytes] {
+    FrameWriter frame({{"type", "image"}, {"name", topic}, {"ack", true}});
+    frame.AddBytes("jpeg", std::string(bytes, 'j'));
+    return frame.Finish();
+  };
+  return post;
+}
+
+TEST(BrowserQueue, NewestOfATopicTakesTheOldersPlace) {
+  BrowserQueue queue;
+  Offer(&queue, LightPost("a", "a1"));
+  Offer(&queue, LightPost("b", "b1"));
+  Offer(&queue, LightPost("a", "a2"));
+  EXPECT_THAT(Names(&queue), ElementsAre("a2", "b1"));
+}
+
+TEST(BrowserQueue, WhatIsNotWatchedIsNotTaken) {
+  BrowserQueue queue;
+  Offer(&queue, CloudPost("sweep/0", "unseen", 1));
+  EXPECT_THAT(Names(&queue), IsEmpty());
+  EXPECT_THAT(queue.Watch({"cloud"}, kAllPoints), ElementsAre("cloud"));
+  EXPECT_THAT(queue.Watch({"camera/rgb", "cloud"}, kAllPoints), ElementsAre("camera/rgb"));
+  Offer(&queue, CloudPost("sweep/0", "seen", 1));
+  EXPECT_THAT(Names(&queue), ElementsAre("seen"));
+}
+
+TEST(BrowserQueue, WhatIsNotWatchedAnyMoreIsDropped) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  Offer(&queue, CloudPost("sweep/0", "old", 1));
+  queue.Watch({}, kAllPoints);
+  EXPECT_EQ(queue.waiting(), 0U);
+}
+
+TEST(BrowserQueue, LightGoesBeforeHeavy) {
+  BrowserQueue queue;
+  Offer(&queue, HeavyPost("heavy"));
+  Offer(&queue, LightPost("light", "light"));
+  EXPECT_THAT(Names(&queue), ElementsAre("light", "heavy"));
+}
+
+TEST(BrowserQueue, FourHeavyFramesAreSentAheadOfAcks) {
+  BrowserQueue queue;
+  for (const char* topic : {"1", "2", "3", "4", "5", "6"}) Offer(&queue, HeavyPost(topic));
+  EXPECT_THAT(Names(&queue), ElementsAre("1", "2", "3", "4"));
+  queue.Acked(17);  // was never sent
+  EXPECT_THAT(Names(&queue), IsEmpty());
+  queue.Acked(2);
+  queue.Acked(2);
+  EXPECT_THAT(Names(&queue), ElementsAre("5"));
+}
+
+TEST(BrowserQueue, FourMegabytesAreSentAheadOfAcks) {
+  BrowserQueue queue;
+  for (const char* topic : {"1", "2", "3", "4"}) Offer(&queue, HeavyPost(topic, 2'200'000));
+  EXPECT_THAT(Names(&queue), ElementsAre("1", "2"));
+  queue.Acked(1);
+  EXPECT_THAT(Names(&queue), ElementsAre("3"));
+}
+
+TEST(BrowserQueue, LargeOnesGoOneByOne) {
+  BrowserQueue queue;
+  for (const char* topic : {"1", "2"}) Offer(&queue, HeavyPost(topic, 5'000'000));
+  EXPECT_THAT(Names(&queue), ElementsAre("1"));
+  queue.Acked(1);
+  EXPECT_THAT(Names(&queue), ElementsAre("2"));
+}
+
+TEST(BrowserQueue, AckTellsWhenThePostCame) {
+  BrowserQueue queue;
+  Post post = HeavyPost("a");
+  post.came_s = 12.5;
+  Offer(&queue, post);
+  Offer(&queue, HeavyPost("b"));
+  Names(&queue);
+  EXPECT_EQ(queue.Acked(1), 12.5);
+  EXPECT_EQ(queue.Acked(1), std::nullopt);
+  EXPECT_EQ(queue.Acked(2), std::nullopt);
+}
+
+TEST(BrowserQueue, OldestOfMoreThanEightCloudsAreDropped) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 10; ++i) {
+    Offer(&queue, CloudPost("chunk/" + std::to_string(i), std::to_string(i), 64));
+  }
+  EXPECT_EQ(queue.waiting(), 8U);
+  EXPECT_EQ(queue.thinned(), 2);
+  EXPECT_EQ(queue.share(), 0.5);
+  EXPECT_THAT(Names(&queue), ElementsAre("2", "3", "4", "5"));
+}
+
+TEST(BrowserQueue, CloudIsCutAtAWholeRecord) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 9; ++i) Offer(&queue, CloudPost("chunk/" + std::to_string(i), "", 101));
+  const auto out = queue.Next();
+  ASSERT_TRUE(out);
+  const std::size_t header = HeaderBytes(*out->frame);
+  EXPECT_EQ(out->frame->substr(header), Records(101));
+  EXPECT_EQ(out->bytes - header, 4 * 51U);  // 50.5 rounded
+  EXPECT_EQ(queue.thinned(), 2);
+}
+
+TEST(BrowserQueue, ReplayDropsNothing) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 12; ++i) {
+    queue.Replay(std::make_shared<LazyPost>(CloudPost("sweep/" + std::to_string(i), "", 64)));
+  }
+  EXPECT_EQ(queue.waiting(), 12U);
+  EXPECT_EQ(queue.share(), 1);
+}
+
+// Topics without end must not fill the memory of a browser that takes nothing.
+TEST(BrowserQueue, WhatWaitsIsBounded) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 5000; ++i) {
+    const std::string number = std::to_string(i);
+    Offer(&queue, LightPost("a" + number, ""));
+    Offer(&queue, LightPost("b" + number, "", true));
+    Offer(&queue, HeavyPost("c" + number));
+    Offer(&queue, CloudPost("d" + number, "", 1));
+  }
+  EXPECT_LE(queue.waiting(), 8U + 256U + 2 * 4096U);
+}
+
+TEST(BrowserQueue, WhatCannotBeMadeIsSkipped) {
+  BrowserQueue queue;
+  Post broken = LightPost("broken", "");
+  broken.make = []() -> std::string { throw std::runtime_error("no picture"); };
+  Offer(&queue, broken);
+  broken.topic = "short";
+  broken.make = [] { return std::string("no frame"); };
+  Offer(&queue, broken);
+  broken.topic = "none";
+  broken.make = nullptr;
+  Offer(&queue, broken);
+  Offer(&queue, LightPost("good", "good"));
+  const auto out = queue.Next();
+  ASSERT_TRUE(out);
+  EXPECT_EQ(NameOf(*out), "good");
+  EXPECT_EQ(out->id, 1U);  // the page counts what it gets
+}
+
+}  // namespace
+}  // namespace rgbdt::viewer

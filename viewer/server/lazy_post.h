@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "viewer/server/outbox.h"
+
+namespace rgbdt::viewer {
+
+/// A post whose frame is made when it is first asked for, once for all browsers.
+class LazyPost {
+ public:
+  explicit LazyPost(Post post) : post_(std::move(post)) {}
+
+  const Post& post() const { return post_; }
+
+  /// The frame; null where it could not be made. Only on the server's thread.
+  std::shared_ptr<const std::string> Frame();
+
+ private:
+  Post post_;
+  bool asked_ = false;
+  std::shared_ptr<const std::string> frame_;
+};
+
+using SharedPost = std::shared_ptr<LazyPost>;
+
+}  // namespace rgbdt::viewer
