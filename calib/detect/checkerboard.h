@@ -30,7 +30,7 @@ struct CheckerboardResult {
 
 /// Finds the checkerboard in grey values (CV_32FC1, finite, any unit) of any camera, of either
 /// polarity and unevenly bright; of at least 3x3 inner corners. All of its squares must be seen;
-/// hands may hold it by the border.
+/// hands may hold it by the border. (A part of it: FindPickedBoard.)
 ///   1. dead pixels are repaired
 ///   2. saddles of the brightness are found (FindSaddles), at one size after another
 ///   3. grids are grown among them (GridFinder)

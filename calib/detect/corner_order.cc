@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "calib/model/observation.h"
 
 namespace rgbdt {
 namespace {
@@ -15,9 +18,12 @@ std::array<Eigen::Vector2d, 4> SquareAt(const Pixels& corners, int columns, int 
   return {at(column, row), at(column + 1, row), at(column + 1, row + 1), at(column, row + 1)};
 }
 
-// Mean over the middle fifth to fourth of a square, where blur does not reach; NaN outside.
+// Mean over the middle fifth to fourth of a square, where blur does not reach; NaN outside and
+// where one of its corners was not seen.
 double Brightness(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& square) {
   constexpr int kSteps = 3;
+  const bool seen = std::all_of(square.begin(), square.end(), IsSeen);
+  if (!seen) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
   int count = 0;
   for (int i = -kSteps; i <= kSteps; ++i) {
@@ -40,9 +46,23 @@ double Brightness(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& squ
 
 bool RightHanded(const Target& target, const Pixels& corners) {
   const auto columns = static_cast<std::size_t>(target.corners_x());
-  const Eigen::Vector2d falling = corners.back() - corners.front();
-  const Eigen::Vector2d rising = corners[columns - 1] - corners[corners.size() - columns];
-  return rising.x() * falling.y() - rising.y() * falling.x() > 0;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of columns and rows
+  double seen = 0;
+  const auto at = [&](std::size_t i) {
+    return Eigen::Vector2d(static_cast<double>(i % columns), static_cast<double>(i / columns));
+  };
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!IsSeen(corners[i])) continue;
+    middle += at(i);
+    seen += 1;
+  }
+  middle /= seen;
+  // Of the affine map that fits best, times what is positive.
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (IsSeen(corners[i])) sum += corners[i] * (at(i) - middle).transpose();
+  }
+  return sum.determinant() > 0;
 }
 
 std::optional<bool> TopLeftIsDark(const cv::Mat& grey, const Target& target,

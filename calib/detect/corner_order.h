@@ -9,6 +9,8 @@
 
 namespace rgbdt {
 
+// Corners may be NaN where they were not seen; what is said follows from the others.
+
 /// Whether inner corners [px], row by row, go right-handed (columns to the right, then rows down),
 /// as on a board whose printed side faces the camera.
 bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corners);

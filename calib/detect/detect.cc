@@ -52,15 +52,25 @@ std::string WhyMoved(const CameraSpec& spec, const Target& target, const View& v
     CheckImage(spec, other);
     others.push_back({ToGrey(other), ToSeconds(other.utime - view.cloud.sweep_utime)});
   }
-  if (others.empty() || edges.picked) return "";
+  if (others.empty() || !edges.pose) return "";  // picks alone are too inexact
   return WhyNotStill(Camera(spec), target, ToGrey(image), edges.corners, others);
 }
 
+// Picks are the paper's outline; otherwise they are for a board that is not found without them.
+ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const Image& image,
+                           const CornerSelection* picks, bool by_paper) {
+  const Camera camera(spec);
+  ImageEdgesResult found =
+      DetectImageEdges(image, camera, target, by_paper ? picks : nullptr, spec.kind);
+  if (found.edges || by_paper || picks == nullptr) return found;
+  return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
+}
+
 void DetectImage(const CameraSpec& spec, const Target& target, const View& view, const Image& image,
-                 const CornerSelection* picks, Observation* observation) {
+                 bool by_paper, Observation* observation) {
   const Stopwatch watch;
   observation->image_utime = image.utime;
-  ImageEdgesResult found = DetectImageEdges(image, Camera(spec), target, picks, spec.kind);
+  ImageEdgesResult found = FindEdges(spec, target, image, PicksOf(spec.name, view), by_paper);
   observation->rejected = found.why;
   observation->image = std::move(found.edges);
   if (observation->image) {
@@ -130,8 +140,7 @@ std::vector<Observation> DetectView(const Rig& rig, const View& view, const std:
       continue;
     }
     CheckImage(camera, *image);
-    DetectImage(camera, rig.target, view, *image, by_paper ? PicksOf(camera.name, view) : nullptr,
-                &observation);
+    DetectImage(camera, rig.target, view, *image, by_paper, &observation);
     if (!observation.rejected.empty()) continue;
     if (by_paper) {
       DetectCloudByGuess(camera, rig.target, view.cloud, &observation);

@@ -9,6 +9,7 @@
 #include "calib/detect/checkerboard.h"
 #include "calib/detect/clipped.h"
 #include "calib/detect/corner_order.h"
+#include "calib/detect/picked_board.h"
 #include "calib/detect/target_pose.h"
 
 namespace rgbdt {
@@ -195,7 +196,7 @@ Chain FitSide(const Chain& side, const Gradient& g) {
 struct Located {
   Directions outline;
   Chain inner;
-  std::optional<CornerPose> pose;  // not from picks
+  std::optional<CornerPose> pose;  // not by the paper, from picks
   std::string why;
 };
 
@@ -220,6 +221,14 @@ Located FromPicks(const Camera& camera, const Target& target, const Corners& pic
   return located;
 }
 
+// The outline as a pose has it.
+void PlaceOutline(const Target& target, Located* located) {
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < 4; ++i) {
+    located->outline[i] = located->pose->pose.sensor_from_target * corners[i];
+  }
+}
+
 Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
                          CameraKind kind) {
   Located located;
@@ -236,10 +245,22 @@ Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target
     return located;
   }
   located.pose->pose.half_turn_known = known;
-  const auto corners = target.OutlineCorners();
-  for (std::size_t i = 0; i < 4; ++i) {
-    located.outline[i] = located.pose->pose.sensor_from_target * corners[i];
-  }
+  PlaceOutline(target, &located);
+  return located;
+}
+
+// Measured where a person picked the board.
+Located FromPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
+                        const Corners& picks, CameraKind kind) {
+  Located located = FromPicks(camera, target, picks);
+  if (!located.why.empty()) return located;
+  PickedBoardResult found =
+      FindPickedBoard(grey, camera, target, picks, kind == CameraKind::kColor);
+  located.why = std::move(found.why);
+  if (!found.board) return located;
+  located.inner = std::move(found.board->corners);
+  located.pose = std::move(found.board->pose);
+  PlaceOutline(target, &located);
   return located;
 }
 
@@ -251,19 +272,12 @@ void AddPose(const Image& image, const cv::Mat& grey, const Camera& camera, cons
   edges->sides = FitBoardSides(grey, Clipped(image), camera, target, pose.pose);
 }
 
-}  // namespace
-
-ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
-                                  const CornerSelection* picks, CameraKind kind) {
-  const cv::Mat grey = ToGrey(image);
-  const Located located = picks != nullptr ? FromPicks(camera, target, picks->corners)
-                                           : FromCheckerboard(grey, camera, target, kind);
+ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& camera,
+                         const Target& target, const Located& located) {
   if (!located.why.empty()) return {std::nullopt, located.why};
-
   ImageEdges edges;
   edges.width = image.pixels.cols;
   edges.height = image.pixels.rows;
-  edges.picked = picks != nullptr;
   edges.corners = located.inner;
   const Gradient gradient = SobelOf(grey);
   std::array<Chain, 4> sides;
@@ -282,6 +296,29 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
   }
   if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
   return {edges, ""};
+}
+
+ImageEdgesResult Picked(ImageEdgesResult result) {
+  if (result.edges) result.edges->picked = true;
+  return result;
+}
+
+}  // namespace
+
+ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
+                                  const CornerSelection* picks, CameraKind kind) {
+  const cv::Mat grey = ToGrey(image);
+  if (picks == nullptr) {
+    return EdgesOf(image, grey, camera, target, FromCheckerboard(grey, camera, target, kind));
+  }
+  return Picked(EdgesOf(image, grey, camera, target, FromPicks(camera, target, picks->corners)));
+}
+
+ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, const Target& target,
+                                    const CornerSelection& picks, CameraKind kind) {
+  const cv::Mat grey = ToGrey(image);
+  return Picked(EdgesOf(image, grey, camera, target,
+                        FromPickedBoard(grey, camera, target, picks.corners, kind)));
 }
 
 }  // namespace rgbdt

@@ -25,4 +25,10 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
                                   const CornerSelection* picks,
                                   CameraKind kind = CameraKind::kThermal);
 
+/// The same of a board that is not found without picks, most often as a part of it is hidden: the
+/// picks say where to look, corners are measured from there (FindPickedBoard). The result has pose
+/// and sides; inner corners that were not seen are NaN.
+ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, const Target& target,
+                                    const CornerSelection& picks, CameraKind kind);
+
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #include "calib/detect/stillness.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
@@ -9,39 +10,52 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/checkerboard.h"
+#include "calib/detect/picked_board.h"
 #include "calib/detect/target_pose.h"
 
 namespace rgbdt {
 namespace {
 
+constexpr std::size_t kLeastCorners = 8;  // to tell a pose
+
 using Pixels = std::vector<Eigen::Vector2d>;
 using Points = std::vector<cv::Point2f>;
 
+// Of the corners that are seen.
 Points ToPoints(const Pixels& pixels) {
   Points points;
   for (const Eigen::Vector2d& p : pixels) {
-    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+    if (IsSeen(p)) points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
   }
   return points;
 }
 
-Pixels ToPixels(const Points& points) {
-  Pixels pixels;
-  for (const cv::Point2f& p : points) pixels.emplace_back(p.x, p.y);
+// The points in place of the corners that are seen in `like`.
+Pixels ToPixels(const Points& points, const Pixels& like) {
+  Pixels pixels = like;
+  auto point = points.begin();
+  for (Eigen::Vector2d& p : pixels) {
+    if (!IsSeen(p)) continue;
+    p = {point->x, point->y};
+    ++point;
+  }
   return pixels;
+}
+
+std::size_t CountSeen(const Pixels& corners) {
+  return static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), IsSeen));
 }
 
 // Half a window well inside the four squares that meet in a corner.
 int HalfWindow(const Target& target, const Pixels& corners) {
   const auto columns = static_cast<std::size_t>(target.corners_x());
   double shortest = 1e9;
+  const auto look_at = [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    if (IsSeen(a) && IsSeen(b)) shortest = std::min(shortest, (a - b).norm());
+  };
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    if ((i + 1) % columns != 0) {
-      shortest = std::min(shortest, (corners[i + 1] - corners[i]).norm());
-    }
-    if (i + columns < corners.size()) {
-      shortest = std::min(shortest, (corners[i + columns] - corners[i]).norm());
-    }
+    if ((i + 1) % columns != 0) look_at(corners[i + 1], corners[i]);
+    if (i + columns < corners.size()) look_at(corners[i + columns], corners[i]);
   }
   return std::clamp(static_cast<int>(0.35 * shortest), 2, 11);
 }
@@ -51,7 +65,7 @@ Pixels RefineCorners(const cv::Mat& grey, const Pixels& corners, int half) {
   Points points = ToPoints(corners);
   cv::cornerSubPix(grey, points, {half, half}, {-1, -1},
                    {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3});
-  return ToPixels(points);
+  return ToPixels(points, corners);
 }
 
 // Lucas and Kanade's tracker there and back; nothing where less than four fifths return.
@@ -70,7 +84,7 @@ std::optional<Pixels> Track(const cv::Mat& from, const cv::Mat& to, const Pixels
     good += found[i] != 0 && returned[i] != 0 && cv::norm(back[i] - start[i]) < 1 ? 1U : 0U;
   }
   if (5 * good < 4 * start.size()) return std::nullopt;
-  return ToPixels(there);
+  return ToPixels(there, corners);
 }
 
 // A board seen twice does not lie about where its corners are much more the second time.
@@ -85,12 +99,12 @@ struct Sight {
   cv::Mat grey;
   cv::Mat stretched;  // CV_8U, at capture
   CornerPose pose;    // at capture
-  Pixels corners;     // at capture
+  Pixels corners;     // at capture; NaN: not seen
 };
 
 bool InImage(const Camera& camera, const Pixels& corners) {
   return std::all_of(corners.begin(), corners.end(),
-                     [&](const Eigen::Vector2d& c) { return camera.Contains(c); });
+                     [&](const Eigen::Vector2d& c) { return !IsSeen(c) || camera.Contains(c); });
 }
 
 // Of two orders of the same corners, half a turn apart, the one nearer to the first sight.
@@ -99,27 +113,45 @@ Pixels NearerOrder(const Pixels& found, const Pixels& before) {
   double straight = 0;
   double reversed = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!IsSeen(before[i])) continue;
     straight += (found[i] - before[i]).norm();
     reversed += (turned[i] - before[i]).norm();
   }
   return reversed < straight ? turned : found;
 }
 
-// Centres of the pattern's outermost squares, a row for each side, target frame.
-std::vector<std::vector<Eigen::Vector3d>> OuterSquares(const Target& target) {
+// The pattern's outermost squares along one of its sides: their centres, target frame, and which
+// inner corner lies between each and the next.
+struct OuterSide {
+  std::vector<Eigen::Vector3d> squares;
+  std::vector<std::size_t> corners;
+};
+
+std::array<OuterSide, 4> OuterSquares(const Target& target) {
   const auto at = [&](int column, int row) {
     return Eigen::Vector3d(
         target.pattern_offset_m.x() + (column - 0.5 * (target.squares_x - 1)) * target.square_m,
         target.pattern_offset_m.y() + (row - 0.5 * (target.squares_y - 1)) * target.square_m, 0);
   };
-  std::vector<std::vector<Eigen::Vector3d>> sides(4);
+  const auto corner = [&](int column, int row) {
+    return static_cast<std::size_t>(row * target.corners_x() + column);
+  };
+  std::array<OuterSide, 4> sides;
   for (int column = 0; column < target.squares_x; ++column) {
-    sides[0].push_back(at(column, 0));
-    sides[1].push_back(at(column, target.squares_y - 1));
+    sides[0].squares.push_back(at(column, 0));
+    sides[1].squares.push_back(at(column, target.squares_y - 1));
+  }
+  for (int column = 0; column < target.corners_x(); ++column) {
+    sides[0].corners.push_back(corner(column, 0));
+    sides[1].corners.push_back(corner(column, target.corners_y() - 1));
   }
   for (int row = 0; row < target.squares_y; ++row) {
-    sides[2].push_back(at(0, row));
-    sides[3].push_back(at(target.squares_x - 1, row));
+    sides[2].squares.push_back(at(0, row));
+    sides[3].squares.push_back(at(target.squares_x - 1, row));
+  }
+  for (int row = 0; row < target.corners_y(); ++row) {
+    sides[2].corners.push_back(corner(0, row));
+    sides[3].corners.push_back(corner(target.corners_x() - 1, row));
   }
   return sides;
 }
@@ -138,19 +170,25 @@ std::optional<double> Brightness(const Camera& camera, const cv::Mat& grey,
 // A pattern is like itself two squares farther on, and a tracker may take one for the other; but
 // then its outermost squares are not there. In three of four pairs of neighbours along each side
 // the difference in brightness is to be what it was, in sign and at least a third of it in size.
-bool OuterSquaresAreThere(const Sight& sight, const cv::Mat& grey, const Rigid3& pose) {
-  for (const auto& side : OuterSquares(*sight.target)) {
+// Pairs beside a corner that was not seen, then or now, say nothing.
+bool OuterSquaresAreThere(const Sight& sight, const cv::Mat& grey, const Rigid3& pose,
+                          const Pixels& corners) {
+  for (const OuterSide& side : OuterSquares(*sight.target)) {
     std::size_t alike = 0;
-    for (std::size_t i = 0; i + 1 < side.size(); ++i) {
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < side.corners.size(); ++i) {
+      const std::size_t corner = side.corners[i];
+      if (!IsSeen(sight.corners[corner]) || !IsSeen(corners[corner])) continue;
+      ++pairs;
       const Rigid3& before = sight.pose.pose.sensor_from_target;
-      const auto a = Brightness(*sight.camera, sight.grey, before * side[i]);
-      const auto b = Brightness(*sight.camera, sight.grey, before * side[i + 1]);
-      const auto c = Brightness(*sight.camera, grey, pose * side[i]);
-      const auto d = Brightness(*sight.camera, grey, pose * side[i + 1]);
+      const auto a = Brightness(*sight.camera, sight.grey, before * side.squares[i]);
+      const auto b = Brightness(*sight.camera, sight.grey, before * side.squares[i + 1]);
+      const auto c = Brightness(*sight.camera, grey, pose * side.squares[i]);
+      const auto d = Brightness(*sight.camera, grey, pose * side.squares[i + 1]);
       if (!a || !b || !c || !d) continue;
       alike += (*c - *d) * (*a - *b) > (*a - *b) * (*a - *b) / 3 ? 1U : 0U;
     }
-    if (4 * alike < 3 * (side.size() - 1)) return false;
+    if (4 * alike < 3 * pairs) return false;
   }
   return true;
 }
@@ -158,11 +196,14 @@ bool OuterSquaresAreThere(const Sight& sight, const cv::Mat& grey, const Rigid3&
 // The pose in another image: by tracking, or, where the board went too far for that, found anew.
 std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
   const auto fitted = [&](const Pixels& corners) -> std::optional<CornerPose> {
+    if (CountSeen(corners) < kLeastCorners) return std::nullopt;
     if (!InImage(*sight.camera, corners)) return std::nullopt;
     auto pose = PoseFromCorners(*sight.camera, *sight.target,
                                 RefineCorners(grey, corners, sight.half_window));
     if (!FitsAsWell(pose, sight.pose)) return std::nullopt;
-    if (!OuterSquaresAreThere(sight, grey, pose->pose.sensor_from_target)) return std::nullopt;
+    if (!OuterSquaresAreThere(sight, grey, pose->pose.sensor_from_target, corners)) {
+      return std::nullopt;
+    }
     return pose;
   };
   const auto tracked = Track(sight.stretched, Stretch(grey), sight.corners);
@@ -170,15 +211,24 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
     auto pose = fitted(*tracked);
     if (pose) return pose;
   }
+  const bool partly_hidden = CountSeen(sight.corners) < sight.corners.size();
+  if (partly_hidden) {  // what hides it may have moved on
+    auto pose =
+        fitted(CornersNear(grey, *sight.camera, *sight.target, sight.pose.pose.sensor_from_target));
+    if (pose) return pose;
+  }
   const auto found = FindCheckerboard(grey, *sight.target).board;
   if (!found) return std::nullopt;
   return fitted(NearerOrder(found->corners, sight.corners));
 }
 
-// Median distance [px] between where two poses put the corners.
+// Median distance [px] between where two poses put the corners that were seen.
 double MedianShift(const Sight& sight, const Rigid3& later) {
   std::vector<double> shifts;
-  for (const Eigen::Vector3d& point : sight.target->InnerCorners()) {
+  const auto points = sight.target->InnerCorners();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!IsSeen(sight.corners[i])) continue;
+    const Eigen::Vector3d& point = points[i];
     const auto a = sight.camera->Project(sight.pose.pose.sensor_from_target * point);
     const auto b = sight.camera->Project(later * point);
     if (a && b) shifts.push_back((*a - *b).norm());

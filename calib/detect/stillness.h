@@ -21,9 +21,10 @@ inline constexpr double kStillPx = 0.5;
 
 /// Why the board did not stand still during the sweep, e.g. "board moved 6 mm during the sweep
 /// (1.3 px in the image 0.4 s after its start)"; empty: it did. `corners`: the inner corners in
-/// `grey_at_capture` (CV_32FC1), in the target's order. They are tracked into each of the other
-/// images and both sets fitted with a pose, which averages the noise of single corners out; what is
-/// compared is where the two poses put the corners. The first image in which they moved is told.
+/// `grey_at_capture` (CV_32FC1), in the target's order, NaN where one was not seen. The others are
+/// tracked into each of the other images and both sets fitted with a pose, which averages the noise
+/// of single corners out; what is compared is where the two poses put the corners. The first image
+/// in which they moved is told.
 std::string WhyNotStill(const Camera& camera, const Target& target, const cv::Mat& grey_at_capture,
                         const std::vector<Eigen::Vector2d>& corners,
                         const std::vector<SweepImage>& others);

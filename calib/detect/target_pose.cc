@@ -257,46 +257,79 @@ double Alike(const Target& target, const Pixels& residuals, const std::vector<do
   return std::sqrt(std::clamp(sum, 1.0, 0.25 * count));
 }
 
-std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& target,
-                                       const Points& model, const Pixels& corners, const Fit& fit) {
-  const auto used = std::count(fit.weights.begin(), fit.weights.end(), 1.0);
-  if (5 * static_cast<std::size_t>(used) < 4 * model.size()) return std::nullopt;
-  const Pixels residuals = Residuals(camera, fit.pose, model, corners);
-  const Normal normal = NormalEquations(camera, fit.pose, model, residuals, fit.weights);
+// The corners that were seen: what is fitted.
+struct Seen {
+  Points model;
+  Pixels corners;
+  std::vector<std::size_t> index;  // of all of the target's
+};
+
+Seen SeenOf(const Target& target, const Pixels& corners) {
+  Seen seen;
+  const Points model = target.InnerCorners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!IsSeen(corners[i])) continue;
+    seen.model.push_back(model[i]);
+    seen.corners.push_back(corners[i]);
+    seen.index.push_back(i);
+  }
+  return seen;
+}
+
+// Values of those seen among all of the target's corners, the others' being `unseen`.
+template <typename T>
+std::vector<T> Among(const Target& target, const Seen& seen, const std::vector<T>& values,
+                     const T& unseen) {
+  std::vector<T> all(static_cast<std::size_t>(target.corners_x() * target.corners_y()), unseen);
+  for (std::size_t i = 0; i < values.size(); ++i) all[seen.index[i]] = values[i];
+  return all;
+}
+
+std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& target, const Seen& seen,
+                                       const Fit& fit, double most_off) {
+  const auto off = std::count(fit.weights.begin(), fit.weights.end(), 0.0);
+  if (static_cast<double>(off) > most_off * static_cast<double>(seen.model.size())) {
+    return std::nullopt;
+  }
+  const Pixels residuals = Residuals(camera, fit.pose, seen.model, seen.corners);
+  const Normal normal = NormalEquations(camera, fit.pose, seen.model, residuals, fit.weights);
   const Eigen::LDLT<Matrix6d> ldlt(normal.h);
   if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return std::nullopt;
   CornerPose out;
   out.pose.sensor_from_target = fit.pose;
-  out.alike = Alike(target, residuals, fit.weights);
+  const std::vector<double> weights = Among(target, seen, fit.weights, 0.0);
+  const Eigen::Vector2d none = Eigen::Vector2d::Zero();
+  out.alike = Alike(target, Among(target, seen, residuals, none), weights);
   out.pose.covariance = std::pow(out.alike * fit.sigma, 2) * ldlt.solve(Matrix6d::Identity());
   if (!out.pose.covariance.allFinite()) return std::nullopt;
   out.pose.covariance = 0.5 * (out.pose.covariance + out.pose.covariance.transpose()).eval();
   out.corner_sigma_px = fit.sigma;
-  for (const double w : fit.weights) out.used.push_back(w != 0);
+  for (const double w : weights) out.used.push_back(w != 0);
   return out;
 }
 
 }  // namespace
 
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
-                                          const std::vector<Eigen::Vector2d>& corners) {
-  const Points model = target.InnerCorners();
-  if (corners.size() != model.size() || corners.size() < 4) return std::nullopt;
-  if (!RightHanded(target, corners)) return std::nullopt;
+                                          const std::vector<Eigen::Vector2d>& corners,
+                                          double most_off) {
+  if (corners.size() != target.InnerCorners().size()) return std::nullopt;
+  const Seen seen = SeenOf(target, corners);
+  if (seen.corners.size() < 4 || !RightHanded(target, corners)) return std::nullopt;
   std::vector<Fit> fits;
-  for (const Rigid3& first : FirstPoses(camera, model, corners)) {
-    const auto fit = Refine(camera, model, corners, first);
+  for (const Rigid3& first : FirstPoses(camera, seen.model, seen.corners)) {
+    const auto fit = Refine(camera, seen.model, seen.corners, first);
     if (fit) fits.push_back(*fit);
   }
   if (fits.empty()) return std::nullopt;
   const auto less = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
   std::stable_sort(fits.begin(), fits.end(), less);
-  auto out = ToCornerPose(camera, target, model, corners, fits.front());
+  auto out = ToCornerPose(camera, target, seen, fits.front(), most_off);
   if (!out) return std::nullopt;
   out->second_pose_chi2 = std::numeric_limits<double>::infinity();
   if (fits.size() > 1 && !SamePose(fits[0].pose, fits[1].pose)) {
     const double sigma = fits[0].sigma;
-    const Pixels second = Residuals(camera, fits[1].pose, model, corners);
+    const Pixels second = Residuals(camera, fits[1].pose, seen.model, seen.corners);
     out->second_pose_chi2 = (BoundedCost(second, sigma) - fits[0].cost) / (sigma * sigma);
   }
   return out;

@@ -19,7 +19,7 @@ struct CornerPose {
   /// By how much neighbours' residuals being alike (a lens not quite known, uneven light) makes the
   /// pose less certain than independent ones would; 1 or more. The covariance has it in.
   double alike = 1;
-  std::vector<bool> used;  ///< for each corner: false is off the rest, and left out
+  std::vector<bool> used;  ///< for each corner: false is not seen, or off the rest and left out
   /// A plane has a second pose that looks much alike, its tilt mirrored. Sum of squared residuals
   /// of that one minus that of this one, over sigma^2; infinite where there is no such second pose.
   /// Below some 10 the tilt is not certain.
@@ -29,10 +29,12 @@ struct CornerPose {
 /// Least squares of the reprojection error in pixels of the distorted image, through the whole lens
 /// model, from both of the planar pose's solutions (Collins and Bartoli 2014, IPPE); the better one
 /// is kept. Robust: Cauchy weights with the residuals' own scale, then corners beyond 4 sigma are
-/// left out. `corners`: inner corners [px] in the target's order. Nothing where no flat board fits:
-/// another number of corners, a mirrored order, corners where the lens model ends, all on one line,
-/// or more than a fifth of them off the rest.
+/// left out. `corners`: inner corners [px] in the target's order, NaN where one was not seen; the
+/// pose follows from the others. Nothing where no flat board fits: another number of corners, fewer
+/// than 4 seen, a mirrored order, corners where the lens model ends, all on one line, or more than
+/// a fifth of them off the rest.
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
-                                          const std::vector<Eigen::Vector2d>& corners);
+                                          const std::vector<Eigen::Vector2d>& corners,
+                                          double most_off = 0.2);
 
 }  // namespace rgbdt

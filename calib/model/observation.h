@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,13 +41,24 @@ struct ImageSide {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 };
 
+/// Stands for an inner corner that was not seen, in a list that has all of them.
+inline Eigen::Vector2d UnseenCorner() {
+  return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+inline bool IsSeen(const Eigen::Vector2d& corner) { return corner.allFinite(); }
+
 /// What one image shows of the target. Pixels of the distorted image, centres at integers.
 struct ImageEdges {
-  int width = 0, height = 0;             ///< of the image [px]
-  std::vector<Eigen::Vector2d> corners;  ///< inner corners, the target's order
-  /// Board's corners in order round the board; beginning with the target's top left if not picked.
+  int width = 0, height = 0;  ///< of the image [px]
+  /// Inner corners, all of them in the target's order; NaN where one was not seen (IsSeen), which
+  /// happens only where `picked`.
+  std::vector<Eigen::Vector2d> corners;
+  /// Board's corners in order round the board; beginning with the target's top left where there is
+  /// a pose.
   std::array<Eigen::Vector2d, 4> outline_corners;
-  bool picked = false;                       ///< outline corners come from a person
+  /// A person said where the board is. With a pose: all else was measured from there; without one
+  /// (the paper's method): the outline corners are the picks, the inner ones follow from them.
+  bool picked = false;
   std::vector<Eigen::Vector2i> edge_pixels;  ///< the target's edge pixels (paper II-A.1)
   /// The fitted outline, closed, as a chain of points through the lens; for `edge_rms_px`.
   std::vector<Eigen::Vector2d> outline;

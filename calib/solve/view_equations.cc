@@ -44,6 +44,7 @@ void ViewEquations::AddCorners(const BoardSight& sight) {
   Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
   Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!IsSeen(seen[i])) continue;
     const Eigen::Vector3d& corner = model[sight.turned ? model.size() - 1 - i : i];
     const Eigen::Vector3d p = camera_from_target * corner;
     const auto pixel = camera.Project(p);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "services/bus/check.h"
 #include "services/bus/codec_board.h"
 #include "services/bus/codec_types.h"
@@ -38,11 +40,19 @@ void ImageToWire(const ImageEdges& image, observation_t* wire) {
   }
 }
 
+// A corner that was not seen is NaN, in both coordinates.
+void CheckCorners(const std::vector<std::vector<double>>& corners) {
+  for (const std::vector<double>& corner : corners) {
+    const bool unseen = std::isnan(corner[0]) && std::isnan(corner[1]);
+    if (!unseen) CheckFinite("corner_px", corner.data(), corner.size());
+  }
+}
+
 void CheckImage(const observation_t& wire) {
   CheckRange("image_width", wire.image_width, 1, kMaxImageSide);
   CheckRange("image_height", wire.image_height, 1, kMaxImageSide);
   CheckFinite("outline_corner_px", wire.outline_corner_px[0], 8);
-  CheckRows("corner_px", wire.corner_px);
+  CheckCorners(wire.corner_px);
   CheckRows("outline_px", wire.outline_px);
   for (const std::vector<std::int16_t>& pixel : wire.edge_pixel) {
     CheckRange("edge_pixel x", pixel[0], 0, wire.image_width - 1);

@@ -1,6 +1,7 @@
 #include "viewer/frames/overlay_frame.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "calib/camera/project_points.h"
@@ -79,7 +80,8 @@ Overlay ViewOverlay(const CameraSpec& camera, const Observation& observation, co
   overlay.utime = observation.image_utime;
   overlay.calibrated = camera_from_lidar.has_value();
   if (observation.image) {
-    overlay.corners = observation.image->corners;
+    const auto& corners = observation.image->corners;
+    std::copy_if(corners.begin(), corners.end(), std::back_inserter(overlay.corners), IsSeen);
     overlay.outline = observation.image->outline;
   }
   if (!camera_from_lidar) {

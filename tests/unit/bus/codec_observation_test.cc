@@ -226,8 +226,26 @@ TEST_F(ObservationOnTheWire, BadFieldsOfTheFirstVersion) {
   EXPECT_THAT(error([](auto& w) { w.normal[0] = 2; }), HasSubstr("length of normal"));
   EXPECT_THAT(error([](auto& w) { w.outline_corner_px[2][1] = NAN; }),
               HasSubstr("outline_corner_px[5] is nan"));
+  EXPECT_THAT(error([](auto& w) {
+                w.num_corners = 1, w.corner_px = {{1, NAN}};
+              }),
+              HasSubstr("corner_px[1] is nan"));
+  EXPECT_THAT(error([](auto& w) {
+                w.num_corners = 1, w.corner_px = {{INFINITY, 1}};
+              }),
+              HasSubstr("corner_px[0] is inf"));
   EXPECT_THAT(error([](auto& w) { w.has_cloud = 0; }), HasSubstr("a reason"));
   EXPECT_THAT(error([](auto& w) { w.rejected = "\xff"; }), HasSubstr("rejected is"));
+}
+
+TEST_F(ObservationOnTheWire, CornersThatWereNotSeenStayUnseen) {
+  Observation observation = Whole();
+  observation.image->corners = {{1.5, 2.5}, UnseenCorner(), {3.5, 4.5}};
+  const std::vector<Eigen::Vector2d> corners = ThroughTheWire(observation).image->corners;
+  ASSERT_EQ(corners.size(), 3U);
+  EXPECT_EQ(corners[0], observation.image->corners[0]);
+  EXPECT_FALSE(IsSeen(corners[1]));
+  EXPECT_EQ(corners[2], observation.image->corners[2]);
 }
 
 TEST_F(ObservationOnTheWire, BadPoses) {

@@ -12,6 +12,7 @@
 #include "calib/detect/cloud_edges.h"
 #include "calib/detect/image_edges.h"
 #include "calib/model/errors.h"
+#include "tests/unit/detect/covered_board.h"
 #include "tests/unit/detect/synthetic_view.h"
 
 namespace rgbdt {
@@ -210,6 +211,54 @@ TEST_F(Detect, TheBoardFindsItselfWithoutPicksAndWithoutAGuess) {
     EXPECT_LT(off.norm(), 0.01);
     ASSERT_TRUE(observation.image->pose);
     EXPECT_EQ(observation.image->pose->half_turn_known, observation.camera == "rgb");
+  }
+}
+
+TEST_F(Detect, PicksAreNotLookedAtWhereTheBoardFindsItself) {
+  View view = made_->view;
+  view.picks = {made_->thermal_picks};
+  for (Eigen::Vector2d& pick : view.picks[0].corners) pick += Eigen::Vector2d(40, 0);
+  const Observation with = DetectView(made_->rig, view)[1];
+  const Observation without = DetectView(made_->rig, made_->view)[1];
+  ASSERT_TRUE(with.usable() && without.usable()) << with.rejected << without.rejected;
+  EXPECT_FALSE(with.image->picked);
+  EXPECT_EQ(with.image->corners, without.image->corners);
+}
+
+TEST_F(Detect, PicksRescueAViewInWhichTheBoardIsPartlyHidden) {
+  View view = made_->view;
+  Random random(5);
+  for (Image& image : view.images) {
+    const Camera camera(made_->rig.Camera(image.camera));
+    const Rigid3 truth = CameraFromTarget(image.camera);
+    image.pixels = image.pixels.clone();
+    PaintCover(camera, made_->rig.target, truth, Cover::kPerson, 0.1, &random, &image.pixels);
+    view.picks.push_back(PicksNear(camera, made_->rig.target, truth, 4, &random));
+    view.picks.back().camera = image.camera;
+  }
+  View unpicked = view;
+  unpicked.picks.clear();
+  const auto observations = DetectView(made_->rig, view);
+  const auto without = DetectView(made_->rig, unpicked);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_THAT(without[i].rejected, HasSubstr("no checkerboard"));
+    const Observation& o = observations[i];
+    ASSERT_TRUE(o.usable()) << o.rejected;
+    EXPECT_TRUE(o.image->picked);
+    ASSERT_TRUE(o.image->pose);
+    EXPECT_EQ(o.image->pose->half_turn_known, o.camera == "rgb");
+    const auto seen = std::count_if(o.image->corners.begin(), o.image->corners.end(), IsSeen);
+    EXPECT_GT(seen, 25);
+    EXPECT_LT(seen, 60);
+    EXPECT_GT(o.image->corner_sigma_px, 0);
+  }
+  // Picks on something else.
+  for (CornerSelection& picks : view.picks) {
+    for (Eigen::Vector2d& pick : picks.corners) pick = 0.5 * pick + Eigen::Vector2d(10, 20);
+  }
+  for (const Observation& o : DetectView(made_->rig, view)) {
+    EXPECT_FALSE(o.image);
+    EXPECT_THAT(o.rejected, HasSubstr("corner"));
   }
 }
 

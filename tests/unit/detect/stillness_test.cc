@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "calib/camera/pixels.h"
+#include "tests/unit/detect/covered_board.h"
 #include "tests/unit/detect/posed_board.h"
 
 namespace rgbdt {
@@ -118,6 +119,33 @@ TEST(StillnessInColour, ShiftedByTwoSquaresIsAMovement) {
   const cv::Mat later = ToGrey(board.Take(2));
   EXPECT_THAT(WhyNotStill(camera, board.target(), at_capture, corners, {{later, 6.0}}),
               HasSubstr("moved"));
+}
+
+TEST_F(Stillness, CornersThatWereNotSeenSayNothing) {
+  const Camera camera(board_->spec());
+  Random random(1);
+  const auto covered = [&](const Rigid3& pose, int shot, double aside) {
+    board_->Show(pose);
+    Image image = board_->Take(shot);
+    PaintCover(camera, board_->target(), pose, Cover::kPerson, aside, &random, &image.pixels);
+    return ToGrey(image);
+  };
+  std::vector<Eigen::Vector2d> corners = Corners();
+  const auto points = board_->target().InnerCorners();
+  for (std::size_t i = 0; i < points.size(); ++i) {  // a person stands before the middle
+    if (std::abs(points[i].x()) < 0.3) corners[i] = UnseenCorner();
+  }
+  const cv::Mat at_capture = covered(Pose(), 0, 0);
+  const auto why = [&](const cv::Mat& other) {
+    return WhyNotStill(camera, board_->target(), at_capture, corners, {{other, 3.0}});
+  };
+  EXPECT_THAT(why(covered(Pose(), 1, 0)), IsEmpty());
+  EXPECT_THAT(why(covered(Pose(), 2, 0.12)), IsEmpty()) << "who hides it may walk, not the board";
+  EXPECT_THAT(why(covered(Moved(0.0057), 3, 0)), HasSubstr("board moved 6 mm"));
+  EXPECT_THAT(why(covered(Moved(0.0057), 4, 0.12)), HasSubstr("board moved"));
+  Rigid3 behind = Pose();
+  behind.translation = {0, 0, -3};
+  EXPECT_THAT(why(Grey(behind, 5)), HasSubstr("not found again"));
 }
 
 TEST_F(Stillness, ABoardThatIsGoneIsToldSo) {

@@ -99,6 +99,46 @@ TEST(CalibrateJointly, ASideWithSomethingAgainstItIsLeftOutByNameAndTheViewIsUse
   }
 }
 
+// Two views of which only the right half is seen, by a person's picks.
+SolveWorld HalfHidden(int views) {
+  SolveWorld world(Views(views));
+  for (const std::size_t view : {2U, 7U}) {
+    for (std::size_t c = 0; c < 2; ++c) {
+      ImageEdges& image = *world.At(view, c).image;
+      image.picked = true;
+      for (std::size_t i = 0; i < image.corners.size(); ++i) {
+        if (i % 8 < 4) image.corners[i] = UnseenCorner();  // of eight in a row
+      }
+      image.sides[3] = {};
+    }
+  }
+  return world;
+}
+
+TEST(CalibrateJointly, ViewsOfWhichAPartIsHiddenTellWhatWasSeenOfThem) {
+  SolveWorld hidden = HalfHidden(10);
+  const SolveWorld whole(Views(10));
+  SolveWorld without(Views(10));
+  without.observations.erase(without.observations.begin() + 14, without.observations.begin() + 16);
+  without.observations.erase(without.observations.begin() + 4, without.observations.begin() + 6);
+  const Report report = Calibrate(hidden.rig, hidden.observations, Brief());
+  const Report more = Calibrate(whole.rig, whole.observations, Brief());
+  const Report less = Calibrate(without.rig, without.observations, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    EXPECT_THAT(camera.rejected, IsEmpty());
+    EXPECT_THAT(camera.used, AllOf(Contains("0003"), Contains("0008")));
+    ASSERT_TRUE(camera.calibration.covariance);
+    EXPECT_LT(Chi2(hidden, report, c), kMostChi2);
+    // What they tell lies between nothing and all.
+    const auto sigma = [&](const Report& r) {
+      return std::sqrt(r.cameras[c].calibration.covariance->diagonal().head<3>().sum());
+    };
+    EXPECT_GT(sigma(report), sigma(more));
+    EXPECT_LT(sigma(report), sigma(less));
+  }
+}
+
 TEST(CalibrateJointly, CamerasMayTellTheBoardFromOppositeEnds) {
   const SolveWorld world(Views(10));
   SolveWorld turned(Views(10));
