@@ -210,7 +210,11 @@ int ShowSession(const Flags& flags) {
   return 0;
 }
 
-void CheckFlags(const Flags& flags) {
+void CheckFlags(const Flags& flags, bool run) {
+  if (run == flags.run.empty()) {
+    throw rgbdt::InputError(run ? "--run: which command?"
+                                : "unexpected \"" + flags.run.front() + "\"; see --help");
+  }
   if (!flags.session.empty() && !flags.url.empty()) {
     throw rgbdt::InputError("--session shows files, --lcm-url a bus; give one of them");
   }
@@ -224,7 +228,8 @@ int main(int argc, char** argv) {
       "finished session. Prints the address to open.\n"
       "Example: rgbdt-viewer\n"
       "         rgbdt-viewer --session out/demo/session\n"
-      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too",
+      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too\n"
+      "         rgbdt-viewer --run COMMAND ARGUMENT...",
       "rgbdt-viewer"};
   Flags flags;
   app.add_option("--listen", flags.listen,
@@ -233,14 +238,15 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
   app.add_option("--session", flags.session, "a session directory, in place of the bus");
-  app.add_option(
-         "--run", flags.run,
-         "run this command with the listening socket handed in (LISTEN_FDS), e.g. where it\n"
-         "goes into a network namespace and starts rgbdt-viewer there; must come last")
-      ->expected(-1);
+  bool run = false;
+  app.add_flag("--run", run,
+               "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
+               "into a network namespace and starts rgbdt-viewer there");
+  app.prefix_command();
   CLI11_PARSE(app, argc, argv);
+  flags.run = app.remaining();
   try {
-    CheckFlags(flags);
+    CheckFlags(flags, run);
     if (!flags.run.empty()) return RunWithSocket(flags);
     return flags.session.empty() ? ShowBus(flags) : ShowSession(flags);
   } catch (const std::exception& e) {

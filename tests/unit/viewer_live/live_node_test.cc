@@ -63,7 +63,7 @@ class LiveNodeTest : public ::testing::Test {
 
   // The newest state of the session.
   json State() {
-    node_.Tick(tick_s_ += 1);
+    node_.Tick(tick_s_ += 0.2);
     return posts_.Header("session");
   }
   SessionCommand Capture(const std::string& view, Utime sweep) const {
