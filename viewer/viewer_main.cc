@@ -13,6 +13,7 @@
 #include "calib/solve/calibrate.h"
 #include "services/bus/bus.h"
 #include "services/bus/process.h"
+#include "services/drivers/network_interfaces.h"
 #include "services/rgbdt/session_detection.h"
 #include "viewer/frames/frame.h"
 #include "viewer/frames/page.h"
@@ -80,8 +81,19 @@ ServerOptions OptionsFrom(const Flags& flags) {
   return options;
 }
 
-void SayWhere(const Server& server) {
-  std::printf("%s\n", server.Url().c_str());
+// A phone cannot look up this machine's name: its addresses, where it listens at all of them.
+void SayWhere(const Server& server, const ServerOptions& options) {
+  const std::string url = server.Url();
+  std::printf("%s\n", url.c_str());
+  if (options.socket < 0 && (options.address == "0.0.0.0" || options.address == "::")) {
+    const std::string rest = url.substr(url.find(':', std::strlen("http://")));
+    for (const rgbdt::NetworkInterface& interface : rgbdt::ListInterfaces()) {
+      if (interface.loopback || !interface.up) continue;
+      for (const rgbdt::InterfaceAddress& at : interface.addresses) {
+        std::printf("http://%s%s\n", rgbdt::AddressText(at.address).c_str(), rest.c_str());
+      }
+    }
+  }
   std::fflush(stdout);
 }
 
@@ -159,7 +171,7 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::LiveNode node;
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
-  SayWhere(server);
+  SayWhere(server, options);
   rgbdt::viewer::BusMonitor monitor;
   double next_bus_s = 0;
   return rgbdt::RunOnLcm(
@@ -205,7 +217,7 @@ int ShowSession(const Flags& flags) {
     if (frame.topic == "hello") continue;  // the server says it
     server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
   }
-  SayWhere(server);
+  SayWhere(server, options);
   goodbye.Wait();
   return 0;
 }

@@ -76,7 +76,7 @@ class LiveNode : public Node {
   bool changed_ = true;
   double posted_s_ = -1;
   std::string doing_;  // what the session itself says it does
-  ViewCollector collector_;
+  ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
   struct Heard_ {
     Status status;
