@@ -17,24 +17,14 @@
 namespace rgbdt::viewer {
 namespace {
 
-constexpr double kGone = 5;             // s without a STATUS: the process is gone
 constexpr double kBetweenStates = 0.1;  // s
 constexpr std::size_t kMaxViews = 200;
-constexpr std::size_t kMaxLog = 50;
-constexpr std::size_t kMaxProcesses = 100;
 constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
 
 // Without what the page does not show and is large.
 Observation Slim(Observation observation) {
   if (observation.image) observation.image->edge_pixels.clear();
   return observation;
-}
-
-std::int64_t CounterOf(const Status& status, const std::string& name) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return 0;
 }
 
 SessionRequestKind RequestOf(const std::string& name) {
@@ -85,11 +75,12 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
     OnCommand(*command);
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
-    OnEvent(*event);
+    watch_.Hear(*event, &state_);
+    changed_ = true;
   } else if (const auto* sighting = std::get_if<Sighting>(&message)) {
     OnSighting(*sighting);
   } else if (const auto* status = std::get_if<Status>(&message)) {
-    OnStatus(*status);
+    watch_.Hear(*status, now_s_);
   }
 }
 
@@ -313,63 +304,10 @@ void LiveNode::PostSightings() {
   outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }, 0});
 }
 
-void LiveNode::OnEvent(const SessionEvent& event) {
-  const bool of_session = event.source == "session";
-  changed_ = true;
-  state_.fraction = event.fraction;
-  if (event.kind == EventKind::kProgress) {
-    if (of_session) doing_ = event.text;
-    state_.busy = of_session || doing_.empty() ? event.text : doing_ + ": " + event.text;
-    if (of_session) state_.failure.clear();
-    if (!of_session) return;  // many, and each replaces the one before
-  } else if (of_session) {
-    doing_.clear();
-    state_.busy.clear();
-    if (event.kind == EventKind::kFailed) state_.failure = event.text;
-  }
-  state_.log.push_back(event);
-  if (state_.log.size() > kMaxLog) state_.log.erase(state_.log.begin());
-}
-
-void LiveNode::OnStatus(const Status& status) {
-  if (statuses_.size() >= kMaxProcesses && statuses_.count(status.process) == 0) return;
-  statuses_[status.process] = {status, now_s_};
-}
-
-bool LiveNode::Heard(const std::string& process) const {
-  const auto found = statuses_.find(process);
-  return found != statuses_.end() && now_s_ - found->second.at_s < kGone;
-}
-
-void LiveNode::NoteWhatCanBeAsked() {
-  std::string mode = "none";
-  std::vector<std::string> can;
-  if (Heard("session")) {
-    const Status& session = statuses_.at("session").status;
-    const bool by_request = CounterOf(session, "by request") != 0;
-    const bool busy = !state_.busy.empty();
-    mode = by_request ? "by_hand" : "script";
-    state_.step = static_cast<int>(CounterOf(session, "step"));
-    state_.steps = static_cast<int>(CounterOf(session, "steps"));
-    if (by_request && !busy && CounterOf(session, "busy") == 0) {
-      if (Heard("simulator")) can.push_back("next_pose");
-      can.push_back("capture");
-      if (!state_.views.empty()) can.push_back("finish");
-    }
-    if (CounterOf(session, "waits for pose") != 0) can.push_back("pose_is_set");
-  } else {
-    state_.busy.clear();
-  }
-  if (mode == state_.mode && can == state_.can) return;
-  state_.mode = mode;
-  state_.can = can;
-  changed_ = true;
-}
-
 void LiveNode::Tick(double now_s) {
   const std::lock_guard<std::mutex> lock(mutex_);
   now_s_ = now_s;
-  NoteWhatCanBeAsked();
+  if (watch_.Update(now_s, &state_)) changed_ = true;
   if (!changed_ || now_s - posted_s_ < kBetweenStates) return;
   changed_ = false;
   posted_s_ = now_s;
@@ -390,7 +328,7 @@ std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
     request.utime = newest_utime_;
     request.request = RequestOf(message.at("request"));
     request.heldout = message.value("heldout", false);
-    if (!Heard("session")) {
+    if (!watch_.Running("session", now_s_)) {
       throw InputError(
           "no rgbdt-session is running; start one: rgbdt-session --rig FILE --out DIR");
     }
@@ -438,20 +376,7 @@ std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
 
 nlohmann::json LiveNode::Processes(double now_s) const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  nlohmann::json all = nlohmann::json::array();
-  for (const auto& [process, heard] : statuses_) {
-    nlohmann::json counters = nlohmann::json::array();
-    for (const auto& [name, value] : heard.status.counters) {
-      counters.push_back({{"name", name}, {"value", value}});
-    }
-    all.push_back({{"process", process},
-                   {"ready", heard.status.ready},
-                   {"text", heard.status.text},
-                   {"last_problem", heard.status.last_problem},
-                   {"age_s", now_s - heard.at_s},
-                   {"counters", counters}});
-  }
-  return all;
+  return watch_.Processes(now_s);
 }
 
 Status LiveNode::GetStatus() const {

@@ -13,6 +13,7 @@
 #include "services/nodes/view_collector.h"
 #include "viewer/frames/session_state.h"
 #include "viewer/live/kept_view.h"
+#include "viewer/live/session_watch.h"
 #include "viewer/server/outbox.h"
 
 namespace rgbdt::viewer {
@@ -50,8 +51,6 @@ class LiveNode : public Node {
   void Take(const Message& message);
   void OnRig(const RigText& text);
   void OnCommand(const SessionCommand& command);
-  void OnEvent(const SessionEvent& event);
-  void OnStatus(const Status& status);
   void OnImage(const Image& image);
   void OnObservation(const Observation& observation);
   void OnCalibration(const CalibrationMessage& message);
@@ -62,10 +61,8 @@ class LiveNode : public Node {
   void PostLiveOverlay(const std::string& camera);
   void PostSightings();
   void CountSigma(const CameraCalibration& calibration);
-  void NoteWhatCanBeAsked();
   ViewState* StateOf(const std::string& view);
   std::vector<Post> PostsOf(const KeptView& view) const;
-  bool Heard(const std::string& process) const;
 
   Outbox* outbox_ = nullptr;
   mutable std::mutex mutex_;  // guards all below
@@ -75,14 +72,9 @@ class LiveNode : public Node {
   SessionState state_;
   bool changed_ = true;
   double posted_s_ = -1;
-  std::string doing_;  // what the session itself says it does
+  SessionWatch watch_;
   ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
-  struct Heard_ {
-    Status status;
-    double at_s;
-  };
-  std::map<std::string, Heard_> statuses_;
   struct Seen {
     Sighting sighting;
     double at_s;
