@@ -9,6 +9,7 @@
 #include "calib/files/report_file.h"
 #include "calib/files/session_dir.h"
 #include "calib/model/errors.h"
+#include "services/nodes/session_steps.h"
 
 namespace rgbdt {
 namespace {
@@ -20,39 +21,6 @@ std::string ViewName(int number) {
   char name[16];
   std::snprintf(name, sizeof(name), "%04d", number);
   return name;
-}
-
-// Whose done ends a step; empty: anybody's.
-std::string AnsweredBy(SessionStep::Kind kind) {
-  switch (kind) {
-    case SessionStep::Kind::kCapture:
-      return "detector";
-    case SessionStep::Kind::kSolve:
-    case SessionStep::Kind::kEvaluate:
-      return "solver";
-    default:
-      return "";
-  }
-}
-
-std::string NameOf(SessionStep::Kind kind) {
-  switch (kind) {
-    case SessionStep::Kind::kNextPose:
-      return "next pose";
-    case SessionStep::Kind::kSweep:
-      return "sweep";
-    case SessionStep::Kind::kCapture:
-      return "capture";
-    case SessionStep::Kind::kWait:
-      return "wait";
-    case SessionStep::Kind::kSolve:
-      return "solve";
-    case SessionStep::Kind::kEvaluate:
-      return "evaluate";
-    case SessionStep::Kind::kSave:
-      return "save";
-  }
-  return "";
 }
 
 // Two sessions' views must not mix.
