@@ -28,7 +28,8 @@ Messages DetectorNode::Handle(const Message& message) {
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     rig_->Camera(picks->camera);
     view_.Add(*picks);
-    if (!view_.active()) return OnPicks(*picks);
+    Messages again = OnPicks(*picks);
+    if (!again.empty()) return again;
   } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
     OnCommand(*command);
   }

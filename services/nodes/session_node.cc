@@ -78,7 +78,7 @@ void SessionNode::Take(const Message& message) {
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     rig_.Camera(picks->camera);
     collector_.Add(*picks);
-    if (!collector_.active()) OnPicks(*picks);
+    OnPicks(*picks);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = *report;
   }
@@ -138,7 +138,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   const auto capture = captures_.find(event.command);
   if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
     Tell(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
-    if (!idle() || event.kind != EventKind::kDone) return;
+    if (!by_request_ || finished_ || event.kind != EventKind::kDone) return;
     Append(SessionStep::Kind::kSolve);
     Append(SessionStep::Kind::kEvaluate);
     return;

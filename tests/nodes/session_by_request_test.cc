@@ -180,6 +180,32 @@ TEST_F(SessionByRequestTest, CornersPickedLaterAreWrittenToTheViewAndSolvedWith)
   EXPECT_TRUE(ReadView(session, "0002").picks.empty());
 }
 
+TEST_F(SessionByRequestTest, CornersPickedDuringAnotherCaptureAreNotLost) {
+  EverybodyReady();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  const Session session = OpenSession(dir_ / "session");
+  CornerSelection picks;
+  picks.camera = "rgb";
+  picks.image_utime = ReadView(session, "0001").images[0].utime;
+  picks.corners = {{{1, 1}, {9, 1}, {9, 9}, {1, 9}}};
+  const SessionCommand capture = world_.commands[2];
+  Ask(SessionRequestKind::kCapture);
+  const auto sweep = Only<SessionCommand>(node_.Advance(time_s_ += 1));
+  ASSERT_EQ(sweep.size(), 1U);
+  node_.Handle(picks);
+  node_.Handle(world_.Event(capture, "detector"));
+  EXPECT_EQ(ReadView(session, "0001").picks.size(), 1U);
+  const std::size_t before = world_.commands.size();
+  test::HandleAll(&node_, world_.Answer(sweep[0]));
+  Run();
+  const std::vector<SessionVerb> all = Verbs();
+  const std::vector<SessionVerb> verbs(all.begin() + static_cast<std::ptrdiff_t>(before) + 1,
+                                       all.end());
+  EXPECT_THAT(verbs, ElementsAre(SessionVerb::kCapture, SessionVerb::kSolve, SessionVerb::kEvaluate,
+                                 SessionVerb::kSolve, SessionVerb::kEvaluate));
+}
+
 TEST(SessionByScriptTest, APersonMaySayThatTheBoardStandsAndNothingElse) {
   const test::TempDir dir;
   SessionNode node(test::Script({SessionStep::Kind::kNextPose, SessionStep::Kind::kSweep}),
