@@ -13,6 +13,7 @@
 #include "calib/solve/calibrate.h"
 #include "services/bus/bus.h"
 #include "services/bus/process.h"
+#include "services/drivers/network_interfaces.h"
 #include "services/rgbdt/session_detection.h"
 #include "viewer/frames/frame.h"
 #include "viewer/frames/page.h"
@@ -80,8 +81,19 @@ ServerOptions OptionsFrom(const Flags& flags) {
   return options;
 }
 
-void SayWhere(const Server& server) {
-  std::printf("%s\n", server.Url().c_str());
+// A phone cannot look up this machine's name: its addresses, where it listens at all of them.
+void SayWhere(const Server& server, const ServerOptions& options) {
+  const std::string url = server.Url();
+  std::printf("%s\n", url.c_str());
+  if (options.socket < 0 && (options.address == "0.0.0.0" || options.address == "::")) {
+    const std::string rest = url.substr(url.find(':', std::strlen("http://")));
+    for (const rgbdt::NetworkInterface& interface : rgbdt::ListInterfaces()) {
+      if (interface.loopback || !interface.up) continue;
+      for (const rgbdt::InterfaceAddress& at : interface.addresses) {
+        std::printf("http://%s%s\n", rgbdt::AddressText(at.address).c_str(), rest.c_str());
+      }
+    }
+  }
   std::fflush(stdout);
 }
 
@@ -159,7 +171,7 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::LiveNode node;
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
-  SayWhere(server);
+  SayWhere(server, options);
   rgbdt::viewer::BusMonitor monitor;
   double next_bus_s = 0;
   return rgbdt::RunOnLcm(
@@ -205,12 +217,16 @@ int ShowSession(const Flags& flags) {
     if (frame.topic == "hello") continue;  // the server says it
     server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
   }
-  SayWhere(server);
+  SayWhere(server, options);
   goodbye.Wait();
   return 0;
 }
 
-void CheckFlags(const Flags& flags) {
+void CheckFlags(const Flags& flags, bool run) {
+  if (run == flags.run.empty()) {
+    throw rgbdt::InputError(run ? "--run: which command?"
+                                : "unexpected \"" + flags.run.front() + "\"; see --help");
+  }
   if (!flags.session.empty() && !flags.url.empty()) {
     throw rgbdt::InputError("--session shows files, --lcm-url a bus; give one of them");
   }
@@ -224,7 +240,8 @@ int main(int argc, char** argv) {
       "finished session. Prints the address to open.\n"
       "Example: rgbdt-viewer\n"
       "         rgbdt-viewer --session out/demo/session\n"
-      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too",
+      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too\n"
+      "         rgbdt-viewer --run COMMAND ARGUMENT...",
       "rgbdt-viewer"};
   Flags flags;
   app.add_option("--listen", flags.listen,
@@ -233,14 +250,15 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
   app.add_option("--session", flags.session, "a session directory, in place of the bus");
-  app.add_option(
-         "--run", flags.run,
-         "run this command with the listening socket handed in (LISTEN_FDS), e.g. where it\n"
-         "goes into a network namespace and starts rgbdt-viewer there; must come last")
-      ->expected(-1);
+  bool run = false;
+  app.add_flag("--run", run,
+               "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
+               "into a network namespace and starts rgbdt-viewer there");
+  app.prefix_command();
   CLI11_PARSE(app, argc, argv);
+  flags.run = app.remaining();
   try {
-    CheckFlags(flags);
+    CheckFlags(flags, run);
     if (!flags.run.empty()) return RunWithSocket(flags);
     return flags.session.empty() ? ShowBus(flags) : ShowSession(flags);
   } catch (const std::exception& e) {

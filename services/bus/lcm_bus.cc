@@ -21,10 +21,13 @@ constexpr auto kMaxDelivery = std::chrono::milliseconds(100);
 // these wait: 64 images are 16 s of the demo's two cameras and 192 MB at worst; 4096 of anything
 // else are 40 s of scan lines (13 MB), and more clouds than a sensor sends in minutes.
 constexpr int kImageQueue = 64;
+// Who hears everything has a few seconds of all of it, images among them.
 constexpr int kQueue = 4096;
+constexpr int kEverythingQueue = 512;
 
-bool MayHearImages(const std::string& channel_regex) {
-  return channel_regex.find("IMAGE") != std::string::npos || channel_regex == ".*";
+int QueueFor(const std::string& channel_regex) {
+  if (channel_regex == ".*") return kEverythingQueue;
+  return channel_regex.find("IMAGE") != std::string::npos ? kImageQueue : kQueue;
 }
 
 }  // namespace
@@ -102,8 +105,7 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
   if (subscription == nullptr) {
     throw InputError("\"" + channel_regex + "\" is no regular expression");
   }
-  lcm_subscription_set_queue_capacity(subscription,
-                                      MayHearImages(channel_regex) ? kImageQueue : kQueue);
+  lcm_subscription_set_queue_capacity(subscription, QueueFor(channel_regex));
   impl_->subscribers.push_back(std::move(subscriber));
 }
 

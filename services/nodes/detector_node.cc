@@ -38,7 +38,7 @@ Messages DetectorNode::Handle(const Message& message) {
 void DetectorNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = ParseRig(text.text, "RIG message");
-  view_ = {};
+  view_ = ViewCollector();
   kept_.clear();
   looked_.clear();
 }

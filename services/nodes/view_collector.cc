@@ -95,7 +95,7 @@ void ViewCollector::KeepForSweep(const Image& image) {
   } else if (image.utime < found->second.utime) {
     found->second = image;
   }
-  while (seconds.size() > kSecondsKept) seconds.erase(seconds.begin());
+  while (seconds.size() > seconds_kept_) seconds.erase(seconds.begin());
 }
 
 // At most two: the first since the sweep's start, and the nearest to its middle.

@@ -57,6 +57,9 @@ class ViewCollector {
   static constexpr std::size_t kKept = 3;
   static constexpr std::size_t kSecondsKept = 60;  ///< of the first image of each second
 
+  /// `seconds_kept`: 0 where nobody asks whether the board stood still.
+  explicit ViewCollector(std::size_t seconds_kept = kSecondsKept) : seconds_kept_(seconds_kept) {}
+
   void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
   void Add(const Image& image);
   void Add(const CornerSelection& picks);
@@ -84,6 +87,7 @@ class ViewCollector {
   const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;
   bool PersonPicks(const std::string& camera) const;
 
+  std::size_t seconds_kept_;
   std::optional<SessionCommand> capture_;
   SweepCollector sweeps_;
   std::map<std::string, std::deque<Image>> images_;

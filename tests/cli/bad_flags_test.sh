@@ -44,7 +44,7 @@ fi
 says=("/proc/rgbdt")
 refuses "a file system that takes no files" "$bin/rgbdt" simulate /proc/rgbdt --views 1
 
-for process in assembler detector solver fuser simulator; do
+for process in assembler detector solver fuser simulator viewer; do
   says=("--colour")
   refuses "an unknown flag of rgbdt-$process" "$bin/rgbdt-$process" --colour
   says=("nonsense://")
@@ -53,9 +53,25 @@ done
 says=("--speed")
 refuses "standing still" "$bin/rgbdt-simulator" --speed 0
 
+says=("--listen" "nonsense" "0.0.0.0:8080")
+refuses "no address" "$bin/rgbdt-viewer" --listen nonsense
+says=("1.2.3.4.5")
+refuses "another that is none" "$bin/rgbdt-viewer" --listen 1.2.3.4.5:0
+says=("--run" "which command")
+refuses "nothing to run" "$bin/rgbdt-viewer" --run
+says=("unexpected" "out/session" "--help")
+refuses "a session without --session" "$bin/rgbdt-viewer" out/session
+says=("$scratch/nowhere" "rig.textproto")
+refuses "a session that is not there" "$bin/rgbdt-viewer" --listen 127.0.0.1:0 --session "$scratch/nowhere"
+says=("--session" "--lcm-url")
+refuses "files and a bus" "$bin/rgbdt-viewer" --session "$good" --lcm-url udpm://
+
 script=$scratch/session.textproto
 run=("$bin/rgbdt-session" "$script" --rig "$good/rig.textproto" --out "$scratch/kept/session")
-refuses "no session script" "$bin/rgbdt-session"
+says=("--rig")
+refuses "neither script nor rig" "$bin/rgbdt-session"
+says=("--by-hand" "script")
+refuses "carried by hand without a script" "$bin/rgbdt-session" --by-hand --rig "$good/rig.textproto"
 says=("session.textproto")
 refuses "a missing script" "${run[@]}"
 printf 'step { next_pose {} }\nstep { frobnicate {} }\n' >"$script"

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <set>
 
 #include "calib/fuse/fuse.h"
+#include "calib/model/method.h"
 #include "calib/model/parallel.h"
+#include "calib/solve/calibrate.h"
 #include "viewer/frames/cloud_frame.h"
 #include "viewer/frames/frame.h"
 #include "viewer/frames/image_frame.h"
@@ -40,8 +43,8 @@ std::vector<ViewState> ViewsOf(const Session& session,
   return views;
 }
 
-// How sure the result is, with the views that the solver used.
-std::vector<SigmaStep> SigmaSteps(const Report& report) {
+// How sure a result is, with the views that the solver used.
+SigmaStep SigmaStepOf(const Report& report) {
   SigmaStep step;
   for (const CameraReport& camera : report.cameras) {
     const auto sigma = SigmaOf(camera.calibration);
@@ -49,7 +52,32 @@ std::vector<SigmaStep> SigmaSteps(const Report& report) {
     step.cameras[camera.calibration.camera] = *sigma;
     step.views = std::max(step.views, static_cast<int>(camera.used.size()));
   }
-  return step.cameras.empty() ? std::vector<SigmaStep>{} : std::vector<SigmaStep>{step};
+  return step;
+}
+
+// How sure the calibration was with the first view, the first two, ...: solved again with each, in
+// milliseconds. The last is the report's own.
+std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<Observation>& observations,
+                                  const Report& report) {
+  std::vector<SigmaStep> steps;
+  CalibrateOptions options;
+  options.diagnostics = false;
+  std::set<std::string, decltype(&NaturalLess)> used(&NaturalLess);
+  for (const CameraReport& camera : report.cameras) {
+    used.insert(camera.used.begin(), camera.used.end());
+  }
+  std::vector<Observation> so_far;
+  for (const std::string& view : used) {
+    if (report.method != kAutoMethod || view == *used.rbegin()) break;
+    for (const Observation& o : observations) {
+      if (o.view == view) so_far.push_back(o);
+    }
+    SigmaStep step = SigmaStepOf(Calibrate(rig, so_far, options));
+    if (!step.cameras.empty()) steps.push_back(std::move(step));
+  }
+  SigmaStep last = SigmaStepOf(report);
+  if (!last.cameras.empty()) steps.push_back(std::move(last));
+  return steps;
 }
 
 SessionState StateOf(const Report& report) {
@@ -57,7 +85,6 @@ SessionState StateOf(const Report& report) {
   state.mode = "finished";
   state.report = report;
   state.calibration = report.ToCalibration();
-  state.sigma = SigmaSteps(report);
   for (const CameraCalibration& camera : state.calibration.cameras) {
     state.calibration_utime[camera.camera] = report.utime;
   }
@@ -181,6 +208,7 @@ std::vector<NamedFrame> SessionFrames(const Session& session,
                                       const Report& report, const SessionFramesOptions& options) {
   SessionState state = StateOf(report);
   state.views = ViewsOf(session, observations);
+  state.sigma = SigmaSteps(session.rig, observations, report);
   const FrameMaker maker(session, state.calibration, options);
   std::vector<ViewFrames> made = MakeAll(maker, state.views);
   const std::string cloud = LastCloud(maker, state.views, made);

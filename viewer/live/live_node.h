@@ -54,6 +54,7 @@ class LiveNode : public Node {
   void OnStatus(const Status& status);
   void OnImage(const Image& image);
   void OnObservation(const Observation& observation);
+  void ForgetRejected(const Observation& observation);
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
   void OnSighting(const Sighting& sighting);
@@ -76,7 +77,7 @@ class LiveNode : public Node {
   bool changed_ = true;
   double posted_s_ = -1;
   std::string doing_;  // what the session itself says it does
-  ViewCollector collector_;
+  ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
   struct Heard_ {
     Status status;

@@ -82,7 +82,7 @@ TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
   const json session = Header(frames, "session");
   EXPECT_EQ(session.at("mode"), "finished");
   EXPECT_EQ(session.at("views").size(), 3U);
-  EXPECT_EQ(session.at("sigma").at(0).at("views"), 5);
+  EXPECT_EQ(session.at("sigma").back().at("views"), 5);
   const json image = Header(frames, "image/0003/thermal");
   EXPECT_EQ(image.at("view"), "0003");
   EXPECT_EQ(image.at("ack"), false);

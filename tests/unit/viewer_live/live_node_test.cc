@@ -63,7 +63,7 @@ class LiveNodeTest : public ::testing::Test {
 
   // The newest state of the session.
   json State() {
-    node_.Tick(tick_s_ += 1);
+    node_.Tick(tick_s_ += 0.2);
     return posts_.Header("session");
   }
   SessionCommand Capture(const std::string& view, Utime sweep) const {
@@ -160,6 +160,25 @@ TEST_F(LiveNodeTest, AnImageThatWaitsForPicksCanBeLookedAt) {
   EXPECT_EQ(state.at("pick_wanted")[0].at("camera"), "thermal");
   EXPECT_EQ(state.at("pick_wanted")[0].at("image_utime"), capture.utime);
   EXPECT_THAT(node_.OnBrowser({{"type", "view"}, {"view", "0001"}}), Not(IsEmpty()));
+}
+
+// Picks had it looked at again; the report of before still says why it was rejected.
+TEST_F(LiveNodeTest, AViewThatIsLookedAtAgainIsWhatTheDetectorSaysNow) {
+  TakeView("0001", test::kStart);
+  Observation observation;
+  observation.camera = "thermal";
+  observation.view = "0001";
+  observation.rejected = "no checkerboard";
+  node_.Handle(observation);
+  Report report;
+  report.cameras.resize(1);
+  report.cameras[0].calibration.camera = "thermal";
+  report.cameras[0].rejected = {{"0001", "no checkerboard"}};
+  report.method = "auto";
+  node_.Handle(ReportText{0, test::kStart, ReportToJson(report)});
+  observation.rejected = "board moved 6 mm";
+  node_.Handle(observation);
+  EXPECT_EQ(State().at("views")[0].at("cameras")[1].at("why"), "board moved 6 mm");
 }
 
 TEST_F(LiveNodeTest, AResetForgetsTheViews) {

@@ -7,7 +7,7 @@ export type ViewName = "lidar" | "above" | "behind";
 export const kViews: { id: ViewName; name: string; eye: Vec3; target: Vec3 }[] = [
   { id: "lidar", name: "From the LIDAR", eye: [-0.05, 0, 0.01], target: [3, 0, 0] },
   { id: "above", name: "From above", eye: [-0.02, 0, 22], target: [0, 0, 0] },
-  { id: "behind", name: "From behind", eye: [-9, 0, 5], target: [2, 0, 0] },
+  { id: "behind", name: "From behind", eye: [-3.5, 0, 2], target: [3, 0, 0] },
 ];
 const kZoomStep = 0.85;
 
