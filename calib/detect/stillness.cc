@@ -46,6 +46,10 @@ std::size_t CountSeen(const Pixels& corners) {
   return static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), IsSeen));
 }
 
+// Share of the corners that may be off the rest: what hides a part of the board reaches into the
+// windows of the corners beside it.
+double MostOff(const Pixels& corners) { return CountSeen(corners) < corners.size() ? 0.4 : 0.2; }
+
 // Half a window well inside the four squares that meet in a corner.
 int HalfWindow(const Target& target, const Pixels& corners) {
   const auto columns = static_cast<std::size_t>(target.corners_x());
@@ -199,7 +203,7 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
     if (CountSeen(corners) < kLeastCorners) return std::nullopt;
     if (!InImage(*sight.camera, corners)) return std::nullopt;
     auto pose = PoseFromCorners(*sight.camera, *sight.target,
-                                RefineCorners(grey, corners, sight.half_window));
+                                RefineCorners(grey, corners, sight.half_window), MostOff(corners));
     if (!FitsAsWell(pose, sight.pose)) return std::nullopt;
     if (!OuterSquaresAreThere(sight, grey, pose->pose.sensor_from_target, corners)) {
       return std::nullopt;
@@ -273,10 +277,14 @@ std::string WhyNotStill(const Camera& camera, const Target& target, const cv::Ma
   sight.grey = grey_at_capture;
   sight.stretched = Stretch(grey_at_capture);
   sight.corners = RefineCorners(grey_at_capture, corners, sight.half_window);
-  const auto pose = PoseFromCorners(camera, target, sight.corners);
+  const bool partly_hidden = CountSeen(corners) < corners.size();
+  const auto pose = PoseFromCorners(camera, target, sight.corners, MostOff(corners));
   if (!pose)
     return "whether the board stood still is not known: its corners do not fit a flat board";
   sight.pose = *pose;
+  for (std::size_t i = 0; partly_hidden && i < corners.size(); ++i) {
+    if (!pose->used[i]) sight.corners[i] = UnseenCorner();
+  }
   for (const SweepImage& other : others) {
     const auto later = PoseIn(sight, other.grey);
     if (!later) {

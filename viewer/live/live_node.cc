@@ -179,11 +179,25 @@ void LiveNode::OnObservation(const Observation& observation) {
   if (view == nullptr) return;
   view->heldout = observation.heldout;
   view->observations[observation.camera] = Slim(observation);
+  ForgetRejected(observation);
   changed_ = true;
   const auto kept = views_.find(observation.view);
   if (kept == views_.end()) return;
   if (auto post = BoardPost(*kept->second, view->observations[observation.camera])) {
     outbox_->Send(std::move(*post));
+  }
+}
+
+// A report of before knows nothing of a view that was looked at again.
+void LiveNode::ForgetRejected(const Observation& observation) {
+  if (!state_.report) return;
+  for (CameraReport& camera : state_.report->cameras) {
+    if (camera.calibration.camera != observation.camera) continue;
+    auto& rejected = camera.rejected;
+    rejected.erase(
+        std::remove_if(rejected.begin(), rejected.end(),
+                       [&](const RejectedView& r) { return r.view == observation.view; }),
+        rejected.end());
   }
 }
 

@@ -53,6 +53,7 @@ class LiveNode : public Node {
   void OnCommand(const SessionCommand& command);
   void OnImage(const Image& image);
   void OnObservation(const Observation& observation);
+  void ForgetRejected(const Observation& observation);
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
   void OnSighting(const Sighting& sighting);

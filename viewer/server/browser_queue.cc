@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t kMostUnacked = 4;
 constexpr std::size_t kEnoughUnackedBytes = 4 * 1024 * 1024;
+// A browser draws all that came since its last frame at once, however many: lines of a scanner.
+constexpr std::size_t kFewUnackedBytes = 1024 * 1024;
 constexpr std::size_t kMostClouds = 8;
 constexpr std::size_t kMostOthers = 256;
 constexpr std::size_t kMostKept = 4096;
@@ -30,11 +32,13 @@ std::set<std::string> BrowserQueue::Watch(std::set<std::string> keys, std::int64
   const auto unwatched = [this](const Post& post) { return !Watches(post.watch); };
   light_.EraseIf(unwatched);
   heavy_.EraseIf(unwatched);
+  cut_.EraseIf(unwatched);
   return added;
 }
 
 void BrowserQueue::Offer(SharedPost post) {
   if (!Watches(post->post().watch)) return;
+  cut_.Erase(post->post().topic);
   TopicQueue* queue = post->post().heavy ? &heavy_ : &light_;
   queue->Put(std::move(post));
   DropBeyond(queue);
@@ -54,7 +58,7 @@ void BrowserQueue::DropBeyond(TopicQueue* queue) {
 }
 
 bool BrowserQueue::MaySendHeavy() const {
-  return unacked_.size() < kMostUnacked && unacked_bytes_ < kEnoughUnackedBytes;
+  return unacked_bytes_ < (unacked_.size() < kMostUnacked ? kEnoughUnackedBytes : kFewUnackedBytes);
 }
 
 std::optional<BrowserQueue::Outgoing> BrowserQueue::Next() {
@@ -64,7 +68,21 @@ std::optional<BrowserQueue::Outgoing> BrowserQueue::Next() {
   while (!heavy_.empty() && MaySendHeavy()) {
     if (auto out = Outgo(heavy_.PopFront())) return out;
   }
-  return std::nullopt;
+  return heavy_.empty() && unacked_.empty() && !cut_.empty() ? OutgoWhole() : std::nullopt;
+}
+
+// It was measured when it was sent in part: its ack says nothing of the time to the screen.
+std::optional<BrowserQueue::Outgoing> BrowserQueue::OutgoWhole() {
+  const SharedPost post = cut_.PopFront();
+  Outgoing out;
+  out.frame = post->Frame();
+  out.id = ++last_id_;
+  const std::size_t header = HeaderBytes(*out.frame);
+  const std::size_t record = post->post().record_bytes;
+  out.bytes = header + record * thinning_.Wanted((out.frame->size() - header) / record);
+  unacked_[out.id] = {out.bytes, 0};
+  unacked_bytes_ += out.bytes;
+  return out;
 }
 
 std::optional<BrowserQueue::Outgoing> BrowserQueue::Outgo(const SharedPost& post) {
@@ -72,7 +90,7 @@ std::optional<BrowserQueue::Outgoing> BrowserQueue::Outgo(const SharedPost& post
   out.frame = post->Frame();
   if (!out.frame) return std::nullopt;
   out.id = ++last_id_;
-  out.bytes = CutBytes(post->post(), *out.frame);
+  out.bytes = CutBytes(post, *out.frame);
   if (post->post().heavy) {
     unacked_[out.id] = {out.bytes, post->post().came_s};
     unacked_bytes_ += out.bytes;
@@ -80,13 +98,15 @@ std::optional<BrowserQueue::Outgoing> BrowserQueue::Outgo(const SharedPost& post
   return out;
 }
 
-std::size_t BrowserQueue::CutBytes(const Post& post, const std::string& frame) {
+std::size_t BrowserQueue::CutBytes(const SharedPost& shared, const std::string& frame) {
+  const Post& post = shared->post();
   if (!IsCloud(post)) return frame.size();
   const std::size_t header = HeaderBytes(frame);
   const std::size_t records = (frame.size() - header) / post.record_bytes;
   const std::size_t cut = thinning_.Cut(post.topic, records, heavy_.Count(IsCloud));
   if (cut == records) return frame.size();
   ++thinned_;
+  if (post.kept && cut < thinning_.Wanted(records)) cut_.Put(shared);
   return header + cut * post.record_bytes;
 }
 

@@ -13,9 +13,11 @@
 namespace rgbdt::viewer {
 
 /// What waits for one browser, and what it is sent next. Light posts go first, all of them. Heavy
-/// ones go in the order in which they came, while the browser owes acks for at most 3 of them and
-/// for less than 4 MB. What waits is bounded: one post a topic, 8 clouds, 256 others that are
-/// not kept and 4096 that are.
+/// ones go in the order in which they came, while the browser owes acks for less than 4 MB and for
+/// at most 3 of them, or more that are less than 1 MB together. What waits is bounded: one post a
+/// topic, 8 clouds, 256 others that are not kept and 4096 that are. Kept clouds that were cut go
+/// again, with all that the browser draws, once nothing else waits and all is drawn: a picture at
+/// rest is whole.
 class BrowserQueue {
  public:
   /// What the browser looks at, and the most points that it draws of a sweep. What it does not look
@@ -49,10 +51,12 @@ class BrowserQueue {
   void DropBeyond(TopicQueue* queue);
   bool MaySendHeavy() const;
   std::optional<Outgoing> Outgo(const SharedPost& post);
-  std::size_t CutBytes(const Post& post, const std::string& frame);
+  std::optional<Outgoing> OutgoWhole();
+  std::size_t CutBytes(const SharedPost& post, const std::string& frame);
 
   std::set<std::string> watched_;
   TopicQueue light_, heavy_;
+  TopicQueue cut_;  // kept clouds that were sent in part
   Thinning thinning_;
   std::int64_t thinned_ = 0;
   std::uint32_t last_id_ = 0;

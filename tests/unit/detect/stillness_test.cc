@@ -148,6 +148,32 @@ TEST_F(Stillness, CornersThatWereNotSeenSayNothing) {
   EXPECT_THAT(why(Grey(behind, 5)), HasSubstr("not found again"));
 }
 
+// As a person's picks leave them: corners close to what hides the others are still seen.
+TEST_F(Stillness, WhatHidesTheBoardMayReachIntoTheCornersBesideIt) {
+  const Camera camera(board_->spec());
+  const Target target = board_->target();
+  const auto covered = [&](const Rigid3& pose, int shot) {
+    Random random(1);
+    board_->Show(pose);
+    Image image = board_->Take(shot);
+    PaintCover(camera, target, Pose(), Cover::kBar, 0, &random, &image.pixels);
+    return ToGrey(image);
+  };
+  std::vector<Eigen::Vector2d> corners = Corners();
+  const auto points = target.InnerCorners();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool hidden =
+        Hides(Cover::kBar, 0, points[i].x() / target.width_m, points[i].y() / target.height_m);
+    if (hidden) corners[i] = UnseenCorner();
+  }
+  const cv::Mat at_capture = covered(Pose(), 0);
+  const auto why = [&](const cv::Mat& other) {
+    return WhyNotStill(camera, target, at_capture, corners, {{other, 3.0}});
+  };
+  EXPECT_THAT(why(covered(Pose(), 1)), IsEmpty());
+  EXPECT_THAT(why(covered(Moved(0.0057), 2)), HasSubstr("board moved"));
+}
+
 TEST_F(Stillness, ABoardThatIsGoneIsToldSo) {
   const cv::Mat at_capture = Grey(Pose(), 0);
   Rigid3 behind = Pose();

@@ -162,6 +162,25 @@ TEST_F(LiveNodeTest, AnImageThatWaitsForPicksCanBeLookedAt) {
   EXPECT_THAT(node_.OnBrowser({{"type", "view"}, {"view", "0001"}}), Not(IsEmpty()));
 }
 
+// Picks had it looked at again; the report of before still says why it was rejected.
+TEST_F(LiveNodeTest, AViewThatIsLookedAtAgainIsWhatTheDetectorSaysNow) {
+  TakeView("0001", test::kStart);
+  Observation observation;
+  observation.camera = "thermal";
+  observation.view = "0001";
+  observation.rejected = "no checkerboard";
+  node_.Handle(observation);
+  Report report;
+  report.cameras.resize(1);
+  report.cameras[0].calibration.camera = "thermal";
+  report.cameras[0].rejected = {{"0001", "no checkerboard"}};
+  report.method = "auto";
+  node_.Handle(ReportText{0, test::kStart, ReportToJson(report)});
+  observation.rejected = "board moved 6 mm";
+  node_.Handle(observation);
+  EXPECT_EQ(State().at("views")[0].at("cameras")[1].at("why"), "board moved 6 mm");
+}
+
 TEST_F(LiveNodeTest, AResetForgetsTheViews) {
   TakeView("0001", test::kStart);
   SessionCommand reset;

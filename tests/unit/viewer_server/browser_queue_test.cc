@@ -46,6 +46,13 @@ Post HeavyPost(const std::string& topic, std::size_t bytes = 0) {
   return post;
 }
 
+// A part of a whole sweep.
+Post SweepPost(const std::string& name, std::uint32_t records) {
+  Post post = CloudPost("sweep/0", name, records);
+  post.kept = true;
+  return post;
+}
+
 TEST(BrowserQueue, NewestOfATopicTakesTheOldersPlace) {
   BrowserQueue queue;
   Offer(&queue, LightPost("a", "a1"));
@@ -81,13 +88,19 @@ TEST(BrowserQueue, LightGoesBeforeHeavy) {
 
 TEST(BrowserQueue, FourHeavyFramesAreSentAheadOfAcks) {
   BrowserQueue queue;
-  for (const char* topic : {"1", "2", "3", "4", "5", "6"}) Offer(&queue, HeavyPost(topic));
+  for (const char* topic : {"1", "2", "3", "4", "5", "6"}) Offer(&queue, HeavyPost(topic, 300'000));
   EXPECT_THAT(Names(&queue), ElementsAre("1", "2", "3", "4"));
   queue.Acked(17);  // was never sent
   EXPECT_THAT(Names(&queue), IsEmpty());
   queue.Acked(2);
   queue.Acked(2);
   EXPECT_THAT(Names(&queue), ElementsAre("5"));
+}
+
+TEST(BrowserQueue, ManySmallFramesAreSentAheadOfAcks) {
+  BrowserQueue queue;
+  for (int i = 0; i < 200; ++i) Offer(&queue, HeavyPost(std::to_string(i), 20'000));
+  EXPECT_EQ(Names(&queue).size(), 53U);  // the last of them reaches 1 MB
 }
 
 TEST(BrowserQueue, FourMegabytesAreSentAheadOfAcks) {
@@ -127,7 +140,39 @@ TEST(BrowserQueue, OldestOfMoreThanEightCloudsAreDropped) {
   EXPECT_EQ(queue.waiting(), 8U);
   EXPECT_EQ(queue.thinned(), 2);
   EXPECT_EQ(queue.share(), 0.5);
-  EXPECT_THAT(Names(&queue), ElementsAre("2", "3", "4", "5"));
+  EXPECT_THAT(Names(&queue), ElementsAre("2", "3", "4", "5", "6", "7", "8", "9"));
+}
+
+// Nothing comes any more: the browser gets what it was spared.
+TEST(BrowserQueue, ACutSweepGoesAgainWholeOnceAllIsDrawn) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 9; ++i) Offer(&queue, CloudPost("chunk/" + std::to_string(i), "", 100));
+  Offer(&queue, SweepPost("sweep", 100));
+  const std::size_t sent = Names(&queue).size();
+  for (std::size_t id = 1; id < sent; ++id) queue.Acked(static_cast<std::uint32_t>(id));
+  EXPECT_FALSE(queue.Next()) << "the last one is not drawn yet";
+  queue.Acked(static_cast<std::uint32_t>(sent));
+  const auto again = queue.Next();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(NameOf(*again), "sweep");
+  EXPECT_EQ(again->bytes, again->frame->size());
+  EXPECT_EQ(queue.Acked(again->id), std::nullopt);
+  EXPECT_FALSE(queue.Next());
+}
+
+TEST(BrowserQueue, ACutSweepDoesNotGoAgainWhereANewerOneCame) {
+  BrowserQueue queue;
+  queue.Watch({"cloud"}, kAllPoints);
+  for (int i = 0; i < 9; ++i) Offer(&queue, CloudPost("chunk/" + std::to_string(i), "", 100));
+  Offer(&queue, SweepPost("old", 100));
+  std::uint32_t last = 0;
+  while (const auto out = queue.Next()) last = out->id;
+  Offer(&queue, SweepPost("new", 1));
+  for (std::uint32_t id = 1; id <= last; ++id) queue.Acked(id);
+  EXPECT_THAT(Names(&queue), ElementsAre("new"));
+  queue.Acked(last + 1);
+  EXPECT_THAT(Names(&queue), IsEmpty());
 }
 
 TEST(BrowserQueue, CloudIsCutAtAWholeRecord) {

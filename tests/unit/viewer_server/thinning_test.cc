@@ -72,6 +72,14 @@ TEST(Thinning, SweepIsCutToThePointsWanted) {
   EXPECT_EQ(sweep(), 20'000U);
 }
 
+TEST(Thinning, SweepsWhosePartsAreMissingAreNotTakenForOneLongOne) {
+  Thinning thinning;
+  thinning.WantPoints(20'000);
+  for (const char* topic : {"sweep/0", "sweep/1", "sweep/1", "sweep/1", "sweep/0", "sweep/1"}) {
+    EXPECT_EQ(thinning.Cut(topic, 10'000, 0), 10'000U);
+  }
+}
+
 TEST(Thinning, OneRecordIsAlwaysSent) {
   Thinning thinning;
   thinning.WantPoints(1);

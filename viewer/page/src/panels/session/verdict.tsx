@@ -24,12 +24,17 @@ function stepWords({ step, steps }: SessionFrame): string {
   return steps > 0 ? `Step ${step} of ${steps}` : "";
 }
 
-/// What is being done now, and why it failed where it did.
+/// How a session that is over ended.
+function outcomeOf({ mode, log }: SessionFrame): string {
+  return mode !== "none" ? "" : log.filter(({ source, kind }) => source === "session" && kind === "done").pop()?.text ?? "";
+}
+
+/// What is being done now, how it ended, and why it failed where it did.
 export function Progress({ session }: { session: SessionFrame }) {
   const percent = Math.round(100 * session.fraction);
   return (
     <div class="progress">
-      <p role="status" data-testid="progress">{[stepWords(session), session.busy].filter(Boolean).join(": ")}</p>
+      <p role="status" data-testid="progress">{[stepWords(session), session.busy || outcomeOf(session)].filter(Boolean).join(": ")}</p>
       {session.busy && (
         <div class="row">
           <progress max={1} value={session.fraction} aria-label={session.busy} />
