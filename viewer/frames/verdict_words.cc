@@ -91,12 +91,19 @@ std::string Clause(const std::string& grade, const std::vector<std::string>& nam
 std::string Mixed(const std::vector<JudgedCamera>& cameras,
                   const std::vector<VerdictWords>& verdicts) {
   std::string headline;
+  const auto add = [&](const std::string& clause) {
+    headline += (headline.empty() ? "" : "; ") + clause;
+  };
   for (auto grade = Grades().rbegin(); grade != Grades().rend(); ++grade) {
     std::vector<std::string> names;
+    std::vector<std::string> unjudged;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
-      if (verdicts[i].grade == *grade) names.push_back(cameras[i].camera);
+      if (verdicts[i].grade != *grade) continue;
+      const bool so_far = *grade == "none" && cameras[i].calibrated;
+      (so_far ? unjudged : names).push_back(cameras[i].camera);
     }
-    if (!names.empty()) headline += (headline.empty() ? "" : "; ") + Clause(*grade, names);
+    if (!names.empty()) add(Clause(*grade, names));
+    if (!unjudged.empty()) add("calibrated so far, not judged yet: " + Listed(unjudged));
   }
   headline.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(headline.front())));
   return headline;

@@ -257,6 +257,21 @@ TEST(SessionFrame, TheWorstCameraCounts) {
               HasSubstr("No calibration yet of thermal; take care with rgb"));
 }
 
+// A script solves at its end: until then each view's calibration is used, and nobody judged it.
+TEST(SessionFrame, ACalibrationWithoutAReportIsNotJudgedYet) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  for (const CameraSpec& camera : rig.cameras) {
+    CameraCalibration calibration;
+    calibration.camera = camera.name;
+    state.calibration.cameras.push_back(calibration);
+  }
+  const json verdict = SessionJson(state, &rig).at("verdict");
+  EXPECT_EQ(verdict.at("grade"), "none");
+  EXPECT_THAT(verdict.at("headline").get<std::string>(),
+              testing::StartsWith("Calibrated so far, not judged yet: rgb"));
+}
+
 TEST(SessionFrame, HostileNamesAreOnlyText) {
   const std::string evil = "</script><b>\xff\"\\\n";
   Rig rig = test::MakeRig();
