@@ -48,11 +48,14 @@ void BusMonitor::Add(const std::string& channel, const std::uint8_t* data, std::
   }
   if (size < kHeader) return;
   const Utime utime = Int64At(data + 8);
-  c.latency_s = ToSeconds(now_utime - utime);
+  // The bytes are not checked: numbers that no message may have are passed over.
+  c.latency_s = utime > 0 ? ToSeconds(now_utime - utime) : 0;
   c.has_latency = utime > 0 && std::abs(c.latency_s) < kSameClock;
   const std::int64_t seq = Int64At(data + 16);
   const std::string sender = SenderOf(channel, data, size);
-  if (seq < 0 || (c.senders.size() >= kMaxChannels && c.senders.count(sender) == 0)) return;
+  if (seq < 0 || seq > kMaxInteger ||
+      (c.senders.size() >= kMaxChannels && c.senders.count(sender) == 0))
+    return;
   c.lost += c.senders[sender].Add(seq).gaps;
 }
 

@@ -77,6 +77,14 @@ TEST_F(BusMonitorTest, AnyBytesAreCountedAndStrangersAreBounded) {
   monitor_.Add("STATUS", few, 3, 0, kNow);
   monitor_.Add("STATUS", few, 0, 0, kNow);
   EXPECT_EQ(Channel("STATUS", 0).at("count"), 2);
+  for (const std::uint8_t first : {0x00, 0x7f, 0x80, 0xff}) {  // the largest and smallest numbers
+    std::vector<std::uint8_t> bytes(24, first == 0x7f || first == 0xff ? 0xff : 0x00);
+    bytes[8] = bytes[16] = first;
+    monitor_.Add("ENCODER", bytes.data(), bytes.size(), 0, kNow);
+  }
+  EXPECT_EQ(Channel("ENCODER", 0).at("count"), 4);
+  EXPECT_EQ(Channel("ENCODER", 0).at("lost"), 0);
+  EXPECT_TRUE(Channel("ENCODER", 0).at("latency_ms").is_null());
   for (int i = 0; i < 1000; ++i) monitor_.Add("X" + std::to_string(i), few, 3, 0, kNow);
   EXPECT_EQ(monitor_.Channels(0).size(), BusMonitor::kMaxChannels);
 }
