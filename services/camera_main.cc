@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
-#include "services/bus/process.h"
-#include "services/drivers/camera_node.h"
+#include "services/drivers/camera/camera_node.h"
+#include "services/runtime/process.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
-#include "services/bus/process.h"
 #include "services/nodes/fuser_node.h"
+#include "services/runtime/process.h"
 
 int main(int argc, char** argv) {
   CLI::App app{

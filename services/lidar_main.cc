@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "calib/files/rig_file.h"
-#include "services/bus/process.h"
-#include "services/drivers/lidar_node.h"
+#include "calib/files/schema/rig_file.h"
+#include "services/drivers/lidar/lidar_node.h"
+#include "services/runtime/process.h"
 
 int main(int argc, char** argv) {
   CLI::App app{

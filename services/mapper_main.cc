@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cstdio>
 
-#include "calib/files/map_files.h"
+#include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
-#include "services/bus/process.h"
 #include "services/nodes/mapper_node.h"
+#include "services/runtime/process.h"
 
 namespace {
 

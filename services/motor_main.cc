@@ -1,9 +1,9 @@
 #include <CLI/CLI.hpp>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
-#include "services/bus/process.h"
-#include "services/drivers/motor_node.h"
+#include "services/drivers/dynamixel/motor_node.h"
+#include "services/runtime/process.h"
 
 namespace {
 

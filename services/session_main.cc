@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/rig_file.h"
-#include "calib/files/session_script.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
-#include "services/bus/process.h"
 #include "services/nodes/session_node.h"
+#include "services/runtime/process.h"
 
 namespace {
 

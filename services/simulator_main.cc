@@ -3,11 +3,11 @@
 #include <map>
 
 #include "calib/files/atomic_file.h"
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
-#include "services/bus/process.h"
 #include "services/nodes/simulator_node.h"
+#include "services/runtime/process.h"
 
 namespace {
 

@@ -8,16 +8,16 @@
 #include <cstring>
 #include <random>
 
-#include "calib/files/report_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/methods/calibrate.h"
+#include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
-#include "calib/solve/calibrate.h"
+#include "calib/present/frames/page.h"
+#include "calib/present/frames/session_frames.h"
+#include "calib/present/layout/frame.h"
 #include "services/bus/bus.h"
-#include "services/bus/process.h"
-#include "services/drivers/network_interfaces.h"
-#include "services/rgbdt/session_detection.h"
-#include "viewer/frames/frame.h"
-#include "viewer/frames/page.h"
-#include "viewer/frames/session_frames.h"
+#include "services/drivers/net/network_interfaces.h"
+#include "services/runtime/process.h"
 #include "viewer/live/bus_monitor.h"
 #include "viewer/live/clock.h"
 #include "viewer/live/live_node.h"
@@ -203,7 +203,10 @@ rgbdt::Report ReportOf(const rgbdt::Session& session,
 int ShowSession(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
   const rgbdt::Session session = rgbdt::OpenSession(flags.session);
-  const auto observations = rgbdt::DetectSession(session, rgbdt::kAutoMethod).observations;
+  const auto observations =
+      rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
+        std::fprintf(stderr, "%s\n", line.c_str());
+      }).observations;
   rgbdt::viewer::SessionFramesOptions what;
   what.title = flags.session;
   what.version = RGBDT_VERSION;

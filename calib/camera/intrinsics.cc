@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "calib/camera/camera.h"
-#include "calib/camera/intrinsics_bundle.h"
-#include "calib/camera/intrinsics_start.h"
+#include "calib/camera/internal/intrinsics_bundle.h"
+#include "calib/camera/internal/intrinsics_start.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

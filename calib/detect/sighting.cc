@@ -7,9 +7,9 @@
 
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
-#include "calib/detect/board_in_cloud.h"
-#include "calib/detect/checkerboard.h"
-#include "calib/detect/target_pose.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/image/checkerboard.h"
+#include "calib/detect/image/target_pose.h"
 
 namespace rgbdt {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "calib/fuse/sample_kernel.h"
+#include "calib/fuse/internal/sample_kernel.h"
 
 namespace rgbdt {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/fuse/hits.h"
-#include "calib/fuse/motion.h"
+#include "calib/fuse/internal/hits.h"
+#include "calib/fuse/internal/motion.h"
 
 namespace rgbdt {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "calib/model/errors.h"
-#include "calib/scan_assembly/scan_patches.h"
-#include "calib/scan_assembly/scanner_directions.h"
+#include "calib/scan_assembly/internal/scan_patches.h"
+#include "calib/scan_assembly/internal/scanner_directions.h"
 
 namespace rgbdt {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/simulate/option_checks.h"
+#include "calib/simulate/internal/option_checks.h"
 
 namespace rgbdt::simulate {
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "calib/model/errors.h"
-#include "calib/simulate/lens_table.h"
-#include "calib/simulate/option_checks.h"
+#include "calib/simulate/internal/lens_table.h"
+#include "calib/simulate/internal/option_checks.h"
 
 namespace rgbdt::simulate {
 namespace {

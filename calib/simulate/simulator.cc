@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "calib/model/errors.h"
-#include "calib/simulate/board_poses.h"
-#include "calib/simulate/camera_renderer.h"
-#include "calib/simulate/hidden_outline.h"
-#include "calib/simulate/noise.h"
-#include "calib/simulate/rig_defaults.h"
-#include "calib/simulate/scanner.h"
-#include "calib/simulate/spinning.h"
-#include "calib/simulate/world.h"
+#include "calib/simulate/internal/board_poses.h"
+#include "calib/simulate/internal/camera_renderer.h"
+#include "calib/simulate/internal/hidden_outline.h"
+#include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/rig_defaults.h"
+#include "calib/simulate/internal/scanner.h"
+#include "calib/simulate/internal/spinning.h"
+#include "calib/simulate/internal/world.h"
 
 namespace rgbdt::simulate {
 namespace {

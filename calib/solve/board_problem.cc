@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "calib/solve/view_equations.h"
+#include "calib/solve/internal/view_equations.h"
 
 namespace rgbdt {
 namespace {

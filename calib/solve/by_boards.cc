@@ -5,14 +5,13 @@
 #include <cstdio>
 
 #include "calib/model/stopwatch.h"
-#include "calib/solve/by_planes.h"
 #include "calib/solve/closure.h"
 #include "calib/solve/colouring.h"
-#include "calib/solve/cross_check.h"
-#include "calib/solve/degenerate.h"
 #include "calib/solve/evaluate.h"
-#include "calib/solve/joint_solve.h"
-#include "calib/solve/next_view.h"
+#include "calib/solve/guess_cameras.h"
+#include "calib/solve/internal/cross_check.h"
+#include "calib/solve/internal/joint_solve.h"
+#include "calib/solve/internal/next_view.h"
 
 namespace rgbdt {
 namespace {
@@ -22,106 +21,6 @@ using Views = std::vector<const Observation*>;
 // Metres more along each boundary point's beam.
 void AddToRanges(double offset_m, CloudEdges* cloud) {
   for (Eigen::Vector3d& p : cloud->boundary) p += offset_m * p.normalized();
-}
-
-std::string OneViewStatus(const Views& used) {
-  return used.size() == 1 && used[0]->cloud->pose
-             ? WhyDegenerate({used[0]->cloud->pose->sensor_from_target})
-             : "";
-}
-
-bool EnoughViews(const CalibrateOptions& options, CameraViews* camera) {
-  const Views used = camera->Used();
-  if (static_cast<int>(used.size()) >= options.min_views) return true;
-  const std::string degenerate = OneViewStatus(used);
-  camera->report.calibration.status =
-      degenerate.empty() ? TooFewViews(used.size(), options) : degenerate;
-  return false;
-}
-
-std::string Place(const Eigen::Vector3d& p) {
-  char text[60];
-  std::snprintf(text, sizeof text, "x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
-  return text;
-}
-
-// Names what else in the clouds looks like the target: a second board, a door, a poster.
-void RemarkOthers(CameraViews* camera) {
-  int views = 0;
-  std::string example;
-  for (const Observation* o : camera->Usable()) {
-    if (o->candidates.size() < 2) continue;
-    ++views;
-    const auto other = std::find_if(
-        o->candidates.begin(), o->candidates.end(),
-        [&](const CloudEdges& c) { return (c.centre - o->cloud->centre).norm() > 0.01; });
-    if (!example.empty() || other == o->candidates.end()) continue;
-    example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
-              Place(other->centre) + " (LIDAR frame)";
-  }
-  if (example.empty()) return;
-  camera->report.remarks.push_back(
-      "something else of the target's size stands in " + std::to_string(views) + " of " +
-      std::to_string(camera->Usable().size()) +
-      " clouds, e.g. a second board; the views together chose the target. " + example +
-      ". If that is wrong, take the other thing away");
-}
-
-// The first guess, from the views used; the views held out have no say, but they choose their board
-// by it, too. Without a pose: the status says why.
-FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
-  FirstGuess guess;
-  if (!EnoughViews(options, camera)) return guess;
-  guess = GuessFromBoards(camera->Used(), options.first_guess);
-  if (!guess.camera_from_lidar) {
-    camera->report.calibration.status =
-        (guess.ambiguous ? "degenerate: " : "not calibrated: ") + guess.status;
-    return guess;
-  }
-  for (Observation& o : camera->all) {
-    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
-  }
-  if (!EnoughViews(options, camera)) {
-    guess.camera_from_lidar.reset();
-    return guess;
-  }
-  camera->report.first_guess = guess.camera_from_lidar;
-  RemarkOthers(camera);
-  return guess;
-}
-
-// Whether every view used says all that a solve needs; observations in old logs do not.
-bool CanRefine(const Target& target, const CameraViews& camera) {
-  const std::size_t corners = target.InnerCorners().size();
-  const Views used = camera.Used();
-  return std::all_of(used.begin(), used.end(), [&](const Observation* o) {
-    return o->cloud->scatter_sigma_m > 0 && o->image->corners.size() == corners;
-  });
-}
-
-void TakeGuess(const GuessedCamera& camera, const std::string& status) {
-  camera.views->report.calibration = {camera.views->spec->name, *camera.guess.camera_from_lidar,
-                                      camera.guess.covariance, true, status};
-}
-
-// Places of the boards that a camera was calibrated from.
-std::vector<Rigid3> BoardsOf(const CameraViews& camera) {
-  std::vector<Rigid3> boards;
-  for (const Observation* o : camera.Used()) {
-    if (o->cloud->pose) boards.push_back(o->cloud->pose->sensor_from_target);
-  }
-  return boards;
-}
-
-// A pose that the views leave loose is not to be believed, whatever its residuals.
-void CheckDegenerate(CameraViews* camera) {
-  CameraCalibration& calibration = camera->report.calibration;
-  std::string why = WhyDegenerate(BoardsOf(*camera));
-  if (why.empty() && calibration.covariance) why = WhyLoose(*calibration.covariance);
-  if (why.empty()) return;
-  calibration.converged = false;
-  calibration.status = why;
-  calibration.covariance.reset();
 }
 
 void AddNuisance(const std::string& name, const std::string& unit, double scale, double value,
@@ -199,23 +98,6 @@ void ShiftRanges(const std::vector<GuessedCamera>& cameras) {
   }
 }
 
-void JudgeAll(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    JudgeCamera(*camera.views->spec, camera.views->Usable(), &camera.views->report);
-    JudgeEdges(edges, camera.views->Usable(), &camera.views->report);
-    const CameraCalibration& calibration = camera.views->report.calibration;
-    if (!calibration.covariance) continue;
-    camera.views->report.sigma =
-        SigmaOf(*camera.views->spec, calibration.camera_from_lidar, *calibration.covariance);
-  }
-}
-
-void ShareTime(double seconds, const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    camera.views->report.solve_s += seconds / static_cast<double>(cameras.size());
-  }
-}
-
 // Of cameras that are solved apart, the worst one's.
 void TakeNextView(std::optional<NextView> next, Report* report) {
   if (!next) return;
@@ -239,44 +121,15 @@ void SolveGroup(const Target& target, const CalibrateOptions& options,
   }
   for (const GuessedCamera& camera : cameras) CheckDegenerate(camera.views);
   ShiftRanges(cameras);
-  JudgeAll({target, result.solution.state.shared, joint.problem.priors}, cameras);
-}
-
-void SolveByPlanes(const Target& target, const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    const Stopwatch watch;
-    CameraReport& report = camera.views->report;
-    report.calibration = SolvePlanes(camera.views->Used(), *camera.guess.camera_from_lidar);
-    report.calibration.camera = camera.views->spec->name;
-    ShareTime(watch.Seconds(), {camera});
-    CheckDegenerate(camera.views);
-  }
-  JudgeAll(EdgeModel{target, BoardPriors().Means(), {}}, cameras);
+  JudgeCameras({target, result.solution.state.shared, joint.problem.priors}, cameras);
 }
 
 }  // namespace
 
 void CalibrateByBoards(const Target& target, const CalibrateOptions& options,
                        std::vector<CameraViews>* cameras, Report* report) {
-  std::vector<GuessedCamera> guessed;
-  for (CameraViews& camera : *cameras) {
-    const Stopwatch watch;
-    const FirstGuess guess = Guess(options, &camera);
-    camera.report.solve_s += watch.Seconds();
-    if (!guess.camera_from_lidar) continue;
-    if (CanRefine(target, camera)) {
-      guessed.push_back({&camera, guess});
-      continue;
-    }
-    TakeGuess({&camera, guess},
-              "converged; not refined: the observations are of an older rgbdt, without sigmas or "
-              "corners");
-    CheckDegenerate(&camera);
-    JudgeAll(EdgeModel{target, BoardPriors().Means(), {}}, {{&camera, guess}});
-  }
-  if (options.method == kPlaneMethod) {
-    SolveByPlanes(target, guessed);
-  } else if (options.joint && !guessed.empty()) {
+  const std::vector<GuessedCamera> guessed = GuessCameras(options, cameras);
+  if (options.joint && !guessed.empty()) {
     SolveGroup(target, options, guessed, report);
   } else {
     for (const GuessedCamera& camera : guessed) SolveGroup(target, options, {camera}, report);

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/solve/joint_solve.h"
+#include "calib/solve/guess_cameras.h"
 
 namespace rgbdt {
 

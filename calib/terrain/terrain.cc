@@ -6,10 +6,10 @@
 #include <string>
 
 #include "calib/model/errors.h"
-#include "calib/terrain/cells.h"
-#include "calib/terrain/ground.h"
-#include "calib/terrain/sites.h"
-#include "calib/terrain/surface.h"
+#include "calib/terrain/internal/cells.h"
+#include "calib/terrain/internal/ground.h"
+#include "calib/terrain/internal/sites.h"
+#include "calib/terrain/internal/surface.h"
 
 namespace rgbdt {
 namespace {

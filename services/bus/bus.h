@@ -4,12 +4,10 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
+
+#include "services/messages/bytes.h"
 
 namespace rgbdt {
-
-/// Bytes of one message, as encoded by its LCM type.
-using Bytes = std::vector<std::uint8_t>;
 
 /// A publish-subscribe bus of named channels.
 class Bus {

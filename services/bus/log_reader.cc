@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "calib/model/errors.h"
+#include "services/bus/internal/log_format.h"
 #include "services/bus/log.h"
-#include "services/bus/log_format.h"
 
 namespace rgbdt {
 namespace {

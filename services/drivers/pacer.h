@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "calib/model/time.h"
-#include "services/drivers/device_thread.h"
+#include "services/runtime/device_thread.h"
 
 namespace rgbdt {
 

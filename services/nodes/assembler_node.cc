@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

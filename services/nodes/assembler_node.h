@@ -7,7 +7,7 @@
 
 #include "calib/model/rig.h"
 #include "calib/scan_assembly/assembler.h"
-#include "services/nodes/node.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "calib/camera/pixels.h"
-#include "calib/detect/detect.h"
 #include "calib/detect/sighting.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/methods/detect_view.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

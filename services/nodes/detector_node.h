@@ -7,8 +7,8 @@
 
 #include "calib/model/method.h"
 #include "calib/model/rig.h"
-#include "services/nodes/node.h"
 #include "services/nodes/view_collector.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

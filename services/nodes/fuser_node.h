@@ -7,7 +7,7 @@
 
 #include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
-#include "services/nodes/node.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

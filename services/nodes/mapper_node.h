@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/map/voxel_map.h"
-#include "services/nodes/node.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

@@ -5,11 +5,11 @@
 #include <iterator>
 
 #include "calib/camera/pixels.h"
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
-#include "services/nodes/session_steps.h"
+#include "services/nodes/internal/session_steps.h"
 
 namespace rgbdt {
 namespace {

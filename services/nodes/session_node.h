@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "calib/files/session_script.h"
+#include "calib/files/schema/session_script.h"
 #include "calib/model/rig.h"
-#include "services/nodes/node.h"
 #include "services/nodes/view_collector.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

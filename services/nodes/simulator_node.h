@@ -6,7 +6,7 @@
 #include <string>
 
 #include "calib/simulate/simulator.h"
-#include "services/nodes/node.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

@@ -3,8 +3,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "calib/files/report_file.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
+#include "calib/methods/calibrate.h"
 #include "calib/model/calibration.h"
 #include "calib/model/rig.h"
-#include "calib/solve/calibrate.h"
-#include "services/nodes/node.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt {
 

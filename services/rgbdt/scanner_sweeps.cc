@@ -5,12 +5,12 @@
 #include <optional>
 #include <utility>
 
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/assembler.h"
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 #include "services/nodes/assembler_node.h"
 
 namespace rgbdt {

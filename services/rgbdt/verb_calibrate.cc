@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
+#include "calib/methods/detect_session.h"
+#include "calib/present/report/report_table.h"
 #include "services/rgbdt/paths.h"
-#include "services/rgbdt/report_table.h"
-#include "services/rgbdt/session_detection.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
 
@@ -20,7 +20,7 @@ int Run(const Flags& flags) {
   flags.options.Check();
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
-  const SessionDetection detection = DetectSession(session, flags.options.method);
+  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
   std::fprintf(stderr, "solving ...\n");
   Report report = Calibrate(session.rig, detection.observations, flags.options);
   const std::string wrote = WriteIfSolved(out, report);

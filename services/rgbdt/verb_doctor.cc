@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
-#include "services/rgbdt/doctor_checks.h"
+#include "services/doctor/checks.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

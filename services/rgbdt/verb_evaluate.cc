@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
-#include "calib/solve/calibrate.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/methods/calibrate.h"
+#include "calib/methods/detect_session.h"
 #include "services/rgbdt/paths.h"
-#include "services/rgbdt/session_detection.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
 
@@ -64,7 +64,8 @@ int Run(const Flags& flags) {
       ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
   // A calibration that was made elsewhere is judged on what is found without it.
   const bool by_paper = calibration.method == kPaperMethod;
-  const SessionDetection detection = DetectSession(session, by_paper ? kPaperMethod : kAutoMethod);
+  const SessionDetection detection =
+      DetectSession(session, by_paper ? kPaperMethod : kAutoMethod, PrintProgress);
   Report report = Evaluate(session.rig, detection.observations, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const std::string wrote = "wrote to " + out.string() + ":";

@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/exports.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/exports.h"
+#include "calib/files/schema/rig_file.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/cloud_files.h"
-#include "calib/files/cloud_picture.h"
 #include "calib/files/image_files.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/fuse/fuse.h"
 #include "calib/model/errors.h"
+#include "calib/present/pictures/cloud_picture.h"
 #include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 

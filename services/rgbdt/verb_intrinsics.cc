@@ -6,12 +6,12 @@
 
 #include "calib/camera/intrinsics.h"
 #include "calib/files/atomic_file.h"
-#include "calib/files/intrinsics_html.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/methods/session_corners.h"
 #include "calib/model/errors.h"
-#include "services/rgbdt/intrinsics_text.h"
+#include "calib/present/report/intrinsics_html.h"
+#include "calib/present/report/intrinsics_text.h"
 #include "services/rgbdt/paths.h"
-#include "services/rgbdt/session_corners.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -83,7 +83,8 @@ void Write(const Flags& flags, const Session& session, const Rig& rig,
 
 int Run(const Flags& flags) {
   const Session session = OpenSession(flags.dir, LensNeed::kMayBeUnknown);
-  const SessionCorners corners = FindSessionCorners(session, CamerasFor(flags, session.rig));
+  const SessionCorners corners =
+      FindSessionCorners(session, CamerasFor(flags, session.rig), PrintProgress);
   Rig rig = session.rig;
   std::vector<CameraIntrinsics> solved;
   bool good = corners.unreadable.empty();

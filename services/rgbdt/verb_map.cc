@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/map_files.h"
+#include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 #include "services/nodes/mapper_node.h"
 #include "services/rgbdt/verbs.h"
 

@@ -1,17 +1,17 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/report_file.h"
+#include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
+#include "calib/present/report/report_table.h"
 #include "services/bus/log.h"
-#include "services/bus/node_runner.h"
 #include "services/nodes/assembler_node.h"
 #include "services/nodes/detector_node.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/solver_node.h"
-#include "services/rgbdt/report_table.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
+#include "services/runtime/node_runner.h"
 
 namespace rgbdt {
 namespace {

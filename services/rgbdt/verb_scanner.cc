@@ -3,9 +3,9 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/present/pictures/scanner_picture.h"
 #include "calib/scan_assembly/scanner_geometry.h"
-#include "services/rgbdt/scanner_picture.h"
 #include "services/rgbdt/scanner_sweeps.h"
 #include "services/rgbdt/verbs.h"
 

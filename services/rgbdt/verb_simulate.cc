@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/simulator.h"
 #include "services/nodes/simulated_sweep.h"

@@ -5,10 +5,10 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
-#include "calib/files/map_files.h"
+#include "calib/files/points/map_files.h"
+#include "calib/present/pictures/terrain_json.h"
+#include "calib/present/pictures/terrain_picture.h"
 #include "calib/terrain/terrain.h"
-#include "services/rgbdt/terrain_json.h"
-#include "services/rgbdt/terrain_picture.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
 
 namespace rgbdt {
 
@@ -17,5 +19,8 @@ void AddMap(CLI::App* app, int* exit_code);
 void AddTerrain(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);
 void AddDoctor(CLI::App* app, int* exit_code);
+
+/// A line of progress, on stderr.
+inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 }  // namespace rgbdt

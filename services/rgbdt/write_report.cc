@@ -7,16 +7,16 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
 #include "calib/files/atomic_file.h"
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
-#include "calib/files/report_html.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/present/frames/image_frame.h"
+#include "calib/present/frames/page.h"
+#include "calib/present/pictures/colouring_picture.h"
+#include "calib/present/report/report_html.h"
+#include "calib/present/report/report_table.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
-#include "services/rgbdt/colouring_picture.h"
 #include "services/rgbdt/paths.h"
-#include "services/rgbdt/report_table.h"
-#include "viewer/frames/image_frame.h"
-#include "viewer/frames/page.h"
 
 namespace rgbdt {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/session_dir.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/methods/detect_session.h"
 #include "calib/model/calibration.h"
-#include "services/rgbdt/session_detection.h"
 
 namespace rgbdt {
 

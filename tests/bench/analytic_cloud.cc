@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/simulate/internal/noise.h"
 #include "calib/simulate/lidar_options.h"
-#include "calib/simulate/noise.h"
 
 namespace rgbdt::bench {
 namespace {

@@ -6,10 +6,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "calib/files/report_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/methods/calibrate.h"
 #include "calib/scan_assembly/assembler.h"
-#include "calib/solve/calibrate.h"
-#include "services/bus/codec.h"
+#include "services/messages/codec.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"

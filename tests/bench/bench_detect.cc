@@ -20,9 +20,9 @@
 #include <string>
 
 #include "calib/camera/pixels.h"
-#include "calib/detect/board_in_cloud.h"
-#include "calib/detect/checkerboard.h"
-#include "calib/simulate/board.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/image/checkerboard.h"
+#include "calib/simulate/internal/board.h"
 #include "tests/bench/analytic_cloud.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/stages.h"

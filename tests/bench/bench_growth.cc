@@ -17,12 +17,12 @@
 #include <string>
 #include <vector>
 
-#include "calib/detect/board_in_cloud.h"
-#include "calib/simulate/board.h"
-#include "calib/simulate/rig_defaults.h"
-#include "calib/simulate/spinning.h"
-#include "calib/solve/calibrate.h"
-#include "calib/solve/joint_solve.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/methods/calibrate.h"
+#include "calib/simulate/internal/board.h"
+#include "calib/simulate/internal/rig_defaults.h"
+#include "calib/simulate/internal/spinning.h"
+#include "calib/solve/internal/joint_solve.h"
 #include "tests/bench/analytic_cloud.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/paired_sessions.h"

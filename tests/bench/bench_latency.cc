@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "services/bus/codec.h"
+#include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
 

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <string>
 
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "calib/simulate/rig_defaults.h"
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
+#include "calib/simulate/internal/rig_defaults.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/stages.h"
 #include "tests/study/paired_sessions.h"

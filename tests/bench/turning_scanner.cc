@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/files/rig_file.h"
-#include "calib/simulate/rig_defaults.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/simulate/internal/rig_defaults.h"
 
 namespace rgbdt::bench {
 namespace {

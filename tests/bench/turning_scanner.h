@@ -7,7 +7,7 @@
 #include "calib/model/cloud.h"
 #include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
-#include "services/nodes/message.h"
+#include "services/messages/message.h"
 
 namespace rgbdt::bench {
 

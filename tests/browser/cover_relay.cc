@@ -3,12 +3,12 @@
 #include <exception>
 #include <optional>
 
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
-#include "services/bus/codec.h"
-#include "tests/unit/detect/covered_board.h"
+#include "services/messages/codec.h"
+#include "tests/unit/detect/image/covered_board.h"
 
 namespace rgbdt::browser {
 namespace {

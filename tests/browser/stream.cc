@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "services/bus/codec.h"
-#include "services/nodes/sweep_chunks.h"
+#include "calib/scan_assembly/sweep_chunks.h"
+#include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
 

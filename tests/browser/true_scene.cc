@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "calib/files/session_dir.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
-#include "calib/simulate/hidden_outline.h"
-#include "calib/simulate/lens_table.h"
+#include "calib/simulate/internal/hidden_outline.h"
+#include "calib/simulate/internal/lens_table.h"
 
 namespace rgbdt::browser {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/simulate/internal/world.h"
 #include "calib/simulate/options.h"
-#include "calib/simulate/world.h"
 
 namespace rgbdt::browser {
 

@@ -2,8 +2,8 @@
 // warm, and one of poses only. Usage: map_test_log FUSED OTHER
 #include <cmath>
 
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 #include <cstdio>
 
 #include "calib/files/atomic_file.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 #include "services/nodes/simulator_node.h"
 
 namespace rgbdt {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "services/drivers/device_thread.h"
+#include "services/runtime/device_thread.h"
 
 namespace rgbdt {
 

@@ -1,11 +1,11 @@
-#include "services/drivers/dynamixel_protocol.h"
+#include "services/drivers/dynamixel/dynamixel_protocol.h"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
-#include "services/drivers/dynamixel_models.h"
-#include "services/drivers/round_trips.h"
+#include "services/drivers/dynamixel/dynamixel_models.h"
+#include "services/drivers/dynamixel/round_trips.h"
 #include "tests/hardware/dynamixel_peer.h"
 
 namespace rgbdt {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <thread>
 
-#include "services/drivers/motor_node.h"
-#include "services/drivers/serial_port.h"
+#include "services/drivers/dynamixel/motor_node.h"
+#include "services/drivers/dynamixel/serial_port.h"
 #include "tests/hardware/dynamixel_peer.h"
 
 namespace rgbdt {

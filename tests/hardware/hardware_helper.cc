@@ -14,7 +14,7 @@
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
-#include "services/bus/codec.h"
+#include "services/messages/codec.h"
 
 namespace rgbdt {
 namespace {

@@ -1,11 +1,11 @@
-#include "services/drivers/pcd_folder.h"
+#include "services/drivers/lidar/internal/pcd_folder.h"
 
 #include <gmock/gmock.h>
 #include <stdlib.h>
 
 #include <fstream>
 
-#include "calib/files/cloud_files.h"
+#include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "tests/hardware/device_harness.h"
 

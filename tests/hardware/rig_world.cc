@@ -9,10 +9,10 @@
 #include <mutex>
 
 #include "calib/files/atomic_file.h"
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/simulate/simulator.h"
-#include "services/bus/process.h"
+#include "services/runtime/process.h"
 #include "tests/hardware/dynamixel_peer.h"
 #include "tests/hardware/scip_peer.h"
 

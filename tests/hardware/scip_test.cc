@@ -4,8 +4,8 @@
 #include <random>
 
 #include "calib/model/errors.h"
-#include "services/drivers/scip_protocol.h"
-#include "services/drivers/scip_scanner.h"
+#include "services/drivers/hokuyo/scip_protocol.h"
+#include "services/drivers/hokuyo/scip_scanner.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/scip_peer.h"
 

@@ -11,7 +11,7 @@
 #include <map>
 #include <mutex>
 
-#include "services/drivers/velodyne_source.h"
+#include "services/drivers/velodyne/velodyne_source.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
 

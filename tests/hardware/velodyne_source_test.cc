@@ -1,4 +1,4 @@
-#include "services/drivers/velodyne_source.h"
+#include "services/drivers/velodyne/velodyne_source.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "calib/model/errors.h"
-#include "services/drivers/lidar_node.h"
+#include "services/drivers/lidar/lidar_node.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "calib/model/errors.h"
-#include "services/drivers/velodyne_sweeps.h"
+#include "services/drivers/velodyne/velodyne_sweeps.h"
 #include "tests/hardware/velodyne_encoder.h"
 
 namespace rgbdt {

@@ -11,8 +11,8 @@
 
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
-#include "services/bus/codec.h"
-#include "services/bus/node_runner.h"
+#include "services/messages/codec.h"
+#include "services/runtime/node_runner.h"
 
 // Runs in a network namespace of its own with a multicast route (scripts/in-namespace). Waits for
 // what is to happen, up to a limit that only a failure meets.

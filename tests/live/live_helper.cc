@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/calibration_file.h"
+#include "calib/files/schema/calibration_file.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
-#include "services/bus/codec.h"
 #include "services/bus/log.h"
 #include "services/bus/sequence.h"
-#include "tests/unit/bus/random_messages.h"
+#include "services/messages/codec.h"
+#include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
 namespace {

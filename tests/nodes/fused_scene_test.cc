@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calib/fuse/fuse.h"
-#include "calib/simulate/cloud_world.h"
+#include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/simulator.h"
 #include "services/nodes/simulated_sweep.h"
 

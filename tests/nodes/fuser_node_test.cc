@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bus/codec.h"
+#include "services/messages/codec.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
 

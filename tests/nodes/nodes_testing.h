@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
-#include "services/bus/codec.h"
-#include "services/nodes/node.h"
+#include "services/messages/codec.h"
+#include "services/runtime/node.h"
 
 namespace rgbdt::test {
 

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/session/session_dir.h"
 #include "services/nodes/session_node.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"

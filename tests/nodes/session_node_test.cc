@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/session/session_dir.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/report_file.h"
-#include "calib/files/session_script.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/schema/session_script.h"
 #include "tests/nodes/nodes_testing.h"
 
 namespace rgbdt::test {

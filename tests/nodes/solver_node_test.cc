@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/solve/board_world.h"

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/detect/detect.h"
-#include "calib/files/rig_file.h"
-#include "calib/files/session_dir.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/methods/detect_view.h"
 
 namespace rgbdt {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 
 namespace rgbdt {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "tests/real/acfr.h"
 
 namespace rgbdt {

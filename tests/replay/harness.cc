@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "calib/files/calibration_file.h"
+#include "calib/files/schema/calibration_file.h"
 #include "tests/nodes/nodes_testing.h"
 
 namespace rgbdt::test {

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/session_script.h"
+#include "calib/files/schema/session_script.h"
 #include "services/bus/bus.h"
-#include "services/bus/node_runner.h"
 #include "services/nodes/assembler_node.h"
 #include "services/nodes/detector_node.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/session_node.h"
 #include "services/nodes/simulator_node.h"
 #include "services/nodes/solver_node.h"
+#include "services/runtime/node_runner.h"
 
 namespace rgbdt::test {
 

@@ -7,12 +7,12 @@
 #include <random>
 #include <sstream>
 
-#include "calib/detect/detect.h"
-#include "calib/files/calibration_file.h"
-#include "calib/files/report_file.h"
-#include "calib/files/session_dir.h"
-#include "services/bus/codec.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/methods/detect_view.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/replay/harness.h"
 #include "tests/unit/files/test_data.h"

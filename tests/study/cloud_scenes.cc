@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "calib/model/errors.h"
-#include "calib/simulate/cloud_world.h"
-#include "calib/simulate/spinning.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/spinning.h"
 
 namespace rgbdt::study {
 namespace {

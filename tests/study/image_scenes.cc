@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "calib/camera/camera.h"
-#include "calib/simulate/noise.h"
+#include "calib/simulate/internal/noise.h"
 #include "calib/simulate/simulator.h"
 
 namespace rgbdt::study {

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "calib/methods/paper/internal/paper_cost.h"
 #include "calib/simulate/options.h"
-#include "calib/solve/board_objective.h"
 #include "calib/solve/first_guess.h"
-#include "calib/solve/paper_cost.h"
+#include "calib/solve/internal/board_objective.h"
 
 namespace rgbdt::study {
 namespace {

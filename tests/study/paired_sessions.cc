@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "calib/camera/camera.h"
-#include "calib/detect/board_in_cloud.h"
-#include "calib/detect/cloud_edges.h"
-#include "calib/detect/target_pose.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/image/target_pose.h"
+#include "calib/methods/paper/cloud_edges.h"
 #include "calib/model/errors.h"
-#include "calib/simulate/cloud_world.h"
-#include "calib/simulate/noise.h"
-#include "calib/simulate/rig_defaults.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/rig_defaults.h"
 #include "tests/study/sampled_images.h"
 
 namespace rgbdt::study {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "calib/detect/detect.h"
-#include "calib/simulate/noise.h"
+#include "calib/methods/detect_view.h"
+#include "calib/simulate/internal/noise.h"
 #include "calib/simulate/simulator.h"
 #include "services/nodes/simulated_sweep.h"
 #include "services/nodes/simulator_node.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "calib/model/rigid3.h"
-#include "calib/simulate/scanner.h"
+#include "calib/simulate/internal/scanner.h"
 
 namespace rgbdt::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "calib/camera/camera.h"
-#include "calib/detect/target_pose.h"
+#include "calib/detect/image/target_pose.h"
 
 namespace rgbdt::study {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
-#include "calib/simulate/noise.h"
+#include "calib/simulate/internal/noise.h"
 #include "calib/simulate/options.h"
 
 namespace rgbdt::study {

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/detect/board_in_cloud.h"
+#include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/model/errors.h"
-#include "calib/simulate/board_poses.h"
-#include "calib/simulate/rig_defaults.h"
-#include "calib/simulate/scene.h"
+#include "calib/simulate/internal/board_poses.h"
+#include "calib/simulate/internal/rig_defaults.h"
+#include "calib/simulate/internal/scene.h"
 #include "tests/study/sampled_images.h"
 
 namespace rgbdt::study {

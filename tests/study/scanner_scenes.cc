@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calib/scan_assembly/assembler.h"
-#include "calib/simulate/scanner.h"
-#include "calib/simulate/scene.h"
-#include "calib/simulate/world.h"
+#include "calib/simulate/internal/scanner.h"
+#include "calib/simulate/internal/scene.h"
+#include "calib/simulate/internal/world.h"
 
 namespace rgbdt::study {
 namespace {

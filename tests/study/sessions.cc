@@ -4,11 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "calib/detect/board_in_cloud.h"
-#include "calib/detect/target_pose.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/image/target_pose.h"
 #include "calib/model/errors.h"
-#include "calib/simulate/cloud_world.h"
-#include "calib/simulate/noise.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/noise.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
 

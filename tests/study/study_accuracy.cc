@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/methods/calibrate.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/lidar_options.h"
-#include "calib/solve/calibrate.h"
 #include "tests/study/bound.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/rendered_sessions.h"

@@ -15,10 +15,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/simulate/noise.h"
+#include "calib/methods/calibrate.h"
+#include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/options.h"
-#include "calib/simulate/rig_defaults.h"
-#include "calib/solve/calibrate.h"
 #include "tests/study/objectives.h"
 #include "tests/study/paired_sessions.h"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/detect/board_in_cloud.h"
+#include "calib/detect/cloud/board_in_cloud.h"
 #include "tests/study/cloud_scenes.h"
 
 namespace rgbdt::study {

@@ -12,11 +12,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib/detect/board_in_cloud.h"
-#include "calib/detect/cloud_edges.h"
-#include "calib/simulate/cloud_world.h"
-#include "calib/simulate/rig_defaults.h"
-#include "calib/simulate/spinning.h"
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/methods/paper/cloud_edges.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/rig_defaults.h"
+#include "calib/simulate/internal/spinning.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
 

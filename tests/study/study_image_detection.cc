@@ -14,7 +14,7 @@
 #include <string>
 
 #include "calib/camera/pixels.h"
-#include "calib/detect/checkerboard.h"
+#include "calib/detect/image/checkerboard.h"
 #include "tests/study/image_scenes.h"
 
 namespace rgbdt::study {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <random>
 
-#include "calib/simulate/scanner.h"
-#include "calib/simulate/scene.h"
-#include "calib/simulate/spinning.h"
+#include "calib/simulate/internal/scanner.h"
+#include "calib/simulate/internal/scene.h"
+#include "calib/simulate/internal/spinning.h"
 
 namespace rgbdt::study {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "calib/model/map_cloud.h"
+#include "calib/simulate/internal/world.h"
 #include "calib/simulate/options.h"
-#include "calib/simulate/world.h"
 #include "calib/terrain/terrain.h"
 
 namespace rgbdt::study {

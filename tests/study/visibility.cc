@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calib/fuse/sweep_fuser.h"
-#include "calib/simulate/cloud_world.h"
+#include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/simulator.h"
 
 namespace rgbdt::study {

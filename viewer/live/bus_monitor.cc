@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "services/bus/check.h"
+#include "services/messages/check.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "viewer/frames/image_frame.h"
-#include "viewer/frames/overlay_frame.h"
+#include "calib/present/frames/image_frame.h"
+#include "calib/present/frames/overlay_frame.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "calib/camera/pixels.h"
-#include "calib/files/report_file.h"
-#include "calib/files/rig_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
-#include "viewer/frames/cloud_frame.h"
-#include "viewer/frames/frame.h"
-#include "viewer/frames/image_frame.h"
-#include "viewer/frames/overlay_frame.h"
+#include "calib/present/frames/cloud_frame.h"
+#include "calib/present/frames/image_frame.h"
+#include "calib/present/frames/overlay_frame.h"
+#include "calib/present/layout/frame.h"
 #include "viewer/live/clock.h"
 #include "viewer/live/kept_view.h"
 

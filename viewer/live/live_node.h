@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "calib/model/rig.h"
-#include "services/nodes/node.h"
+#include "calib/present/frames/session_state.h"
 #include "services/nodes/view_collector.h"
-#include "viewer/frames/session_state.h"
+#include "services/runtime/node.h"
 #include "viewer/live/kept_view.h"
 #include "viewer/live/session_watch.h"
 #include "viewer/server/outbox.h"

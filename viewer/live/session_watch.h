@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calib/model/session.h"
-#include "viewer/frames/session_state.h"
+#include "calib/present/frames/session_state.h"
 
 namespace rgbdt::viewer {
 

@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "calib/model/errors.h"
-#include "viewer/server/http_connection.h"
-#include "viewer/server/hub.h"
+#include "viewer/server/internal/http_connection.h"
+#include "viewer/server/internal/hub.h"
+#include "viewer/server/internal/message.h"
 #include "viewer/server/listening_socket.h"
-#include "viewer/server/message.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "calib/model/errors.h"
-#include "services/bus/log_format.h"
-#include "tests/unit/bus/random_messages.h"
+#include "services/bus/internal/log_format.h"
+#include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/drivers/frame_format.h"
+#include "services/drivers/camera/internal/frame_format.h"
 
 #include <gmock/gmock.h>
 

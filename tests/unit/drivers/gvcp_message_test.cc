@@ -1,4 +1,4 @@
-#include "services/drivers/gvcp_message.h"
+#include "services/drivers/camera/gvcp_message.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "services/drivers/network_interfaces.h"
+#include "services/drivers/net/network_interfaces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "services/drivers/shutter_watch.h"
+#include "services/drivers/camera/shutter_watch.h"
 
 #include <gtest/gtest.h>
 

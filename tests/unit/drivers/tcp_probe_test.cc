@@ -1,10 +1,10 @@
-#include "services/drivers/tcp_probe.h"
+#include "services/drivers/net/tcp_probe.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "services/drivers/descriptor.h"
+#include "services/drivers/net/descriptor.h"
 
 namespace rgbdt {
 namespace {

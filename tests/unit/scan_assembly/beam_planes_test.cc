@@ -1,9 +1,9 @@
-#include "calib/scan_assembly/beam_planes.h"
+#include "calib/scan_assembly/internal/beam_planes.h"
 
 #include <Eigen/Eigenvalues>
 #include <numeric>
 
-#include "calib/scan_assembly/scan_patches.h"
+#include "calib/scan_assembly/internal/scan_patches.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/scan_assembly/room.h"
 

@@ -1,4 +1,4 @@
-#include "calib/simulate/board_poses.h"
+#include "calib/simulate/internal/board_poses.h"
 
 #include <gtest/gtest.h>
 

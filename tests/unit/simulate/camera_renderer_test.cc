@@ -1,10 +1,10 @@
-#include "calib/simulate/camera_renderer.h"
+#include "calib/simulate/internal/camera_renderer.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
-#include "calib/simulate/shading.h"
+#include "calib/simulate/internal/shading.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

@@ -1,4 +1,4 @@
-#include "calib/simulate/cloud_world.h"
+#include "calib/simulate/internal/cloud_world.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "calib/files/cloud_files.h"
+#include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "tests/unit/simulate/simulate_testing.h"
 

@@ -1,4 +1,4 @@
-#include "calib/simulate/clutter.h"
+#include "calib/simulate/internal/clutter.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <set>
 
 #include "calib/model/errors.h"
-#include "calib/simulate/cloud_world.h"
-#include "calib/simulate/holder.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/holder.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "calib/simulate/camera_renderer.h"
-#include "calib/simulate/people.h"
-#include "calib/simulate/shading.h"
+#include "calib/simulate/internal/camera_renderer.h"
+#include "calib/simulate/internal/people.h"
+#include "calib/simulate/internal/shading.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

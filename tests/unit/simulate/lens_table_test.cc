@@ -1,4 +1,4 @@
-#include "calib/simulate/lens_table.h"
+#include "calib/simulate/internal/lens_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "calib/simulate/noise.h"
+#include "calib/simulate/internal/noise.h"
 
 #include <gtest/gtest.h>
 

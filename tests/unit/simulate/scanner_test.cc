@@ -1,4 +1,4 @@
-#include "calib/simulate/scanner.h"
+#include "calib/simulate/internal/scanner.h"
 
 #include <gtest/gtest.h>
 

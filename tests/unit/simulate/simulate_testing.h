@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "calib/simulate/board.h"
-#include "calib/simulate/rig_defaults.h"
+#include "calib/simulate/internal/board.h"
+#include "calib/simulate/internal/rig_defaults.h"
+#include "calib/simulate/internal/world.h"
 #include "calib/simulate/simulator.h"
-#include "calib/simulate/world.h"
 
 namespace rgbdt::simulate {
 

@@ -1,4 +1,4 @@
-#include "calib/simulate/spinning.h"
+#include "calib/simulate/internal/spinning.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "calib/model/errors.h"
-#include "calib/simulate/cloud_world.h"
+#include "calib/simulate/internal/cloud_world.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

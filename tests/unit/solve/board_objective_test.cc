@@ -1,4 +1,4 @@
-#include "calib/solve/board_objective.h"
+#include "calib/solve/internal/board_objective.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "calib/solve/cross_check.h"
+#include "calib/solve/internal/cross_check.h"
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "calib/solve/closure.h"
 #include "tests/unit/solve/solve_world.h"
 

@@ -1,6 +1,6 @@
-#include "calib/solve/degenerate.h"
+#include "calib/solve/internal/degenerate.h"
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {

@@ -1,4 +1,4 @@
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "calib/solve/evaluate.h"
 #include "tests/unit/solve/solve_world.h"
 

@@ -1,6 +1,6 @@
-#include "calib/solve/joint_solve.h"
+#include "calib/solve/internal/joint_solve.h"
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {

@@ -1,6 +1,6 @@
-#include "calib/solve/next_view.h"
+#include "calib/solve/internal/next_view.h"
 
-#include "calib/solve/calibrate.h"
+#include "calib/methods/calibrate.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {

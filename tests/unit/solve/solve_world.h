@@ -11,7 +11,7 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/pixel_by_point.h"
 #include "calib/model/calibration.h"
-#include "calib/solve/joint_solve.h"
+#include "calib/solve/internal/joint_solve.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/solve/board_world.h"
 

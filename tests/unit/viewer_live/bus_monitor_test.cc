@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/bus/codec.h"
+#include "services/messages/codec.h"
 
 namespace rgbdt::viewer {
 namespace {

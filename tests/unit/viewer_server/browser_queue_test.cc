@@ -1,4 +1,4 @@
-#include "viewer/server/browser_queue.h"
+#include "viewer/server/internal/browser_queue.h"
 
 #include <gmock/gmock.h>
 
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/present/layout/frame.h"
 #include "test_browser.h"
-#include "viewer/frames/frame.h"
-#include "viewer/server/frame_layout.h"
+#include "viewer/server/internal/frame_layout.h"
 
 namespace rgbdt::viewer {
 namespace {

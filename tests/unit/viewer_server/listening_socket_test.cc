@@ -11,7 +11,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
-#include "services/drivers/descriptor.h"
+#include "services/drivers/net/descriptor.h"
 #include "test_browser.h"
 
 namespace rgbdt::viewer {

@@ -1,4 +1,4 @@
-#include "viewer/server/message.h"
+#include "viewer/server/internal/message.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "viewer/server/origin.h"
+#include "viewer/server/internal/origin.h"
 
 #include <gtest/gtest.h>
 

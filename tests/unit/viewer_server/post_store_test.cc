@@ -1,4 +1,4 @@
-#include "viewer/server/post_store.h"
+#include "viewer/server/internal/post_store.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "viewer/server/screen_ring.h"
+#include "viewer/server/internal/screen_ring.h"
 
 #include <gtest/gtest.h>
 

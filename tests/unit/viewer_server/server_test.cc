@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "calib/model/errors.h"
+#include "calib/present/layout/frame.h"
 #include "test_browser.h"
-#include "viewer/frames/frame.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "viewer/frames/frame.h"
+#include "calib/present/layout/frame.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/server/thinning.h"
+#include "viewer/server/internal/thinning.h"
 
 #include <gtest/gtest.h>
 

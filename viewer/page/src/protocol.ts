@@ -176,7 +176,7 @@ export interface SessionFrame {
   report: Report | null;
 }
 
-/// report.json, as far as the page reads it; see calib/files/proto/report.proto. int64 are strings.
+/// report.json, as far as the page reads it; see calib/files/schema/report.proto. int64 are strings.
 export type Report = Record<string, unknown> & { method?: string; cameras?: Record<string, Record<string, unknown>> };
 
 /// Who sees the board just now.

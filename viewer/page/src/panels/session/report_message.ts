@@ -1,4 +1,4 @@
-// report.json as the page reads it: calib/files/proto/report.proto. A field that is unknown is absent.
+// report.json as the page reads it: calib/files/schema/report.proto. A field that is unknown is absent.
 import type { RigidMotion } from "./poses";
 
 export interface PoseError { rotation_deg?: number; translation_mm?: number }

@@ -1,0 +1,365 @@
+#include "calib/detect/cloud/board_in_cloud.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+
+#include "calib/detect/cloud/board_crossings.h"
+#include "calib/detect/cloud/internal/board_plane.h"
+#include "calib/detect/cloud/plane_regions.h"
+#include "calib/detect/cloud/range_grid.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+struct Size {
+  double longer = 0, shorter = 0;
+};
+
+// Extent of flat points, and of half a spacing beyond the outermost on each side.
+Size Measure(const std::vector<Eigen::Vector2d>& flat, double spacing) {
+  std::vector<cv::Point2f> points;
+  for (const Eigen::Vector2d& p : flat) {
+    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  }
+  const cv::RotatedRect box = cv::minAreaRect(points);
+  return {std::max(box.size.width, box.size.height) + spacing,
+          std::min(box.size.width, box.size.height) + spacing};
+}
+
+// A look at a region's own few points: is it worth the look at all the beams?
+bool MayBe(const PlaneRegion& region, const Target& target) {
+  const PlaneFrame frame(region.plane, region.points[0].cast<double>());
+  std::vector<Eigen::Vector2d> flat;
+  for (const Eigen::Vector3f& p : region.points) flat.push_back(frame.Flat(p.cast<double>()));
+  const Size size = Measure(flat, 0);
+  const double diagonal = std::hypot(target.width_m, target.height_m);
+  return size.longer > 0.4 * diagonal && size.shorter > 0.25 * diagonal;
+}
+
+double Spacing(const PlaneMembers& members) {
+  return std::max(members.row_spacing_m, members.column_spacing_m);
+}
+
+// The rectangle where its beams meet `plane`, which may differ a little from the frame's.
+Rigid3 PoseOf(const PlaneFrame& frame, const FlatRectangle& rectangle, const Plane& plane) {
+  const Eigen::Vector3d x =
+      std::cos(rectangle.angle_rad) * frame.u + std::sin(rectangle.angle_rad) * frame.v;
+  Eigen::Matrix3d axes;
+  axes.col(2) = -plane.normal;
+  axes.col(0) = (x - plane.normal.dot(x) * plane.normal).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  const Eigen::Vector3d centre = frame.Solid(rectangle.centre);
+  return {Eigen::Quaterniond(axes).normalized(),
+          centre * (plane.offset / plane.normal.dot(centre))};
+}
+
+// What holds within the rectangle and just beyond it.
+struct Filling {
+  double inside = 0;  // of the beams well inside that were not stopped before: those on the plane
+  double seen = 0;    // how densely its inside is on the plane, against the beams' spacing
+  double beyond = 0;  // how densely a band round the rectangle is on the plane, against its inside
+  BoardPoints on;     // its rim left out
+};
+
+Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const Target& target) {
+  constexpr double kMargin = 0.04;
+  constexpr double kBand = 0.15;
+  const double c = std::cos(rectangle.angle_rad);
+  const double s = std::sin(rectangle.angle_rad);
+  // How far outside of the rectangle a place lies; negative inside.
+  const auto outside = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2d d = p - rectangle.centre;
+    return std::max(std::abs(c * d.x() + s * d.y()) - target.width_m / 2,
+                    std::abs(-s * d.x() + c * d.y()) - target.height_m / 2);
+  };
+  Filling filling;
+  int band = 0;
+  int through = 0;
+  for (std::size_t i = 0; i < members.flat.size(); ++i) {
+    const double off = outside(members.flat[i]);
+    if (off < -kMargin) {
+      filling.on.points.push_back(members.points[i]);
+      filling.on.flat.push_back(members.flat[i]);
+      filling.on.row.push_back(members.row[i]);
+    }
+    if (off > kMargin && off < kMargin + kBand) ++band;
+  }
+  for (const Eigen::Vector2d& p : members.through) {
+    if (outside(p) < -kMargin) ++through;
+  }
+  const auto on = static_cast<double>(filling.on.points.size());
+  filling.inside = on / std::max(1.0, on + through);
+  const double band_area =
+      (target.width_m + 2 * (kMargin + kBand)) * (target.height_m + 2 * (kMargin + kBand)) -
+      (target.width_m + 2 * kMargin) * (target.height_m + 2 * kMargin);
+  const double inner_area = (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin);
+  const double cell = members.row_spacing_m * members.column_spacing_m;
+  filling.seen = on * cell / inner_area;
+  filling.beyond = on == 0 ? 1 : std::min(1.0, band / band_area / (on / inner_area));
+  return filling;
+}
+
+// Of delta in the target's own axes about its centre: tilt and distance from the points' scatter
+// about the plane, place and turn in the plane from the crossings.
+Matrix6d CovarianceInTarget(const Eigen::Matrix4d& by_points, const Rigid3& pose,
+                            const FlatRectangle& rectangle) {
+  // A point at (x, y) on the board is moved off the plane by rx y - ry x + tz.
+  const Eigen::Matrix3d axes = pose.rotation.toRotationMatrix();
+  Eigen::Matrix<double, 3, 4> by_point = Eigen::Matrix<double, 3, 4>::Zero();
+  by_point.block<1, 3>(0, 0) = axes.col(1).transpose();
+  by_point.block<1, 3>(1, 0) = -axes.col(0).transpose();
+  by_point(2, 3) = 1;
+  const Eigen::Matrix3d plane = (by_point * by_points * by_point.transpose()).inverse();
+  // The rectangle's covariance is of (u, v, angle); turned into the target's axes.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-rectangle.angle_rad).toRotationMatrix();
+  const Eigen::Matrix3d flat = turn * rectangle.covariance * turn.transpose();
+  const int from_plane[] = {0, 1, 5};
+  const int from_flat[] = {3, 4, 2};
+  Matrix6d out = Matrix6d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      out(from_plane[i], from_plane[k]) = plane(i, k);
+      out(from_flat[i], from_flat[k]) = flat(i, k);
+    }
+  }
+  return out;
+}
+
+// Points along the sides that the cloud shows, for who compares outlines.
+std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& rectangle,
+                                     const Rigid3& pose) {
+  constexpr double kSpacing = 0.02;
+  const auto corners = target.OutlineCorners();
+  std::vector<Eigen::Vector3d> out;
+  for (std::size_t side = 0; side < 4; ++side) {
+    if (rectangle.side_coverage[side] < 0.3) continue;
+    const Eigen::Vector3d a = corners[side];
+    const Eigen::Vector3d b = corners[(side + 1) % 4];
+    const int pieces = std::max(1, static_cast<int>((b - a).norm() / kSpacing));
+    for (int i = 0; i < pieces; ++i) {
+      out.push_back(pose * (a + (b - a) * (i + 0.5) / pieces));
+    }
+  }
+  return out;
+}
+
+struct Candidate {
+  CloudEdges edges;
+  double score = 0;
+};
+
+// Two pieces of one board lead to the same place.
+bool IsSame(const CloudEdges& a, const CloudEdges& b) {
+  return (a.centre - b.centre).norm() < 0.04 && a.normal.dot(b.normal) > 0.97;
+}
+
+// Those that lie on a side.
+std::vector<Crossing> CrossingsOf(const PlaneMembers& members, const FlatRectangle& rectangle) {
+  std::vector<Crossing> out;
+  for (std::size_t i = 0; i < members.crossings.size(); ++i) {
+    if (rectangle.side[i] < 0) continue;
+    const FlatCrossing& c = members.crossings[i];
+    out.push_back({members.frame.Solid(c.middle), rectangle.half_width_m[i], rectangle.side[i],
+                   c.kind, rectangle.sigma_m[i]});
+  }
+  return out;
+}
+
+std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectangle& voted,
+                                  const Target& target, const BoardInCloudOptions& options) {
+  const FlatRectangle rectangle =
+      RefineRectangle(members.crossings, target.width_m, target.height_m, voted, options.edge);
+  const auto seen_sides =
+      std::count_if(rectangle.side_coverage.begin(), rectangle.side_coverage.end(),
+                    [](double coverage) { return coverage >= 0.4; });
+  constexpr double kMostStrain = 6;
+  if (seen_sides < 3 || rectangle.coverage < 0.55 || rectangle.strain > kMostStrain) {
+    return std::nullopt;
+  }
+  Filling filling = Fill(members, rectangle, target);
+  if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 ||
+      filling.on.points.size() < 12) {
+    return std::nullopt;
+  }
+  // What sticks out of the rectangle has no say in where its plane lies.
+  const BoardPlane points(members.plane, members.frame, filling.on, 0.3 * options.range_sigma_m);
+  const Rigid3 pose = PoseOf(members.frame, rectangle, points.plane());
+  const Eigen::Matrix4d scatter = points.Scatter(pose.translation);
+  Candidate out;
+  out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
+  out.edges.boundary = Outline(target, rectangle, pose);
+  out.edges.centre = pose.translation;
+  out.edges.normal = points.plane().normal;
+  out.edges.spacing_m = Spacing(members);
+  out.edges.points = static_cast<int>(filling.on.points.size());
+  const Size size = Measure(members.flat, 0);
+  out.edges.width_m = size.longer;
+  out.edges.height_m = size.shorter;
+  out.edges.scatter = scatter;
+  out.edges.raw_scatter = points.RawScatter(pose.translation);
+  out.edges.scatter_sigma_m = points.sigma_m();
+  const Matrix6d to_lidar = Adjoint(pose);
+  out.edges.pose = TargetPose{
+      pose,
+      to_lidar *
+          CovarianceInTarget(scatter / (points.sigma_m() * points.sigma_m()), pose, rectangle) *
+          to_lidar.transpose(),
+      false};
+  out.edges.crossings = CrossingsOf(members, rectangle);
+  return out;
+}
+
+// Where a board lies in another frame of nearly the same plane.
+FlatRectangle InFrame(const PlaneFrame& frame, const Candidate& board) {
+  const Rigid3& pose = board.edges.pose->sensor_from_target;
+  const Eigen::Vector3d x = pose.rotation * Eigen::Vector3d::UnitX();
+  FlatRectangle rectangle;
+  rectangle.centre = frame.Flat(pose.translation);
+  rectangle.angle_rad = std::atan2(x.dot(frame.v), x.dot(frame.u));
+  return rectangle;
+}
+
+// The piece that looks most like a board of another size, for the reason.
+class Likeness {
+ public:
+  void Consider(const PlaneMembers& members) {
+    if (members.flat.size() < 30) return;
+    const Size size = Measure(members.flat, Spacing(members));
+    if (size.longer < 0.25 || size.longer > 2.5 || size.shorter < 0.2) return;
+    double around = 0;
+    for (const FlatCrossing& c : members.crossings) around += c.length_m;
+    // Wholly outlined, and filled like a rectangle.
+    const double outlined = around / (2 * (size.longer + size.shorter));
+    const double area =
+        static_cast<double>(members.flat.size()) * members.row_spacing_m * members.column_spacing_m;
+    const double filled = area / (size.longer * size.shorter);
+    const double likeness = std::min(outlined, 1.0) * std::min(filled, 1.0);
+    if (likeness < 0.6 || likeness <= best_) return;
+    best_ = likeness;
+    size_ = size;
+  }
+  std::string Why(const Target& target) const {
+    std::ostringstream text;
+    text.precision(2);
+    text << std::fixed << "no board of the target's size in the cloud";
+    if (best_ > 0) {
+      text << "; the likeliest piece measured " << size_.shorter << " x " << size_.longer
+           << " m, the rig file says " << std::min(target.width_m, target.height_m) << " x "
+           << std::max(target.width_m, target.height_m) << " m";
+    } else {
+      text << "; is it wholly in the LIDAR's view and nothing touching its sides?";
+    }
+    return text.str();
+  }
+
+ private:
+  double best_ = 0;
+  Size size_;
+};
+
+// Looks at all the beams of a region; and where that shows a board, once more about its centre, so
+// that what touches it has no say in where its plane lies.
+std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, const Target& target,
+                                  const BoardInCloudOptions& options, Likeness* likeness) {
+  const double diagonal = std::hypot(target.width_m, target.height_m);
+  PlaneSums sums;
+  for (const Eigen::Vector3f& p : region.points) sums.Add(p.cast<double>());
+  const MemberOptions whole{options.range_sigma_m, sums.Mean(), 1.2 * diagonal, 1.2 * diagonal};
+  const PlaneMembers members = FindMembers(grid, region, whole);
+  std::vector<Candidate> found;
+  for (const FlatRectangle& voted :
+       VoteForRectangles(members.crossings, target.width_m, target.height_m)) {
+    const auto board = FitBoard(members, voted, target, options);
+    if (!board) continue;
+    region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
+    const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
+                               0.5 * std::min(target.width_m, target.height_m)};
+    const PlaneMembers about = FindMembers(grid, region, closer);
+    auto better = FitBoard(about, InFrame(about.frame, *board), target, options);
+    if (better) found.push_back(std::move(*better));
+  }
+  if (found.empty()) likeness->Consider(members);
+  return found;
+}
+
+PlaneRegionOptions RegionOptions(const Target& target, const BoardInCloudOptions& options) {
+  PlaneRegionOptions out;
+  out.sigma_m = std::max(0.008, options.range_sigma_m);
+  out.max_range_m = options.max_range_m;
+  out.largest_m = 2.2 * std::hypot(target.width_m, target.height_m);
+  out.smallest_m = std::min(target.width_m, target.height_m);
+  out.seed_m = std::min(0.15, 0.2 * out.smallest_m);
+  return out;
+}
+
+BoardsInCloud FindAtNoise(const RangeGrid& grid, const Target& target,
+                          const BoardInCloudOptions& options) {
+  std::vector<Candidate> found;
+  Likeness likeness;
+  for (const PlaneRegion& region : FindPlaneRegions(grid, RegionOptions(target, options))) {
+    if (!MayBe(region, target)) continue;
+    for (Candidate& board : LookCloser(grid, region, target, options, &likeness)) {
+      found.push_back(std::move(board));
+    }
+  }
+  if (found.empty()) return {{}, likeness.Why(target)};
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  BoardsInCloud boards;
+  for (Candidate& c : found) {
+    if (static_cast<int>(boards.candidates.size()) == options.max_candidates) break;
+    if (std::any_of(boards.candidates.begin(), boards.candidates.end(),
+                    [&](const CloudEdges& kept) { return IsSame(kept, c.edges); })) {
+      continue;
+    }
+    boards.candidates.push_back(std::move(c.edges));
+  }
+  return boards;
+}
+
+}  // namespace
+
+void BoardInCloudOptions::Check() const {
+  const auto require = [](double value, const char* name) {
+    if (!(value > 0) || !std::isfinite(value)) {
+      throw InputError(std::string("BoardInCloudOptions.") + name + " is " + std::to_string(value) +
+                       "; expected a positive number");
+    }
+  };
+  require(range_sigma_m, "range_sigma_m");
+  require(max_range_m, "max_range_m");
+  require(max_candidates, "max_candidates");
+  require(edge.class_sigma_rad, "edge.class_sigma_rad");
+  require(edge.side_sigma_rad, "edge.side_sigma_rad");
+  require(edge.blur_rad, "edge.blur_rad");
+  require(edge.thickness_m, "edge.thickness_m");
+  require(edge.thickness_sigma_m, "edge.thickness_sigma_m");
+}
+
+BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
+                         const BoardInCloudOptions& options) {
+  options.Check();
+  const RangeGrid grid(cloud);
+  if (grid.hits() < 100) {
+    return {{},
+            "the cloud has " + std::to_string(grid.hits()) +
+                " points; is the LIDAR connected and the view not covered?"};
+  }
+  // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
+  constexpr double kMostSigma = 0.045;
+  BoardInCloudOptions noisier = options;
+  const BoardsInCloud as_told = FindAtNoise(grid, target, noisier);
+  BoardsInCloud boards = as_told;
+  while (boards.candidates.empty() && 2 * noisier.range_sigma_m <= kMostSigma) {
+    noisier.range_sigma_m *= 2;
+    boards = FindAtNoise(grid, target, noisier);
+  }
+  return boards.candidates.empty() ? as_told : boards;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,130 @@
+#include "calib/detect/cloud/internal/board_plane.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace rgbdt {
+namespace {
+
+// Sums over the points, row by row: sum of j j' and j z, less what rows tell again.
+template <int kSize>
+struct RowSums {
+  using Vector = Eigen::Matrix<double, kSize, 1>;
+  using Matrix = Eigen::Matrix<double, kSize, kSize>;
+  Matrix h = Matrix::Zero();
+  Vector g = Vector::Zero();
+
+  template <typename J, typename Z>
+  RowSums(const std::vector<int>& rows, const RowNoise& noise, J j_of, Z z_of) {
+    for (std::size_t first = 0; first < rows.size();) {
+      Vector sum = Vector::Zero();
+      double sum_z = 0;
+      std::size_t i = first;
+      for (; i < rows.size() && rows[i] == rows[first]; ++i) {
+        const Vector j = j_of(i);
+        const double z = z_of(i);
+        h.noalias() += j * j.transpose();
+        g.noalias() += z * j;
+        sum += j;
+        sum_z += z;
+      }
+      const double repeated = noise.Repeated(static_cast<double>(i - first));
+      h.noalias() -= repeated * sum * sum.transpose();
+      g.noalias() -= repeated * sum_z * sum;
+      first = i;
+    }
+  }
+};
+
+// One-way analysis of variance of distances from the plane, rows against points; a bias of rows
+// only where chance hardly makes one.
+RowNoise NoiseOf(const std::vector<int>& rows, const std::vector<double>& off, double least) {
+  double within = 0;
+  double between = 0;
+  double count = 0;
+  for (std::size_t first = 0; first < rows.size();) {
+    double sum = 0;
+    double squares = 0;
+    std::size_t i = first;
+    for (; i < rows.size() && rows[i] == rows[first]; ++i) {
+      sum += off[i];
+      squares += off[i] * off[i];
+    }
+    const auto n = static_cast<double>(i - first);
+    within += squares - sum * sum / n;
+    between += sum * sum / n;
+    count += 1;
+    first = i;
+  }
+  const auto n = static_cast<double>(rows.size());
+  const double all = std::sqrt((within + between) / n);
+  if (count < 4 || n - count < 10) return {std::max(all, least), 0};
+  const double within_mean = std::max(within / (n - count), least * least);
+  const double between_mean = between / (count - 2);  // the plane took two of the rows' freedoms
+  const double chance = 1 + 4 * std::sqrt(2 / (count - 2));
+  if (between_mean < chance * within_mean) return {std::max(all, least), 0};
+  return {std::sqrt(within_mean), std::sqrt((between_mean - within_mean) * count / n)};
+}
+
+template <typename PointOf>
+Eigen::Matrix4d ScatterOf(const std::vector<int>& rows, const RowNoise& noise, PointOf point_of) {
+  const auto q_of = [&](std::size_t i) {
+    Eigen::Vector4d q;
+    q << point_of(i), 1;
+    return q;
+  };
+  return RowSums<4>(rows, noise, q_of, [](std::size_t) { return 0.0; }).h;
+}
+
+}  // namespace
+
+double RowNoise::Repeated(double points) const {
+  const double between = between_m * between_m;
+  return between / (within_m * within_m + points * between);
+}
+
+BoardPlane::BoardPlane(const Plane& near, const PlaneFrame& frame, const BoardPoints& points,
+                       double least_sigma_m)
+    : near_(near), frame_(frame), points_(points) {
+  plane_ = FitAlongRays();
+  std::vector<double> off;
+  for (std::size_t i = 0; i < points_.points.size(); ++i) {
+    off.push_back(plane_.Signed(AlongNormal(i)));
+  }
+  noise_ = NoiseOf(points_.row, off, least_sigma_m);
+  if (noise_.between_m > 0) plane_ = FitAlongRays();
+}
+
+// The plane of least squares, noise lying along the beams. The plane of least distances would lean
+// by sigma^2 sin cos / extent^2 (angles of incidence), since noise moves the points of a slanted
+// board along it, too. Where the beams meet the plane is free of it.
+Plane BoardPlane::FitAlongRays() const {
+  const auto j_of = [&](std::size_t i) {
+    return Eigen::Vector3d(points_.flat[i].x(), points_.flat[i].y(), 1);
+  };
+  const auto z_of = [&](std::size_t i) { return near_.Signed(points_.points[i]); };
+  const RowSums<3> sums(points_.row, noise_, j_of, z_of);
+  const Eigen::Vector3d lean = sums.h.ldlt().solve(sums.g);
+  Plane plane;
+  plane.normal = (near_.normal - lean.x() * frame_.u - lean.y() * frame_.v).normalized();
+  plane.offset = plane.normal.dot(frame_.origin + lean.z() * near_.normal);
+  return plane;
+}
+
+// Where a point's beam meets the plane, moved along the normal by the point's distance.
+Eigen::Vector3d BoardPlane::AlongNormal(std::size_t i) const {
+  return frame_.Solid(points_.flat[i]) + near_.Signed(points_.points[i]) * near_.normal;
+}
+
+Eigen::Matrix4d BoardPlane::Scatter(const Eigen::Vector3d& centre) const {
+  return ScatterOf(points_.row, noise_,
+                   [&](std::size_t i) -> Eigen::Vector3d { return AlongNormal(i) - centre; });
+}
+
+Eigen::Matrix4d BoardPlane::RawScatter(const Eigen::Vector3d& centre) const {
+  return ScatterOf(points_.row, {1, 0},
+                   [&](std::size_t i) -> Eigen::Vector3d { return points_.points[i] - centre; });
+}
+
+}  // namespace rgbdt

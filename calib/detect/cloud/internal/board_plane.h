@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calib/detect/cloud/board_crossings.h"
+#include "calib/detect/cloud/plane_regions.h"
+
+namespace rgbdt {
+
+/// Points on a board, in the order of their rows.
+struct BoardPoints {
+  std::vector<Eigen::Vector3d> points;  ///< [m, LIDAR]
+  std::vector<Eigen::Vector2d> flat;    ///< where their beams meet the frame's plane
+  std::vector<int> row;                 ///< their rows in the grid: a ring, a line
+};
+
+/// What the points of one row have in common, and what they have not.
+struct RowNoise {
+  double within_m = 0;   ///< sigma of a point about its row
+  double between_m = 0;  ///< sigma of a row about the plane: its range bias
+
+  /// Of points in one row, how much of what they tell is told again by each: the inverse of
+  /// within^2 I + between^2 11' is (I - repeated 11') / within^2.
+  double Repeated(double points) const;
+};
+
+/// The plane of a board's points and how exactly they tell it. `near` is a plane some millimetres
+/// off and `frame` its frame; `least_sigma_m` is what the noise is at least. The arguments must
+/// outlive it.
+class BoardPlane {
+ public:
+  BoardPlane(const Plane& near, const PlaneFrame& frame, const BoardPoints& points,
+             double least_sigma_m);
+
+  const Plane& plane() const { return plane_; }
+  double sigma_m() const { return noise_.within_m; }
+
+  /// CloudEdges::scatter and raw_scatter about a centre.
+  Eigen::Matrix4d Scatter(const Eigen::Vector3d& centre) const;
+  Eigen::Matrix4d RawScatter(const Eigen::Vector3d& centre) const;
+
+ private:
+  Eigen::Vector3d AlongNormal(std::size_t i) const;
+  Plane FitAlongRays() const;
+
+  const Plane& near_;
+  const PlaneFrame& frame_;
+  const BoardPoints& points_;
+  RowNoise noise_{1, 0};
+  Plane plane_;
+};
+
+}  // namespace rgbdt

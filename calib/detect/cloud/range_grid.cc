@@ -1,0 +1,301 @@
+#include "calib/detect/cloud/range_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace rgbdt {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+using Angles = RangeGrid::Angles;
+
+std::vector<Angles> AnglesOf(const Cloud& cloud) {
+  std::vector<Angles> angles;
+  angles.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& p = cloud.points[i];
+    const float flat = p.x() * p.x() + p.y() * p.y();
+    if (!p.allFinite() || !(flat + p.z() * p.z() > 1e-6F)) continue;
+    angles.push_back({std::atan2(p.y(), p.x()), std::atan2(p.z(), std::sqrt(flat)),
+                      static_cast<std::int32_t>(i)});
+  }
+  return angles;
+}
+
+using Rows = RangeGrid::Rows;
+
+double MedianElevation(const std::vector<Angles>& row) {
+  std::vector<double> elevations;
+  const std::size_t step = std::max<std::size_t>(1, row.size() / 500);
+  for (std::size_t i = 0; i < row.size(); i += step) elevations.push_back(row[i].elevation);
+  return Median(std::move(elevations));
+}
+
+Rows ByRing(const Cloud& cloud, const std::vector<Angles>& angles) {
+  Rows by_ring(65536);
+  for (const Angles& a : angles) {
+    by_ring[cloud.ring[static_cast<std::size_t>(a.point)]].push_back(a);
+  }
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t ring = 0; ring < by_ring.size(); ++ring) {
+    if (!by_ring[ring].empty()) order.emplace_back(MedianElevation(by_ring[ring]), ring);
+  }
+  std::sort(order.begin(), order.end());
+  Rows rows;
+  for (const auto& [elevation, ring] : order) rows.push_back(std::move(by_ring[ring]));
+  return rows;
+}
+
+// The elevations that the points keep to; nothing where they keep to none, as those of a turned
+// scanner do not.
+std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
+  constexpr double kBin = 0.02 * kPi / 180;
+  const auto bin_of = [&](const Angles& a) {
+    return static_cast<std::size_t>((a.elevation + kPi / 2) / kBin);
+  };
+  std::vector<int> counts(static_cast<std::size_t>(kPi / kBin) + 2, 0);
+  for (const Angles& a : angles) ++counts[bin_of(a)];
+  // Runs of occupied bins; a stray point or two is no ring.
+  const int least = std::max<int>(2, static_cast<int>(angles.size() / 20000));
+  std::vector<int> row_of(counts.size(), -1);
+  int rows = 0;
+  int occupied = 0;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  for (std::size_t b = 0; b < counts.size(); ++b) {
+    if (counts[b] < least) continue;
+    if (rows == 0) first = b;
+    if (rows == 0 || b > last + 2) ++rows;
+    last = b;
+    ++occupied;
+    row_of[b] = rows - 1;
+  }
+  if (rows < 4 || rows > 300 || occupied * 2 > static_cast<int>(last - first)) return std::nullopt;
+  Rows out(static_cast<std::size_t>(rows));
+  for (const Angles& a : angles) {
+    const int row = row_of[bin_of(a)];
+    if (row >= 0) out[static_cast<std::size_t>(row)].push_back(a);
+  }
+  return out;
+}
+
+// Width of even cells a little wider than the points are apart, so that few of them stay empty by
+// chance.
+double CellStep(const std::vector<Angles>& angles) {
+  constexpr double kCoarse = kPi / 180;
+  std::vector<char> seen(360 * 181, 0);
+  double solid = 0;
+  for (const Angles& a : angles) {
+    const int column = std::clamp(static_cast<int>((a.azimuth + kPi) / kCoarse), 0, 359);
+    const int row = std::clamp(static_cast<int>((a.elevation + kPi / 2) / kCoarse), 0, 180);
+    char& cell = seen[static_cast<std::size_t>(row * 360 + column)];
+    if (cell == 0) solid += kCoarse * kCoarse;
+    cell = 1;
+  }
+  return 1.5 * std::sqrt(solid / static_cast<double>(std::max<std::size_t>(1, angles.size())));
+}
+
+Rows ByCells(const std::vector<Angles>& angles, double step) {
+  Rows rows(static_cast<std::size_t>(kPi / step) + 2);
+  for (const Angles& a : angles) {
+    rows[static_cast<std::size_t>((a.elevation + kPi / 2) / step)].push_back(a);
+  }
+  while (!rows.empty() && rows.back().empty()) rows.pop_back();
+  const auto used =
+      std::find_if(rows.begin(), rows.end(), [](const auto& r) { return !r.empty(); });
+  rows.erase(rows.begin(), used);
+  return rows;
+}
+
+// The azimuth step that most of the neighbours in a row are apart: their median, made finer by
+// counting steps over whole stretches of a row.
+double AzimuthStep(const Rows& rows) {
+  std::vector<double> steps;
+  for (const auto& row : rows) {
+    for (std::size_t i = 1; i < row.size() && steps.size() < 200000; ++i) {
+      const double d = row[i].azimuth - row[i - 1].azimuth;
+      if (d > 1e-6) steps.push_back(d);
+    }
+  }
+  const double rough = Median(std::move(steps));
+  if (!(rough > 0)) return 0;
+  double total = 0;
+  double count = 0;
+  for (const auto& row : rows) {
+    for (std::size_t i = 1; i < row.size(); ++i) {
+      const double d = row[i].azimuth - row[i - 1].azimuth;
+      const double n = std::round(d / rough);
+      if (n < 1 || n > 3 || std::abs(d - n * rough) > 0.25 * rough) continue;
+      total += d;
+      count += n;
+    }
+  }
+  return count > 0 ? total / count : rough;
+}
+
+// Where a row's columns lie, as a fraction of a step: the circular mean.
+double PhaseOf(const std::vector<Angles>& row, double step) {
+  double c = 0;
+  double s = 0;
+  for (const Angles& a : row) {
+    const double turn = 2 * kPi * (a.azimuth + kPi) / step;
+    c += std::cos(turn);
+    s += std::sin(turn);
+  }
+  return std::atan2(s, c) / (2 * kPi) * step;
+}
+
+}  // namespace
+
+RangeGrid::RangeGrid(const Cloud& cloud) : cloud_(&cloud) {
+  bool told = cloud.organised && cloud.lines > 1 && cloud.beams > 1;
+  if (told && cloud.directions.size() != cloud.size()) {  // full of hits it needs no directions
+    told = std::all_of(cloud.points.begin(), cloud.points.end(),
+                       [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  }
+  if (told) {
+    TakeAsItIs();
+  } else {
+    Rebuild();
+  }
+}
+
+void RangeGrid::TakeAsItIs() {
+  rows_ = cloud_->lines;
+  columns_ = cloud_->beams;
+  for (std::size_t i = 0; i < cloud_->size(); ++i) hits_ += cloud_->IsHit(i) ? 1 : 0;
+  MeasureSteps();
+  const std::size_t middle = Cell(rows_ / 2, 0);
+  const auto first = Direction(middle);
+  const auto last = Direction(middle + static_cast<std::size_t>(columns_) - 1);
+  wraps_ = first && last && columns_ > 100 &&
+           std::acos(std::clamp(first->dot(*last), -1.0, 1.0)) < 2.5 * column_step_;
+}
+
+void RangeGrid::MeasureSteps() {
+  std::vector<double> along;
+  std::vector<double> across;
+  const std::size_t n = static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_);
+  const std::size_t stride = std::max<std::size_t>(1, n / 4001) | 1;
+  const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::asin(std::min(1.0, a.cross(b).norm()));
+  };
+  for (std::size_t cell = 0; cell < n; cell += stride) {
+    const auto here = Direction(cell);
+    if (!here) continue;
+    const std::size_t beyond = cell + static_cast<std::size_t>(columns_);
+    if ((cell + 1) % static_cast<std::size_t>(columns_) != 0) {
+      if (const auto next = Direction(cell + 1)) along.push_back(angle(*here, *next));
+    }
+    if (beyond < n) {
+      if (const auto next = Direction(beyond)) across.push_back(angle(*here, *next));
+    }
+  }
+  column_step_ = Median(std::move(along));
+  row_step_ = Median(std::move(across));
+}
+
+void RangeGrid::Rebuild() {
+  const std::vector<Angles> angles = AnglesOf(*cloud_);
+  hits_ = static_cast<int>(angles.size());
+  if (angles.size() < 100) return;
+  Rows rows;
+  if (cloud_->ring.size() == cloud_->size()) {
+    rows = ByRing(*cloud_, angles);
+  } else if (auto found = ByElevation(angles)) {
+    rows = std::move(*found);
+  }
+  for (auto& row : rows) {
+    std::sort(row.begin(), row.end(),
+              [](const Angles& a, const Angles& b) { return a.azimuth < b.azimuth; });
+  }
+  // A turned scanner has hundreds of beams, and its centre moves: its points keep to no such grid.
+  // Nor do those of which too many share a cell.
+  constexpr std::size_t kMostRings = 200;
+  if (rows.size() >= 2 && rows.size() <= kMostRings) {
+    const auto crowded = Place(rows, AzimuthStep(rows), false);
+    if (crowded && *crowded * 50 < hits_) return;
+  }
+  double step = CellStep(angles);
+  while (!Place(ByCells(angles, step), step, true)) step *= 1.5;
+}
+
+std::optional<int> RangeGrid::Place(const Rows& rows, double step, bool even) {
+  if (!(step > 1e-6)) return std::nullopt;
+  float low = 4;
+  float high = -4;
+  for (const auto& row : rows) {
+    for (const Angles& a : row) {
+      low = std::min(low, a.azimuth);
+      high = std::max(high, a.azimuth);
+    }
+  }
+  wraps_ = high - low > 2 * kPi - 0.1;
+  const double first = wraps_ ? -kPi : low - 0.5 * step;
+  rows_ = static_cast<int>(rows.size());
+  columns_ = static_cast<int>((wraps_ ? 2 * kPi : high - low) / step + 0.5) + (wraps_ ? 0 : 2);
+  // A few stray points between dense ones must not make a grid of nothing but misses.
+  if (static_cast<double>(rows_) * columns_ > 20.0 * hits_ + 1e6) return std::nullopt;
+  place_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), -1);
+  next_.assign(cloud_->size(), -1);
+  row_elevation_.clear();
+  row_azimuth_.clear();
+  std::vector<double> elevations;
+  int crowded = 0;
+  for (int r = 0; r < rows_; ++r) {
+    const auto& row = rows[static_cast<std::size_t>(r)];
+    row_elevation_.push_back(row.empty() ? row_elevation_.back() + step : MedianElevation(row));
+    if (r > 0) elevations.push_back(row_elevation_.back() - row_elevation_.end()[-2]);
+    const double phase = even ? 0.5 * step : PhaseOf(row, step);
+    // Column 0 lies within half a step of `first`.
+    row_azimuth_.push_back(first + std::remainder(-kPi + phase - first, step));
+    for (const Angles& a : row) {
+      const int column = static_cast<int>(std::lround((a.azimuth - row_azimuth_.back()) / step));
+      if (!Contains(r, column)) continue;
+      std::int32_t& place = place_[Cell(r, column)];
+      if (place >= 0) {
+        ++crowded;
+        next_[static_cast<std::size_t>(a.point)] = next_[static_cast<std::size_t>(place)];
+        next_[static_cast<std::size_t>(place)] = a.point;
+      } else {
+        place = a.point;
+      }
+    }
+  }
+  column_step_ = step;
+  row_step_ = Median(std::move(elevations));
+  return crowded;
+}
+
+Eigen::Vector3d RangeGrid::Origin(std::size_t cell) const {
+  if (cloud_->origins.empty() || !place_.empty()) return Eigen::Vector3d::Zero();
+  return cloud_->origins[cell / static_cast<std::size_t>(columns_)].cast<double>();
+}
+
+std::optional<Eigen::Vector3d> RangeGrid::Direction(std::size_t cell) const {
+  if (IsHit(cell)) return (Point(cell).cast<double>() - Origin(cell)).normalized();
+  if (place_.empty()) {
+    if (cloud_->directions.size() != cloud_->size()) return std::nullopt;
+    const Eigen::Vector3f& d = cloud_->directions[cell];
+    if (!d.allFinite()) return std::nullopt;
+    return d.cast<double>().normalized();
+  }
+  const std::size_t row = cell / static_cast<std::size_t>(columns_);
+  const double azimuth =
+      row_azimuth_[row] +
+      static_cast<double>(cell % static_cast<std::size_t>(columns_)) * column_step_;
+  const double elevation = row_elevation_[row];
+  return Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
+                         std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,272 @@
+#include "calib/detect/image/checkerboard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/detect/image/internal/corner_fit.h"
+#include "calib/detect/image/internal/corner_grid.h"
+#include "calib/detect/image/internal/grey_image.h"
+#include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/pattern_match.h"
+#include "calib/detect/image/internal/saddles.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kLeastSide = 16;       // of an image that is searched [px]
+constexpr int kMostGrids = 40;          // looked at for one size of the image
+constexpr double kLeastGrown = 0.4;     // of the pattern's corners, for a grid to be looked at
+constexpr double kGridTolerance = 0.2;  // of a saddle, of the distance to the next
+constexpr int kMostMeasured = 4;        // places of the pattern in a grid
+constexpr double kSure = 0.015;         // uncertainty of corners, of the distance to the next
+constexpr double kMostLeft = 0.5;       // median of CornerFit::left; noise at 4 x NETD
+constexpr double kMostLost = 0.05;      // of the corners, that may be measured by their neighbours
+
+// A size at which to look: the image shrunk by a whole number or enlarged, then blurred.
+struct Look {
+  double scale = 1;    ///< size of the image searched, of the image's
+  double sigma = 1.5;  ///< [px] there
+};
+
+// Cheap and likely ones first.
+std::vector<Look> LooksFor(const cv::Size& size) {
+  const double shrink = std::ceil(std::max(size.width, size.height) / 1000.0);
+  std::vector<Look> looks{{1 / shrink, 1.5}, {0.5 / shrink, 1.5}, {1 / shrink, 2.5}};
+  looks.push_back({shrink > 1 ? 2 / shrink : 2.0, 1.5});
+  return looks;
+}
+
+cv::Mat Resized(const cv::Mat& grey, double scale) {
+  if (scale == 1) return grey;
+  cv::Mat out;
+  cv::resize(grey, out, {}, scale, scale, scale < 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
+  return out;
+}
+
+// Pixel centres lie at integers: (x + 0.5) scales, not x.
+Eigen::Vector2d Scaled(const Eigen::Vector2d& place, double scale) {
+  return (place.array() + 0.5) * scale - 0.5;
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string Size(const Target& target) {
+  return std::to_string(target.corners_x()) + "x" + std::to_string(target.corners_y());
+}
+
+struct Measured {
+  CornerGrid corners;
+  std::map<std::pair<int, int>, double> contrasts;  ///< as CornerFit's
+  double sigma_px = 0, blur_px = 0, left = 0;       ///< medians
+};
+
+// Every corner of the pattern that can be measured in the full image.
+Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<double> blur_px,
+                 const PatternMatch& match, const Target& target) {
+  Measured measured;
+  std::vector<double> sigmas;
+  std::vector<double> blurs;
+  std::vector<double> lefts;
+  for (int row = match.row; row < match.row + match.rows(target); ++row) {
+    for (int column = match.column; column < match.column + match.columns(target); ++column) {
+      const auto fit = FitCorner(grey, model.At(column, row), model.Steps(column, row),
+                                 model.Bends(column, row), blur_px);
+      if (!fit) continue;
+      measured.corners[{column, row}] = fit->place;
+      measured.contrasts[{column, row}] = fit->contrast;
+      sigmas.push_back(fit->sigma_px);
+      blurs.push_back(fit->blur_px);
+      lefts.push_back(fit->left);
+    }
+  }
+  if (!sigmas.empty()) {
+    measured.sigma_px = Median(sigmas);
+    measured.blur_px = Median(blurs);
+    measured.left = Median(lefts);
+  }
+  return measured;
+}
+
+// Half of light minus dark where column + row is even, by the median.
+double TypicalContrast(const Measured& measured) {
+  std::vector<double> contrasts;
+  for (const auto& [at, contrast] : measured.contrasts) {
+    contrasts.push_back((at.first + at.second) % 2 == 0 ? contrast : -contrast);
+  }
+  return Median(contrasts);
+}
+
+// Takes out corners whose light and dark are exchanged or far too weak, or which lie off the grid.
+void DropWrong(double contrast, const GridModel& model, Measured* measured) {
+  for (auto corner = measured->corners.begin(); corner != measured->corners.end();) {
+    const auto [column, row] = corner->first;
+    const double own = measured->contrasts.at(corner->first) * ((column + row) % 2 == 0 ? 1 : -1);
+    // What noise may do, and a little for what the model does not follow.
+    const double spacing = model.Spacing(column, row);
+    const double tolerance = (0.15 + 4.5 * measured->sigma_px) / spacing + 0.005;
+    const bool good = own / contrast > 0.15 && model.Agrees(*corner, std::min(0.15, tolerance));
+    corner = good ? std::next(corner) : measured->corners.erase(corner);
+  }
+}
+
+// In the target's order: columns to the right of which rows go down.
+Checkerboard InOrder(const Measured& measured, const GridModel& model, double contrast,
+                     const PatternMatch& match, const Target& target) {
+  const int wide = target.corners_x();
+  const int high = target.corners_y();
+  const Eigen::Matrix2d steps = model.Steps(match.column + 0.5 * (match.columns(target) - 1),
+                                            match.row + 0.5 * (match.rows(target) - 1));
+  const Eigen::Vector2d along = steps.col(match.turned ? 1 : 0);
+  const bool mirrored = (steps.determinant() < 0) != match.turned;
+  // Of the two orders half a turn apart, the one whose rows point to the right.
+  const bool flip_x = along.x() < 0;
+  const bool flip_y = flip_x != mirrored;
+  Checkerboard board;
+  for (int y = 0; y < high; ++y) {
+    for (int x = 0; x < wide; ++x) {
+      const int across = flip_x ? wide - 1 - x : x;
+      const int down = flip_y ? high - 1 - y : y;
+      const int column = match.column + (match.turned ? down : across);
+      const int row = match.row + (match.turned ? across : down);
+      const auto found = measured.corners.find({column, row});
+      board.corners.push_back(found != measured.corners.end() ? found->second
+                                                              : model.At(column, row));
+      if (x > 0 || y > 0) continue;
+      // A corner's contrast tells of the squares in the directions (+, +) and (-, -); a flip of one
+      // axis looks at the two others.
+      const double here = (column + row) % 2 == 0 ? contrast : -contrast;
+      board.top_left_dark = flip_x == flip_y ? here < 0 : here > 0;
+    }
+  }
+  board.sigma_px = measured.sigma_px;
+  return board;
+}
+
+class Search {
+ public:
+  Search(const cv::Mat& grey, const Target& target) : grey_(grey), target_(target) {}
+
+  /// Looks for boards at one size; keeps the best of what was found so far.
+  void LookAt(const Look& look);
+  const std::optional<Checkerboard>& best() const { return best_; }
+  /// Whether there is no need to look at another size.
+  bool sure() const { return best_ && best_uncertainty_ < kSure; }
+  const std::string& why() const { return why_; }
+
+ private:
+  void Verify(const cv::Mat& picture, const CornerGrid& grid, double scale);
+  bool MeasureBoard(const CornerGrid& rough, const PatternMatch& match);
+  bool Fits(const cv::Mat& picture, const GridModel& model, const PatternMatch& match);
+
+  const cv::Mat& grey_;
+  const Target& target_;
+  std::optional<Checkerboard> best_;
+  double best_uncertainty_ = 0;  ///< of a corner, of the distance to the next
+  std::string why_;
+};
+
+void Search::LookAt(const Look& look) {
+  if (look.scale * std::min(grey_.cols, grey_.rows) < kLeastSide) return;
+  const cv::Mat picture = Resized(grey_, look.scale);
+  const std::vector<Saddle> saddles = FindSaddles(picture, look.sigma);
+  const int corners = target_.corners_x() * target_.corners_y();
+  // A grid may run on where the pattern meets its border.
+  GridFinder finder(saddles, std::max(target_.corners_x(), target_.corners_y()) + 4);
+  const auto least = static_cast<std::size_t>(std::max(8.0, kLeastGrown * corners));
+  for (int i = 0; i < kMostGrids; ++i) {
+    const auto grid = finder.Next(least);
+    if (!grid) break;
+    Verify(picture, *grid, look.scale);
+  }
+}
+
+void Search::Verify(const cv::Mat& picture, const CornerGrid& grid, double scale) {
+  const auto rough = GridModel::Fit(grid, kGridTolerance);
+  if (!rough) return;
+  int tried = 0;
+  for (const PatternMatch& match : PatternCandidates(picture, *rough, grid, target_)) {
+    const CornerGrid inside = CornersIn(match, grid, target_);
+    const auto model = GridModel::Fit(inside, kGridTolerance);
+    if (!model || !Fits(picture, *model, match)) continue;
+    CornerGrid full;
+    for (const auto& [at, place] : inside) full[at] = Scaled(place, 1 / scale);
+    if (MeasureBoard(full, match)) return;
+    if (++tried == kMostMeasured) break;
+  }
+}
+
+bool Search::Fits(const cv::Mat& picture, const GridModel& model, const PatternMatch& match) {
+  const PatternFit fit = MatchPattern(picture, model, match, target_);
+  if (fit == PatternFit::kGoesOn) {
+    why_ = "a checkerboard with more than " + Size(target_) + " inner corners is in the image";
+  }
+  return fit == PatternFit::kYes;
+}
+
+bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
+  const auto model = GridModel::Fit(rough, kGridTolerance);
+  if (!model) return false;
+  Measured measured = Measure(grey_, *model, {}, match, target_);
+  const auto better = GridModel::Fit(measured.corners, kGridTolerance);
+  if (!better) return false;
+  // Again with the blur that all corners agree on, and edges along the grid's lines.
+  measured = Measure(grey_, *better, measured.blur_px, match, target_);
+  const auto fine = GridModel::Fit(measured.corners, kGridTolerance);
+  if (!fine) return false;
+  const double contrast = TypicalContrast(measured);
+  DropWrong(contrast, *fine, &measured);
+  const double corners = target_.corners_x() * target_.corners_y();
+  if (static_cast<double>(measured.corners.size()) < (1 - kMostLost) * corners ||
+      measured.left > kMostLeft) {
+    return false;
+  }
+  const auto last = GridModel::Fit(measured.corners, kGridTolerance);
+  if (!last || !Fits(grey_, *last, match)) return false;
+  const double uncertainty =
+      measured.sigma_px / last->Spacing(match.column + 0.5 * (match.columns(target_) - 1),
+                                        match.row + 0.5 * (match.rows(target_) - 1));
+  // What merely resembles a checkerboard, such as rows of holes, fits worse.
+  if (!best_ || uncertainty < best_uncertainty_) {
+    best_ = InOrder(measured, *last, contrast, match, target_);
+    best_uncertainty_ = uncertainty;
+  }
+  return true;
+}
+
+}  // namespace
+
+CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target) {
+  CheckerboardResult result;
+  if (grey.empty()) {
+    result.why = "the image is empty";
+    return result;
+  }
+  if (std::min(target.corners_x(), target.corners_y()) < 3) {
+    result.why = "a checkerboard with " + Size(target) +
+                 " inner corners cannot be told from others; at least 3x3 are needed";
+    return result;
+  }
+  const cv::Mat repaired = RepairDeadPixels(grey);
+  Search search(repaired, target);
+  for (const Look& look : LooksFor(grey.size())) {
+    search.LookAt(look);
+    if (search.sure()) break;
+  }
+  result.board = search.best();
+  if (result.board) return result;
+  result.why = WhyImageIsUseless(grey);
+  if (result.why.empty()) result.why = search.why();
+  if (result.why.empty()) {
+    result.why = "no checkerboard with " + Size(target) +
+                 " inner corners in the image; is the whole board in view, sharp, with contrast?";
+  }
+  return result;
+}
+
+}  // namespace rgbdt

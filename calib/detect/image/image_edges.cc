@@ -1,0 +1,324 @@
+#include "calib/detect/image/image_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/camera/pixels.h"
+#include "calib/detect/image/checkerboard.h"
+#include "calib/detect/image/internal/board_sides.h"
+#include "calib/detect/image/internal/clipped.h"
+#include "calib/detect/image/internal/corner_order.h"
+#include "calib/detect/image/internal/picked_board.h"
+#include "calib/detect/image/target_pose.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr int kBandHalf = 2;  // a 5x5 window (paper II-A.1)
+
+using Corners = std::array<Eigen::Vector2d, 4>;
+using Directions = std::array<Eigen::Vector3d, 4>;  // camera axes; a side joins two of them
+using Chain = std::vector<Eigen::Vector2d>;
+
+std::string Text(const Eigen::Vector2d& p) {
+  return "(" + std::to_string(std::lround(p.x())) + ", " + std::to_string(std::lround(p.y())) + ")";
+}
+
+// Picks in order round the board, not crossing.
+std::string WhyNotAQuadrangle(const Corners& c) {
+  int turns = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector2d a = c[(i + 1) % 4] - c[i];
+    const Eigen::Vector2d b = c[(i + 2) % 4] - c[(i + 1) % 4];
+    if (a.norm() < 3) {
+      return "picked corners " + Text(c[i]) + " and " + Text(c[(i + 1) % 4]) +
+             " are the same point; pick four different corners";
+    }
+    turns += a.x() * b.y() - a.y() * b.x() > 0 ? 1 : -1;
+  }
+  if (std::abs(turns) != 4) return "picked corners do not go round the board; pick them in order";
+  return "";
+}
+
+// Where inner corners are, when only the outline is known: the same fractions of the board.
+std::optional<Chain> InnerFromOutline(const Camera& camera, const Target& target,
+                                      const Directions& outline) {
+  std::vector<cv::Point2f> quadrangle;
+  for (const Eigen::Vector3d& d : outline) {
+    quadrangle.emplace_back(static_cast<float>(d.x() / d.z()), static_cast<float>(d.y() / d.z()));
+  }
+  const std::vector<cv::Point2f> unit = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  std::vector<cv::Point2f> inner;
+  for (const Eigen::Vector3d& c : target.InnerCorners()) {
+    inner.emplace_back(static_cast<float>(c.x() / target.width_m + 0.5),
+                       static_cast<float>(c.y() / target.height_m + 0.5));
+  }
+  std::vector<cv::Point2f> seen;
+  cv::perspectiveTransform(inner, seen, cv::getPerspectiveTransform(unit, quadrangle));
+  Chain out;
+  for (const cv::Point2f& p : seen) {
+    const auto pixel = camera.Project({p.x, p.y, 1.0});
+    if (!pixel) return std::nullopt;
+    out.push_back(*pixel);
+  }
+  return out;
+}
+
+struct Gradient {
+  cv::Mat x, y;       // CV_32F, Sobel
+  cv::Mat magnitude;  // CV_32F
+  float threshold = 0;
+};
+
+// Sobel. The paper names no threshold: an edge is what stands out 4 times from the median
+// magnitude, some 5 sigma where an image is mostly noise. (Matlab's rule, twice the RMS, loses a
+// black border on dark ground as soon as a bright sky raises the RMS.)
+Gradient SobelOf(const cv::Mat& grey) {
+  Gradient g;
+  cv::Sobel(grey, g.x, CV_32F, 1, 0);
+  cv::Sobel(grey, g.y, CV_32F, 0, 1);
+  cv::magnitude(g.x, g.y, g.magnitude);
+  // Not below a step of one grey value, which Sobel shows as 4: a flat sky has no noise to go by.
+  g.threshold = std::max(4.0F, 4 * Percentile(g.magnitude, 0.5));
+  return g;
+}
+
+// A side as a chain of pixels about half a pixel apart.
+Chain SideOf(const Camera& camera, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const auto a = camera.Project(from);
+  const auto b = camera.Project(to);
+  if (!a || !b) return {};
+  const int pieces = std::clamp(static_cast<int>(2 * (*b - *a).norm()), 8, 20000);
+  return ProjectSegment(camera, from, to, pieces);
+}
+
+std::vector<Eigen::Vector2i> EdgePixelsIn(const std::array<Chain, 4>& sides, const Gradient& g) {
+  cv::Mat band = cv::Mat::zeros(g.magnitude.size(), CV_8U);
+  const cv::Rect image(0, 0, band.cols, band.rows);
+  for (const Chain& side : sides) {
+    for (const Eigen::Vector2d& p : side) {
+      const cv::Rect window(static_cast<int>(std::lround(p.x())) - kBandHalf,
+                            static_cast<int>(std::lround(p.y())) - kBandHalf, 2 * kBandHalf + 1,
+                            2 * kBandHalf + 1);
+      const cv::Rect inside = window & image;
+      if (!inside.empty()) band(inside).setTo(255);
+    }
+  }
+  std::vector<Eigen::Vector2i> pixels;
+  for (int y = 0; y < band.rows; ++y) {
+    for (int x = 0; x < band.cols; ++x) {
+      if (band.at<std::uint8_t>(y, x) != 0 && g.magnitude.at<float>(y, x) > g.threshold) {
+        pixels.emplace_back(x, y);
+      }
+    }
+  }
+  return pixels;
+}
+
+float Bilinear(const cv::Mat& m, const Eigen::Vector2d& p) {
+  const int x = static_cast<int>(std::floor(p.x()));
+  const int y = static_cast<int>(std::floor(p.y()));
+  if (x < 0 || y < 0 || x + 1 >= m.cols || y + 1 >= m.rows) return 0;
+  const auto fx = static_cast<float>(p.x() - x);
+  const auto fy = static_cast<float>(p.y() - y);
+  const float top = (1 - fx) * m.at<float>(y, x) + fx * m.at<float>(y, x + 1);
+  const float bottom = (1 - fx) * m.at<float>(y + 1, x) + fx * m.at<float>(y + 1, x + 1);
+  return (1 - fy) * top + fy * bottom;
+}
+
+// Offset [px] along `normal` of the steepest gradient near `p`, by a parabola through the peak.
+std::optional<double> EdgeOffset(const Gradient& g, const Eigen::Vector2d& p,
+                                 const Eigen::Vector2d& normal) {
+  constexpr double kReach = 3.0;
+  constexpr double kStep = 0.5;
+  constexpr int kSteps = static_cast<int>(2 * kReach / kStep);
+  std::array<double, kSteps + 1> steepness;
+  for (int i = 0; i <= kSteps; ++i) {
+    const Eigen::Vector2d at = p + (i * kStep - kReach) * normal;
+    steepness[static_cast<std::size_t>(i)] =
+        std::abs(Bilinear(g.x, at) * normal.x() + Bilinear(g.y, at) * normal.y());
+  }
+  const auto best = std::max_element(steepness.begin(), steepness.end());
+  if (best == steepness.begin() || best == steepness.end() - 1 || *best < g.threshold) {
+    return std::nullopt;
+  }
+  const double curvature = best[-1] - 2 * best[0] + best[1];
+  const double shift = curvature < 0 ? 0.5 * (best[-1] - best[1]) / curvature : 0;
+  return (static_cast<double>(best - steepness.begin()) + shift) * kStep - kReach;
+}
+
+// The side moved and turned onto the image's edge: offset = a + b t, t from -1 to 1, by iteratively
+// reweighted least squares. A side whose edge is seen along less than a third of it stays.
+Chain FitSide(const Chain& side, const Gradient& g) {
+  struct Sample {
+    double t, offset;
+  };
+  std::vector<Sample> samples;
+  const std::size_t n = side.size();
+  const auto normal_at = [&](std::size_t i) {
+    const Eigen::Vector2d along = side[std::min(i + 1, n - 1)] - side[i == 0 ? 0 : i - 1];
+    return Eigen::Vector2d(-along.y(), along.x()).normalized();
+  };
+  const auto t_at = [&](std::size_t i) {
+    return 2.0 * static_cast<double>(i) / static_cast<double>(n - 1) - 1.0;
+  };
+  if (n < 24) return side;
+  std::size_t tried = 0;
+  for (std::size_t i = n / 12; i < n - n / 12; i += 2) {  // the corners are another side's, too
+    ++tried;
+    const auto offset = EdgeOffset(g, side[i], normal_at(i));
+    if (offset) samples.push_back({t_at(i), *offset});
+  }
+  if (samples.size() < 8 || samples.size() * 3 < tried) return side;
+  double a = 0;
+  double b = 0;
+  for (int iteration = 0; iteration < 15; ++iteration) {
+    Eigen::Matrix2d h = 1e-9 * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d r = Eigen::Vector2d::Zero();
+    for (const Sample& s : samples) {
+      const double residual = s.offset - a - b * s.t;
+      const double weight = iteration == 0 ? 1 : 1 / (1 + residual * residual / 0.04);  // Cauchy
+      const Eigen::Vector2d j(1, s.t);
+      h += weight * j * j.transpose();
+      r += weight * s.offset * j;
+    }
+    const Eigen::Vector2d solution = h.ldlt().solve(r);
+    a = solution.x();
+    b = solution.y();
+  }
+  Chain fitted;
+  fitted.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) fitted.push_back(side[i] + (a + b * t_at(i)) * normal_at(i));
+  return fitted;
+}
+
+struct Located {
+  Directions outline;
+  Chain inner;
+  std::optional<CornerPose> pose;  // not by the paper, from picks
+  std::string why;
+};
+
+Located FromPicks(const Camera& camera, const Target& target, const Corners& picks) {
+  Located located;
+  located.why = WhyNotAQuadrangle(picks);
+  if (!located.why.empty()) return located;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto direction = camera.Unproject(picks[i]);
+    if (!camera.Contains(picks[i]) || !direction || direction->z() < 1e-3) {
+      located.why = "picked corner " + Text(picks[i]) + " lies outside the image";
+      return located;
+    }
+    located.outline[i] = *direction / direction->z();
+  }
+  const auto inner = InnerFromOutline(camera, target, located.outline);
+  if (!inner) {
+    located.why = "picked corners do not fit a board";
+    return located;
+  }
+  located.inner = *inner;
+  return located;
+}
+
+// The outline as a pose has it.
+void PlaceOutline(const Target& target, Located* located) {
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < 4; ++i) {
+    located->outline[i] = located->pose->pose.sensor_from_target * corners[i];
+  }
+}
+
+Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
+                         CameraKind kind) {
+  Located located;
+  const CheckerboardResult found = FindCheckerboard(grey, target);
+  if (!found.board) {
+    located.why = found.why;
+    return located;
+  }
+  located.inner = found.board->corners;
+  const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &located.inner);
+  located.pose = PoseFromCorners(camera, target, located.inner);
+  if (!located.pose) {
+    located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+    return located;
+  }
+  located.pose->pose.half_turn_known = known;
+  PlaceOutline(target, &located);
+  return located;
+}
+
+// Measured where a person picked the board.
+Located FromPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
+                        const Corners& picks, CameraKind kind) {
+  Located located = FromPicks(camera, target, picks);
+  if (!located.why.empty()) return located;
+  PickedBoardResult found =
+      FindPickedBoard(grey, camera, target, picks, kind == CameraKind::kColor);
+  located.why = std::move(found.why);
+  if (!found.board) return located;
+  located.inner = std::move(found.board->corners);
+  located.pose = std::move(found.board->pose);
+  PlaceOutline(target, &located);
+  return located;
+}
+
+// What goes beyond the paper: pose, its covariance, and each side fitted by itself.
+void AddPose(const Image& image, const cv::Mat& grey, const Camera& camera, const Target& target,
+             const CornerPose& pose, ImageEdges* edges) {
+  edges->pose = pose.pose;
+  edges->corner_sigma_px = pose.alike * pose.corner_sigma_px;
+  edges->sides = FitBoardSides(grey, Clipped(image), camera, target, pose.pose);
+}
+
+ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& camera,
+                         const Target& target, const Located& located) {
+  if (!located.why.empty()) return {std::nullopt, located.why};
+  ImageEdges edges;
+  edges.width = image.pixels.cols;
+  edges.height = image.pixels.rows;
+  edges.corners = located.inner;
+  const Gradient gradient = SobelOf(grey);
+  std::array<Chain, 4> sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto corner = camera.Project(located.outline[i]);
+    sides[i] = SideOf(camera, located.outline[i], located.outline[(i + 1) % 4]);
+    if (!corner || sides[i].size() < 2) return {std::nullopt, "an outline corner cannot be seen"};
+    edges.outline_corners[i] = *corner;
+    const Chain fitted = FitSide(sides[i], gradient);
+    // Every few pixels is enough: the chain is straight but for the lens.
+    for (std::size_t k = 0; k < fitted.size(); k += 8) edges.outline.push_back(fitted[k]);
+  }
+  edges.edge_pixels = EdgePixelsIn(sides, gradient);
+  if (edges.edge_pixels.empty()) {
+    return {std::nullopt, "no edge of the board stands out in the image; more contrast is needed"};
+  }
+  if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
+  return {edges, ""};
+}
+
+ImageEdgesResult Picked(ImageEdgesResult result) {
+  if (result.edges) result.edges->picked = true;
+  return result;
+}
+
+}  // namespace
+
+ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
+                                  const CornerSelection* picks, CameraKind kind) {
+  const cv::Mat grey = ToGrey(image);
+  if (picks == nullptr) {
+    return EdgesOf(image, grey, camera, target, FromCheckerboard(grey, camera, target, kind));
+  }
+  return Picked(EdgesOf(image, grey, camera, target, FromPicks(camera, target, picks->corners)));
+}
+
+ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, const Target& target,
+                                    const CornerSelection& picks, CameraKind kind) {
+  const cv::Mat grey = ToGrey(image);
+  return Picked(EdgesOf(image, grey, camera, target,
+                        FromPickedBoard(grey, camera, target, picks.corners, kind)));
+}
+
+}  // namespace rgbdt

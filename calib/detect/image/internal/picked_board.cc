@@ -1,0 +1,298 @@
+#include "calib/detect/image/internal/picked_board.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/detect/image/internal/board_map.h"
+#include "calib/detect/image/internal/corner_fit.h"
+#include "calib/detect/image/internal/corner_order.h"
+#include "calib/detect/image/internal/grey_image.h"
+#include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/pattern_ends.h"
+#include "calib/detect/image/internal/pick_alignment.h"
+
+namespace rgbdt {
+namespace {
+
+using Pixels = std::vector<Eigen::Vector2d>;
+
+constexpr int kLeastCorners = 8;
+constexpr double kLeastSpread = 0.7;    // RMS across the corners' longest direction, in squares
+constexpr double kMostLeft = 0.5;       // median of CornerFit::left, as for FindCheckerboard
+constexpr double kGridTolerance = 0.2;  // of the distance to the next corner
+constexpr double kLeastChi2 = 15;       // CornerPose::second_pose_chi2
+constexpr double kMostPickPx = 12;      // from a pick to the board's corner
+constexpr double kMostOff = 0.4;        // of the corners: what hides the others reaches into some
+constexpr int kRounds = 3;
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// What the image has where inner corners should be, in the target's order.
+struct Measured {
+  std::vector<std::optional<CornerFit>> fits;  // contrast: as of the first corner
+  std::vector<double> spacings;                // [px]
+
+  double MedianOf(double (*value)(const CornerFit&)) const {
+    std::vector<double> values;
+    for (const auto& fit : fits) {
+      if (fit) values.push_back(value(*fit));
+    }
+    return Median(std::move(values));
+  }
+  double contrast() const {
+    return MedianOf([](const CornerFit& f) { return f.contrast; });
+  }
+  double blur_px() const {
+    return MedianOf([](const CornerFit& f) { return f.blur_px; });
+  }
+  double sigma_px() const {
+    return MedianOf([](const CornerFit& f) { return f.sigma_px; });
+  }
+  double left() const {
+    return MedianOf([](const CornerFit& f) { return f.left; });
+  }
+  // RMS of what a fit leaves over, in grey values.
+  double noise() const {
+    return MedianOf([](const CornerFit& f) { return f.left * std::abs(f.contrast); });
+  }
+  std::size_t count() const {
+    const auto good = std::count_if(fits.begin(), fits.end(), [](const auto& f) { return f; });
+    return static_cast<std::size_t>(good);
+  }
+  Pixels places() const {
+    Pixels places;
+    for (const auto& fit : fits) places.push_back(fit ? fit->place : UnseenCorner());
+    return places;
+  }
+};
+
+Measured Measure(const cv::Mat& grey, const Target& target, const BoardMap& map,
+                 std::optional<double> blur_px) {
+  Measured measured;
+  int index = 0;
+  for (const Eigen::Vector3d& corner : target.InnerCorners()) {
+    const bool even = (index % target.corners_x() + index / target.corners_x()) % 2 == 0;
+    ++index;
+    auto& fit = measured.fits.emplace_back();
+    auto& spacing = measured.spacings.emplace_back(0);
+    const auto grid = GridAt(map, corner.head<2>(), target.square_m);
+    if (!grid) continue;
+    spacing = grid->spacing();
+    fit = FitCorner(grey, grid->place, grid->steps, grid->bends, blur_px);
+    if (fit && !even) fit->contrast = -fit->contrast;
+  }
+  return measured;
+}
+
+// Takes out what does not look like most: light and dark exchanged, another contrast, or more left
+// over by the fit, as where something covers a part of what was looked at.
+void DropUnlike(Measured* measured) {
+  const double contrast = measured->contrast();
+  const double noise = measured->noise();
+  const double sigma = measured->sigma_px();
+  for (auto& fit : measured->fits) {
+    if (!fit) continue;
+    const double relative = fit->contrast / contrast;
+    const bool alike = relative > 0.25 && relative < 4;
+    const double left = fit->left * std::abs(fit->contrast);
+    const bool clean = left < 1.3 * noise + 0.01 * std::abs(contrast);
+    if (!alike || !clean || fit->sigma_px > 3 * sigma + 0.02) fit.reset();
+  }
+}
+
+// Takes out what does not follow a flat grid through a smooth lens.
+void DropOffGrid(const Target& target, Measured* measured) {
+  CornerGrid grid;
+  for (std::size_t i = 0; i < measured->fits.size(); ++i) {
+    const int index = static_cast<int>(i);
+    if (!measured->fits[i]) continue;
+    grid[{index % target.corners_x(), index / target.corners_x()}] = measured->fits[i]->place;
+  }
+  const auto model = GridModel::Fit(grid, kGridTolerance);
+  for (auto& [at, place] : grid) {
+    if (model && model->Agrees({at, place}, kGridTolerance)) continue;
+    measured->fits[static_cast<std::size_t>(at.second * target.corners_x() + at.first)].reset();
+  }
+}
+
+// Without those beside a corner that was not measured: what hides that one may reach into what was
+// looked at, too faint to be noticed, and pull the place aside.
+Pixels FarFromHidden(const Target& target, const Measured& measured) {
+  const int columns = target.corners_x();
+  const auto hidden = [&](int column, int row) {
+    const bool inside = column >= 0 && row >= 0 && column < columns && row < target.corners_y();
+    return inside && !measured.fits[static_cast<std::size_t>(row * columns + column)];
+  };
+  Pixels places = measured.places();
+  for (int i = 0; i < columns * target.corners_y(); ++i) {
+    for (int k = 0; k < 9; ++k) {
+      if (!hidden(i % columns + k % 3 - 1, i / columns + k / 3 - 1)) continue;
+      places[static_cast<std::size_t>(i)] = UnseenCorner();
+    }
+  }
+  return places;
+}
+
+// Takes out what lies off the pose by more than noise does, and a little for an inexact lens.
+void DropOffPose(const BoardMap& map, const Target& target, double pose_sigma_px,
+                 Measured* measured) {
+  const double sigma = std::max(measured->sigma_px(), pose_sigma_px);
+  const auto corners = target.InnerCorners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    auto& fit = measured->fits[i];
+    if (!fit) continue;
+    const auto place = map(corners[i].head<2>());
+    const double tolerance =
+        std::min(0.05 + 4.5 * sigma + 0.002 * measured->spacings[i], 0.15 * measured->spacings[i]);
+    if (!place || (*place - fit->place).norm() > tolerance) fit.reset();
+  }
+}
+
+// Whether corners are enough and far enough from one line to tell a pose.
+bool Enough(const Target& target, const Pixels& corners) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  const auto points = target.InnerCorners();
+  const auto seen = std::count_if(corners.begin(), corners.end(), IsSeen);
+  if (seen < kLeastCorners) return false;
+  const auto count = static_cast<double>(seen);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (IsSeen(corners[i])) middle += points[i].head<2>() / count;
+  }
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d off = points[i].head<2>() - middle;
+    if (IsSeen(corners[i])) scatter += off * off.transpose() / count;
+  }
+  const double spread = std::sqrt(
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()[0]));
+  return spread > kLeastSpread * target.square_m;
+}
+
+bool Enough(const Target& target, const Measured& measured) {
+  return measured.left() < kMostLeft && Enough(target, measured.places());
+}
+
+std::string WhyNotEnough(const Target& target, const Measured& measured) {
+  return "of the " + std::to_string(measured.fits.size()) + " inner corners of the " +
+         std::to_string(target.squares_x) + "x" + std::to_string(target.squares_y) +
+         " squares only " + std::to_string(measured.count()) +
+         " could be made out where the board's corners were picked; at least " +
+         std::to_string(kLeastCorners) +
+         ", in three rows and columns, are needed: pick the board's own four corners, or capture "
+         "again with less of the board hidden";
+}
+
+// The pose that the corners farthest from what hides some agree on; without enough of those, all.
+std::optional<CornerPose> FirstPose(const Camera& camera, const Target& target,
+                                    const Measured& measured) {
+  const Pixels sure = FarFromHidden(target, measured);
+  if (Enough(target, sure)) {
+    auto pose = PoseFromCorners(camera, target, sure, kMostOff);
+    if (pose) return pose;
+  }
+  return PoseFromCorners(camera, target, measured.places(), kMostOff);
+}
+
+// The pose from the corners of `measured`, and these measured again from there.
+std::optional<CornerPose> Settle(const cv::Mat& grey, const Camera& camera, const Target& target,
+                                 Measured* measured) {
+  for (int round = 0; round < kRounds; ++round) {
+    const auto pose = FirstPose(camera, target, *measured);
+    if (!pose) return std::nullopt;
+    const BoardMap map = MapByPose(camera, pose->pose.sensor_from_target);
+    *measured = Measure(grey, target, map, measured->blur_px());
+    DropUnlike(measured);
+    DropOffPose(map, target, pose->corner_sigma_px, measured);
+    if (!Enough(target, *measured)) return std::nullopt;
+  }
+  return PoseFromCorners(camera, target, measured->places(), kMostOff);
+}
+
+// How uncertain a place on the board is in the image [px], along its worst direction.
+double SigmaAt(const Camera& camera, const TargetPose& pose, const Eigen::Vector3d& on_board) {
+  const Eigen::Vector3d p = pose.sensor_from_target * on_board;
+  const Eigen::Matrix3d covariance = PointCovariance(pose.covariance, p);
+  double worst = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d step =
+        std::sqrt(std::max(0.0, covariance(axis, axis))) * Eigen::Vector3d::Unit(axis);
+    const auto from = camera.Project(p);
+    const auto to = camera.Project(p + step);
+    if (from && to) worst = std::max(worst, (*to - *from).norm());
+  }
+  return worst;
+}
+
+std::string WhyNotPicked(const Camera& camera, const Target& target, const AlignedPicks& aligned,
+                         const TargetPose& pose) {
+  const auto outline = target.OutlineCorners();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto pixel = camera.Project(pose.sensor_from_target * outline[i]);
+    const double off = pixel ? (*pixel - aligned.picks[i]).norm() : 1e9;
+    if (off < kMostPickPx + 3 * SigmaAt(camera, pose, outline[i])) continue;
+    return "a picked corner is " + (pixel ? std::to_string(std::lround(off)) + " px" : "far") +
+           " from where the checkerboard has the board's corner; pick the board's own four corners";
+  }
+  return "";
+}
+
+// In the target's order, as far as the pattern tells.
+PickedBoardResult InOrder(const cv::Mat& grey, const Camera& camera, const Target& target,
+                          Pixels corners, bool black_is_dark) {
+  const bool known = OrderCorners(grey, target, black_is_dark, &corners);
+  const auto pose = PoseFromCorners(camera, target, corners, kMostOff);
+  if (!pose) return {std::nullopt, "the corners that were made out do not fit a flat board"};
+  PickedBoard board{std::move(corners), *pose};
+  for (std::size_t i = 0; i < board.corners.size(); ++i) {
+    if (!pose->used[i]) board.corners[i] = UnseenCorner();  // measured, but not a corner
+  }
+  board.pose.pose.half_turn_known = known;
+  return {std::move(board), ""};
+}
+
+}  // namespace
+
+PickedBoardResult FindPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
+                                  const std::array<Eigen::Vector2d, 4>& picks, bool black_is_dark) {
+  const cv::Mat repaired = RepairDeadPixels(grey);
+  Measured measured;
+  measured.fits.resize(target.InnerCorners().size());
+  const auto aligned = AlignPicks(repaired, camera, target, picks);
+  const auto map = aligned ? MapByOutline(camera, target, aligned->outline) : std::nullopt;
+  if (!map) return {std::nullopt, WhyNotEnough(target, measured)};
+  measured = Measure(repaired, target, *map, std::nullopt);
+  DropUnlike(&measured);
+  DropOffGrid(target, &measured);
+  if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
+  const auto pose = Settle(repaired, camera, target, &measured);
+  if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
+  if (!pose) {
+    return {std::nullopt,
+            "the checkerboard's corners do not fit a flat board; check the lens in the rig"};
+  }
+  if (pose->second_pose_chi2 < kLeastChi2) {
+    return {std::nullopt, "too little of the board can be made out to tell which way it leans"};
+  }
+  std::string why =
+      WhyPatternMayBeShifted(repaired, MapByPose(camera, pose->pose.sensor_from_target), target,
+                             measured.places(), measured.contrast());
+  if (why.empty()) why = WhyNotPicked(camera, target, *aligned, pose->pose);
+  if (!why.empty()) return {std::nullopt, why};
+  return InOrder(grey, camera, target, measured.places(), black_is_dark);
+}
+
+Pixels CornersNear(const cv::Mat& grey, const Camera& camera, const Target& target,
+                   const Rigid3& camera_from_target) {
+  Measured measured =
+      Measure(RepairDeadPixels(grey), target, MapByPose(camera, camera_from_target), std::nullopt);
+  DropUnlike(&measured);
+  return measured.places();
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,25 @@
+#pragma once
+
+// Inside calib/files only: what the fields of a file of points mean (cloud_files.h).
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/files/points/internal/record_table.h"
+#include "calib/model/time.h"
+
+namespace rgbdt {
+
+/// Three fields as one vector. Throws InputError where one is missing.
+std::vector<Eigen::Vector3f> ReadVectors(const records::Table& table, const std::string& x,
+                                         const std::string& y, const std::string& z);
+
+/// The field intensity, brought to 0 to 1.
+std::vector<float> ReadIntensity(const records::Table& table);
+
+/// The field utime, timestamp, time or t [us, UTC]; empty where there is none.
+std::vector<Utime> ReadUtime(const records::Table& table, Utime sweep_utime,
+                             const std::string& where);
+
+}  // namespace rgbdt

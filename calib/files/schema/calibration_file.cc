@@ -1,0 +1,81 @@
+#include "calib/files/schema/calibration_file.h"
+
+#include <set>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/schema/proto_convert.h"
+#include "calib/files/schema/report.pb.h"
+#include "calib/files/schema/text_proto.h"
+
+namespace rgbdt {
+namespace {
+
+using text::Place;
+
+constexpr char kComment[] =
+    "Where each camera sits, as camera_from_lidar:\n"
+    "  point_in_camera = R(quaternion_wxyz) * point_in_lidar + translation_m\n"
+    "LIDAR: x forward, y left, z up. Camera: x right, y down, z forward (OpenCV). Metres.\n"
+    "A point at z > 0 then goes through the rig's lens to its pixel. The camera's position in the\n"
+    "LIDAR frame is -R^T * translation_m. `rgbdt export` writes other tools' files.";
+
+CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& place) {
+  if (camera.camera().empty()) place.Fail("camera", "is missing; expected the camera's name");
+  CameraCalibration out;
+  out.camera = camera.camera();
+  out.camera_from_lidar = text::ToRigid3(camera.camera_from_lidar(), place.In("camera_from_lidar"));
+  if (camera.has_covariance()) {
+    out.covariance = text::ToMatrix(camera.covariance(), place.In("covariance"));
+  }
+  out.converged = camera.converged();
+  out.status = camera.status();
+  return out;
+}
+
+void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) {
+  out->set_camera(text::ValidUtf8(camera.camera));
+  text::FromRigid3(camera.camera_from_lidar, out->mutable_camera_from_lidar());
+  if (camera.covariance && camera.covariance->allFinite()) {
+    text::FromMatrix(*camera.covariance, out->mutable_covariance());
+  }
+  out->set_converged(camera.converged);
+  out->set_status(text::ValidUtf8(camera.status));
+}
+
+}  // namespace
+
+Calibration ReadCalibration(const std::filesystem::path& path) {
+  proto::Calibration message;
+  Place::Tree tree;
+  const Place place = text::ParseText(ReadWholeFile(path), path.string(), &message, &tree);
+  Calibration calibration{message.method(), message.rig_hash(), message.utime(), {}};
+  std::set<std::string> names;
+  for (int i = 0; i < message.camera_size(); ++i) {
+    const Place at = place.In("camera", i);
+    calibration.cameras.push_back(ToCamera(message.camera(i), at));
+    if (!names.insert(message.camera(i).camera()).second) {
+      at.Fail("camera", "is \"" + message.camera(i).camera() + "\" for the second time");
+    }
+  }
+  if (calibration.cameras.empty()) {
+    place.Fail("camera", "is missing; the file holds no calibrated camera");
+  }
+  return calibration;
+}
+
+std::string PrintCalibration(const Calibration& calibration) {
+  proto::Calibration message;
+  message.set_method(text::ValidUtf8(calibration.method));
+  message.set_rig_hash(text::ValidUtf8(calibration.rig_hash));
+  message.set_utime(calibration.utime);
+  for (const CameraCalibration& camera : calibration.cameras) {
+    FromCamera(camera, message.add_camera());
+  }
+  return text::PrintText(message, kComment);
+}
+
+void WriteCalibration(const std::filesystem::path& path, const Calibration& calibration) {
+  WriteFileAtomically(path, PrintCalibration(calibration));
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,31 @@
+#pragma once
+
+// Inside calib/files only: the pieces of a report, to and from its message. JSON knows no NaN: a
+// number that is not finite is left out, and what is not there is read as NaN.
+
+#include "calib/files/schema/report.pb.h"
+#include "calib/files/schema/text_proto.h"
+#include "calib/model/calibration.h"
+
+namespace rgbdt::text {
+
+void FromPoseError(const PoseError& error, proto::PoseError* out);
+PoseError ToPoseError(const proto::PoseError& error);
+
+void FromEstimate(const Estimate& estimate, proto::Estimate* out);
+Estimate ToEstimate(const proto::Estimate& estimate);
+
+void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
+TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);
+
+/// How sure a camera's pose is: edge_rms_whitened, sigma, nuisance, folds and halves.
+void FromSureness(const CameraReport& camera, proto::CameraReport* out);
+/// Throws InputError where a list of numbers has another length than it should.
+void ToSureness(const proto::CameraReport& message, const Place& place, CameraReport* camera);
+
+/// The report's closure and next view; one whose poses are not finite is left out.
+void FromRigWide(const Report& report, proto::Report* out);
+/// Throws InputError where a pose is none. `where` is the file.
+void ToRigWide(const proto::Report& message, const std::string& where, Report* report);
+
+}  // namespace rgbdt::text

@@ -1,0 +1,302 @@
+#include "calib/files/schema/rig_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/schema/internal/device_convert.h"
+#include "calib/files/schema/proto_convert.h"
+#include "calib/files/schema/rig.pb.h"
+#include "calib/files/schema/text_proto.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+using text::Place;
+
+constexpr double kDegreesPerRadian = 180.0 / M_PI;
+
+template <typename ProtoLens>
+Lens ToLens(const ProtoLens& proto, Lens::Model model, std::initializer_list<int> counts,
+            const Place& place) {
+  Lens lens;
+  lens.model = model;
+  lens.fx = proto.fx();
+  lens.fy = proto.fy();
+  lens.cx = proto.cx();
+  lens.cy = proto.cy();
+  const int count = proto.distortion_size();
+  if (std::find(counts.begin(), counts.end(), count) == counts.end()) {
+    std::string expected;
+    for (const int n : counts) expected += (expected.empty() ? "" : ", ") + std::to_string(n);
+    place.Fail("distortion",
+               "has " + std::to_string(count) + " numbers; expected one of " + expected);
+  }
+  std::copy(proto.distortion().begin(), proto.distortion().end(), lens.distortion.begin());
+  return lens;
+}
+
+Lens ToLens(const proto::Camera& camera, const Place& place) {
+  switch (camera.lens_case()) {
+    case proto::Camera::kPinhole:
+      return ToLens(camera.pinhole(), Lens::Model::kPinhole, {0, 4, 5, 8}, place.In("pinhole"));
+    case proto::Camera::kFisheye:
+      return ToLens(camera.fisheye(), Lens::Model::kFisheye, {0, 4}, place.In("fisheye"));
+    case proto::Camera::LENS_NOT_SET:
+      break;
+  }
+  return {};
+}
+
+void CheckLensIsKnown(const CameraSpec& camera, const Place& place) {
+  if (camera.lens.known()) return;
+  place.Fail(camera.lens.model == Lens::Model::kFisheye ? "fisheye" : "pinhole",
+             "is missing: camera \"" + camera.name +
+                 "\" has no lens; run `rgbdt intrinsics DIR` to find it, or give pinhole { ... } "
+                 "or fisheye { ... }");
+}
+
+Radiometry ToRadiometry(const proto::Camera& camera, const Place& place) {
+  Radiometry radiometry;
+  if (camera.has_linear()) {
+    radiometry = text::ToRadiometry(camera.linear(), place.In("linear"));
+  } else if (camera.has_planck()) {
+    radiometry = text::ToRadiometry(camera.planck(), place.In("planck"));
+  }
+  const double emissivity = camera.emissivity();
+  if (!(emissivity >= 0 && emissivity <= 1)) {
+    place.Fail("emissivity", "is " + std::to_string(emissivity) + "; expected 0 to 1");
+  }
+  const double reflected = camera.reflected_temperature_k();
+  if (!(reflected >= 0) || !std::isfinite(reflected)) {
+    place.Fail("reflected_temperature_k",
+               "is " + std::to_string(reflected) + "; expected kelvin, 0 or more");
+  }
+  radiometry.emissivity = emissivity > 0 ? emissivity : 1;
+  radiometry.reflected_temperature_k = reflected;
+  return radiometry;
+}
+
+void CheckKindAndFormat(const proto::Camera& camera, const Place& place) {
+  if (camera.kind() == proto::Camera::KIND_UNSPECIFIED) {
+    place.Fail("kind", "is missing; expected COLOR or THERMAL");
+  }
+  if (camera.pixel_format() == proto::Camera::PIXEL_FORMAT_UNSPECIFIED) {
+    place.Fail("pixel_format",
+               "is missing; expected MONO8, MONO16, BAYER_RG8, BAYER_GR8, BAYER_GB8, BAYER_BG8 or "
+               "BGR8");
+  }
+  const bool grey = camera.pixel_format() == proto::Camera::MONO8 ||
+                    camera.pixel_format() == proto::Camera::MONO16;
+  if (camera.kind() == proto::Camera::THERMAL && !grey) {
+    place.Fail("pixel_format", "is " + proto::Camera::PixelFormat_Name(camera.pixel_format()) +
+                                   "; a THERMAL camera has one channel: MONO8 or MONO16");
+  }
+}
+
+CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed lenses) {
+  CheckKindAndFormat(camera, place);
+  CameraSpec spec;
+  spec.name = camera.name();
+  spec.kind = static_cast<CameraKind>(camera.kind());
+  spec.width = camera.width();
+  spec.height = camera.height();
+  spec.format = static_cast<PixelFormat>(camera.pixel_format());
+  spec.lens = ToLens(camera, place);
+  if (lenses == LensNeed::kKnown) CheckLensIsKnown(spec, place);
+  spec.radiometry = ToRadiometry(camera, place);
+  text::RequireFinite(camera.readout_s(), place, "readout_s");
+  spec.readout_s = camera.readout_s();
+  text::RequireFinite(camera.rolling_s(), place, "rolling_s");
+  spec.rolling_s = camera.rolling_s();
+  text::RequireFinite(camera.netd_k(), place, "netd_k");
+  spec.netd_k = camera.netd_k();
+  if (camera.has_camera_from_lidar_guess()) {
+    spec.camera_from_lidar_guess =
+        text::ToRigid3(camera.camera_from_lidar_guess(), place.In("camera_from_lidar_guess"));
+  }
+  if (camera.has_device()) spec.device = text::ToDevice(camera.device(), place.In("device"));
+  return spec;
+}
+
+LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
+  LidarSpec spec;
+  spec.name = lidar.name();
+  if (spec.name.empty()) place.Fail("name", "is missing; expected a name such as \"lidar\"");
+  if (lidar.range_sigma_m() != 0) spec.range_sigma_m = lidar.range_sigma_m();
+  if (lidar.has_hokuyo()) {
+    spec.device = text::ToDevice(lidar.hokuyo(), place.In("hokuyo"));
+  } else if (lidar.has_velodyne()) {
+    spec.device = text::ToDevice(lidar.velodyne(), place.In("velodyne"));
+  } else if (lidar.has_pcd_folder()) {
+    spec.device = text::ToDevice(lidar.pcd_folder(), place.In("pcd_folder"));
+  }
+  if (lidar.has_turned_scanner()) {
+    const proto::TurnedScanner& scanner = lidar.turned_scanner();
+    const Place at = place.In("turned_scanner");
+    if (!scanner.has_motor_from_scanner()) {
+      at.Fail("motor_from_scanner",
+              "is missing; where the scanner sits on the motor's axis, write "
+              "motor_from_scanner { quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0] }");
+    }
+    text::RequireFinite(scanner.zero_ticks(), at, "zero_ticks");
+    spec.turned_scanner =
+        TurnedScanner{text::ToRigid3(scanner.motor_from_scanner(), at.In("motor_from_scanner")),
+                      scanner.ticks_per_degree() * kDegreesPerRadian,
+                      scanner.zero_ticks(),
+                      {}};
+    if (scanner.has_dynamixel()) {
+      spec.turned_scanner->motor = text::ToDevice(scanner.dynamixel(), at.In("dynamixel"));
+    }
+  }
+  return spec;
+}
+
+Target ToTarget(const proto::Target& target, const Place& place) {
+  Target spec;
+  spec.squares_x = target.squares_x();
+  spec.squares_y = target.squares_y();
+  spec.square_m = target.square_m();
+  spec.width_m = target.width_m();
+  spec.height_m = target.height_m();
+  if (target.pattern_offset_m_size() > 0) {
+    text::RequireNumbers(target.pattern_offset_m(), 2, place, "pattern_offset_m");
+    spec.pattern_offset_m = {target.pattern_offset_m(0), target.pattern_offset_m(1)};
+  }
+  return spec;
+}
+
+// 1400 rather than 1400.0000000000002, wherever both mean the same.
+double TicksPerDegree(double ticks_per_rad) {
+  const double exact = ticks_per_rad / kDegreesPerRadian;
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.12g", exact);
+  const double rounded = std::stod(digits);
+  return rounded * kDegreesPerRadian == ticks_per_rad ? rounded : exact;
+}
+
+template <typename ProtoLens>
+void FromLens(const Lens& lens, int least, ProtoLens* out) {
+  out->set_fx(lens.fx);
+  out->set_fy(lens.fy);
+  out->set_cx(lens.cx);
+  out->set_cy(lens.cy);
+  int count = least;
+  if (lens.model == Lens::Model::kPinhole) {
+    if (lens.distortion[4] != 0) count = 5;
+    if (lens.distortion[5] != 0 || lens.distortion[6] != 0 || lens.distortion[7] != 0) count = 8;
+  }
+  for (int i = 0; i < count; ++i) out->add_distortion(lens.distortion[static_cast<size_t>(i)]);
+}
+
+// A lens that is not known stays so, and keeps its model where that is not the usual one.
+void FromLens(const Lens& lens, proto::Camera* out) {
+  if (lens.model == Lens::Model::kFisheye) {
+    proto::Fisheye* const fisheye = out->mutable_fisheye();
+    if (lens.known()) FromLens(lens, 4, fisheye);
+  } else if (lens.known()) {
+    FromLens(lens, 4, out->mutable_pinhole());
+  }
+}
+
+void FromCamera(const CameraSpec& spec, proto::Camera* out) {
+  out->set_name(text::ValidUtf8(spec.name));
+  out->set_kind(static_cast<proto::Camera::Kind>(spec.kind));
+  out->set_width(spec.width);
+  out->set_height(spec.height);
+  out->set_pixel_format(static_cast<proto::Camera::PixelFormat>(spec.format));
+  FromLens(spec.lens, out);
+  if (spec.radiometry.kind == Radiometry::Kind::kLinear) {
+    text::FromLinear(spec.radiometry, out->mutable_linear());
+  } else if (spec.radiometry.kind == Radiometry::Kind::kPlanck) {
+    text::FromPlanck(spec.radiometry, out->mutable_planck());
+  }
+  if (spec.radiometry.emissivity != 1) out->set_emissivity(spec.radiometry.emissivity);
+  out->set_reflected_temperature_k(spec.radiometry.reflected_temperature_k);
+  out->set_readout_s(spec.readout_s);
+  out->set_rolling_s(spec.rolling_s);
+  out->set_netd_k(spec.netd_k);
+  if (spec.camera_from_lidar_guess) {
+    text::FromRigid3(*spec.camera_from_lidar_guess, out->mutable_camera_from_lidar_guess());
+  }
+  if (spec.device) text::FromDevice(*spec.device, out->mutable_device());
+}
+
+void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
+  out->set_name(text::ValidUtf8(spec.name));
+  out->set_range_sigma_m(spec.range_sigma_m);
+  text::FromLidarDevice(spec, out);
+  if (!spec.turned_scanner) return;
+  proto::TurnedScanner* scanner = out->mutable_turned_scanner();
+  text::FromRigid3(spec.turned_scanner->motor_from_scanner, scanner->mutable_motor_from_scanner());
+  scanner->set_ticks_per_degree(TicksPerDegree(spec.turned_scanner->ticks_per_rad));
+  scanner->set_zero_ticks(spec.turned_scanner->zero_ticks);
+  if (spec.turned_scanner->motor) {
+    text::FromDevice(*spec.turned_scanner->motor, scanner->mutable_dynamixel());
+  }
+}
+
+void FromTarget(const Target& spec, proto::Target* out) {
+  out->set_squares_x(spec.squares_x);
+  out->set_squares_y(spec.squares_y);
+  out->set_square_m(spec.square_m);
+  out->set_width_m(spec.width_m);
+  out->set_height_m(spec.height_m);
+  if (spec.pattern_offset_m.isZero(0)) return;
+  out->add_pattern_offset_m(spec.pattern_offset_m.x());
+  out->add_pattern_offset_m(spec.pattern_offset_m.y());
+}
+
+}  // namespace
+
+Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
+  return ParseRig(ReadWholeFile(path), path.string(), lenses);
+}
+
+Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses) {
+  proto::Rig message;
+  Place::Tree tree;
+  const Place place = text::ParseText(text, where, &message, &tree);
+  if (!message.has_lidar()) place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
+  if (!message.has_target()) place.Fail("target", "is missing; expected target { ... }");
+  Rig rig;
+  rig.name = message.name();
+  rig.lidar = ToLidar(message.lidar(), place.In("lidar"));
+  for (int i = 0; i < message.camera_size(); ++i) {
+    rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
+  }
+  rig.target = ToTarget(message.target(), place.In("target"));
+  rig.text = text;
+  rig.hash = HashOfRigText(text);
+  try {
+    rig.Check(lenses);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+  return rig;
+}
+
+std::string PrintRig(const Rig& rig) {
+  proto::Rig message;
+  message.set_name(text::ValidUtf8(rig.name));
+  FromLidar(rig.lidar, message.mutable_lidar());
+  for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
+  FromTarget(rig.target, message.mutable_target());
+  return text::PrintText(
+      message,
+      "A rig (schema: calib/files/schema/rig.proto). Metres, pixels, seconds, kelvin.\n"
+      "a_from_b: point_in_a = R(quaternion w x y z) * point_in_b + translation. LIDAR: x forward,\n"
+      "y left, z up. Camera: x right, y down, z forward.");
+}
+
+std::string HashOfRigText(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
+  return digits;
+}
+
+}  // namespace rgbdt

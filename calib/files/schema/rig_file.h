@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// Reads and checks a rig.textproto (schema: calib/files/schema/rig.proto). `text` and `hash` of
+/// the result are the file's. Throws InputError with file, line and key; also for a camera without
+/// a lens (none at all, or fx and fy left out or 0), unless those may be unknown.
+Rig ReadRig(const std::filesystem::path& path, LensNeed lenses = LensNeed::kKnown);
+
+/// The same from text, as it comes over the bus; `where` stands for the file in error messages.
+Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses = LensNeed::kKnown);
+
+/// The rig as rig.textproto, full precision; `text` and `hash` are not looked at.
+std::string PrintRig(const Rig& rig);
+
+/// What stands in Rig::hash: FNV-1a, 64 bit, 16 hexadecimal digits.
+std::string HashOfRigText(const std::string& text);
+
+}  // namespace rgbdt

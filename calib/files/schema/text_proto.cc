@@ -1,0 +1,165 @@
+#include "calib/files/schema/text_proto.h"
+
+#include <google/protobuf/io/tokenizer.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt::text {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::TextFormat;
+
+// Where a line (from 0) begins in a text.
+std::size_t BeginOfLine(const std::string& text, int line) {
+  std::size_t at = 0;
+  for (; line > 0; --line) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) return text.size();
+    at = end + 1;
+  }
+  return at;
+}
+
+// Keeps the first error; later ones only follow from it.
+class FirstError : public google::protobuf::io::ErrorCollector {
+ public:
+  explicit FirstError(const std::string& source) : source_(source) {}
+
+  void AddError(int line, google::protobuf::io::ColumnNumber column,
+                const std::string& message) override {
+    if (!text.empty()) return;
+    text = (line < 0 ? " " : Position(line, column, message)) + message;  // -1: of no line
+  }
+  void AddWarning(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
+
+  std::string text;
+
+ private:
+  // Protobuf counts lines and columns from 0, and names the word after a wrong key or value: that
+  // may stand lines below. So look for the word itself, which the message quotes.
+  std::string Position(int line, int column, const std::string& message) const {
+    std::size_t at =
+        std::min(BeginOfLine(source_, line) + static_cast<std::size_t>(column), source_.size());
+    for (const std::string before : {"has no field named \"", "Unknown enumeration value of \""}) {
+      const std::size_t begin = message.find(before);
+      if (begin == std::string::npos) continue;
+      const std::size_t word = begin + before.size();
+      const std::size_t found =
+          source_.rfind(message.substr(word, message.find('"', word) - word), at);
+      if (found != std::string::npos) at = found;
+    }
+    const std::size_t last = at == 0 ? std::string::npos : source_.rfind('\n', at - 1);
+    const std::size_t in_line = last == std::string::npos ? at : at - last - 1;
+    const auto lines =
+        std::count(source_.begin(), source_.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    return std::to_string(lines + 1) + ":" + std::to_string(in_line + 1) + ": ";
+  }
+
+  const std::string& source_;
+};
+
+int LineOf(const Place::Tree* tree, const FieldDescriptor* field, int index) {
+  if (tree == nullptr || field == nullptr) return 0;
+  return tree->GetLocation(field, field->is_repeated() ? index : -1).line + 1;
+}
+
+// Length of the well-formed UTF-8 character at `at`, or 0.
+std::size_t Utf8Length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const unsigned first = byte(at);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xC2 && first <= 0xDF   ? 2
+                             : first >= 0xE0 && first <= 0xEF ? 3
+                             : first >= 0xF0 && first <= 0xF4 ? 4
+                                                              : 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0) != 0x80) return 0;
+  }
+  const unsigned second = byte(at + 1);
+  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool surrogate = first == 0xED && second > 0x9F;
+  const bool too_large = first == 0xF4 && second > 0x8F;
+  return overlong || surrogate || too_large ? 0 : length;
+}
+
+}  // namespace
+
+Place Place::In(const std::string& field, int index) const {
+  const FieldDescriptor* descriptor = type_->FindFieldByName(field);
+  const int at = descriptor->is_repeated() ? index : -1;
+  Place inner(file_, descriptor->message_type(),
+              tree_ == nullptr ? nullptr : tree_->GetTreeForNested(descriptor, at));
+  const int line = LineOf(tree_, descriptor, index);
+  inner.line_ = line > 0 ? line : line_;
+  inner.path_ = path_ + field + ".";
+  return inner;
+}
+
+std::string Place::Describe(const std::string& field) const {
+  int line = LineOf(tree_, type_->FindFieldByName(field), 0);
+  if (line <= 0) line = line_;
+  return file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + path_ + field;
+}
+
+std::string Place::Describe() const {
+  return file_ + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " +
+         path_.substr(0, path_.empty() ? 0 : path_.size() - 1);
+}
+
+void Place::Fail(const std::string& field, const std::string& problem) const {
+  throw InputError(Describe(field) + " " + problem);
+}
+
+Place ParseText(const std::string& text, const std::string& file,
+                google::protobuf::Message* message, Place::Tree* tree) {
+  TextFormat::Parser parser;
+  FirstError error(text);
+  parser.RecordErrorsTo(&error);
+  parser.WriteLocationsTo(tree);
+  // Deeper than any of the schemas, and far from the end of the stack.
+  parser.SetRecursionLimit(50);
+  // Checked first: Protobuf would only complain on stderr.
+  if (ValidUtf8(text) != text) {
+    throw InputError(file + ": is not UTF-8 text; expected a text file in Protobuf's text format");
+  }
+  if (!parser.ParseFromString(text, message)) {
+    throw InputError(file + ":" + (error.text.empty() ? " cannot be parsed" : error.text));
+  }
+  return {file, message->GetDescriptor(), tree};
+}
+
+std::string PrintText(const google::protobuf::Message& message, const std::string& comment) {
+  std::string out;
+  std::istringstream lines(comment);
+  for (std::string line; std::getline(lines, line);) out += "# " + line + "\n";
+  TextFormat::Printer printer;
+  printer.SetUseShortRepeatedPrimitives(true);
+  printer.SetUseUtf8StringEscaping(true);
+  std::string body;
+  printer.PrintToString(message, &body);
+  return out + body;
+}
+
+std::string ValidUtf8(const std::string& text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = Utf8Length(text, i);
+    if (length == 0) {
+      out += "\xEF\xBF\xBD";  // the replacement character
+      ++i;
+    } else {
+      out.append(text, i, length);
+      i += length;
+    }
+  }
+  return out;
+}
+
+}  // namespace rgbdt::text

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <set>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/files/schema/proto_convert.h"
+#include "calib/files/schema/session.pb.h"
+#include "calib/files/schema/text_proto.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names come from messages too: none may lead out of the session directory.
+void CheckName(const std::string& name, const std::string& what) {
+  const bool good = !name.empty() && name.size() <= 100 && name.front() != '.' &&
+                    std::all_of(name.begin(), name.end(), [](char c) {
+                      return c != '/' && static_cast<unsigned char>(c) > ' ';
+                    });
+  if (!good) {
+    throw InputError(what + " \"" + name +
+                     "\" cannot be a file's name; expected letters, digits, _ and -");
+  }
+}
+
+// rgb.png, and rgb_2.png for a second image of the camera.
+std::string FreeName(const std::string& camera, std::set<std::string>* taken) {
+  std::string name = camera + ".png";
+  for (int i = 2; !taken->insert(name).second; ++i) {
+    name = camera + "_" + std::to_string(i) + ".png";
+  }
+  return name;
+}
+
+void FromRadiometry(const Radiometry& radiometry, proto::ViewImage* out) {
+  if (radiometry.kind == Radiometry::Kind::kNone) return;
+  if (radiometry.kind == Radiometry::Kind::kLinear) {
+    text::FromLinear(radiometry, out->mutable_linear());
+  } else {
+    text::FromPlanck(radiometry, out->mutable_planck());
+  }
+  out->set_emissivity(radiometry.emissivity);
+  out->set_reflected_temperature_k(radiometry.reflected_temperature_k);
+}
+
+void FromImage(const Image& image, const std::string& file, proto::ViewImage* out) {
+  out->set_camera(text::ValidUtf8(image.camera));
+  out->set_file(text::ValidUtf8(file));
+  out->set_utime(image.utime);
+  out->set_pixel_format(static_cast<proto::Camera::PixelFormat>(image.format));
+  FromRadiometry(image.radiometry, out);
+  out->set_exposure_s(image.exposure_s);
+  out->set_frame_number(image.frame_number);
+  out->set_device_utime(image.device_utime);
+  out->set_shutter_correcting(image.shutter_correcting);
+}
+
+// The picks go to the image that they were made in.
+void FromPicks(const View& view, const CornerSelection& picks, proto::View* out) {
+  for (std::size_t i = 0; i < view.images.size(); ++i) {
+    const Image& image = view.images[i];
+    if (image.camera != picks.camera || image.utime != picks.image_utime) continue;
+    proto::PickedCorners* picked = out->mutable_image(static_cast<int>(i))->mutable_picked();
+    picked->clear_corner_px();
+    for (const Eigen::Vector2d& corner : picks.corners) {
+      picked->add_corner_px(corner.x());
+      picked->add_corner_px(corner.y());
+    }
+    return;
+  }
+  throw InputError("view " + view.name + ": corners were picked in an image of camera \"" +
+                   picks.camera + "\" of utime " + std::to_string(picks.image_utime) +
+                   ", but the view has no such image");
+}
+
+}  // namespace
+
+void WriteView(const fs::path& session_dir, const View& view) {
+  CheckName(view.name, "the view's name");
+  const fs::path folder = session_dir / "views" / view.name;
+  proto::View message;
+  message.set_cloud("cloud.pcd");
+  message.set_sweep_utime(view.cloud.sweep_utime);
+  message.set_heldout(view.heldout);
+  std::set<std::string> taken;
+  for (const Image& image : view.images) {
+    CheckName(image.camera, "view " + view.name + ": the camera's name");
+    FromImage(image, FreeName(image.camera, &taken), message.add_image());
+  }
+  for (const CornerSelection& picks : view.picks) FromPicks(view, picks, &message);
+
+  WritePcd(folder / "cloud.pcd", view.cloud);
+  for (std::size_t i = 0; i < view.images.size(); ++i) {
+    WritePng(folder / message.image(static_cast<int>(i)).file(), view.images[i].pixels);
+  }
+  // Last: a folder with a view.textproto is complete.
+  WriteFileAtomically(folder / "view.textproto",
+                      text::PrintText(message,
+                                      "One view of the board (schema: "
+                                      "calib/files/schema/session.proto). utime: us, UTC."));
+}
+
+}  // namespace rgbdt

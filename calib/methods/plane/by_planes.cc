@@ -1,0 +1,87 @@
+#include "calib/methods/plane/by_planes.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "calib/model/stopwatch.h"
+#include "calib/solve/closure.h"
+#include "calib/solve/guess_cameras.h"
+
+namespace rgbdt {
+namespace {
+
+struct Sums {
+  Matrix6d h = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double squares = 0, points = 0;
+};
+
+// All points of a board at once: n . (camera_from_lidar p - t) = x . (p - centre, 1).
+void Add(const Observation& o, const Rigid3& camera_from_lidar, Sums* sums) {
+  const Rigid3& board = o.image->pose->sensor_from_target;
+  const Eigen::Vector3d n = board.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d centre = camera_from_lidar * o.cloud->centre;
+  const Eigen::Matrix3d turn_back = camera_from_lidar.rotation.toRotationMatrix().transpose();
+  Eigen::Vector4d x;
+  x << turn_back * n, n.dot(centre - board.translation);
+  // A turn w of the camera moves R p by w x R p, so n . (w x R p) = (R' (n x w)) . p.
+  Eigen::Matrix<double, 4, 6> j = Eigen::Matrix<double, 4, 6>::Zero();
+  j.topLeftCorner<3, 3>() = turn_back * CrossMatrix(n);
+  j.block<1, 3>(3, 0) = centre.cross(n).transpose();
+  j.block<1, 3>(3, 3) = n.transpose();
+  sums->h += j.transpose() * o.cloud->raw_scatter * j;
+  sums->g -= j.transpose() * o.cloud->raw_scatter * x;
+  sums->squares += x.dot(o.cloud->raw_scatter * x);
+  sums->points += o.cloud->raw_scatter(3, 3);
+}
+
+Sums SumsAt(const std::vector<const Observation*>& used, const Rigid3& camera_from_lidar) {
+  Sums sums;
+  for (const Observation* o : used) Add(*o, camera_from_lidar, &sums);
+  return sums;
+}
+
+}  // namespace
+
+CameraCalibration SolvePlanes(const std::vector<const Observation*>& used, const Rigid3& start) {
+  constexpr int kIterations = 50;
+  CameraCalibration result;
+  result.camera_from_lidar = start;
+  for (int i = 0; i < kIterations && !result.converged; ++i) {
+    const Sums sums = SumsAt(used, result.camera_from_lidar);
+    const Vector6d step = sums.h.ldlt().solve(sums.g);
+    if (!step.allFinite()) break;
+    result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
+    result.converged = step.norm() < 1e-10;
+  }
+  const Sums sums = SumsAt(used, result.camera_from_lidar);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(sums.h);
+  if (!result.converged || !(eigen.eigenvalues()[0] > 1e-9 * eigen.eigenvalues()[5])) {
+    result.converged = false;
+    result.status = "degenerate: the boards' planes leave the pose loose; tilt the board otherwise";
+    return result;
+  }
+  result.status = "converged";
+  const double variance = sums.squares / std::max(1.0, sums.points - 6);
+  const Matrix6d inverse = sums.h.ldlt().solve(Matrix6d::Identity());
+  result.covariance = 0.5 * variance * (inverse + inverse.transpose());
+  return result;
+}
+
+void CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
+                       std::vector<CameraViews>* cameras, Report* report) {
+  const std::vector<GuessedCamera> guessed = GuessCameras(options, cameras);
+  for (const GuessedCamera& camera : guessed) {
+    const Stopwatch watch;
+    CameraReport& report = camera.views->report;
+    report.calibration = SolvePlanes(camera.views->Used(), *camera.guess.camera_from_lidar);
+    report.calibration.camera = camera.views->spec->name;
+    ShareTime(watch.Seconds(), {camera});
+    CheckDegenerate(camera.views);
+  }
+  JudgeCameras(EdgeModel{target, BoardPriors().Means(), {}}, guessed);
+  if (options.diagnostics) report->closure = CloseLoops(guessed);
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/files/session/session_dir.h"
+#include "calib/methods/progress.h"
+#include "calib/model/intrinsics.h"
+
+namespace rgbdt {
+
+/// All images of one camera in a session.
+struct CameraCorners {
+  std::string camera;
+  int images = 0;
+  std::vector<IntrinsicsView> views;   ///< where the checkerboard was found, in the session's order
+  std::vector<double> contrasts;       ///< between its squares, of each view [DN or counts]
+  std::vector<std::string> not_found;  ///< the other images
+};
+
+struct SessionCorners {
+  std::vector<CameraCorners> cameras;   ///< in the order asked for
+  std::vector<std::string> unreadable;  ///< one line for each view that could not be read
+};
+
+/// Finds the checkerboard's inner corners in every image of these cameras, two or more views at a
+/// time, with a line of progress for each. Clouds are not read. A view that cannot be
+/// read is named, and the rest goes on.
+SessionCorners FindSessionCorners(const Session& session, const std::vector<std::string>& cameras,
+                                  const Progress& progress);
+
+}  // namespace rgbdt

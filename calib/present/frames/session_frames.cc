@@ -1,0 +1,227 @@
+#include "calib/present/frames/session_frames.h"
+
+#include <algorithm>
+#include <exception>
+#include <iterator>
+#include <set>
+
+#include "calib/fuse/fuse.h"
+#include "calib/methods/calibrate.h"
+#include "calib/model/method.h"
+#include "calib/model/parallel.h"
+#include "calib/present/frames/cloud_frame.h"
+#include "calib/present/frames/image_frame.h"
+#include "calib/present/frames/overlay_frame.h"
+#include "calib/present/frames/session_state.h"
+#include "calib/present/layout/frame.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+std::string HelloFrame(const SessionFramesOptions& options) {
+  return JsonFrame({{"type", "hello"},
+                    {"source", "session"},
+                    {"title", options.title},
+                    {"version", options.version},
+                    {"may_command", false},
+                    {"why_not", "a finished session"}});
+}
+
+std::vector<ViewState> ViewsOf(const Session& session,
+                               const std::vector<Observation>& observations) {
+  std::vector<ViewState> views;
+  for (const std::string& name : session.views) {
+    ViewState& view = views.emplace_back();
+    view.name = name;
+    for (const Observation& observation : observations) {
+      if (observation.view != name) continue;
+      view.heldout = view.heldout || observation.heldout;
+      view.images[observation.camera] = observation.image_utime;
+      view.observations[observation.camera] = observation;
+    }
+  }
+  return views;
+}
+
+// How sure a result is, with the views that the solver used.
+SigmaStep SigmaStepOf(const Report& report) {
+  SigmaStep step;
+  for (const CameraReport& camera : report.cameras) {
+    const auto sigma = SigmaOf(camera.calibration);
+    if (!sigma || !camera.solved()) continue;
+    step.cameras[camera.calibration.camera] = *sigma;
+    step.views = std::max(step.views, static_cast<int>(camera.used.size()));
+  }
+  return step;
+}
+
+// How sure the calibration was with the first view, the first two, ...: solved again with each, in
+// milliseconds. The last is the report's own.
+std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<Observation>& observations,
+                                  const Report& report) {
+  std::vector<SigmaStep> steps;
+  CalibrateOptions options;
+  options.diagnostics = false;
+  std::set<std::string, decltype(&NaturalLess)> used(&NaturalLess);
+  for (const CameraReport& camera : report.cameras) {
+    used.insert(camera.used.begin(), camera.used.end());
+  }
+  std::vector<Observation> so_far;
+  for (const std::string& view : used) {
+    if (report.method != kAutoMethod || view == *used.rbegin()) break;
+    for (const Observation& o : observations) {
+      if (o.view == view) so_far.push_back(o);
+    }
+    SigmaStep step = SigmaStepOf(Calibrate(rig, so_far, options));
+    if (!step.cameras.empty()) steps.push_back(std::move(step));
+  }
+  SigmaStep last = SigmaStepOf(report);
+  if (!last.cameras.empty()) steps.push_back(std::move(last));
+  return steps;
+}
+
+SessionState StateOf(const Report& report) {
+  SessionState state;
+  state.mode = "finished";
+  state.report = report;
+  state.calibration = report.ToCalibration();
+  for (const CameraCalibration& camera : state.calibration.cameras) {
+    state.calibration_utime[camera.camera] = report.utime;
+  }
+  return state;
+}
+
+// What one view gives; the pixels and points themselves are not kept.
+struct ViewFrames {
+  std::vector<NamedFrame> thumbs, images;
+  std::string cloud;    // the fused one, where it was asked for
+  std::string failure;  // why the view could not be read
+};
+
+class FrameMaker {
+ public:
+  FrameMaker(const Session& session, const Calibration& calibration,
+             const SessionFramesOptions& options)
+      : session_(session), calibration_(calibration), options_(options) {}
+
+  ViewFrames Make(const ViewState& state, bool fuse) const {
+    ViewFrames out;
+    try {
+      const View view = ReadView(session_, state.name);
+      for (const CameraSpec& camera : session_.rig.cameras) AddCamera(camera, state, view, &out);
+      const auto board = ObservedBoard(state.observations, calibration_);
+      if (board)
+        out.thumbs.push_back({"thumb/" + view.name + "/", BoardThumbFrame(*board, view.cloud)});
+      if (fuse) out.cloud = FusedFrame(view);
+    } catch (const std::exception& e) {
+      out.failure = e.what();
+    }
+    return out;
+  }
+
+  /// The fused cloud, evenly thinned; empty: no point returned.
+  std::string FusedFrame(const View& view) const {
+    RgbdtCloud fused = FuseView(session_.rig, calibration_, view);
+    if (fused.size() == 0) return {};
+    fused.whole_sweep = true;
+    // Where nobody knows the times they are 0, which would stand for "not calibrated".
+    for (std::size_t i = 0; i < fused.cameras.size(); ++i) {
+      if (calibration_.Find(fused.cameras[i]) == nullptr) continue;
+      fused.calibration_utime[i] = std::max<Utime>(1, fused.calibration_utime[i]);
+    }
+    std::string frame = CloudFrame(fused, 0);
+    if (fused.size() > options_.points) {  // a frame may end early, at a whole record
+      frame.resize(frame.size() - (fused.size() - options_.points) * kPointBytes);
+    }
+    return frame;
+  }
+
+ private:
+  void AddCamera(const CameraSpec& camera, const ViewState& state, const View& view,
+                 ViewFrames* out) const {
+    const auto image = std::find_if(view.images.begin(), view.images.end(),
+                                    [&](const Image& i) { return i.camera == camera.name; });
+    if (image == view.images.end()) return;
+    const std::string of = view.name + "/" + camera.name;
+    out->thumbs.push_back({"thumb/" + of, ThumbFrame(*image, view.name)});
+    ImageFrameOptions options;
+    options.max_width = options_.image_width;
+    out->images.push_back({"image/" + of, ImageFrame(*image, view.name, false, options)});
+    const auto observation = state.observations.find(camera.name);
+    if (observation == state.observations.end()) return;
+    const CameraCalibration* found = calibration_.Find(camera.name);
+    Overlay overlay =
+        ViewOverlay(camera, observation->second, &view.cloud,
+                    found == nullptr ? std::nullopt : std::make_optional(found->camera_from_lidar));
+    overlay.utime = image->utime;
+    if (overlay.cloud.size() > options_.overlay_points) {
+      overlay.cloud.resize(options_.overlay_points);
+    }
+    out->images.push_back({"overlay/" + of, OverlayFrame(overlay, false)});
+  }
+
+  const Session& session_;
+  const Calibration& calibration_;
+  const SessionFramesOptions& options_;
+};
+
+// Each view is read once, one a thread at a time: a dense session would not fit into memory.
+std::vector<ViewFrames> MakeAll(const FrameMaker& maker, const std::vector<ViewState>& views) {
+  std::vector<ViewFrames> made(views.size());
+  ForEach(static_cast<int>(views.size()), 0, [&](int number) {
+    const auto i = static_cast<std::size_t>(number);
+    made[i] = maker.Make(views[i], i + 1 == views.size());
+  });
+  return made;
+}
+
+// Of the last view that gives one: where the very last did not, the ones before it are read again.
+std::string LastCloud(const FrameMaker& maker, const std::vector<ViewState>& views,
+                      const std::vector<ViewFrames>& made) {
+  for (std::size_t i = views.size(); i-- > 0;) {
+    const std::string cloud =
+        i + 1 == views.size() ? made[i].cloud : maker.Make(views[i], true).cloud;
+    if (!cloud.empty()) return cloud;
+  }
+  return {};
+}
+
+// Cameras of which nothing is known in a view that could not be read.
+void TellFailure(const Rig& rig, const std::string& failure, ViewState* view) {
+  for (const CameraSpec& camera : rig.cameras) {
+    if (view->observations.count(camera.name) != 0) continue;
+    Observation& observation = view->observations[camera.name];
+    observation.view = view->name;
+    observation.camera = camera.name;
+    observation.rejected = failure;
+  }
+}
+
+void Append(std::vector<NamedFrame> from, std::vector<NamedFrame>* to) {
+  std::move(from.begin(), from.end(), std::back_inserter(*to));
+}
+
+}  // namespace
+
+std::vector<NamedFrame> SessionFrames(const Session& session,
+                                      const std::vector<Observation>& observations,
+                                      const Report& report, const SessionFramesOptions& options) {
+  SessionState state = StateOf(report);
+  state.views = ViewsOf(session, observations);
+  state.sigma = SigmaSteps(session.rig, observations, report);
+  const FrameMaker maker(session, state.calibration, options);
+  std::vector<ViewFrames> made = MakeAll(maker, state.views);
+  const std::string cloud = LastCloud(maker, state.views, made);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (!made[i].failure.empty()) TellFailure(session.rig, made[i].failure, &state.views[i]);
+  }
+  std::vector<NamedFrame> frames = {{"hello", HelloFrame(options)},
+                                    {"rig", RigFrame(session.rig)},
+                                    {"session", SessionFrame(state, &session.rig)}};
+  for (ViewFrames& view : made) Append(std::move(view.thumbs), &frames);
+  for (ViewFrames& view : made) Append(std::move(view.images), &frames);
+  if (!cloud.empty()) frames.push_back({"sweep/0", cloud});
+  return frames;
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,334 @@
+#include "calib/present/frames/session_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "calib/files/schema/report_file.h"
+#include "calib/present/layout/frame.h"
+#include "calib/present/report/verdict_words.h"
+#include "calib/solve/first_guess.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+using nlohmann::json;
+
+const char* NameOf(CameraKind kind) { return kind == CameraKind::kThermal ? "thermal" : "color"; }
+
+const char* NameOf(EventKind kind) {
+  switch (kind) {
+    case EventKind::kProgress:
+      return "progress";
+    case EventKind::kDone:
+      return "done";
+    case EventKind::kFailed:
+      break;
+  }
+  return "failed";
+}
+
+json Optional(const std::optional<double>& value) {
+  return value ? FiniteOrNull(*value) : json(nullptr);
+}
+
+template <typename Vector>
+json NumbersOf(const Vector& vector) {
+  json out = json::array();
+  for (const double number : vector) out.push_back(FiniteOrNull(number));
+  return out;
+}
+
+// All that are known of: the rig's or, without one, those that were heard of.
+std::vector<std::string> CameraNames(const SessionState& state, const Rig* rig) {
+  std::vector<std::string> names;
+  if (rig != nullptr) {
+    for (const CameraSpec& camera : rig->cameras) names.push_back(camera.name);
+    return names;
+  }
+  std::set<std::string> heard;
+  for (const CameraCalibration& camera : state.calibration.cameras) heard.insert(camera.camera);
+  for (const ViewState& view : state.views) {
+    for (const auto& image : view.images) heard.insert(image.first);
+    for (const auto& observation : view.observations) heard.insert(observation.first);
+  }
+  return {heard.begin(), heard.end()};
+}
+
+const CameraReport* ReportOf(const SessionState& state, const std::string& camera) {
+  if (!state.report) return nullptr;
+  const auto found =
+      std::find_if(state.report->cameras.begin(), state.report->cameras.end(),
+                   [&](const CameraReport& r) { return r.calibration.camera == camera; });
+  return found == state.report->cameras.end() ? nullptr : &*found;
+}
+
+const Observation* ObservationOf(const ViewState& view, const std::string& camera) {
+  const auto found = view.observations.find(camera);
+  return found == view.observations.end() ? nullptr : &found->second;
+}
+
+Utime ImageOf(const ViewState& view, const std::string& camera) {
+  const auto found = view.images.find(camera);
+  if (found != view.images.end() && found->second != 0) return found->second;
+  const Observation* observation = ObservationOf(view, camera);
+  return observation == nullptr ? 0 : observation->image_utime;
+}
+
+// Why the solver left the view out, or detection; empty: neither did.
+std::string WhyRejected(const CameraReport* report, const Observation& observation) {
+  if (report != nullptr) {
+    for (const RejectedView& rejected : report->rejected) {
+      if (rejected.view == observation.view) return rejected.why;
+    }
+  }
+  if (!observation.rejected.empty() || observation.usable()) return observation.rejected;
+  return "the board was not found in image and cloud";
+}
+
+const ViewQuality* QualityOf(const CameraReport* report, const std::string& view) {
+  if (report == nullptr) return nullptr;
+  const auto found = std::find_if(report->views.begin(), report->views.end(),
+                                  [&](const ViewQuality& q) { return q.view == view; });
+  return found == report->views.end() ? nullptr : &*found;
+}
+
+json CornersOf(const std::optional<ImageEdges>& image) {
+  json corners = json::array();
+  if (!image) return corners;
+  for (const Eigen::Vector2d& corner : image->outline_corners) {
+    corners.push_back(NumbersOf(corner));
+  }
+  return corners;
+}
+
+json ViewCameraOf(const ViewState& view, const std::string& camera, const CameraReport* report) {
+  json out = {{"camera", camera},       {"image_utime", ImageOf(view, camera)},
+              {"state", "waiting"},     {"why", ""},
+              {"picked", false},        {"outline", json::array()},
+              {"edge_rms_px", nullptr}, {"edge_rms_sigmas", nullptr}};
+  const Observation* observation = ObservationOf(view, camera);
+  if (observation == nullptr) return out;
+  const std::string why = WhyRejected(report, *observation);
+  out["state"] = why.empty() ? "accepted" : "rejected";
+  out["why"] = why;
+  out["picked"] = observation->image && observation->image->picked;
+  out["outline"] = CornersOf(observation->image);
+  if (const ViewQuality* quality = QualityOf(report, view.name)) {
+    out["edge_rms_px"] = FiniteOrNull(quality->edge_rms_px);
+    out["edge_rms_sigmas"] = Optional(quality->edge_rms_whitened);
+  }
+  return out;
+}
+
+json BoardOf(const ViewState& view, const Calibration& calibration) {
+  const auto observed = ObservedBoard(view.observations, calibration);
+  if (!observed) return nullptr;
+  const CloudEdges& board = *observed->cloud;
+  return {{"centre_m", NumbersOf(board.centre)},
+          {"normal", NumbersOf(board.normal)},
+          {"distance_m", FiniteOrNull(board.centre.norm())}};
+}
+
+json ViewsOf(const SessionState& state, const std::vector<std::string>& cameras) {
+  json views = json::array();
+  for (const ViewState& view : state.views) {
+    json of_cameras = json::array();
+    for (const std::string& camera : cameras) {
+      of_cameras.push_back(ViewCameraOf(view, camera, ReportOf(state, camera)));
+    }
+    views.push_back({{"name", view.name},
+                     {"heldout", view.heldout},
+                     {"waits", view.waits},
+                     {"board", BoardOf(view, state.calibration)},
+                     {"cameras", of_cameras}});
+  }
+  return views;
+}
+
+// Whether a person's picks would help, and why; empty: not, or there is no image.
+std::string WhyPicks(const ViewState& view, const std::string& camera) {
+  if (ImageOf(view, camera) == 0) return "";
+  const auto& asked = view.picks_wanted;
+  if (std::find(asked.begin(), asked.end(), camera) != asked.end())
+    return "the session asks for it";
+  const Observation* observation = ObservationOf(view, camera);
+  if (observation == nullptr || observation->image) return "";
+  return observation->rejected;
+}
+
+// Views that wait for picks or whose image was looked at in vain, the newest first: that is the
+// board's likeliest place to be remembered.
+json PickWantedOf(const SessionState& state, const std::vector<std::string>& cameras) {
+  json wanted = json::array();
+  for (auto view = state.views.rbegin(); view != state.views.rend(); ++view) {
+    for (const std::string& camera : cameras) {
+      const std::string why = WhyPicks(*view, camera);
+      if (why.empty()) continue;
+      wanted.push_back({{"view", view->name},
+                        {"camera", camera},
+                        {"image_utime", ImageOf(*view, camera)},
+                        {"why", why}});
+    }
+  }
+  return wanted;
+}
+
+json SigmasOf(const std::vector<SigmaStep>& steps) {
+  json out = json::array();
+  for (const SigmaStep& step : steps) {
+    json cameras = json::array();
+    for (const auto& [camera, sigma] : step.cameras) {
+      cameras.push_back({{"camera", camera},
+                         {"rotation_deg", FiniteOrNull(sigma.first)},
+                         {"centre_mm", FiniteOrNull(sigma.second)}});
+    }
+    out.push_back({{"views", step.views}, {"cameras", cameras}});
+  }
+  return out;
+}
+
+JudgedCamera JudgedOf(const SessionState& state, const std::string& camera) {
+  JudgedCamera judged{camera, state.calibration.Find(camera) != nullptr, 0,
+                      ReportOf(state, camera)};
+  for (const ViewState& view : state.views) {
+    const Observation* observation = ObservationOf(view, camera);
+    if (observation == nullptr) continue;
+    judged.views_found += WhyRejected(judged.report, *observation).empty() ? 1 : 0;
+  }
+  return judged;
+}
+
+json VerdictJson(const VerdictWords& words) {
+  return {{"grade", words.grade}, {"headline", words.headline}, {"reasons", words.reasons}};
+}
+
+json CameraOf(const SessionState& state, const JudgedCamera& judged) {
+  const CameraCalibration* calibration = state.calibration.Find(judged.camera);
+  const auto utime = state.calibration_utime.find(judged.camera);
+  json out = {{"camera", judged.camera},
+              {"calibrated", calibration != nullptr},
+              {"status", calibration == nullptr ? "not calibrated yet" : calibration->status},
+              {"utime", utime == state.calibration_utime.end() ? 0 : utime->second},
+              {"camera_from_lidar", nullptr},
+              {"rotation_sigma_deg", nullptr},
+              {"centre_sigma_mm", nullptr},
+              {"verdict", VerdictJson(VerdictOf(
+                              judged, state.report ? state.report->next_view : std::nullopt))},
+              {"heldout_edge_px", nullptr},
+              {"heldout_edge_sigmas", nullptr}};
+  if (calibration != nullptr) {
+    out["camera_from_lidar"] = MatrixOf(calibration->camera_from_lidar);
+    if (const auto sigma = SigmaOf(*calibration)) {
+      out["rotation_sigma_deg"] = sigma->first;
+      out["centre_sigma_mm"] = sigma->second;
+    }
+  } else if (judged.report != nullptr && !judged.report->calibration.status.empty()) {
+    out["status"] = judged.report->calibration.status;
+  }
+  if (judged.report != nullptr) {
+    out["heldout_edge_px"] = Optional(judged.report->edge_rms_px.heldout);
+    out["heldout_edge_sigmas"] = Optional(judged.report->edge_rms_whitened.heldout);
+  }
+  return out;
+}
+
+json LogOf(const std::vector<SessionEvent>& events) {
+  json log = json::array();
+  for (const SessionEvent& event : events) {
+    log.push_back({{"utime", event.utime},
+                   {"source", event.source},
+                   {"kind", NameOf(event.kind)},
+                   {"text", event.text}});
+  }
+  return log;
+}
+
+json NextViewOf(const std::optional<Report>& report) {
+  if (!report || !report->next_view) return nullptr;
+  const NextView& next = *report->next_view;
+  return {{"words", next.words},
+          {"camera", next.camera},
+          {"before_px", FiniteOrNull(next.sigma_before_px)},
+          {"after_px", FiniteOrNull(next.sigma_after_px)}};
+}
+
+json ReportJson(const std::optional<Report>& report) {
+  return report ? json::parse(ReportToJson(*report)) : json(nullptr);
+}
+
+}  // namespace
+
+std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration) {
+  if (!calibration.covariance || !calibration.covariance->allFinite()) return std::nullopt;
+  // The centre moves by -R^T times delta's translation (calib/solve/colouring.h): the mean square
+  // over three axes is the same in any frame.
+  const Matrix6d& covariance = *calibration.covariance;
+  const double rotation = covariance.topLeftCorner<3, 3>().trace() / 3;
+  const double centre = covariance.bottomRightCorner<3, 3>().trace() / 3;
+  if (rotation < 0 || centre < 0) return std::nullopt;
+  return std::make_pair(std::sqrt(rotation) * 180 / M_PI, std::sqrt(centre) * 1000);
+}
+
+std::optional<Observation> ObservedBoard(const std::map<std::string, Observation>& by_camera,
+                                         const Calibration& calibration) {
+  std::optional<Observation> uncertain;
+  for (const auto& [name, observation] : by_camera) {
+    const CameraCalibration* camera = calibration.Find(name);
+    if (!observation.cloud) continue;
+    if (camera == nullptr) {
+      if (!uncertain) uncertain = observation;
+      continue;
+    }
+    Observation chosen = WithChosenCandidate(observation, camera->camera_from_lidar, kJudgeGate);
+    if (chosen.cloud) return chosen;
+  }
+  return uncertain;
+}
+
+std::string RigFrame(const Rig& rig) {
+  json cameras = json::array();
+  for (const CameraSpec& camera : rig.cameras) {
+    cameras.push_back({{"name", camera.name},
+                       {"kind", NameOf(camera.kind)},
+                       {"width", camera.width},
+                       {"height", camera.height}});
+  }
+  return JsonFrame({{"type", "rig"},
+                    {"hash", rig.hash},
+                    {"cameras", cameras},
+                    {"target",
+                     {{"squares_x", rig.target.squares_x},
+                      {"squares_y", rig.target.squares_y},
+                      {"square_m", rig.target.square_m},
+                      {"width_m", rig.target.width_m},
+                      {"height_m", rig.target.height_m}}}});
+}
+
+std::string SessionFrame(const SessionState& state, const Rig* rig) {
+  const std::vector<std::string> cameras = CameraNames(state, rig);
+  std::vector<JudgedCamera> judged;
+  json states = json::array();
+  for (const std::string& camera : cameras) {
+    states.push_back(CameraOf(state, judged.emplace_back(JudgedOf(state, camera))));
+  }
+  const auto next_view = state.report ? state.report->next_view : std::nullopt;
+  return JsonFrame({{"type", "session"},
+                    {"mode", state.mode},
+                    {"can", state.can},
+                    {"busy", state.busy},
+                    {"fraction", FiniteOrNull(state.fraction)},
+                    {"step", state.step},
+                    {"steps", state.steps},
+                    {"failure", state.failure},
+                    {"log", LogOf(state.log)},
+                    {"views", ViewsOf(state, cameras)},
+                    {"pick_wanted", PickWantedOf(state, cameras)},
+                    {"sigma", SigmasOf(state.sigma)},
+                    {"cameras", states},
+                    {"verdict", VerdictJson(VerdictOfAll(judged, next_view))},
+                    {"next_view", NextViewOf(state.report)},
+                    {"report", ReportJson(state.report)}});
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,115 @@
+#include "calib/present/report/html.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace rgbdt::html {
+namespace {
+
+// Read outdoors on a laptop or a phone: black on white or white on black, large, no pale greys.
+// Colour never stands alone; every verdict has its word.
+constexpr char kStyle[] = R"(
+:root { color-scheme: light dark; --fore: #000; --back: #fff; --soft: #f0f0ec; --line: #8a8a84;
+  --good: #00591f; --caution: #7a3c00; --bad: #a00000; }
+@media (prefers-color-scheme: dark) { :root { --fore: #fff; --back: #111; --soft: #1f2022;
+  --line: #8d9096; --good: #7fe39a; --caution: #ffc266; --bad: #ff9a91; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 62rem; padding: 1rem; color: var(--fore);
+  background: var(--back); font: 1.0625rem/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.6rem; line-height: 1.2; } h2 { font-size: 1.35rem; margin: 2.2rem 0 .5rem; }
+h3 { font-size: 1.05rem; margin: 1.4rem 0 .3rem; }
+.verdict { border-left: .5rem solid; padding: .6rem .9rem; background: var(--soft); }
+.verdict p { margin: .2rem 0; color: var(--fore); }
+.verdict strong { font-size: 1.2rem; }
+.good { border-color: var(--good); } .good strong { color: var(--good); }
+.caution { border-color: var(--caution); } .caution strong { color: var(--caution); }
+.bad { border-color: var(--bad); } .bad strong { color: var(--bad); }
+.scroll { overflow-x: auto; max-width: 100%; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; padding: .25rem .9rem .25rem 0; border-bottom: 1px solid var(--line);
+  vertical-align: top; }
+pre { overflow-x: auto; background: var(--soft); padding: .7rem; font-size: .95rem; }
+figure { margin: 1.2rem 0; } img { max-width: 100%; height: auto; display: block; }
+)";
+
+}  // namespace
+
+std::string Escape(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        // Control characters are no HTML at all.
+        out += static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t' ? '?' : c;
+    }
+  }
+  return out;
+}
+
+std::string Base64(const std::string& bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
+  };
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    out += kDigits[group >> 18];
+    out += kDigits[group >> 12 & 63];
+    out += i + 1 < bytes.size() ? kDigits[group >> 6 & 63] : '=';
+    out += i + 2 < bytes.size() ? kDigits[group & 63] : '=';
+  }
+  return out;
+}
+
+std::string Table(const std::vector<std::string>& head,
+                  const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<div class=\"scroll\"><table>\n<thead><tr>";
+  for (const std::string& cell : head) out += "<th scope=\"col\">" + cell + "</th>";
+  out += "</tr></thead>\n<tbody>\n";
+  for (const std::vector<std::string>& row : rows) {
+    out += "<tr>";
+    for (const std::string& cell : row) out += "<td>" + cell + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string Number(double value, int decimals) {
+  if (!std::isfinite(value)) return "–";
+  char text[400];  // 309 digits at most before the point
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+std::string PoseErrorText(const PoseError& error) {
+  return Number(error.rotation_deg, 3) + "° and " + Number(error.translation_mm, 1) + " mm";
+}
+
+std::string Page(const std::string& title, const std::string& body) {
+  return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+         "style-src 'unsafe-inline'; img-src data:\">\n<title>" +
+         Escape(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + body +
+         "</body>\n</html>\n";
+}
+
+}  // namespace rgbdt::html

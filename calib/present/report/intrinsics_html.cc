@@ -1,0 +1,117 @@
+#include "calib/present/report/intrinsics_html.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/files/schema/text_proto.h"
+#include "calib/present/report/html.h"
+
+namespace rgbdt {
+namespace {
+
+using html::Escape;
+using html::Number;
+
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string VerdictHtml(const IntrinsicsResult& result) {
+  std::string out = result.converged ? "<div class=\"verdict good\">\n<p><strong>Converged"
+                                     : "<div class=\"verdict bad\">\n<p><strong>Not converged";
+  out += "</strong></p>\n";
+  if (!result.converged) out += "<p>" + Escape(result.status) + "</p>\n";
+  out += "<p>" + std::to_string(result.ViewsUsed()) + " views, " +
+         std::to_string(result.corners_used) + " corners, RMS " + Number(result.rms_px, 3) +
+         " px; " + Number(100 * result.coverage.fraction, 0) + "% of the image held corners.</p>\n";
+  const auto parts = result.coverage.EmptyParts();
+  if (!parts.empty()) {
+    out += "<p>Few corners at the image's ";
+    for (const std::string& part : parts) out += (&part == &parts.front() ? "" : ", ") + part;
+    out += ": the lens is extrapolated there.</p>\n";
+  }
+  return out + "</div>\n";
+}
+
+std::string ParametersHtml(const IntrinsicsResult& result) {
+  Rows rows;
+  for (std::size_t i = 0; i < result.values.size(); ++i) {
+    const int digits = i < 4 ? 3 : 6;
+    rows.push_back({result.names[i], Number(result.values[i], digits),
+                    Number(result.Sigma(static_cast<int>(i)), digits), i < 4 ? "px" : ""});
+  }
+  return html::Table({"parameter", "value", "1 sigma", "unit"}, rows);
+}
+
+std::string Coordinates(const char* x, const char* y, const Eigen::Vector2d& at) {
+  return std::string(" ") + x + "=\"" + Number(at.x(), 1) + "\" " + y + "=\"" + Number(at.y(), 1) +
+         "\"";
+}
+
+// How much longer residuals are drawn than they are: a typical one a fiftieth of the image's width.
+double Magnification(const CameraIntrinsics& camera) {
+  const double wanted = 0.02 * camera.width / std::max(0.01, camera.result.rms_px);
+  const double decade = std::pow(10, std::floor(std::log10(wanted)));
+  return decade * (wanted >= 5 * decade ? 5 : wanted >= 2 * decade ? 2 : 1);
+}
+
+std::string CornersSvg(const CameraIntrinsics& camera) {
+  const double scale = Magnification(camera);
+  const double stroke = camera.width / 800.0;
+  std::string out = "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
+                    std::to_string(camera.width) + " " + std::to_string(camera.height) +
+                    "\" width=\"100%\" role=\"img\" aria-label=\"corners and residuals\">\n"
+                    "<rect width=\"100%\" height=\"100%\" fill=\"none\" stroke=\"currentColor\" "
+                    "stroke-width=\"" +
+                    Number(2 * stroke, 1) + "\"/>\n<g stroke=\"currentColor\" stroke-width=\"" +
+                    Number(stroke, 1) + "\">\n";
+  for (std::size_t v = 0; v < camera.result.views.size(); ++v) {
+    const IntrinsicsViewFit& view = camera.result.views[v];
+    if (!view.rejected.empty()) continue;
+    for (std::size_t i = 0; i < view.used.size(); ++i) {
+      const Eigen::Vector2d corner = camera.views[v].corners[i];
+      const Eigen::Vector2d end = corner + scale * view.residuals_px[i];
+      if (view.used[i]) {
+        out += "<line" + Coordinates("x1", "y1", corner) + Coordinates("x2", "y2", end) + "/>\n";
+      } else {
+        out += "<circle" + Coordinates("cx", "cy", corner) + " r=\"" + Number(6 * stroke, 1) +
+               "\" fill=\"none\"/>\n";
+      }
+    }
+  }
+  return out + "</g>\n</svg>\n<figcaption>Every corner and its residual (measured - predicted), " +
+         Number(scale, 0) +
+         " times as long as it is; a circle: a wrong corner, left out. Lines that point the same "
+         "way in one part of the image mean a lens model that does not fit there.</figcaption>\n"
+         "</figure>\n";
+}
+
+std::string ViewsHtml(const IntrinsicsResult& result) {
+  Rows rows;
+  for (const IntrinsicsViewFit& view : result.views) {
+    const bool used = view.rejected.empty();
+    rows.push_back({Escape(view.name), used ? Number(view.rms_px, 3) : "–",
+                    used ? Number(view.worst_px, 2) : "–",
+                    used ? std::to_string(view.corners_left_out) : "all", Escape(view.rejected)});
+  }
+  return html::Table({"view", "RMS [px]", "worst corner [px]", "corners left out", "why rejected"},
+                     rows);
+}
+
+std::string CameraHtml(const CameraIntrinsics& camera) {
+  std::string out =
+      "<section>\n<h2>Camera " + Escape(camera.camera) + "</h2>\n" + VerdictHtml(camera.result);
+  if (camera.result.converged) {
+    out += "<h3>Lens</h3>\n" + ParametersHtml(camera.result) + "<h3>Corners</h3>\n" +
+           CornersSvg(camera);
+  }
+  return out + "<h3>Views</h3>\n" + ViewsHtml(camera.result) + "</section>\n";
+}
+
+}  // namespace
+
+std::string IntrinsicsHtml(const std::vector<CameraIntrinsics>& cameras) {
+  std::string body = "<h1>Intrinsic calibration of the cameras</h1>\n";
+  for (const CameraIntrinsics& camera : cameras) body += CameraHtml(camera);
+  return html::Page("rgbdt intrinsics", text::ValidUtf8(body));
+}
+
+}  // namespace rgbdt

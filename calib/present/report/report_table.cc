@@ -1,0 +1,128 @@
+#include "calib/present/report/report_table.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+namespace rgbdt {
+namespace {
+
+constexpr int kLabel = 44;
+constexpr int kColumn = 22;
+
+std::string Number(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "-";
+}
+
+std::string Error(const std::optional<PoseError>& error) {
+  return error ? fmt::format("{:.3f} deg {:.1f} mm", error->rotation_deg, error->translation_mm)
+               : "-";
+}
+
+std::string Sigma(const CameraCalibration& calibration) {
+  if (!calibration.covariance) return "-";
+  const auto worst = [](const Eigen::Matrix3d& covariance) {
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+  };
+  return Error(PoseError{worst(calibration.covariance->topLeftCorner<3, 3>()) * 180 / M_PI,
+                         worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
+}
+
+// 1 sigma of a colour 5 m away, in the image's middle and where it is worst.
+std::string ColourSigma(const CameraReport& camera) {
+  if (!camera.sigma) return "-";
+  for (const ColouringSigma& at : camera.sigma->colouring) {
+    if (std::abs(at.distance_m - 5) > 1e-6) continue;
+    return fmt::format("{:.2f} / {:.2f}", at.centre_px, at.worst_px);
+  }
+  return "-";
+}
+
+// What a camera's column has no room for.
+std::string Remarks(const CameraReport& camera) {
+  const std::string& name = camera.calibration.camera;
+  const std::string& status = camera.calibration.status;
+  std::string text;
+  if (!camera.calibration.converged || (!status.empty() && status != "converged")) {
+    text += name + ": " + status + "\n";
+  }
+  for (const RejectedView& view : camera.rejected) {
+    text += name + ": view " + view.view + " rejected: " + view.why + "\n";
+  }
+  for (const std::string& remark : camera.remarks) {
+    text += name + ": " + remark + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ReportTable(const Report& report) {
+  std::string text;
+  const auto row = [&](const std::string& label,
+                       const std::function<std::string(const CameraReport&)>& cell) {
+    text += fmt::format("{:<{}}", label, kLabel);
+    for (const CameraReport& camera : report.cameras) {
+      text += fmt::format("{:>{}}", cell(camera), kColumn);
+    }
+    text += "\n";
+  };
+  row("method " + report.method, [](const CameraReport& c) { return c.calibration.camera; });
+  row("status", [](const CameraReport& c) {
+    return std::string(c.calibration.converged ? "converged" : "NOT CONVERGED");
+  });
+  row("views used / held out / rejected", [](const CameraReport& c) {
+    return fmt::format("{} / {} / {}", c.used.size(), c.heldout.size(), c.rejected.size());
+  });
+  row("distance transform, views used [px]",
+      [](const CameraReport& c) { return Number(c.distance_transform_px.train, 2); });
+  row("distance transform, held out [px]",
+      [](const CameraReport& c) { return Number(c.distance_transform_px.heldout, 2); });
+  row("RMS distance to outline, views used [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.train, 2); });
+  row("RMS distance to outline, held out [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
+  const auto any = [&](auto has) {
+    return std::any_of(report.cameras.begin(), report.cameras.end(), has);
+  };
+  if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
+    row("first guess against truth",
+        [](const CameraReport& c) { return Error(c.first_guess_error); });
+    row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
+  }
+  if (any([](const CameraReport& c) { return c.calibration.covariance.has_value(); })) {
+    row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
+  }
+  if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
+    row("1 sigma of a colour at 5 m, mid/worst [px]", ColourSigma);
+  }
+  if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
+    row("ranges are short by [mm]", [](const CameraReport& c) {
+      return !c.range_offset ? std::string("-")
+                             : fmt::format("{:.1f} +- {:.1f}", 1e3 * c.range_offset->value,
+                                           1e3 * c.range_offset->sigma);
+    });
+  }
+  if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
+    row("a far start ends off the result by", [](const CameraReport& c) {
+      return c.other_starts.empty() ? std::string("-") : Error(c.other_starts[0].from_result);
+    });
+  }
+  row("seconds: image / cloud / solve", [](const CameraReport& c) {
+    return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
+  });
+  for (const CameraReport& camera : report.cameras) text += Remarks(camera);
+  if (report.next_view) text += "next view: " + report.next_view->words + "\n";
+  return text;
+}
+
+bool AllConverged(const Report& report) {
+  return std::all_of(report.cameras.begin(), report.cameras.end(),
+                     [](const CameraReport& c) { return c.calibration.converged; });
+}
+
+}  // namespace rgbdt

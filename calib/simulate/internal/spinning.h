@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "calib/model/cloud.h"
+#include "calib/simulate/internal/world.h"
+#include "calib/simulate/lidar_options.h"
+
+namespace rgbdt::simulate {
+
+/// One revolution of a spinning LIDAR: an organised cloud, ring x azimuth (lines are rings, the
+/// lowest first; beams are azimuths, from `first_azimuth_rad` on). A miss is NaN and keeps its
+/// direction. Noise is a function of (seed, utime) only, a ring's bias of the seed. `threads` 0: as
+/// many as the machine has, the result is the same.
+Cloud SpinningSweep(const World& world, const SpinningOptions& options, std::uint64_t seed,
+                    Utime utime, int threads = 0);
+
+/// The constant bias [m] of a ring's ranges.
+double RingBias(const SpinningOptions& options, std::uint64_t seed, int ring);
+
+/// A cloud as most files hold it: hits only, without directions and origins, not organised.
+/// `shuffle`: points in an order drawn from this seed.
+Cloud Unorganised(const Cloud& cloud, bool keep_ring, std::optional<std::uint64_t> shuffle = {});
+
+}  // namespace rgbdt::simulate

@@ -1,0 +1,84 @@
+#include "calib/solve/internal/board_objective.h"
+
+#include "calib/solve/first_guess.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kMostSquared = 1e8;   // of a whitened residual
+constexpr double kLeastWeight = 1e-9;  // of a crossing that the cloud's own pose cannot explain
+
+double BoundedCost(double squared) {
+  return RobustCost(squared < kMostSquared ? squared : kMostSquared);  // NaN, too
+}
+
+// A view and what is known of its sides; `state` index and all.
+struct ViewTerms {
+  const BoardProblem& problem;
+  const BoardView& view;
+  const BoardState& shared_state;
+  const std::array<double, 4>& side_shift;
+
+  CrossingResidual Residual(const Crossing& crossing, const Rigid3& lidar_from_target) const {
+    return ResidualOf(problem.target, problem.priors, crossing, lidar_from_target,
+                      shared_state.shared, side_shift[static_cast<std::size_t>(crossing.side)]);
+  }
+
+  // What the crossing's neighbours tell, too, counts once. By the cloud's own pose: a weight that
+  // changed with the board's place would be an objective of its own.
+  double Weight(const Crossing& crossing) const {
+    const CrossingResidual r = Residual(crossing, view.cloud.pose->sensor_from_target);
+    if (!(r.per_rad > 0)) return kLeastWeight;
+    return r.sigma_m * r.sigma_m / (crossing.sigma_m * crossing.sigma_m);
+  }
+
+  double Crossings(const Rigid3& lidar_from_target) const {
+    double cost = 0;
+    for (const Crossing& crossing : view.cloud.crossings) {
+      const auto side = static_cast<std::size_t>(crossing.side);
+      if (!view.sides[side] || !(crossing.sigma_m > 0)) continue;
+      const CrossingResidual r = Residual(crossing, lidar_from_target);
+      const double squared =
+          r.per_rad > 0 ? r.beyond_m * r.beyond_m / (r.sigma_m * r.sigma_m) : kMostSquared;
+      cost += Weight(crossing) * BoundedCost(squared);
+    }
+    return cost;
+  }
+
+  // x = (n, n . (centre + offset - t)), n the board's normal: x' scatter x is the sum of squares.
+  double Plane(const Rigid3& lidar_from_target) const {
+    const CloudEdges& cloud = view.cloud;
+    const double points = cloud.scatter(3, 3);
+    if (!(cloud.scatter_sigma_m > 0) || !(points > 0)) return 0;
+    const Eigen::Vector3d n = lidar_from_target.rotation * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d offset = shared_state.shared[kRangeOffset] * cloud.centre.normalized() -
+                                   lidar_from_target.translation;
+    Eigen::Vector4d x;
+    x << n, n.dot(cloud.centre + offset);
+    const double sigma2 = cloud.scatter_sigma_m * cloud.scatter_sigma_m;
+    return points * BoundedCost(x.dot(cloud.scatter * x) / (points * sigma2));
+  }
+};
+
+}  // namespace
+
+double BoardObjective(const BoardProblem& problem, const BoardState& shared_state,
+                      const std::vector<Rigid3>& camera_from_lidar) {
+  double cost = 0;
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    const BoardView& view = problem.views[v];
+    const ViewTerms terms{problem, view, shared_state, shared_state.side_shift[v]};
+    for (const BoardSight& sight : view.sights) {
+      Rigid3 lidar_from_target =
+          camera_from_lidar[static_cast<std::size_t>(sight.camera)].Inverse() *
+          sight.image->pose->sensor_from_target;
+      if (HalfTurned(lidar_from_target, *view.cloud.pose)) {
+        lidar_from_target = lidar_from_target * kHalfTurn;
+      }
+      cost += terms.Crossings(lidar_from_target) + terms.Plane(lidar_from_target);
+    }
+  }
+  return cost;
+}
+
+}  // namespace rgbdt

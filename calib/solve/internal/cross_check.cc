@@ -1,0 +1,181 @@
+#include "calib/solve/internal/cross_check.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "calib/solve/evaluate.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kMostMisfit = 50;
+using Index = Eigen::Index;
+
+// Views of the joint problem, every `parts`-th from `part` on left out or, inverted, taken.
+std::vector<std::size_t> Others(std::size_t views, std::size_t part, std::size_t parts,
+                                bool taken) {
+  std::vector<std::size_t> out;
+  for (std::size_t v = 0; v < views; ++v) {
+    if ((v % parts == part) == taken) out.push_back(v);
+  }
+  return out;
+}
+
+BoardSolution SolvePart(const JointProblem& joint, const BoardState& near,
+                        const std::vector<std::size_t>& views) {
+  BoardState start;
+  const BoardProblem part = Part(joint.problem, views, near, &start);
+  return SolveBoards(part, start);
+}
+
+std::vector<const Observation*> ViewsOf(const JointProblem& joint, std::size_t camera,
+                                        const std::vector<std::size_t>& views) {
+  std::vector<const Observation*> out;
+  for (const std::size_t v : views) {
+    const Observation* o = joint.cameras[camera].views->Find(joint.problem.views[v].name);
+    if (o != nullptr) out.push_back(o);
+  }
+  return out;
+}
+
+// A camera's part in one fold.
+struct Judged {
+  Fold fold;
+  std::vector<double> worse;  // by view left out: the refined misfit minus the guess's
+};
+
+// A view left out against a camera's pose, by that camera's image alone; bounded, so that one wrong
+// view does not decide.
+double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
+                std::size_t camera, const Rigid3& camera_from_lidar) {
+  BoardState state;
+  BoardProblem alone = Part(joint.problem, {view}, joint.start, &state);
+  std::vector<BoardSight>& sights = alone.views[0].sights;
+  sights.erase(
+      std::remove_if(sights.begin(), sights.end(),
+                     [&](const BoardSight& s) { return s.camera != static_cast<int>(camera); }),
+      sights.end());
+  state.camera_from_lidar = fold.state.camera_from_lidar;
+  state.camera_from_lidar[camera] = camera_from_lidar;
+  state.shared = fold.state.shared;
+  state.lidar_from_target[0] = alone.views[0].cloud.pose->sensor_from_target;
+  state.side_shift[0] = {};
+  return std::min(kMostMisfit, MisfitOf(alone, state, 0, static_cast<int>(camera)));
+}
+
+Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
+                 const std::vector<std::size_t>& left_out, const FirstGuess& guess) {
+  const CameraReport& report = joint.cameras[camera].views->report;
+  const auto at = static_cast<Index>(6 * camera);
+  const CameraCalibration fold_calibration{
+      report.calibration.camera, solution.state.camera_from_lidar[camera],
+      Matrix6d(solution.covariance.block<6, 6>(at, at)), true, ""};
+  const EdgeModel edges{joint.problem.target, solution.state.shared, joint.problem.priors};
+  Judged judged;
+  judged.fold.from_result =
+      ErrorOf(fold_calibration.camera_from_lidar, report.calibration.camera_from_lidar);
+  EdgeMisfit sum;
+  for (const std::size_t view : left_out) {
+    const Observation* o = joint.cameras[camera].views->Find(joint.problem.views[view].name);
+    if (o == nullptr) continue;
+    judged.fold.heldout.push_back(o->view);
+    const EdgeMisfit edge = MisfitOfEdges(edges, *o, fold_calibration);
+    sum.squared += edge.squared;
+    sum.count += edge.count;
+    const double refined =
+        MisfitOf(joint, solution, view, camera, fold_calibration.camera_from_lidar);
+    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar);
+    judged.fold.misfit += refined;
+    judged.fold.first_guess_misfit += guessed;
+    judged.worse.push_back(refined - guessed);
+  }
+  const auto judges = static_cast<double>(std::max<std::size_t>(1, judged.fold.heldout.size()));
+  judged.fold.misfit /= judges;
+  judged.fold.first_guess_misfit /= judges;
+  judged.fold.edge_rms_whitened = sum.count > 0 ? std::sqrt(sum.squared / sum.count) : 0;
+  return judged;
+}
+
+// Whether the guess fits better by more than chance: the sum against twice its own scatter. What a
+// view says by itself is far coarser than these two poses differ.
+bool GuessIsBetter(const std::vector<double>& worse) {
+  double sum = 0;
+  double squares = 0;
+  for (const double w : worse) {
+    sum += w;
+    squares += w * w;
+  }
+  return sum > 2 * std::sqrt(squares);
+}
+
+void KeepGuess(const GuessedCamera& camera) {
+  CameraReport& report = camera.views->report;
+  double refined = 0;
+  double guessed = 0;
+  for (const Fold& fold : report.folds) {
+    refined += fold.misfit / static_cast<double>(report.folds.size());
+    guessed += fold.first_guess_misfit / static_cast<double>(report.folds.size());
+  }
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "converged; the first guess was kept: on views left out it fits better than the "
+                "refined pose (chi-square %.1f against %.1f a view)",
+                guessed, refined);
+  report.calibration.camera_from_lidar = *camera.guess.camera_from_lidar;
+  report.calibration.covariance = camera.guess.covariance;
+  report.calibration.status = text;
+}
+
+void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::size_t parts) {
+  std::vector<std::vector<double>> worse(joint.cameras.size());
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t count = joint.problem.views.size();
+    const auto kept = Others(count, part, parts, false);
+    const BoardSolution solution = SolvePart(joint, result.solution.state, kept);
+    for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
+      const auto left_out = Others(count, part, parts, true);
+      const FirstGuess guess = GuessFromBoards(ViewsOf(joint, c, kept));
+      if (!guess.camera_from_lidar || !solution.converged) continue;
+      Judged judged = JudgeFold(joint, solution, c, left_out, guess);
+      if (judged.worse.empty()) continue;
+      worse[c].insert(worse[c].end(), judged.worse.begin(), judged.worse.end());
+      joint.cameras[c].views->report.folds.push_back(std::move(judged.fold));
+    }
+  }
+  for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
+    KeepTheBetter(joint.cameras[c], worse[c]);
+  }
+}
+
+void Halve(const JointProblem& joint, const JointResult& result) {
+  const std::size_t count = joint.problem.views.size();
+  const BoardSolution a = SolvePart(joint, result.solution.state, Others(count, 0, 2, true));
+  const BoardSolution b = SolvePart(joint, result.solution.state, Others(count, 1, 2, true));
+  for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
+    const Rigid3& pose_a = a.state.camera_from_lidar[c];
+    const Rigid3& pose_b = b.state.camera_from_lidar[c];
+    const auto at = static_cast<Index>(6 * c);
+    const Matrix6d covariance = result.variance_factor * (a.covariance.block<6, 6>(at, at) +
+                                                          b.covariance.block<6, 6>(at, at));
+    const Vector6d delta = Log(pose_a * pose_b.Inverse());
+    Halves halves{ErrorOf(pose_a, pose_b), delta.dot(covariance.ldlt().solve(delta))};
+    joint.cameras[c].views->report.halves = halves;
+  }
+}
+
+}  // namespace
+
+void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse) {
+  if (GuessIsBetter(worse)) KeepGuess(camera);
+}
+
+void CrossValidate(const JointProblem& joint, const JointResult& result, int folds) {
+  const std::size_t views = joint.problem.views.size();
+  if (views < 4) return;
+  LeaveOutParts(joint, result, std::min(views, static_cast<std::size_t>(folds)));
+  if (views >= 6) Halve(joint, result);
+}
+
+}  // namespace rgbdt

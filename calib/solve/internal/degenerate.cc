@@ -1,0 +1,88 @@
+#include "calib/solve/internal/degenerate.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace rgbdt {
+namespace {
+
+constexpr double kParallelRad = 0.10;  // normals no farther than this from their mean
+constexpr double kOnePlaceM = 0.15;    // centres no farther than this from theirs
+constexpr double kLooseRad = M_PI / 180;
+constexpr double kLooseM = 0.1;
+
+std::string Text(const char* format, const Eigen::Vector3d& v) {
+  char text[120];
+  std::snprintf(text, sizeof text, format, v.x(), v.y(), v.z());
+  return text;
+}
+
+std::string Direction(const Eigen::Vector3d& v) { return Text("(%.2f, %.2f, %.2f)", v); }
+std::string Place(const Eigen::Vector3d& v) { return Text("x %.1f, y %.1f, z %.1f m", v); }
+
+// The direction in space that most normals lie along.
+Eigen::Vector3d MeanNormal(const std::vector<Rigid3>& boards) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Rigid3& board : boards) sum += board.rotation * Eigen::Vector3d::UnitZ();
+  return sum.norm() > 1e-9 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::UnitZ();
+}
+
+const char* AxisOf(const Eigen::Vector3d& v) {
+  Eigen::Index axis = 0;
+  v.cwiseAbs().maxCoeff(&axis);
+  return axis == 0 ? "x (right)" : axis == 1 ? "y (down)" : "z (forward)";
+}
+
+}  // namespace
+
+std::string WhyDegenerate(const std::vector<Rigid3>& boards) {
+  if (boards.empty()) return "degenerate: no view";
+  const Eigen::Vector3d normal = MeanNormal(boards);
+  double angle = 0;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Rigid3& board : boards) {
+    const double along = normal.dot(board.rotation * Eigen::Vector3d::UnitZ());
+    angle = std::max(angle, std::acos(std::clamp(along, -1.0, 1.0)));
+    middle += board.translation / static_cast<double>(boards.size());
+  }
+  double apart = 0;
+  for (const Rigid3& board : boards) apart = std::max(apart, (board.translation - middle).norm());
+  if (boards.size() == 1 || angle < kParallelRad) {
+    return (boards.size() == 1 ? std::string("degenerate: only one view")
+                               : "degenerate: the board was parallel to itself in all " +
+                                     std::to_string(boards.size()) + " views") +
+           "; shifts of the camera across the board's normal " + Direction(normal) +
+           " and turns about it (LIDAR frame) are loose. Next: tilt the board by 20 to 40 deg, to "
+           "different sides";
+  }
+  if (apart < kOnePlaceM) {
+    return "degenerate: the board was at one place in all " + std::to_string(boards.size()) +
+           " views; a turn of the camera about that place (" + Place(middle) +
+           ", LIDAR frame) and a shift of it look alike. Next: hold the board nearer, farther, and "
+           "to both sides";
+  }
+  return "";
+}
+
+std::string WhyLoose(const Matrix6d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(covariance.topLeftCorner<3, 3>());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shifts(covariance.bottomRightCorner<3, 3>());
+  const double turn = std::sqrt(std::max(0.0, turns.eigenvalues()[2]));
+  const double shift = std::sqrt(std::max(0.0, shifts.eigenvalues()[2]));
+  if (turn <= kLooseRad && shift <= kLooseM) return "";
+  char text[200];
+  if (turn / kLooseRad >= shift / kLooseM) {
+    std::snprintf(text, sizeof text,
+                  "degenerate: turns about the camera's %s are known to %.1f deg only (1 sigma)",
+                  AxisOf(turns.eigenvectors().col(2)), turn * 180 / M_PI);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "degenerate: shifts along the camera's %s are known to %.0f mm only (1 sigma)",
+                  AxisOf(shifts.eigenvectors().col(2)), shift * 1000);
+  }
+  return std::string(text) + "; add views with the board elsewhere and tilted otherwise";
+}
+
+}  // namespace rgbdt

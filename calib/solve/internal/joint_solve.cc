@@ -1,0 +1,354 @@
+#include "calib/solve/internal/joint_solve.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "calib/model/rigid3.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kChanceChi2 = 30;  // six degrees of freedom: 4 in 100,000 lie beyond
+constexpr double kMedianChi2 = 5.348;
+constexpr double kSideSigmas = 4;
+const char* const kSideNames[] = {"top", "right", "bottom", "left"};
+
+using Index = Eigen::Index;
+
+void TurnCloud(CloudEdges* cloud) {
+  cloud->pose->sensor_from_target = cloud->pose->sensor_from_target * kHalfTurn;
+  for (Crossing& crossing : cloud->crossings) crossing.side = (crossing.side + 2) % 4;
+}
+
+std::string Fixed(double value, int decimals) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
+// Builds the problem a camera at a time, in the order of the cameras.
+class Builder {
+ public:
+  explicit Builder(const Target& target) { joint_.problem.target = target; }
+
+  void Add(const GuessedCamera& camera) {
+    const int index = static_cast<int>(joint_.cameras.size());
+    joint_.cameras.push_back(camera);
+    joint_.problem.cameras.emplace_back(*camera.views->spec);
+    for (Observation& o : camera.views->all) {
+      if (Use(camera, o)) AddSight(index, &o);
+    }
+  }
+
+  JointProblem Finish(double range_offset_sigma_m) {
+    if (range_offset_sigma_m > 0) {
+      joint_.problem.priors.range_offset_sigma_m = range_offset_sigma_m;
+    }
+    std::vector<Rigid3> poses;
+    for (const GuessedCamera& c : joint_.cameras) poses.push_back(*c.guess.camera_from_lidar);
+    joint_.start = StartOf(joint_.problem, poses);
+    joint_.start.shared[kRangeOffset] =
+        range_offset_sigma_m > 0 ? joint_.cameras.front().guess.range_offset_m : 0;
+    return std::move(joint_);
+  }
+
+ private:
+  static bool Use(const GuessedCamera& camera, const Observation& o) {
+    const auto used = camera.views->Used();
+    return std::find(used.begin(), used.end(), &o) != used.end();
+  }
+
+  void AddSight(int camera, Observation* o) {
+    const Rigid3& camera_from_lidar =
+        *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;
+    const Rigid3 lidar_from_image_target =
+        camera_from_lidar.Inverse() * o->image->pose->sensor_from_target;
+    auto view = std::find_if(joint_.problem.views.begin(), joint_.problem.views.end(),
+                             [&](const BoardView& v) { return v.name == o->view; });
+    if (view == joint_.problem.views.end()) {
+      BoardView& fresh = joint_.problem.views.emplace_back();
+      fresh.name = o->view;
+      fresh.cloud = *o->cloud;
+      if (HalfTurned(lidar_from_image_target, *fresh.cloud.pose)) TurnCloud(&fresh.cloud);
+      fresh.cloud.pose->half_turn_known = o->image->pose->half_turn_known;
+      fresh.sights.push_back({camera, &*o->image, false});
+      return;
+    }
+    if ((view->cloud.centre - o->cloud->centre).norm() > 0.01) {
+      o->rejected = "takes another board of the cloud than the cameras before it";
+      return;
+    }
+    const bool turned = HalfTurned(lidar_from_image_target, *view->cloud.pose);
+    view->sights.push_back({camera, &*o->image, turned});
+    if (!turned || !o->image->pose->half_turn_known || view->cloud.pose->half_turn_known) return;
+    // This camera knows which end is up, those before it did not.
+    TurnCloud(&view->cloud);
+    view->cloud.pose->half_turn_known = true;
+    for (BoardSight& sight : view->sights) sight.turned = !sight.turned;
+  }
+
+  JointProblem joint_;
+};
+
+// How far a view's own estimate of a camera is from that of all the others.
+struct Contradiction {
+  std::size_t view = 0, sight = 0;
+  double chi2 = 0;
+  double rotation_deg = 0, centre_mm = 0;
+};
+
+// From normal equations at the solution: the view alone would step by information^-1 gradient, the
+// others without it the other way.
+std::vector<Contradiction> Contradictions(const JointProblem& joint,
+                                          const BoardSolution& solution) {
+  const auto cameras = static_cast<Index>(6 * joint.cameras.size());
+  // Nuisances as they are: a view's own and the others' then add up.
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(cameras, cameras);
+  for (const ViewInformation& view : solution.views) {
+    all += view.information.topLeftCorner(cameras, cameras);
+  }
+  std::vector<Contradiction> out;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    const BoardView& view = joint.problem.views[v];
+    // The view's cameras only: of others it says nothing.
+    std::vector<Index> place;
+    for (const BoardSight& sight : view.sights) {
+      for (Index k = 0; k < 6; ++k) place.push_back(6 * sight.camera + k);
+    }
+    const auto own = Eigen::MatrixXd(
+        solution.views[v].information.topLeftCorner(cameras, cameras)(place, place));
+    const auto gradient = Eigen::VectorXd(solution.views[v].gradient.head(cameras)(place));
+    const Eigen::MatrixXd others =
+        all - solution.views[v].information.topLeftCorner(cameras, cameras);
+    const Eigen::MatrixXd others_covariance =
+        others.ldlt().solve(Eigen::MatrixXd::Identity(cameras, cameras))(place, place);
+    const Eigen::MatrixXd own_covariance =
+        own.ldlt().solve(Eigen::MatrixXd::Identity(own.rows(), own.cols()));
+    const Eigen::MatrixXd covariance = own_covariance + others_covariance;
+    const Eigen::VectorXd off = covariance * gradient;
+    for (std::size_t s = 0; s < view.sights.size(); ++s) {
+      const auto at = static_cast<Index>(6 * s);
+      const Matrix6d block = covariance.block<6, 6>(at, at);
+      const Vector6d delta = off.segment<6>(at);
+      Contradiction c;
+      c.view = v;
+      c.sight = s;
+      c.chi2 = delta.dot(block.ldlt().solve(delta));
+      c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
+      c.centre_mm = delta.tail<3>().norm() * 1000;
+      if (std::isfinite(c.chi2)) out.push_back(c);  // not where no other view has this camera
+    }
+  }
+  return out;
+}
+
+// What views scatter more than stated, as a factor of variance; the median is not moved by a few
+// that are wrong.
+double ScatterOf(const std::vector<Contradiction>& contradictions) {
+  if (contradictions.size() < 3) return 1;
+  std::vector<double> chi2;
+  for (const Contradiction& c : contradictions) chi2.push_back(c.chi2);
+  std::sort(chi2.begin(), chi2.end());
+  return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);
+}
+
+// Sights left of a camera.
+int SightsOf(const BoardProblem& problem, int camera) {
+  int count = 0;
+  for (const BoardView& view : problem.views) {
+    for (const BoardSight& sight : view.sights) count += sight.camera == camera ? 1 : 0;
+  }
+  return count;
+}
+
+void RejectSight(JointProblem* joint, const Contradiction& worst, BoardState* state) {
+  BoardView& view = joint->problem.views[worst.view];
+  const int camera = view.sights[worst.sight].camera;
+  const int others = SightsOf(joint->problem, camera) - 1;
+  for (Observation& o : joint->cameras[static_cast<std::size_t>(camera)].views->all) {
+    if (o.view != view.name || !o.rejected.empty()) continue;
+    o.rejected = "contradicts the other " + std::to_string(others) +
+                 " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
+                 " deg and " + Fixed(worst.centre_mm, 0) +
+                 " mm elsewhere; did board or rig move, or does something stand against the board?";
+  }
+  view.sights.erase(view.sights.begin() + static_cast<std::ptrdiff_t>(worst.sight));
+  if (!view.sights.empty()) return;
+  const auto at = static_cast<std::ptrdiff_t>(worst.view);
+  joint->problem.views.erase(joint->problem.views.begin() + at);
+  state->lidar_from_target.erase(state->lidar_from_target.begin() + at);
+  state->side_shift.erase(state->side_shift.begin() + at);
+}
+
+// The side whose own shift is the least likely, out. False: none is unlikely enough.
+bool DropSide(JointProblem* joint, const BoardState& state) {
+  const double most = kSideSigmas * joint->problem.priors.side_sigma_rad;
+  double worst = most;
+  std::size_t view = 0;
+  std::size_t side = 0;
+  for (std::size_t v = 0; v < joint->problem.views.size(); ++v) {
+    for (std::size_t s = 0; s < 4; ++s) {
+      // A rectangle needs three.
+      const auto& sides = joint->problem.views[v].sides;
+      if (!sides[s] || std::count(sides.begin(), sides.end(), true) < 4) continue;
+      const double shift = std::abs(state.side_shift[v][s]);
+      if (shift <= worst) continue;
+      worst = shift;
+      view = v;
+      side = s;
+    }
+  }
+  if (worst <= most) return false;
+  joint->problem.views[view].sides[side] = false;
+  for (const BoardSight& sight : joint->problem.views[view].sights) {
+    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.remarks.push_back(
+        "view " + joint->problem.views[view].name + ": the board's " + kSideNames[side] +
+        " side in the cloud lies " + Fixed(worst * 1000, 1) +
+        " mrad from where the other sides put it; that side is left out, the view is used");
+  }
+  return true;
+}
+
+const Contradiction* WorstToReject(const JointProblem& joint,
+                                   const std::vector<Contradiction>& contradictions,
+                                   const std::vector<int>& at_first) {
+  const double limit = kChanceChi2 * ScatterOf(contradictions);
+  const Contradiction* worst = nullptr;
+  for (const Contradiction& c : contradictions) {
+    const int camera = joint.problem.views[c.view].sights[c.sight].camera;
+    const int left = SightsOf(joint.problem, camera);
+    if (left <= 3 || 3 * (left - 1) < 2 * at_first[static_cast<std::size_t>(camera)]) continue;
+    if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
+  }
+  return worst;
+}
+
+// The result without one view.
+BoardSolution Without(const JointProblem& joint, const BoardState& near, std::size_t view) {
+  std::vector<std::size_t> others;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    if (v != view) others.push_back(v);
+  }
+  BoardState start;
+  const BoardProblem part = Part(joint.problem, others, near, &start);
+  return SolveBoards(part, start);
+}
+
+// How the result moves when each view is left out in turn, against how it should: nuisances, robust
+// weights and all, whatever makes views differ. Of an efficient estimate with covariance C the move
+// has covariance C_without - C (Hausman 1978), so the sum of move' C^-1 move is that of
+// tr(C^-1 C_without - I): the quotient is the factor of variance. One-sided, since views that
+// scatter less than stated are luck; and only what chance hardly does counts.
+double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) {
+  const std::size_t views = joint.problem.views.size();
+  if (views < 4) return 1;
+  double moved = 0;
+  double expected = 0;
+  double expected2 = 0;
+  for (std::size_t v = 0; v < views; ++v) {
+    const BoardSolution without = Without(joint, solution.state, v);
+    for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
+      const auto at = static_cast<Index>(6 * c);
+      const Eigen::LDLT<Matrix6d> covariance(Matrix6d(solution.covariance.block<6, 6>(at, at)));
+      const Matrix6d more =
+          covariance.solve(Matrix6d(without.covariance.block<6, 6>(at, at))) - Matrix6d::Identity();
+      const Vector6d move =
+          Log(without.state.camera_from_lidar[c] * solution.state.camera_from_lidar[c].Inverse());
+      moved += move.dot(covariance.solve(move));
+      expected += more.trace();
+      expected2 += (more * more).trace();
+    }
+  }
+  if (!(expected > 0) || !std::isfinite(moved)) return 1;
+  // Cameras share the clouds: their moves are alike, and tell but once.
+  const double chance =
+      std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
+  const double factor = moved / expected;
+  return factor > 1 + 2.5 * chance ? factor : 1;
+}
+
+// How far sides differ among themselves, by the data: never less than the physics says. Each
+// side's shift as found and what is left open of it (Dempster, Laird and Rubin 1977).
+double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
+  double sum = 0;
+  double count = 0;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    for (std::size_t side = 0; side < 4; ++side) {
+      if (!joint.problem.views[v].sides[side]) continue;
+      const double shift = solution.state.side_shift[v][side];
+      sum += shift * shift + solution.side_variance[v][side];
+      count += 1;
+    }
+  }
+  return count > 0 ? std::max(BoardPriors().side_sigma_rad, std::sqrt(sum / count)) : 0;
+}
+
+// Solves again until the sides' sigma agrees with the sides.
+void FitSides(JointProblem* joint, BoardState* state, JointResult* result) {
+  constexpr int kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = joint->problem.priors.side_sigma_rad;
+    const double now = SideSigma(*joint, result->solution);
+    if (!(std::abs(now - before) > 0.03 * before)) return;
+    joint->problem.priors.side_sigma_rad = now;
+    result->solution = SolveBoards(joint->problem, *state);
+    *state = result->solution.state;
+  }
+}
+
+}  // namespace
+
+JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
+                              double range_offset_sigma_m) {
+  Builder builder(target);
+  for (const GuessedCamera& camera : cameras) builder.Add(camera);
+  return builder.Finish(range_offset_sigma_m);
+}
+
+BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                  const BoardState& state, BoardState* start) {
+  BoardProblem part{problem.target, problem.cameras, {}, problem.priors};
+  *start = {state.camera_from_lidar, state.shared, {}, {}};
+  for (const std::size_t v : views) {
+    part.views.push_back(problem.views[v]);
+    start->lidar_from_target.push_back(state.lidar_from_target[v]);
+    start->side_shift.push_back(state.side_shift[v]);
+  }
+  return part;
+}
+
+JointResult SolveJointly(JointProblem* joint) {
+  std::vector<int> at_first;
+  for (std::size_t c = 0; c < joint->cameras.size(); ++c) {
+    at_first.push_back(SightsOf(joint->problem, static_cast<int>(c)));
+  }
+  JointResult result;
+  BoardState state = joint->start;
+  for (std::size_t round = 0; round < 4 * joint->problem.views.size() + 4; ++round) {
+    result.solution = SolveBoards(joint->problem, state);
+    state = result.solution.state;
+    const auto contradictions = Contradictions(*joint, result.solution);
+    const Contradiction* worst = WorstToReject(*joint, contradictions, at_first);
+    if (worst != nullptr) {
+      RejectSight(joint, *worst, &state);
+      continue;
+    }
+    if (DropSide(joint, state)) continue;
+    FitSides(joint, &state, &result);
+    result.variance_factor = VarianceFactor(*joint, result.solution);
+    break;
+  }
+  return result;
+}
+
+Matrix6d CovarianceOf(const JointResult& result, std::size_t index) {
+  const auto at = static_cast<Index>(6 * index);
+  const Matrix6d covariance =
+      result.variance_factor * result.solution.covariance.block<6, 6>(at, at);
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+}  // namespace rgbdt

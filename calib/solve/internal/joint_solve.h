@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calib/solve/board_problem.h"
+#include "calib/solve/camera_views.h"
+#include "calib/solve/guess_cameras.h"
+
+namespace rgbdt {
+
+/// Cameras that are solved together.
+struct JointProblem {
+  BoardProblem problem;
+  BoardState start;
+  std::vector<GuessedCamera> cameras;  ///< in the order of problem.cameras
+};
+
+/// The boards of all views used, each brought into one set of axes for all cameras: the target's
+/// own, where one of them knows it. An observation whose camera takes another board of the cloud
+/// than the cameras before it becomes rejected. `range_offset_sigma_m`: 0 where it is not asked
+/// for.
+JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
+                              double range_offset_sigma_m);
+
+/// The same with some of the views only.
+BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                  const BoardState& state, BoardState* start);
+
+/// A joint solve of which views and sides that contradict the others were left out.
+struct JointResult {
+  BoardSolution solution;
+  double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
+};
+
+/// Solves; leaves out what contradicts the rest, worst first, at most a third of a camera's views,
+/// and solves again. What is left out is gone from the problem, and rejected with its reason among
+/// the cameras' observations. A view's own estimate of a camera against that of all others: beyond
+/// what chance does once in 20,000 views, it is out. A side's own shift beyond 4 of its sigmas: its
+/// crossings are out, and a remark says so.
+JointResult SolveJointly(JointProblem* joint);
+
+/// Of camera `index` [delta of rigid3.h], the variance factor counted in.
+Matrix6d CovarianceOf(const JointResult& result, std::size_t index);
+
+}  // namespace rgbdt

@@ -1,0 +1,265 @@
+#include "calib/solve/internal/view_equations.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/camera/pixel_by_point.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kLeastCornerPx = 0.01;
+
+}  // namespace
+
+ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view)
+    : problem_(problem),
+      view_(problem.views[view]),
+      state_(state),
+      lidar_from_target_(state.lidar_from_target[view]),
+      side_shift_(state.side_shift[view]),
+      cameras_(static_cast<int>(problem.cameras.size())),
+      h_(Eigen::MatrixXd::Zero(Size(), Size())),
+      g_(Eigen::VectorXd::Zero(Size())) {
+  for (const BoardSight& sight : view_.sights) {
+    AddCorners(sight);
+    AddImageSides(sight);
+  }
+  AddCrossings();
+  AddPlane();
+  AddSidePriors();
+}
+
+// Corners: 2 rows each over the camera's 6 and the board's 6 unknowns.
+void ViewEquations::AddCorners(const BoardSight& sight) {
+  const Camera& camera = problem_.cameras[static_cast<std::size_t>(sight.camera)];
+  const Rigid3 camera_from_target =
+      state_.camera_from_lidar[static_cast<std::size_t>(sight.camera)] * lidar_from_target_;
+  const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
+  const auto model = problem_.target.InnerCorners();
+  const auto& seen = sight.image->corners;
+  if (seen.size() != model.size()) return;
+  const double sigma = kCornersAlike * std::max(kLeastCornerPx, sight.image->corner_sigma_px);
+  Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
+  Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (!IsSeen(seen[i])) continue;
+    const Eigen::Vector3d& corner = model[sight.turned ? model.size() - 1 - i : i];
+    const Eigen::Vector3d p = camera_from_target * corner;
+    const auto pixel = camera.Project(p);
+    if (!pixel) {
+      cost_ += RobustCost(1e6);
+      continue;
+    }
+    const Eigen::Matrix<double, 2, 3> by_point = PixelByPoint(camera.lens(), p) / sigma;
+    Eigen::Matrix<double, 2, 12> j;
+    j << -by_point * CrossMatrix(p), by_point, -by_point * rotation * CrossMatrix(corner),
+        by_point * rotation;
+    const Eigen::Vector2d residual = (*pixel - seen[i]) / sigma;
+    // Both coordinates together: two degrees of freedom.
+    const double squared = residual.squaredNorm() / 2;
+    const double weight = RobustWeight(squared);
+    cost_ += 2 * RobustCost(squared);
+    h.noalias() += weight * j.transpose() * j;
+    g.noalias() -= weight * j.transpose() * residual;
+  }
+  Spread(sight.camera, h, g);
+}
+
+// From (camera, board) to their places among the unknowns.
+void ViewEquations::Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
+                           const Eigen::Matrix<double, 12, 1>& g) {
+  const int c = kOwnUnknowns + 6 * camera;
+  h_.block<6, 6>(c, c) += h.topLeftCorner<6, 6>();
+  h_.block<6, 6>(0, 0) += h.bottomRightCorner<6, 6>();
+  h_.block<6, 6>(0, c) += h.bottomLeftCorner<6, 6>();
+  h_.block<6, 6>(c, 0) += h.topRightCorner<6, 6>();
+  g_.segment<6>(c) += g.head<6>();
+  g_.head<6>() += g.tail<6>();
+}
+
+void ViewEquations::AddImageSides(const BoardSight& sight) {
+  for (int i = 0; i < 4; ++i) {
+    const ImageSide& side = sight.image->sides[static_cast<std::size_t>(i)];
+    if (side.seen && side.curve.size() >= 2) {
+      AddImageSide(sight, side, sight.turned ? (i + 2) % 4 : i);
+    }
+  }
+}
+
+// The projected side's distance from the curve at the curve's two ends.
+void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side, int on_board) {
+  const int c = kOwnUnknowns + 6 * sight.camera;
+  Eigen::Matrix<double, 2, Eigen::Dynamic> j =
+      Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, Size());
+  Eigen::Vector2d residual;
+  const std::size_t last = side.curve.size() - 1;
+  for (int end = 0; end < 2; ++end) {
+    const Eigen::Vector2d& at = side.curve[end == 0 ? 0 : last];
+    const Eigen::Vector2d& next = side.curve[end == 0 ? 1 : last - 1];
+    Row6 by_camera;
+    Row6 by_target;
+    double by_outline = 0;
+    if (!CurveEnd(sight, on_board, at, end == 0 ? next - at : at - next, &residual[end], &by_camera,
+                  &by_target, &by_outline)) {
+      return;
+    }
+    j.row(end).segment<6>(c) = by_camera;
+    j.row(end).head<6>() = by_target;
+    j(end, Shared(kOutlineTop + on_board)) = by_outline;
+  }
+  const Eigen::LDLT<Eigen::Matrix2d> ldlt(side.covariance);
+  if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return;
+  const Eigen::Matrix2d information = ldlt.solve(Eigen::Matrix2d::Identity());
+  const double squared = residual.dot(information * residual) / 2;
+  const double weight = RobustWeight(squared);
+  cost_ += 2 * RobustCost(squared);
+  h_ += weight * j.transpose() * information * j;
+  g_ -= weight * j.transpose() * information * residual;
+}
+
+// One end: where on the side the curve ends, and how far the projected side lies from there.
+bool ViewEquations::CurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
+                             const Eigen::Vector2d& along, double* residual, Row6* by_camera,
+                             Row6* by_target, double* by_outline) const {
+  const Camera& camera = problem_.cameras[static_cast<std::size_t>(sight.camera)];
+  const Rigid3 camera_from_target =
+      state_.camera_from_lidar[static_cast<std::size_t>(sight.camera)] * lidar_from_target_;
+  const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
+  const auto corners = problem_.target.OutlineCorners();
+  const auto s = static_cast<std::size_t>(side);
+  const Eigen::Vector2d out = OutwardOf(side);
+  const Eigen::Vector3d outward(out.x(), out.y(), 0);
+  const Eigen::Vector3d shift =
+      state_.shared[static_cast<std::size_t>(kOutlineTop + side)] * outward;
+  const Eigen::Vector3d from = corners[s] + shift;
+  const Eigen::Vector3d to = corners[(s + 1) % 4] + shift;
+  const Eigen::Vector2d tangent = along.normalized();
+  double t = 0.5;  // along the side; Newton's steps put it beside the curve's end
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector3d p = camera_from_target * Eigen::Vector3d(from + t * (to - from));
+    const auto pixel = camera.Project(p);
+    if (!pixel) return false;
+    const Eigen::Vector2d by_t = PixelByPoint(camera.lens(), p) * rotation * (to - from);
+    const double speed = tangent.dot(by_t);
+    if (std::abs(speed) < 1e-6) return false;
+    t += std::clamp(tangent.dot(at - *pixel) / speed, -1.0, 1.0);
+  }
+  const Eigen::Vector3d on_target = from + t * (to - from);
+  const Eigen::Vector3d p = camera_from_target * on_target;
+  const auto pixel = camera.Project(p);
+  if (!pixel) return false;
+  const Eigen::Matrix<double, 1, 3> by_point =
+      Eigen::RowVector2d(-tangent.y(), tangent.x()) * PixelByPoint(camera.lens(), p);
+  *residual = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
+  *by_camera << -by_point * CrossMatrix(p), by_point;
+  *by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
+  *by_outline = by_point * rotation * outward;
+  return true;
+}
+
+void ViewEquations::AddCrossings() {
+  // Over the board's pose, the class's shift, the thickness and the outline (whose derivatives
+  // are the side's and the kind's), added up for each of them apart.
+  constexpr int kSums = 9;
+  using Sums = Eigen::Matrix<double, kSums, kSums>;
+  using Sum = Eigen::Matrix<double, kSums, 1>;
+  std::array<std::array<Sums, 3>, 4> h;
+  std::array<std::array<Sum, 3>, 4> g;
+  for (int side = 0; side < 4; ++side) {
+    for (int kind = 0; kind < 3; ++kind) {
+      h[side][kind].setZero();
+      g[side][kind].setZero();
+    }
+  }
+  for (const Crossing& crossing : view_.cloud.crossings) {
+    const auto side = static_cast<std::size_t>(crossing.side);
+    if (!view_.sides[side] || !(crossing.sigma_m > 0)) continue;
+    const CrossingResidual r = ResidualOf(problem_.target, problem_.priors, crossing,
+                                          lidar_from_target_, state_.shared, side_shift_[side]);
+    if (!(r.per_rad > 0)) continue;
+    Sum j;
+    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1;
+    const double squared = r.beyond_m * r.beyond_m / (r.sigma_m * r.sigma_m);
+    // What its neighbours tell, too, counts once: in weight, not in what is far off.
+    const double share = r.sigma_m * r.sigma_m / (crossing.sigma_m * crossing.sigma_m);
+    const double weight = RobustWeight(squared) / (crossing.sigma_m * crossing.sigma_m);
+    cost_ += share * RobustCost(squared);
+    const auto kind = static_cast<std::size_t>(crossing.kind) - 1;
+    h[side][kind].noalias() += weight * j * j.transpose();
+    g[side][kind].noalias() -= weight * r.beyond_m * j;
+  }
+  for (int side = 0; side < 4; ++side) {
+    for (int kind = 0; kind < 3; ++kind) {
+      const auto s = static_cast<std::size_t>(side);
+      SpreadCrossings(side, kind, h[s][static_cast<std::size_t>(kind)],
+                      g[s][static_cast<std::size_t>(kind)]);
+    }
+  }
+}
+
+void ViewEquations::SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
+                                    const Eigen::Matrix<double, 9, 1>& g) {
+  if (h(8, 8) == 0) return;
+  // Places of the ten derivatives: the class's shift stands for the side's, too.
+  const std::array<int, 10> place{0,
+                                  1,
+                                  2,
+                                  3,
+                                  4,
+                                  5,
+                                  Shared(kNoReturnShift + kind),
+                                  Shared(kThickness),
+                                  Shared(kOutlineTop + side),
+                                  6 + side};
+  const std::array<int, 10> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 6};
+  for (std::size_t a = 0; a < 10; ++a) {
+    for (std::size_t b = 0; b < 10; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
+    g_[place[a]] += g[sum[a]];
+  }
+}
+
+// x = (n, n . (centre + offset - t)), n the board's normal: x' scatter x is the sum of squares.
+void ViewEquations::AddPlane() {
+  const double sigma = view_.cloud.scatter_sigma_m;
+  if (!(sigma > 0)) return;
+  const Eigen::Matrix3d rotation = lidar_from_target_.rotation.toRotationMatrix();
+  const Eigen::Vector3d n = rotation.col(2);
+  const Eigen::Vector3d along = view_.cloud.centre.normalized();
+  const Eigen::Vector3d from_target =
+      view_.cloud.centre + state_.shared[kRangeOffset] * along - lidar_from_target_.translation;
+  Eigen::Vector4d x;
+  x << n, n.dot(from_target);
+  // Columns: rotation about the target's x and y, shift along its z, the range offset.
+  Eigen::Matrix4d j = Eigen::Matrix4d::Zero();
+  j.block<3, 1>(0, 0) = -rotation.col(1);
+  j.block<3, 1>(0, 1) = rotation.col(0);
+  j(3, 0) = -rotation.col(1).dot(from_target);
+  j(3, 1) = rotation.col(0).dot(from_target);
+  j(3, 2) = -1;
+  j(3, 3) = n.dot(along);
+  const Eigen::Matrix4d information = view_.cloud.scatter / (sigma * sigma);
+  const Eigen::Matrix4d h = j.transpose() * information * j;
+  const Eigen::Vector4d g = -j.transpose() * information * x;
+  cost_ += x.dot(information * x);
+  const std::array<int, 4> place{0, 1, 5, Shared(kRangeOffset)};
+  for (int a = 0; a < 4; ++a) {
+    for (int b = 0; b < 4; ++b) {
+      h_(place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)]) += h(a, b);
+    }
+    g_[place[static_cast<std::size_t>(a)]] += g[a];
+  }
+}
+
+void ViewEquations::AddSidePriors() {
+  const double weight = 1 / (problem_.priors.side_sigma_rad * problem_.priors.side_sigma_rad);
+  for (int side = 0; side < 4; ++side) {
+    const double shift = side_shift_[static_cast<std::size_t>(side)];
+    h_(6 + side, 6 + side) += weight;
+    g_[6 + side] -= weight * shift;
+    cost_ += weight * shift * shift;
+  }
+}
+
+}  // namespace rgbdt

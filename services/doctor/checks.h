@@ -1,0 +1,28 @@
+#pragma once
+
+#include "services/doctor/facts.h"
+#include "services/doctor/finding.h"
+
+namespace rgbdt {
+
+// From facts to what is wrong and what mends it. Nothing here looks at the machine.
+
+Finding CheckBuffer(const BufferFacts& facts);
+/// `route`: where messages to the group would go.
+Findings CheckBusUrl(const BusUrl& url, const Route& route);
+Finding CheckMulticast(const MulticastFacts& facts);
+Finding CheckClock(const ClockFacts& facts);
+Finding CheckDisk(const DiskFacts& facts);
+
+Finding CheckPort(const PortFacts& facts);
+Finding CheckSerial(const SerialFacts& facts);
+Finding CheckHokuyo(const HokuyoFacts& facts);
+
+/// Whether each camera is there, can be reached and is free.
+Findings CheckCameras(const CameraNetwork& network);
+/// Whether a camera's packets fit the interface towards it.
+Findings CheckPackets(const CameraNetwork& network);
+/// Whether all that the cameras send fits each link.
+Findings CheckLinks(const CameraNetwork& network);
+
+}  // namespace rgbdt

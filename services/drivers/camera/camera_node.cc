@@ -1,0 +1,245 @@
+#include "services/drivers/camera/camera_node.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "calib/camera/pixels.h"
+#include "calib/files/image_files.h"
+#include "calib/model/errors.h"
+#include "services/drivers/camera/internal/frame_format.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr int kWaitMs = 50;
+constexpr Utime kAskEvery = kMicrosecondsPerSecond;
+
+const CameraSpec& WithDevice(const CameraSpec& spec) {
+  if (spec.device) return spec;
+  throw InputError("the rig file says nothing of how to reach camera \"" + spec.name +
+                   "\"; add device { serial: \"...\" } or device { address: \"...\" } to it");
+}
+
+std::string Seconds(Utime duration) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", ToSeconds(duration));
+  return text;
+}
+
+}  // namespace
+
+CameraNode::CameraNode(const CameraSpec& spec, std::filesystem::path captures)
+    : spec_(WithDevice(spec)),
+      captures_(std::move(captures)),
+      thread_([this](DeviceThread& thread) { Serve(thread); }, kMaxWaiting) {}
+
+Messages CameraNode::Handle(const Message& message) {
+  const auto* command = std::get_if<SessionCommand>(&message);
+  if (command == nullptr || command->verb != SessionVerb::kCapture) return {};
+  const std::lock_guard<std::mutex> lock(mutex_);
+  capture_ = Capture{command->view, command->utime};
+  trigger_ = spec_.device->trigger == CameraDevice::Trigger::kSoftware;
+  return {};
+}
+
+void CameraNode::Complain(DeviceThread& thread, const std::string& what) {
+  thread.Complain(spec_.name + ": " + what);
+}
+
+CameraNode::~CameraNode() {
+  thread_.Stop();
+  if (closing_.joinable()) closing_.join();
+}
+
+void CameraNode::CloseLater(std::unique_ptr<GenicamCamera> camera) {
+  if (closing_.joinable()) closing_.join();
+  closing_ = std::thread([old = std::move(camera)]() mutable { old.reset(); });
+}
+
+void CameraNode::Serve(DeviceThread& thread) {
+  newest_arrival_ = 0;
+  clock_ = ClockFit();
+  shutter_ = ShutterWatch();
+  rate_since_ = HostUtime();
+  rate_frames_ = 0;
+  std::unique_ptr<GenicamCamera> camera;
+  try {
+    camera = std::make_unique<GenicamCamera>(spec_);
+    Stream(camera.get(), &thread);
+  } catch (const std::exception& e) {
+    if (camera) CloseLater(std::move(camera));
+    if (lost_since_ == 0 && newest_arrival_ != 0) lost_since_ = newest_arrival_;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (health_.streaming) ++health_.lost;
+    health_.streaming = false;
+    health_.rate_hz = 0;
+    throw DeviceError(spec_.name + ": " + e.what());
+  }
+}
+
+// Until it is to stop, or the camera is lost.
+void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
+  using Trigger = CameraDevice::Trigger;
+  const bool free_running = spec_.device->trigger == Trigger::kFree;
+  for (const std::string& remark : camera->remarks()) Complain(*thread, remark);
+  ptp_ = camera->FollowsPtp();
+  if (!free_running) {  // it may send nothing for long
+    const std::lock_guard<std::mutex> lock(mutex_);
+    health_.streaming = true;
+  }
+  const Utime opened = HostUtime();
+  Utime asked = 0;
+  while (!thread->Stopping()) {
+    if (TakeTrigger()) camera->Trigger();
+    camera->Next(kWaitMs, [&](const CameraFrame& frame) { TakeFrame(*thread, frame); });
+    const Utime now = HostUtime();
+    const Utime silence = now - std::max(opened, newest_arrival_);
+    if (free_running && silence > kSilence) {
+      throw DeviceError("no frame for " + Seconds(silence) + "; is its cable plugged in?");
+    }
+    if (now - asked < kAskEvery) continue;
+    asked = now;
+    AskHealth(camera);
+  }
+}
+
+bool CameraNode::TakeTrigger() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(trigger_, false);
+}
+
+void CameraNode::AskHealth(GenicamCamera* camera) {
+  exposure_s_ = camera->ExposureSeconds().value_or(0);
+  const auto celsius = camera->TemperatureCelsius();
+  const Utime now = HostUtime();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  health_.celsius = celsius;
+  health_.rate_hz = static_cast<double>(rate_frames_) / ToSeconds(now - rate_since_ + 1);
+  rate_frames_ = 0;
+  rate_since_ = now;
+}
+
+Utime CameraNode::MiddleOfExposure(const CameraFrame& frame) {
+  const Utime exposure = FromSeconds(exposure_s_);
+  if (frame.device_utime == 0) return frame.arrival_utime - exposure / 2;  // it has no clock
+  if (ptp_) {
+    const auto start = PtpToUtc(frame.device_utime, frame.arrival_utime - exposure);
+    if (start) return *start + exposure / 2;
+  }
+  clock_.Add(frame.device_utime, frame.arrival_utime, exposure);
+  return clock_.ToHost(static_cast<double>(frame.device_utime)).value_or(frame.arrival_utime) +
+         exposure / 2;
+}
+
+void CameraNode::CheckFits(const Image& image) const {
+  if (image.pixels.cols != spec_.width || image.pixels.rows != spec_.height) {
+    throw InputError("its frames are " + std::to_string(image.pixels.cols) + " x " +
+                     std::to_string(image.pixels.rows) + " px, the rig file says " +
+                     std::to_string(spec_.width) + " x " + std::to_string(spec_.height) +
+                     "; they are dropped: set Width and Height, or mend the rig file");
+  }
+  CheckImage(spec_, image);
+}
+
+void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
+  newest_arrival_ = std::max<Utime>(HostUtime(), 1);
+  if (!frame.problem.empty()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++health_.incomplete;
+    }
+    Complain(thread, "a frame is not whole and was dropped: " + frame.problem);
+    return;
+  }
+  Image image;
+  image.camera = spec_.name;
+  image.utime = MiddleOfExposure(frame);
+  image.frame_number = frame.number;
+  image.device_utime = frame.device_utime;
+  image.exposure_s = exposure_s_;
+  try {
+    Pixels pixels = PixelsOf(frame.format, frame.data, frame.size, frame.width, frame.height);
+    image.format = pixels.format;
+    image.pixels = std::move(pixels.pixels);
+    CheckFits(image);
+  } catch (const InputError& e) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++health_.unfit;
+    }
+    Complain(thread, e.what());
+    return;
+  }
+  if (spec_.kind == CameraKind::kThermal) {
+    image.radiometry = spec_.radiometry;
+    image.shutter_correcting = shutter_.Add(image.pixels, image.utime);
+  }
+  if (lost_since_ != 0) {
+    Complain(thread, "back after " + Seconds(newest_arrival_ - lost_since_) + " without a frame");
+    lost_since_ = 0;
+  }
+  ++rate_frames_;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    health_.streaming = true;
+    ++health_.frames;
+    health_.shutter += image.shutter_correcting ? 1 : 0;
+  }
+  try {
+    KeepRaw(image);
+  } catch (const std::exception& e) {
+    Complain(thread, e.what());
+  }
+  Pack(&image);
+  thread.Say(std::move(image));
+}
+
+// The capture's image, where only a packed one leaves this host.
+void CameraNode::KeepRaw(const Image& image) {
+  Capture capture;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!capture_ || image.utime < capture_->utime || image.shutter_correcting) return;
+    capture = *capture_;
+    capture_.reset();
+  }
+  if (spec_.device->wire == CameraDevice::Wire::kRaw) return;
+  std::filesystem::create_directories(captures_ / capture.view);
+  WritePng(captures_ / capture.view / (spec_.name + ".png"), image.pixels);
+}
+
+// For the wire; the bus compresses.
+void CameraNode::Pack(Image* image) const {
+  if (spec_.device->wire == CameraDevice::Wire::kJpeg) {
+    image->pixels = ToBgr(*image);
+    image->format = PixelFormat::kJpeg;
+  } else if (spec_.device->wire == CameraDevice::Wire::kPng) {
+    if (spec_.kind == CameraKind::kColor) image->pixels = ToBgr(*image);
+    image->format = PixelFormat::kPng;
+  }
+}
+
+Status CameraNode::GetStatus() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  Status status;
+  status.ready = health_.streaming;
+  if (!health_.streaming) {
+    status.text = health_.frames == 0 ? "waits for its camera" : "lost its camera, looks for it";
+  } else {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.1f frames/s", health_.rate_hz);
+    status.text = text;
+    if (health_.celsius) {
+      std::snprintf(text, sizeof text, ", camera at %.0f deg C", *health_.celsius);
+      status.text += text;
+    }
+  }
+  status.counters = {{"frames", health_.frames},
+                     {"incomplete frames", health_.incomplete},
+                     {"unfit frames", health_.unfit},
+                     {"times lost", health_.lost},
+                     {"shutter frames", health_.shutter}};
+  return status;
+}
+
+}  // namespace rgbdt

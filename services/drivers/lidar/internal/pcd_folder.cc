@@ -1,0 +1,83 @@
+#include "services/drivers/lidar/internal/pcd_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "calib/files/points/cloud_files.h"
+#include "calib/model/errors.h"
+#include "calib/scan_assembly/sweep_chunks.h"
+#include "services/drivers/clock_fit.h"
+#include "services/drivers/pacer.h"
+
+namespace rgbdt {
+namespace fs = std::filesystem;
+
+std::optional<Utime> UtimeOfName(const std::string& name) {
+  const std::size_t point = name.find('.');
+  const std::string whole = name.substr(0, point);
+  const std::string decimals = point == std::string::npos ? "" : name.substr(point + 1);
+  const auto digits = [](const std::string& text) {
+    return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  };
+  if (whole.empty() || whole.size() > 19 || !digits(whole) || !digits(decimals)) {
+    return std::nullopt;
+  }
+  const std::uint64_t number = std::strtoull(whole.c_str(), nullptr, 10);
+  if (number >= 100'000'000'000'000'000) return static_cast<Utime>(number / 1000);
+  if (number >= 100'000'000'000'000) return static_cast<Utime>(number);
+  if (number >= 100'000'000'000) return static_cast<Utime>(number * 1000);
+  if (number < 100'000'000) return std::nullopt;  // before 1973: it counts files
+  const std::string us = (decimals + "000000").substr(0, 6);
+  return static_cast<Utime>(number) * kMicrosecondsPerSecond + std::atoi(us.c_str());
+}
+
+PcdFolder::PcdFolder(const PcdFolderDevice& device) : device_(device) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(device_.folder, error)) {
+    if (entry.path().extension() == ".pcd") files_.push_back(entry.path());
+  }
+  if (error) {
+    throw InputError(device_.folder + ": " + error.message() + "; expected a folder of PCD files");
+  }
+  if (files_.empty()) throw InputError(device_.folder + ": holds no *.pcd");
+  std::sort(files_.begin(), files_.end());
+}
+
+std::optional<Cloud> PcdFolder::Read(DeviceThread& thread, const fs::path& file) {
+  const Utime next =
+      last_ == 0 ? HostUtime() : last_ + std::max<Utime>(1, FromSeconds(device_.period_s));
+  try {
+    Cloud cloud = ReadPcd(file, UtimeOfName(file.stem().string()).value_or(next));
+    if (!cloud.utime.empty()) {
+      cloud.sweep_utime = *std::min_element(cloud.utime.begin(), cloud.utime.end());
+    }
+    if (cloud.sweep_utime <= last_) {
+      throw InputError(file.string() + ": its time " + std::to_string(cloud.sweep_utime) +
+                       " us is not after that of the file before it");
+    }
+    return cloud;
+  } catch (const std::exception& e) {
+    report_.Count("bad files");
+    thread.Complain(e.what());
+    return std::nullopt;
+  }
+}
+
+void PcdFolder::Serve(DeviceThread& thread) {
+  Pacer pacer;
+  for (std::size_t i = 0; i < files_.size() && !thread.Stopping(); ++i) {
+    const std::optional<Cloud> cloud = Read(thread, files_[i]);
+    if (!cloud) continue;
+    last_ = cloud->sweep_utime;
+    if (!pacer.Wait(&thread, last_)) return;
+    report_.SetSweepBegun(last_);
+    report_.Set("file " + std::to_string(i + 1) + " of " + std::to_string(files_.size()) + " in " +
+                    device_.folder,
+                true);
+    report_.Count("sweeps");
+    for (CloudChunk& chunk : SplitSweep(*cloud)) thread.Say(std::move(chunk));
+  }
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,121 @@
+#include "services/drivers/lidar/lidar_node.h"
+
+#include <algorithm>
+
+#include "calib/model/errors.h"
+#include "services/drivers/clock_fit.h"
+#include "services/drivers/hokuyo/scip_scanner.h"
+#include "services/drivers/lidar/internal/pcd_folder.h"
+#include "services/drivers/velodyne/velodyne_source.h"
+
+namespace rgbdt {
+namespace {
+
+template <typename Driver>
+class SourceOf : public LidarNode::Source {
+ public:
+  template <typename Device>
+  SourceOf(const Device& device, bool sweeps, bool live)
+      : driver_(device), sweeps_(sweeps), live_(live) {}
+  void Serve(DeviceThread& thread) override { driver_.Serve(thread); }
+  const DeviceReport& report() const override { return driver_.report(); }
+  bool sweeps() const override { return sweeps_; }
+  bool live() const override { return live_; }
+
+ private:
+  Driver driver_;
+  bool sweeps_, live_;
+};
+
+std::unique_ptr<LidarNode::Source> MakeSource(const LidarSpec& lidar) {
+  if (const auto* hokuyo = std::get_if<HokuyoDevice>(&lidar.device)) {
+    return std::make_unique<SourceOf<ScipScanner>>(*hokuyo, false, true);
+  }
+  if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
+    return std::make_unique<SourceOf<VelodyneSource>>(*velodyne, true, velodyne->pcap.empty());
+  }
+  if (const auto* folder = std::get_if<PcdFolderDevice>(&lidar.device)) {
+    return std::make_unique<SourceOf<PcdFolder>>(*folder, true, false);
+  }
+  throw InputError(
+      "the rig's lidar names no device; add one of these to its lidar { ... }:\n"
+      "  hokuyo { address: \"192.168.0.10\" }\n"
+      "  velodyne { model: VLP16 }\n"
+      "  pcd_folder { folder: \"clouds\" }\n"
+      "or publish LINE_SCAN or CLOUD from a program of your own (scripts/examples/README.md)");
+}
+
+SessionEvent EventOf(std::int64_t command, EventKind kind, const std::string& text) {
+  SessionEvent event;
+  event.command = command;
+  event.source = "lidar";
+  event.kind = kind;
+  event.text = text;
+  return event;
+}
+
+}  // namespace
+
+LidarNode::LidarNode(const LidarSpec& lidar) : source_(MakeSource(lidar)) {
+  thread_ = std::make_unique<DeviceThread>(
+      [source = source_.get()](DeviceThread& thread) { source->Serve(thread); });
+}
+
+LidarNode::~LidarNode() = default;
+
+std::vector<std::string> LidarNode::Subscriptions() const {
+  if (!source_->sweeps()) return {};
+  return {"SESSION_COMMAND"};
+}
+
+Messages LidarNode::Handle(const Message& message) {
+  const auto* command = std::get_if<SessionCommand>(&message);
+  if (command == nullptr || !source_->sweeps()) return {};
+  if (command->verb == SessionVerb::kReset) pending_.clear();
+  if (command->verb != SessionVerb::kSweep) return {};
+  // What a live sensor fired before now may still lie in the kernel's buffer.
+  const Utime begun = source_->report().sweep_begun();
+  pending_.push_back({command->command, source_->live() ? std::max(begun, HostUtime()) : begun});
+  return {};
+}
+
+void LidarNode::AnswerWith(const CloudChunk& chunk, Messages* messages) {
+  const Utime sweep = chunk.cloud.sweep_utime;
+  for (auto at = pending_.begin(); at != pending_.end();) {
+    if (sweep <= at->after) {
+      ++at;
+      continue;
+    }
+    SessionEvent event = EventOf(at->command, EventKind::kDone, "sweep complete");
+    event.utime = chunk.cloud.utime.empty() ? sweep : std::max(sweep, chunk.cloud.utime.back());
+    event.sweep_utime = sweep;
+    event.fraction = 1;
+    messages->push_back(event);
+    at = pending_.erase(at);
+  }
+}
+
+void LidarNode::FailPending(Messages* messages) {
+  for (const Pending& pending : pending_) {
+    messages->push_back(EventOf(pending.command, EventKind::kFailed,
+                                "the recording has ended: no sweep begins any more"));
+  }
+  pending_.clear();
+}
+
+DeviceNews LidarNode::TakeNews() {
+  DeviceNews news = thread_->TakeNews();
+  Messages messages;
+  for (Message& message : news.messages) {
+    const auto* chunk = std::get_if<CloudChunk>(&message);
+    Messages answers;
+    if (chunk != nullptr && chunk->sweep_end) AnswerWith(*chunk, &answers);
+    messages.push_back(std::move(message));
+    for (Message& answer : answers) messages.push_back(std::move(answer));
+  }
+  if (thread_->ended()) FailPending(&messages);
+  news.messages = std::move(messages);
+  return news;
+}
+
+}  // namespace rgbdt

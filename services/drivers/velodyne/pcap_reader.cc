@@ -1,0 +1,124 @@
+#include <pcap/pcap.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "calib/model/errors.h"
+#include "services/drivers/velodyne/velodyne_source.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr int kIpv4 = 0x0800;
+constexpr int kUdp = 17;
+
+int Word(const std::uint8_t* bytes) { return bytes[0] << 8 | bytes[1]; }
+
+struct Bytes {
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;
+  bool Skip(std::size_t count) {
+    if (count > size) return false;
+    data += count;
+    size -= count;
+    return true;
+  }
+};
+
+// Takes an Ethernet-like header off whose type is its last two bytes, and VLAN tags after it.
+bool SkipToType(std::size_t header, Bytes* bytes, int* type) {
+  constexpr int kVlan = 0x8100, kOuterVlan = 0x88a8;
+  if (bytes->size < header) return false;
+  *type = Word(bytes->data + header - 2);
+  bytes->Skip(header);
+  while (*type == kVlan || *type == kOuterVlan) {
+    if (bytes->size < 4) return false;
+    *type = Word(bytes->data + 2);
+    bytes->Skip(4);
+  }
+  return true;
+}
+
+// Leaves the IP packet; false where there is none.
+bool SkipLink(int link, Bytes* bytes) {
+  int type = kIpv4;
+  switch (link) {
+    case DLT_EN10MB:
+      return SkipToType(14, bytes, &type) && type == kIpv4;
+    case DLT_LINUX_SLL:
+      return SkipToType(16, bytes, &type) && type == kIpv4;
+    case DLT_LINUX_SLL2:
+      return bytes->size >= 20 && Word(bytes->data) == kIpv4 && bytes->Skip(20);
+    case DLT_NULL:
+    case DLT_LOOP:
+      return bytes->Skip(4);
+    default:  // raw IP
+      return true;
+  }
+}
+
+bool IsKnownLink(int link) {
+  return link == DLT_EN10MB || link == DLT_LINUX_SLL || link == DLT_LINUX_SLL2 ||
+         link == DLT_NULL || link == DLT_LOOP || link == DLT_RAW || link == DLT_IPV4;
+}
+
+// Leaves the UDP packet; false for anything else, and for pieces of one.
+bool SkipIp(Bytes* bytes) {
+  if (bytes->size < 20 || bytes->data[0] >> 4 != 4) return false;
+  const std::size_t header = 4 * static_cast<std::size_t>(bytes->data[0] & 15);
+  constexpr int kMoreOrOffset = 0x3fff;
+  if (header < 20 || bytes->data[9] != kUdp || (Word(bytes->data + 6) & kMoreOrOffset) != 0) {
+    return false;
+  }
+  return bytes->Skip(header);
+}
+
+}  // namespace
+
+PcapReader::PcapReader(const std::string& path) : path_(path) {
+  struct stat status {};
+  // libpcap opens a folder, too, and then fails to read it; and "-" would be standard input.
+  if (stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
+    throw InputError(path + ": is a folder; expected a recording (pcap)");
+  }
+  char error[PCAP_ERRBUF_SIZE] = "";
+  const std::string file = path == "-" ? "./-" : path;
+  pcap_ = pcap_open_offline(file.c_str(), error);
+  if (pcap_ == nullptr) {
+    const std::string why = error;
+    throw InputError((why.find(path) == std::string::npos ? path + ": " + why : why) +
+                     "; expected a recording of the LIDAR's packets (pcap)");
+  }
+  const int link = pcap_datalink(pcap_);
+  if (IsKnownLink(link)) return;
+  pcap_close(pcap_);
+  throw InputError(path + ": was recorded on a link of type " + std::to_string(link) +
+                   "; expected Ethernet, Linux \"any\" or raw IP");
+}
+
+PcapReader::~PcapReader() { pcap_close(pcap_); }
+
+std::optional<PcapReader::Datagram> PcapReader::Next() {
+  const int link = pcap_datalink(pcap_);
+  while (true) {
+    pcap_pkthdr* header = nullptr;
+    const std::uint8_t* data = nullptr;
+    const int got = pcap_next_ex(pcap_, &header, &data);
+    if (got == PCAP_ERROR_BREAK) return std::nullopt;
+    if (got < 0) throw InputError(path_ + ": is damaged or cut short: " + pcap_geterr(pcap_));
+    if (got == 0) continue;
+    Bytes bytes{data, header->caplen};
+    if (!SkipLink(link, &bytes) || !SkipIp(&bytes) || bytes.size < 8) continue;
+    Datagram datagram;
+    datagram.utime = Utime{header->ts.tv_sec} * kMicrosecondsPerSecond + header->ts.tv_usec;
+    datagram.port = Word(bytes.data + 2);
+    // What follows the datagram pads the Ethernet frame.
+    const auto length = static_cast<std::size_t>(std::max(8, Word(bytes.data + 4)));
+    datagram.cut = bytes.size < length;
+    const std::size_t size = std::min(length, bytes.size);
+    datagram.payload.assign(bytes.data + 8, bytes.data + size);
+    return datagram;
+  }
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,173 @@
+#include "services/messages/check.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+std::string Quoted(const std::string& text) { return "\"" + Printable(text, 40) + "\""; }
+
+// Length of the UTF-8 sequence that starts at `at`; 0: none does.
+std::size_t Utf8Length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned first = byte(at);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+  if (length == 0 || first > 0xf4) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xc0) != 0x80) return 0;
+  }
+  const unsigned second = byte(at + 1);
+  const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+  const bool surrogate_or_beyond =
+      (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
+  return overlong || surrogate_or_beyond ? 0 : length;
+}
+
+void CheckUtf8(std::string_view field, const std::string& text, bool newlines) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = Utf8Length(text, i);
+    const char c = text[i];
+    const bool control = (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) &&
+                         !(newlines && (c == '\n' || c == '\t' || c == '\r'));
+    if (length == 0 || control) {
+      Fail(field, Quoted(text),
+           "UTF-8 without control characters (byte " + std::to_string(i) + ")");
+    }
+    i += length;
+  }
+}
+
+}  // namespace
+
+void Fail(std::string_view field, const std::string& value, const std::string& expected) {
+  throw InputError(std::string(field) + " is " + value + "; expected " + expected);
+}
+
+void Fail(std::string_view field, double value, const std::string& expected) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  Fail(field, std::string(text), expected);
+}
+
+std::string Printable(std::string_view text, std::size_t max_bytes) {
+  std::string shown(text.substr(0, max_bytes));
+  for (char& c : shown) {
+    if (c < 0x20 || c > 0x7e) c = '?';
+  }
+  return text.size() > max_bytes ? shown + "..." : shown;
+}
+
+std::string At(std::string_view field, std::size_t index) {
+  return std::string(field) + "[" + std::to_string(index) + "]";
+}
+
+std::int32_t CountOf(std::size_t size, std::string_view field) {
+  if (size > kMaxMessageBytes) {
+    Fail(field, std::to_string(size), "so few that the message stays below 3 MB");
+  }
+  return static_cast<std::int32_t>(size);
+}
+
+void CheckLength(std::string_view field, std::size_t size, std::size_t expected,
+                 bool may_be_empty) {
+  if (size == expected || (may_be_empty && size == 0)) return;
+  Fail("length of " + std::string(field), std::to_string(size), std::to_string(expected));
+}
+
+void CheckUtime(std::string_view field, Utime utime) { CheckRange(field, utime, 1, kMaxInteger); }
+
+void CheckUtimeOrZero(std::string_view field, Utime utime) {
+  CheckRange(field, utime, 0, kMaxInteger);
+}
+
+void CheckSeq(std::int64_t seq) { CheckRange("seq", seq, 0, kMaxInteger); }
+
+void CheckRange(std::string_view field, std::int64_t value, std::int64_t low, std::int64_t high) {
+  if (value >= low && value <= high) return;
+  Fail(field, std::to_string(value), std::to_string(low) + " to " + std::to_string(high));
+}
+
+void CheckFinite(std::string_view field, double value) {
+  if (!std::isfinite(value)) Fail(field, value, "a finite number");
+}
+
+void CheckNotNegative(std::string_view field, double value) {
+  if (!std::isfinite(value) || value < 0) Fail(field, value, "a finite number from 0 on");
+}
+
+void CheckFinite(std::string_view field, const double* values, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!std::isfinite(values[i])) Fail(At(field, i), values[i], "a finite number");
+  }
+}
+
+void CheckUnitVector(std::string_view field, const Eigen::Vector3d& v) {
+  if (!(std::abs(v.norm() - 1) <= 1e-3))
+    Fail("length of " + std::string(field), v.norm(), "1: a unit vector");
+}
+
+void CheckCovariance(std::string_view field, const double* rows, int size) {
+  CheckFinite(field, rows, static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+  const auto at = [&](int row, int column) { return rows[row * size + column]; };
+  for (int row = 0; row < size; ++row) {
+    if (at(row, row) < 0) Fail("diagonal of " + std::string(field), at(row, row), "0 or more");
+    for (int column = 0; column < row; ++column) {
+      const double scale = std::sqrt(at(row, row)) * std::sqrt(at(column, column));
+      const double difference = std::abs(at(row, column) - at(column, row));
+      if (!(difference <= 1e-6 * scale)) {
+        Fail("asymmetry of " + std::string(field), difference, "a symmetric matrix");
+      }
+    }
+  }
+}
+
+void CheckCameraName(std::string_view field, const std::string& name) {
+  bool good = !name.empty() && name.size() <= 32;
+  for (const char c : name) good &= (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  if (!good) Fail(field, Quoted(name), "a camera's name: 1 to 32 of a-z, 0-9 and _");
+}
+
+void CheckName(std::string_view field, const std::string& name, bool may_be_empty) {
+  if (name.empty() && may_be_empty) return;
+  const bool bad_path = name.empty() || name.size() > kMaxNameBytes || name.front() == '.' ||
+                        name.find_first_of("/\\") != std::string::npos;
+  if (bad_path) {
+    Fail(field, Quoted(name), "1 to 255 characters, no slashes and no dot to begin with");
+  }
+  CheckUtf8(field, name, false);
+}
+
+void CheckText(std::string_view field, const std::string& text, std::size_t max_bytes) {
+  if (text.size() > max_bytes) {
+    Fail("length of " + std::string(field), std::to_string(text.size()),
+         std::to_string(max_bytes) + " at most");
+  }
+  CheckUtf8(field, text, true);
+}
+
+void CheckRotation(std::string_view field, const double wxyz[4]) {
+  CheckFinite(field, wxyz, 4);
+  const double norm = std::hypot(std::hypot(wxyz[0], wxyz[1]), std::hypot(wxyz[2], wxyz[3]));
+  if (!(std::abs(norm - 1) <= 1e-3))
+    Fail("norm of " + std::string(field), norm, "1: a unit quaternion");
+}
+
+Eigen::Quaterniond RotationFromWire(const double wxyz[4]) {
+  const Eigen::Quaterniond rotation(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  return std::abs(rotation.squaredNorm() - 1) < 1e-14 ? rotation : rotation.normalized();
+}
+
+void RotationToWire(const Eigen::Quaterniond& rotation, double wxyz[4]) {
+  wxyz[0] = rotation.w();
+  wxyz[1] = rotation.x();
+  wxyz[2] = rotation.y();
+  wxyz[3] = rotation.z();
+}
+
+}  // namespace rgbdt

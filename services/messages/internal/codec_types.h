@@ -1,0 +1,115 @@
+#pragma once
+
+// Inside the codec: what each type's pair of conversions looks like. For every struct S of
+// `Message` and its LCM type W:
+//   W ToWire(const S&)     copies; throws InputError where vectors differ in length
+//   void Check(const W&)   semantics, the same when sending and when receiving (check.h)
+//   S FromWire(const W&)   after Check; by value where the struct takes over long vectors
+// ToWire guards sizes before it allocates: no array is longer than a message has bytes.
+
+#include <lcmtypes/rgbdt/calibration_t.hpp>
+#include <lcmtypes/rgbdt/cloud_t.hpp>
+#include <lcmtypes/rgbdt/corner_selection_t.hpp>
+#include <lcmtypes/rgbdt/encoder_t.hpp>
+#include <lcmtypes/rgbdt/image_t.hpp>
+#include <lcmtypes/rgbdt/line_scan_t.hpp>
+#include <lcmtypes/rgbdt/observation_t.hpp>
+#include <lcmtypes/rgbdt/observation_v2_t.hpp>
+#include <lcmtypes/rgbdt/observation_v3_t.hpp>
+#include <lcmtypes/rgbdt/pose_t.hpp>
+#include <lcmtypes/rgbdt/report_t.hpp>
+#include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
+#include <lcmtypes/rgbdt/rgbdt_cloud_v2_t.hpp>
+#include <lcmtypes/rgbdt/rig_t.hpp>
+#include <lcmtypes/rgbdt/session_command_t.hpp>
+#include <lcmtypes/rgbdt/session_event_t.hpp>
+#include <lcmtypes/rgbdt/session_request_t.hpp>
+#include <lcmtypes/rgbdt/sighting_t.hpp>
+#include <lcmtypes/rgbdt/status_t.hpp>
+
+#include "services/messages/message.h"
+
+namespace rgbdt {
+
+// codec_scan.cc
+line_scan_t ToWire(const LineScan& line);
+void Check(const line_scan_t& wire);
+LineScan FromWire(const line_scan_t& wire);
+encoder_t ToWire(const EncoderReading& reading);
+void Check(const encoder_t& wire);
+EncoderReading FromWire(const encoder_t& wire);
+
+// codec_image.cc
+image_t ToWire(const Image& image);
+void Check(const image_t& wire);
+Image FromWire(const image_t& wire);
+
+// codec_cloud.cc
+cloud_t ToWire(const CloudChunk& chunk);
+void Check(const cloud_t& wire);
+CloudChunk FromWire(const cloud_t& wire);
+
+// codec_rgbdt_cloud.cc
+/// What the first version carries: of the calibrations' times the newest, no pose and no sigmas.
+rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud);
+void Check(const rgbdt_cloud_t& wire);
+RgbdtCloud FromWire(rgbdt_cloud_t wire);
+
+// codec_rgbdt_cloud_v2.cc
+rgbdt_cloud_v2_t ToWire(const RgbdtCloud& cloud);
+void Check(const rgbdt_cloud_v2_t& wire);
+RgbdtCloud FromWire(rgbdt_cloud_v2_t wire);
+
+// codec_observation.cc
+corner_selection_t ToWire(const CornerSelection& selection);
+void Check(const corner_selection_t& wire);
+CornerSelection FromWire(const corner_selection_t& wire);
+/// What the first version carries: no poses, sides, crossings and candidates.
+observation_t ToFirstVersion(const Observation& observation);
+void Check(const observation_t& wire);
+Observation FromWire(const observation_t& wire);
+
+sighting_t ToWire(const Sighting& sighting);
+void Check(const sighting_t& wire);
+Sighting FromWire(const sighting_t& wire);
+
+// codec_observation_v2.cc
+/// What the second version carries: no crossings' sigmas and no scatter.
+observation_v2_t ToSecondVersion(const Observation& observation);
+void Check(const observation_v2_t& wire);
+Observation FromWire(const observation_v2_t& wire);
+
+// codec_observation_v3.cc
+observation_v3_t ToWire(const Observation& observation);
+void Check(const observation_v3_t& wire);
+Observation FromWire(const observation_v3_t& wire);
+
+// codec_calibration.cc
+calibration_t ToWire(const CalibrationMessage& message);
+void Check(const calibration_t& wire);
+CalibrationMessage FromWire(const calibration_t& wire);
+pose_t ToWire(const StampedPose& pose);
+void Check(const pose_t& wire);
+StampedPose FromWire(const pose_t& wire);
+
+// codec_session.cc
+rig_t ToWire(const RigText& rig);
+void Check(const rig_t& wire);
+RigText FromWire(const rig_t& wire);
+session_command_t ToWire(const SessionCommand& command);
+void Check(const session_command_t& wire);
+SessionCommand FromWire(const session_command_t& wire);
+session_event_t ToWire(const SessionEvent& event);
+void Check(const session_event_t& wire);
+SessionEvent FromWire(const session_event_t& wire);
+session_request_t ToWire(const SessionRequest& request);
+void Check(const session_request_t& wire);
+SessionRequest FromWire(const session_request_t& wire);
+status_t ToWire(const Status& status);
+void Check(const status_t& wire);
+Status FromWire(const status_t& wire);
+report_t ToWire(const ReportText& report);
+void Check(const report_t& wire);
+ReportText FromWire(const report_t& wire);
+
+}  // namespace rgbdt

@@ -1,0 +1,279 @@
+#include "calib/detect/cloud/board_in_cloud.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+
+#include "calib/model/errors.h"
+#include "calib/simulate/internal/board.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "calib/simulate/internal/spinning.h"
+
+namespace rgbdt {
+namespace {
+
+using simulate::CloudWorld;
+using ::testing::HasSubstr;
+
+constexpr Utime kSweep = 1'000'000'000;
+
+// rings 0: the turned scanner.
+simulate::Options Physics(int rings, std::uint64_t seed = 1) {
+  simulate::Options options;
+  options.seed = seed;
+  if (rings > 0) simulate::UseLidar(rings, &options);
+  options.pose.min_range_m = 2.4;
+  options.pose.max_range_m = rings == 16 ? 4 : 6;
+  options.pose.max_roll_rad = M_PI;
+  return options;
+}
+
+BoardInCloudOptions Detection(int rings) {
+  BoardInCloudOptions options;
+  options.range_sigma_m = rings > 0 ? 0.02 : 0.01;
+  return options;
+}
+
+// delta of a found pose against the truth, up to half a turn; LIDAR axes.
+Vector6d ErrorOf(const CloudEdges& found, const Rigid3& truth) {
+  const Rigid3& pose = found.pose->sensor_from_target;
+  const Rigid3 turned = truth * RotationAbout({0, 0, 1}, M_PI);
+  const bool half = RotationDistance(pose, turned) < RotationDistance(pose, truth);
+  return Log((half ? turned : truth) * pose.Inverse());
+}
+
+double CentreError(const CloudEdges& found, const Rigid3& truth) {
+  return (found.pose->sensor_from_target.translation - truth.translation).norm();
+}
+
+class AnyLidar : public ::testing::TestWithParam<int> {};
+
+TEST_P(AnyLidar, FindsTheBoardInTheWholeCloud) {
+  for (int view = 0; view < 6; ++view) {
+    const CloudWorld world(Physics(GetParam()), view);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(GetParam()));
+    ASSERT_FALSE(boards.candidates.empty()) << "view " << view << ": " << boards.why;
+    const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
+    EXPECT_LT(error.head<3>().norm(), 0.03) << "view " << view;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06) << view;
+  }
+}
+
+TEST_P(AnyLidar, OrderAndMissesAndRingsAreNotNeeded) {
+  const CloudWorld world(Physics(GetParam(), 2), 1);
+  const Cloud sweep = world.Sweep(kSweep);
+  for (const bool keep_ring : {true, false}) {
+    const Cloud loose = simulate::Unorganised(sweep, keep_ring, 7);
+    ASSERT_FALSE(loose.organised);
+    const auto boards = FindBoards(loose, world.target(), Detection(GetParam()));
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rings, AnyLidar, ::testing::Values(0, 16, 32, 64, 128));
+
+TEST(BoardInCloud, ItsCovarianceIsThatOfItsErrors) {
+  for (const int rings : {0, 16, 32}) {
+    double chi2 = 0;
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      for (int view = 0; view < 6; ++view) {
+        const CloudWorld world(Physics(rings, seed), view);
+        const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+        if (boards.candidates.empty()) continue;
+        const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
+        chi2 += error.dot(boards.candidates[0].pose->covariance.ldlt().solve(error));
+        ++count;
+      }
+    }
+    ASSERT_GE(count, 34);
+    // Six degrees of freedom; the mean of 36 has sigma sqrt(12 / 36) = 0.6. The priors of what the
+    // beam does to an edge are wider than this one simulator's, so below 6 is to be expected.
+    EXPECT_LT(chi2 / count, 6 + 3 * 0.6) << rings;
+    EXPECT_GT(chi2 / count, 2.5) << rings;
+  }
+}
+
+TEST(BoardInCloud, ATiltedBoardsPlaneDoesNotLean) {
+  // Noise lies along the beams: the plane of least distances would lean by a third of a
+  // milliradian here, five times its sigma (see PlaneAlongRays).
+  simulate::Options options = Physics(0);
+  options.scanner = simulate::DenseScanner();
+  options.pose.min_range_m = options.pose.max_range_m = 2.5;
+  double chi2 = 0;
+  constexpr int kViews = 6;
+  for (int view = 0; view < kViews; ++view) {
+    const CloudWorld world(options, view);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    const TargetPose& pose = *boards.candidates[0].pose;
+    const Rigid3 to_target = pose.sensor_from_target.Inverse();
+    const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
+    // Of the tilt alone: rotations about the board's own x and y.
+    const Eigen::Matrix3d r = to_target.rotation.toRotationMatrix();
+    const Eigen::Vector2d tilt = (r * error.head<3>()).head<2>();
+    const Eigen::Matrix2d covariance =
+        (r * pose.covariance.topLeftCorner<3, 3>() * r.transpose()).topLeftCorner<2, 2>();
+    chi2 += tilt.dot(covariance.ldlt().solve(tilt));
+  }
+  // Two degrees of freedom a view: the mean of six has sigma 0.8.
+  EXPECT_LT(chi2 / kViews, 2 + 3.5 * 0.8);
+}
+
+TEST(BoardInCloud, WhatLooksAlikeIsNoBoard) {
+  for (const int rings : {0, 32}) {
+    simulate::Options options = Physics(rings, 3);
+    options.clutter.door = options.clutter.poster = options.clutter.table = true;
+    // 7% too large: 32 rings cannot tell it from the board far away, only the views together can.
+    options.clutter.panel = rings == 0;
+    options.clutter.max_azimuth_rad = 80 * simulate::kDegree;
+    const CloudWorld world(options, 0);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+    const CloudWorld without(options, std::nullopt);
+    EXPECT_TRUE(
+        FindBoards(without.Sweep(kSweep), world.target(), Detection(rings)).candidates.empty())
+        << rings;
+  }
+}
+
+TEST(BoardInCloud, ASecondBoardIsACandidateToo) {
+  simulate::Options options = Physics(0, 4);
+  options.clutter.second_board = true;
+  options.clutter.max_azimuth_rad = 28 * simulate::kDegree;
+  const CloudWorld world(options, 0);  // where neither hides the other
+  const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+  ASSERT_EQ(boards.candidates.size(), 2U) << boards.why;
+  const double nearer = std::min(CentreError(boards.candidates[0], world.lidar_from_target()),
+                                 CentreError(boards.candidates[1], world.lidar_from_target()));
+  EXPECT_LT(nearer, 0.01);
+}
+
+TEST(BoardInCloud, HeldByAPersonItIsFound) {
+  for (const int rings : {0, 32}) {
+    simulate::Options options = Physics(rings, 5);
+    options.clutter.holder = simulate::Holder::kPerson;
+    const CloudWorld world(options, 2);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+  }
+}
+
+TEST(BoardInCloud, WhatIsFlushWithTheBoardLeavesTheRightPlaceAmongTheCandidates) {
+  simulate::Options options = Physics(0, 6);
+  options.clutter.holder = simulate::Holder::kEasel;
+  for (int view = 0; view < 5; ++view) {
+    const CloudWorld world(options, view);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+    double nearest = 1e9;
+    for (const CloudEdges& c : boards.candidates) {
+      nearest = std::min(nearest, CentreError(c, world.lidar_from_target()));
+    }
+    EXPECT_LT(nearest, 0.02) << view << ": " << boards.why;
+  }
+}
+
+TEST(BoardInCloud, ABoardOfAnotherSizeIsNamedWithBothSizes) {
+  const CloudWorld world(Physics(0, 7), 0);
+  Target smaller = world.target();
+  smaller.width_m = 0.85;
+  smaller.height_m = 0.61;
+  const auto boards = FindBoards(world.Sweep(kSweep), smaller, Detection(0));
+  EXPECT_TRUE(boards.candidates.empty());
+  EXPECT_THAT(boards.why, HasSubstr("the rig file says 0.61 x 0.85 m"));
+  EXPECT_THAT(boards.why, HasSubstr("measured 0.9"));
+  EXPECT_THAT(boards.why, HasSubstr(" x 1.2"));
+}
+
+TEST(BoardInCloud, EmptyCloudsAndCloudsOfNothingSaySo) {
+  const CloudWorld world(Physics(0), 0);
+  EXPECT_THAT(FindBoards(Cloud(), world.target()).why, HasSubstr("0 points"));
+  Cloud cloud = world.Sweep(kSweep);
+  for (Eigen::Vector3f& p : cloud.points) {
+    p = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_THAT(FindBoards(cloud, world.target()).why, HasSubstr("0 points"));
+  cloud.organised = false;
+  EXPECT_THAT(FindBoards(cloud, world.target()).why, HasSubstr("0 points"));
+  Cloud heap;  // a thousand times the same point
+  heap.organised = false;
+  heap.lines = 1;
+  heap.beams = 1000;
+  heap.points.assign(1000, {2, 0, 0});
+  EXPECT_TRUE(FindBoards(heap, world.target()).candidates.empty());
+  for (std::size_t i = 0; i < 1000; ++i) heap.points[i] = {2, 0, 0.001F * static_cast<float>(i)};
+  EXPECT_TRUE(FindBoards(heap, world.target()).candidates.empty());
+}
+
+TEST(BoardInCloud, NoCloudIsTooOdd) {
+  const Target target = simulate::MakeTarget({});
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return static_cast<float>(std::uniform_real_distribution<double>(low, high)(random));
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    Cloud cloud;
+    const int n = 1 + static_cast<int>(random() % 5000);
+    cloud.lines = 1;
+    cloud.beams = n;
+    cloud.organised = trial % 3 == 0;
+    const double tiny = std::pow(10.0, uniform(-7, 1));
+    for (int i = 0; i < n; ++i) {
+      // Specks of dense points, strays all round, huge and broken values.
+      Eigen::Vector3f p(2 + uniform(-tiny, tiny), uniform(-tiny, tiny), uniform(-tiny, tiny));
+      if (random() % 50 == 0) p = {uniform(-9, 9), uniform(-9, 9), uniform(-9, 9)};
+      if (random() % 500 == 0) p *= 1e30F;
+      if (random() % 100 == 0) p.y() = std::numeric_limits<float>::infinity();
+      if (random() % 100 == 0) p = Eigen::Vector3f::Zero();
+      cloud.points.push_back(p);
+    }
+    if (trial % 2 == 0) {
+      for (int i = 0; i < n; ++i) cloud.ring.push_back(static_cast<std::uint16_t>(random()));
+    }
+    EXPECT_TRUE(FindBoards(cloud, target).candidates.empty()) << trial;
+  }
+}
+
+TEST(BoardInCloud, TheSameCloudGivesTheSameBits) {
+  const CloudWorld world(Physics(32, 8), 0);
+  const Cloud cloud = world.Sweep(kSweep);
+  const auto a = FindBoards(cloud, world.target(), Detection(32));
+  const auto b = FindBoards(cloud, world.target(), Detection(32));
+  ASSERT_EQ(a.candidates.size(), b.candidates.size());
+  ASSERT_FALSE(a.candidates.empty());
+  EXPECT_EQ(a.candidates[0].boundary, b.candidates[0].boundary);
+  EXPECT_EQ(a.candidates[0].pose->covariance, b.candidates[0].pose->covariance);
+}
+
+TEST(BoardInCloud, ANoisierLidarThanTheRigSaysIsNoHindrance) {
+  for (const int rings : {0, 32}) {
+    simulate::Options options = Physics(rings, 9);
+    (rings == 0 ? options.scanner.range_sigma_m : options.spinning->range_sigma_m) = 0.03;
+    const CloudWorld world(options, 0);
+    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));  // 10 mm
+    ASSERT_FALSE(boards.candidates.empty()) << rings << ": " << boards.why;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+  }
+}
+
+TEST(BoardInCloud, BadOptionsAreNamed) {
+  BoardInCloudOptions options;
+  options.edge.side_sigma_rad = 0;
+  try {
+    options.Check();
+    FAIL() << "expected InputError";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("edge.side_sigma_rad is 0"));
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt

@@ -1,0 +1,224 @@
+#include "calib/files/schema/rig_file.h"
+
+#include <cmath>
+
+#include "calib/files/atomic_file.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// `text` with the first `from` replaced.
+std::string With(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+const char kRig[] = R"(name: "small"
+lidar { name: "lidar" }
+camera {
+  name: "rgb"
+  kind: COLOR
+  width: 640
+  height: 480
+  pixel_format: BGR8
+  pinhole { fx: 500 fy: 501 cx: 320 cy: 240 distortion: [0.1, 0.2, 0.3, 0.4] }
+  camera_from_lidar_guess {
+    roll_pitch_yaw_deg: [-90, 0, -90]
+    translation_m: [1, 2, 3]
+  }
+}
+target { squares_x: 11 squares_y: 8 square_m: 0.1 width_m: 1.2192 height_m: 0.9144 }
+)";
+
+std::string ErrorOfRig(const std::string& from, const std::string& to) {
+  return test::ErrorOf([&] { ParseRig(With(kRig, from, to), "rig.textproto"); });
+}
+
+TEST(RigFile, GivesBackEveryFieldBitForBit) {
+  const Rig rig = test::MakeRig();
+  const Rig back = ParseRig(PrintRig(rig), "printed");
+  EXPECT_EQ(back.name, rig.name);
+  EXPECT_EQ(back.lidar.name, rig.lidar.name);
+  EXPECT_EQ(back.lidar.range_sigma_m, rig.lidar.range_sigma_m);
+  ASSERT_TRUE(back.lidar.turned_scanner);
+  test::ExpectSame(back.lidar.turned_scanner->motor_from_scanner,
+                   rig.lidar.turned_scanner->motor_from_scanner);
+  EXPECT_EQ(back.lidar.turned_scanner->ticks_per_rad, rig.lidar.turned_scanner->ticks_per_rad);
+  EXPECT_EQ(back.lidar.turned_scanner->zero_ticks, rig.lidar.turned_scanner->zero_ticks);
+  ASSERT_EQ(back.cameras.size(), rig.cameras.size());
+  for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
+    const CameraSpec& a = rig.cameras[i];
+    const CameraSpec& b = back.cameras[i];
+    EXPECT_EQ(b.name, a.name);
+    EXPECT_EQ(b.kind, a.kind);
+    EXPECT_EQ(b.width, a.width);
+    EXPECT_EQ(b.height, a.height);
+    EXPECT_EQ(b.format, a.format);
+    EXPECT_EQ(b.lens.model, a.lens.model);
+    EXPECT_EQ(b.lens.fx, a.lens.fx);
+    EXPECT_EQ(b.lens.cy, a.lens.cy);
+    EXPECT_EQ(b.lens.distortion, a.lens.distortion);
+    EXPECT_EQ(b.radiometry.kind, a.radiometry.kind);
+    EXPECT_EQ(b.radiometry.r, a.radiometry.r);
+    EXPECT_EQ(b.radiometry.o, a.radiometry.o);
+    EXPECT_EQ(b.radiometry.emissivity, a.radiometry.emissivity);
+    EXPECT_EQ(b.radiometry.reflected_temperature_k, a.radiometry.reflected_temperature_k);
+    EXPECT_EQ(b.readout_s, a.readout_s);
+    EXPECT_EQ(b.netd_k, a.netd_k);
+    ASSERT_EQ(b.camera_from_lidar_guess.has_value(), a.camera_from_lidar_guess.has_value());
+    if (a.camera_from_lidar_guess) {
+      test::ExpectSame(*b.camera_from_lidar_guess, *a.camera_from_lidar_guess);
+    }
+  }
+  EXPECT_EQ(back.target.squares_x, rig.target.squares_x);
+  EXPECT_EQ(back.target.square_m, rig.target.square_m);
+  EXPECT_EQ(back.target.height_m, rig.target.height_m);
+  EXPECT_EQ(back.target.pattern_offset_m, rig.target.pattern_offset_m);
+  EXPECT_EQ(PrintRig(back), PrintRig(rig));
+  EXPECT_THAT(PrintRig(rig), HasSubstr("ticks_per_degree: 1400\n"));
+}
+
+TEST(RigFile, KeepsTextAndHash) {
+  const Rig rig = ParseRig(kRig, "rig.textproto");
+  EXPECT_EQ(rig.text, kRig);
+  EXPECT_EQ(rig.hash, HashOfRigText(kRig));
+  EXPECT_EQ(rig.hash.size(), 16u);
+  EXPECT_NE(rig.hash, HashOfRigText(std::string(kRig) + " "));
+  EXPECT_EQ(HashOfRigText(""), "cbf29ce484222325");  // the published values of FNV-1a
+  EXPECT_EQ(HashOfRigText("foobar"), "85944171f73967e8");
+}
+
+TEST(RigFile, RollPitchYawTurnsTheLidarsAxesIntoTheCameras) {
+  const Rigid3 guess = *ParseRig(kRig, "").cameras[0].camera_from_lidar_guess;
+  // Rz(-90) * Ry(0) * Rx(-90): LIDAR's x (1, 0, 0) -> (0, -1, 0), z (0, 0, 1) -> (1, 0, 0).
+  EXPECT_LT((guess.rotation * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);
+  EXPECT_LT((guess.rotation * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(1, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(guess.translation, Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(RigFile, DefaultsAreFilledIn) {
+  const Rig rig = ParseRig(kRig, "");
+  EXPECT_EQ(rig.lidar.range_sigma_m, 0.01);
+  EXPECT_FALSE(rig.lidar.turned_scanner);
+  EXPECT_EQ(rig.cameras[0].radiometry.emissivity, 1);
+  EXPECT_EQ(rig.cameras[0].lens.distortion[3], 0.4);
+  EXPECT_EQ(rig.cameras[0].lens.distortion[4], 0);
+}
+
+TEST(RigFile, AnUnknownKeyIsNamedWithFileLineAndColumn) {
+  const std::string error = ErrorOfRig("height: 480", "hieght: 480");
+  EXPECT_THAT(error, StartsWith("rig.textproto:7:3: "));
+  EXPECT_THAT(error, HasSubstr("hieght"));
+  EXPECT_THAT(ErrorOfRig("COLOR", "COLOUR"), StartsWith("rig.textproto:5:"));
+  EXPECT_THAT(ErrorOfRig("width: 640", "width: 640 px"), StartsWith("rig.textproto:6:"));
+}
+
+TEST(RigFile, WrongValuesAreNamedWithLineAndKey) {
+  const auto expect = [](const std::string& from, const std::string& to, const std::string& start,
+                         const std::string& part) {
+    const std::string error = ErrorOfRig(from, to);
+    EXPECT_THAT(error, StartsWith("rig.textproto:" + start));
+    EXPECT_THAT(error, HasSubstr(part));
+  };
+  expect("0.3, 0.4]", "0.3]", "9: camera.pinhole.distortion has 3", "0, 4, 5, 8");
+  expect("[1, 2, 3]", "[1, 2]", "12: camera.camera_from_lidar_guess.translation_m", "expected 3");
+  expect("[1, 2, 3]", "[1, 2, nan]", "12: ", "finite");
+  expect("roll_pitch_yaw_deg: [-90, 0, -90]", "quaternion_wxyz: [1, 0, 0, 0.1]",
+         "11: camera.camera_from_lidar_guess.quaternion_wxyz", "norm");
+  expect("roll_pitch_yaw_deg: [-90, 0, -90]", "quaternion_wxyz: [1, 0, 0]",
+         "11: camera.camera_from_lidar_guess.quaternion_wxyz has 3", "expected 4");
+  expect("translation_m", "quaternion_wxyz: [1, 0, 0, 0] translation_m", "11: ", "one of the two");
+  expect("roll_pitch_yaw_deg: [-90, 0, -90]", "", "10: ", "roll_pitch_yaw_deg");
+  expect("kind: COLOR", "", "3: camera.kind", "COLOR or THERMAL");
+  expect("pixel_format: BGR8", "", "3: camera.pixel_format", "missing");
+}
+
+TEST(RigFile, WhatIsMissingIsNamed) {
+  EXPECT_THAT(ErrorOfRig("lidar { name: \"lidar\" }", ""), HasSubstr("lidar is missing"));
+  EXPECT_THAT(ErrorOfRig("kind: COLOR", "kind: THERMAL"), HasSubstr("one channel"));
+  const std::string text(kRig);
+  const std::size_t at = text.find("target");
+  EXPECT_THAT(test::ErrorOf([&] { ParseRig(text.substr(0, at), "rig.textproto"); }),
+              HasSubstr("target is missing"));
+  const std::size_t lens = text.find("  pinhole");
+  std::string no_lens = text;
+  no_lens.erase(lens, text.find('\n', lens) - lens);
+  EXPECT_THAT(test::ErrorOf([&] { ParseRig(no_lens, "rig.textproto"); }),
+              HasSubstr("pinhole { ... } or fisheye { ... }"));
+  // What Rig::Check finds carries the file's name as well.
+  EXPECT_THAT(ErrorOfRig("width: 640", ""), StartsWith("rig.textproto: rig: "));
+}
+
+TEST(RigFile, ALensMayBeUnknownWhereItIsStillToBeFound) {
+  const std::string lens =
+      "pinhole { fx: 500 fy: 501 cx: 320 cy: 240 distortion: [0.1, 0.2, 0.3, 0.4] }";
+  for (const char* unknown : {"", "pinhole {}", "fisheye {}", "pinhole { cx: 320 cy: 240 }"}) {
+    const std::string text = With(kRig, lens, unknown);
+    const std::string error = test::ErrorOf([&] { ParseRig(text, "rig.textproto"); });
+    EXPECT_THAT(error, HasSubstr("camera \"rgb\" has no lens"));
+    EXPECT_THAT(error, HasSubstr("rgbdt intrinsics DIR"));
+    const Rig rig = ParseRig(text, "rig.textproto", LensNeed::kMayBeUnknown);
+    EXPECT_FALSE(rig.cameras[0].lens.known());
+    // Printed and read again it is the same: not known, of the same model.
+    const Rig back = ParseRig(PrintRig(rig), "", LensNeed::kMayBeUnknown);
+    EXPECT_FALSE(back.cameras[0].lens.known());
+    EXPECT_EQ(back.cameras[0].lens.model, rig.cameras[0].lens.model);
+  }
+  // A lens that is there has to make sense all the same.
+  EXPECT_THAT(test::ErrorOf([&] {
+                ParseRig(With(kRig, "fy: 501", ""), "rig.textproto", LensNeed::kMayBeUnknown);
+              }),
+              HasSubstr("lens.fy"));
+}
+
+TEST(RigFile, AQuaternionThatIsRoundedIsNormalised) {
+  const Rig rig = ParseRig(
+      With(kRig, "roll_pitch_yaw_deg: [-90, 0, -90]", "quaternion_wxyz: [0.5, 0.5, 0.5, 0.5005]"),
+      "");
+  EXPECT_NEAR(rig.cameras[0].camera_from_lidar_guess->rotation.norm(), 1, 1e-15);
+}
+
+TEST(RigFile, DamagedTextNeverCrashes) {
+  const auto parse = [](const std::string& text) { ParseRig(text, "rig.textproto"); };
+  test::ParseTruncations(PrintRig(test::MakeRig()), parse);
+  test::ParseDamaged(PrintRig(test::MakeRig()), parse);
+  EXPECT_THAT(test::ErrorOf([&] { parse(std::string(100'000, '{')); }), HasSubstr("rig.textproto"));
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "camera {";
+  test::ErrorOf([&] { parse(deep); });
+  EXPECT_THAT(test::ErrorOf([&] { parse("name: \"\xff\xfe\""); }), HasSubstr("UTF-8"));
+}
+
+TEST(RigFile, TheExampleIsTwoDegreesAndFiveCentimetresOffThePublishedPose) {
+  const Rig rig = ReadRig(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs/acfr_vlp16.rig.textproto");
+  Rigid3 lidar_from_camera = RotationAbout(Eigen::Vector3d::UnitZ(), -1.4929) *
+                             RotationAbout(Eigen::Vector3d::UnitY(), -0.0209) *
+                             RotationAbout(Eigen::Vector3d::UnitX(), -1.695);
+  lidar_from_camera.translation = {0.063, 0.004, -0.196};
+  const PoseError error =
+      ErrorOf(*rig.Camera("rgb").camera_from_lidar_guess, lidar_from_camera.Inverse());
+  EXPECT_NEAR(error.rotation_deg, 2, 0.05);
+  EXPECT_NEAR(error.translation_mm, 50, 1);
+  EXPECT_EQ(rig.target.corners_x(), 7);
+  EXPECT_EQ(rig.target.corners_y(), 5);
+  EXPECT_FALSE(rig.lidar.turned_scanner);
+}
+
+TEST(RigFile, EveryShippedRigLoads) {
+  int count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs")) {
+    if (entry.path().extension() != ".textproto") continue;
+    EXPECT_NO_THROW(ReadRig(entry.path(), LensNeed::kMayBeUnknown)) << entry.path();
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+}  // namespace
+}  // namespace rgbdt

@@ -1,0 +1,177 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "services/messages/codec.h"
+#include "services/messages/internal/codec_types.h"
+#include "tests/unit/messages/codec_testing.h"
+#include "tests/unit/messages/random_messages.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::ErrorAfter;
+using testing::ErrorOf;
+using ::testing::HasSubstr;
+using testing::kNan;
+using testing::RandomMessages;
+
+class Invalid : public ::testing::Test {
+ protected:
+  RandomMessages random_{7};
+};
+
+TEST_F(Invalid, UnknownChannel) {
+  const Bytes bytes(100);
+  for (const char* channel : {"", "CLOUDS", "_IMAGE", "cloud", "IMAGE", "LCM_SELF_TEST"}) {
+    EXPECT_THAT(ErrorOf([&] { Decode(channel, bytes.data(), bytes.size()); }),
+                HasSubstr("no message type belongs to channel"));
+  }
+}
+
+TEST_F(Invalid, AnotherType) {
+  const Bytes bytes = Encode(random_.Line());
+  EXPECT_THAT(ErrorOf([&] { Decode("CLOUD", bytes.data(), bytes.size()); }),
+              HasSubstr("no cloud_t: another type or version on channel CLOUD"));
+}
+
+TEST_F(Invalid, AnotherCamera) {
+  Image image = random_.Picture();
+  image.camera = "rgb";
+  const Bytes bytes = Encode(image);
+  EXPECT_THAT(ErrorOf([&] { Decode("THERMAL_IMAGE", bytes.data(), bytes.size()); }),
+              HasSubstr("belongs on channel RGB_IMAGE"));
+}
+
+TEST_F(Invalid, AboveThreeMegabytes) {
+  ReportText report;
+  report.json.assign(3 * 1024 * 1024 - 100, 'x');
+  EXPECT_EQ(ErrorOf([&] { Encode(report); }), "no error");
+  report.json.assign(3 * 1024 * 1024 - 10, 'x');
+  EXPECT_THAT(ErrorOf([&] { Encode(report); }), HasSubstr("the bus carries 3145728"));
+  Image image = random_.Picture(PixelFormat::kBgr8);
+  image.pixels.create(1456, 1936, CV_8UC3);
+  EXPECT_THAT(ErrorOf([&] { Encode(image); }), HasSubstr("send raw Bayer"));
+  RgbdtCloud cloud;
+  cloud.points.resize(4'000'000);
+  EXPECT_NE(ErrorOf([&] { Encode(cloud); }), "no error");
+  const Bytes bytes(3 * 1024 * 1024 + 1);
+  EXPECT_THAT(ErrorOf([&] { Decode("CLOUD", bytes.data(), bytes.size()); }),
+              HasSubstr("3145729 bytes"));
+}
+
+TEST_F(Invalid, LineScan) {
+  LineScan line = random_.Line();
+  line.range = {1, kNan, 2};
+  line.intensity = {0, kNan, 1};
+  const auto error = [&](auto change) { return ErrorAfter<line_scan_t>(line, change); };
+  EXPECT_THAT(error([](auto& w) { w.range_m[2] = INFINITY; }), HasSubstr("range_m[2] is inf"));
+  EXPECT_THAT(error([](auto& w) { w.range_m[0] = 0; }), HasSubstr("range_m[0] is 0"));
+  EXPECT_THAT(error([](auto& w) { w.intensity[2] = 200; }), HasSubstr("intensity[2] is 200"));
+  EXPECT_THAT(error([](auto& w) { w.angle_step_rad = NAN; }), HasSubstr("angle_step_rad is nan"));
+  EXPECT_THAT(error([](auto& w) { w.utime = 0; }), HasSubstr("utime is 0"));
+  EXPECT_THAT(error([](auto& w) { w.utime = std::int64_t{1} << 60; }), HasSubstr("utime is"));
+  EXPECT_THAT(error([](auto& w) { w.seq = -1; }), HasSubstr("seq is -1"));
+  line.intensity.resize(2);
+  EXPECT_THAT(ErrorOf([&] { Encode(line); }), HasSubstr("length of intensity is 2; expected 3"));
+}
+
+TEST_F(Invalid, Image) {
+  Image image = random_.Picture(PixelFormat::kMono16);
+  image.radiometry.kind = Radiometry::Kind::kPlanck;
+  image.radiometry.r = image.radiometry.b = 1;
+  const auto error = [&](auto change) { return ErrorAfter<image_t>(image, change); };
+  EXPECT_THAT(error([](auto& w) { w.width = 0; }), HasSubstr("width is 0"));
+  EXPECT_THAT(error([](auto& w) { w.height = 20001; }), HasSubstr("height is 20001"));
+  EXPECT_THAT(error([](auto& w) { w.stride -= 1; }), HasSubstr("stride"));
+  EXPECT_THAT(error([](auto& w) { w.stride = 0; }), HasSubstr("stride"));
+  EXPECT_THAT(error([](auto& w) { w.height += 1; }), HasSubstr("size"));
+  EXPECT_THAT(error([](auto& w) { w.pixel_format = 10; }), HasSubstr("pixel_format is 10"));
+  EXPECT_THAT(error([](auto& w) { w.camera = "../x"; }), HasSubstr("camera is"));
+  EXPECT_THAT(error([](auto& w) { w.exposure_s = -1; }), HasSubstr("exposure_s is -1"));
+  EXPECT_THAT(error([](auto& w) { w.radiometry.kind = 3; }), HasSubstr("radiometry.kind is 3"));
+  EXPECT_THAT(error([](auto& w) { w.radiometry.planck_b = 0; }), HasSubstr("planck_b"));
+  EXPECT_THAT(error([](auto& w) { w.radiometry.emissivity = 0; }), HasSubstr("emissivity"));
+  image.format = PixelFormat::kBgr8;
+  EXPECT_THAT(ErrorOf([&] { Encode(image); }), HasSubstr("type of pixels is CV_16UC1"));
+}
+
+TEST_F(Invalid, Cloud) {
+  CloudChunk chunk = random_.Chunk(2, 3);
+  chunk.cloud.origins = {{0, 0, 0}, {0, 0, 1}};
+  chunk.cloud.points[0] = {1, 2, 3};
+  chunk.cloud.points[4] = chunk.cloud.points[5] = Eigen::Vector3f::Constant(kNan);
+  const auto error = [&](auto change) { return ErrorAfter<cloud_t>(chunk, change); };
+  EXPECT_EQ(error([](auto&) {}), "no error");
+  EXPECT_THAT(error([](auto& w) { w.num_lines = 3; }), HasSubstr("num_points is 6; expected 9"));
+  EXPECT_THAT(error([](auto& w) { w.num_beams = -3; }), HasSubstr("num_beams is -3"));
+  EXPECT_THAT(error([](auto& w) { w.num_lines = 6, w.num_beams = 1; }), HasSubstr("num_origins"));
+  EXPECT_THAT(error([](auto& w) { w.organised = 0; }), HasSubstr("num_lines is 2"));
+  EXPECT_THAT(error([](auto& w) { w.x_m[0] = NAN; }), HasSubstr("point[0] is (nan"));
+  EXPECT_THAT(error([](auto& w) { w.y_m[0] = INFINITY; }), HasSubstr("point[0]"));
+  EXPECT_THAT(error([](auto& w) { w.x_m[0] = w.y_m[0] = w.z_m[0] = 0; }), HasSubstr("point[0]"));
+  EXPECT_THAT(error([](auto& w) { w.intensity[1] = 1.5; }), HasSubstr("intensity[1] is 1.5"));
+  EXPECT_THAT(error([](auto& w) { w.ring[3] = -2; }), HasSubstr("ring[3] is -2"));
+  EXPECT_THAT(error([](auto& w) { w.miss_index.back() = 6; }), HasSubstr("miss_index"));
+  EXPECT_THAT(error([](auto& w) { w.miss_index.back() = -1; }), HasSubstr("miss_index"));
+  EXPECT_THAT(error([](auto& w) { w.miss_index.front() = 0; }), HasSubstr("miss_index"));
+  EXPECT_THAT(error([](auto& w) { w.miss_index.front() = w.miss_index.back(); }),
+              HasSubstr("ascending"));
+  EXPECT_THAT(error([](auto& w) { w.miss_x[0] = 7; }), HasSubstr("length of miss"));
+  EXPECT_THAT(error([](auto& w) { w.origin_z_m[1] = NAN; }), HasSubstr("origin[1]"));
+  EXPECT_THAT(error([](auto& w) { w.utime = 5, w.utime_offset_us[2] = -5; }),
+              HasSubstr("utime_offset_us[2]"));
+  chunk.cloud.ring.pop_back();
+  EXPECT_THAT(ErrorOf([&] { Encode(chunk); }), HasSubstr("length of ring is 5; expected 6"));
+}
+
+TEST_F(Invalid, CalibrationAndPose) {
+  CalibrationMessage message = random_.Calibrated();
+  message.calibration.covariance = Matrix6d::Identity();
+  const auto error = [&](auto change) { return ErrorAfter<calibration_t>(message, change); };
+  EXPECT_THAT(error([](auto& w) { w.quaternion_wxyz[0] += 0.1; }), HasSubstr("norm of quaternion"));
+  EXPECT_THAT(error([](auto& w) { w.quaternion_wxyz[1] = NAN; }), HasSubstr("quaternion_wxyz[1]"));
+  EXPECT_THAT(error([](auto& w) { w.translation_m[2] = INFINITY; }), HasSubstr("translation_m[2]"));
+  EXPECT_THAT(error([](auto& w) { w.covariance[1][1] = -1; }), HasSubstr("covariance"));
+  EXPECT_THAT(error([](auto& w) { w.covariance[1][2] = 1; }), HasSubstr("symmetric"));
+  EXPECT_THAT(error([](auto& w) { w.has_covariance = 0, w.covariance[1][2] = 1; }), "no error");
+  StampedPose pose = random_.Pose();
+  pose.map_from_lidar.rotation.coeffs() *= 1.0005;
+  EXPECT_EQ(ErrorOf([&] { Encode(pose); }), "no error");
+  pose.map_from_lidar.rotation.coeffs().setZero();
+  EXPECT_THAT(ErrorOf([&] { Encode(pose); }), HasSubstr("norm of quaternion_wxyz is 0"));
+}
+
+TEST_F(Invalid, Session) {
+  const auto command = [&](auto change) {
+    return ErrorAfter<session_command_t>(random_.Command(), change);
+  };
+  EXPECT_THAT(command([](auto& w) { w.verb = 0; }), HasSubstr("verb is 0"));
+  EXPECT_THAT(command([](auto& w) { w.verb = 7; }), HasSubstr("verb is 7"));
+  EXPECT_THAT(command([](auto& w) { w.view = "a/b"; }), HasSubstr("view is"));
+  const auto event = [&](auto change) {
+    return ErrorAfter<session_event_t>(random_.Event(), change);
+  };
+  EXPECT_THAT(event([](auto& w) { w.kind = 4; }), HasSubstr("kind is 4"));
+  EXPECT_THAT(event([](auto& w) { w.fraction = NAN; }), HasSubstr("fraction is nan"));
+  EXPECT_THAT(event([](auto& w) { w.source = ""; }), HasSubstr("source is"));
+  EXPECT_THAT(event([](auto& w) { w.text = "\x1b[2J"; }), HasSubstr("text is"));
+  EXPECT_THAT(event([](auto& w) { w.text.assign(70000, 'x'); }), HasSubstr("length of text"));
+  const auto request = [&](auto change) {
+    return ErrorAfter<session_request_t>(random_.Request(), change);
+  };
+  EXPECT_THAT(request([](auto& w) { w.request = 0; }), HasSubstr("request is 0"));
+  EXPECT_THAT(request([](auto& w) { w.request = 5; }), HasSubstr("request is 5"));
+  const auto sighting = [&](auto change) {
+    return ErrorAfter<sighting_t>(random_.Sighted(), change);
+  };
+  EXPECT_THAT(sighting([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
+  EXPECT_THAT(sighting([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
+  Status status = random_.Health();
+  status.text = std::string("a\0b", 3);
+  EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));
+}
+
+}  // namespace
+}  // namespace rgbdt

@@ -1,0 +1,327 @@
+#include "calib/present/frames/session_state.h"
+
+#include "calib/solve/colouring.h"
+#include "tests/unit/files/test_data.h"
+#include "tests/unit/present/frames/frame_testing.h"
+
+namespace rgbdt::viewer {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+json SessionJson(const SessionState& state, const Rig* rig) {
+  return Parse(SessionFrame(state, rig)).header;
+}
+
+Observation Found(const std::string& view, const std::string& camera) {
+  Observation observation;
+  observation.view = view;
+  observation.camera = camera;
+  observation.image_utime = 1000;
+  observation.image = ImageEdges();
+  observation.image->outline_corners = {Eigen::Vector2d(1, 2), Eigen::Vector2d(9, 2.5),
+                                        Eigen::Vector2d(9, 8), Eigen::Vector2d(1, 8)};
+  observation.cloud = CloudEdges();
+  observation.cloud->centre = {3, 0, 4};
+  observation.cloud->normal = {-1, 0, 0};
+  return observation;
+}
+
+Observation Missed(const std::string& view, const std::string& camera) {
+  Observation observation;
+  observation.view = view;
+  observation.camera = camera;
+  observation.image_utime = 2000;
+  observation.rejected = "no board in the image";
+  return observation;
+}
+
+ViewState ViewOf(const std::string& name, const std::vector<Observation>& observations) {
+  ViewState view;
+  view.name = name;
+  for (const Observation& o : observations) {
+    view.images[o.camera] = o.image_utime;
+    view.observations[o.camera] = o;
+  }
+  return view;
+}
+
+SessionState Finished() {
+  SessionState state;
+  state.mode = "finished";
+  state.report = test::MakeReport();
+  state.calibration = state.report->ToCalibration();
+  for (const char* camera : {"rgb", "thermal"}) state.calibration_utime[camera] = test::kNow;
+  for (const char* view : {"0001", "0003", "0006"}) {
+    state.views.push_back(ViewOf(view, {Found(view, "rgb"), Found(view, "thermal")}));
+  }
+  return state;
+}
+
+TEST(SessionFrame, WithoutAnythingItSaysSo) {
+  const json frame = SessionJson({}, nullptr);
+  EXPECT_EQ(frame.at("type"), "session");
+  EXPECT_EQ(frame.at("mode"), "none");
+  for (const char* empty : {"can", "log", "views", "pick_wanted", "sigma", "cameras"}) {
+    EXPECT_EQ(frame.at(empty), json::array()) << empty;
+  }
+  EXPECT_EQ(frame.at("verdict").at("grade"), "none");
+  EXPECT_EQ(frame.at("verdict").at("headline"), "No calibration yet");
+  EXPECT_TRUE(frame.at("next_view").is_null());
+  EXPECT_TRUE(frame.at("report").is_null());
+}
+
+TEST(SessionFrame, WhatRunsIsThere) {
+  SessionState state;
+  state.mode = "script";
+  state.can = {"capture", "finish"};
+  state.busy = "sweeping";
+  state.fraction = 0.25;
+  state.step = 3;
+  state.steps = 9;
+  state.failure = "the motor stopped";
+  SessionEvent event;
+  event.utime = test::kNow;
+  event.source = "detector";
+  event.kind = EventKind::kFailed;
+  event.text = "no sweep";
+  state.log = {event};
+  state.sigma = {{4, {{"rgb", {0.1, 2.5}}}}};
+  const json frame = SessionJson(state, nullptr);
+  EXPECT_EQ(frame.at("can"), json({"capture", "finish"}));
+  EXPECT_EQ(frame.at("busy"), "sweeping");
+  EXPECT_EQ(frame.at("fraction"), 0.25);
+  EXPECT_EQ(frame.at("step"), 3);
+  EXPECT_EQ(frame.at("steps"), 9);
+  EXPECT_EQ(frame.at("failure"), "the motor stopped");
+  EXPECT_EQ(frame.at("log"), json::array({{{"utime", test::kNow},
+                                           {"source", "detector"},
+                                           {"kind", "failed"},
+                                           {"text", "no sweep"}}}));
+  EXPECT_EQ(frame.at("sigma").at(0).at("views"), 4);
+  EXPECT_EQ(frame.at("sigma").at(0).at("cameras").at(0),
+            json({{"camera", "rgb"}, {"rotation_deg", 0.1}, {"centre_mm", 2.5}}));
+}
+
+TEST(SessionFrame, ViewsSayWhatWasFoundInThem) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  state.views = {ViewOf("0001", {Found("0001", "rgb"), Missed("0001", "thermal")}),
+                 ViewOf("0002", {Found("0002", "rgb")})};
+  state.views[1].heldout = true;
+  state.views[1].waits = "for thermal";
+  const json views = SessionJson(state, &rig).at("views");
+  ASSERT_EQ(views.size(), 2U);
+  EXPECT_EQ(views[0].at("name"), "0001");
+  EXPECT_EQ(
+      views[0].at("board"),
+      json({{"centre_m", {3.0, 0.0, 4.0}}, {"normal", {-1.0, 0.0, 0.0}}, {"distance_m", 5.0}}));
+  const json& rgb = views[0].at("cameras").at(0);
+  EXPECT_EQ(rgb.at("camera"), "rgb");
+  EXPECT_EQ(rgb.at("state"), "accepted");
+  EXPECT_EQ(rgb.at("image_utime"), 1000);
+  EXPECT_EQ(rgb.at("outline"), json({{1.0, 2.0}, {9.0, 2.5}, {9.0, 8.0}, {1.0, 8.0}}));
+  EXPECT_TRUE(rgb.at("edge_rms_px").is_null());
+  const json& thermal = views[0].at("cameras").at(1);
+  EXPECT_EQ(thermal.at("state"), "rejected");
+  EXPECT_EQ(thermal.at("why"), "no board in the image");
+  EXPECT_EQ(thermal.at("outline"), json::array());
+  EXPECT_EQ(views[1].at("heldout"), true);
+  EXPECT_EQ(views[1].at("waits"), "for thermal");
+  EXPECT_EQ(views[1].at("cameras").at(1).at("state"), "waiting");
+}
+
+TEST(SessionFrame, PicksAreWantedWhereAnImageWasLookedAtInVainNewestFirst) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  Observation cloudless = Found("0003", "rgb");  // the image is fine: corners would not help
+  cloudless.cloud.reset();
+  cloudless.rejected = "no board in the cloud";
+  Observation unread = Missed("0004", "rgb");
+  unread.image_utime = 0;
+  state.views = {ViewOf("0001", {Missed("0001", "thermal")}),
+                 ViewOf("0002", {Missed("0002", "rgb"), Found("0002", "thermal")}),
+                 ViewOf("0003", {cloudless}), ViewOf("0004", {unread})};
+  const json wanted = SessionJson(state, &rig).at("pick_wanted");
+  ASSERT_EQ(wanted.size(), 2U);
+  EXPECT_EQ(wanted[0], json({{"view", "0002"},
+                             {"camera", "rgb"},
+                             {"image_utime", 2000},
+                             {"why", "no board in the image"}}));
+  EXPECT_EQ(wanted[1].at("view"), "0001");
+}
+
+TEST(SessionFrame, BeforeTheFirstSolveItSaysHowManyViewsAreMissing) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  for (const char* view : {"0001", "0002", "0003"}) {
+    state.views.push_back(ViewOf(view, {Found(view, "rgb"), Missed(view, "thermal")}));
+  }
+  const json frame = SessionJson(state, &rig);
+  EXPECT_EQ(frame.at("verdict").at("grade"), "none");
+  EXPECT_EQ(frame.at("verdict").at("headline"), "No calibration yet");
+  ASSERT_EQ(frame.at("verdict").at("reasons").size(), 2U);
+  EXPECT_THAT(frame.at("verdict").at("reasons").at(0).get<std::string>(),
+              HasSubstr("rgb: The board was found in 3 views; take 5 more"));
+  EXPECT_THAT(frame.at("verdict").at("reasons").at(1).get<std::string>(),
+              HasSubstr("thermal: The board was found in 0 views; take 8 more"));
+  const json& rgb = frame.at("cameras").at(0);
+  EXPECT_EQ(rgb.at("calibrated"), false);
+  EXPECT_EQ(rgb.at("verdict").at("grade"), "none");
+  EXPECT_TRUE(rgb.at("camera_from_lidar").is_null());
+}
+
+TEST(SessionFrame, AFinishedOneHasFiguresVerdictsAndTheReport) {
+  const Rig rig = test::MakeRig();
+  const json frame = SessionJson(Finished(), &rig);
+  const json& rgb = frame.at("cameras").at(0);
+  EXPECT_EQ(rgb.at("calibrated"), true);
+  EXPECT_EQ(rgb.at("status"), "converged");
+  EXPECT_EQ(rgb.at("utime"), test::kNow);
+  EXPECT_EQ(rgb.at("camera_from_lidar").size(), 16U);
+  EXPECT_NEAR(rgb.at("camera_from_lidar").at(7).get<double>(), 0.2, 1e-12);
+  EXPECT_EQ(rgb.at("heldout_edge_px"), 0.625);
+  EXPECT_NEAR(rgb.at("heldout_edge_sigmas").get<double>(), 1 / 0.95, 1e-12);
+  EXPECT_TRUE(frame.at("cameras").at(1).at("rotation_sigma_deg").is_null());
+  const json& views = frame.at("views");
+  EXPECT_EQ(views[0].at("cameras").at(0).at("edge_rms_px"), 0.5);
+  EXPECT_TRUE(views[0].at("cameras").at(0).at("edge_rms_sigmas").is_null());
+  EXPECT_EQ(views[1].at("cameras").at(0).at("edge_rms_sigmas"), 1.0625);
+  // Found, but the solver left it out.
+  EXPECT_EQ(views[2].at("cameras").at(0).at("state"), "rejected");
+  EXPECT_EQ(views[2].at("cameras").at(0).at("why"), "the board is not in view");
+  EXPECT_EQ(frame.at("next_view").at("camera"), "thermal");
+  EXPECT_EQ(frame.at("next_view").at("before_px"), 0.875);
+  EXPECT_EQ(frame.at("report").at("method"), "paper");
+  EXPECT_EQ(frame.at("report").at("cameras").size(), 2U);
+}
+
+// A report of cameras that all are good.
+Report GoodReport(const std::vector<std::string>& cameras) {
+  Report report = test::MakeReport();
+  CameraReport good = report.cameras[0];
+  good.other_starts.clear();
+  report.cameras.clear();
+  for (const std::string& camera : cameras) {
+    good.calibration.camera = camera;
+    report.cameras.push_back(good);
+  }
+  return report;
+}
+
+json VerdictOfReport(const Report& report) {
+  SessionState state;
+  state.report = report;
+  state.calibration = report.ToCalibration();
+  for (const CameraReport& camera : report.cameras) {
+    ViewState view;
+    view.images[camera.calibration.camera] = 1;
+    state.views.push_back(view);
+  }
+  return SessionJson(state, nullptr).at("verdict");
+}
+
+TEST(SessionFrame, TheVerdictOfAllNamesTheCamerasInPlainWords) {
+  const json one = VerdictOfReport(GoodReport({"rgb"}));
+  EXPECT_EQ(one.at("grade"), "good");
+  EXPECT_EQ(one.at("headline"),
+            "Camera rgb is calibrated: colours sit within 0.6 px at 5 m (1 sigma)");
+  Report report = GoodReport({"rgb", "thermal"});
+  report.cameras[1].sigma->colouring[1].worst_px = 0.9;
+  EXPECT_EQ(VerdictOfReport(report).at("headline"),
+            "Both cameras are calibrated: colours sit within 0.9 px at 5 m (1 sigma)");
+  report.cameras[0].sigma.reset();
+  EXPECT_EQ(VerdictOfReport(report).at("headline"), "Both cameras are calibrated");
+  EXPECT_THAT(VerdictOfReport(GoodReport({"a", "b", "c"})).at("headline").get<std::string>(),
+              HasSubstr("All 3 cameras are calibrated: colours"));
+}
+
+TEST(SessionFrame, TheWorstCameraCounts) {
+  Report report = GoodReport({"back", "rgb", "thermal"});
+  report.cameras[1].used = {"0001"};
+  json verdict = VerdictOfReport(report);
+  EXPECT_EQ(verdict.at("grade"), "caution");
+  EXPECT_EQ(verdict.at("headline"), "Take care with rgb; back and thermal are calibrated");
+  report.cameras[2].calibration.converged = false;
+  verdict = VerdictOfReport(report);
+  EXPECT_EQ(verdict.at("grade"), "bad");
+  EXPECT_EQ(verdict.at("headline"),
+            "Do not use the calibration of thermal; take care with rgb; back is calibrated");
+  report.cameras[2].distance_transform_px = {};  // a guess
+  report.cameras[2].edge_rms_px = {};
+  report.cameras[2].calibration.status = "not calibrated: 2 usable views";
+  verdict = VerdictOfReport(report);
+  EXPECT_EQ(verdict.at("grade"), "none");
+  EXPECT_THAT(verdict.at("headline").get<std::string>(),
+              HasSubstr("No calibration yet of thermal; take care with rgb"));
+}
+
+// A script solves at its end: until then each view's calibration is used, and nobody judged it.
+TEST(SessionFrame, ACalibrationWithoutAReportIsNotJudgedYet) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  for (const CameraSpec& camera : rig.cameras) {
+    CameraCalibration calibration;
+    calibration.camera = camera.name;
+    state.calibration.cameras.push_back(calibration);
+  }
+  const json verdict = SessionJson(state, &rig).at("verdict");
+  EXPECT_EQ(verdict.at("grade"), "none");
+  EXPECT_THAT(verdict.at("headline").get<std::string>(),
+              testing::StartsWith("Calibrated so far, not judged yet: rgb"));
+}
+
+TEST(SessionFrame, HostileNamesAreOnlyText) {
+  const std::string evil = "</script><b>\xff\"\\\n";
+  Rig rig = test::MakeRig();
+  rig.cameras[0].name = evil;
+  SessionState state = Finished();
+  state.failure = evil;
+  state.views[0].name = evil;
+  state.views[0].observations[evil] = Missed(evil, evil);
+  state.report->cameras[0].calibration.camera = evil;
+  state.report->next_view->words = evil;
+  const std::string shown = "</script><b>\xEF\xBF\xBD\"\\\n";
+  for (const Rig* known : {static_cast<const Rig*>(&rig), static_cast<const Rig*>(nullptr)}) {
+    const json frame = SessionJson(state, known);
+    EXPECT_EQ(frame.at("failure"), shown);
+    EXPECT_EQ(frame.at("views").at(0).at("name"), shown);
+    EXPECT_EQ(frame.at("next_view").at("words"), shown);
+  }
+  EXPECT_EQ(Parse(RigFrame(rig)).header.at("cameras").at(0).at("name"), shown);
+}
+
+TEST(RigFrame, HasWhatThePageDraws) {
+  Rig rig = test::MakeRig();
+  rig.hash = "abc";
+  const json frame = Parse(RigFrame(rig)).header;
+  EXPECT_EQ(frame.at("hash"), "abc");
+  EXPECT_EQ(frame.at("cameras").at(1),
+            json({{"name", "thermal"}, {"kind", "thermal"}, {"width", 24}, {"height", 18}}));
+  EXPECT_EQ(frame.at("target").at("squares_x"), 11);
+  EXPECT_EQ(frame.at("target").at("height_m"), 0.9144);
+}
+
+TEST(SigmaOf, IsTheRootMeanSquareOfTheReportsThreeAxes) {
+  Matrix6d root;
+  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = 1e-4 * std::sin(i * i + 1.0);
+  CameraCalibration calibration;
+  calibration.camera_from_lidar = test::MakePose(0.8, {0.1, 0.2, 0.3});
+  EXPECT_FALSE(SigmaOf(calibration));
+  calibration.covariance = root * root.transpose();
+  const PoseSigma axes = rgbdt::SigmaOf(test::MakeRig().cameras[0], calibration.camera_from_lidar,
+                                        *calibration.covariance);
+  const auto rms = [](const std::array<double, 3>& v) {
+    return std::sqrt((v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3);
+  };
+  const auto sigma = SigmaOf(calibration);
+  ASSERT_TRUE(sigma);
+  EXPECT_NEAR(sigma->first, rms(axes.rotation_deg), 1e-12);
+  EXPECT_NEAR(sigma->second, rms(axes.centre_mm), 1e-12);
+  (*calibration.covariance)(0, 0) = std::nan("");
+  EXPECT_FALSE(SigmaOf(calibration));
+}
+
+}  // namespace
+}  // namespace rgbdt::viewer

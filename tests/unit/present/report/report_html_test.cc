@@ -1,0 +1,124 @@
+#include "calib/present/report/report_html.h"
+
+#include "calib/present/report/html.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ReportHtml, HoldsVerdictFiguresTransformsAndViews) {
+  const std::string page = ReportHtml(test::MakeReport(), {});
+  for (const char* part :
+       {"<!doctype html>", "Camera rgb", "Camera thermal", "0.62 px", "held out", "rejected",
+        "the board is not in view", "camera_from_lidar", "lidar_from_camera", "point_in_camera",
+        "30 deg about x, 40 deg about z", "no: stopped", "0.100° and 0.3 mm",
+        "prefers-color-scheme", "width=device-width", "Computing time"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("http:")));
+  EXPECT_THAT(page, Not(HasSubstr("https:")));
+}
+
+TEST(ReportHtml, SaysHowSureItIs) {
+  const std::string page = ReportHtml(test::MakeReport(), {});
+  for (const char* part :
+       {"How sure it is", "0.0333°", "0.67 mm", "50 m", "0.60 px", "0.97 of their sigmas",
+        "1 means that the data are as exact as stated", "0.62 (1.06 sigmas)", "0001, 0002",
+        "misfit of the first guess", "chi-square 5.2", "beam edge, no return", "mrad",
+        "rgb to thermal", "they agree", "Where to hold the board next",
+        "Hold the board 6 m ahead, at the image&#39;s top left.", "from 0.88 to 0.09 px"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+}
+
+TEST(ReportHtml, SaysNothingOfWhatNobodyWorkedOut) {
+  Report report = test::MakeReport();
+  report.cameras.erase(report.cameras.begin());
+  report.closure.clear();
+  report.next_view.reset();
+  const std::string page = ReportHtml(report, {});
+  for (const char* part : {"How sure it is", "sigma", "left out", "halves", "besides the pose",
+                           "Camera against camera", "Where to hold the board next"}) {
+    EXPECT_THAT(page, Not(HasSubstr(part)));
+  }
+}
+
+TEST(ReportHtml, NothingFromTheReportIsMarkup) {
+  const std::string evil = "<b onload=\"x\">&'</b><script>";
+  Report report = test::MakeReport();
+  report.method = report.rig_hash = evil;
+  CameraReport& camera = report.cameras[0];
+  camera.calibration.camera = camera.calibration.status = evil;
+  camera.calibration.converged = false;
+  camera.used[0] = camera.heldout[0] = camera.rejected[0].view = camera.rejected[0].why = evil;
+  camera.other_starts[0].start = camera.other_starts[0].calibration.status = evil;
+  camera.nuisance[0].name = camera.nuisance[0].unit = camera.folds[0].heldout[0] = evil;
+  report.closure[0].from = report.closure[0].to = evil;
+  report.next_view->words = report.next_view->camera = evil;
+  const std::string page =
+      ReportHtml(report, {{evil, evil, cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}});
+  EXPECT_THAT(page, Not(HasSubstr("<b ")));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, Not(HasSubstr("onload=\"x")));
+  EXPECT_THAT(page, HasSubstr("&lt;b onload=&quot;x&quot;&gt;&amp;&#39;&lt;/b&gt;"));
+}
+
+TEST(ReportHtml, TheVerdictFollowsTheFigures) {
+  const auto page = [](auto change) {
+    Report report = test::MakeReport();
+    report.cameras.pop_back();
+    report.cameras[0].other_starts.clear();
+    change(&report.cameras[0]);
+    return ReportHtml(report, {});
+  };
+  EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Consistent: no sign that it is wrong."));
+  const std::string failed = page([](CameraReport* camera) {
+    camera->calibration.converged = false;
+    camera->calibration.status = "too few views";
+  });
+  EXPECT_THAT(failed, HasSubstr("Do not use it."));
+  EXPECT_THAT(failed, HasSubstr("did not converge: too few views"));
+  EXPECT_THAT(page([](CameraReport* camera) { camera->edge_rms_px.heldout.reset(); }),
+              HasSubstr("It was not checked"));
+  EXPECT_THAT(page([](CameraReport* camera) { camera->edge_rms_px.heldout = 9; }),
+              HasSubstr("clearly worse"));
+  const StartResult start = test::MakeReport().cameras[0].other_starts[0];
+  EXPECT_THAT(page([&](CameraReport* camera) { camera->other_starts = {start}; }),
+              HasSubstr("fits worse"));
+  EXPECT_THAT(page([&](CameraReport* camera) {
+                camera->other_starts = {start};
+                camera->other_starts[0].distance_transform_px = 1.3;
+              }),
+              HasSubstr("the result depends on the start"));
+  EXPECT_THAT(page([](CameraReport* camera) { camera->used.resize(2); }),
+              HasSubstr("only 2; take 5"));
+}
+
+TEST(ReportHtml, PicturesAreInThePage) {
+  const std::string page = ReportHtml(
+      test::MakeReport(),
+      {{"Overlay", "Edges", cv::Mat::zeros(3, 5, CV_8UC3)}, {"None", "Nothing to see", cv::Mat()}});
+  EXPECT_THAT(page, HasSubstr("<img alt=\"Overlay\" width=\"5\" height=\"3\" "
+                              "src=\"data:image/png;base64,iVBORw0KGgo"));
+  EXPECT_THAT(page, HasSubstr("Nothing to see"));
+}
+
+TEST(ReportHtml, AnEmptyReportIsAPageToo) {
+  EXPECT_THAT(ReportHtml(Report{}, {}), HasSubstr("No camera could be calibrated."));
+}
+
+TEST(Html, Base64AsInRfc4648) {
+  EXPECT_EQ(html::Base64(""), "");
+  EXPECT_EQ(html::Base64("f"), "Zg==");
+  EXPECT_EQ(html::Base64("fo"), "Zm8=");
+  EXPECT_EQ(html::Base64("foo"), "Zm9v");
+  EXPECT_EQ(html::Base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(html::Base64("\xff\xfe\xfd"), "//79");
+}
+
+}  // namespace
+}  // namespace rgbdt

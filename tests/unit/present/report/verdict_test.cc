@@ -1,0 +1,93 @@
+#include "calib/present/report/internal/verdict.h"
+
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+using Grade = Verdict::Grade;
+
+CameraReport Good() {
+  CameraReport camera = test::MakeReport().cameras[0];
+  camera.other_starts.clear();
+  return camera;
+}
+
+TEST(Verdict, AGoodReportIsConsistentAndSaysWhy) {
+  const Verdict verdict = Judge(Good());
+  EXPECT_EQ(verdict.grade, Grade::kGood);
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("0.60 px where it is worst")));
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("no more than their sigmas allow")));
+}
+
+TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
+  CameraReport camera = Good();
+  camera.calibration.status = "degenerate: all boards are parallel";
+  for (const bool converged : {false, true}) {
+    camera.calibration.converged = converged;
+    const Verdict verdict = Judge(camera, test::MakeReport().next_view);
+    EXPECT_EQ(verdict.grade, Grade::kBad);
+    EXPECT_THAT(verdict.headline, HasSubstr("the pose cannot be told from these views"));
+    EXPECT_THAT(verdict.reasons, Contains(HasSubstr("all boards are parallel")));
+    EXPECT_THAT(verdict.reasons,
+                Contains("Next: Hold the board 6 m ahead, at the image's top left."));
+  }
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Next:"))));
+}
+
+TEST(Verdict, WhatAConvergedSolveRemarksIsSaidWithoutAlarm) {
+  CameraReport camera = Good();
+  camera.calibration.status = "kept the first guess: the solve fits worse";
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kGood);
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("kept the first guess")));
+}
+
+TEST(Verdict, AColourThatIsNotSureToAPixelFiveMetresAwayIsAWarning) {
+  CameraReport camera = Good();
+  camera.sigma->colouring[0].worst_px = camera.sigma->colouring[3].worst_px = 9;  // 2 and 50 m
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.sigma->colouring[1].worst_px = 1.01;
+  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
+}
+
+TEST(Verdict, HalvesThatDifferTooMuchSayThatTheSigmaIsWrong) {
+  CameraReport camera = Good();
+  camera.halves->chi2 = 22.4;
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.halves->chi2 = 22.6;
+  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("sigma is not to be believed")));
+}
+
+TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
+  CameraReport camera = Good();
+  camera.halves->chi2 = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("sigmas allow"))));
+}
+
+TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheSigmaIsWrong) {
+  CameraReport camera = Good();
+  const auto grade = [&](double rms) {
+    camera.edge_rms_whitened.heldout = rms;
+    return Judge(camera).grade;
+  };
+  EXPECT_EQ(grade(0.71), Grade::kGood);
+  EXPECT_EQ(grade(1.39), Grade::kGood);
+  EXPECT_EQ(grade(0.69), Grade::kCaution);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("more exact than stated")));
+  EXPECT_EQ(grade(1.41), Grade::kCaution);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("less exact than stated")));
+  camera.edge_rms_whitened.heldout.reset();
+  camera.edge_rms_whitened.train = 5;  // the views used are no judge
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+}
+
+}  // namespace
+}  // namespace rgbdt

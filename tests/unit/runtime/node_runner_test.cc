@@ -1,0 +1,214 @@
+#include "services/runtime/node_runner.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "calib/model/errors.h"
+#include "services/messages/codec.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Answers each encoder reading as its ticks say; throws by negative ones.
+class ScriptedNode : public Node {
+ public:
+  std::string name() const override { return "scripted"; }
+  std::vector<std::string> Subscriptions() const override {
+    return {"ENCODER", "CALIBRATION", "STATUS", "SESSION_EVENT", ".*_IMAGE"};
+  }
+  Messages Handle(const Message& message) override {
+    handled.push_back(ChannelOf(message));
+    const auto* reading = std::get_if<EncoderReading>(&message);
+    if (reading == nullptr) return {};
+    if (reading->ticks == -1) throw InputError("ticks are -1");
+    if (reading->ticks == -2) throw std::runtime_error("out of range");
+    if (reading->ticks == -3) throw 3;
+    if (reading->ticks == -4) return {Pose(NAN), Pose(1)};
+    return Messages(static_cast<std::size_t>(reading->ticks), Pose(1));
+  }
+  Messages Republish() override {
+    if (republish_throws) throw std::runtime_error("cannot repeat");
+    return {RigText{0, "hash", "text"}};
+  }
+  Status GetStatus() const override {
+    Status status;
+    status.ready = true;
+    status.text = "waits";
+    return status;
+  }
+
+  static StampedPose Pose(double x) {
+    StampedPose pose;
+    pose.utime = 1;
+    pose.source = "scripted";
+    pose.map_from_lidar.translation.x() = x;
+    return pose;
+  }
+
+  std::vector<std::string> handled;
+  bool republish_throws = false;
+};
+
+class NodeRunnerTest : public ::testing::Test {
+ protected:
+  NodeRunnerTest() {
+    runner_.SetProblemHandler([&](const std::string& problem) { problems_.push_back(problem); });
+    bus_.Subscribe("POSE|RIG|STATUS",
+                   [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+                     published_.push_back(Decode(channel, data, size));
+                   });
+  }
+
+  void Send(const Message& message) {
+    bus_.Publish(ChannelOf(message), Encode(message));
+    bus_.Run();
+  }
+  void SendReading(std::int64_t seq, std::int64_t ticks = 0) {
+    Send(EncoderReading{1000 + seq, seq, ticks, 0});
+  }
+  std::int64_t Counter(const std::string& name) const {
+    for (const auto& [key, value] : runner_.GetStatus().counters) {
+      if (key == name) return value;
+    }
+    return -1;
+  }
+
+  MemoryBus bus_;
+  ScriptedNode node_;
+  NodeRunner runner_{&node_, &bus_};
+  std::vector<std::string> problems_;
+  Messages published_;
+};
+
+TEST_F(NodeRunnerTest, PublishesAnswersNumberedFromZero) {
+  SendReading(0, 2);
+  SendReading(1, 1);
+  ASSERT_EQ(published_.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(SeqOf(published_[i]), static_cast<int>(i));
+  EXPECT_EQ(runner_.received(), 2);
+  EXPECT_EQ(runner_.dropped(), 0);
+}
+
+TEST_F(NodeRunnerTest, ExceptionsOfTheNodeAreCountedAndNamed) {
+  SendReading(0, -1);
+  EXPECT_EQ(runner_.GetStatus().last_problem, "ENCODER: ticks are -1");
+  SendReading(1, -2);
+  EXPECT_EQ(runner_.GetStatus().last_problem, "ENCODER: out of range");
+  SendReading(2, -3);
+  EXPECT_THAT(runner_.GetStatus().last_problem, HasSubstr("ENCODER: "));
+  SendReading(3, 1);
+  EXPECT_EQ(published_.size(), 1U);
+  EXPECT_EQ(runner_.received(), 4);
+  EXPECT_EQ(runner_.dropped(), 3);
+  EXPECT_EQ(Counter("dropped ENCODER"), 3);
+  EXPECT_EQ(runner_.gaps(), 0);
+  EXPECT_EQ(problems_.size(), 3U);
+}
+
+TEST_F(NodeRunnerTest, RubbishIsCountedAndNamed) {
+  bus_.Publish("ENCODER", Bytes{1, 2, 3});
+  bus_.Publish("RGB_IMAGE", Encode(EncoderReading{1, 0, 0, 0}));
+  bus_.Publish("\x1b[2J_IMAGE", Bytes{});
+  bus_.Run();
+  EXPECT_TRUE(node_.handled.empty());
+  EXPECT_EQ(runner_.dropped(), 3);
+  EXPECT_THAT(problems_, ElementsAre(HasSubstr("ENCODER: the message is no encoder_t"),
+                                     HasSubstr("RGB_IMAGE: the message is no image_t"),
+                                     Not(HasSubstr("\x1b"))));
+  published_.clear();
+  runner_.Tick();  // the status carries all this and is a valid message
+  bus_.Run();
+  ASSERT_EQ(published_.size(), 2U);
+  EXPECT_EQ(std::get<Status>(published_[1]).last_problem, problems_.back());
+}
+
+TEST_F(NodeRunnerTest, WhatCannotBeSentIsDroppedAndTheRestGoesOut) {
+  SendReading(0, -4);
+  ASSERT_EQ(published_.size(), 1U);
+  EXPECT_EQ(SeqOf(published_[0]), 0);  // the other never had a number
+  EXPECT_EQ(runner_.dropped(), 1);
+  EXPECT_THAT(runner_.GetStatus().last_problem,
+              HasSubstr("publishing POSE: translation_m[0] is nan"));
+}
+
+TEST_F(NodeRunnerTest, CountsGapsByChannel) {
+  for (const int seq : {7, 8, 12, 13}) SendReading(seq);
+  EXPECT_EQ(runner_.gaps(), 3);
+  EXPECT_EQ(Counter("gaps ENCODER"), 3);
+  EXPECT_EQ(Counter("late"), -1);
+}
+
+TEST_F(NodeRunnerTest, LateDuplicateAndRestart) {
+  for (const int seq : {0, 2, 1, 3, 3, 0, 1}) SendReading(seq);
+  EXPECT_EQ(runner_.gaps(), 0);
+  EXPECT_EQ(Counter("late"), 1);
+  EXPECT_EQ(Counter("duplicates"), 1);
+  EXPECT_EQ(Counter("restarts"), 1);
+  EXPECT_EQ(Counter("gaps ENCODER"), -1);
+  EXPECT_EQ(node_.handled.size(), 7U);
+}
+
+TEST_F(NodeRunnerTest, SeveralSendersOnOneChannel) {
+  for (const std::int64_t seq : {0, 1, 2}) {
+    Send(Status{"detector", seq, 1, true, "", "", {}});
+    Send(Status{"solver", 100 + seq, 1, true, "", "", {}});
+    Send(SessionEvent{1, 50 + seq, 1, "simulator", EventKind::kDone, "", 0, 0});
+    Send(SessionEvent{1, seq, 1, "solver", EventKind::kDone, "", 0, 0});
+  }
+  EXPECT_EQ(runner_.gaps(), 0);
+  Send(Status{"solver", 105, 1, true, "", "", {}});
+  EXPECT_EQ(Counter("gaps STATUS"), 2);
+}
+
+// The solver numbers all cameras' calibrations in one row.
+TEST_F(NodeRunnerTest, CalibrationsOfSeveralCamerasAreOneRow) {
+  for (const std::int64_t seq : {0, 1, 2, 3}) {
+    CalibrationMessage message;
+    message.seq = seq;
+    message.calibration.camera = seq % 2 == 0 ? "rgb" : "thermal";
+    Send(message);
+  }
+  EXPECT_EQ(runner_.gaps(), 0);
+}
+
+TEST_F(NodeRunnerTest, TickRepeatsAndSaysStatus) {
+  SendReading(5, 0);
+  runner_.Tick();
+  runner_.Tick();
+  bus_.Run();
+  ASSERT_EQ(published_.size(), 4U);
+  EXPECT_EQ(SeqOf(published_[2]), 1);
+  const auto& rig = std::get<RigText>(published_[0]);
+  EXPECT_EQ(rig.text, "text");
+  const auto& status = std::get<Status>(published_[1]);
+  EXPECT_EQ(status.process, "scripted");
+  EXPECT_EQ(status.utime, 1005);
+  EXPECT_TRUE(status.ready);
+  EXPECT_EQ(status.text, "waits");
+  EXPECT_EQ(status.last_problem, "");
+  EXPECT_EQ(status.counters[0], (std::pair<std::string, std::int64_t>("received", 1)));
+}
+
+TEST_F(NodeRunnerTest, TickSurvivesTheNode) {
+  node_.republish_throws = true;
+  runner_.Tick();
+  bus_.Run();
+  ASSERT_EQ(published_.size(), 1U);
+  EXPECT_EQ(std::get<Status>(published_[0]).last_problem, "repeating: cannot repeat");
+}
+
+TEST_F(NodeRunnerTest, StrangersDoNotFillTheStatus) {
+  for (int i = 0; i < 3000; ++i) bus_.Publish("C" + std::to_string(i) + "_IMAGE", Bytes{});
+  bus_.Run();
+  EXPECT_EQ(runner_.dropped(), 3000);
+  EXPECT_LT(runner_.GetStatus().counters.size(), 200U);
+}
+
+}  // namespace
+}  // namespace rgbdt

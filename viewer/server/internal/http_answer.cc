@@ -1,0 +1,85 @@
+#include "viewer/server/internal/http_answer.h"
+
+#include <boost/beast/websocket/rfc6455.hpp>
+
+namespace rgbdt::viewer {
+namespace {
+
+// The page is one file: its scripts and styles stand in it, its worker is made from a blob.
+constexpr const char* kPagePolicy =
+    "default-src 'none'; script-src 'unsafe-inline' blob:; worker-src blob:; "
+    "style-src 'unsafe-inline'; img-src blob: data:; connect-src 'self' ws:; font-src data:; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+constexpr const char* kNoPage =
+    "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>rgbdt-viewer</title>"
+    "</head><body><h1>rgbdt-viewer runs, but has no page</h1><p>It was built without Node. Install "
+    "the packages nodejs and npm and build again.</p></body></html>\n";
+
+HttpResponse Answer(http::status status, const char* content_type, std::string body) {
+  HttpResponse answer(status, 11);
+  answer.set(http::field::content_type, content_type);
+  answer.set("X-Content-Type-Options", "nosniff");
+  answer.set("Referrer-Policy", "no-referrer");
+  answer.set(http::field::cache_control, "no-store");
+  answer.keep_alive(false);
+  answer.body() = std::move(body);
+  answer.prepare_payload();
+  return answer;
+}
+
+HttpResponse PageAnswer(const std::string& page) {
+  HttpResponse answer =
+      Answer(http::status::ok, "text/html; charset=utf-8", page.empty() ? kNoPage : page);
+  answer.set("Content-Security-Policy", kPagePolicy);
+  return answer;
+}
+
+// Of a field that may stand there once; empty: it does not, or it does several times.
+std::string Only(const HttpRequest& request, http::field field) {
+  return request.count(field) == 1 ? std::string(request[field]) : std::string();
+}
+
+std::optional<HttpResponse> AnswerToUpgrade(const HttpRequest& request, const std::string& host) {
+  if (!beast::websocket::is_upgrade(request)) {
+    return PlainAnswer(http::status::upgrade_required, "This address is the page's WebSocket.");
+  }
+  if (!OriginIsHost(Only(request, http::field::origin), host)) {
+    return PlainAnswer(http::status::forbidden, "Only this server's own page may connect.");
+  }
+  return std::nullopt;
+}
+
+std::optional<HttpResponse> GetAnswer(const HttpRequest& request, const Site& site) {
+  const std::string host = Only(request, http::field::host);
+  if (!site.hosts.Allows(host)) {
+    return PlainAnswer(http::status::forbidden,
+                       "This server is not known under that name. Open " + site.url + " instead.");
+  }
+  const std::string target(request.target());
+  const std::string path = target.substr(0, target.find('?'));
+  if (path == "/ws") return AnswerToUpgrade(request, host);
+  if (path == "/" || path == "/index.html") return PageAnswer(site.page);
+  return PlainAnswer(http::status::not_found, "There is only the page at " + site.url + ".");
+}
+
+}  // namespace
+
+HttpResponse PlainAnswer(http::status status, const std::string& sentence) {
+  return Answer(status, "text/plain; charset=utf-8", sentence + "\n");
+}
+
+std::optional<HttpResponse> AnswerTo(const HttpRequest& request, const Site& site) {
+  const bool head = request.method() == http::verb::head;
+  if (!head && request.method() != http::verb::get) {
+    HttpResponse answer =
+        PlainAnswer(http::status::method_not_allowed, "There is only GET and HEAD.");
+    answer.set(http::field::allow, "GET, HEAD");
+    return answer;
+  }
+  std::optional<HttpResponse> answer = GetAnswer(request, site);
+  if (head && answer) answer->body().clear();  // its Content-Length stays what GET would say
+  return answer;
+}
+
+}  // namespace rgbdt::viewer

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "viewer/server/internal/http_answer.h"
+#include "viewer/server/internal/post_store.h"
+#include "viewer/server/internal/roster.h"
+#include "viewer/server/internal/screen_ring.h"
+#include "viewer/server/server.h"
+
+namespace rgbdt::viewer {
+
+class Browser;
+
+inline constexpr std::size_t kMaxBrowsers = 64;
+inline constexpr std::size_t kMaxHttpConnections = 64;  ///< that are not yet, or never, browsers
+
+/// What the server's connections share. Its posts, roster and screen times are there for other
+/// threads, too; all else is the server's thread's.
+class Hub {
+ public:
+  Hub(const ServerOptions& options, Server::OnMessage on_message);
+
+  /// Hands what was sent to the browsers.
+  void Dispatch();
+  /// Likewise, and gives what is kept: what is in it comes to nobody a second time.
+  std::vector<SharedPost> DispatchThenKept();
+
+  void Join(Browser* browser) { browsers_.push_back(browser); }
+  void Leave(Browser* browser);
+  bool full() const { return browsers_.size() >= kMaxBrowsers; }
+
+  /// A Hello's bytes.
+  std::string HelloFrame(bool may_command) const;
+  /// Takes the same time wherever they differ.
+  bool MayCommand(const std::string& token) const;
+  /// What is to be said to the browser.
+  std::vector<Post> Ask(const nlohmann::json& message) const;
+
+  Site site;
+  PostStore posts;
+  Roster roster;
+  ScreenRing screen;
+  std::size_t http_connections = 0;
+
+ private:
+  void Offer(const std::vector<SharedPost>& posts);
+
+  nlohmann::json hello_;
+  std::string token_;
+  Server::OnMessage on_message_;
+  std::vector<Browser*> browsers_;
+};
+
+/// What a browser without the token is told.
+extern const char* const kTokenAdvice;
+
+/// A NoticeFrame of level "error".
+Post ErrorNotice(const std::string& text);
+
+}  // namespace rgbdt::viewer
