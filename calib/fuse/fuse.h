@@ -5,7 +5,7 @@
 #include "calib/fuse/fusion_camera.h"
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
 
 namespace rgbdt {

@@ -9,15 +9,34 @@
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
+namespace {
 
-Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
+std::vector<DetectedView> SummariesOf(const std::vector<ViewDetection>& detections) {
+  std::vector<DetectedView> summaries;
+  for (const ViewDetection& detection : detections) {
+    DetectedView& summary = summaries.emplace_back();
+    summary.view = detection.view;
+    summary.heldout = detection.heldout;
+    for (const ImageDetection& image : detection.images) {
+      summary.images.push_back({image.camera, image.why_not});
+    }
+    summary.cloud_candidates = static_cast<int>(detection.cloud.candidates.size());
+    summary.cloud_why_not = detection.cloud.why_not;
+  }
+  return summaries;
+}
+
+}  // namespace
+
+Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
                  const CalibrateOptions& options) {
   options.Check();
   Report report;
   report.method = options.method;
   report.rig_hash = rig.hash;
+  report.detections = SummariesOf(detections);
   std::vector<CameraViews> cameras;
-  for (const CameraSpec& camera : rig.cameras) cameras.push_back(ViewsOf(camera, observations));
+  for (const CameraSpec& camera : rig.cameras) cameras.push_back(ViewsOf(camera, detections));
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) CalibrateByPaper(options, &camera);
   } else if (options.method == kPlaneMethod) {
@@ -27,26 +46,27 @@ Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
   }
   for (CameraViews& camera : cameras) {
     camera.Describe();
-    for (const Observation* o : camera.Usable()) {
-      report.utime = std::max(report.utime, o->image_utime);
+    for (const CameraView* view : camera.Usable()) {
+      report.utime = std::max(report.utime, view->image_utime);
     }
     report.cameras.push_back(std::move(camera.report));
   }
   return report;
 }
 
-Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
+Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
                 const Calibration& calibration) {
   Report report;
   report.method = calibration.method;
   report.rig_hash = rig.hash;
+  report.detections = SummariesOf(detections);
   report.utime = calibration.utime;
   for (const CameraSpec& camera : rig.cameras) {
     const CameraCalibration* found = calibration.Find(camera.name);
     if (found == nullptr) continue;
-    CameraViews views = ViewsOf(camera, observations);
-    for (Observation& o : views.all) {
-      o = WithChosenCandidate(std::move(o), found->camera_from_lidar, kJudgeGate);
+    CameraViews views = ViewsOf(camera, detections);
+    for (CameraView& view : views.all) {
+      view = WithChosenCandidate(std::move(view), found->camera_from_lidar, kJudgeGate);
     }
     if (calibration.method == kPaperMethod) {
       views.report.first_guess = camera.camera_from_lidar_guess;

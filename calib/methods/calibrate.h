@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/solve/options.h"
 
@@ -18,14 +18,14 @@ namespace rgbdt {
 /// says so. "plane": each
 /// camera by the boards' planes alone (by_planes.h). "paper" starts from the hand-measured guess;
 /// with wide_start it solves a second time from a start turned away by wide_roll and wide_yaw and
-/// reports where that ends. The order of the observations does not matter. A camera without enough
+/// reports where that ends. The order of the detections does not matter. A camera without enough
 /// views gets its guess and a status that says so; one whose views leave its pose loose a status
 /// "degenerate: ..." and no covariance. Throws InputError for an unknown method.
-Report Calibrate(const Rig& rig, const std::vector<Observation>& observations,
+Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
                  const CalibrateOptions& options = {});
 
-/// Judges a given calibration on observations; like Calibrate, without the solve.
-Report Evaluate(const Rig& rig, const std::vector<Observation>& observations,
+/// Judges a given calibration on detections; like Calibrate, without the solve.
+Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
                 const Calibration& calibration);
 
 }  // namespace rgbdt

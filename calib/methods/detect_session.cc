@@ -9,26 +9,14 @@
 namespace rgbdt {
 namespace {
 
-std::vector<Observation> Rejected(const Rig& rig, const std::string& view, const std::string& why) {
-  std::vector<Observation> observations;
+ViewDetection Unreadable(const Rig& rig, const std::string& view, const std::string& why) {
+  ViewDetection detection;
+  detection.view = view;
   for (const CameraSpec& camera : rig.cameras) {
-    Observation observation;
-    observation.view = view;
-    observation.camera = camera.name;
-    observation.rejected = why;
-    observations.push_back(std::move(observation));
+    detection.images.push_back({camera.name, 0, std::nullopt, why, 0});
   }
-  return observations;
-}
-
-std::string Summary(const std::vector<Observation>& observations) {
-  std::string text;
-  for (const Observation& o : observations) {
-    text += (text.empty() ? "" : "; ") + o.camera + ": " +
-            (o.usable() ? (o.heldout ? "board found (held out)" : "board found")
-                        : "rejected, " + o.rejected);
-  }
-  return text;
+  detection.cloud.why_not = why;
+  return detection;
 }
 
 }  // namespace
@@ -36,7 +24,7 @@ std::string Summary(const std::vector<Observation>& observations) {
 SessionDetection DetectSession(const Session& session, const std::string& method,
                                const Progress& progress) {
   const std::size_t count = session.views.size();
-  std::vector<std::vector<Observation>> by_view(count);
+  std::vector<ViewDetection> detections(count);
   std::vector<std::string> unreadable(count);
   std::size_t done = 0;
   std::mutex mutex;
@@ -44,19 +32,19 @@ SessionDetection DetectSession(const Session& session, const std::string& method
     const auto i = static_cast<std::size_t>(number);
     const std::string& name = session.views[i];
     try {
-      by_view[i] = DetectView(session.rig, ReadView(session, name), method);
+      detections[i] = DetectView(session.rig, ReadView(session, name), method);
     } catch (const std::exception& e) {
       unreadable[i] = e.what();
-      by_view[i] = Rejected(session.rig, name, e.what());
+      detections[i] = Unreadable(session.rig, name, e.what());
     }
     const std::lock_guard<std::mutex> lock(mutex);
     progress("[" + std::to_string(++done) + "/" + std::to_string(count) + "] view " + name + ": " +
-             Summary(by_view[i]));
+             BriefReport(detections[i]) +
+ (detections[i].heldout ? " (held out)" : ""));
   });
 
-  SessionDetection detection;
+  SessionDetection detection{std::move(detections), {}};
   for (std::size_t i = 0; i < count; ++i) {
-    for (Observation& o : by_view[i]) detection.observations.push_back(std::move(o));
     if (!unreadable[i].empty()) {
       detection.unreadable.push_back("view " + session.views[i] + ": " + unreadable[i]);
     }

@@ -5,12 +5,12 @@
 
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/progress.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 
 struct SessionDetection {
-  std::vector<Observation> observations;  ///< in the session's order of views, then cameras
+  std::vector<ViewDetection> views;      ///< in the session's order
   std::vector<std::string> unreadable;    ///< one line for each view that could not be read
 };
 

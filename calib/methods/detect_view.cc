@@ -13,15 +13,6 @@
 namespace rgbdt {
 namespace {
 
-Observation Empty(const View& view, const std::string& camera) {
-  Observation observation;
-  observation.view = view.name;
-  observation.camera = camera;
-  observation.heldout = view.heldout;
-  observation.sweep_utime = view.cloud.sweep_utime;
-  return observation;
-}
-
 const Image* FirstImageOf(const std::string& camera, const View& view) {
   const auto found = std::find_if(view.images.begin(), view.images.end(),
                                   [&](const Image& image) { return image.camera == camera; });
@@ -66,90 +57,91 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
   return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
 }
 
-void DetectImage(const CameraSpec& spec, const Target& target, const View& view, const Image& image,
-                 bool by_paper, Observation* observation) {
-  const Stopwatch watch;
-  observation->image_utime = image.utime;
-  ImageEdgesResult found = FindEdges(spec, target, image, PicksOf(spec.name, view), by_paper);
-  observation->rejected = found.why;
-  observation->image = std::move(found.edges);
-  if (observation->image) {
-    observation->rejected = WhyMoved(spec, target, view, image, *observation->image);
+ImageDetection DetectImage(const CameraSpec& spec, const Target& target, const View& view,
+                           bool by_paper) {
+  ImageDetection detection;
+  detection.camera = spec.name;
+  const Image* image = FirstImageOf(spec.name, view);
+  if (image == nullptr) {
+    detection.why_not = "the view has no image of this camera";
+    return detection;
   }
-  observation->detect_image_s = watch.Seconds();
+  CheckImage(spec, *image);
+  const Stopwatch watch;
+  detection.utime = image->utime;
+  ImageEdgesResult found = FindEdges(spec, target, *image, PicksOf(spec.name, view), by_paper);
+  detection.why_not = found.why;
+  detection.edges = std::move(found.edges);
+  if (detection.edges) detection.why_not = WhyMoved(spec, target, view, *image, *detection.edges);
+  detection.detect_s = watch.Seconds();
+  return detection;
 }
 
-void DetectCloudByGuess(const CameraSpec& spec, const Target& target, const Cloud& cloud,
-                        Observation* observation) {
+// The paper's method finds the board where one camera's corners and guess say.
+CloudEdgesResult FindByGuess(const CameraSpec& spec, const Target& target, const Cloud& cloud,
+                             const ImageEdges& image) {
   if (!spec.camera_from_lidar_guess) {
-    observation->rejected =
-        "the rig file has no camera_from_lidar_guess for this camera; the "
-        "paper's method needs one";
-    return;
+    return {std::nullopt,
+            "the rig file has no camera_from_lidar_guess for this camera; the paper's method needs "
+            "one"};
   }
-  observation->rejected = WhySweepIsTorn(cloud);
-  if (!observation->rejected.empty()) return;
-  const Stopwatch watch;
   CloudEdgesResult found = DetectCloudEdges(cloud, Camera(spec), *spec.camera_from_lidar_guess,
-                                            observation->image->corners, target);
-  observation->detect_cloud_s = watch.Seconds();
-  observation->rejected = found.why;
-  observation->cloud = std::move(found.edges);
+                                            image.corners, target);
+  if (found.edges) found.edges->camera = spec.name;
+  return found;
 }
 
-// What the cloud shows is the same for all cameras.
-struct CloudLook {
-  BoardsInCloud boards;
-  double seconds = 0;
-};
+void DetectCloudByGuesses(const Rig& rig, const Cloud& cloud,
+                          const std::vector<ImageDetection>& images, CloudDetection* detection) {
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!images[i].usable()) continue;
+    CloudEdgesResult found = FindByGuess(rig.cameras[i], rig.target, cloud, *images[i].edges);
+    if (found.edges) {
+      detection->candidates.push_back(std::move(*found.edges));
+    } else {
+      detection->why_not += (detection->why_not.empty() ? "" : "; ") + images[i].camera + ": " +
+                            found.why;
+    }
+  }
+}
 
-CloudLook LookAtCloud(const Rig& rig, const Cloud& cloud) {
-  CloudLook look;
-  look.boards.why = WhySweepIsTorn(cloud);
-  if (!look.boards.why.empty()) return look;
-  const Stopwatch watch;
+void DetectCloudAnywhere(const Rig& rig, const Cloud& cloud, CloudDetection* detection) {
   BoardInCloudOptions options;
   options.range_sigma_m = rig.lidar.range_sigma_m;
-  look.boards = FindBoards(cloud, rig.target, options);
-  look.seconds = watch.Seconds();
-  return look;
+  BoardsInCloud boards = FindBoards(cloud, rig.target, options);
+  detection->candidates = std::move(boards.candidates);
+  if (detection->candidates.empty()) detection->why_not = boards.why;
 }
 
-void UseCloudLook(const CloudLook& look, Observation* observation) {
-  observation->detect_cloud_s = look.seconds;
-  if (look.boards.candidates.empty()) {
-    observation->rejected = look.boards.why;
-    return;
+CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
+                           const std::vector<ImageDetection>& images, bool by_paper) {
+  CloudDetection detection;
+  detection.why_not = WhySweepIsTorn(cloud);
+  if (!detection.why_not.empty()) return detection;
+  const Stopwatch watch;
+  if (by_paper) {
+    DetectCloudByGuesses(rig, cloud, images, &detection);
+  } else {
+    DetectCloudAnywhere(rig, cloud, &detection);
   }
-  observation->candidates = look.boards.candidates;
-  observation->cloud = look.boards.candidates.front();  // until the views together choose
+  detection.detect_s = watch.Seconds();
+  return detection;
 }
 
 }  // namespace
 
-std::vector<Observation> DetectView(const Rig& rig, const View& view, const std::string& method) {
+ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
   RequireMethod(method);
   const bool by_paper = method == kPaperMethod;
-  std::optional<CloudLook> look;
-  std::vector<Observation> observations;
+  ViewDetection detection;
+  detection.view = view.name;
+  detection.heldout = view.heldout;
+  detection.sweep_utime = view.cloud.sweep_utime;
   for (const CameraSpec& camera : rig.cameras) {
-    Observation& observation = observations.emplace_back(Empty(view, camera.name));
-    const Image* image = FirstImageOf(camera.name, view);
-    if (image == nullptr) {
-      observation.rejected = "the view has no image of this camera";
-      continue;
-    }
-    CheckImage(camera, *image);
-    DetectImage(camera, rig.target, view, *image, by_paper, &observation);
-    if (!observation.rejected.empty()) continue;
-    if (by_paper) {
-      DetectCloudByGuess(camera, rig.target, view.cloud, &observation);
-    } else {
-      if (!look) look = LookAtCloud(rig, view.cloud);
-      UseCloudLook(*look, &observation);
-    }
+    detection.images.push_back(DetectImage(camera, rig.target, view, by_paper));
   }
-  return observations;
+  detection.cloud = DetectCloud(rig, view.cloud, detection.images, by_paper);
+  return detection;
 }
 
 }  // namespace rgbdt

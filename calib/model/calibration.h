@@ -152,10 +152,24 @@ struct NextView {
   double sigma_before_px = 0, sigma_after_px = 0;  ///< worst colouring sigma, before and after it
 };
 
+/// What detection found of the target in one view: each image and the cloud apart.
+struct DetectedView {
+  struct InImage {
+    std::string camera;
+    std::string why_not;  ///< empty: found
+  };
+  std::string view;
+  bool heldout = false;
+  std::vector<InImage> images;
+  int cloud_candidates = 0;   ///< all that looks like the target in the cloud
+  std::string cloud_why_not;  ///< empty: found
+};
+
 struct Report {
   std::string method;
   std::string rig_hash;
   Utime utime = 0;
+  std::vector<DetectedView> detections;
   std::vector<CameraReport> cameras;
   std::vector<Closure> closure;
   std::optional<NextView> next_view;

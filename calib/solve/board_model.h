@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {

@@ -16,7 +16,7 @@
 namespace rgbdt {
 namespace {
 
-using Views = std::vector<const Observation*>;
+using Views = std::vector<const CameraView*>;
 
 // Metres more along each boundary point's beam.
 void AddToRanges(double offset_m, CloudEdges* cloud) {
@@ -92,7 +92,7 @@ void TakeJoint(const CalibrateOptions& options, const JointProblem& joint,
 void ShiftRanges(const std::vector<GuessedCamera>& cameras) {
   for (const GuessedCamera& camera : cameras) {
     if (!camera.views->report.range_offset) continue;
-    for (Observation& o : camera.views->all) {
+    for (CameraView& o : camera.views->all) {
       if (o.cloud) AddToRanges(camera.views->report.range_offset->value, &*o.cloud);
     }
   }

@@ -6,72 +6,118 @@
 namespace rgbdt {
 namespace {
 
-// Why an observation cannot be used; empty: it can. What comes from the bus may be well formed and
-// still hold nothing to solve with.
-std::string WhyUnusable(const CameraSpec& camera, const Observation& o) {
-  if (!o.rejected.empty()) return o.rejected;
-  if (!o.image || o.image->edge_pixels.empty() || o.image->outline.empty()) {
-    return "the observation has no edges in the image";
+// Detections from the bus may be well formed and still hold nothing to solve with.
+void RejectEmpty(const CameraSpec& camera, CameraView* view) {
+  if (!view->usable()) return;
+  const ImageEdges& image = *view->image;
+  if (image.edge_pixels.empty() || image.outline.empty()) {
+    view->Reject("the detection has no edges in the image");
+  } else if (view->cloud->boundary.empty()) {
+    view->Reject("the detection has no boundary points in the cloud");
+  } else if (image.width != camera.width || image.height != camera.height) {
+    view->Reject("the detection's image is " + std::to_string(image.width) + "x" +
+                 std::to_string(image.height) + ", the rig file says " +
+                 std::to_string(camera.width) + "x" + std::to_string(camera.height));
   }
-  if (!o.cloud || o.cloud->boundary.empty()) {
-    return "the observation has no boundary points in the cloud";
-  }
-  if (o.image->width != camera.width || o.image->height != camera.height) {
-    return "the observation's image is " + std::to_string(o.image->width) + "x" +
-           std::to_string(o.image->height) + ", the rig file says " + std::to_string(camera.width) +
-           "x" + std::to_string(camera.height);
-  }
-  return "";
+}
+
+std::string WhyNoImage(const ImageDetection* image) {
+  if (image == nullptr || image->utime == 0) return "the view has no image of this camera";
+  if (!image->why_not.empty()) return image->why_not;
+  return image->edges ? "" : "the board was not found in the image";
+}
+
+std::string WhyNoCloud(const CameraView& view, const CloudDetection& cloud) {
+  return view.candidates.empty() ? cloud.why_not : "";
 }
 
 }  // namespace
 
-std::vector<const Observation*> CameraViews::Usable() const {
-  std::vector<const Observation*> usable;
-  for (const Observation& o : all) {
-    if (WhyUnusable(*spec, o).empty()) usable.push_back(&o);
+void CameraView::Reject(const std::string& why) {
+  if (rejected.empty()) rejected = why;
+}
+
+CameraView CameraViewOf(const std::string& camera, const ViewDetection& detection) {
+  CameraView view;
+  view.view = detection.view;
+  view.heldout = detection.heldout;
+  const ImageDetection* image = detection.Find(camera);
+  if (image != nullptr) {
+    view.image_utime = image->utime;
+    if (image->edges) view.image = &*image->edges;
+  }
+  for (const CloudEdges& candidate : detection.cloud.candidates) {
+    if (candidate.camera.empty() || candidate.camera == camera) {
+      view.candidates.push_back(&candidate);
+    }
+  }
+  if (!view.candidates.empty()) view.cloud = *view.candidates.front();
+  const std::string no_image = WhyNoImage(image);
+  std::string no_cloud = WhyNoCloud(view, detection.cloud);
+  if (no_image.empty() && no_cloud.empty() && view.candidates.empty()) {
+    no_cloud = "the board was not found in the cloud";
+  }
+  if (no_image.empty() || no_cloud.empty()) {
+    view.rejected = no_image + no_cloud;
+  } else {
+    view.rejected = "image: " + no_image + "; cloud: " + no_cloud;
+  }
+  return view;
+}
+
+std::vector<const CameraView*> CameraViews::Usable() const {
+  std::vector<const CameraView*> usable;
+  for (const CameraView& view : all) {
+    if (view.usable()) usable.push_back(&view);
   }
   return usable;
 }
 
-std::vector<const Observation*> CameraViews::Used() const {
-  std::vector<const Observation*> used = Usable();
-  used.erase(std::remove_if(used.begin(), used.end(), [](auto* o) { return o->heldout; }),
+std::vector<const CameraView*> CameraViews::Used() const {
+  std::vector<const CameraView*> used = Usable();
+  used.erase(std::remove_if(used.begin(), used.end(), [](auto* view) { return view->heldout; }),
              used.end());
   return used;
 }
 
-const Observation* CameraViews::Find(const std::string& view) const {
-  for (const Observation* o : Used()) {
-    if (o->view == view) return o;
+const CameraView* CameraViews::Find(const std::string& view) const {
+  for (const CameraView* used : Used()) {
+    if (used->view == view) return used;
   }
   return nullptr;
 }
 
 void CameraViews::Describe() {
-  for (const Observation& o : all) {
-    report.detect_image_s += o.detect_image_s;
-    report.detect_cloud_s += o.detect_cloud_s;
-    const std::string why = WhyUnusable(*spec, o);
-    if (!why.empty()) {
-      report.rejected.push_back({o.view, why});
+  for (const CameraView& view : all) {
+    if (!view.usable()) {
+      report.rejected.push_back({view.view, view.rejected});
     } else {
-      (o.heldout ? report.heldout : report.used).push_back(o.view);
+      (view.heldout ? report.heldout : report.used).push_back(view.view);
     }
   }
 }
 
-CameraViews ViewsOf(const CameraSpec& camera, const std::vector<Observation>& observations) {
+CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections) {
   CameraViews views;
   views.spec = &camera;
   views.report.calibration.camera = camera.name;
-  for (const Observation& o : observations) {
-    if (o.camera == camera.name) views.all.push_back(o);
+  std::vector<const ViewDetection*> in_order;
+  for (const ViewDetection& detection : detections) {
+    const ImageDetection* image = detection.Find(camera.name);
+    if (image == nullptr) continue;
+    in_order.push_back(&detection);
+    views.report.detect_image_s += image->detect_s;
+    views.report.detect_cloud_s += detection.cloud.detect_s;
   }
-  std::stable_sort(
-      views.all.begin(), views.all.end(), [](const Observation& a, const Observation& b) {
-        return std::tie(a.view, a.image_utime, a.seq) < std::tie(b.view, b.image_utime, b.seq);
-      });
+  std::stable_sort(in_order.begin(), in_order.end(),
+                   [](const ViewDetection* a, const ViewDetection* b) {
+                     return std::tie(a->view, a->sweep_utime, a->seq) <
+                            std::tie(b->view, b->sweep_utime, b->seq);
+                   });
+  for (const ViewDetection* detection : in_order) {
+    views.all.push_back(CameraViewOf(camera.name, *detection));
+    RejectEmpty(camera, &views.all.back());
+  }
   return views;
 }
 

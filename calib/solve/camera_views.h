@@ -1,31 +1,52 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 
-/// One camera's observations, in the order of their views whatever order they came in, and what
-/// comes of them.
+/// What one camera and the LIDAR see of the target in one view, as the solve takes it: the image,
+/// and the one candidate of the cloud that is the target.
+struct CameraView {
+  std::string view;
+  bool heldout = false;
+  Utime image_utime = 0;
+  const ImageEdges* image = nullptr;                ///< the detection's; null: it cannot be used
+  std::vector<const CloudEdges*> candidates;        ///< the detection's, of this camera
+  std::optional<CloudEdges> cloud;                  ///< the candidate taken; at first the likeliest
+  std::string rejected;                             ///< why it takes no part; empty: it does
+
+  bool usable() const { return rejected.empty(); }
+  /// It takes no part from here on. What was said first stays.
+  void Reject(const std::string& why);
+};
+
+/// A camera's part of a view, with pointers into `detection`; rejected where image or cloud cannot
+/// be used, with the reasons of both.
+CameraView CameraViewOf(const std::string& camera, const ViewDetection& detection);
+
+/// One camera's views, in the order of their names whatever order they came in, and what comes of
+/// them.
 struct CameraViews {
   const CameraSpec* spec = nullptr;
-  std::vector<Observation> all;
+  std::vector<CameraView> all;
   CameraReport report;
 
-  /// Neither rejected nor useless for other reasons.
-  std::vector<const Observation*> Usable() const;
+  std::vector<const CameraView*> Usable() const;
   /// Usable and not held out: the solver's.
-  std::vector<const Observation*> Used() const;
-  /// The solver's observation of a view, null if there is none.
-  const Observation* Find(const std::string& view) const;
+  std::vector<const CameraView*> Used() const;
+  /// The one that the solver uses of this name, null if there is none.
+  const CameraView* Find(const std::string& view) const;
   /// Fills in which views are used, held out and rejected, and the time that detection took.
   void Describe();
 };
 
-CameraViews ViewsOf(const CameraSpec& camera, const std::vector<Observation>& observations);
+/// `detections` must outlive the result. A view without an image of this camera is no view of it.
+CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections);
 
 }  // namespace rgbdt

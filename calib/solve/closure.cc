@@ -24,11 +24,11 @@ struct Alone {
 };
 
 // Of the board's pose in the image.
-Matrix6d ByImage(const Observation& view) {
+Matrix6d ByImage(const CameraView& view) {
   return kCornersAlike * kCornersAlike * view.image->pose->covariance;
 }
 
-Alone FromOneView(const Observation& view, const Rigid3& near) {
+Alone FromOneView(const CameraView& view, const Rigid3& near) {
   const TargetPose& seen = *view.image->pose;
   const TargetPose& cloud = *view.cloud->pose;
   Rigid3 camera_from_target = seen.sensor_from_target;
@@ -60,7 +60,7 @@ Mean MeanOf(const GuessedCamera& camera) {
     Matrix6d information = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
     mean.weights.clear();
-    for (const Observation* o : camera.views->Used()) {
+    for (const CameraView* o : camera.views->Used()) {
       const Alone alone = FromOneView(*o, mean.camera_from_lidar);
       const Matrix6d weight = alone.Covariance().ldlt().solve(Matrix6d::Identity());
       information += weight;
@@ -75,7 +75,7 @@ Mean MeanOf(const GuessedCamera& camera) {
 }
 
 // Relative pose from one view's images; they may be told from opposite ends of the board.
-Rigid3 ByImages(const Observation& a, const Observation& b, const Rigid3& near) {
+Rigid3 ByImages(const CameraView& a, const CameraView& b, const Rigid3& near) {
   const Rigid3 straight =
       b.image->pose->sensor_from_target * a.image->pose->sensor_from_target.Inverse();
   const Rigid3 turned =
@@ -91,8 +91,8 @@ Mean StereoOf(const GuessedCamera& a, const GuessedCamera& b, const Rigid3& b_fr
     Matrix6d information = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
     stereo.weights.clear();
-    for (const Observation* in_a : a.views->Used()) {
-      const Observation* in_b = b.views->Find(in_a->view);
+    for (const CameraView* in_a : a.views->Used()) {
+      const CameraView* in_b = b.views->Find(in_a->view);
       if (in_b == nullptr) continue;
       const Matrix6d covariance = ByImage(*in_b) + b_by_a * ByImage(*in_a) * b_by_a.transpose() +
                                   1e-10 * Matrix6d::Identity();
@@ -124,8 +124,8 @@ Matrix6d CovarianceOfDifference(const GuessedCamera& a, const GuessedCamera& b, 
   for (const auto& [view, weight] : mean_a.weights) views.insert(view);
   for (const auto& [view, weight] : mean_b.weights) views.insert(view);
   for (const std::string& view : views) {
-    const Observation* in_a = a.views->Find(view);
-    const Observation* in_b = b.views->Find(view);
+    const CameraView* in_a = a.views->Find(view);
+    const CameraView* in_b = b.views->Find(view);
     const Matrix6d by_stereo = stereo.WeightOf(view);
     const Matrix6d by_a = b_by_a * mean_a.WeightOf(view);  // zero where the camera has not the view
     const Matrix6d by_b = mean_b.WeightOf(view);

@@ -29,7 +29,7 @@ struct Sums {
   }
 };
 
-Sums Judge(const Camera& camera, const Observation& observation, const Rigid3& camera_from_lidar) {
+Sums Judge(const Camera& camera, const CameraView& observation, const Rigid3& camera_from_lidar) {
   const ImageEdges& image = *observation.image;
   const DistanceField field(image.width, image.height, image.edge_pixels);
   const double unseen = 0.5 * image.width;
@@ -44,7 +44,7 @@ Sums Judge(const Camera& camera, const Observation& observation, const Rigid3& c
   return sums;
 }
 
-ViewQuality QualityOf(const Observation& observation, const Sums& sums) {
+ViewQuality QualityOf(const CameraView& observation, const Sums& sums) {
   return {observation.view, observation.heldout, sums.transform / sums.points,
           std::sqrt(sums.squared / sums.points), std::nullopt};
 }
@@ -60,18 +60,18 @@ double DistanceToOutline(const Eigen::Vector2d& pixel,
   return best;
 }
 
-ViewQuality JudgeView(const CameraSpec& camera, const Observation& observation,
+ViewQuality JudgeView(const CameraSpec& camera, const CameraView& observation,
                       const Rigid3& camera_from_lidar) {
   return QualityOf(observation, Judge(Camera(camera), observation, camera_from_lidar));
 }
 
-void JudgeCamera(const CameraSpec& spec, const std::vector<const Observation*>& usable,
+void JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& usable,
                  CameraReport* report) {
   const Camera camera(spec);
   Sums train;
   Sums heldout;
   report->views.clear();
-  for (const Observation* observation : usable) {
+  for (const CameraView* observation : usable) {
     const Sums sums = Judge(camera, *observation, report->calibration.camera_from_lidar);
     report->views.push_back(QualityOf(*observation, sums));
     (observation->heldout ? heldout : train).Add(sums);
@@ -86,7 +86,7 @@ void JudgeCamera(const CameraSpec& spec, const std::vector<const Observation*>& 
   fill(heldout, &report->distance_transform_px.heldout, &report->edge_rms_px.heldout);
 }
 
-EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& observation,
                          const CameraCalibration& calibration) {
   EdgeMisfit misfit;
   if (!observation.image->pose || !observation.cloud->pose) return misfit;
@@ -116,11 +116,11 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
   return misfit;
 }
 
-void JudgeEdges(const EdgeModel& model, const std::vector<const Observation*>& usable,
+void JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& usable,
                 CameraReport* report) {
   EdgeMisfit train;
   EdgeMisfit heldout;
-  for (const Observation* observation : usable) {
+  for (const CameraView* observation : usable) {
     const EdgeMisfit one = MisfitOfEdges(model, *observation, report->calibration);
     if (one.count == 0) continue;
     EdgeMisfit& sum = observation->heldout ? heldout : train;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/solve/board_problem.h"
 
@@ -18,7 +18,7 @@ double DistanceToOutline(const Eigen::Vector2d& pixel, const std::vector<Eigen::
 /// distance_transform_px: mean of the distance transform at the projected points (the paper's
 /// reprojection error). edge_rms_px: RMS distance to the fitted outline. A point that the lens
 /// cannot see counts half the image's width.
-ViewQuality JudgeView(const CameraSpec& camera, const Observation& observation,
+ViewQuality JudgeView(const CameraSpec& camera, const CameraView& observation,
                       const Rigid3& camera_from_lidar);
 
 /// What the distances of a board's crossings from its sides are held against.
@@ -38,17 +38,17 @@ struct EdgeMisfit {
 /// Each crossing's distance from its side, where the image's pose and `calibration` put it, over
 /// its sigma: of the crossing's interval, the side's own shift, the image's pose and the
 /// calibration (where it has a covariance). Zero crossings where the view has none with sigmas.
-EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& observation,
                          const CameraCalibration& calibration);
 
 /// Fills in `edge_rms_whitened` of a camera's report and of its views, which JudgeCamera has
 /// filled in before.
-void JudgeEdges(const EdgeModel& model, const std::vector<const Observation*>& usable,
+void JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& usable,
                 CameraReport* report);
 
 /// Fills in `views`, `distance_transform_px` and `edge_rms_px` of a camera's report from its
 /// calibration: means over all points of the views used, and of those held out.
-void JudgeCamera(const CameraSpec& camera, const std::vector<const Observation*>& usable,
+void JudgeCamera(const CameraSpec& camera, const std::vector<const CameraView*>& usable,
                  CameraReport* report);
 
 }  // namespace rgbdt

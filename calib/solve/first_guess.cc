@@ -50,13 +50,13 @@ CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from
 }
 
 // The best pairing of a view, whether it fits or not.
-CandidateChoice Nearest(const Observation& view, const Rigid3& camera_from_lidar,
+CandidateChoice Nearest(const CameraView& view, const Rigid3& camera_from_lidar,
                         const PoseGate& gate) {
   CandidateChoice best;
   best.cost = 1e300;
   for (std::size_t k = 0; k < view.candidates.size(); ++k) {
     for (const bool half_turn : {false, true}) {
-      const Pair pair{&*view.image->pose, &*view.candidates[k].pose, half_turn};
+      const Pair pair{&*view.image->pose, &*view.candidates[k]->pose, half_turn};
       const CandidateChoice choice = Judge(pair, static_cast<int>(k), camera_from_lidar, gate);
       if (choice.cost < best.cost) best = choice;
     }
@@ -64,13 +64,13 @@ CandidateChoice Nearest(const Observation& view, const Rigid3& camera_from_lidar
   return best;
 }
 
-bool HasPoses(const Observation& view) {
+bool HasPoses(const CameraView& view) {
   return view.image && view.image->pose && !view.candidates.empty() &&
          std::all_of(view.candidates.begin(), view.candidates.end(),
-                     [](const CloudEdges& c) { return c.pose.has_value(); });
+                     [](const CloudEdges* c) { return c->pose.has_value(); });
 }
 
-using Views = std::vector<const Observation*>;
+using Views = std::vector<const CameraView*>;
 
 // How many views agree with a pose, and how well.
 struct Agreement {
@@ -85,7 +85,7 @@ struct Agreement {
 
 Agreement AgreementOn(const Views& views, const Rigid3& camera_from_lidar) {
   Agreement agreement{camera_from_lidar, 0, 0};
-  for (const Observation* view : views) {
+  for (const CameraView* view : views) {
     const double cost = Nearest(*view, camera_from_lidar, kVotingGate).cost;
     if (cost >= 1) continue;
     ++agreement.views;
@@ -104,10 +104,10 @@ Vote VoteAmong(const Views& views) {
   constexpr std::size_t kProposing = 40;
   std::vector<Agreement> all;
   for (std::size_t v = 0; v < views.size(); v += (views.size() + kProposing - 1) / kProposing) {
-    const Observation* view = views[v];
-    for (const CloudEdges& candidate : view->candidates) {
+    const CameraView* view = views[v];
+    for (const CloudEdges* candidate : view->candidates) {
       for (const bool half_turn : {false, true}) {
-        const Pair pair{&*view->image->pose, &*candidate.pose, half_turn};
+        const Pair pair{&*view->image->pose, &*candidate->pose, half_turn};
         all.push_back(AgreementOn(views, pair.CameraFromLidar()));
       }
     }
@@ -136,12 +136,12 @@ void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* g
     information.setZero();
     Vector7d gradient = Vector7d::Zero();
     guess->agreeing = 0;
-    for (const Observation* view : views) {
+    for (const CameraView* view : views) {
       const CandidateChoice choice = Nearest(*view, pose, round < 4 ? kVotingGate : kAcceptGate);
       if (choice.cost >= 1) continue;
       ++guess->agreeing;
       const TargetPose& in_lidar =
-          *view->candidates[static_cast<std::size_t>(choice.candidate)].pose;
+          *view->candidates[static_cast<std::size_t>(choice.candidate)]->pose;
       const Pair pair{&*view->image->pose, &in_lidar, choice.half_turn};
       const Matrix6d adjoint = Adjoint(pose);
       Matrix6d covariance =
@@ -177,12 +177,12 @@ void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* g
 }
 
 // Left and right of the images swapped back: the board is then mirrored, too.
-std::vector<Observation> Unmirrored(const Views& views) {
-  std::vector<Observation> out;
+std::vector<ImageEdges> Unmirrored(const Views& views) {
+  std::vector<ImageEdges> out;
   const Eigen::Vector3d mirror(-1, 1, 1);
-  for (const Observation* view : views) {
-    out.push_back(*view);
-    Rigid3& pose = out.back().image->pose->sensor_from_target;
+  for (const CameraView* view : views) {
+    out.push_back(*view->image);
+    Rigid3& pose = out.back().pose->sensor_from_target;
     const Eigen::Matrix3d r = mirror.asDiagonal() * pose.rotation.toRotationMatrix() *
                               Eigen::Matrix3d(mirror.asDiagonal());
     pose = {Eigen::Quaterniond(r), mirror.asDiagonal() * pose.translation};
@@ -192,9 +192,14 @@ std::vector<Observation> Unmirrored(const Views& views) {
 
 std::string WhyNone(const Views& views, const Vote& vote) {
   const std::string of = std::to_string(views.size()) + " views";
-  std::vector<Observation> unmirrored = Unmirrored(views);
+  const std::vector<ImageEdges> images = Unmirrored(views);
+  std::vector<CameraView> unmirrored;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    unmirrored.push_back(*views[v]);
+    unmirrored.back().image = &images[v];
+  }
   Views turned;
-  for (const Observation& view : unmirrored) turned.push_back(&view);
+  for (const CameraView& view : unmirrored) turned.push_back(&view);
   const int mirrored = VoteAmong(turned).best.views;
   if (mirrored > vote.best.views && 2 * mirrored > static_cast<int>(views.size())) {
     return "the images are mirrored: " + std::to_string(mirrored) + " of " + of +
@@ -216,12 +221,12 @@ void FirstGuessOptions::Check() const {
   require(range_offset_sigma_m, "range_offset_sigma_m");
 }
 
-FirstGuess GuessFromBoards(const std::vector<const Observation*>& observations,
+FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                            const FirstGuessOptions& options) {
   options.Check();
   Views views;
-  std::copy_if(observations.begin(), observations.end(), std::back_inserter(views),
-               [](const Observation* o) { return HasPoses(*o); });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(views),
+               [](const CameraView* view) { return HasPoses(*view); });
   FirstGuess guess;
   if (views.size() < 2) {
     guess.status = std::to_string(views.size()) +
@@ -253,7 +258,7 @@ bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other) {
          RotationDistance(lidar_from_target, other.sensor_from_target);
 }
 
-CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,
+CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate) {
   if (!HasPoses(view)) return {};
   CandidateChoice choice = Nearest(view, camera_from_lidar, gate);
@@ -261,18 +266,18 @@ CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_fr
   return choice;
 }
 
-Observation WithChosenCandidate(Observation view, const Rigid3& camera_from_lidar,
+CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate) {
-  if (!view.rejected.empty() || !HasPoses(view)) return view;
+  if (!view.usable() || !HasPoses(view)) return view;
   const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate);
   if (choice.candidate >= 0) {
-    view.cloud = view.candidates[static_cast<std::size_t>(choice.candidate)];
+    view.cloud = *view.candidates[static_cast<std::size_t>(choice.candidate)];
     return view;
   }
   view.cloud.reset();
-  view.rejected = "no board in the cloud where the other views put it: the nearest is " +
-                  std::to_string(std::lround(choice.distance_m * 1000)) + " mm and " +
-                  std::to_string(std::lround(choice.rotation_rad * 180 / M_PI)) + " deg off";
+  view.Reject("no board in the cloud where the other views put it: the nearest is " +
+              std::to_string(std::lround(choice.distance_m * 1000)) + " mm and " +
+              std::to_string(std::lround(choice.rotation_rad * 180 / M_PI)) + " deg off");
   return view;
 }
 

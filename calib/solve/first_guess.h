@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
+#include "calib/solve/camera_views.h"
 
 namespace rgbdt {
 
@@ -37,7 +38,7 @@ bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other);
 
 /// Which of a view's candidates is the board, if the camera sits where it is said to.
 struct CandidateChoice {
-  int candidate = -1;      ///< index into Observation::candidates; -1: none fits
+  int candidate = -1;      ///< index into CameraView::candidates; -1: none fits
   bool half_turn = false;  ///< the candidate's target axes are turned by half a turn
   double rotation_rad =
       0;                  ///< between the board's two poses: the nearest candidate's, if none fits
@@ -62,16 +63,16 @@ struct FirstGuess {
 /// number of wrong candidates, and up to half of the views wrong. Says so where views agree on two
 /// answers alike (the board always held the same way), and where the images are mirrored.
 /// `views` have an image pose and candidates; others are passed over.
-FirstGuess GuessFromBoards(const std::vector<const Observation*>& views,
+FirstGuess GuessFromBoards(const std::vector<const CameraView*>& views,
                            const FirstGuessOptions& options = {});
 
 /// The candidate that fits best.
-CandidateChoice ChooseCandidate(const Observation& view, const Rigid3& camera_from_lidar,
+CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate = kAcceptGate);
 
-/// The observation with its `cloud` the candidate that fits; or rejected, with how far off the
-/// nearest one lies. Without candidates (the paper's method) it stays as it is.
-Observation WithChosenCandidate(Observation view, const Rigid3& camera_from_lidar,
+/// The view with its `cloud` the candidate that fits; or rejected, with how far off the nearest one
+/// lies. Without poses (the paper's method) it stays as it is.
+CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate = kAcceptGate);
 
 }  // namespace rgbdt

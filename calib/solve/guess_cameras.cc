@@ -11,7 +11,7 @@
 namespace rgbdt {
 namespace {
 
-using Views = std::vector<const Observation*>;
+using Views = std::vector<const CameraView*>;
 
 std::string OneViewStatus(const Views& used) {
   return used.size() == 1 && used[0]->cloud->pose
@@ -38,15 +38,15 @@ std::string Place(const Eigen::Vector3d& p) {
 void RemarkOthers(CameraViews* camera) {
   int views = 0;
   std::string example;
-  for (const Observation* o : camera->Usable()) {
+  for (const CameraView* o : camera->Usable()) {
     if (o->candidates.size() < 2) continue;
     ++views;
     const auto other = std::find_if(
         o->candidates.begin(), o->candidates.end(),
-        [&](const CloudEdges& c) { return (c.centre - o->cloud->centre).norm() > 0.01; });
+        [&](const CloudEdges* c) { return (c->centre - o->cloud->centre).norm() > 0.01; });
     if (!example.empty() || other == o->candidates.end()) continue;
     example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
-              Place(other->centre) + " (LIDAR frame)";
+              Place((*other)->centre) + " (LIDAR frame)";
   }
   if (example.empty()) return;
   camera->report.remarks.push_back(
@@ -67,7 +67,7 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
         (guess.ambiguous ? "degenerate: " : "not calibrated: ") + guess.status;
     return guess;
   }
-  for (Observation& o : camera->all) {
+  for (CameraView& o : camera->all) {
     o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
   }
   if (!EnoughViews(options, camera)) {
@@ -82,7 +82,7 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
 // Places of the boards that a camera was calibrated from.
 std::vector<Rigid3> BoardsOf(const CameraViews& camera) {
   std::vector<Rigid3> boards;
-  for (const Observation* o : camera.Used()) {
+  for (const CameraView* o : camera.Used()) {
     if (o->cloud->pose) boards.push_back(o->cloud->pose->sensor_from_target);
   }
   return boards;

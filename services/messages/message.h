@@ -7,7 +7,7 @@
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/session.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/model/cloud.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/simulate/options.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/simulate/internal/noise.h"
 

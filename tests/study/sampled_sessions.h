@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "tests/study/sampled_clouds.h"
 

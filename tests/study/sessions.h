@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/options.h"
 
 namespace rgbdt::study {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "viewer/server/outbox.h"
 

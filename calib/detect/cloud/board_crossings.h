@@ -5,7 +5,7 @@
 
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/detect/cloud/rectangle_fit.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {

@@ -67,6 +67,27 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
   }
 }
 
+void FromDetection(const DetectedView& detection, proto::DetectedView* out) {
+  out->set_view(ValidUtf8(detection.view));
+  out->set_heldout(detection.heldout);
+  for (const DetectedView::InImage& image : detection.images) {
+    proto::DetectedView::InImage* in_image = out->add_images();
+    in_image->set_camera(ValidUtf8(image.camera));
+    in_image->set_why_not(ValidUtf8(image.why_not));
+  }
+  out->set_cloud_candidates(detection.cloud_candidates);
+  out->set_cloud_why_not(ValidUtf8(detection.cloud_why_not));
+}
+
+DetectedView ToDetection(const proto::DetectedView& message) {
+  DetectedView detection{message.view(), message.heldout(), {}, message.cloud_candidates(),
+                         message.cloud_why_not()};
+  for (const proto::DetectedView::InImage& image : message.images()) {
+    detection.images.push_back({image.camera(), image.why_not()});
+  }
+  return detection;
+}
+
 void FromStart(const StartResult& start, proto::StartResult* out) {
   out->set_start(ValidUtf8(start.start));
   text::FromRigid3(start.calibration.camera_from_lidar, out->mutable_camera_from_lidar());
@@ -203,6 +224,9 @@ std::string ReportToJson(const Report& report) {
   message.set_method(ValidUtf8(report.method));
   message.set_rig_hash(ValidUtf8(report.rig_hash));
   message.set_utime(report.utime);
+  for (const DetectedView& detection : report.detections) {
+    FromDetection(detection, message.add_detections());
+  }
   for (const CameraReport& camera : report.cameras) {
     FromCamera(camera, &(*message.mutable_cameras())[ValidUtf8(camera.calibration.camera)]);
   }
@@ -221,6 +245,9 @@ Report ReportFromJson(const std::string& json, const std::string& where) {
   report.method = message.method();
   report.rig_hash = message.rig_hash();
   report.utime = message.utime();
+  for (const proto::DetectedView& detection : message.detections()) {
+    report.detections.push_back(ToDetection(detection));
+  }
   for (const auto& [name, camera] : message.cameras()) {
     std::string at = where;
     at.append(": camera \"").append(name).append("\"");

@@ -6,7 +6,7 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {

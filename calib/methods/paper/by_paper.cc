@@ -15,7 +15,7 @@
 namespace rgbdt {
 namespace {
 
-using Views = std::vector<const Observation*>;
+using Views = std::vector<const CameraView*>;
 
 // Share of points in the image below which the paper saw no convergence (section III).
 constexpr double kMinShareInImage = 0.5;
@@ -25,7 +25,7 @@ constexpr double kMinShareInImage = 0.5;
 double ShareInImage(const Camera& camera, const Views& views, const Rigid3& camera_from_lidar) {
   double inside = 0;
   double all = 0;
-  for (const Observation* o : views) {
+  for (const CameraView* o : views) {
     for (const Eigen::Vector3d& point : o->cloud->boundary) {
       const auto pixel = camera.Project(camera_from_lidar * point);
       inside += pixel && camera.Contains(*pixel) ? 1 : 0;
@@ -67,7 +67,7 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   std::vector<std::unique_ptr<DistanceField>> fields;
   ceres::Problem problem;
   Vector6d delta = Vector6d::Zero();
-  for (const Observation* o : used) {
+  for (const CameraView* o : used) {
     fields.push_back(std::make_unique<DistanceField>(o->image->width, o->image->height,
                                                      o->image->edge_pixels, beyond));
     problem.AddResidualBlock(

@@ -11,7 +11,7 @@ void CalibrateByPaper(const CalibrateOptions& options, CameraViews* camera);
 
 /// Levenberg-Marquardt over the paper's objective from one start: the rotation first, then all six
 /// parameters. `used` are usable observations of one camera.
-CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const Observation*>& used,
+CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const CameraView*>& used,
                              const Rigid3& start, const CalibrateOptions& options);
 
 /// The guess turned by roll about the LIDAR's x, then yaw about its z.

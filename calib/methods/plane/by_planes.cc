@@ -18,7 +18,7 @@ struct Sums {
 };
 
 // All points of a board at once: n . (camera_from_lidar p - t) = x . (p - centre, 1).
-void Add(const Observation& o, const Rigid3& camera_from_lidar, Sums* sums) {
+void Add(const CameraView& o, const Rigid3& camera_from_lidar, Sums* sums) {
   const Rigid3& board = o.image->pose->sensor_from_target;
   const Eigen::Vector3d n = board.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d centre = camera_from_lidar * o.cloud->centre;
@@ -36,15 +36,15 @@ void Add(const Observation& o, const Rigid3& camera_from_lidar, Sums* sums) {
   sums->points += o.cloud->raw_scatter(3, 3);
 }
 
-Sums SumsAt(const std::vector<const Observation*>& used, const Rigid3& camera_from_lidar) {
+Sums SumsAt(const std::vector<const CameraView*>& used, const Rigid3& camera_from_lidar) {
   Sums sums;
-  for (const Observation* o : used) Add(*o, camera_from_lidar, &sums);
+  for (const CameraView* o : used) Add(*o, camera_from_lidar, &sums);
   return sums;
 }
 
 }  // namespace
 
-CameraCalibration SolvePlanes(const std::vector<const Observation*>& used, const Rigid3& start) {
+CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start) {
   constexpr int kIterations = 50;
   CameraCalibration result;
   result.camera_from_lidar = start;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/options.h"
@@ -17,7 +17,7 @@ namespace rgbdt {
 /// was measured; the planes count as exact; edges have no say. The
 /// covariance is the usual one, by the residuals. `used`: usable observations of one camera with
 /// image poses and scatters.
-CameraCalibration SolvePlanes(const std::vector<const Observation*>& used, const Rigid3& start);
+CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start);
 
 /// "plane": see Calibrate. Fills in the cameras' reports and, of `report`, the closure.
 void CalibrateByPlanes(const Target& target, const CalibrateOptions& options,

@@ -5,7 +5,7 @@
 
 #include "calib/files/session/session_dir.h"
 #include "calib/model/calibration.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt::viewer {
 

@@ -30,11 +30,11 @@ BoardSolution SolvePart(const JointProblem& joint, const BoardState& near,
   return SolveBoards(part, start);
 }
 
-std::vector<const Observation*> ViewsOf(const JointProblem& joint, std::size_t camera,
+std::vector<const CameraView*> ViewsOf(const JointProblem& joint, std::size_t camera,
                                         const std::vector<std::size_t>& views) {
-  std::vector<const Observation*> out;
+  std::vector<const CameraView*> out;
   for (const std::size_t v : views) {
-    const Observation* o = joint.cameras[camera].views->Find(joint.problem.views[v].name);
+    const CameraView* o = joint.cameras[camera].views->Find(joint.problem.views[v].name);
     if (o != nullptr) out.push_back(o);
   }
   return out;
@@ -78,7 +78,7 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
       ErrorOf(fold_calibration.camera_from_lidar, report.calibration.camera_from_lidar);
   EdgeMisfit sum;
   for (const std::size_t view : left_out) {
-    const Observation* o = joint.cameras[camera].views->Find(joint.problem.views[view].name);
+    const CameraView* o = joint.cameras[camera].views->Find(joint.problem.views[view].name);
     if (o == nullptr) continue;
     judged.fold.heldout.push_back(o->view);
     const EdgeMisfit edge = MisfitOfEdges(edges, *o, fold_calibration);

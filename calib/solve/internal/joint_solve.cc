@@ -38,8 +38,8 @@ class Builder {
     const int index = static_cast<int>(joint_.cameras.size());
     joint_.cameras.push_back(camera);
     joint_.problem.cameras.emplace_back(*camera.views->spec);
-    for (Observation& o : camera.views->all) {
-      if (Use(camera, o)) AddSight(index, &o);
+    for (CameraView& o : camera.views->all) {
+      if (o.usable() && !o.heldout) AddSight(index, &o);
     }
   }
 
@@ -56,12 +56,7 @@ class Builder {
   }
 
  private:
-  static bool Use(const GuessedCamera& camera, const Observation& o) {
-    const auto used = camera.views->Used();
-    return std::find(used.begin(), used.end(), &o) != used.end();
-  }
-
-  void AddSight(int camera, Observation* o) {
+  void AddSight(int camera, CameraView* o) {
     const Rigid3& camera_from_lidar =
         *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;
     const Rigid3 lidar_from_image_target =
@@ -74,15 +69,15 @@ class Builder {
       fresh.cloud = *o->cloud;
       if (HalfTurned(lidar_from_image_target, *fresh.cloud.pose)) TurnCloud(&fresh.cloud);
       fresh.cloud.pose->half_turn_known = o->image->pose->half_turn_known;
-      fresh.sights.push_back({camera, &*o->image, false});
+      fresh.sights.push_back({camera, o->image, false});
       return;
     }
     if ((view->cloud.centre - o->cloud->centre).norm() > 0.01) {
-      o->rejected = "takes another board of the cloud than the cameras before it";
+      o->Reject("takes another board of the cloud than the cameras before it");
       return;
     }
     const bool turned = HalfTurned(lidar_from_image_target, *view->cloud.pose);
-    view->sights.push_back({camera, &*o->image, turned});
+    view->sights.push_back({camera, o->image, turned});
     if (!turned || !o->image->pose->half_turn_known || view->cloud.pose->half_turn_known) return;
     // This camera knows which end is up, those before it did not.
     TurnCloud(&view->cloud);
@@ -168,12 +163,12 @@ void RejectSight(JointProblem* joint, const Contradiction& worst, BoardState* st
   BoardView& view = joint->problem.views[worst.view];
   const int camera = view.sights[worst.sight].camera;
   const int others = SightsOf(joint->problem, camera) - 1;
-  for (Observation& o : joint->cameras[static_cast<std::size_t>(camera)].views->all) {
-    if (o.view != view.name || !o.rejected.empty()) continue;
-    o.rejected = "contradicts the other " + std::to_string(others) +
-                 " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
-                 " deg and " + Fixed(worst.centre_mm, 0) +
-                 " mm elsewhere; did board or rig move, or does something stand against the board?";
+  for (CameraView& o : joint->cameras[static_cast<std::size_t>(camera)].views->all) {
+    if (o.view != view.name) continue;
+    o.Reject("contradicts the other " + std::to_string(others) +
+             " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
+             " deg and " + Fixed(worst.centre_mm, 0) +
+             " mm elsewhere; did board or rig move, or does something stand against the board?");
   }
   view.sights.erase(view.sights.begin() + static_cast<std::ptrdiff_t>(worst.sight));
   if (!view.sights.empty()) return;

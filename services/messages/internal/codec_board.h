@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "calib/model/errors.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_geometry.h"
 

@@ -16,7 +16,7 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/errors.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/rig.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {

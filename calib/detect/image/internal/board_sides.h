@@ -4,7 +4,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "calib/camera/camera.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {

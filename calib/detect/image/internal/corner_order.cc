@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 namespace {

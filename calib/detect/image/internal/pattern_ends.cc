@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "calib/detect/image/internal/grey_image.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "tests/unit/matchers.h"
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "calib/model/observation.h"
+#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/scan_assembly/assembler.h"
 #include "calib/simulate/simulator.h"

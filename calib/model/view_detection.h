@@ -87,6 +87,9 @@ struct Crossing {
 
 /// What one cloud shows of the target. LIDAR frame, metres.
 struct CloudEdges {
+  /// By the paper's method, which looks where a camera's picks and guess say: that camera's. Empty:
+  /// every camera's.
+  std::string camera;
   std::vector<Eigen::Vector3d> boundary;  ///< the target's boundary points (paper II-A.2)
   Eigen::Vector3d centre{0, 0, 0};        ///< of the segment
   Eigen::Vector3d normal{0, 0, 0};        ///< unit, towards the LIDAR
@@ -106,24 +109,46 @@ struct CloudEdges {
   double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
 };
 
-/// One camera's view of the target together with the cloud's. Either both edges or a reason.
-struct Observation {
-  std::string view;  ///< name of the view, e.g. "0001"
+/// What detection makes of one camera's image in a view.
+struct ImageDetection {
   std::string camera;
+  Utime utime = 0;  ///< of the image; 0: there is none
+  std::optional<ImageEdges> edges;
+  /// Why the image cannot be used; empty: it can. Edges may be known all the same, e.g. of a board
+  /// that moved.
+  std::string why_not;
+  double detect_s = 0;  ///< computing time
+
+  bool usable() const { return why_not.empty() && edges.has_value(); }
+};
+
+/// What detection makes of a view's cloud.
+struct CloudDetection {
+  /// All that looks like the target, likeliest first; the views together choose.
+  std::vector<CloudEdges> candidates;
+  std::string why_not;  ///< why there is none; empty: there is one
+  double detect_s = 0;  ///< computing time
+};
+
+/// All that one view shows of the target: each camera's image, and the cloud once.
+struct ViewDetection {
+  std::string view;  ///< its name, e.g. "0001"
   std::int64_t seq = 0;
   Utime sweep_utime = 0;
-  Utime image_utime = 0;
   bool heldout = false;
-  std::optional<ImageEdges> image;
-  std::optional<CloudEdges> cloud;
-  /// All that looks like the target in the cloud, likeliest first; the views together choose.
-  std::vector<CloudEdges> candidates;
-  std::string rejected;       ///< why it cannot be used; empty: it can
-  double detect_image_s = 0;  ///< computing time
-  double detect_cloud_s = 0;
+  std::vector<ImageDetection> images;  ///< one a camera, in the rig's order
+  CloudDetection cloud;
 
-  bool usable() const { return rejected.empty() && image && cloud; }
+  const ImageDetection* Find(const std::string& camera) const {
+    for (const ImageDetection& image : images) {
+      if (image.camera == camera) return &image;
+    }
+    return nullptr;
+  }
 };
+
+/// In words, each sensor apart: "rgb: board found; thermal: no board found ...; cloud: board found".
+std::string BriefReport(const ViewDetection& detection);
 
 /// What one sensor sees of the target just now.
 struct Sighting {
