@@ -5,7 +5,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "On a capture command: the target's edges in images and cloud (OBSERVATION).\nExample: "
+      "On a capture command: the target's edges in images and cloud (DETECTION).\nExample: "
       "rgbdt-detector --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
       "rgbdt-detector"};
   std::string url;

@@ -5,7 +5,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "OBSERVATION to CALIBRATION: where each camera sits relative to the LIDAR.\nExample: "
+      "DETECTION to CALIBRATION: where each camera sits relative to the LIDAR.\nExample: "
       "rgbdt-solver --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
       "rgbdt-solver"};
   std::string url;

@@ -194,24 +194,24 @@ int ShowBus(const Flags& flags) {
 
 // What the session's report says; with none, what a calibration would say. Nothing is written.
 rgbdt::Report ReportOf(const rgbdt::Session& session,
-                       const std::vector<rgbdt::Observation>& observations) {
+                       const std::vector<rgbdt::ViewDetection>& detections) {
   const auto path = session.root / "report.json";
   if (std::filesystem::exists(path)) return rgbdt::ReadReport(path);
-  return rgbdt::Calibrate(session.rig, observations, {});
+  return rgbdt::Calibrate(session.rig, detections, {});
 }
 
 int ShowSession(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
   const rgbdt::Session session = rgbdt::OpenSession(flags.session);
-  const auto observations =
+  const auto detections =
       rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
         std::fprintf(stderr, "%s\n", line.c_str());
-      }).observations;
+      }).views;
   rgbdt::viewer::SessionFramesOptions what;
   what.title = flags.session;
   what.version = RGBDT_VERSION;
   const auto frames =
-      rgbdt::viewer::SessionFrames(session, observations, ReportOf(session, observations), what);
+      rgbdt::viewer::SessionFrames(session, detections, ReportOf(session, detections), what);
   const Goodbye goodbye;
   options.hello["source"] = "session";
   options.hello["title"] = flags.session;

@@ -5,8 +5,8 @@
 #include "calib/fuse/fusion_camera.h"
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/solve/options.h"
 
 namespace rgbdt {

@@ -10,8 +10,8 @@
 namespace rgbdt {
 
 struct SessionDetection {
-  std::vector<ViewDetection> views;      ///< in the session's order
-  std::vector<std::string> unreadable;    ///< one line for each view that could not be read
+  std::vector<ViewDetection> views;     ///< in the session's order
+  std::vector<std::string> unreadable;  ///< one line for each view that could not be read
 };
 
 /// Detects the target in every view of a session directory, two or more views at a time, with a

@@ -85,8 +85,8 @@ CloudEdgesResult FindByGuess(const CameraSpec& spec, const Target& target, const
             "the rig file has no camera_from_lidar_guess for this camera; the paper's method needs "
             "one"};
   }
-  CloudEdgesResult found = DetectCloudEdges(cloud, Camera(spec), *spec.camera_from_lidar_guess,
-                                            image.corners, target);
+  CloudEdgesResult found =
+      DetectCloudEdges(cloud, Camera(spec), *spec.camera_from_lidar_guess, image.corners, target);
   if (found.edges) found.edges->camera = spec.name;
   return found;
 }
@@ -99,9 +99,12 @@ void DetectCloudByGuesses(const Rig& rig, const Cloud& cloud,
     if (found.edges) {
       detection->candidates.push_back(std::move(*found.edges));
     } else {
-      detection->why_not += (detection->why_not.empty() ? "" : "; ") + images[i].camera + ": " +
-                            found.why;
+      detection->why_not +=
+          (detection->why_not.empty() ? "" : "; ") + images[i].camera + ": " + found.why;
     }
+  }
+  if (detection->candidates.empty() && detection->why_not.empty()) {
+    detection->why_not = "not searched: the paper's method needs the board in an image first";
   }
 }
 

@@ -14,9 +14,9 @@ enum class SessionVerb {
   kNextPose = 1,  ///< put the board where the next view wants it
   kSweep = 2,     ///< turn the scanner once
   kCapture = 3,   ///< take this sweep and the cameras' next images as a view
-  kSolve = 4,     ///< calibrate from all observations so far
+  kSolve = 4,     ///< calibrate from all views so far
   kEvaluate = 5,  ///< judge the calibration on the held-out views
-  kReset = 6,     ///< forget all observations: a new session begins
+  kReset = 6,     ///< forget all views: a new session begins
 };
 
 /// What the session asks of everybody. Who is concerned answers with events of the same command.

@@ -147,7 +147,8 @@ struct ViewDetection {
   }
 };
 
-/// In words, each sensor apart: "rgb: board found; thermal: no board found ...; cloud: board found".
+/// In words, each sensor apart: "rgb: board found; thermal: no board found ...; cloud: board
+/// found".
 std::string BriefReport(const ViewDetection& detection);
 
 /// What one sensor sees of the target just now.

@@ -7,8 +7,8 @@
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/options.h"
 
 namespace rgbdt::simulate {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/solve/board_model.h"
 
 namespace rgbdt {

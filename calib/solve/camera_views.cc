@@ -9,26 +9,38 @@ namespace {
 // Detections from the bus may be well formed and still hold nothing to solve with.
 void RejectEmpty(const CameraSpec& camera, CameraView* view) {
   if (!view->usable()) return;
+  auto& candidates = view->candidates;
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [](const CloudEdges* c) { return c->boundary.empty(); }),
+                   candidates.end());
   const ImageEdges& image = *view->image;
   if (image.edge_pixels.empty() || image.outline.empty()) {
     view->Reject("the detection has no edges in the image");
-  } else if (view->cloud->boundary.empty()) {
+  } else if (candidates.empty()) {
     view->Reject("the detection has no boundary points in the cloud");
   } else if (image.width != camera.width || image.height != camera.height) {
     view->Reject("the detection's image is " + std::to_string(image.width) + "x" +
                  std::to_string(image.height) + ", the rig file says " +
                  std::to_string(camera.width) + "x" + std::to_string(camera.height));
   }
+  if (view->usable()) view->cloud = *candidates.front();
 }
 
 std::string WhyNoImage(const ImageDetection* image) {
-  if (image == nullptr || image->utime == 0) return "the view has no image of this camera";
+  if (image == nullptr) return "the view has no image of this camera";
   if (!image->why_not.empty()) return image->why_not;
   return image->edges ? "" : "the board was not found in the image";
 }
 
 std::string WhyNoCloud(const CameraView& view, const CloudDetection& cloud) {
-  return view.candidates.empty() ? cloud.why_not : "";
+  if (!view.candidates.empty()) return "";
+  return cloud.why_not.empty() ? "the board was not found in the cloud" : cloud.why_not;
+}
+
+std::string Joined(const std::string& no_image, const std::string& no_cloud) {
+  if (no_image.empty() || no_image == no_cloud) return no_cloud;  // e.g. of an unreadable view
+  if (no_cloud.empty()) return no_image;
+  return "image: " + no_image + "; cloud: " + no_cloud;
 }
 
 }  // namespace
@@ -52,16 +64,7 @@ CameraView CameraViewOf(const std::string& camera, const ViewDetection& detectio
     }
   }
   if (!view.candidates.empty()) view.cloud = *view.candidates.front();
-  const std::string no_image = WhyNoImage(image);
-  std::string no_cloud = WhyNoCloud(view, detection.cloud);
-  if (no_image.empty() && no_cloud.empty() && view.candidates.empty()) {
-    no_cloud = "the board was not found in the cloud";
-  }
-  if (no_image.empty() || no_cloud.empty()) {
-    view.rejected = no_image + no_cloud;
-  } else {
-    view.rejected = "image: " + no_image + "; cloud: " + no_cloud;
-  }
+  view.rejected = Joined(WhyNoImage(image), WhyNoCloud(view, detection.cloud));
   return view;
 }
 

@@ -16,10 +16,10 @@ struct CameraView {
   std::string view;
   bool heldout = false;
   Utime image_utime = 0;
-  const ImageEdges* image = nullptr;                ///< the detection's; null: it cannot be used
-  std::vector<const CloudEdges*> candidates;        ///< the detection's, of this camera
-  std::optional<CloudEdges> cloud;                  ///< the candidate taken; at first the likeliest
-  std::string rejected;                             ///< why it takes no part; empty: it does
+  const ImageEdges* image = nullptr;          ///< the detection's; null: none found
+  std::vector<const CloudEdges*> candidates;  ///< the detection's, of this camera
+  std::optional<CloudEdges> cloud;            ///< the candidate taken; at first the likeliest
+  std::string rejected;                       ///< why it takes no part; empty: it does
 
   bool usable() const { return rejected.empty(); }
   /// It takes no part from here on. What was said first stays.

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/solve/board_problem.h"
+#include "calib/solve/camera_views.h"
 
 namespace rgbdt {
 

@@ -267,7 +267,7 @@ CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_fro
 }
 
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
-                                const PoseGate& gate) {
+                               const PoseGate& gate) {
   if (!view.usable() || !HasPoses(view)) return view;
   const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate);
   if (choice.candidate >= 0) {

@@ -73,6 +73,6 @@ CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_fro
 /// The view with its `cloud` the candidate that fits; or rejected, with how far off the nearest one
 /// lies. Without poses (the paper's method) it stays as it is.
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
-                                const PoseGate& gate = kAcceptGate);
+                               const PoseGate& gate = kAcceptGate);
 
 }  // namespace rgbdt

@@ -95,16 +95,14 @@ Messages DetectorNode::DetectOrFail(const View& view, SessionEvent event) {
 }
 
 Messages DetectorNode::Detect(const View& view, SessionEvent event) {
-  Messages out;
-  for (Observation& observation : DetectView(*rig_, view, method_)) {
-    event.utime = std::max(event.utime, observation.image_utime);
-    event.text += (event.text.empty() ? "" : "; ") + observation.camera + ": " +
-                  (observation.usable() ? "board found" : observation.rejected);
-    if (!observation.usable()) ++rejected_;
-    out.push_back(std::move(observation));
+  ViewDetection detection = DetectView(*rig_, view, method_);
+  for (const ImageDetection& image : detection.images) {
+    event.utime = std::max(event.utime, image.utime);
+    if (!image.usable()) ++images_without_board_;
   }
-  out.push_back(std::move(event));
-  return out;
+  if (detection.cloud.candidates.empty()) ++clouds_without_board_;
+  event.text = BriefReport(detection);
+  return {std::move(detection), std::move(event)};
 }
 
 Messages DetectorNode::Republish() {
@@ -132,7 +130,9 @@ Status DetectorNode::GetStatus() const {
                 : !view_.active()
                     ? "waits for a capture"
                     : "view " + view_.capture().view + " waits for " + view_.Missing(*rig_);
-  status.counters = {{"views", views_}, {"rejected", rejected_}};
+  status.counters = {{"views", views_},
+                     {"images without board", images_without_board_},
+                     {"clouds without board", clouds_without_board_}};
   return status;
 }
 

@@ -12,12 +12,12 @@
 
 namespace rgbdt {
 
-/// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> OBSERVATION, one a
-/// camera, then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
+/// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> DETECTION, one a view,
+/// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
 /// view that never becomes complete is dropped when the next capture or a reset comes; the status
 /// says what it waits for. Another rig forgets everything.
 /// Corners that a person picks in an image of one of the newest kKeptViews views have that view
-/// detected once more, with them: its OBSERVATIONs come again, and the event of its capture.
+/// detected once more, with them: its DETECTION comes again, and the event of its capture.
 /// At 1 Hz, live only, it says who sees the board just now (SIGHTING): one sensor at a time, that
 /// whose turn it is and that has something new.
 class DetectorNode : public Node {
@@ -46,7 +46,8 @@ class DetectorNode : public Node {
   std::optional<Rig> rig_;
   ViewCollector view_;
   std::int64_t views_ = 0;
-  std::int64_t rejected_ = 0;
+  std::int64_t images_without_board_ = 0;
+  std::int64_t clouds_without_board_ = 0;
 
   struct Kept {
     View view;

@@ -36,14 +36,14 @@ Messages SolverNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
     if (rig_ && rig_->hash == text->hash) return {};
     rig_ = ParseRig(text->text, "RIG message");
-    observations_.clear();  // they belonged to another rig
+    detections_.clear();  // they belonged to another rig
     report_.reset();
     return {};
   }
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
-  if (const auto* observation = std::get_if<Observation>(&message)) {
-    rig_->Camera(observation->camera);
-    observations_[{observation->view, observation->camera}] = *observation;
+  if (const auto* detection = std::get_if<ViewDetection>(&message)) {
+    for (const ImageDetection& image : detection->images) rig_->Camera(image.camera);
+    detections_[detection->view] = *detection;
     Solve(false);
     return Calibrations();
   }
@@ -53,7 +53,7 @@ Messages SolverNode::Handle(const Message& message) {
 
 Messages SolverNode::OnCommand(const SessionCommand& command) {
   if (command.verb == SessionVerb::kReset) {
-    observations_.clear();
+    detections_.clear();
     report_.reset();
     return {};
   }
@@ -63,9 +63,9 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   event.command = command.command;
   event.source = name();
   event.utime = command.utime;
-  if (observations_.empty()) {
+  if (detections_.empty()) {
     event.kind = EventKind::kFailed;
-    event.text = "no observation yet; capture views of the target first";
+    event.text = "no view yet; capture views of the target first";
     return {event};
   }
   Solve(true);
@@ -77,8 +77,8 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
 }
 
 void SolverNode::Solve(bool for_report) {
-  std::vector<Observation> all;
-  for (const auto& [key, observation] : observations_) all.push_back(observation);
+  std::vector<ViewDetection> all;
+  for (const auto& [view, detection] : detections_) all.push_back(detection);
   CalibrateOptions options = options_;
   options.wide_start &= for_report;
   options.diagnostics &= for_report;
@@ -101,10 +101,10 @@ Status SolverNode::GetStatus() const {
   Status status;
   status.ready = rig_.has_value();
   status.text = !rig_      ? "waits for the rig (RIG)"
-                : !report_ ? "waits for observations"
-                           : "calibrated from " + std::to_string(observations_.size()) +
-                                 " observations: " + Brief(*report_, false);
-  status.counters = {{"observations", static_cast<std::int64_t>(observations_.size())}};
+                : !report_ ? "waits for views"
+                           : "calibrated from " + std::to_string(detections_.size()) +
+                                 " views: " + Brief(*report_, false);
+  status.counters = {{"views", static_cast<std::int64_t>(detections_.size())}};
   return status;
 }
 

@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "calib/methods/calibrate.h"
 #include "calib/model/calibration.h"
@@ -12,24 +11,24 @@
 
 namespace rgbdt {
 
-/// OBSERVATION -> CALIBRATION and REPORT. Solves again after each observation, always from the
-/// rig's guess and from all observations so far, so the order in which they came does not matter;
-/// an observation of a view and camera seen before replaces it. SESSION_COMMAND: solve and evaluate
-/// are answered with an event and the report, reset forgets all. The calibration is repeated at
-/// 1 Hz. A camera that was not solved yet has no calibration on the bus.
+/// DETECTION -> CALIBRATION and REPORT. Solves again after each view, always from the first guess
+/// and from all views so far, so the order in which they came does not matter; a detection of a
+/// view seen before replaces it. SESSION_COMMAND: solve and evaluate are answered with an event and
+/// the report, reset forgets all. The calibration is repeated at 1 Hz. A camera that was not solved
+/// yet has no calibration on the bus.
 class SolverNode : public Node {
  public:
   explicit SolverNode(CalibrateOptions options = {});
 
   std::string name() const override { return "solver"; }
   std::vector<std::string> Subscriptions() const override {
-    return {"RIG", "OBSERVATION", "SESSION_COMMAND"};
+    return {"RIG", "DETECTION", "SESSION_COMMAND"};
   }
   Messages Handle(const Message& message) override;
   Messages Republish() override;
   Status GetStatus() const override;
 
-  /// The newest report; none before the first observation.
+  /// The newest report; none before the first view.
   const std::optional<Report>& report() const { return report_; }
 
  private:
@@ -39,7 +38,7 @@ class SolverNode : public Node {
 
   CalibrateOptions options_;
   std::optional<Rig> rig_;
-  std::map<std::pair<std::string, std::string>, Observation> observations_;  // by view, camera
+  std::map<std::string, ViewDetection> detections_;  // by view
   std::optional<Report> report_;
 };
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/model/session.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

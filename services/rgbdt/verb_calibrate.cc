@@ -22,7 +22,7 @@ int Run(const Flags& flags) {
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
   std::fprintf(stderr, "solving ...\n");
-  Report report = Calibrate(session.rig, detection.observations, flags.options);
+  Report report = Calibrate(session.rig, detection.views, flags.options);
   const std::string wrote = WriteIfSolved(out, report);
   const bool all_read = FinishReport(out, flags.truth, wrote, session, detection, &report);
   return all_read && AllConverged(report) ? 0 : 1;

@@ -66,7 +66,7 @@ int Run(const Flags& flags) {
   const bool by_paper = calibration.method == kPaperMethod;
   const SessionDetection detection =
       DetectSession(session, by_paper ? kPaperMethod : kAutoMethod, PrintProgress);
-  Report report = Evaluate(session.rig, detection.observations, calibration);
+  Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const std::string wrote = "wrote to " + out.string() + ":";
   return FinishReport(out, flags.truth, wrote, session, detection, &report) ? 0 : 1;

@@ -28,22 +28,21 @@ cv::Scalar ColourOf(double distance) {
   return {60, 60, 250};
 }
 
-cv::Mat Overlay(const Session& session, const Observation& observation,
-                const Rigid3& camera_from_lidar) {
-  const View view = ReadView(session, observation.view);
+cv::Mat Overlay(const Session& session, const CameraView& shown, const CameraCalibration& found) {
+  const View view = ReadView(session, shown.view);
   const auto image = std::find_if(view.images.begin(), view.images.end(),
-                                  [&](const Image& i) { return i.camera == observation.camera; });
-  const Camera camera(session.rig.Camera(observation.camera));
+                                  [&](const Image& i) { return i.camera == found.camera; });
+  const Camera camera(session.rig.Camera(found.camera));
   cv::Mat picture = ToBgr(*image).clone();
   const double size = std::max(1.0, picture.cols / 640.0);
-  for (const Eigen::Vector3d& point : observation.cloud->boundary) {
-    const auto pixel = camera.Project(camera_from_lidar * point);
+  for (const Eigen::Vector3d& point : shown.cloud->boundary) {
+    const auto pixel = camera.Project(found.camera_from_lidar * point);
     if (!pixel || !camera.Contains(*pixel)) continue;
     cv::circle(
         picture,
         {static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y()))},
-        static_cast<int>(1.6 * size),
-        ColourOf(DistanceToOutline(*pixel, observation.image->outline)), cv::FILLED, cv::LINE_AA);
+        static_cast<int>(1.6 * size), ColourOf(DistanceToOutline(*pixel, shown.image->outline)),
+        cv::FILLED, cv::LINE_AA);
   }
   const double scale = std::min(1.0, 1280.0 / picture.cols);
   if (scale < 1) cv::resize(picture, picture, {}, scale, scale, cv::INTER_AREA);
@@ -51,27 +50,27 @@ cv::Mat Overlay(const Session& session, const Observation& observation,
 }
 
 // A held-out view or, with none, one used; its board is the one that the calibration chooses.
-std::optional<Observation> ToShow(const CameraCalibration& camera,
-                                  const std::vector<Observation>& observations) {
-  std::optional<Observation> best;
-  for (const Observation& o : observations) {
-    if (o.camera != camera.camera || !o.usable()) continue;
-    if (best && (best->heldout || !o.heldout)) continue;
-    Observation chosen = WithChosenCandidate(o, camera.camera_from_lidar, kJudgeGate);
+std::optional<CameraView> ToShow(const CameraCalibration& camera,
+                                 const std::vector<ViewDetection>& detections) {
+  std::optional<CameraView> best;
+  for (const ViewDetection& detection : detections) {
+    if (best && (best->heldout || !detection.heldout)) continue;
+    CameraView chosen = WithChosenCandidate(CameraViewOf(camera.camera, detection),
+                                            camera.camera_from_lidar, kJudgeGate);
     if (chosen.usable()) best = std::move(chosen);
   }
   return best;
 }
 
-void AddOverlay(const Session& session, const std::vector<Observation>& observations,
+void AddOverlay(const Session& session, const std::vector<ViewDetection>& detections,
                 const CameraCalibration& camera, std::vector<ReportPicture>* pictures) {
-  const auto shown = ToShow(camera, observations);
+  const auto shown = ToShow(camera, detections);
   if (!shown) return;
   pictures->push_back(
       {camera.camera + ", view " + shown->view + (shown->heldout ? ", held out" : ""),
        "The board's boundary points in the cloud, laid on the image by the calibration. Green: "
        "within 1 px of the board's outline; yellow: within 4 px; red: beyond.",
-       Overlay(session, *shown, camera.camera_from_lidar)});
+       Overlay(session, *shown, camera)});
 }
 
 void AddColouring(const Session& session, const CameraCalibration& camera,
@@ -82,11 +81,11 @@ void AddColouring(const Session& session, const CameraCalibration& camera,
   pictures->push_back({camera.camera + ": how sure a colour is", kColouringCaption, picture});
 }
 
-std::string PlainPage(const Session& session, const std::vector<Observation>& observations,
+std::string PlainPage(const Session& session, const std::vector<ViewDetection>& detections,
                       const Report& report) {
   std::vector<ReportPicture> pictures;
   for (const CameraReport& camera : report.cameras) {
-    AddOverlay(session, observations, camera.calibration, &pictures);
+    AddOverlay(session, detections, camera.calibration, &pictures);
     AddColouring(session, camera.calibration, &pictures);
   }
   return ReportHtml(report, pictures);
@@ -108,13 +107,13 @@ void AddSigmaFrame(const Session& session, const CameraCalibration& camera,
 }
 
 // The viewer's page with the whole session in it.
-std::string ViewerPage(const Session& session, const std::vector<Observation>& observations,
+std::string ViewerPage(const Session& session, const std::vector<ViewDetection>& detections,
                        const Report& report) {
   viewer::SessionFramesOptions options;
   options.title = session.root.lexically_normal().string();
   options.version = RGBDT_VERSION;
   std::vector<viewer::NamedFrame> frames =
-      viewer::SessionFrames(session, observations, report, options);
+      viewer::SessionFrames(session, detections, report, options);
   for (const CameraReport& camera : report.cameras) {
     AddSigmaFrame(session, camera.calibration, &frames);
   }
@@ -122,11 +121,11 @@ std::string ViewerPage(const Session& session, const std::vector<Observation>& o
 }
 
 void WriteReportFiles(const std::filesystem::path& dir, const Session& session,
-                      const std::vector<Observation>& observations, const Report& report) {
+                      const std::vector<ViewDetection>& detections, const Report& report) {
   WriteReport(dir / "report.json", report);
   WriteFileAtomically(dir / "report.html", viewer::Page().empty()
-                                               ? PlainPage(session, observations, report)
-                                               : ViewerPage(session, observations, report));
+                                               ? PlainPage(session, detections, report)
+                                               : ViewerPage(session, detections, report));
 }
 
 }  // namespace
@@ -148,7 +147,7 @@ bool FinishReport(const std::filesystem::path& dir, const std::string& truth,
   if (!truth.empty() || std::filesystem::exists(beside)) {
     AddTruth(ReadTruth(PathOr(truth, beside)), report);
   }
-  WriteReportFiles(dir, session, detection.observations, *report);
+  WriteReportFiles(dir, session, detection.views, *report);
   std::fputs(ReportTable(*report).c_str(), stdout);
   std::printf("%s report.json, report.html\n", wrote.c_str());
   for (const std::string& line : detection.unreadable) {

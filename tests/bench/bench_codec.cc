@@ -102,19 +102,19 @@ StampedPose PoseOfTheRig() {
   return pose;
 }
 
-// The detector's observations of a view, and the solver's report of the session.
+// The detector's detection of a view, and the solver's report of the session.
 Messages FromASession() {
   for (std::uint64_t seed = 1; seed < 50; ++seed) {
     study::PairedOptions options;
     options.paper = false;
     const auto session = study::MakePairedSession(options, seed);
     if (!session) continue;
-    Observation observation = session->by_boards.front();
-    observation.image_utime = kStart;
+    ViewDetection detection = session->by_boards.front();
+    for (ImageDetection& image : detection.images) image.utime = kStart;
     ReportText report;
     report.utime = kStart;
     report.json = ReportToJson(Calibrate(session->rig, session->by_boards));
-    return {observation, report};
+    return {detection, report};
   }
   throw std::runtime_error("no session has room for the board");
 }

@@ -84,38 +84,33 @@ class Session {
   }
 
   const Rig& rig() const { return rig_; }
-  const std::vector<Observation>& observations() const { return observations_; }
+  const std::vector<ViewDetection>& detections() const { return detections_; }
   const std::vector<Rigid3>& camera_from_lidar() const { return camera_from_lidar_; }
 
  private:
   bool AddView(const Rigid3& lidar_from_target) {
-    Observation seen;
+    ViewDetection seen;
     seen.view = std::to_string(100'000 + next_);
-    std::vector<Observation> all;
     for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-      seen.camera = rig_.cameras[c].name;
-      seen.image = study::BoardInImage(rig_.cameras[c], rig_.target,
+      const std::string& camera = rig_.cameras[c].name;
+      auto image = study::BoardInImage(rig_.cameras[c], rig_.target,
                                        camera_from_lidar_[c] * lidar_from_target,
-                                       simulate::Noise(seed_, next_, seen.camera));
-      if (!seen.image) return false;
-      all.push_back(seen);
+                                       simulate::Noise(seed_, next_, camera));
+      if (!image) return false;
+      seen.images.push_back({camera, 0, std::move(image), "", 0});
     }
     const Cloud cloud = AnalyticCloud(rig_.target, lidar_from_target, kCloudPoints,
                                       seed_ + static_cast<std::uint64_t>(next_));
-    const BoardsInCloud boards = FindBoards(cloud, rig_.target);
-    if (boards.candidates.empty()) return false;
-    for (Observation& o : all) {
-      o.candidates = boards.candidates;
-      o.cloud = o.candidates.front();
-      observations_.push_back(std::move(o));
-    }
+    seen.cloud.candidates = FindBoards(cloud, rig_.target).candidates;
+    if (seen.cloud.candidates.empty()) return false;
+    detections_.push_back(std::move(seen));
     return true;
   }
 
   std::uint64_t seed_;
   Rig rig_;
   std::vector<Rigid3> camera_from_lidar_;
-  std::vector<Observation> observations_;
+  std::vector<ViewDetection> detections_;
   int views_ = 0, next_ = 0;
 };
 
@@ -124,13 +119,13 @@ double JointMilliseconds(const Session& session) {
   std::vector<CameraViews> views;
   std::vector<GuessedCamera> cameras;
   for (const CameraSpec& camera : session.rig().cameras) {
-    views.push_back(ViewsOf(camera, session.observations()));
+    views.push_back(ViewsOf(camera, session.detections()));
   }
   for (CameraViews& camera : views) {
     cameras.push_back({&camera, GuessFromBoards(camera.Used())});
     const auto& guess = cameras.back().guess.camera_from_lidar;
     if (!guess) throw std::runtime_error("no first guess");
-    for (Observation& o : camera.all) o = WithChosenCandidate(std::move(o), *guess);
+    for (CameraView& view : camera.all) view = WithChosenCandidate(std::move(view), *guess);
   }
   return LeastMilliseconds([&] {
     JointProblem joint = MakeJointProblem(session.rig().target, cameras, 0);
@@ -139,10 +134,12 @@ double JointMilliseconds(const Session& session) {
 }
 
 double GuessMilliseconds(const Session& session) {
+  std::vector<CameraViews> views;
+  for (const CameraSpec& camera : session.rig().cameras) {
+    views.push_back(ViewsOf(camera, session.detections()));
+  }
   return LeastMilliseconds([&] {
-    for (const CameraSpec& camera : session.rig().cameras) {
-      GuessFromBoards(study::ViewsOfCamera(session.observations(), camera.name));
-    }
+    for (const CameraViews& camera : views) GuessFromBoards(camera.Used());
   });
 }
 
@@ -172,7 +169,7 @@ void BenchSolve(int most, std::uint64_t seed, std::ofstream* csv) {
     session.GrowTo(views);
     Report report;
     const double all = LeastMilliseconds(
-        [&] { report = Calibrate(session.rig(), session.observations(), options); });
+        [&] { report = Calibrate(session.rig(), session.detections(), options); });
     *csv << views << ',' << all << ',' << JointMilliseconds(session) << ','
          << GuessMilliseconds(session);
     WriteOutcome(session, report, csv);

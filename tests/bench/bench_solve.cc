@@ -1,4 +1,4 @@
-// The calibration of both default cameras from observations, judging included but for diagnostics;
+// The calibration of both default cameras from detections, judging included but for diagnostics;
 // beside it the 2015 method, which needs a hand-measured guess and gets one.
 #include <map>
 #include <memory>
@@ -38,9 +38,9 @@ std::function<void()> Solve(int views, const char* method) {
   CalibrateOptions options;
   options.method = method;
   options.diagnostics = false;
-  const auto& observations = options.method == kPaperMethod ? session.by_paper : session.by_boards;
-  return [=, &session, &observations] {
-    Report report = Calibrate(session.rig, observations, options);
+  const auto& detections = options.method == kPaperMethod ? session.by_paper : session.by_boards;
+  return [=, &session, &detections] {
+    Report report = Calibrate(session.rig, detections, options);
     benchmark::DoNotOptimize(report);
   };
 }

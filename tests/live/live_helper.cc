@@ -139,14 +139,14 @@ void Print(const CameraCalibration& calibration) {
   std::printf("\n");
 }
 
-// The solver repeats its calibration at 1 Hz: what comes after the last observation is the result.
+// The solver repeats its calibration at 1 Hz: what comes after the last view is the result.
 int PrintLive(const Arguments& arguments) {
-  const std::int64_t observations = 2 * std::stoll(arguments.at(0));
+  const std::int64_t views = std::stoll(arguments.at(0));
   Listener listener;
   std::map<std::string, CameraCalibration> found;
   listener.bus.Subscribe(
       "CALIBRATION", [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-        if (listener.Counter("solver", "observations") < observations) return;
+        if (listener.Counter("solver", "views") < views) return;
         try {
           const auto message = std::get<CalibrationMessage>(Decode(channel, data, size));
           found[message.calibration.camera] = message.calibration;

@@ -75,28 +75,35 @@ TEST(DetectorNodeRigTest, BeforeTheRigNothingIsTaken) {
   EXPECT_TRUE(node.GetStatus().ready);
 }
 
-TEST_F(DetectorNodeTest, AViewWithoutABoardIsRejectedWithReasonsAndDone) {
+TEST_F(DetectorNodeTest, AViewWithoutABoardIsOneDetectionWithReasonsAndDone) {
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Capture());
   EXPECT_TRUE(node_.Handle(Blank("rgb")).empty());
   EXPECT_EQ(node_.GetStatus().text, "view 0001 waits for an image of camera thermal");
   const Messages out = node_.Handle(Blank("thermal"));
-  const auto observations = Only<Observation>(out);
-  ASSERT_EQ(observations.size(), 2U);
-  for (const Observation& observation : observations) {
-    EXPECT_FALSE(observation.usable());
-    EXPECT_FALSE(observation.rejected.empty());
-    EXPECT_EQ(observation.view, "0001");
+  ASSERT_EQ(out.size(), 2U) << "one DETECTION, then the event";
+  const auto& detection = std::get<ViewDetection>(out[0]);
+  EXPECT_EQ(detection.view, "0001");
+  EXPECT_EQ(detection.sweep_utime, kSweep);
+  ASSERT_EQ(detection.images.size(), 2U);
+  for (const ImageDetection& image : detection.images) {
+    EXPECT_FALSE(image.usable());
+    EXPECT_FALSE(image.why_not.empty());
+    EXPECT_EQ(image.utime, kCommand);
   }
+  EXPECT_TRUE(detection.cloud.candidates.empty());
+  EXPECT_FALSE(detection.cloud.why_not.empty());
   const auto events = Only<SessionEvent>(out);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].command, 7);
   EXPECT_EQ(events[0].kind, EventKind::kDone);
   EXPECT_EQ(events[0].utime, kCommand);
-  EXPECT_EQ(events[0].text,
-            "rgb: " + observations[0].rejected + "; thermal: " + observations[1].rejected);
+  EXPECT_EQ(events[0].text, "rgb: " + detection.images[0].why_not +
+                                "; thermal: " + detection.images[1].why_not +
+                                "; cloud: " + detection.cloud.why_not);
   EXPECT_EQ(Counter(node_.GetStatus(), "views"), 1);
-  EXPECT_EQ(Counter(node_.GetStatus(), "rejected"), 2);
+  EXPECT_EQ(Counter(node_.GetStatus(), "images without board"), 2);
+  EXPECT_EQ(Counter(node_.GetStatus(), "clouds without board"), 1);
   EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
 }
 
@@ -121,7 +128,7 @@ TEST_F(DetectorNodeTest, ImagesOfTheWrongKindAreRefusedAndChangeNothing) {
   EXPECT_THAT(ErrorOf([&] { node_.Handle(picks); }), HasSubstr("front"));
 
   EXPECT_EQ(node_.GetStatus().text, waits);
-  EXPECT_EQ(node_.Handle(Blank("thermal")).size(), 3U);
+  EXPECT_EQ(node_.Handle(Blank("thermal")).size(), 2U);
 }
 
 TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
@@ -136,8 +143,8 @@ TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
   EXPECT_TRUE(node_.Handle(picks).empty()) << "no view has an image of that time";
   picks.image_utime = kCommand;
   const Messages again = node_.Handle(picks);
-  ASSERT_EQ(Only<Observation>(again).size(), 2U);
-  EXPECT_EQ(Only<Observation>(again)[1].view, "0001");
+  ASSERT_EQ(Only<ViewDetection>(again).size(), 1U);
+  EXPECT_EQ(Only<ViewDetection>(again)[0].view, "0001");
   ASSERT_EQ(Only<SessionEvent>(again).size(), 1U);
   EXPECT_EQ(Only<SessionEvent>(again)[0].command, Only<SessionEvent>(first)[0].command);
   EXPECT_EQ(Counter(node_.GetStatus(), "views"), 1);
@@ -220,34 +227,47 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
       for (Message& message : test::HandleAll(&node, part)) out.push_back(std::move(message));
     }
     for (Message& message : out) {
-      if (auto* observation = std::get_if<Observation>(&message)) {  // the wall clock's part
-        observation->detect_image_s = observation->detect_cloud_s = 0;
+      if (auto* detection = std::get_if<ViewDetection>(&message)) {  // the wall clock's part
+        for (ImageDetection& image : detection->images) image.detect_s = 0;
+        detection->cloud.detect_s = 0;
       }
     }
     return out;
   };
   const Messages expected = detect({cloud, {command}, images, {picks}});
-  ASSERT_EQ(expected.size(), 3U);
-  for (const Observation& observation : Only<Observation>(expected)) {
-    EXPECT_TRUE(observation.usable()) << observation.camera << ": " << observation.rejected;
-    EXPECT_FALSE(observation.image->picked) << "the board finds itself";
-    EXPECT_FALSE(observation.candidates.empty());
+  ASSERT_EQ(expected.size(), 2U);
+  const auto& detection = std::get<ViewDetection>(expected[0]);
+  ASSERT_EQ(detection.images.size(), 2U);
+  for (const ImageDetection& image : detection.images) {
+    ASSERT_TRUE(image.usable()) << image.camera << ": " << image.why_not;
+    EXPECT_FALSE(image.edges->picked) << "the board finds itself";
   }
+  ASSERT_FALSE(detection.cloud.candidates.empty()) << detection.cloud.why_not;
   EXPECT_EQ(BytesOf(detect({{picks}, images, {command}, cloud})), BytesOf(expected));
+
+  // The cloud is looked at where an image shows nothing.
+  Messages covered = images;
+  std::get<Image>(covered[0]).pixels.setTo(cv::Scalar(90));
+  const Messages without_rgb = detect({cloud, {command}, covered, {picks}});
+  ASSERT_EQ(without_rgb.size(), 2U);
+  const auto& blind = std::get<ViewDetection>(without_rgb[0]);
+  EXPECT_FALSE(blind.images.at(0).usable());
+  EXPECT_TRUE(blind.images.at(1).usable()) << blind.images[1].why_not;
+  ASSERT_EQ(blind.cloud.candidates.size(), detection.cloud.candidates.size());
+  EXPECT_EQ(blind.cloud.candidates[0].boundary, detection.cloud.candidates[0].boundary);
 
   DetectorNode watching;
   test::HandleAll(&watching, {test::TextOf(rig)});
   test::HandleAll(&watching, cloud);
   test::HandleAll(&watching, images);
-  const auto observations = Only<Observation>(expected);
   for (int tick = 0; tick < 3; ++tick) {
     const Sighting sighting = Only<Sighting>(watching.Republish()).at(0);
     EXPECT_TRUE(sighting.seen) << sighting.camera << ": " << sighting.text;
     if (sighting.camera.empty()) {
-      EXPECT_LT((sighting.centre - observations[0].cloud->centre).norm(), 1e-6);
+      EXPECT_LT((sighting.centre - detection.cloud.candidates[0].centre).norm(), 1e-6);
       continue;
     }
-    const auto& edges = *observations[sighting.camera == "rgb" ? 0 : 1].image;
+    const auto& edges = *detection.Find(sighting.camera)->edges;
     ASSERT_EQ(sighting.corners.size(), edges.corners.size());
     EXPECT_LT((sighting.corners[3] - edges.corners[3]).norm(), 1.0) << sighting.camera;
     EXPECT_EQ(sighting.outline.size() % 4, 0U);

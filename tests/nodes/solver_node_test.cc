@@ -8,6 +8,7 @@
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/solve/board_world.h"
+#include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {
 namespace {
@@ -64,18 +65,19 @@ TEST(SolverNodeRigTest, BeforeTheRigNothingIsTaken) {
   EXPECT_THAT(ErrorOf([&] { SolverNode bad(options); }), HasSubstr("magic"));
 }
 
-TEST_F(SolverNodeTest, SolvesAgainAfterEachObservation) {
+TEST_F(SolverNodeTest, SolvesOnceForEachView) {
   std::size_t calibrations = 0;
-  for (const Observation& observation : World().views) {
-    const auto out = Only<CalibrationMessage>(node_.Handle(observation));
+  for (const ViewDetection& detection : World().views) {
+    const auto out = Only<CalibrationMessage>(node_.Handle(detection));
     calibrations += out.size();
+    EXPECT_LE(out.size(), 1U) << "one solve a view";
     for (const CalibrationMessage& message : out) {
       EXPECT_EQ(message.rig_hash, MakeRig().hash);
       EXPECT_EQ(message.method, "paper");
     }
   }
   EXPECT_EQ(calibrations, 3U) << "from the third view on that is not held out";
-  EXPECT_THAT(node_.GetStatus().text, HasSubstr("calibrated from 6 observations"));
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("calibrated from 6 views"));
   ASSERT_TRUE(node_.report().has_value());
   EXPECT_EQ(node_.report()->cameras[0].used.size(), 4U);
   EXPECT_EQ(node_.report()->cameras[0].heldout.size(), 2U);
@@ -84,7 +86,7 @@ TEST_F(SolverNodeTest, SolvesAgainAfterEachObservation) {
               Rigid3Near(World().camera_from_lidar, 0.01, 0.03));
 }
 
-TEST_F(SolverNodeTest, TheOrderOfObservationsDoesNotMatterAndRepeatsReplace) {
+TEST_F(SolverNodeTest, TheOrderOfViewsDoesNotMatterAndRepeatsReplace) {
   FeedWorld();
   const std::string expected = CalibrationOf(node_);
   SolverNode backwards(ByPaper());
@@ -93,11 +95,12 @@ TEST_F(SolverNodeTest, TheOrderOfObservationsDoesNotMatterAndRepeatsReplace) {
   EXPECT_EQ(CalibrationOf(backwards), expected);
   FeedWorld();
   EXPECT_EQ(CalibrationOf(node_), expected);
-  EXPECT_EQ(test::Counter(node_.GetStatus(), "observations"), 6);
-  // Another observation of a view takes the place of the first.
-  Observation rejected = World().views[0];
-  rejected.rejected = "somebody stood before it";
-  node_.Handle(rejected);
+  EXPECT_EQ(test::Counter(node_.GetStatus(), "views"), 6);
+  // Another detection of a view takes the place of the first.
+  ViewDetection hidden = World().views[0];
+  hidden.images[0].why_not = "somebody stood before it";
+  node_.Handle(hidden);
+  EXPECT_EQ(test::Counter(node_.GetStatus(), "views"), 6);
   EXPECT_EQ(node_.report()->cameras[0].used.size(), 3U);
   EXPECT_EQ(node_.report()->cameras[0].rejected.at(0).why, "somebody stood before it");
 }
@@ -119,12 +122,12 @@ TEST_F(SolverNodeTest, SolveAndEvaluateAreAnsweredWithReportAndEvent) {
   }
 }
 
-TEST_F(SolverNodeTest, WithoutObservationsSolvingFailsWithTheReason) {
+TEST_F(SolverNodeTest, WithoutViewsSolvingFailsWithTheReason) {
   for (const SessionVerb verb : {SessionVerb::kSolve, SessionVerb::kEvaluate}) {
     const auto events = Only<SessionEvent>(node_.Handle(Command(verb)));
     ASSERT_EQ(events.size(), 1U);
     EXPECT_EQ(events[0].kind, EventKind::kFailed);
-    EXPECT_THAT(events[0].text, HasSubstr("no observation yet"));
+    EXPECT_THAT(events[0].text, HasSubstr("no view yet"));
   }
 }
 
@@ -145,17 +148,49 @@ TEST_F(SolverNodeTest, ResetAndAnotherRigForgetAll) {
   node_.Handle(Command(SessionVerb::kReset));
   EXPECT_FALSE(node_.report().has_value());
   EXPECT_TRUE(node_.Republish().empty());
-  EXPECT_EQ(node_.GetStatus().text, "waits for observations");
+  EXPECT_EQ(node_.GetStatus().text, "waits for views");
   FeedWorld();
   node_.Handle(test::TextOf(MakeRig(0.03)));
   EXPECT_FALSE(node_.report().has_value());
 }
 
-TEST_F(SolverNodeTest, AnObservationOfAStrangersCameraIsRefused) {
-  Observation stranger = World().views[0];
-  stranger.camera = "front";
+TEST_F(SolverNodeTest, ADetectionOfAStrangersCameraIsRefused) {
+  ViewDetection stranger = World().views[0];
+  stranger.images[0].camera = "front";
   EXPECT_THAT(ErrorOf([&] { node_.Handle(stranger); }), HasSubstr("front"));
-  EXPECT_EQ(test::Counter(node_.GetStatus(), "observations"), 0);
+  EXPECT_EQ(test::Counter(node_.GetStatus(), "views"), 0);
+}
+
+// All cameras of a view come in one message, and are solved for at once.
+TEST(SolverNodeViewTest, AViewIsOneMessageAndOneSolveForAllCameras) {
+  const SolveWorld world;
+  Rig rig = simulate::Simulator(test::TinyOptions()).rig();
+  rig.cameras = world.rig.cameras;
+  rig.target = world.rig.target;
+  rig = ParseRig(PrintRig(rig), "test rig");
+  SolverNode node;
+  node.Handle(test::TextOf(rig));
+  std::vector<ViewDetection> detections = world.detections;
+  ImageDetection& failed = detections[4].images[1];
+  failed.edges.reset();
+  failed.why_not = "no checkerboard";
+  Messages last;
+  for (const ViewDetection& detection : detections) {
+    last = node.Handle(detection);
+    EXPECT_LE(last.size(), 2U);
+  }
+  const auto calibrations = Only<CalibrationMessage>(last);
+  ASSERT_EQ(calibrations.size(), 2U);
+  EXPECT_EQ(calibrations[0].calibration.camera, "rgb");
+  EXPECT_EQ(calibrations[1].calibration.camera, "thermal");
+  // A view of which one image failed serves the other camera.
+  ASSERT_TRUE(node.report());
+  EXPECT_EQ(node.report()->cameras[0].used.size(), 10U);
+  EXPECT_EQ(node.report()->cameras[1].used.size(), 9U);
+  EXPECT_EQ(node.report()->cameras[1].rejected.at(0).why, "no checkerboard");
+  EXPECT_EQ(node.report()->detections.at(4).images.at(1).why_not, "no checkerboard");
+  EXPECT_EQ(node.report()->detections.at(4).images.at(0).why_not, "");
+  EXPECT_EQ(node.report()->detections.at(4).cloud_why_not, "");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ inline Rigid3 PublishedCameraFromLidar() {
 
 struct Detected {
   Session session;
-  std::vector<Observation> observations;
+  std::vector<ViewDetection> views;
 };
 
 /// Nothing where the data is absent.
@@ -43,10 +43,8 @@ inline std::optional<Detected> DetectReal(const std::string& method) {
   if (std::system(command.c_str()) != 0) throw std::runtime_error(command + " failed");
   Detected detected{OpenSession(dir), {}};
   for (const std::string& view : detected.session.views) {
-    for (Observation& o :
-         DetectView(detected.session.rig, ReadView(detected.session, view), method)) {
-      detected.observations.push_back(std::move(o));
-    }
+    detected.views.push_back(
+        DetectView(detected.session.rig, ReadView(detected.session, view), method));
   }
   fs::remove_all(dir);
   return detected;

@@ -14,9 +14,9 @@ TEST(Acfr, TheBoardsFindThemselves) {
   Rig rig = detected->session.rig;
   for (CameraSpec& camera : rig.cameras) camera.camera_from_lidar_guess.reset();
   int with_corners = 0;
-  for (const Observation& o : detected->observations) with_corners += o.image ? 1 : 0;
+  for (const ViewDetection& view : detected->views) with_corners += view.images.at(0).edges ? 1 : 0;
   EXPECT_EQ(with_corners, 14);
-  const Report report = Calibrate(rig, detected->observations);
+  const Report report = Calibrate(rig, detected->views);
   const CameraReport& camera = report.cameras.at(0);
   ASSERT_TRUE(camera.calibration.converged) << camera.calibration.status;
   // The views together choose the board and leave out what is none: at least 12 of 14 clouds.
@@ -32,11 +32,11 @@ TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
   const auto detected = DetectReal(kPaperMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
   const Session& session = detected->session;
-  const std::vector<Observation>& observations = detected->observations;
+  const std::vector<ViewDetection>& views = detected->views;
   ASSERT_EQ(session.views.size(), 14U);
   CalibrateOptions options;
   options.method = kPaperMethod;
-  const Report report = Calibrate(session.rig, observations, options);
+  const Report report = Calibrate(session.rig, views, options);
   ASSERT_EQ(report.cameras.size(), 1U);
   const CameraReport& camera = report.cameras[0];
   EXPECT_GE(camera.used.size() + camera.heldout.size(), 8U);
@@ -56,7 +56,7 @@ TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
       *camera.distance_transform_px.heldout);
   EXPECT_LT(from_published.rotation_deg, guess_from_published.rotation_deg);
   // The report's figures are those of the calibration that it carries.
-  const Report again = Evaluate(session.rig, observations, report.ToCalibration());
+  const Report again = Evaluate(session.rig, views, report.ToCalibration());
   EXPECT_DOUBLE_EQ(*again.cameras.at(0).distance_transform_px.heldout,
                    *camera.distance_transform_px.heldout);
   EXPECT_DOUBLE_EQ(*again.cameras.at(0).edge_rms_px.heldout, *camera.edge_rms_px.heldout);

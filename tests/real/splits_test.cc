@@ -28,7 +28,7 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Splits Split(const Rig& rig, const std::vector<Observation>& all, const std::string& method) {
+Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::string& method) {
   CalibrateOptions options;
   options.method = method;
   options.diagnostics = false;
@@ -40,7 +40,7 @@ Splits Split(const Rig& rig, const std::vector<Observation>& all, const std::str
     std::shuffle(order.begin(), order.end(), random);
     std::vector<CameraCalibration> halves;
     for (std::size_t half = 0; half < 2; ++half) {
-      std::vector<Observation> views;
+      std::vector<ViewDetection> views;
       for (std::size_t k = half * all.size() / 2; k < (half + 1) * all.size() / 2; ++k) {
         views.push_back(all[order[k]]);
         views.back().heldout = false;
@@ -61,8 +61,8 @@ Splits Split(const Rig& rig, const std::vector<Observation>& all, const std::str
 TEST(Acfr, HalvesOfTheViewsAgreeAsTheStatedSigmaSays) {
   const auto detected = DetectReal(kAutoMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
-  const Splits joint = Split(detected->session.rig, detected->observations, kAutoMethod);
-  const Splits plane = Split(detected->session.rig, detected->observations, kPlaneMethod);
+  const Splits joint = Split(detected->session.rig, detected->views, kAutoMethod);
+  const Splits plane = Split(detected->session.rig, detected->views, kPlaneMethod);
   ASSERT_EQ(joint.chi2.size(), 100U);
   ASSERT_EQ(plane.chi2.size(), 100U);
   std::printf(
@@ -81,8 +81,8 @@ TEST(Acfr, HalvesOfTheViewsAgreeAsTheStatedSigmaSays) {
 TEST(Acfr, TheResultLiesByThePublishedMean) {
   auto detected = DetectReal(kAutoMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
-  for (Observation& o : detected->observations) o.heldout = false;
-  const Report report = Calibrate(detected->session.rig, detected->observations);
+  for (ViewDetection& view : detected->views) view.heldout = false;
+  const Report report = Calibrate(detected->session.rig, detected->views);
   const CameraCalibration& calibration = report.cameras.at(0).calibration;
   const PoseError error = ErrorOf(calibration.camera_from_lidar, PublishedCameraFromLidar());
   std::printf("%s: %.2f deg, %.1f mm from the published mean\n", calibration.status.c_str(),

@@ -110,7 +110,7 @@ TEST_F(ReplayTest, TheSessionCalibratesBothCameras) {
 TEST_F(ReplayTest, TheInputsAloneGiveTheSameBitForBit) {
   MemoryBus bus;
   Recording made;
-  bus.Subscribe("CLOUD|OBSERVATION|CALIBRATION",
+  bus.Subscribe("CLOUD|DETECTION|CALIBRATION",
                 [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
                   made.push_back({channel, Bytes(data, data + size)});
                 });
@@ -179,13 +179,11 @@ TEST_F(ReplayTest, ReorderedLinesAloneGiveTheSameBitForBit) {
 
 TEST_F(ReplayTest, TheSessionDirectoryGivesTheSameBitForBit) {
   const Session session = OpenSession(*dir_ / "session");
-  std::vector<Observation> observations;
+  std::vector<ViewDetection> detections;
   for (const std::string& name : session.views) {
-    for (Observation& o : DetectView(session.rig, ReadView(session, name))) {
-      observations.push_back(std::move(o));
-    }
+    detections.push_back(DetectView(session.rig, ReadView(session, name)));
   }
-  EXPECT_EQ(PrintCalibration(Calibrate(session.rig, observations).ToCalibration()),
+  EXPECT_EQ(PrintCalibration(Calibrate(session.rig, detections).ToCalibration()),
             run_->calibration);
   const ToolResult tool =
       RunTool("calibrate " + (*dir_ / "session").string() + " --out " + (*dir_ / "again").string());

@@ -12,21 +12,22 @@ namespace {
 
 using simulate::kDegree;
 
-std::vector<const Observation*> FirstViews(const std::vector<Observation>& observations,
-                                           const std::string& camera, int views) {
-  std::vector<const Observation*> all = ViewsOfCamera(observations, camera);
+std::vector<CameraView> FirstViews(const std::vector<ViewDetection>& detections,
+                                   const std::string& camera, int views) {
+  std::vector<CameraView> all = ViewsOfCamera(detections, camera);
   all.resize(std::min(all.size(), static_cast<std::size_t>(views)));
   return all;
 }
 
-BoardView ViewOf(const Observation& o, const Rigid3& camera_from_lidar) {
+BoardView ViewOf(const CameraView& seen, const Rigid3& camera_from_lidar) {
   // Where no board fits the pose, the likeliest is as good as any.
-  const int fitting = ChooseCandidate(o, camera_from_lidar).candidate;
+  const int fitting = ChooseCandidate(seen, camera_from_lidar).candidate;
   BoardView view;
-  view.name = o.view;
-  view.cloud = o.candidates[static_cast<std::size_t>(std::max(0, fitting))];
-  const Rigid3 lidar_from_target = camera_from_lidar.Inverse() * o.image->pose->sensor_from_target;
-  view.sights.push_back({0, &*o.image, HalfTurned(lidar_from_target, *view.cloud.pose)});
+  view.name = seen.view;
+  view.cloud = *seen.candidates[static_cast<std::size_t>(std::max(0, fitting))];
+  const Rigid3 lidar_from_target =
+      camera_from_lidar.Inverse() * seen.image->pose->sensor_from_target;
+  view.sights.push_back({0, seen.image, HalfTurned(lidar_from_target, *view.cloud.pose)});
   return view;
 }
 
@@ -46,8 +47,8 @@ BoardProblem ProblemOf(const PairedSession& session, std::size_t camera, int vie
   BoardProblem problem;
   problem.target = session.rig.target;
   problem.cameras = {Camera(spec)};
-  for (const Observation* o : FirstViews(session.by_boards, spec.name, views)) {
-    problem.views.push_back(ViewOf(*o, camera_from_lidar));
+  for (const CameraView& seen : FirstViews(session.by_boards, spec.name, views)) {
+    problem.views.push_back(ViewOf(seen, camera_from_lidar));
   }
   return problem;
 }
@@ -58,8 +59,8 @@ Objectives::Objectives(const PairedSession& session, std::size_t camera, int vie
       by_paper_(FirstViews(session.by_paper, session.rig.cameras[camera].name, views)),
       problem_(ProblemOf(session, camera, views, truth_)),
       state_(SolveBoards(problem_, StartOf(problem_, {truth_})).state) {
-  for (const Observation* o : by_paper_) {
-    const ImageEdges& image = *o->image;
+  for (const CameraView& view : by_paper_) {
+    const ImageEdges& image = *view.image;
     flat_.emplace_back(image.width, image.height, image.edge_pixels);
     smooth_.emplace_back(image.width, image.height, image.edge_pixels, FieldBeyond::kSmooth);
   }
@@ -76,7 +77,7 @@ double Objectives::Paper(const Rigid3& camera_from_lidar, FieldBeyond beyond) co
   double squares = 0;
   double points = 0;
   for (std::size_t v = 0; v < by_paper_.size(); ++v) {
-    const std::vector<Eigen::Vector3d>& boundary = by_paper_[v]->cloud->boundary;
+    const std::vector<Eigen::Vector3d>& boundary = by_paper_[v].cloud->boundary;
     Eigen::VectorXd residuals(static_cast<Eigen::Index>(boundary.size()));
     PaperCost(&camera_, &fields[v], &boundary, camera_from_lidar)
         .Evaluate(parameters, residuals.data(), nullptr);

@@ -42,7 +42,7 @@ class Objectives {
  private:
   Camera camera_;
   Rigid3 truth_;
-  std::vector<const Observation*> by_paper_;
+  std::vector<CameraView> by_paper_;
   std::deque<DistanceField> flat_, smooth_;
   BoardProblem problem_;
   BoardState state_;

@@ -102,40 +102,39 @@ class Maker {
     const Cloud cloud = world.Sweep(kUtime + index);
     BoardInCloudOptions options;
     options.range_sigma_m = session_.rig.lidar.range_sigma_m;
-    Observation seen;
-    seen.view = (index < 9 ? "000" : "00") + std::to_string(index + 1);
-    seen.image_utime = seen.sweep_utime = kUtime + index;
-    seen.candidates = FindBoards(cloud, session_.rig.target, options).candidates;
-    if (seen.candidates.empty()) return false;
-    seen.cloud = seen.candidates.front();
-    std::vector<Observation> by_boards;
-    std::vector<Observation> by_paper;
+    ViewDetection by_boards;
+    by_boards.view = (index < 9 ? "000" : "00") + std::to_string(index + 1);
+    by_boards.sweep_utime = kUtime + index;
+    by_boards.cloud.candidates = FindBoards(cloud, session_.rig.target, options).candidates;
+    if (by_boards.cloud.candidates.empty()) return false;
     for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
-      seen.camera = session_.rig.cameras[c].name;
-      seen.image = BoardInImage(session_.rig.cameras[c], session_.rig.target,
+      const std::string& camera = session_.rig.cameras[c].name;
+      auto image = BoardInImage(session_.rig.cameras[c], session_.rig.target,
                                 session_.camera_from_lidar[c] * world.lidar_from_target(),
-                                Noise(seed_, index + 1, seen.camera));
-      if (!seen.image) return false;
-      by_boards.push_back(seen);
-      if (!paired_.paper) continue;
-      by_paper.push_back(PaperView(cloud, c, seen));
-      if (!by_paper.back().cloud) return false;
+                                Noise(seed_, index + 1, camera));
+      if (!image) return false;
+      by_boards.images.push_back({camera, kUtime + index, std::move(image), "", 0});
     }
-    Append(std::move(by_boards), &session_.by_boards);
-    Append(std::move(by_paper), &session_.by_paper);
+    if (paired_.paper) {
+      auto by_paper = ByPaper(cloud, by_boards);
+      if (!by_paper) return false;
+      session_.by_paper.push_back(std::move(*by_paper));
+    }
+    session_.by_boards.push_back(std::move(by_boards));
     return true;
   }
 
-  static void Append(std::vector<Observation> more, std::vector<Observation>* all) {
-    std::move(more.begin(), more.end(), std::back_inserter(*all));
-  }
-
-  Observation PaperView(const Cloud& cloud, std::size_t c, Observation seen) const {
-    const auto found =
-        DetectCloudEdges(cloud, Camera(session_.rig.cameras[c]), session_.camera_from_lidar[c],
-                         seen.image->corners, session_.rig.target);
-    seen.candidates.clear();
-    seen.cloud = found.edges;
+  // The same images, and the board in the cloud as each of them tells where it is.
+  std::optional<ViewDetection> ByPaper(const Cloud& cloud, ViewDetection seen) const {
+    seen.cloud.candidates.clear();
+    for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
+      auto found =
+          DetectCloudEdges(cloud, Camera(session_.rig.cameras[c]), session_.camera_from_lidar[c],
+                           seen.images[c].edges->corners, session_.rig.target);
+      if (!found.edges) return std::nullopt;
+      found.edges->camera = seen.images[c].camera;
+      seen.cloud.candidates.push_back(std::move(*found.edges));
+    }
     return seen;
   }
 
@@ -173,13 +172,13 @@ std::optional<ImageEdges> BoardInImage(const CameraSpec& spec, const Target& tar
   return image;
 }
 
-std::vector<const Observation*> ViewsOfCamera(const std::vector<Observation>& observations,
-                                              const std::string& camera) {
-  std::vector<const Observation*> out;
-  for (const Observation& o : observations) {
-    if (o.camera == camera) out.push_back(&o);
+std::vector<CameraView> ViewsOfCamera(const std::vector<ViewDetection>& detections,
+                                      const std::string& camera) {
+  std::vector<CameraView> views;
+  for (const ViewDetection& detection : detections) {
+    views.push_back(CameraViewOf(camera, detection));
   }
-  return out;
+  return views;
 }
 
 }  // namespace rgbdt::study

@@ -4,9 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/internal/noise.h"
+#include "calib/solve/camera_views.h"
 
 namespace rgbdt::study {
 
@@ -19,8 +20,8 @@ struct PairedOptions {
 struct PairedSession {
   Rig rig;                                ///< the simulator's default; without guesses
   std::vector<Rigid3> camera_from_lidar;  ///< the truth, by camera of the rig
-  std::vector<Observation> by_paper;      ///< one a camera and view
-  std::vector<Observation> by_boards;     ///< the same for `auto`
+  std::vector<ViewDetection> by_paper;    ///< one a view
+  std::vector<ViewDetection> by_boards;   ///< the same for `auto`
 };
 
 /// Clouds are rendered; the board is found in them by FindBoards for `auto`, its boundary by the
@@ -36,8 +37,8 @@ std::optional<ImageEdges> BoardInImage(const CameraSpec& camera, const Target& t
                                        const Rigid3& camera_from_target,
                                        const simulate::Noise& noise);
 
-/// Of one camera, in the order of the views.
-std::vector<const Observation*> ViewsOfCamera(const std::vector<Observation>& observations,
-                                              const std::string& camera);
+/// Of one camera, into the detections and in their order.
+std::vector<CameraView> ViewsOfCamera(const std::vector<ViewDetection>& detections,
+                                      const std::string& camera);
 
 }  // namespace rgbdt::study

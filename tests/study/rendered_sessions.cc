@@ -84,9 +84,7 @@ RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t see
     simulator.ShowView(i, name);
     View view = TakeView(simulator, options.spinning.has_value(), name, &now);
     view.heldout = IsHeldOut(i, rendered.views, rendered.heldout);
-    for (Observation& observation : DetectView(session.rig, view)) {
-      session.observations.push_back(std::move(observation));
-    }
+    session.detections.push_back(DetectView(session.rig, view));
   }
   session.truth = simulator.truth();
   return session;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/options.h"
 
 namespace rgbdt::study {
@@ -19,7 +19,7 @@ struct RenderedOptions {
 struct RenderedSession {
   Rig rig;
   Truth truth;
-  std::vector<Observation> observations;  ///< one a camera and view
+  std::vector<ViewDetection> detections;  ///< one a view
 };
 
 /// What sessions of random physics are drawn from, evenly: nothing of it is told to the estimator.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/model/cloud.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/options.h"
 

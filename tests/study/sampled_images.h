@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/options.h"
 

@@ -77,30 +77,31 @@ class SessionSampler {
     view.behind = cloud.behind;
     BoardInCloudOptions detector;
     detector.range_sigma_m = session_.rig.lidar.range_sigma_m;
-    const BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
+    BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
     if (boards.candidates.empty()) return;
+    ViewDetection detection;
+    detection.view = view.name;
+    detection.heldout = view.heldout;
+    detection.sweep_utime = kUtime + pose;
+    detection.cloud.candidates = std::move(boards.candidates);
     for (const CameraSpec& camera : session_.rig.cameras) {
-      session_.observations.push_back(Observe(camera, view, boards, pose));
+      detection.images.push_back(LookAtImage(camera, view, pose));
     }
+    session_.detections.push_back(std::move(detection));
     session_.truth.lidar_from_target[view.name] = view.lidar_from_target;
     session_.views.push_back(std::move(view));
   }
 
-  Observation Observe(const CameraSpec& camera, const SampledView& view,
-                      const BoardsInCloud& boards, int pose) const {
-    Observation observation;
-    observation.view = view.name;
-    observation.camera = camera.name;
-    observation.heldout = view.heldout;
-    observation.sweep_utime = observation.image_utime = kUtime + pose;
+  ImageDetection LookAtImage(const CameraSpec& camera, const SampledView& view, int pose) const {
+    ImageDetection detection;
+    detection.camera = camera.name;
+    detection.utime = kUtime + pose;
     const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
-    observation.image = SampledEdges(
+    detection.edges = SampledEdges(
         camera, session_.rig.target,
         session_.truth.camera_from_lidar.at(camera.name) * view.lidar_from_target, noise);
-    if (!observation.image) observation.rejected = "no pose from the corners";
-    observation.candidates = boards.candidates;
-    observation.cloud = boards.candidates.front();
-    return observation;
+    if (!detection.edges) detection.why_not = "no pose from the corners";
+    return detection;
   }
 
   SampledOptions sampled_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "tests/study/sampled_clouds.h"
 
 namespace rgbdt::study {
@@ -31,7 +31,7 @@ struct SampledSession {
   BeamModel model;
   Truth truth;
   std::vector<SampledView> views;
-  std::vector<Observation> observations;  ///< one a camera and view
+  std::vector<ViewDetection> detections;  ///< one a view
 };
 
 /// "0001" for view 0: as `rgbdt simulate` names them.

@@ -113,22 +113,21 @@ class SessionMaker {
   SessionView MakeView(int index) {
     const CloudWorld world = NextWorld();
     SessionView view;
-    view.observation.view = std::to_string(index);
-    view.observation.camera = camera_.name;
+    view.detection.view = std::to_string(index);
     view.lidar_from_target = Rigid3{turn_, {0, 0, 0}} * world.lidar_from_target();
-    LookAtImage(world, index, &view.observation);
+    view.detection.images = {LookAtImage(world, index)};
     view.wrong_cloud = index < session_options_.wrong_clouds;
     if (!view.wrong_cloud) {
-      LookAtCloud(world, index, &view.observation);
+      view.detection.cloud = LookAtCloud(world, index);
     } else if (index % 2 == 0) {
-      LookAtCloud(NextWorld(), index, &view.observation);
+      view.detection.cloud = LookAtCloud(NextWorld(), index);
     } else {
-      LookAtCloud(CloudWorld(options_, std::nullopt), index, &view.observation);
+      view.detection.cloud = LookAtCloud(CloudWorld(options_, std::nullopt), index);
     }
     return view;
   }
 
-  void LookAtImage(const CloudWorld& world, int index, Observation* observation) const {
+  ImageDetection LookAtImage(const CloudWorld& world, int index) const {
     const CameraSpec spec = SpecOf(camera_);
     const auto truth = TrueCorners(spec, world.target(), mount_ * world.lidar_from_target());
     const Noise noise(seed_, index + 1, "session corners");
@@ -137,28 +136,21 @@ class SessionMaker {
     image.height = spec.height;
     image.corners = SampledCorners(*truth, CornerSigma(camera_.kind), noise);
     const auto pose = PoseFromCorners(Camera(spec), world.target(), image.corners);
-    if (!pose) {
-      observation->rejected = "no pose from the corners";
-      return;
-    }
+    if (!pose) return {camera_.name, 0, std::nullopt, "no pose from the corners", 0};
     image.pose = pose->pose;
     image.corner_sigma_px = pose->corner_sigma_px;
-    observation->image = image;
+    return {camera_.name, 0, image, "", 0};
   }
 
-  void LookAtCloud(const CloudWorld& world, int index, Observation* observation) const {
+  CloudDetection LookAtCloud(const CloudWorld& world, int index) const {
     Cloud cloud = world.Sweep(kUtime + index);
     Turn(turn_, &cloud);
     BoardInCloudOptions options;
     options.range_sigma_m =
         options_.spinning ? options_.spinning->range_sigma_m : options_.scanner.range_sigma_m;
-    const BoardsInCloud boards = FindBoards(cloud, world.target(), options);
-    observation->candidates = boards.candidates;
-    if (boards.candidates.empty()) {
-      observation->rejected = boards.why;
-    } else {
-      observation->cloud = boards.candidates.front();
-    }
+    BoardsInCloud boards = FindBoards(cloud, world.target(), options);
+    const std::string why_not = boards.candidates.empty() ? boards.why : "";
+    return {std::move(boards.candidates), why_not, 0};
   }
 
   SessionOptions session_options_;

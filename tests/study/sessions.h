@@ -21,7 +21,7 @@ struct SessionOptions {
 
 /// What camera and LIDAR make of a board, and where it is.
 struct SessionView {
-  Observation observation;
+  ViewDetection detection;   ///< of the one camera
   Rigid3 lidar_from_target;  ///< of the board that the camera saw
   bool wrong_cloud = false;
 };

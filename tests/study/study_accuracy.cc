@@ -39,7 +39,7 @@ const std::vector<std::string> kUsualMethods = {"auto", "separate", "plane", "fi
 struct Trial {
   Rig rig;
   Truth truth;
-  std::vector<Observation> observations;
+  std::vector<ViewDetection> detections;
   Bounds bounds, plane_bounds;  ///< empty: rendered
 };
 
@@ -54,14 +54,14 @@ std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
   if (question.how == "sampled") {
     auto made = SampleSession({question.rings, question.views, question.heldout}, seed);
     if (!made) return std::nullopt;
-    return Trial{made->rig, made->truth, made->observations, BoundOf(*made),
+    return Trial{made->rig, made->truth, made->detections, BoundOf(*made),
                  BoundOf(*made, BoundData::kPlanes)};
   }
   const bool random = question.how == "random";
   try {
     RenderedSession made =
         RenderSession({question.rings, question.views, question.heldout, random}, seed);
-    return Trial{made.rig, made.truth, std::move(made.observations), {}, {}};
+    return Trial{made.rig, made.truth, std::move(made.detections), {}, {}};
   } catch (const InputError& error) {
     std::printf("seed %llu left out: %s\n", static_cast<unsigned long long>(seed), error.what());
     return std::nullopt;
@@ -69,15 +69,12 @@ std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
 }
 
 /// The first guess alone, as a report.
-Report GuessOnly(const Rig& rig, const std::vector<Observation>& observations) {
+Report GuessOnly(const Rig& rig, const std::vector<ViewDetection>& detections) {
   Report report;
   for (const CameraSpec& camera : rig.cameras) {
-    std::vector<const Observation*> views;
-    for (const Observation& o : observations) {
-      if (o.camera == camera.name && !o.heldout && o.rejected.empty()) views.push_back(&o);
-    }
+    const CameraViews views = ViewsOf(camera, detections);
     const auto begin = std::chrono::steady_clock::now();
-    const FirstGuess guess = GuessFromBoards(views);
+    const FirstGuess guess = GuessFromBoards(views.Used());
     CameraReport& result = report.cameras.emplace_back();
     result.solve_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -93,20 +90,20 @@ Report GuessOnly(const Rig& rig, const std::vector<Observation>& observations) {
 }
 
 Report Solve(const std::string& method, const Trial& trial) {
-  if (method == "first_guess") return GuessOnly(trial.rig, trial.observations);
+  if (method == "first_guess") return GuessOnly(trial.rig, trial.detections);
   CalibrateOptions options;
   options.diagnostics = false;
   options.wide_start = false;
   options.joint = method != "separate";
   options.method = method == "separate" ? kAutoMethod : method;
-  return Calibrate(trial.rig, trial.observations, options);
+  return Calibrate(trial.rig, trial.detections, options);
 }
 
 /// What the true extrinsics make of the views held out.
 Report JudgeTruth(const Trial& trial) {
-  std::vector<Observation> heldout;
-  for (const Observation& o : trial.observations) {
-    if (o.heldout) heldout.push_back(o);
+  std::vector<ViewDetection> heldout;
+  for (const ViewDetection& view : trial.detections) {
+    if (view.heldout) heldout.push_back(view);
   }
   Calibration calibration;
   calibration.method = kAutoMethod;
@@ -118,15 +115,13 @@ Report JudgeTruth(const Trial& trial) {
 
 /// Chi-square of the boards in the views' clouds by their stated covariances: 1 on average.
 std::optional<double> BoardChi2Per6(const Trial& trial) {
-  const std::string& camera = trial.rig.cameras[0].name;
   double sum = 0;
   int count = 0;
-  for (const Observation& o : trial.observations) {
-    if (o.camera != camera) continue;
-    const Rigid3& lidar_from_target = trial.truth.lidar_from_target.at(o.view);
-    const int found = FindAmong(o.candidates, lidar_from_target);
+  for (const ViewDetection& view : trial.detections) {
+    const Rigid3& lidar_from_target = trial.truth.lidar_from_target.at(view.view);
+    const int found = FindAmong(view.cloud.candidates, lidar_from_target);
     if (found < 0) continue;
-    const auto& board = o.candidates[static_cast<std::size_t>(found)];
+    const auto& board = view.cloud.candidates[static_cast<std::size_t>(found)];
     sum += study::ErrorOf(*board.pose, lidar_from_target).chi2 / 6;
     ++count;
   }

@@ -25,11 +25,15 @@ struct Accepted {
 };
 
 // What WithChosenCandidate lets pass, held against where the camera's board truly is.
+CameraView CameraViewOfIts(const SessionView& view) {
+  return CameraViewOf(view.detection.images[0].camera, view.detection);
+}
+
 Accepted CountAccepted(const Session& session, const Rigid3& camera_from_lidar) {
   Accepted accepted;
   for (const SessionView& view : session.views) {
     accepted.wrong_clouds += view.wrong_cloud ? 1 : 0;
-    const Observation chosen = WithChosenCandidate(view.observation, camera_from_lidar);
+    const CameraView chosen = WithChosenCandidate(CameraViewOfIts(view), camera_from_lidar);
     if (!chosen.usable()) continue;
     ++accepted.all;
     accepted.from_wrong_clouds += view.wrong_cloud ? 1 : 0;
@@ -45,15 +49,17 @@ Accepted CountAccepted(const Session& session, const Rigid3& camera_from_lidar) 
 int ViewsWithBoard(const Session& session) {
   int views = 0;
   for (const SessionView& view : session.views) {
-    views += FindAmong(view.observation.candidates, view.lidar_from_target) >= 0 ? 1 : 0;
+    views += FindAmong(view.detection.cloud.candidates, view.lidar_from_target) >= 0 ? 1 : 0;
   }
   return views;
 }
 
 void WriteLine(const Session& session, std::uint64_t seed, int rings, std::ofstream* csv) {
-  std::vector<const Observation*> observations;
-  for (const SessionView& view : session.views) observations.push_back(&view.observation);
-  const FirstGuess guess = GuessFromBoards(observations);
+  std::vector<CameraView> views;
+  for (const SessionView& view : session.views) views.push_back(CameraViewOfIts(view));
+  std::vector<const CameraView*> pointers;
+  for (const CameraView& view : views) pointers.push_back(&view);
+  const FirstGuess guess = GuessFromBoards(pointers);
   const bool guessed = guess.camera_from_lidar.has_value();
   Accepted accepted;
   double degrees = 180;

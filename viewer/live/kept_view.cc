@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kPictureWidth = 2000;  // [px]: corners are picked in it
 constexpr int kPictureQuality = 90;
+constexpr const char* kNotYet = "not looked at yet";
 
 using SharedBytes = std::shared_ptr<const std::string>;
 
@@ -65,25 +66,28 @@ std::vector<Post> ThumbPosts(const KeptView& view) {
   return posts;
 }
 
-std::optional<Post> BoardPost(const KeptView& view, const Observation& observation) {
-  if (!observation.cloud || view.cloud == nullptr) return std::nullopt;
+std::optional<Post> BoardPost(const KeptView& view, const std::optional<CloudEdges>& board) {
+  if (!board || view.cloud == nullptr) return std::nullopt;
   Post post;
   post.topic = "thumb/" + view.name + "/";
-  post.make = [observation, cloud = view.cloud] { return BoardThumbFrame(observation, *cloud); };
+  post.make = [name = view.name, board = *board, cloud = view.cloud] {
+    return BoardThumbFrame(name, board, *cloud);
+  };
   return post;
 }
 
 std::vector<Post> PicturePosts(const KeptView& view, const CameraSpec& camera,
-                               const Observation* observation,
+                               const std::optional<ViewDetection>& detection,
                                const std::optional<Rigid3>& camera_from_lidar) {
   const auto picture = view.pictures.find(camera.name);
   if (picture == view.pictures.end()) return {};
   std::vector<Post> posts;
   posts.push_back(Ready("view/" + view.name + "/" + camera.name, picture->second, false));
-  Observation seen;
+  ViewDetection seen;
   seen.view = view.name;
-  seen.camera = camera.name;
-  if (observation != nullptr) seen = *observation;
+  seen.images.push_back({camera.name, 0, std::nullopt, kNotYet, 0});
+  seen.cloud.why_not = kNotYet;
+  if (detection) seen = *detection;
   Post overlay;
   overlay.topic = "overlay/" + view.name + "/" + camera.name;
   overlay.kept = false;

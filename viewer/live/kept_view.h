@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "viewer/server/outbox.h"
 
 namespace rgbdt::viewer {
@@ -31,12 +31,12 @@ KeptView KeepView(const View& view);
 std::vector<Post> ThumbPosts(const KeptView& view);
 
 /// The board in the cloud; made when the first browser gets it. Nothing where it was not found.
-std::optional<Post> BoardPost(const KeptView& view, const Observation& observation);
+std::optional<Post> BoardPost(const KeptView& view, const std::optional<CloudEdges>& board);
 
-/// A camera's image in the view, and what is to be drawn on it. `observation` may be null, and
-/// `camera_from_lidar` empty.
+/// A camera's image in the view, and what is to be drawn on it. `detection` and
+/// `camera_from_lidar` may be empty.
 std::vector<Post> PicturePosts(const KeptView& view, const CameraSpec& camera,
-                               const Observation* observation,
+                               const std::optional<ViewDetection>& detection,
                                const std::optional<Rigid3>& camera_from_lidar);
 
 }  // namespace rgbdt::viewer

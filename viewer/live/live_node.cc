@@ -22,9 +22,11 @@ constexpr std::size_t kMaxViews = 200;
 constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
 
 // Without what the page does not show and is large.
-Observation Slim(Observation observation) {
-  if (observation.image) observation.image->edge_pixels.clear();
-  return observation;
+ViewDetection Slim(ViewDetection detection) {
+  for (ImageDetection& image : detection.images) {
+    if (image.edges) image.edges->edge_pixels.clear();
+  }
+  return detection;
 }
 
 SessionRequestKind RequestOf(const std::string& name) {
@@ -38,7 +40,7 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",         "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "OBSERVATION",
+  return {"RIG",         "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "DETECTION",
           "CALIBRATION", "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
           "SIGHTING",    "STATUS", "SESSION_EVENT"};
 }
@@ -63,8 +65,8 @@ void LiveNode::Take(const Message& message) {
     collector_.Add(*chunk);
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     collector_.Add(*picks);
-  } else if (const auto* observation = std::get_if<Observation>(&message)) {
-    OnObservation(*observation);
+  } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
+    OnDetection(*detection);
   } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
     OnCalibration(*calibration);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
@@ -174,30 +176,28 @@ void LiveNode::OnImage(const Image& image) {
   outbox_->Send(std::move(post));
 }
 
-void LiveNode::OnObservation(const Observation& observation) {
-  ViewState* view = StateOf(observation.view);
+void LiveNode::OnDetection(const ViewDetection& detection) {
+  ViewState* view = StateOf(detection.view);
   if (view == nullptr) return;
-  view->heldout = observation.heldout;
-  view->observations[observation.camera] = Slim(observation);
-  ForgetRejected(observation);
+  view->heldout = detection.heldout;
+  view->detection = Slim(detection);
+  ForgetRejected(detection.view);
   changed_ = true;
-  const auto kept = views_.find(observation.view);
+  const auto kept = views_.find(detection.view);
   if (kept == views_.end()) return;
-  if (auto post = BoardPost(*kept->second, view->observations[observation.camera])) {
+  if (auto post = BoardPost(*kept->second, BoardInCloud(detection, state_.calibration))) {
     outbox_->Send(std::move(*post));
   }
 }
 
 // A report of before knows nothing of a view that was looked at again.
-void LiveNode::ForgetRejected(const Observation& observation) {
+void LiveNode::ForgetRejected(const std::string& view) {
   if (!state_.report) return;
   for (CameraReport& camera : state_.report->cameras) {
-    if (camera.calibration.camera != observation.camera) continue;
     auto& rejected = camera.rejected;
-    rejected.erase(
-        std::remove_if(rejected.begin(), rejected.end(),
-                       [&](const RejectedView& r) { return r.view == observation.view; }),
-        rejected.end());
+    rejected.erase(std::remove_if(rejected.begin(), rejected.end(),
+                                  [&](const RejectedView& r) { return r.view == view; }),
+                   rejected.end());
   }
 }
 
@@ -229,8 +229,8 @@ void LiveNode::CountSigma(const CameraCalibration& calibration) {
   if (!sigma) return;
   const auto used =
       std::count_if(state_.views.begin(), state_.views.end(), [&](const ViewState& view) {
-        const auto seen = view.observations.find(calibration.camera);
-        return !view.heldout && seen != view.observations.end() && seen->second.usable();
+        return !view.heldout && view.detection &&
+               CameraViewOf(calibration.camera, *view.detection).usable();
       });
   if (used == 0) return;  // this viewer came after the views
   auto& steps = state_.sigma;
@@ -372,16 +372,12 @@ std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
   if (!rig_) return posts;
   const auto state = std::find_if(state_.views.begin(), state_.views.end(),
                                   [&](const ViewState& v) { return v.name == view.name; });
+  const auto detection = state == state_.views.end() ? std::nullopt : state->detection;
   for (const CameraSpec& camera : rig_->cameras) {
-    const Observation* observation = nullptr;
-    if (state != state_.views.end()) {
-      const auto seen = state->observations.find(camera.name);
-      if (seen != state->observations.end()) observation = &seen->second;
-    }
     const CameraCalibration* calibration = state_.calibration.Find(camera.name);
     std::optional<Rigid3> camera_from_lidar;
     if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
-    for (Post& post : PicturePosts(view, camera, observation, camera_from_lidar)) {
+    for (Post& post : PicturePosts(view, camera, detection, camera_from_lidar)) {
       posts.push_back(std::move(post));
     }
   }

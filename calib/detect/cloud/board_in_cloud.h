@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "calib/detect/cloud/rectangle_fit.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "calib/camera/camera.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -80,8 +80,8 @@ void FromDetection(const DetectedView& detection, proto::DetectedView* out) {
 }
 
 DetectedView ToDetection(const proto::DetectedView& message) {
-  DetectedView detection{message.view(), message.heldout(), {}, message.cloud_candidates(),
-                         message.cloud_why_not()};
+  DetectedView detection{
+      message.view(), message.heldout(), {}, message.cloud_candidates(), message.cloud_why_not()};
   for (const proto::DetectedView::InImage& image : message.images()) {
     detection.images.push_back({image.camera(), image.why_not()});
   }

@@ -6,8 +6,8 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -10,7 +10,7 @@ namespace rgbdt {
 void CalibrateByPaper(const CalibrateOptions& options, CameraViews* camera);
 
 /// Levenberg-Marquardt over the paper's objective from one start: the rotation first, then all six
-/// parameters. `used` are usable observations of one camera.
+/// parameters. `used` are usable views of one camera.
 CameraCalibration SolvePaper(const CameraSpec& camera, const std::vector<const CameraView*>& used,
                              const Rigid3& start, const CalibrateOptions& options);
 

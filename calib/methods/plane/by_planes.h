@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/options.h"
 
@@ -15,7 +15,7 @@ namespace rgbdt {
 /// from the plane in which the camera sees the board, least squares over camera_from_lidar from a
 /// start nearby. Every point counts the same, where it
 /// was measured; the planes count as exact; edges have no say. The
-/// covariance is the usual one, by the residuals. `used`: usable observations of one camera with
+/// covariance is the usual one, by the residuals. `used`: usable views of one camera with
 /// image poses and scatters.
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start);
 

@@ -115,14 +115,10 @@ cv::Mat Draw(const CloudEdges& board, const Cloud& cloud) {
 
 }  // namespace
 
-std::string BoardThumbFrame(const Observation& observation, const Cloud& cloud) {
-  if (!observation.cloud) return {};
-  FrameWriter frame({{"type", "thumb"},
-                     {"view", observation.view},
-                     {"camera", ""},
-                     {"width", kWidth},
-                     {"height", kHeight}});
-  frame.AddBytes("jpeg", EncodeJpeg(Draw(*observation.cloud, cloud), kQuality));
+std::string BoardThumbFrame(const std::string& view, const CloudEdges& board, const Cloud& cloud) {
+  FrameWriter frame(
+      {{"type", "thumb"}, {"view", view}, {"camera", ""}, {"width", kWidth}, {"height", kHeight}});
+  frame.AddBytes("jpeg", EncodeJpeg(Draw(board, cloud), kQuality));
   return frame.Finish();
 }
 

@@ -37,10 +37,9 @@ std::vector<Eigen::Vector3d> EdgeOn(const Camera& camera, const Rigid3& camera_f
   return edge;
 }
 
-std::string TextOf(const Observation& observation) {
-  if (!observation.rejected.empty()) return observation.rejected;
-  if (!observation.image) return "no board in the image";
-  return observation.heldout ? "board found; held out" : "board found";
+std::string TextOf(const CameraView& view) {
+  if (!view.usable()) return view.rejected;
+  return view.heldout ? "board found; held out" : "board found";
 }
 
 template <typename Vector>
@@ -72,23 +71,24 @@ std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& spec, const Rigid3& ca
   return Scattered(seen, most);
 }
 
-Overlay ViewOverlay(const CameraSpec& camera, const Observation& observation, const Cloud* cloud,
+Overlay ViewOverlay(const CameraSpec& camera, const ViewDetection& detection, const Cloud* cloud,
                     const std::optional<Rigid3>& camera_from_lidar) {
+  const CameraView view = CameraViewOf(camera.name, detection);
   Overlay overlay;
   overlay.camera = camera.name;
-  overlay.view = observation.view;
-  overlay.utime = observation.image_utime;
+  overlay.view = view.view;
+  overlay.utime = view.image_utime;
   overlay.calibrated = camera_from_lidar.has_value();
-  if (observation.image) {
-    const auto& corners = observation.image->corners;
+  if (view.image != nullptr) {
+    const auto& corners = view.image->corners;
     std::copy_if(corners.begin(), corners.end(), std::back_inserter(overlay.corners), IsSeen);
-    overlay.outline = observation.image->outline;
+    overlay.outline = view.image->outline;
   }
   if (!camera_from_lidar) {
-    overlay.text = TextOf(observation);
+    overlay.text = TextOf(view);
     return overlay;
   }
-  const Observation chosen = WithChosenCandidate(observation, *camera_from_lidar, kJudgeGate);
+  const CameraView chosen = WithChosenCandidate(view, *camera_from_lidar, kJudgeGate);
   overlay.text = TextOf(chosen);
   if (chosen.cloud) {
     overlay.edge =

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "calib/model/cloud.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt::viewer {
 
@@ -33,15 +33,14 @@ std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& camera, const Rigid3& 
 
 /// A view's overlay: what detection found in the image and, with a calibration, the board's edge in
 /// the cloud and the cloud itself, both laid on the image. `cloud` may be null.
-Overlay ViewOverlay(const CameraSpec& camera, const Observation& observation, const Cloud* cloud,
+Overlay ViewOverlay(const CameraSpec& camera, const ViewDetection& detection, const Cloud* cloud,
                     const std::optional<Rigid3>& camera_from_lidar);
 
 /// As an OverlayFrame.
 std::string OverlayFrame(const Overlay& overlay, bool ack);
 
 /// A ThumbFrame of the board in the cloud, seen along its normal from the LIDAR's side: its points
-/// by intensity, what lies round it dimmer, crossings as marks. Empty where the observation has no
-/// board in the cloud.
-std::string BoardThumbFrame(const Observation& observation, const Cloud& cloud);
+/// by intensity, what lies round it dimmer, crossings as marks.
+std::string BoardThumbFrame(const std::string& view, const CloudEdges& board, const Cloud& cloud);
 
 }  // namespace rgbdt::viewer

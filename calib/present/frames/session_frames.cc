@@ -28,16 +28,16 @@ std::string HelloFrame(const SessionFramesOptions& options) {
 }
 
 std::vector<ViewState> ViewsOf(const Session& session,
-                               const std::vector<Observation>& observations) {
+                               const std::vector<ViewDetection>& detections) {
   std::vector<ViewState> views;
   for (const std::string& name : session.views) {
     ViewState& view = views.emplace_back();
     view.name = name;
-    for (const Observation& observation : observations) {
-      if (observation.view != name) continue;
-      view.heldout = view.heldout || observation.heldout;
-      view.images[observation.camera] = observation.image_utime;
-      view.observations[observation.camera] = observation;
+    for (const ViewDetection& detection : detections) {
+      if (detection.view != name) continue;
+      view.heldout = detection.heldout;
+      for (const ImageDetection& image : detection.images) view.images[image.camera] = image.utime;
+      view.detection = detection;
     }
   }
   return views;
@@ -57,7 +57,7 @@ SigmaStep SigmaStepOf(const Report& report) {
 
 // How sure the calibration was with the first view, the first two, ...: solved again with each, in
 // milliseconds. The last is the report's own.
-std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<Observation>& observations,
+std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<ViewDetection>& detections,
                                   const Report& report) {
   std::vector<SigmaStep> steps;
   CalibrateOptions options;
@@ -66,11 +66,11 @@ std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<Observation>
   for (const CameraReport& camera : report.cameras) {
     used.insert(camera.used.begin(), camera.used.end());
   }
-  std::vector<Observation> so_far;
+  std::vector<ViewDetection> so_far;
   for (const std::string& view : used) {
     if (report.method != kAutoMethod || view == *used.rbegin()) break;
-    for (const Observation& o : observations) {
-      if (o.view == view) so_far.push_back(o);
+    for (const ViewDetection& detection : detections) {
+      if (detection.view == view) so_far.push_back(detection);
     }
     SigmaStep step = SigmaStepOf(Calibrate(rig, so_far, options));
     if (!step.cameras.empty()) steps.push_back(std::move(step));
@@ -109,9 +109,12 @@ class FrameMaker {
     try {
       const View view = ReadView(session_, state.name);
       for (const CameraSpec& camera : session_.rig.cameras) AddCamera(camera, state, view, &out);
-      const auto board = ObservedBoard(state.observations, calibration_);
-      if (board)
-        out.thumbs.push_back({"thumb/" + view.name + "/", BoardThumbFrame(*board, view.cloud)});
+      const auto board =
+          state.detection ? BoardInCloud(*state.detection, calibration_) : std::nullopt;
+      if (board) {
+        out.thumbs.push_back(
+            {"thumb/" + view.name + "/", BoardThumbFrame(view.name, *board, view.cloud)});
+      }
       if (fuse) out.cloud = FusedFrame(view);
     } catch (const std::exception& e) {
       out.failure = e.what();
@@ -147,11 +150,10 @@ class FrameMaker {
     ImageFrameOptions options;
     options.max_width = options_.image_width;
     out->images.push_back({"image/" + of, ImageFrame(*image, view.name, false, options)});
-    const auto observation = state.observations.find(camera.name);
-    if (observation == state.observations.end()) return;
+    if (!state.detection) return;
     const CameraCalibration* found = calibration_.Find(camera.name);
     Overlay overlay =
-        ViewOverlay(camera, observation->second, &view.cloud,
+        ViewOverlay(camera, *state.detection, &view.cloud,
                     found == nullptr ? std::nullopt : std::make_optional(found->camera_from_lidar));
     overlay.utime = image->utime;
     if (overlay.cloud.size() > options_.overlay_points) {
@@ -188,13 +190,13 @@ std::string LastCloud(const FrameMaker& maker, const std::vector<ViewState>& vie
 
 // Cameras of which nothing is known in a view that could not be read.
 void TellFailure(const Rig& rig, const std::string& failure, ViewState* view) {
+  if (view->detection) return;
+  ViewDetection& detection = view->detection.emplace();
+  detection.view = view->name;
   for (const CameraSpec& camera : rig.cameras) {
-    if (view->observations.count(camera.name) != 0) continue;
-    Observation& observation = view->observations[camera.name];
-    observation.view = view->name;
-    observation.camera = camera.name;
-    observation.rejected = failure;
+    detection.images.push_back({camera.name, 0, std::nullopt, failure, 0});
   }
+  detection.cloud.why_not = failure;
 }
 
 void Append(std::vector<NamedFrame> from, std::vector<NamedFrame>* to) {
@@ -204,11 +206,11 @@ void Append(std::vector<NamedFrame> from, std::vector<NamedFrame>* to) {
 }  // namespace
 
 std::vector<NamedFrame> SessionFrames(const Session& session,
-                                      const std::vector<Observation>& observations,
+                                      const std::vector<ViewDetection>& detections,
                                       const Report& report, const SessionFramesOptions& options) {
   SessionState state = StateOf(report);
-  state.views = ViewsOf(session, observations);
-  state.sigma = SigmaSteps(session.rig, observations, report);
+  state.views = ViewsOf(session, detections);
+  state.sigma = SigmaSteps(session.rig, detections, report);
   const FrameMaker maker(session, state.calibration, options);
   std::vector<ViewFrames> made = MakeAll(maker, state.views);
   const std::string cloud = LastCloud(maker, state.views, made);

@@ -26,10 +26,10 @@ struct SessionFramesOptions {
 
 /// All panels of a finished session, in the order in which a page is to take them: hello, rig,
 /// session, thumbs, each view's images and overlays, and the fused cloud of its last view that has
-/// one. `observations` may be of any order; a view whose files cannot be read is shown with the
+/// one. `detections` may be of any order; a view whose files cannot be read is shown with the
 /// reason. Deterministic.
 std::vector<NamedFrame> SessionFrames(const Session& session,
-                                      const std::vector<Observation>& observations,
+                                      const std::vector<ViewDetection>& detections,
                                       const Report& report, const SessionFramesOptions& options);
 
 }  // namespace rgbdt::viewer

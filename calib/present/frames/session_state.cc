@@ -50,7 +50,8 @@ std::vector<std::string> CameraNames(const SessionState& state, const Rig* rig) 
   for (const CameraCalibration& camera : state.calibration.cameras) heard.insert(camera.camera);
   for (const ViewState& view : state.views) {
     for (const auto& image : view.images) heard.insert(image.first);
-    for (const auto& observation : view.observations) heard.insert(observation.first);
+    if (!view.detection) continue;
+    for (const ImageDetection& image : view.detection->images) heard.insert(image.camera);
   }
   return {heard.begin(), heard.end()};
 }
@@ -63,27 +64,26 @@ const CameraReport* ReportOf(const SessionState& state, const std::string& camer
   return found == state.report->cameras.end() ? nullptr : &*found;
 }
 
-const Observation* ObservationOf(const ViewState& view, const std::string& camera) {
-  const auto found = view.observations.find(camera);
-  return found == view.observations.end() ? nullptr : &found->second;
+const ImageDetection* DetectionOf(const ViewState& view, const std::string& camera) {
+  return view.detection ? view.detection->Find(camera) : nullptr;
 }
 
 Utime ImageOf(const ViewState& view, const std::string& camera) {
   const auto found = view.images.find(camera);
   if (found != view.images.end() && found->second != 0) return found->second;
-  const Observation* observation = ObservationOf(view, camera);
-  return observation == nullptr ? 0 : observation->image_utime;
+  const ImageDetection* image = DetectionOf(view, camera);
+  return image == nullptr ? 0 : image->utime;
 }
 
 // Why the solver left the view out, or detection; empty: neither did.
-std::string WhyRejected(const CameraReport* report, const Observation& observation) {
+std::string WhyRejected(const CameraReport* report, const ViewDetection& detection,
+                        const std::string& camera) {
   if (report != nullptr) {
     for (const RejectedView& rejected : report->rejected) {
-      if (rejected.view == observation.view) return rejected.why;
+      if (rejected.view == detection.view) return rejected.why;
     }
   }
-  if (!observation.rejected.empty() || observation.usable()) return observation.rejected;
-  return "the board was not found in image and cloud";
+  return CameraViewOf(camera, detection).rejected;
 }
 
 const ViewQuality* QualityOf(const CameraReport* report, const std::string& view) {
@@ -106,14 +106,16 @@ json ViewCameraOf(const ViewState& view, const std::string& camera, const Camera
   json out = {{"camera", camera},       {"image_utime", ImageOf(view, camera)},
               {"state", "waiting"},     {"why", ""},
               {"picked", false},        {"outline", json::array()},
-              {"edge_rms_px", nullptr}, {"edge_rms_sigmas", nullptr}};
-  const Observation* observation = ObservationOf(view, camera);
-  if (observation == nullptr) return out;
-  const std::string why = WhyRejected(report, *observation);
+              {"edge_rms_px", nullptr}, {"edge_rms_sigmas", nullptr},
+              {"image_why_not", ""}};
+  const ImageDetection* image = DetectionOf(view, camera);
+  if (image == nullptr) return out;
+  const std::string why = WhyRejected(report, *view.detection, camera);
   out["state"] = why.empty() ? "accepted" : "rejected";
   out["why"] = why;
-  out["picked"] = observation->image && observation->image->picked;
-  out["outline"] = CornersOf(observation->image);
+  out["image_why_not"] = image->why_not;
+  out["picked"] = image->edges && image->edges->picked;
+  out["outline"] = CornersOf(image->edges);
   if (const ViewQuality* quality = QualityOf(report, view.name)) {
     out["edge_rms_px"] = FiniteOrNull(quality->edge_rms_px);
     out["edge_rms_sigmas"] = Optional(quality->edge_rms_whitened);
@@ -122,12 +124,12 @@ json ViewCameraOf(const ViewState& view, const std::string& camera, const Camera
 }
 
 json BoardOf(const ViewState& view, const Calibration& calibration) {
-  const auto observed = ObservedBoard(view.observations, calibration);
-  if (!observed) return nullptr;
-  const CloudEdges& board = *observed->cloud;
-  return {{"centre_m", NumbersOf(board.centre)},
-          {"normal", NumbersOf(board.normal)},
-          {"distance_m", FiniteOrNull(board.centre.norm())}};
+  if (!view.detection) return nullptr;
+  const auto board = BoardInCloud(*view.detection, calibration);
+  if (!board) return nullptr;
+  return {{"centre_m", NumbersOf(board->centre)},
+          {"normal", NumbersOf(board->normal)},
+          {"distance_m", FiniteOrNull(board->centre.norm())}};
 }
 
 json ViewsOf(const SessionState& state, const std::vector<std::string>& cameras) {
@@ -141,6 +143,7 @@ json ViewsOf(const SessionState& state, const std::vector<std::string>& cameras)
                      {"heldout", view.heldout},
                      {"waits", view.waits},
                      {"board", BoardOf(view, state.calibration)},
+                     {"cloud_why_not", view.detection ? view.detection->cloud.why_not : ""},
                      {"cameras", of_cameras}});
   }
   return views;
@@ -152,9 +155,8 @@ std::string WhyPicks(const ViewState& view, const std::string& camera) {
   const auto& asked = view.picks_wanted;
   if (std::find(asked.begin(), asked.end(), camera) != asked.end())
     return "the session asks for it";
-  const Observation* observation = ObservationOf(view, camera);
-  if (observation == nullptr || observation->image) return "";
-  return observation->rejected;
+  const ImageDetection* image = DetectionOf(view, camera);
+  return image == nullptr || image->edges ? "" : image->why_not;
 }
 
 // Views that wait for picks or whose image was looked at in vain, the newest first: that is the
@@ -192,9 +194,8 @@ JudgedCamera JudgedOf(const SessionState& state, const std::string& camera) {
   JudgedCamera judged{camera, state.calibration.Find(camera) != nullptr, 0,
                       ReportOf(state, camera)};
   for (const ViewState& view : state.views) {
-    const Observation* observation = ObservationOf(view, camera);
-    if (observation == nullptr) continue;
-    judged.views_found += WhyRejected(judged.report, *observation).empty() ? 1 : 0;
+    if (DetectionOf(view, camera) == nullptr) continue;
+    judged.views_found += WhyRejected(judged.report, *view.detection, camera).empty() ? 1 : 0;
   }
   return judged;
 }
@@ -270,20 +271,21 @@ std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibr
   return std::make_pair(std::sqrt(rotation) * 180 / M_PI, std::sqrt(centre) * 1000);
 }
 
-std::optional<Observation> ObservedBoard(const std::map<std::string, Observation>& by_camera,
-                                         const Calibration& calibration) {
-  std::optional<Observation> uncertain;
-  for (const auto& [name, observation] : by_camera) {
-    const CameraCalibration* camera = calibration.Find(name);
-    if (!observation.cloud) continue;
-    if (camera == nullptr) {
-      if (!uncertain) uncertain = observation;
+std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
+                                       const Calibration& calibration) {
+  std::optional<CloudEdges> likeliest;
+  for (const ImageDetection& image : detection.images) {
+    CameraView view = CameraViewOf(image.camera, detection);
+    const CameraCalibration* camera = calibration.Find(image.camera);
+    if (camera == nullptr || !view.usable()) {
+      if (!likeliest) likeliest = view.cloud;
       continue;
     }
-    Observation chosen = WithChosenCandidate(observation, camera->camera_from_lidar, kJudgeGate);
-    if (chosen.cloud) return chosen;
+    const CameraView chosen =
+        WithChosenCandidate(std::move(view), camera->camera_from_lidar, kJudgeGate);
+    if (chosen.usable()) return chosen.cloud;
   }
-  return uncertain;
+  return likeliest;
 }
 
 std::string RigFrame(const Rig& rig) {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
 #include "calib/model/session.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt::viewer {
 
@@ -22,10 +22,10 @@ struct SigmaStep {
 struct ViewState {
   std::string name;
   bool heldout = false;
-  std::string waits;                      ///< what is missing; empty: nothing
-  std::vector<std::string> picks_wanted;  ///< cameras whose image waits for a person's picks
-  std::map<std::string, Utime> images;    ///< by camera: the image that belongs to it
-  std::map<std::string, Observation> observations;  ///< by camera
+  std::string waits;                       ///< what is missing; empty: nothing
+  std::vector<std::string> picks_wanted;   ///< cameras whose image waits for a person's picks
+  std::map<std::string, Utime> images;     ///< by camera: the image that belongs to it
+  std::optional<ViewDetection> detection;  ///< nothing: not looked at yet
 };
 
 /// All that the Session panel shows, of a live session or a finished one; becomes a SessionFrame.
@@ -47,10 +47,10 @@ struct SessionState {
 /// 1 sigma of a calibration: rotation, RMS of the three axes [deg], and centre, likewise [mm].
 std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration);
 
-/// What a view shows of the board in the cloud: the observation whose candidate the calibration
-/// chooses or, without one, the first that has any. Nothing where no camera has one.
-std::optional<Observation> ObservedBoard(const std::map<std::string, Observation>& by_camera,
-                                         const Calibration& calibration);
+/// The board in a view's cloud: the candidate that a calibrated camera chooses or, without one, the
+/// likeliest. Nothing where there is none.
+std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
+                                       const Calibration& calibration);
 
 /// A RigFrame.
 std::string RigFrame(const Rig& rig);

@@ -31,7 +31,7 @@ BoardSolution SolvePart(const JointProblem& joint, const BoardState& near,
 }
 
 std::vector<const CameraView*> ViewsOf(const JointProblem& joint, std::size_t camera,
-                                        const std::vector<std::size_t>& views) {
+                                       const std::vector<std::size_t>& views) {
   std::vector<const CameraView*> out;
   for (const std::size_t v : views) {
     const CameraView* o = joint.cameras[camera].views->Find(joint.problem.views[v].name);

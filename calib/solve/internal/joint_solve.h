@@ -36,7 +36,7 @@ struct JointResult {
 
 /// Solves; leaves out what contradicts the rest, worst first, at most a third of a camera's views,
 /// and solves again. What is left out is gone from the problem, and rejected with its reason among
-/// the cameras' observations. A view's own estimate of a camera against that of all others: beyond
+/// the cameras' views. A view's own estimate of a camera against that of all others: beyond
 /// what chance does once in 20,000 views, it is out. A side's own shift beyond 4 of its sigmas: its
 /// crossings are out, and a remark says so.
 JointResult SolveJointly(JointProblem* joint);

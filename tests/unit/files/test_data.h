@@ -16,9 +16,9 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/errors.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt::test {
 

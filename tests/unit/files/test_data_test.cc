@@ -171,6 +171,9 @@ Report MakeReport() {
   report.method = "paper";
   report.rig_hash = "0123456789abcdef";
   report.utime = kNow;
+  report.detections = {{"0001", false, {{"rgb", ""}, {"thermal", ""}}, 2, ""},
+                       {"0003", true, {{"rgb", ""}, {"thermal", "no checkerboard"}}, 1, ""},
+                       {"0006", false, {{"rgb", "too dark"}, {"thermal", ""}}, 0, "no plane"}};
   report.cameras = {MakeCameraReport("rgb"), MakeCameraReport("thermal")};
   Matrix6d covariance;
   for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = 1e-8 / (i + 3);

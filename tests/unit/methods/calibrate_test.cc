@@ -25,8 +25,8 @@ double ReprojectionRms(const BoardWorld& world, const Rigid3& a, const Rigid3& b
   const Camera camera(world.spec);
   double squares = 0;
   double count = 0;
-  for (const Observation& o : world.views) {
-    for (const Eigen::Vector3d& p : o.cloud->boundary) {
+  for (const ViewDetection& view : world.views) {
+    for (const Eigen::Vector3d& p : view.cloud.candidates[0].boundary) {
       const auto at_a = camera.Project(a * p);
       const auto at_b = camera.Project(b * p);
       if (!at_a || !at_b) return 1e9;
@@ -60,7 +60,8 @@ TEST_P(SolvePaperFrom, TwoDegreesAndFiveCentimetresRecoversThePoseWithinThePixel
   const BoardWorld world = MakeBoardWorld(12, GetParam());
   const Rigid3 start = GuessOff(world.camera_from_lidar, 2 * kDegree, 0.05, GetParam());
   ASSERT_GT(ReprojectionRms(world, start, world.camera_from_lidar), 5);
-  const CameraCalibration result = SolvePaper(world.spec, world.Used(), start, Patient());
+  const CameraCalibration result =
+      SolvePaper(world.spec, PointersTo(world.Used()), start, Patient());
   EXPECT_EQ(result.camera, "rgb");
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.status, "converged");
@@ -79,7 +80,7 @@ TEST(SolvePaper, WhereNothingProjectsIntoTheImageItHasNotConverged) {
   const BoardWorld world = MakeBoardWorld(6);
   // Half a turn about the camera's y: all points lie behind it, and the objective is flat.
   const Rigid3 start = RotationAbout({0, 1, 0}, M_PI) * world.camera_from_lidar;
-  const CameraCalibration result = SolvePaper(world.spec, world.Used(), start, {});
+  const CameraCalibration result = SolvePaper(world.spec, PointersTo(world.Used()), start, {});
   EXPECT_FALSE(result.converged);
   EXPECT_THAT(result.status, HasSubstr("only 0% of the boundary points project into the image"));
 }
@@ -92,10 +93,11 @@ TEST(SolvePaper, TheSmoothFieldLeadsBackFromWhereThePapersIsFlat) {
   // All points behind the camera, or beside the image.
   for (const double angle : {M_PI, 0.6 * M_PI}) {
     const Rigid3 start = RotationAbout({0, 1, 0}, angle) * world.camera_from_lidar;
-    const CameraCalibration paper = SolvePaper(world.spec, world.Used(), start, Patient());
+    const CameraCalibration paper =
+        SolvePaper(world.spec, PointersTo(world.Used()), start, Patient());
     EXPECT_FALSE(paper.converged);
     EXPECT_GT(RotationDistance(paper.camera_from_lidar, world.camera_from_lidar), 1);
-    const CameraCalibration found = SolvePaper(world.spec, world.Used(), start, smooth);
+    const CameraCalibration found = SolvePaper(world.spec, PointersTo(world.Used()), start, smooth);
     EXPECT_TRUE(found.converged) << found.status;
     EXPECT_LT(ReprojectionRms(world, found.camera_from_lidar, world.camera_from_lidar), 0.5);
   }
@@ -107,7 +109,7 @@ TEST(SolvePaper, WithTheSmoothFieldPointsNeedNotLieInTheImage) {
   options.smooth_field = true;
   const Rigid3 start = RotationAbout({0, 1, 0}, M_PI) * world.camera_from_lidar;
   options.max_iterations = 2;
-  const CameraCalibration result = SolvePaper(world.spec, world.Used(), start, options);
+  const CameraCalibration result = SolvePaper(world.spec, PointersTo(world.Used()), start, options);
   EXPECT_THAT(result.status, testing::Not(HasSubstr("project into the image")));
 }
 
@@ -116,7 +118,7 @@ TEST(SolvePaper, RunningOutOfIterationsIsAStatus) {
   CalibrateOptions options;
   options.max_iterations = 1;
   const Rigid3 start = GuessOff(world.camera_from_lidar, 2 * kDegree, 0.05, 1);
-  const CameraCalibration result = SolvePaper(world.spec, world.Used(), start, options);
+  const CameraCalibration result = SolvePaper(world.spec, PointersTo(world.Used()), start, options);
   EXPECT_FALSE(result.converged);
   EXPECT_THAT(result.status, HasSubstr("not converged: "));
 }
@@ -162,10 +164,10 @@ class CalibrateTest : public testing::Test {
 };
 
 TEST_F(CalibrateTest, ReportsViewsQualityAndWhereItComesFrom) {
-  std::vector<Observation> observations = world_.views;
-  observations[4].rejected = "no board";
-  observations[4].image.reset();
-  const Report report = Calibrate(rig_, observations, Patient());
+  std::vector<ViewDetection> detections = world_.views;
+  detections[4].images[0].why_not = "no board";
+  detections[4].images[0].edges.reset();
+  const Report report = Calibrate(rig_, detections, Patient());
   EXPECT_EQ(report.method, "paper");
   EXPECT_EQ(report.rig_hash, "hash");
   ASSERT_EQ(report.cameras.size(), 1U);
@@ -175,6 +177,13 @@ TEST_F(CalibrateTest, ReportsViewsQualityAndWhereItComesFrom) {
   ASSERT_EQ(camera.rejected.size(), 1U);
   EXPECT_EQ(camera.rejected[0].view, "4");
   EXPECT_EQ(camera.rejected[0].why, "no board");
+  ASSERT_EQ(report.detections.size(), 9U);
+  EXPECT_EQ(report.detections[4].view, "4");
+  EXPECT_EQ(report.detections[4].images.at(0).why_not, "no board");
+  EXPECT_EQ(report.detections[4].cloud_candidates, 1);
+  EXPECT_EQ(report.detections[4].cloud_why_not, "");
+  EXPECT_EQ(report.detections[5].images.at(0).why_not, "");
+  EXPECT_TRUE(report.detections[5].heldout);
   EXPECT_EQ(camera.views.size(), 8U);
   EXPECT_TRUE(camera.calibration.converged);
   EXPECT_THAT(camera.first_guess.value(), Rigid3Near(guess_, 0.0, 0.0));
@@ -189,21 +198,22 @@ TEST_F(CalibrateTest, ReportsViewsQualityAndWhereItComesFrom) {
 }
 
 TEST_F(CalibrateTest, HeldOutViewsDoNotTouchTheResult) {
-  std::vector<Observation> without = world_.views;
-  without.erase(std::remove_if(without.begin(), without.end(), [](auto& o) { return o.heldout; }),
-                without.end());
+  std::vector<ViewDetection> without = world_.views;
+  without.erase(
+      std::remove_if(without.begin(), without.end(), [](auto& view) { return view.heldout; }),
+      without.end());
   const Rigid3 a = Calibrate(rig_, world_.views, Hasty()).cameras[0].calibration.camera_from_lidar;
   const Rigid3 b = Calibrate(rig_, without, Hasty()).cameras[0].calibration.camera_from_lidar;
   EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
   EXPECT_EQ(a.translation, b.translation);
 }
 
-TEST_F(CalibrateTest, TheOrderOfTheObservationsDoesNotMatterToTheLastBit) {
-  std::vector<Observation> shuffled = world_.views;
-  Observation again = shuffled[0];  // a view may have more than one image
-  again.image_utime += 500;
-  again.cloud->boundary.resize(100);
-  std::vector<Observation> straight = shuffled;
+TEST_F(CalibrateTest, TheOrderOfTheDetectionsDoesNotMatterToTheLastBit) {
+  std::vector<ViewDetection> shuffled = world_.views;
+  ViewDetection again = shuffled[0];  // a name may come twice
+  again.sweep_utime += 500;
+  again.cloud.candidates[0].boundary.resize(100);
+  std::vector<ViewDetection> straight = shuffled;
   straight.push_back(again);
   shuffled.insert(shuffled.begin(), again);
   std::reverse(shuffled.begin() + 3, shuffled.end());
@@ -220,7 +230,7 @@ TEST_F(CalibrateTest, TheOrderOfTheObservationsDoesNotMatterToTheLastBit) {
 }
 
 TEST_F(CalibrateTest, TooFewViewsKeepTheGuessAndSaySo) {
-  const std::vector<Observation> two = {world_.views[0], world_.views[1], world_.views[2]};
+  const std::vector<ViewDetection> two = {world_.views[0], world_.views[1], world_.views[2]};
   const CameraReport report = Calibrate(rig_, two, Hasty()).cameras[0];  // the third is held out
   EXPECT_FALSE(report.calibration.converged);
   EXPECT_THAT(report.calibration.status, HasSubstr("2 usable views, at least 3"));
@@ -229,18 +239,18 @@ TEST_F(CalibrateTest, TooFewViewsKeepTheGuessAndSaySo) {
   EXPECT_TRUE(report.other_starts.empty());
 }
 
-TEST_F(CalibrateTest, AWellFormedObservationWithNothingInItIsRejectedWithAReason) {
-  std::vector<Observation> observations = world_.views;
-  observations[0].image->edge_pixels.clear();
-  observations[1].cloud->boundary.clear();
-  observations[3].image->width = 320;
-  observations[4].cloud.reset();
-  const CameraReport report = Calibrate(rig_, observations, Hasty()).cameras[0];
+TEST_F(CalibrateTest, AWellFormedDetectionWithNothingInItIsRejectedWithAReason) {
+  std::vector<ViewDetection> detections = world_.views;
+  detections[0].images[0].edges->edge_pixels.clear();
+  detections[1].cloud.candidates[0].boundary.clear();
+  detections[3].images[0].edges->width = 320;
+  detections[4].cloud.candidates.clear();
+  const CameraReport report = Calibrate(rig_, detections, Hasty()).cameras[0];
   ASSERT_EQ(report.rejected.size(), 4U);
   EXPECT_THAT(report.rejected[0].why, HasSubstr("no edges in the image"));
   EXPECT_THAT(report.rejected[1].why, HasSubstr("no boundary points"));
   EXPECT_THAT(report.rejected[2].why, HasSubstr("320x480"));
-  EXPECT_THAT(report.rejected[3].why, HasSubstr("no boundary points"));
+  EXPECT_THAT(report.rejected[3].why, HasSubstr("not found in the cloud"));
   EXPECT_THAT(report.used, ElementsAre("6", "7"));
 }
 

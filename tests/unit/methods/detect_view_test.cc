@@ -110,11 +110,13 @@ TEST_F(Detect, PicksThatAreNoQuadrangleAreRefusedWithTheReason) {
 }
 
 TEST_F(Detect, BoundaryPointsLieOnTheBoardsEdge) {
-  const auto observations = DetectView(made_->rig, made_->view, kPaperMethod);
-  ASSERT_EQ(observations.size(), 2U);
-  const Observation& rgb = observations[0];
-  ASSERT_TRUE(rgb.usable()) << rgb.rejected;
-  const CloudEdges& edges = *rgb.cloud;
+  const ViewDetection detection = DetectView(made_->rig, made_->view, kPaperMethod);
+  ASSERT_EQ(detection.images.size(), 2U);
+  ASSERT_TRUE(detection.images[0].usable() && detection.images[1].usable());
+  ASSERT_EQ(detection.cloud.candidates.size(), 2U) << "one a camera: " << detection.cloud.why_not;
+  EXPECT_EQ(detection.cloud.candidates[0].camera, "rgb");
+  EXPECT_EQ(detection.cloud.candidates[1].camera, "thermal");
+  const CloudEdges& edges = detection.cloud.candidates[0];
   const Rigid3 target_from_lidar = made_->truth.lidar_from_target.at("0001").Inverse();
   int near_edge = 0;
   for (const Eigen::Vector3d& point : edges.boundary) {
@@ -159,21 +161,27 @@ TEST_F(Detect, ABoardOfAnotherSizeIsRefusedWithBothSizes) {
   Rig rig = made_->rig;
   rig.target.width_m = 2.4;
   rig.target.height_m = 1.8;
-  const auto observations = DetectView(rig, made_->view, kPaperMethod);
-  EXPECT_THAT(observations[0].rejected, HasSubstr("2.40 x 1.80 m"));
-  EXPECT_THAT(observations[0].rejected, HasSubstr("1.2"));
+  const ViewDetection detection = DetectView(rig, made_->view, kPaperMethod);
+  EXPECT_TRUE(detection.cloud.candidates.empty());
+  EXPECT_THAT(detection.cloud.why_not, HasSubstr("rgb: "));
+  EXPECT_THAT(detection.cloud.why_not, HasSubstr("2.40 x 1.80 m"));
+  EXPECT_THAT(detection.cloud.why_not, HasSubstr("1.2"));
 }
 
 TEST_F(Detect, EachAbsenceHasItsReason) {
   View view = made_->view;
   view.images.pop_back();
-  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[1].rejected,
-              HasSubstr("no image of this camera"));
+  const ViewDetection imageless = DetectView(made_->rig, view, kPaperMethod);
+  EXPECT_THAT(imageless.images[1].why_not, HasSubstr("no image of this camera"));
+  EXPECT_EQ(imageless.images[1].utime, 0);
+  EXPECT_TRUE(imageless.images[0].usable());
+  ASSERT_EQ(imageless.cloud.candidates.size(), 1U);
+  EXPECT_EQ(imageless.cloud.candidates[0].camera, "rgb");
 
   view = made_->view;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (Eigen::Vector3f& p : view.cloud.points) p = Eigen::Vector3f::Constant(nan);
-  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod).cloud.why_not,
               HasSubstr("the cloud has 0 points"));
 
   view = made_->view;
@@ -181,18 +189,21 @@ TEST_F(Detect, EachAbsenceHasItsReason) {
     view.cloud.points[i] = Eigen::Vector3f::Constant(nan);
     view.cloud.directions[i] = Eigen::Vector3f::Constant(nan);
   }
-  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod).cloud.why_not,
               HasSubstr("5 of the sweep's 300 lines"));
 
   view = made_->view;
   for (Eigen::Vector3f& p : view.cloud.points) p.x() = -p.x();
-  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod)[0].rejected,
+  EXPECT_THAT(DetectView(made_->rig, view, kPaperMethod).cloud.why_not,
               HasSubstr("near the checkerboard's corners"));
 
   Rig rig = made_->rig;
   rig.cameras[0].camera_from_lidar_guess.reset();
-  EXPECT_THAT(DetectView(rig, made_->view, kPaperMethod)[0].rejected,
-              HasSubstr("camera_from_lidar_guess"));
+  const ViewDetection unguessed = DetectView(rig, made_->view, kPaperMethod);
+  EXPECT_THAT(unguessed.cloud.why_not, HasSubstr("rgb: "));
+  EXPECT_THAT(unguessed.cloud.why_not, HasSubstr("camera_from_lidar_guess"));
+  ASSERT_EQ(unguessed.cloud.candidates.size(), 1U) << "thermal has a guess";
+  EXPECT_EQ(unguessed.cloud.candidates[0].camera, "thermal");
 }
 
 TEST_F(Detect, TheBoardFindsItselfWithoutPicksAndWithoutAGuess) {
@@ -200,29 +211,67 @@ TEST_F(Detect, TheBoardFindsItselfWithoutPicksAndWithoutAGuess) {
   View view = made_->view;
   view.picks.clear();
   for (CameraSpec& camera : rig.cameras) camera.camera_from_lidar_guess.reset();
-  const auto observations = DetectView(rig, view);
-  ASSERT_EQ(observations.size(), 2U);
+  const ViewDetection detection = DetectView(rig, view);
+  EXPECT_EQ(detection.view, "0001");
+  EXPECT_EQ(detection.sweep_utime, view.cloud.sweep_utime);
+  EXPECT_EQ(detection.cloud.why_not, "");
+  ASSERT_EQ(detection.cloud.candidates.size(), 1U);
+  EXPECT_EQ(detection.cloud.candidates[0].camera, "") << "every camera's";
+  const TargetPose& pose = *detection.cloud.candidates[0].pose;
   const Rigid3& truth = made_->truth.lidar_from_target.at("0001");
-  for (const Observation& observation : observations) {
-    ASSERT_TRUE(observation.usable()) << observation.rejected;
-    ASSERT_EQ(observation.candidates.size(), 1U);
-    const TargetPose& pose = *observation.candidates[0].pose;
-    const Eigen::Vector3d off = pose.sensor_from_target.translation - truth.translation;
-    EXPECT_LT(off.norm(), 0.01);
-    ASSERT_TRUE(observation.image->pose);
-    EXPECT_EQ(observation.image->pose->half_turn_known, observation.camera == "rgb");
+  EXPECT_LT((pose.sensor_from_target.translation - truth.translation).norm(), 0.01);
+  ASSERT_EQ(detection.images.size(), 2U);
+  for (const ImageDetection& image : detection.images) {
+    ASSERT_TRUE(image.usable()) << image.why_not;
+    ASSERT_TRUE(image.edges->pose);
+    EXPECT_EQ(image.edges->pose->half_turn_known, image.camera == "rgb");
   }
+}
+
+TEST_F(Detect, TheCloudIsLookedAtWhereImagesFail) {
+  View view = made_->view;
+  for (Image& image : view.images)
+    image.pixels = cv::Mat::zeros(image.pixels.size(), image.pixels.type());
+  view.picks.clear();
+  const ViewDetection blind = DetectView(made_->rig, view);
+  for (const ImageDetection& image : blind.images) {
+    EXPECT_FALSE(image.usable());
+    EXPECT_THAT(image.why_not, HasSubstr("no checkerboard"));
+  }
+  const ViewDetection seeing = DetectView(made_->rig, made_->view);
+  ASSERT_EQ(blind.cloud.candidates.size(), 1U) << blind.cloud.why_not;
+  ASSERT_EQ(seeing.cloud.candidates.size(), 1U);
+  EXPECT_EQ(blind.cloud.why_not, "");
+  EXPECT_EQ(blind.cloud.candidates[0].boundary, seeing.cloud.candidates[0].boundary);
+  EXPECT_THAT(BriefReport(blind), HasSubstr("; cloud: board found"));
+  // The paper's method has nothing to look for it with.
+  const ViewDetection by_paper = DetectView(made_->rig, view, kPaperMethod);
+  EXPECT_TRUE(by_paper.cloud.candidates.empty());
+  EXPECT_THAT(by_paper.cloud.why_not, HasSubstr("not searched"));
+}
+
+TEST_F(Detect, ImagesAreLookedAtWhereTheCloudFails) {
+  View view = made_->view;
+  for (Eigen::Vector3f& p : view.cloud.points) {
+    p = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  }
+  const ViewDetection detection = DetectView(made_->rig, view);
+  EXPECT_TRUE(detection.cloud.candidates.empty());
+  EXPECT_NE(detection.cloud.why_not, "");
+  for (const ImageDetection& image : detection.images) EXPECT_TRUE(image.usable()) << image.why_not;
+  EXPECT_EQ(BriefReport(detection),
+            "rgb: board found; thermal: board found; cloud: " + detection.cloud.why_not);
 }
 
 TEST_F(Detect, PicksAreNotLookedAtWhereTheBoardFindsItself) {
   View view = made_->view;
   view.picks = {made_->thermal_picks};
   for (Eigen::Vector2d& pick : view.picks[0].corners) pick += Eigen::Vector2d(40, 0);
-  const Observation with = DetectView(made_->rig, view)[1];
-  const Observation without = DetectView(made_->rig, made_->view)[1];
-  ASSERT_TRUE(with.usable() && without.usable()) << with.rejected << without.rejected;
-  EXPECT_FALSE(with.image->picked);
-  EXPECT_EQ(with.image->corners, without.image->corners);
+  const ImageDetection with = DetectView(made_->rig, view).images[1];
+  const ImageDetection without = DetectView(made_->rig, made_->view).images[1];
+  ASSERT_TRUE(with.usable() && without.usable()) << with.why_not << without.why_not;
+  EXPECT_FALSE(with.edges->picked);
+  EXPECT_EQ(with.edges->corners, without.edges->corners);
 }
 
 TEST_F(Detect, PicksRescueAViewInWhichTheBoardIsPartlyHidden) {
@@ -238,31 +287,33 @@ TEST_F(Detect, PicksRescueAViewInWhichTheBoardIsPartlyHidden) {
   }
   View unpicked = view;
   unpicked.picks.clear();
-  const auto observations = DetectView(made_->rig, view);
-  const auto without = DetectView(made_->rig, unpicked);
+  const ViewDetection with = DetectView(made_->rig, view);
+  const ViewDetection without = DetectView(made_->rig, unpicked);
+  EXPECT_FALSE(with.cloud.candidates.empty()) << with.cloud.why_not;
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_THAT(without[i].rejected, HasSubstr("no checkerboard"));
-    const Observation& o = observations[i];
-    ASSERT_TRUE(o.usable()) << o.rejected;
-    EXPECT_TRUE(o.image->picked);
-    ASSERT_TRUE(o.image->pose);
-    EXPECT_EQ(o.image->pose->half_turn_known, o.camera == "rgb");
-    const auto seen = std::count_if(o.image->corners.begin(), o.image->corners.end(), IsSeen);
+    EXPECT_THAT(without.images[i].why_not, HasSubstr("no checkerboard"));
+    const ImageDetection& image = with.images[i];
+    ASSERT_TRUE(image.usable()) << image.why_not;
+    EXPECT_TRUE(image.edges->picked);
+    ASSERT_TRUE(image.edges->pose);
+    EXPECT_EQ(image.edges->pose->half_turn_known, image.camera == "rgb");
+    const auto& corners = image.edges->corners;
+    const auto seen = std::count_if(corners.begin(), corners.end(), IsSeen);
     EXPECT_GT(seen, 25);
     EXPECT_LT(seen, 60);
-    EXPECT_GT(o.image->corner_sigma_px, 0);
+    EXPECT_GT(image.edges->corner_sigma_px, 0);
   }
   // Picks on something else.
   for (CornerSelection& picks : view.picks) {
     for (Eigen::Vector2d& pick : picks.corners) pick = 0.5 * pick + Eigen::Vector2d(10, 20);
   }
-  for (const Observation& o : DetectView(made_->rig, view)) {
-    EXPECT_FALSE(o.image);
-    EXPECT_THAT(o.rejected, HasSubstr("corner"));
+  for (const ImageDetection& image : DetectView(made_->rig, view).images) {
+    EXPECT_FALSE(image.edges);
+    EXPECT_THAT(image.why_not, HasSubstr("corner"));
   }
 }
 
-TEST_F(Detect, ABoardThatMovedDuringTheSweepRejectsTheView) {
+TEST_F(Detect, ABoardThatMovedDuringTheSweepRejectsTheImage) {
   View view = made_->view;
   Image earlier = view.images[0];
   earlier.utime = view.cloud.sweep_utime + 1'000'000;
@@ -271,10 +322,14 @@ TEST_F(Detect, ABoardThatMovedDuringTheSweepRejectsTheView) {
   cv::warpAffine(earlier.pixels, moved, shift, earlier.pixels.size(), cv::INTER_NEAREST,
                  cv::BORDER_REPLICATE);
   view.images.push_back(earlier);  // the same: it stood still
-  EXPECT_TRUE(DetectView(made_->rig, view)[0].usable()) << DetectView(made_->rig, view)[0].rejected;
+  const ViewDetection still = DetectView(made_->rig, view);
+  EXPECT_TRUE(still.images[0].usable()) << still.images[0].why_not;
   view.images.back().pixels = moved;
-  EXPECT_THAT(DetectView(made_->rig, view)[0].rejected, HasSubstr("board moved"));
-  EXPECT_TRUE(DetectView(made_->rig, view)[1].usable()) << "thermal has no such image";
+  const ViewDetection detection = DetectView(made_->rig, view);
+  EXPECT_THAT(detection.images[0].why_not, HasSubstr("board moved"));
+  EXPECT_TRUE(detection.images[0].edges) << "known all the same";
+  EXPECT_TRUE(detection.images[1].usable()) << "thermal has no such image";
+  EXPECT_FALSE(detection.cloud.candidates.empty()) << detection.cloud.why_not;
 }
 
 TEST_F(Detect, AnImageOfAnotherSizeIsAnErrorWithBothSizes) {

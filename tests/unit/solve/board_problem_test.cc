@@ -225,7 +225,7 @@ TEST(SolveBoards, AWrongCornerHardlyMovesTheResult) {
   SolveWorld world;
   const SolveSession clean(world);
   const BoardSolution without = Solve(clean.Joint());
-  world.At(3, 1).image->corners[5] += Eigen::Vector2d(5, -5);
+  world.ImageAt(3, 1).corners[5] += Eigen::Vector2d(5, -5);
   const SolveSession session(world);
   const BoardSolution with = Solve(session.Joint());
   for (std::size_t c = 0; c < 2; ++c) {

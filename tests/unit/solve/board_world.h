@@ -8,6 +8,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/model/view_detection.h"
+#include "calib/solve/camera_views.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -17,16 +18,23 @@ namespace rgbdt {
 struct BoardWorld {
   CameraSpec spec;
   Rigid3 camera_from_lidar;  ///< the truth
-  std::vector<Observation> views;
+  std::vector<ViewDetection> views;
 
-  std::vector<const Observation*> Used() const {
-    std::vector<const Observation*> used;
-    for (const Observation& o : views) {
-      if (!o.heldout) used.push_back(&o);
+  /// Those not held out, in their order; the world must outlive them.
+  std::vector<CameraView> Used() const {
+    std::vector<CameraView> used;
+    for (const ViewDetection& detection : views) {
+      if (!detection.heldout) used.push_back(CameraViewOf(spec.name, detection));
     }
     return used;
   }
 };
+
+inline std::vector<const CameraView*> PointersTo(const std::vector<CameraView>& views) {
+  std::vector<const CameraView*> pointers;
+  for (const CameraView& view : views) pointers.push_back(&view);
+  return pointers;
+}
 
 /// 640x480, f = 500 px, distorted.
 inline CameraSpec WorldCamera() {
@@ -49,8 +57,8 @@ inline Rigid3 WorldTruth() {
 }
 
 /// A board's view: its edge pixels are the rounded projected outline.
-inline Observation ObserveBoard(const CameraSpec& spec, const Rigid3& camera_from_lidar,
-                                const Rigid3& lidar_from_board, const std::string& view) {
+inline ViewDetection DetectBoard(const CameraSpec& spec, const Rigid3& camera_from_lidar,
+                                 const Rigid3& lidar_from_board, const std::string& view) {
   constexpr double kHalfWidth = 0.6;
   constexpr double kHalfHeight = 0.45;
   const Eigen::Vector3d corners[] = {{-kHalfWidth, -kHalfHeight, 0},
@@ -58,13 +66,10 @@ inline Observation ObserveBoard(const CameraSpec& spec, const Rigid3& camera_fro
                                      {kHalfWidth, kHalfHeight, 0},
                                      {-kHalfWidth, kHalfHeight, 0}};
   const Camera camera(spec);
-  Observation o;
-  o.view = view;
-  o.camera = spec.name;
-  o.image = ImageEdges();
-  o.image->width = spec.width;
-  o.image->height = spec.height;
-  o.cloud = CloudEdges();
+  ImageEdges image;
+  image.width = spec.width;
+  image.height = spec.height;
+  CloudEdges cloud;
   std::set<std::pair<int, int>> pixels;  // by row, each once
   for (int side = 0; side < 4; ++side) {
     const Eigen::Vector3d from = lidar_from_board * corners[side];
@@ -72,15 +77,19 @@ inline Observation ObserveBoard(const CameraSpec& spec, const Rigid3& camera_fro
     for (const Eigen::Vector2d& p :
          ProjectSegment(camera, camera_from_lidar * from, camera_from_lidar * to, 2000)) {
       pixels.insert({std::lround(p.y()), std::lround(p.x())});
-      o.image->outline.push_back(p);
+      image.outline.push_back(p);
     }
     constexpr int kPoints = 40;  // 2 to 3 cm apart
     for (int i = 0; i < kPoints; ++i) {
-      o.cloud->boundary.push_back(from + (to - from) * (static_cast<double>(i) / kPoints));
+      cloud.boundary.push_back(from + (to - from) * (static_cast<double>(i) / kPoints));
     }
   }
-  for (const auto& [y, x] : pixels) o.image->edge_pixels.emplace_back(x, y);
-  return o;
+  for (const auto& [y, x] : pixels) image.edge_pixels.emplace_back(x, y);
+  ViewDetection detection;
+  detection.view = view;
+  detection.images = {{spec.name, 0, std::move(image), "", 0}};
+  detection.cloud.candidates = {std::move(cloud)};
+  return detection;
 }
 
 /// `count` views, 2 to 4.5 m away all over the image, tilted and turned; every third held out.
@@ -95,15 +104,16 @@ inline BoardWorld MakeBoardWorld(int count, std::uint32_t seed = 1) {
     camera_from_board.translation = {random.Uniform(-0.5, 0.5) * z, random.Uniform(-0.4, 0.4) * z,
                                      z};
     const auto n = world.views.size();
-    Observation o =
-        ObserveBoard(world.spec, world.camera_from_lidar,
-                     world.camera_from_lidar.Inverse() * camera_from_board, std::to_string(n));
-    bool whole = o.image->outline.size() == 4 * 2001;
-    for (const Eigen::Vector2d& p : o.image->outline) whole &= camera.Contains(p);
+    ViewDetection detection =
+        DetectBoard(world.spec, world.camera_from_lidar,
+                    world.camera_from_lidar.Inverse() * camera_from_board, std::to_string(n));
+    const std::vector<Eigen::Vector2d>& outline = detection.images[0].edges->outline;
+    bool whole = outline.size() == 4 * 2001;
+    for (const Eigen::Vector2d& p : outline) whole &= camera.Contains(p);
     if (!whole) continue;
-    o.heldout = n % 3 == 2;
-    o.image_utime = static_cast<Utime>(1000 + n);
-    world.views.push_back(std::move(o));
+    detection.heldout = n % 3 == 2;
+    detection.images[0].utime = static_cast<Utime>(1000 + n);
+    world.views.push_back(std::move(detection));
   }
   return world;
 }

@@ -22,7 +22,7 @@ TEST(CrossValidate, EachViewUsedIsLeftOutOnce) {
   SolveWorldOptions options = Views(11);
   options.heldout_every = 5;
   const SolveWorld world(options);
-  const Report report = Calibrate(world.rig, world.observations);
+  const Report report = Calibrate(world.rig, world.detections);
   for (const CameraReport& camera : report.cameras) {
     ASSERT_THAT(camera.folds, SizeIs(5));
     std::vector<std::string> left_out;
@@ -41,7 +41,7 @@ TEST(CrossValidate, EachViewUsedIsLeftOutOnce) {
 
 TEST(CrossValidate, OfThreeViewsThereIsNothingToSay) {
   const SolveWorld world(Views(3));
-  const Report report = Calibrate(world.rig, world.observations);
+  const Report report = Calibrate(world.rig, world.detections);
   EXPECT_THAT(report.cameras[0].folds, SizeIs(0));
   EXPECT_FALSE(report.cameras[0].halves);
 }
@@ -73,7 +73,7 @@ TEST(CrossValidate, OfSessionsFromTheModelTheRefinedPoseIsKept) {
     options.draw_nuisances = true;
     options.side_sigma_rad = BoardPriors().side_sigma_rad;
     const SolveWorld world(options);
-    for (const CameraReport& camera : Calibrate(world.rig, world.observations).cameras) {
+    for (const CameraReport& camera : Calibrate(world.rig, world.detections).cameras) {
       guesses_kept += camera.calibration.status != "converged" ? 1 : 0;
     }
   }
@@ -173,7 +173,7 @@ template <typename Change>
 Closure LoopWith(Change change) {
   SolveWorld world(Views(10));
   for (std::size_t v = 0; v < 10; ++v) {
-    change(&world.At(v, 1).image->pose->sensor_from_target);
+    change(&world.ImageAt(v, 1).pose->sensor_from_target);
   }
   const auto loops = LoopsOf(world);
   return loops.size() == 1 ? loops[0] : Closure{};

@@ -78,7 +78,7 @@ class DegenerateBy : public testing::TestWithParam<const char*> {
   Report Solve(const SolveWorld& world) const {
     CalibrateOptions options;
     options.method = GetParam();
-    return Calibrate(world.rig, world.observations, options);
+    return Calibrate(world.rig, world.detections, options);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Methods, DegenerateBy, testing::Values(kAutoMethod, kPlaneMethod));

@@ -16,7 +16,7 @@ SolveWorldOptions HalfHeldOut() {
 
 TEST(EdgeRmsWhitened, IsAboutOneOnViewsHeldOut) {
   const SolveWorld world(HalfHeldOut());
-  const Report report = Calibrate(world.rig, world.observations);
+  const Report report = Calibrate(world.rig, world.detections);
   for (const CameraReport& camera : report.cameras) {
     ASSERT_EQ(camera.heldout.size(), 8U);
     EXPECT_NEAR(camera.edge_rms_whitened.heldout.value(), 1, 0.2);
@@ -29,9 +29,9 @@ TEST(EdgeRmsWhitened, GrowsWhereTheCalibrationIsWrong) {
   SolveWorldOptions options = HalfHeldOut();
   options.draw_nuisances = false;
   const SolveWorld world(options);
-  Calibration calibration = Calibrate(world.rig, world.observations).ToCalibration();
+  Calibration calibration = Calibrate(world.rig, world.detections).ToCalibration();
   const auto heldout = [&](std::size_t camera) {
-    return *Evaluate(world.rig, world.observations, calibration)
+    return *Evaluate(world.rig, world.detections, calibration)
                 .cameras[camera]
                 .edge_rms_whitened.heldout;
   };
@@ -47,13 +47,14 @@ TEST(MisfitOfEdges, OfAViewWithoutPosesOrSigmasThereIsNone) {
   SolveWorld world;
   const CameraCalibration truth{"rgb", world.camera_from_lidar[0], {}, true, ""};
   const EdgeModel model{world.rig.target};
-  Observation o = world.At(0, 0);
-  EXPECT_EQ(MisfitOfEdges(model, o, truth).count, static_cast<double>(o.cloud->crossings.size()));
-  o.cloud->crossings[0].sigma_m = 0;
-  EXPECT_EQ(MisfitOfEdges(model, o, truth).count,
-            static_cast<double>(o.cloud->crossings.size()) - 1);
-  o.image->pose.reset();
-  EXPECT_EQ(MisfitOfEdges(model, o, truth).count, 0);
+  CameraView view = CameraViewOf("rgb", world.detections[0]);
+  EXPECT_EQ(MisfitOfEdges(model, view, truth).count,
+            static_cast<double>(view.cloud->crossings.size()));
+  view.cloud->crossings[0].sigma_m = 0;
+  EXPECT_EQ(MisfitOfEdges(model, view, truth).count,
+            static_cast<double>(view.cloud->crossings.size()) - 1);
+  world.ImageAt(0, 0).pose.reset();
+  EXPECT_EQ(MisfitOfEdges(model, view, truth).count, 0);
 }
 
 }  // namespace

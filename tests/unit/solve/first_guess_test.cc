@@ -65,12 +65,12 @@ class Made {
     if (Uniform(0, 1) < 0.5) seen.sensor_from_target = seen.sensor_from_target * kHalfTurn;
     return seen;
   }
-  Observation View(const Rigid3& camera_from_lidar, const Rigid3& board) {
-    Observation view;
-    view.image.emplace();
-    view.image->pose = Seen(camera_from_lidar * board, 0.005, 0.008);
-    view.candidates.push_back(Candidate(board));
-    view.cloud = view.candidates[0];
+  ViewDetection View(const Rigid3& camera_from_lidar, const Rigid3& board) {
+    ImageEdges image;
+    image.pose = Seen(camera_from_lidar * board, 0.005, 0.008);
+    ViewDetection view;
+    view.images = {{"rgb", 0, image, "", 0}};
+    view.cloud.candidates = {Candidate(board)};
     return view;
   }
   CloudEdges Candidate(const Rigid3& board) {
@@ -78,8 +78,8 @@ class Made {
     edges.pose = Seen(board, 0.005, 0.004);
     return edges;
   }
-  std::vector<Observation> Session(const Rigid3& camera_from_lidar, int views) {
-    std::vector<Observation> session;
+  std::vector<ViewDetection> Session(const Rigid3& camera_from_lidar, int views) {
+    std::vector<ViewDetection> session;
     for (int i = 0; i < views; ++i) session.push_back(View(camera_from_lidar, AnyBoard()));
     return session;
   }
@@ -88,10 +88,12 @@ class Made {
   std::mt19937 random_;
 };
 
-std::vector<const Observation*> Pointers(const std::vector<Observation>& session) {
-  std::vector<const Observation*> out;
-  for (const Observation& view : session) out.push_back(&view);
-  return out;
+FirstGuess Guess(const std::vector<ViewDetection>& session, const FirstGuessOptions& options = {}) {
+  std::vector<CameraView> views;
+  for (const ViewDetection& view : session) views.push_back(CameraViewOf("rgb", view));
+  std::vector<const CameraView*> pointers;
+  for (const CameraView& view : views) pointers.push_back(&view);
+  return GuessFromBoards(pointers, options);
 }
 
 TEST(FirstGuess, FindsCamerasThatLookAnywhereFromFiveViews) {
@@ -99,7 +101,7 @@ TEST(FirstGuess, FindsCamerasThatLookAnywhereFromFiveViews) {
     Made made(seed);
     const Rigid3 truth = made.AnyCamera();
     const auto session = made.Session(truth, 5);
-    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    const FirstGuess guess = Guess(session);
     ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
     const PoseError error = ErrorOf(*guess.camera_from_lidar, truth);
     EXPECT_LT(error.rotation_deg, 2) << seed;
@@ -115,7 +117,7 @@ TEST(FirstGuess, ItsCovarianceIsThatOfItsErrors) {
     Made made(1000 + seed);
     const Rigid3 truth = made.AnyCamera();
     const auto session = made.Session(truth, 6);
-    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    const FirstGuess guess = Guess(session);
     ASSERT_TRUE(guess.camera_from_lidar);
     const Vector6d delta = Log(truth * guess.camera_from_lidar->Inverse());
     chi2 += delta.dot(guess.covariance.ldlt().solve(delta));
@@ -130,15 +132,16 @@ TEST(FirstGuess, AThirdOfTheViewsMayBeWrong) {
     const Rigid3 truth = made.AnyCamera();
     auto session = made.Session(truth, 9);
     for (std::size_t i = 0; i < 3; ++i) {  // another board's pose, a door
-      session[i].candidates = {made.Candidate(made.AnyBoard())};
+      session[i].cloud.candidates = {made.Candidate(made.AnyBoard())};
     }
-    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    const FirstGuess guess = Guess(session);
     ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
     EXPECT_LT(ErrorOf(*guess.camera_from_lidar, truth).rotation_deg, 2) << seed;
     EXPECT_EQ(guess.agreeing, 6) << seed;
     for (std::size_t i = 0; i < 9; ++i) {
-      const Observation chosen = WithChosenCandidate(session[i], *guess.camera_from_lidar);
-      EXPECT_EQ(chosen.rejected.empty(), i >= 3) << seed << " view " << i;
+      const CameraView chosen =
+          WithChosenCandidate(CameraViewOf("rgb", session[i]), *guess.camera_from_lidar);
+      EXPECT_EQ(chosen.usable(), i >= 3) << seed << " view " << i;
       EXPECT_THAT(chosen.rejected, HasSubstr(i < 3 ? "where the other views put it" : ""));
     }
   }
@@ -150,14 +153,14 @@ TEST(FirstGuess, ViewsTogetherChooseAmongCandidates) {
     const Rigid3 truth = made.AnyCamera();
     auto session = made.Session(truth, 6);
     const Rigid3 door = made.AnyBoard();  // stands where it is in every view, and looks better
-    for (Observation& view : session) {
-      view.candidates.insert(view.candidates.begin(), made.Candidate(door));
-      view.cloud = view.candidates[0];
+    for (ViewDetection& view : session) {
+      view.cloud.candidates.insert(view.cloud.candidates.begin(), made.Candidate(door));
     }
-    const FirstGuess guess = GuessFromBoards(Pointers(session));
+    const FirstGuess guess = Guess(session);
     ASSERT_TRUE(guess.camera_from_lidar) << seed << ": " << guess.status;
-    for (const Observation& view : session) {
-      EXPECT_EQ(ChooseCandidate(view, *guess.camera_from_lidar).candidate, 1) << seed;
+    for (const ViewDetection& view : session) {
+      EXPECT_EQ(ChooseCandidate(CameraViewOf("rgb", view), *guess.camera_from_lidar).candidate, 1)
+          << seed;
     }
   }
 }
@@ -166,9 +169,9 @@ TEST(FirstGuess, SaysSoWhenTwoAnswersFitAlike) {
   Made made(7);
   const Rigid3 truth = made.AnyCamera();
   const Rigid3 board = made.AnyBoard();
-  std::vector<Observation> session;
+  std::vector<ViewDetection> session;
   for (int i = 0; i < 4; ++i) session.push_back(made.View(truth, board));
-  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  const FirstGuess guess = Guess(session);
   EXPECT_FALSE(guess.camera_from_lidar);
   EXPECT_THAT(guess.status, HasSubstr("fit the views alike"));
 }
@@ -176,23 +179,23 @@ TEST(FirstGuess, SaysSoWhenTwoAnswersFitAlike) {
 TEST(FirstGuess, MirroredImagesAreNamed) {
   Made made(8);
   auto session = made.Session(made.AnyCamera(), 8);
-  for (Observation& view : session) {
-    Rigid3& pose = view.image->pose->sensor_from_target;
+  for (ViewDetection& view : session) {
+    Rigid3& pose = view.images[0].edges->pose->sensor_from_target;
     const Eigen::Vector3d mirror(-1, 1, 1);
     const Eigen::Matrix3d r = mirror.asDiagonal() * pose.rotation.toRotationMatrix() *
                               Eigen::Matrix3d(mirror.asDiagonal());
     pose = {Eigen::Quaterniond(r), mirror.asDiagonal() * pose.translation};
   }
-  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  const FirstGuess guess = Guess(session);
   EXPECT_FALSE(guess.camera_from_lidar);
   EXPECT_THAT(guess.status, HasSubstr("mirrored"));
 }
 
 TEST(FirstGuess, ViewsThatDoNotBelongTogetherGiveNone) {
   Made made(9);
-  std::vector<Observation> session;
+  std::vector<ViewDetection> session;
   for (int i = 0; i < 7; ++i) session.push_back(made.View(made.AnyCamera(), made.AnyBoard()));
-  const FirstGuess guess = GuessFromBoards(Pointers(session));
+  const FirstGuess guess = Guess(session);
   EXPECT_FALSE(guess.camera_from_lidar);
   EXPECT_THAT(guess.status, HasSubstr("do not agree"));
   EXPECT_THAT(GuessFromBoards({}).status, HasSubstr("0 views"));
@@ -201,28 +204,28 @@ TEST(FirstGuess, ViewsThatDoNotBelongTogetherGiveNone) {
 TEST(FirstGuess, FindsWhatTheRangesAreOffBy) {
   Made made(10);
   const Rigid3 truth = made.AnyCamera();
-  std::vector<Observation> session;
+  std::vector<ViewDetection> session;
   for (int i = 0; i < 12; ++i) {
     const Rigid3 board = made.AnyBoard();
     session.push_back(made.View(truth, board));
-    Rigid3& seen = session.back().candidates[0].pose->sensor_from_target;
+    Rigid3& seen = session.back().cloud.candidates[0].pose->sensor_from_target;
     seen.translation += 0.03 * seen.translation.normalized();  // measured 30 mm too long
   }
   FirstGuessOptions options;
   options.range_offset = true;
-  const FirstGuess guess = GuessFromBoards(Pointers(session), options);
+  const FirstGuess guess = Guess(session, options);
   ASSERT_TRUE(guess.camera_from_lidar);
   EXPECT_GT(guess.range_offset_sigma_m, 0);
   EXPECT_LT(guess.range_offset_sigma_m, 0.02);
   EXPECT_NEAR(guess.range_offset_m, -0.03, 3.5 * guess.range_offset_sigma_m);
 }
 
-TEST(FirstGuess, WithoutCandidatesAViewStaysAsItIs) {
+TEST(FirstGuess, WithoutPosesAViewStaysAsItIs) {
   Made made(11);
-  Observation view = made.View(made.AnyCamera(), made.AnyBoard());
-  view.candidates.clear();
-  const Observation same = WithChosenCandidate(view, made.AnyCamera());
-  EXPECT_TRUE(same.rejected.empty());
+  ViewDetection view = made.View(made.AnyCamera(), made.AnyBoard());
+  view.cloud.candidates[0].pose.reset();
+  const CameraView same = WithChosenCandidate(CameraViewOf("rgb", view), made.AnyCamera());
+  EXPECT_TRUE(same.usable());
   EXPECT_TRUE(same.cloud);
 }
 

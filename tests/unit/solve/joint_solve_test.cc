@@ -35,7 +35,7 @@ constexpr double kMostChi2 = 22.5;  // of six degrees of freedom: one in a thous
 
 TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   const SolveWorld world(Views(10));
-  const Report report = Calibrate(world.rig, world.observations, Brief());
+  const Report report = Calibrate(world.rig, world.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_TRUE(camera.calibration.converged);
@@ -51,18 +51,17 @@ TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
 TEST(CalibrateJointly, AViewWhoseBoardMovedIsRejectedByNameAndTheResultAsGoodAsWithoutIt) {
   SolveWorld world(Views(12));
   SolveWorld without(Views(12));
-  without.observations.erase(without.observations.begin() + 8, without.observations.begin() + 10);
+  without.detections.erase(without.detections.begin() + 4);
   // By 20 mm sideways, between the sweep and the image.
   const Eigen::Vector3d move =
       0.02 * (world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0));
-  world.ChangeCloud(4, [&](CloudEdges* cloud) {
-    cloud->pose->sensor_from_target.translation += move;
-    cloud->centre += move;
-    for (Crossing& crossing : cloud->crossings) crossing.point += move;
-    for (Eigen::Vector3d& p : cloud->boundary) p += move;
-  });
-  const Report report = Calibrate(world.rig, world.observations, Brief());
-  const Report good = Calibrate(without.rig, without.observations, Brief());
+  CloudEdges& cloud = world.CloudAt(4);
+  cloud.pose->sensor_from_target.translation += move;
+  cloud.centre += move;
+  for (Crossing& crossing : cloud.crossings) crossing.point += move;
+  for (Eigen::Vector3d& p : cloud.boundary) p += move;
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  const Report good = Calibrate(without.rig, without.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     EXPECT_THAT(report.cameras[c].rejected,
                 ElementsAre(AllOf(Field(&RejectedView::view, "0005"),
@@ -78,14 +77,13 @@ TEST(CalibrateJointly, ASideWithSomethingAgainstItIsLeftOutByNameAndTheViewIsUse
   SolveWorld world(Views(12));
   const SolveWorld clean(Views(12));
   const Eigen::Vector3d right = world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0);
-  world.ChangeCloud(4, [&](CloudEdges* cloud) {
-    ASSERT_THAT(cloud->pose->sensor_from_target, Rigid3Near(world.lidar_from_target[4], 0.1, 0.1));
-    for (Crossing& crossing : cloud->crossings) {
-      if (crossing.side == 1) crossing.point += 0.010 * right;
-    }
-  });
-  const Report report = Calibrate(world.rig, world.observations, Brief());
-  const Report good = Calibrate(clean.rig, clean.observations, Brief());
+  CloudEdges& cloud = world.CloudAt(4);
+  ASSERT_THAT(cloud.pose->sensor_from_target, Rigid3Near(world.lidar_from_target[4], 0.1, 0.1));
+  for (Crossing& crossing : cloud.crossings) {
+    if (crossing.side == 1) crossing.point += 0.010 * right;
+  }
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  const Report good = Calibrate(clean.rig, clean.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_THAT(camera.rejected, IsEmpty());
@@ -104,7 +102,7 @@ SolveWorld HalfHidden(int views) {
   SolveWorld world(Views(views));
   for (const std::size_t view : {2U, 7U}) {
     for (std::size_t c = 0; c < 2; ++c) {
-      ImageEdges& image = *world.At(view, c).image;
+      ImageEdges& image = world.ImageAt(view, c);
       image.picked = true;
       for (std::size_t i = 0; i < image.corners.size(); ++i) {
         if (i % 8 < 4) image.corners[i] = UnseenCorner();  // of eight in a row
@@ -119,11 +117,11 @@ TEST(CalibrateJointly, ViewsOfWhichAPartIsHiddenTellWhatWasSeenOfThem) {
   SolveWorld hidden = HalfHidden(10);
   const SolveWorld whole(Views(10));
   SolveWorld without(Views(10));
-  without.observations.erase(without.observations.begin() + 14, without.observations.begin() + 16);
-  without.observations.erase(without.observations.begin() + 4, without.observations.begin() + 6);
-  const Report report = Calibrate(hidden.rig, hidden.observations, Brief());
-  const Report more = Calibrate(whole.rig, whole.observations, Brief());
-  const Report less = Calibrate(without.rig, without.observations, Brief());
+  without.detections.erase(without.detections.begin() + 7);
+  without.detections.erase(without.detections.begin() + 2);
+  const Report report = Calibrate(hidden.rig, hidden.detections, Brief());
+  const Report more = Calibrate(whole.rig, whole.detections, Brief());
+  const Report less = Calibrate(without.rig, without.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_THAT(camera.rejected, IsEmpty());
@@ -139,12 +137,31 @@ TEST(CalibrateJointly, ViewsOfWhichAPartIsHiddenTellWhatWasSeenOfThem) {
   }
 }
 
+TEST(CalibrateJointly, AViewOfWhichOneImageFailedServesTheOtherCamera) {
+  SolveWorld world(Views(8));
+  ImageDetection& failed = world.detections[3].images[1];
+  failed.edges.reset();
+  failed.why_not = "no checkerboard";
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  EXPECT_THAT(report.cameras[0].rejected, IsEmpty());
+  EXPECT_EQ(report.cameras[0].used.size(), 8U);
+  EXPECT_EQ(report.cameras[1].used.size(), 7U);
+  EXPECT_THAT(report.cameras[1].rejected,
+              ElementsAre(AllOf(Field(&RejectedView::view, "0004"),
+                                Field(&RejectedView::why, "no checkerboard"))));
+  ASSERT_EQ(report.detections.size(), 8U);
+  EXPECT_EQ(report.detections[3].images[0].why_not, "");
+  EXPECT_EQ(report.detections[3].images[1].why_not, "no checkerboard");
+  EXPECT_EQ(report.detections[3].cloud_candidates, 1);
+  for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(Chi2(world, report, c), kMostChi2);
+}
+
 TEST(CalibrateJointly, CamerasMayTellTheBoardFromOppositeEnds) {
   const SolveWorld world(Views(10));
   SolveWorld turned(Views(10));
-  for (std::size_t v = 0; v < 10; ++v) TurnImage(&*turned.At(v, 1).image);
-  const Report a = Calibrate(world.rig, world.observations, Brief());
-  const Report b = Calibrate(turned.rig, turned.observations, Brief());
+  for (std::size_t v = 0; v < 10; ++v) TurnImage(&turned.ImageAt(v, 1));
+  const Report a = Calibrate(world.rig, world.detections, Brief());
+  const Report b = Calibrate(turned.rig, turned.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     EXPECT_THAT(b.cameras[c].calibration.camera_from_lidar,
                 Rigid3Near(a.cameras[c].calibration.camera_from_lidar, 1e-8, 1e-8));
@@ -154,8 +171,8 @@ TEST(CalibrateJointly, CamerasMayTellTheBoardFromOppositeEnds) {
 TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
   SolveWorld world(Views(6));
   for (std::size_t v = 0; v < 6; ++v) {
-    world.At(v, 0).image->pose->half_turn_known = false;
-    TurnImage(&*world.At(v, 0).image);
+    world.ImageAt(v, 0).pose->half_turn_known = false;
+    TurnImage(&world.ImageAt(v, 0));
   }
   const SolveSession session(world);
   const JointProblem joint = session.Joint();
@@ -177,18 +194,18 @@ TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
 // A second board that nobody declared, likelier by itself, here and there about the target.
 TEST(CalibrateJointly, ASecondBoardIsNotUsedAndIsNamed) {
   SolveWorld world(Views(8));
-  const Report alone = Calibrate(world.rig, world.observations, Brief());
+  const Report alone = Calibrate(world.rig, world.detections, Brief());
   double aside = 1;
-  for (Observation& o : world.observations) {
-    CloudEdges other = o.candidates.at(0);
+  for (ViewDetection& detection : world.detections) {
+    CloudEdges other = detection.cloud.candidates.at(0);
     const Rigid3 moved{Eigen::Quaterniond::Identity(), {0, aside, 0}};
     other.pose->sensor_from_target = moved * other.pose->sensor_from_target;
     other.centre = moved * other.centre;
     for (Crossing& crossing : other.crossings) crossing.point = moved * crossing.point;
-    o.candidates.insert(o.candidates.begin(), other);
+    detection.cloud.candidates.insert(detection.cloud.candidates.begin(), other);
     aside = aside > 1.5 ? 1 : aside + 0.13;
   }
-  const Report report = Calibrate(world.rig, world.observations, Brief());
+  const Report report = Calibrate(world.rig, world.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_THAT(alone.cameras[c].remarks, IsEmpty());
@@ -202,8 +219,8 @@ TEST(CalibrateJointly, ASecondBoardIsNotUsedAndIsNamed) {
 
 TEST(MakeJointProblem, ACameraThatTakesAnotherBoardOfTheCloudIsRejected) {
   SolveWorld world(Views(6));
-  world.At(2, 1).cloud->centre += Eigen::Vector3d(0, 0.5, 0);
   const SolveSession session(world);
+  session.cameras[1].views->all[2].cloud->centre += Eigen::Vector3d(0, 0.5, 0);
   const JointProblem joint = session.Joint();
   EXPECT_EQ(joint.problem.views[2].sights.size(), 1U);
   EXPECT_THAT(session.cameras[1].views->all[2].rejected, HasSubstr("another board of the cloud"));
@@ -213,12 +230,12 @@ TEST(CalibrateApart, GivesEachCameraWhatItWouldHaveAlone) {
   const SolveWorld world(Views(10));
   CalibrateOptions apart = Brief();
   apart.joint = false;
-  const Report report = Calibrate(world.rig, world.observations, apart);
-  const Report together = Calibrate(world.rig, world.observations, Brief());
+  const Report report = Calibrate(world.rig, world.detections, apart);
+  const Report together = Calibrate(world.rig, world.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     Rig alone = world.rig;
     alone.cameras = {world.rig.cameras[c]};
-    const Report one = Calibrate(alone, world.observations, Brief());
+    const Report one = Calibrate(alone, world.detections, Brief());
     EXPECT_THAT(report.cameras[c].calibration.camera_from_lidar,
                 Rigid3Near(one.cameras[0].calibration.camera_from_lidar, 1e-12, 1e-12));
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
@@ -229,11 +246,12 @@ TEST(CalibrateApart, GivesEachCameraWhatItWouldHaveAlone) {
   }
 }
 
-TEST(CalibrateJointly, TheOrderOfTheObservationsDoesNotMatter) {
+TEST(CalibrateJointly, TheOrderOfTheDetectionsDoesNotMatter) {
   const SolveWorld world(Views(8));
-  std::vector<Observation> shuffled(world.observations.rbegin(), world.observations.rend());
-  std::swap(shuffled[2], shuffled[11]);
-  const Report a = Calibrate(world.rig, world.observations, Brief());
+  std::vector<ViewDetection> shuffled(world.detections.rbegin(), world.detections.rend());
+  std::swap(shuffled[1], shuffled[5]);
+  std::swap(shuffled[3].images[0], shuffled[3].images[1]);
+  const Report a = Calibrate(world.rig, world.detections, Brief());
   const Report b = Calibrate(world.rig, shuffled, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     EXPECT_EQ(a.cameras[c].calibration.camera_from_lidar.translation,

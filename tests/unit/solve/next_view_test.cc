@@ -16,21 +16,21 @@ TEST_P(NextViewOf, HoldingTheBoardThereShrinksTheSigmaAsPromised) {
   options.views = 5;
   options.seed = GetParam();
   SolveWorld world(options);
-  const Report report = Calibrate(world.rig, world.observations);
+  const Report report = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(report.next_view);
   const NextView& next = *report.next_view;
   EXPECT_TRUE(world.Seen(next.lidar_from_target));
   EXPECT_THAT(next.words, HasSubstr("hold the board"));
   EXPECT_LT(next.sigma_after_px, 0.95 * next.sigma_before_px);
   world.AddView(next.lidar_from_target);
-  const Report then = Calibrate(world.rig, world.observations);
+  const Report then = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(then.next_view);
   EXPECT_NEAR(then.next_view->sigma_before_px, next.sigma_after_px, 0.25 * next.sigma_after_px);
 }
 
 TEST(FindNextView, WhatItSaysBeforeIsTheWorstSigmaOfTheReport) {
   const SolveWorld world;
-  const Report report = Calibrate(world.rig, world.observations);
+  const Report report = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(report.next_view);
   double worst = 0;
   std::string camera;

@@ -50,7 +50,7 @@ class SolveWorld {
   std::array<double, kSharedUnknowns> shared{};
   std::vector<Rigid3> lidar_from_target;
   std::vector<std::array<double, 4>> side_shift;
-  std::vector<Observation> observations;  ///< view by view, camera by camera
+  std::vector<ViewDetection> detections;  ///< one a view
 
   /// The board held once more.
   void AddView(const Rigid3& board) {
@@ -58,34 +58,22 @@ class SolveWorld {
     lidar_from_target.push_back(board);
     side_shift.emplace_back();
     for (double& shift : side_shift.back()) shift = options_.side_sigma_rad * Normal();
-    const CloudEdges cloud = SeeCloud(board, side_shift.back(), n % 2 == 1);
+    ViewDetection detection;
+    detection.view = (n < 9 ? "000" : "00") + std::to_string(n + 1);
+    detection.heldout =
+        options_.heldout_every > 0 && n % static_cast<std::size_t>(options_.heldout_every) == 1;
+    detection.cloud.candidates = {SeeCloud(board, side_shift.back(), n % 2 == 1)};
     for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-      Observation o;
-      o.view = (n < 9 ? "000" : "00") + std::to_string(n + 1);
-      o.camera = rig.cameras[c].name;
-      o.image_utime = static_cast<Utime>(1000 + n);
-      o.heldout =
-          options_.heldout_every > 0 && n % static_cast<std::size_t>(options_.heldout_every) == 1;
-      o.image = SeeImage(c, camera_from_lidar[c] * board);
-      o.cloud = cloud;
-      o.candidates = {cloud};
-      observations.push_back(std::move(o));
+      detection.images.push_back({rig.cameras[c].name, static_cast<Utime>(1000 + n),
+                                  SeeImage(c, camera_from_lidar[c] * board), "", 0});
     }
+    detections.push_back(std::move(detection));
   }
 
-  Observation& At(std::size_t view, std::size_t camera) {
-    return observations[view * rig.cameras.size() + camera];
+  ImageEdges& ImageAt(std::size_t view, std::size_t camera) {
+    return *detections[view].images[camera].edges;
   }
-
-  /// Changes a view's cloud for all its cameras.
-  template <typename Change>
-  void ChangeCloud(std::size_t view, Change change) {
-    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-      Observation& o = At(view, c);
-      change(&*o.cloud);
-      o.candidates = {*o.cloud};
-    }
-  }
+  CloudEdges& CloudAt(std::size_t view) { return detections[view].cloud.candidates.at(0); }
 
   /// The whole board lies in all images, and faces the LIDAR.
   bool Seen(const Rigid3& board, double margin_px = 5) const {
@@ -379,7 +367,7 @@ class SolveSession {
  public:
   SolveSession(const SolveWorld& world, const std::vector<Rigid3>& guesses) : rig_(world.rig) {
     for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-      views_.push_back(ViewsOf(rig_.cameras[c], world.observations));
+      views_.push_back(ViewsOf(rig_.cameras[c], world.detections));
       GuessedCamera camera{&views_.back(), {}};
       camera.guess.camera_from_lidar = guesses[c];
       cameras.push_back(camera);

@@ -165,20 +165,51 @@ TEST_F(LiveNodeTest, AnImageThatWaitsForPicksCanBeLookedAt) {
 // Picks had it looked at again; the report of before still says why it was rejected.
 TEST_F(LiveNodeTest, AViewThatIsLookedAtAgainIsWhatTheDetectorSaysNow) {
   TakeView("0001", test::kStart);
-  Observation observation;
-  observation.camera = "thermal";
-  observation.view = "0001";
-  observation.rejected = "no checkerboard";
-  node_.Handle(observation);
+  ViewDetection detection;
+  detection.view = "0001";
+  detection.images = {{"rgb", test::kStart, std::nullopt, "too dark", 0},
+                      {"thermal", test::kStart, std::nullopt, "no checkerboard", 0}};
+  detection.cloud.candidates.resize(1);
+  node_.Handle(detection);
+  json view = State().at("views")[0];
+  EXPECT_EQ(view.at("cameras")[0].at("why"), "too dark");
+  EXPECT_EQ(view.at("cameras")[1].at("why"), "no checkerboard");
   Report report;
-  report.cameras.resize(1);
-  report.cameras[0].calibration.camera = "thermal";
-  report.cameras[0].rejected = {{"0001", "no checkerboard"}};
+  report.cameras.resize(2);
+  report.cameras[0].calibration.camera = "rgb";
+  report.cameras[0].rejected = {{"0001", "too dark"}};
+  report.cameras[1].calibration.camera = "thermal";
+  report.cameras[1].rejected = {{"0001", "no checkerboard"}, {"0002", "too far"}};
   report.method = "auto";
   node_.Handle(ReportText{0, test::kStart, ReportToJson(report)});
-  observation.rejected = "board moved 6 mm";
-  node_.Handle(observation);
-  EXPECT_EQ(State().at("views")[0].at("cameras")[1].at("why"), "board moved 6 mm");
+  detection.images[0] = {"rgb", test::kStart, ImageEdges(), "", 0};
+  detection.images[1].why_not = "board moved 6 mm";
+  node_.Handle(detection);
+  view = State().at("views")[0];
+  EXPECT_EQ(view.at("cameras")[0].at("state"), "accepted");
+  EXPECT_EQ(view.at("cameras")[1].at("why"), "board moved 6 mm");
+}
+
+TEST_F(LiveNodeTest, TheBoardInTheCloudIsShownWhereTheImagesFailed) {
+  TakeView("0001", test::kStart);
+  EXPECT_EQ(posts_.Newest("thumb/0001/"), nullptr);
+  ViewDetection detection;
+  detection.view = "0001";
+  for (const CameraSpec& camera : TinyRig().cameras) {
+    detection.images.push_back({camera.name, test::kStart, std::nullopt, "no checkerboard", 0});
+  }
+  CloudEdges board;
+  board.centre = {3, 0, 0};
+  board.normal = {-1, 0, 0};
+  board.width_m = 1.2;
+  board.height_m = 0.9;
+  detection.cloud.candidates = {board};
+  node_.Handle(detection);
+  EXPECT_EQ(posts_.Header("thumb/0001/").at("view"), "0001");
+  const json view = State().at("views")[0];
+  EXPECT_EQ(view.at("board").at("distance_m"), 3.0);
+  EXPECT_EQ(view.at("cloud_why_not"), "");
+  for (const json& camera : view.at("cameras")) EXPECT_EQ(camera.at("state"), "rejected");
 }
 
 TEST_F(LiveNodeTest, AResetForgetsTheViews) {
@@ -279,13 +310,12 @@ TEST_F(LiveNodeTest, AnImageThatIsNotTheRigsIsRefused) {
 
 TEST_F(LiveNodeTest, SigmaIsCountedByTheViewsUsed) {
   for (int view = 1; view <= 3; ++view) {
-    Observation observation;
-    observation.view = "000" + std::to_string(view);
-    observation.camera = "rgb";
-    observation.heldout = view == 2;
-    observation.image.emplace();
-    observation.cloud.emplace();
-    node_.Handle(observation);
+    ViewDetection detection;
+    detection.view = "000" + std::to_string(view);
+    detection.heldout = view == 2;
+    detection.images = {{"rgb", test::kStart, ImageEdges(), "", 0}};
+    detection.cloud.candidates.resize(1);
+    node_.Handle(detection);
     CalibrationMessage message;
     message.utime = test::kStart + view;
     message.calibration.camera = "rgb";

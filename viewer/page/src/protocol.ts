@@ -120,6 +120,7 @@ export interface ViewCamera {
   image_utime: number; // 0: none yet
   state: "accepted" | "rejected" | "waiting";
   why: string; // where rejected
+  image_why_not: string; // what is wrong with the image alone; "": nothing
   picked: boolean; // a person's corners
   outline: Vec2[]; // the four corners found [px]; empty: none
   edge_rms_px: number | null; // cloud's edge against the outline
@@ -131,6 +132,7 @@ export interface View {
   heldout: boolean; // kept to judge the result
   waits: string; // what is still missing; "": complete
   board: { centre_m: Vec3; normal: Vec3; distance_m: number } | null; // in the cloud
+  cloud_why_not: string; // why there is none; "": there is one, or nobody looked yet
   cameras: ViewCamera[];
 }
 

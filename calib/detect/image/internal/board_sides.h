@@ -4,8 +4,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include "calib/camera/camera.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 #include "calib/scan_assembly/assembler.h"
 #include "calib/simulate/simulator.h"
 

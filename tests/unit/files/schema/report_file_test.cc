@@ -97,6 +97,35 @@ TEST(ReportFile, GivesBackWhatItSaysOfTheWholeRig) {
   EXPECT_EQ(back.next_view->sigma_after_px, 1.0 / 11);
 }
 
+TEST(ReportFile, GivesBackWhatWasDetectedInImageAndCloud) {
+  const Report report = test::MakeReport();
+  const std::string json = ReportToJson(report);
+  const Report back = ReportFromJson(json);
+  ASSERT_EQ(back.detections.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const DetectedView& a = report.detections[i];
+    const DetectedView& b = back.detections[i];
+    EXPECT_EQ(b.view, a.view);
+    EXPECT_EQ(b.heldout, a.heldout);
+    ASSERT_EQ(b.images.size(), 2U);
+    for (std::size_t c = 0; c < 2; ++c) {
+      EXPECT_EQ(b.images[c].camera, a.images[c].camera);
+      EXPECT_EQ(b.images[c].why_not, a.images[c].why_not);
+    }
+    EXPECT_EQ(b.cloud_candidates, a.cloud_candidates);
+    EXPECT_EQ(b.cloud_why_not, a.cloud_why_not);
+  }
+  for (const char* text : {"\"why_not\": \"no checkerboard\"", "\"why_not\": \"too dark\"",
+                           "\"cloud_candidates\": 0", "\"cloud_why_not\": \"no plane\""}) {
+    EXPECT_THAT(json, HasSubstr(text));
+  }
+  // A hostile name or reason is text.
+  Report hostile = report;
+  hostile.detections[2].cloud_why_not = "plane\xff\"";
+  EXPECT_EQ(ReportFromJson(ReportToJson(hostile)).detections[2].cloud_why_not,
+            "plane\xEF\xBF\xBD\"");
+}
+
 TEST(ReportFile, WhatNobodyWorkedOutIsAbsent) {
   Report report = test::MakeReport();
   report.cameras.erase(report.cameras.begin());

@@ -14,7 +14,7 @@ class PaperCostTest : public testing::Test {
   PaperCostTest()
       : world_(MakeBoardWorld(1)),
         camera_(world_.spec),
-        view_(world_.views[0]),
+        view_(CameraViewOf(world_.spec.name, world_.views[0])),
         field_(view_.image->width, view_.image->height, view_.image->edge_pixels),
         // Off the truth, so that points lie off the edges where the surface has a slope.
         start_(GuessOff(world_.camera_from_lidar, 0.02, 0.03, 5)) {}
@@ -65,7 +65,7 @@ class PaperCostTest : public testing::Test {
 
   BoardWorld world_;
   Camera camera_;
-  const Observation& view_;
+  CameraView view_;
   DistanceField field_;
   Rigid3 start_;
 };

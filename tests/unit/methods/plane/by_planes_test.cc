@@ -8,12 +8,8 @@ namespace {
 
 using testing::StartsWith;
 
-std::vector<const Observation*> Of(const SolveWorld& world, const std::string& camera) {
-  std::vector<const Observation*> out;
-  for (const Observation& o : world.observations) {
-    if (o.camera == camera) out.push_back(&o);
-  }
-  return out;
+CameraCalibration SolveCamera(const SolveWorld& world, std::size_t camera, const Rigid3& start) {
+  return SolvePlanes(ViewsOf(world.rig.cameras[camera], world.detections).Usable(), start);
 }
 
 SolveWorldOptions Exact() {
@@ -26,7 +22,7 @@ TEST(SolvePlanes, RecoversThePoseExactlyFromDegreesOff) {
   const SolveWorld world(Exact());
   for (std::size_t c = 0; c < 2; ++c) {
     const Rigid3 start = GuessOff(world.camera_from_lidar[c], 0.05, 0.05, 3);
-    const CameraCalibration result = SolvePlanes(Of(world, world.rig.cameras[c].name), start);
+    const CameraCalibration result = SolveCamera(world, c, start);
     EXPECT_TRUE(result.converged);
     EXPECT_EQ(result.status, "converged");
     EXPECT_THAT(result.camera_from_lidar, Rigid3Near(world.camera_from_lidar[c], 1e-8, 1e-8));
@@ -36,11 +32,11 @@ TEST(SolvePlanes, RecoversThePoseExactlyFromDegreesOff) {
 TEST(SolvePlanes, EdgesHaveNoSay) {
   SolveWorld world;
   const auto solve = [&] {
-    return SolvePlanes(Of(world, "rgb"), world.camera_from_lidar[0]).camera_from_lidar;
+    return SolveCamera(world, 0, world.camera_from_lidar[0]).camera_from_lidar;
   };
   const Rigid3 with = solve();
   for (std::size_t v = 0; v < world.lidar_from_target.size(); ++v) {
-    world.ChangeCloud(v, [](CloudEdges* cloud) { cloud->crossings.clear(); });
+    world.CloudAt(v).crossings.clear();
   }
   EXPECT_THAT(solve(), Rigid3Near(with, 0, 0));
 }
@@ -55,10 +51,10 @@ TEST(SolvePlanes, ItsCovarianceIsTheUsualOne) {
     options.views = 8;
     SolveWorld world(options);
     for (std::size_t v = 0; v < 8; ++v) {
-      world.At(v, 0).image->pose->sensor_from_target =
+      world.ImageAt(v, 0).pose->sensor_from_target =
           world.camera_from_lidar[0] * world.lidar_from_target[v];
     }
-    const CameraCalibration result = SolvePlanes(Of(world, "rgb"), world.camera_from_lidar[0]);
+    const CameraCalibration result = SolveCamera(world, 0, world.camera_from_lidar[0]);
     ASSERT_TRUE(result.covariance);
     chi2 += Chi2Of(world.camera_from_lidar[0], result.camera_from_lidar, *result.covariance) /
             kSessions;
@@ -77,7 +73,7 @@ TEST(SolvePlanes, ParallelBoardsAreDegenerate) {
     board.translation = (1 + 0.1 * i) * board.translation;
     world.AddView(board);
   }
-  const CameraCalibration result = SolvePlanes(Of(world, "rgb"), world.camera_from_lidar[0]);
+  const CameraCalibration result = SolveCamera(world, 0, world.camera_from_lidar[0]);
   EXPECT_FALSE(result.converged);
   EXPECT_THAT(result.status, StartsWith("degenerate: "));
   EXPECT_FALSE(result.covariance);
@@ -89,13 +85,12 @@ TEST(CalibrateByPlanes, SolvesEachCameraByItself) {
   const SolveWorld world(world_options);
   CalibrateOptions options;
   options.method = kPlaneMethod;
-  const Report report = Calibrate(world.rig, world.observations, options);
+  const Report report = Calibrate(world.rig, world.detections, options);
   EXPECT_EQ(report.method, kPlaneMethod);
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_TRUE(camera.calibration.converged) << camera.calibration.status;
-    const CameraCalibration alone =
-        SolvePlanes(Of(world, camera.calibration.camera), world.camera_from_lidar[c]);
+    const CameraCalibration alone = SolveCamera(world, c, world.camera_from_lidar[c]);
     EXPECT_THAT(camera.calibration.camera_from_lidar,
                 Rigid3Near(alone.camera_from_lidar, 1e-7, 1e-7));
     EXPECT_THAT(camera.calibration.camera_from_lidar,

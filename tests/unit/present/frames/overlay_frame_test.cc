@@ -19,12 +19,12 @@ double WorstResidual(const Overlay& overlay) {
 
 TEST(ViewOverlay, TheTrueCalibrationLaysTheEdgeOnTheOutline) {
   const BoardWorld world = MakeBoardWorld(3);
-  for (const Observation& view : world.views) {
+  for (const ViewDetection& view : world.views) {
     const Overlay overlay = ViewOverlay(world.spec, view, nullptr, world.camera_from_lidar);
     EXPECT_TRUE(overlay.calibrated);
     EXPECT_EQ(overlay.view, view.view);
-    EXPECT_EQ(overlay.utime, view.image_utime);
-    ASSERT_EQ(overlay.edge.size(), view.cloud->boundary.size());
+    EXPECT_EQ(overlay.utime, view.images[0].utime);
+    ASSERT_EQ(overlay.edge.size(), view.cloud.candidates[0].boundary.size());
     EXPECT_LT(WorstResidual(overlay), 0.01);
   }
 }
@@ -44,20 +44,31 @@ TEST(ViewOverlay, WithoutACalibrationItIsWhatTheImageShows) {
   const Overlay overlay = ViewOverlay(world.spec, world.views[0], &cloud, std::nullopt);
   EXPECT_FALSE(overlay.calibrated);
   EXPECT_EQ(overlay.text, "board found");
-  EXPECT_EQ(overlay.outline.size(), world.views[0].image->outline.size());
+  EXPECT_EQ(overlay.outline.size(), world.views[0].images[0].edges->outline.size());
   EXPECT_TRUE(overlay.edge.empty());
   EXPECT_TRUE(overlay.cloud.empty());
 }
 
 TEST(ViewOverlay, ARejectedViewSaysWhyAndHasNoResiduals) {
   const BoardWorld world = MakeBoardWorld(1);
-  Observation view = world.views[0];
-  view.image.reset();
-  view.rejected = "no board in view";
+  ViewDetection view = world.views[0];
+  view.images[0].edges.reset();
+  view.images[0].why_not = "no board in view";
   const Overlay overlay = ViewOverlay(world.spec, view, nullptr, world.camera_from_lidar);
   EXPECT_EQ(overlay.text, "no board in view");
   ASSERT_FALSE(overlay.edge.empty());
   for (const Eigen::Vector3d& point : overlay.edge) EXPECT_TRUE(std::isnan(point.z()));
+}
+
+TEST(ViewOverlay, WithoutABoardInTheCloudTheImageIsShownAllTheSame) {
+  const BoardWorld world = MakeBoardWorld(1);
+  ViewDetection view = world.views[0];
+  view.cloud.candidates.clear();
+  view.cloud.why_not = "no plane of its size";
+  const Overlay overlay = ViewOverlay(world.spec, view, nullptr, world.camera_from_lidar);
+  EXPECT_EQ(overlay.text, "no plane of its size");
+  EXPECT_FALSE(overlay.outline.empty());
+  EXPECT_TRUE(overlay.edge.empty());
 }
 
 TEST(LayOnImage, PointsComeWhereTheCameraSeesThem) {
@@ -127,15 +138,12 @@ TEST(OverlayFrame, ArraysAreFlatAndAlwaysThere) {
 // A board 4 m ahead that faces the LIDAR, 1.2 m x 0.9 m, bright where `bright` says.
 template <typename Bright>
 cv::Mat Thumb(Bright bright) {
-  Observation observation;
-  observation.view = "0001";
   CloudEdges board;
   board.centre = {4, 0, 0};
   board.normal = {-1, 0, 0};
   board.width_m = 1.2;
   board.height_m = 0.9;
   board.spacing_m = 0.02;
-  observation.cloud = board;
   Cloud cloud;
   for (double y = -0.6; y <= 0.6; y += 0.02) {
     for (double z = -0.45; z <= 0.45; z += 0.02) {
@@ -145,8 +153,9 @@ cv::Mat Thumb(Bright bright) {
   }
   cloud.points.emplace_back(kNan, kNan, kNan);
   cloud.intensity.push_back(0.5F);
-  const ParsedFrame frame = Parse(BoardThumbFrame(observation, cloud));
+  const ParsedFrame frame = Parse(BoardThumbFrame("0001", board, cloud));
   EXPECT_EQ(frame.header.at("type"), "thumb");
+  EXPECT_EQ(frame.header.at("view"), "0001");
   EXPECT_EQ(frame.header.at("camera"), "");
   EXPECT_EQ(frame.header.at("width"), 240);
   return frame.Jpeg();
@@ -164,10 +173,6 @@ TEST(BoardThumbFrame, IsUprightAsSeenFromTheLidar) {
   const cv::Mat by_side = Thumb([](double y, double) { return y > 0; });  // y is to the left
   EXPECT_GT(Light(by_side, left), Light(by_side, right) + 100);
   EXPECT_LT(Light(by_side, cv::Rect(0, 0, 20, 20)), 45);  // nothing is there
-}
-
-TEST(BoardThumbFrame, IsEmptyWithoutABoard) {
-  EXPECT_EQ(BoardThumbFrame(Observation{}, Cloud{}), "");
 }
 
 }  // namespace

@@ -27,19 +27,20 @@ class SessionFramesTest : public ::testing::Test {
   }
 
   std::vector<NamedFrame> Frames() const {
-    return SessionFrames(session_, observations_, test::MakeReport(), options_);
+    return SessionFrames(session_, detections_, test::MakeReport(), options_);
   }
 
-  Observation Seen(const std::string& view, const std::string& camera) const {
-    Observation observation;
-    observation.view = view;
-    observation.camera = camera;
-    observation.image_utime = 17;
-    observation.image = ImageEdges();
-    observation.cloud = CloudEdges();
-    observation.cloud->centre = {2, 0, 0};
-    observation.cloud->normal = {-1, 0, 0};
-    return observation;
+  static ViewDetection Seen(const std::string& view) {
+    CloudEdges board;
+    board.centre = {2, 0, 0};
+    board.normal = {-1, 0, 0};
+    ViewDetection detection;
+    detection.view = view;
+    for (const char* camera : {"rgb", "thermal"}) {
+      detection.images.push_back({camera, 17, ImageEdges(), "", 0});
+    }
+    detection.cloud.candidates = {board};
+    return detection;
   }
 
   static json Header(const std::vector<NamedFrame>& frames, const std::string& topic) {
@@ -58,14 +59,13 @@ class SessionFramesTest : public ::testing::Test {
 
   test::TempDir dir_;
   Session session_;
-  std::vector<Observation> observations_;
+  std::vector<ViewDetection> detections_;
   SessionFramesOptions options_;
 };
 
 TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
-  for (const char* view : {"0003", "0001"}) {  // any order
-    for (const char* camera : {"thermal", "rgb"}) observations_.push_back(Seen(view, camera));
-  }
+  detections_ = {Seen("0003"), Seen("0001")};  // any order
+  std::swap(detections_[0].images[0], detections_[0].images[1]);
   const std::vector<NamedFrame> frames = Frames();
   EXPECT_THAT(Topics(frames),
               testing::ElementsAre(
@@ -91,7 +91,7 @@ TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
 }
 
 TEST_F(SessionFramesTest, TheSameSessionGivesTheSameBytes) {
-  observations_ = {Seen("0001", "rgb"), Seen("0002", "thermal")};
+  detections_ = {Seen("0001"), Seen("0002")};
   const std::vector<NamedFrame> frames = Frames();
   const std::vector<NamedFrame> again = Frames();
   ASSERT_EQ(frames.size(), again.size());

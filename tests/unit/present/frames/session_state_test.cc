@@ -14,36 +14,34 @@ json SessionJson(const SessionState& state, const Rig* rig) {
   return Parse(SessionFrame(state, rig)).header;
 }
 
-Observation Found(const std::string& view, const std::string& camera) {
-  Observation observation;
-  observation.view = view;
-  observation.camera = camera;
-  observation.image_utime = 1000;
-  observation.image = ImageEdges();
-  observation.image->outline_corners = {Eigen::Vector2d(1, 2), Eigen::Vector2d(9, 2.5),
-                                        Eigen::Vector2d(9, 8), Eigen::Vector2d(1, 8)};
-  observation.cloud = CloudEdges();
-  observation.cloud->centre = {3, 0, 4};
-  observation.cloud->normal = {-1, 0, 0};
-  return observation;
+ImageDetection Found(const std::string& camera) {
+  ImageEdges edges;
+  edges.outline_corners = {Eigen::Vector2d(1, 2), Eigen::Vector2d(9, 2.5), Eigen::Vector2d(9, 8),
+                           Eigen::Vector2d(1, 8)};
+  return {camera, 1000, edges, "", 0};
 }
 
-Observation Missed(const std::string& view, const std::string& camera) {
-  Observation observation;
-  observation.view = view;
-  observation.camera = camera;
-  observation.image_utime = 2000;
-  observation.rejected = "no board in the image";
-  return observation;
+ImageDetection Missed(const std::string& camera) {
+  return {camera, 2000, std::nullopt, "no board in the image", 0};
 }
 
-ViewState ViewOf(const std::string& name, const std::vector<Observation>& observations) {
+CloudDetection FoundInCloud() {
+  CloudDetection cloud;
+  cloud.candidates.resize(1);
+  cloud.candidates[0].centre = {3, 0, 4};
+  cloud.candidates[0].normal = {-1, 0, 0};
+  return cloud;
+}
+
+ViewState ViewOf(const std::string& name, const std::vector<ImageDetection>& images,
+                 const CloudDetection& cloud = FoundInCloud()) {
   ViewState view;
   view.name = name;
-  for (const Observation& o : observations) {
-    view.images[o.camera] = o.image_utime;
-    view.observations[o.camera] = o;
-  }
+  view.detection.emplace();
+  view.detection->view = name;
+  view.detection->images = images;
+  view.detection->cloud = cloud;
+  for (const ImageDetection& image : images) view.images[image.camera] = image.utime;
   return view;
 }
 
@@ -54,7 +52,7 @@ SessionState Finished() {
   state.calibration = state.report->ToCalibration();
   for (const char* camera : {"rgb", "thermal"}) state.calibration_utime[camera] = test::kNow;
   for (const char* view : {"0001", "0003", "0006"}) {
-    state.views.push_back(ViewOf(view, {Found(view, "rgb"), Found(view, "thermal")}));
+    state.views.push_back(ViewOf(view, {Found("rgb"), Found("thermal")}));
   }
   return state;
 }
@@ -107,12 +105,13 @@ TEST(SessionFrame, WhatRunsIsThere) {
 TEST(SessionFrame, ViewsSayWhatWasFoundInThem) {
   const Rig rig = test::MakeRig();
   SessionState state;
-  state.views = {ViewOf("0001", {Found("0001", "rgb"), Missed("0001", "thermal")}),
-                 ViewOf("0002", {Found("0002", "rgb")})};
+  state.views = {ViewOf("0001", {Found("rgb"), Missed("thermal")}), ViewOf("0002", {Found("rgb")}),
+                 ViewOf("0003", {Found("rgb"), Missed("thermal")},
+                        CloudDetection{{}, "no plane of its size", 0})};
   state.views[1].heldout = true;
   state.views[1].waits = "for thermal";
   const json views = SessionJson(state, &rig).at("views");
-  ASSERT_EQ(views.size(), 2U);
+  ASSERT_EQ(views.size(), 3U);
   EXPECT_EQ(views[0].at("name"), "0001");
   EXPECT_EQ(
       views[0].at("board"),
@@ -130,19 +129,38 @@ TEST(SessionFrame, ViewsSayWhatWasFoundInThem) {
   EXPECT_EQ(views[1].at("heldout"), true);
   EXPECT_EQ(views[1].at("waits"), "for thermal");
   EXPECT_EQ(views[1].at("cameras").at(1).at("state"), "waiting");
+  // Image and cloud apart.
+  EXPECT_EQ(views[0].at("cloud_why_not"), "");
+  EXPECT_EQ(rgb.at("image_why_not"), "");
+  EXPECT_EQ(thermal.at("image_why_not"), "no board in the image");
+  EXPECT_TRUE(views[2].at("board").is_null());
+  EXPECT_EQ(views[2].at("cloud_why_not"), "no plane of its size");
+  EXPECT_EQ(views[2].at("cameras").at(0).at("state"), "rejected");
+  EXPECT_EQ(views[2].at("cameras").at(0).at("why"), "no plane of its size");
+  EXPECT_EQ(views[2].at("cameras").at(0).at("image_why_not"), "");
+  EXPECT_EQ(views[2].at("cameras").at(1).at("why"),
+            "image: no board in the image; cloud: no plane of its size");
+}
+
+TEST(SessionFrame, TheBoardInTheCloudIsShownWhereEveryImageFailed) {
+  const Rig rig = test::MakeRig();
+  SessionState state;
+  state.views = {ViewOf("0001", {Missed("rgb"), Missed("thermal")})};
+  const json view = SessionJson(state, &rig).at("views").at(0);
+  EXPECT_EQ(view.at("board").at("distance_m"), 5.0);
+  for (const json& camera : view.at("cameras")) EXPECT_EQ(camera.at("state"), "rejected");
 }
 
 TEST(SessionFrame, PicksAreWantedWhereAnImageWasLookedAtInVainNewestFirst) {
   const Rig rig = test::MakeRig();
   SessionState state;
-  Observation cloudless = Found("0003", "rgb");  // the image is fine: corners would not help
-  cloudless.cloud.reset();
-  cloudless.rejected = "no board in the cloud";
-  Observation unread = Missed("0004", "rgb");
-  unread.image_utime = 0;
-  state.views = {ViewOf("0001", {Missed("0001", "thermal")}),
-                 ViewOf("0002", {Missed("0002", "rgb"), Found("0002", "thermal")}),
-                 ViewOf("0003", {cloudless}), ViewOf("0004", {unread})};
+  const CloudDetection missed{{}, "no board in the cloud", 0};
+  ImageDetection unread = Missed("rgb");
+  unread.utime = 0;
+  state.views = {ViewOf("0001", {Missed("thermal")}),
+                 ViewOf("0002", {Missed("rgb"), Found("thermal")}),
+                 ViewOf("0003", {Found("rgb")}, missed),  // corners would not help
+                 ViewOf("0004", {unread})};
   const json wanted = SessionJson(state, &rig).at("pick_wanted");
   ASSERT_EQ(wanted.size(), 2U);
   EXPECT_EQ(wanted[0], json({{"view", "0002"},
@@ -156,7 +174,7 @@ TEST(SessionFrame, BeforeTheFirstSolveItSaysHowManyViewsAreMissing) {
   const Rig rig = test::MakeRig();
   SessionState state;
   for (const char* view : {"0001", "0002", "0003"}) {
-    state.views.push_back(ViewOf(view, {Found(view, "rgb"), Missed(view, "thermal")}));
+    state.views.push_back(ViewOf(view, {Found("rgb"), Missed("thermal")}));
   }
   const json frame = SessionJson(state, &rig);
   EXPECT_EQ(frame.at("verdict").at("grade"), "none");
@@ -279,7 +297,10 @@ TEST(SessionFrame, HostileNamesAreOnlyText) {
   SessionState state = Finished();
   state.failure = evil;
   state.views[0].name = evil;
-  state.views[0].observations[evil] = Missed(evil, evil);
+  state.views[0].detection->view = evil;
+  state.views[0].detection->images = {Missed(evil)};
+  state.views[0].detection->images[0].why_not = evil;
+  state.views[0].detection->cloud.why_not = evil;
   state.report->cameras[0].calibration.camera = evil;
   state.report->next_view->words = evil;
   const std::string shown = "</script><b>\xEF\xBF\xBD\"\\\n";

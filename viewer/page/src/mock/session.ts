@@ -8,9 +8,10 @@ const kStart = Date.now() * 1000;
 
 function viewCamera(index: number, board: Board, camera: (typeof kCameras)[number]): ViewCamera {
   const rejected = camera.kind === "thermal" && index % 3 === 2;
+  const why = rejected ? "no checkerboard: 31 of 35 corners; the board is too even in temperature" : "";
   return {
     camera: camera.name, image_utime: kStart + index * 60e6, state: rejected ? "rejected" : "accepted",
-    why: rejected ? "no checkerboard: 31 of 35 corners; the board is too even in temperature" : "",
+    why, image_why_not: why,
     picked: camera.kind === "thermal" && index === 1, outline: rejected ? [] : outlineOf(camera, board),
     edge_rms_px: rejected ? null : 0.4 + 0.13 * index, edge_rms_sigmas: rejected ? null : 0.9 + 0.15 * index,
   };
@@ -24,6 +25,7 @@ function view(index: number): View {
   return {
     name: viewName(index), heldout: index % 4 === 3, waits: "",
     board: { centre_m: board.centre, normal, distance_m: Math.hypot(...board.centre) },
+    cloud_why_not: "",
     cameras: kCameras.map((camera) => viewCamera(index, board, camera)),
   };
 }
@@ -91,7 +93,7 @@ export class MockSession {
   pick(camera: string, image_utime: number): void {
     this.views = this.views.map((one) => ({ ...one, cameras: one.cameras.map((state) =>
       state.camera === camera && state.image_utime === image_utime
-        ? { ...state, state: "accepted", why: "", picked: true, edge_rms_px: 0.8, edge_rms_sigmas: 1.2 } : state) }));
+        ? { ...state, state: "accepted", why: "", image_why_not: "", picked: true, edge_rms_px: 0.8, edge_rms_sigmas: 1.2 } : state) }));
     this.say("detector", "done", `${camera}: corners picked`);
   }
 }

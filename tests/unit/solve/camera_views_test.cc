@@ -1,0 +1,118 @@
+#include "calib/solve/camera_views.h"
+
+#include "tests/unit/solve/solve_world.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Of one view: the board is seen by "rgb", "thermal" and LIDAR.
+ViewDetection Seen() {
+  SolveWorldOptions options;
+  options.views = 1;
+  return SolveWorld(options).detections[0];
+}
+
+void Fail(ImageDetection* image, const std::string& why) {
+  image->edges.reset();
+  image->why_not = why;
+}
+
+void Fail(CloudDetection* cloud, const std::string& why) {
+  cloud->candidates.clear();
+  cloud->why_not = why;
+}
+
+TEST(CameraViewOf, PairsACamerasImageWithTheLikeliestCandidate) {
+  ViewDetection detection = Seen();
+  detection.heldout = true;
+  detection.cloud.candidates.push_back(detection.cloud.candidates[0]);
+  detection.cloud.candidates[1].centre.x() += 1;
+  const CameraView view = CameraViewOf("thermal", detection);
+  EXPECT_TRUE(view.usable());
+  EXPECT_EQ(view.view, "0001");
+  EXPECT_TRUE(view.heldout);
+  EXPECT_EQ(view.image_utime, detection.images[1].utime);
+  EXPECT_EQ(view.image, &*detection.images[1].edges);
+  EXPECT_THAT(view.candidates,
+              ElementsAre(&detection.cloud.candidates[0], &detection.cloud.candidates[1]));
+  EXPECT_EQ(view.cloud->centre, detection.cloud.candidates[0].centre);
+}
+
+TEST(CameraViewOf, OneCamerasImageSaysNothingOfTheOther) {
+  ViewDetection detection = Seen();
+  Fail(&detection.images[0], "no checkerboard");
+  EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "no checkerboard");
+  EXPECT_TRUE(CameraViewOf("thermal", detection).usable());
+}
+
+TEST(CameraViewOf, TellsOfImageAndCloudApart) {
+  ViewDetection detection = Seen();
+  Fail(&detection.cloud, "no plane of the board's size");
+  EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "no plane of the board's size");
+  Fail(&detection.images[0], "no checkerboard");
+  EXPECT_EQ(CameraViewOf("rgb", detection).rejected,
+            "image: no checkerboard; cloud: no plane of the board's size");
+  Fail(&detection.cloud, "no checkerboard");
+  EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "no checkerboard") << "said once";
+}
+
+TEST(CameraViewOf, WhatIsMissingWithoutAReasonIsNamed) {
+  const ViewDetection seen = Seen();
+  EXPECT_THAT(CameraViewOf("front", seen).rejected, HasSubstr("no image of this camera"));
+  ViewDetection detection = seen;
+  detection.images[0].edges.reset();
+  EXPECT_THAT(CameraViewOf("rgb", detection).rejected, HasSubstr("not found in the image"));
+  detection = seen;
+  detection.cloud.candidates.clear();
+  EXPECT_THAT(CameraViewOf("rgb", detection).rejected, HasSubstr("not found in the cloud"));
+}
+
+TEST(CameraViewOf, ABoardThatMovedIsRejectedThoughItsEdgesAreKnown) {
+  ViewDetection detection = Seen();
+  detection.images[0].why_not = "the board moved";
+  const CameraView view = CameraViewOf("rgb", detection);
+  EXPECT_EQ(view.rejected, "the board moved");
+  EXPECT_NE(view.image, nullptr);
+}
+
+// The paper's method: each camera's picks and guess say where to look.
+TEST(CameraViewOf, ACandidateOfOneCameraIsItsAlone) {
+  ViewDetection detection = Seen();
+  detection.cloud.candidates.push_back(detection.cloud.candidates[0]);
+  detection.cloud.candidates[0].camera = "thermal";
+  detection.cloud.candidates[1].camera = "rgb";
+  EXPECT_THAT(CameraViewOf("rgb", detection).candidates,
+              ElementsAre(&detection.cloud.candidates[1]));
+  detection.cloud.candidates.pop_back();
+  detection.cloud.why_not = "rgb: nothing near the corners";
+  EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "rgb: nothing near the corners");
+  EXPECT_TRUE(CameraViewOf("thermal", detection).usable());
+}
+
+TEST(CameraView, TheFirstReasonStays) {
+  CameraView view;
+  view.Reject("moved");
+  view.Reject("contradicts");
+  EXPECT_EQ(view.rejected, "moved");
+  EXPECT_FALSE(view.usable());
+}
+
+TEST(ViewsOf, ACandidateWithoutBoundaryPointsIsNone) {
+  SolveWorldOptions options;
+  options.views = 2;
+  SolveWorld world(options);
+  CloudDetection& cloud = world.detections[0].cloud;
+  cloud.candidates.insert(cloud.candidates.begin(), CloudEdges());
+  world.CloudAt(1).boundary.clear();
+  const CameraViews views = ViewsOf(world.rig.cameras[0], world.detections);
+  ASSERT_EQ(views.all.size(), 2U);
+  EXPECT_THAT(views.all[0].candidates, ElementsAre(&cloud.candidates[1]));
+  EXPECT_EQ(views.all[0].cloud->centre, cloud.candidates[1].centre);
+  EXPECT_THAT(views.all[1].rejected, HasSubstr("no boundary points"));
+}
+
+}  // namespace
+}  // namespace rgbdt
