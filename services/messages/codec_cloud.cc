@@ -149,16 +149,9 @@ void CheckMisses(const cloud_t& wire) {
   }
 }
 
-std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, const Cloud& cloud) {
-  std::vector<Eigen::Vector3f> directions(cloud.size());
-  for (std::size_t line = 0, i = 0; line < static_cast<std::size_t>(cloud.lines); ++line) {
-    const Eigen::Vector3f origin =
-        cloud.origins.empty() ? Eigen::Vector3f(0, 0, 0) : cloud.origins[line];
-    for (int beam = 0; beam < cloud.beams; ++beam, ++i) {
-      // NaN for a miss, without more ado.
-      directions[i] = (cloud.points[i] - origin).normalized();
-    }
-  }
+// Of misses; a hit's is told by its point, to those who ask (DirectionOf).
+std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, std::size_t size) {
+  std::vector<Eigen::Vector3f> directions(size, Eigen::Vector3f::Constant(kNan));
   for (std::size_t i = 0; i < wire.miss_index.size(); ++i) {
     directions[static_cast<std::size_t>(wire.miss_index[i])] = {wire.miss_x[i], wire.miss_y[i],
                                                                 wire.miss_z[i]};
@@ -219,7 +212,7 @@ CloudChunk FromWire(const cloud_t& wire) {
   cloud.beams = wire.num_beams;
   cloud.points = Join(wire.x_m, wire.y_m, wire.z_m);
   cloud.origins = Join(wire.origin_x_m, wire.origin_y_m, wire.origin_z_m);
-  cloud.directions = Directions(wire, cloud);
+  cloud.directions = Directions(wire, cloud.size());
   cloud.intensity = wire.intensity;
   cloud.ring.assign(wire.ring.begin(), wire.ring.end());
   cloud.utime.resize(wire.utime_offset_us.size());
