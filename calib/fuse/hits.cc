@@ -1,8 +1,10 @@
-#include "calib/fuse/internal/hits.h"
+#include "calib/fuse/hits.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "calib/model/slice.h"
 
 namespace rgbdt {
 namespace {
@@ -50,21 +52,42 @@ void KeepHits(const Cloud& chunk, std::size_t first, std::size_t end, std::vecto
 
 }  // namespace
 
-void AppendHits(const Cloud& chunk, RgbdtCloud* hits) {
-  hits->points.reserve(hits->size() + chunk.size());
-  hits->intensity.reserve(hits->size() + chunk.size());
-  hits->utime.reserve(hits->size() + chunk.size());
+void Hits::Append(const Hits& more) {
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(more.points, &points);
+  append(more.intensity, &intensity);
+  append(more.utime, &utime);
+}
+
+Hits Hits::Part(std::size_t first, std::size_t end) const {
+  return {Slice(points, first, end), Slice(intensity, first, end), Slice(utime, first, end)};
+}
+
+void Hits::Clear() {
+  points.clear();
+  intensity.clear();
+  utime.clear();
+}
+
+Hits HitsOf(const Cloud& chunk) {
+  Hits hits;
+  hits.points.reserve(chunk.size());
+  hits.intensity.reserve(chunk.size());
+  hits.utime.reserve(chunk.size());
   constexpr std::size_t kTile = 512;
   for (std::size_t first = 0; first < chunk.size(); first += kTile) {
     const std::size_t end = std::min(first + kTile, chunk.size());
-    AppendRange(chunk.points, Eigen::Vector3f(kNone, kNone, kNone), first, end, &hits->points);
-    AppendRange(chunk.intensity, kNone, first, end, &hits->intensity);
-    AppendRange(chunk.utime, chunk.sweep_utime, first, end, &hits->utime);
+    AppendRange(chunk.points, Eigen::Vector3f(kNone, kNone, kNone), first, end, &hits.points);
+    AppendRange(chunk.intensity, kNone, first, end, &hits.intensity);
+    AppendRange(chunk.utime, chunk.sweep_utime, first, end, &hits.utime);
     if (AreHits(&chunk.points[first], end - first)) continue;
-    KeepHits(chunk, first, end, &hits->points);
-    KeepHits(chunk, first, end, &hits->intensity);
-    KeepHits(chunk, first, end, &hits->utime);
+    KeepHits(chunk, first, end, &hits.points);
+    KeepHits(chunk, first, end, &hits.intensity);
+    KeepHits(chunk, first, end, &hits.utime);
   }
+  return hits;
 }
 
 }  // namespace rgbdt
