@@ -10,6 +10,7 @@
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/target_pose.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -33,12 +34,6 @@ std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Target& targe
     outline.insert(outline.end(), side.begin(), side.end());
   }
   return outline;
-}
-
-std::string Metres(double distance) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.1f m away", distance);
-  return text;
 }
 
 }  // namespace
@@ -67,7 +62,7 @@ Sighting LookForTarget(const Rig& rig, const Image& image) {
   sighting.seen = true;
   const Rigid3& camera_from_target = pose->pose.sensor_from_target;
   sighting.outline = OutlineOf(camera, rig.target, camera_from_target);
-  sighting.text = Metres(camera_from_target.translation.norm());
+  sighting.text = Format("%.1f m away", camera_from_target.translation.norm());
   return sighting;
 }
 
@@ -81,7 +76,7 @@ Sighting LookForTarget(const Rig& rig, const Cloud& cloud) {
   if (boards.candidates.empty()) return sighting;
   sighting.seen = true;
   sighting.centre = boards.candidates.front().centre;
-  sighting.text = Metres(sighting.centre.norm());
+  sighting.text = Format("%.1f m away", sighting.centre.norm());
   return sighting;
 }
 

@@ -6,6 +6,7 @@
 #include "calib/camera/pixels.h"
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "services/drivers/camera/internal/frame_format.h"
 
 namespace rgbdt {
@@ -20,11 +21,7 @@ const CameraSpec& WithDevice(const CameraSpec& spec) {
                    "\"; add device { serial: \"...\" } or device { address: \"...\" } to it");
 }
 
-std::string Seconds(Utime duration) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", ToSeconds(duration));
-  return text;
-}
+std::string Seconds(Utime duration) { return Format("%.1f s", ToSeconds(duration)); }
 
 }  // namespace
 
@@ -226,13 +223,8 @@ Status CameraNode::GetStatus() const {
   if (!health_.streaming) {
     status.text = health_.frames == 0 ? "waits for its camera" : "lost its camera, looks for it";
   } else {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.1f frames/s", health_.rate_hz);
-    status.text = text;
-    if (health_.celsius) {
-      std::snprintf(text, sizeof text, ", camera at %.0f deg C", *health_.celsius);
-      status.text += text;
-    }
+    status.text = Format("%.1f frames/s", health_.rate_hz);
+    if (health_.celsius) status.text += Format(", camera at %.0f deg C", *health_.celsius);
   }
   status.counters = {{"frames", health_.frames},
                      {"incomplete frames", health_.incomplete},

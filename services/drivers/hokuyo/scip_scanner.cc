@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -196,10 +197,8 @@ void ScipScanner::TellGap(Connection& c, Utime utime) {
     return;
   }
   if (last_line_ != 0) {
-    char text[80];
-    std::snprintf(text, sizeof(text), ": is back; no lines for %.1f s",
-                  ToSeconds(utime - last_line_));
-    c.thread.Complain(c.link.name() + text);
+    c.thread.Complain(c.link.name() +
+                      Format(": is back; no lines for %.1f s", ToSeconds(utime - last_line_)));
     report_.Count("reconnects");
   }
   last_line_ = utime;
