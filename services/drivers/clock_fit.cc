@@ -1,7 +1,6 @@
 #include "services/drivers/clock_fit.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -19,13 +18,6 @@ void Require(bool good, const char* field, double value, const char* expected) {
 }
 
 }  // namespace
-
-Utime HostUtime() {
-  using Microseconds = std::chrono::duration<Utime, std::micro>;
-  return std::chrono::duration_cast<Microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 std::optional<Utime> PtpToUtc(Utime stamp, Utime arrival) {
   constexpr Utime kMostApart = 60 * kMicrosecondsPerSecond;
