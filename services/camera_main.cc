@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   try {
     const rgbdt::Rig rig = rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown);
     rgbdt::CameraNode node(CameraOf(rig, name), captures);
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-camera: %s\n", e.what());
     return 1;

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::LidarNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown).lidar);
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-lidar: %s\n", e.what());
     return 1;

@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::MotorNode node(ReadScanner(rig_file));
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-motor: %s\n", e.what());
     return 1;

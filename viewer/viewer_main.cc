@@ -17,9 +17,9 @@
 #include "calib/present/layout/frame.h"
 #include "services/bus/bus.h"
 #include "services/drivers/net/network_interfaces.h"
+#include "services/runtime/clock.h"
 #include "services/runtime/process.h"
 #include "viewer/live/bus_monitor.h"
-#include "viewer/live/clock.h"
 #include "viewer/live/live_node.h"
 #include "viewer/server/listening_socket.h"
 #include "viewer/server/server.h"
@@ -82,7 +82,7 @@ ServerOptions OptionsFrom(const Flags& flags) {
 }
 
 // A phone cannot look up this machine's name: its addresses, where it listens at all of them.
-void SayWhere(const Server& server, const ServerOptions& options) {
+void PrintAddresses(const Server& server, const ServerOptions& options) {
   const std::string url = server.Url();
   std::printf("%s\n", url.c_str());
   if (options.socket < 0 && (options.address == "0.0.0.0" || options.address == "::")) {
@@ -151,17 +151,16 @@ nlohmann::json Browsers(const Server& server) {
   return all;
 }
 
-void PostBus(const rgbdt::viewer::LiveNode& node, const rgbdt::viewer::BusMonitor& monitor,
-             double now_s, Server* server) {
+nlohmann::json DescribeBus(const rgbdt::viewer::BusMonitor& monitor, double now_s,
+                           const Server& server) {
   nlohmann::json frame = {{"type", "bus"},
                           {"channels", monitor.Channels(now_s)},
-                          {"processes", node.Processes(now_s)},
-                          {"browsers", Browsers(*server)},
+                          {"browsers", Browsers(server)},
                           {"screen_ms", nullptr}};
-  if (const auto screen = server->Screen()) {
+  if (const auto screen = server.Screen()) {
     frame["screen_ms"] = {{"p50", screen->p50}, {"p95", screen->p95}, {"count", screen->count}};
   }
-  server->Send({"bus", "", true, false, 0, [frame] { return rgbdt::viewer::JsonFrame(frame); }, 0});
+  return frame;
 }
 
 int ShowBus(const Flags& flags) {
@@ -171,24 +170,13 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::LiveNode node;
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
-  SayWhere(server, options);
+  PrintAddresses(server, options);
   rgbdt::viewer::BusMonitor monitor;
-  double next_bus_s = 0;
+  node.PostBus([&](double now_s) { return DescribeBus(monitor, now_s, server); });
   return rgbdt::RunOnLcm(
-      node, flags.url,
-      [&](rgbdt::NodeRunner& runner) {
-        const double now_s = rgbdt::viewer::SteadySeconds();
-        runner.Publish(node.TakeMessages());
-        node.Tick(now_s);
-        if (now_s >= next_bus_s) {
-          next_bus_s = now_s + 1;
-          PostBus(node, monitor, now_s, &server);
-        }
-        return true;
-      },
-      [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-        monitor.Add(channel, data, size, rgbdt::viewer::SteadySeconds(),
-                    rgbdt::viewer::WallUtime());
+      node, flags.url, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        monitor.Add(channel, data, size, rgbdt::ToSeconds(rgbdt::SteadyUtime()),
+                    rgbdt::HostUtime());
       });
 }
 
@@ -218,9 +206,9 @@ int ShowSession(const Flags& flags) {
   Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
   for (const auto& frame : frames) {
     if (frame.topic == "hello") continue;  // the server says it
-    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
+    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }});
   }
-  SayWhere(server, options);
+  PrintAddresses(server, options);
   goodbye.Wait();
   return 0;
 }

@@ -1,7 +1,6 @@
 #include "services/drivers/clock_fit.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,13 +9,6 @@
 #include "calib/model/errors.h"
 
 namespace rgbdt {
-Utime HostUtime() {
-  using Microseconds = std::chrono::duration<Utime, std::micro>;
-  return std::chrono::duration_cast<Microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::optional<Utime> PtpToUtc(Utime stamp, Utime arrival) {
   constexpr Utime kMostApart = 60 * kMicrosecondsPerSecond;
   constexpr Utime kMostOff = kMicrosecondsPerSecond / 5;

@@ -43,8 +43,10 @@ Messages SolverNode::Handle(const Message& message) {
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* observation = std::get_if<Observation>(&message)) {
     rig_->Camera(observation->camera);
-    observations_[{observation->view, observation->camera}] = *observation;
-    Solve(false);
+    Observations all = observations_;
+    all[{observation->view, observation->camera}] = *observation;
+    report_ = Solve(all, false);
+    observations_ = std::move(all);
     return Calibrations();
   }
   if (const auto* command = std::get_if<SessionCommand>(&message)) return OnCommand(*command);
@@ -68,7 +70,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
     event.text = "no observation yet; capture views of the target first";
     return {event};
   }
-  Solve(true);
+  report_ = Solve(observations_, true);
   Messages out = Calibrations();
   out.push_back(ReportText{0, report_->utime, ReportToJson(*report_)});
   event.text = Brief(*report_, evaluate);
@@ -76,13 +78,13 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   return out;
 }
 
-void SolverNode::Solve(bool for_report) {
+Report SolverNode::Solve(const Observations& observations, bool for_report) const {
   std::vector<Observation> all;
-  for (const auto& [key, observation] : observations_) all.push_back(observation);
+  for (const auto& [key, observation] : observations) all.push_back(observation);
   CalibrateOptions options = options_;
   options.wide_start &= for_report;
   options.diagnostics &= for_report;
-  report_ = Calibrate(*rig_, all, options);
+  return Calibrate(*rig_, all, options);
 }
 
 Messages SolverNode::Calibrations() const {
@@ -95,7 +97,10 @@ Messages SolverNode::Calibrations() const {
   return out;
 }
 
-Messages SolverNode::Republish() { return Calibrations(); }
+Messages SolverNode::Advance(Utime now) {
+  if (!repeat_.IsDue(now)) return {};
+  return Calibrations();
+}
 
 Status SolverNode::GetStatus() const {
   Status status;

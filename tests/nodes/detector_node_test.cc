@@ -148,12 +148,15 @@ TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
 }
 
 TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
-  EXPECT_TRUE(node_.Republish().empty());
+  EXPECT_TRUE(node_.Advance(0).empty());
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Blank("thermal"));
   Messages said;
-  for (int tick = 0; tick < 10; ++tick) {
-    for (Message& message : node_.Republish()) said.push_back(std::move(message));
+  for (Utime now = 1; now < 10; ++now) {
+    for (Message& message : node_.Advance(now * kMicrosecondsPerSecond)) {
+      said.push_back(std::move(message));
+    }
+    EXPECT_TRUE(node_.Advance(now * kMicrosecondsPerSecond + 900'000).empty());
   }
   const auto sightings = Only<Sighting>(said);
   ASSERT_EQ(sightings.size(), 2U);
@@ -165,7 +168,14 @@ TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
   }
   node_.Handle(Capture());
   node_.Handle(Blank("rgb", kCommand - 1));
-  EXPECT_TRUE(node_.Republish().empty()) << "a capture comes first";
+  EXPECT_TRUE(node_.Advance(100 * kMicrosecondsPerSecond).empty()) << "a capture comes first";
+}
+
+TEST(DetectorNodeReplayTest, WhereNobodyWatchesItDoesNotLook) {
+  DetectorNode node(kAutoMethod, DetectorNode::Looks::kNo);
+  node.Handle(test::TextOf(TinyRig()));
+  node.Handle(Blank("thermal"));
+  EXPECT_TRUE(node.Advance(kMicrosecondsPerSecond).empty());
 }
 
 TEST_F(DetectorNodeTest, ResetForgetsTheCapture) {
@@ -240,8 +250,9 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
   test::HandleAll(&watching, cloud);
   test::HandleAll(&watching, images);
   const auto observations = Only<Observation>(expected);
-  for (int tick = 0; tick < 3; ++tick) {
-    const Sighting sighting = Only<Sighting>(watching.Republish()).at(0);
+  for (Utime now = 0; now < 3; ++now) {
+    const Messages said = watching.Advance(now * kMicrosecondsPerSecond);
+    const Sighting sighting = Only<Sighting>(said).at(0);
     EXPECT_TRUE(sighting.seen) << sighting.camera << ": " << sighting.text;
     if (sighting.camera.empty()) {
       EXPECT_LT((sighting.centre - observations[0].cloud->centre).norm(), 1e-6);

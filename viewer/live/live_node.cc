@@ -11,7 +11,6 @@
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
 #include "calib/present/layout/frame.h"
-#include "viewer/live/clock.h"
 #include "viewer/live/kept_view.h"
 
 namespace rgbdt::viewer {
@@ -45,12 +44,15 @@ std::vector<std::string> LiveNode::Subscriptions() const {
 
 Messages LiveNode::Handle(const Message& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  now_s_ = SteadySeconds();
   Take(message);
   if (!std::holds_alternative<Status>(message)) {
     newest_utime_ = std::max(newest_utime_, UtimeOf(message));
   }
-  CompleteView();
+  try {
+    CompleteView();
+  } catch (const std::exception& e) {
+    Warn(std::string("a view cannot be shown: ") + e.what());
+  }
   return {};
 }
 
@@ -87,7 +89,8 @@ void LiveNode::Take(const Message& message) {
 void LiveNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = std::make_shared<const Rig>(ParseRig(text.text, "RIG message"));
-  outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }, 0});
+  sightings_.clear();  // of cameras that this rig may not have
+  outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
 }
 
@@ -109,6 +112,11 @@ void LiveNode::OnCommand(const SessionCommand& command) {
   state_.mode = before.mode;
   state_.can = before.can;
   changed_ = true;
+}
+
+// Before a rig has come any will do.
+void LiveNode::RequireCamera(const std::string& camera) const {
+  if (rig_) rig_->Camera(camera);
 }
 
 // Null where there are too many: a stranger's names do not fill the memory.
@@ -170,7 +178,7 @@ void LiveNode::OnImage(const Image& image) {
   post.watch = "camera/" + image.camera;
   post.heavy = true;
   post.make = [shared] { return ImageFrame(*shared, "", true); };
-  post.came_s = now_s_;
+  post.timed = true;
   outbox_->Send(std::move(post));
 }
 
@@ -203,6 +211,7 @@ void LiveNode::ForgetRejected(const Observation& observation) {
 
 void LiveNode::OnCalibration(const CalibrationMessage& message) {
   const CameraCalibration& camera = message.calibration;
+  RequireCamera(camera.camera);
   auto& all = state_.calibration.cameras;
   const auto same = std::find_if(all.begin(), all.end(), [&](const CameraCalibration& c) {
     return c.camera == camera.camera;
@@ -243,7 +252,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   if (!cloud.whole_sweep) {
     const auto number = static_cast<int>(cloud.seq % 1'000'000'000);
     outbox_->Send({"chunk/" + std::to_string(cloud.seq), "cloud", false, true, kPointBytes,
-                   [shared, number] { return CloudFrame(*shared, number); }, now_s_});
+                   [shared, number] { return CloudFrame(*shared, number); }, true});
     return;
   }
   if (cloud.sweep_utime != sweep_utime_) {
@@ -254,7 +263,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   }
   const int part = sweep_part_++;
   outbox_->Send({"sweep/" + std::to_string(part), "cloud", true, true, kPointBytes,
-                 [shared, part] { return CloudFrame(*shared, part); }, now_s_});
+                 [shared, part] { return CloudFrame(*shared, part); }, true});
   if (sweep_points_.size() < kMaxSweepPoints) {
     sweep_points_.insert(sweep_points_.end(), cloud.points.begin(), cloud.points.end());
   }
@@ -294,6 +303,7 @@ void LiveNode::PostLiveOverlay(const std::string& camera) {
 }
 
 void LiveNode::OnSighting(const Sighting& sighting) {
+  if (!sighting.camera.empty()) RequireCamera(sighting.camera);
   if (sightings_.size() > 32) sightings_.clear();
   sightings_[sighting.camera] = {sighting, now_s_};
   PostSightings();
@@ -315,23 +325,29 @@ void LiveNode::PostSightings() {
                        {"age_s", now_s_ - seen.at_s}});
   }
   const nlohmann::json frame = {{"type", "sightings"}, {"sensors", sensors}};
-  outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }, 0});
+  outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }});
 }
 
-void LiveNode::Tick(double now_s) {
+Messages LiveNode::Advance(Utime now) {
+  nlohmann::json bus;  // asked for without the lock: the server has locks of its own
+  if (describe_bus_ && bus_.IsDue(now)) bus = describe_bus_(ToSeconds(now));
   const std::lock_guard<std::mutex> lock(mutex_);
-  now_s_ = now_s;
-  if (watch_.Update(now_s, &state_)) changed_ = true;
-  if (!changed_ || now_s - posted_s_ < kBetweenStates) return;
-  changed_ = false;
-  posted_s_ = now_s;
-  outbox_->Send({"session", "", true, false, 0,
-                 [bytes = SessionFrame(state_, rig_.get())] { return bytes; }, 0});
-}
-
-Messages LiveNode::TakeMessages() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  now_s_ = ToSeconds(now);
+  PostState();
+  if (!bus.is_null()) {
+    bus["processes"] = watch_.Processes(now_s_);
+    outbox_->Send({"bus", "", true, false, 0, [bus] { return JsonFrame(bus); }});
+  }
   return std::exchange(messages_, {});
+}
+
+void LiveNode::PostState() {
+  if (watch_.Update(now_s_, &state_)) changed_ = true;
+  if (!changed_ || now_s_ - posted_s_ < kBetweenStates) return;
+  changed_ = false;
+  posted_s_ = now_s_;
+  outbox_->Send({"session", "", true, false, 0,
+                 [bytes = SessionFrame(state_, rig_.get())] { return bytes; }});
 }
 
 std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
@@ -386,11 +402,6 @@ std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
     }
   }
   return posts;
-}
-
-nlohmann::json LiveNode::Processes(double now_s) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return watch_.Processes(now_s);
 }
 
 Status LiveNode::GetStatus() const {

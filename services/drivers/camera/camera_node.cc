@@ -8,6 +8,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/drivers/camera/internal/frame_format.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -39,8 +40,8 @@ Messages CameraNode::Handle(const Message& message) {
   return {};
 }
 
-void CameraNode::Complain(DeviceThread& thread, const std::string& what) {
-  thread.Complain(spec_.name + ": " + what);
+void CameraNode::WarnOf(const std::string& what, DeviceThread& thread) const {
+  thread.Warn(spec_.name + ": " + what);
 }
 
 CameraNode::~CameraNode() {
@@ -78,7 +79,7 @@ void CameraNode::Serve(DeviceThread& thread) {
 void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
   using Trigger = CameraDevice::Trigger;
   const bool free_running = spec_.device->trigger == Trigger::kFree;
-  for (const std::string& remark : camera->remarks()) Complain(*thread, remark);
+  for (const std::string& remark : camera->remarks()) WarnOf(remark, *thread);
   ptp_ = camera->FollowsPtp();
   if (!free_running) {  // it may send nothing for long
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -145,7 +146,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++health_.incomplete;
     }
-    Complain(thread, "a frame is not whole and was dropped: " + frame.problem);
+    WarnOf("a frame is not whole and was dropped: " + frame.problem, thread);
     return;
   }
   Image image;
@@ -164,7 +165,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++health_.unfit;
     }
-    Complain(thread, e.what());
+    WarnOf(e.what(), thread);
     return;
   }
   if (spec_.kind == CameraKind::kThermal) {
@@ -172,7 +173,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
     image.shutter_correcting = shutter_.Add(image.pixels, image.utime);
   }
   if (lost_since_ != 0) {
-    Complain(thread, "back after " + Seconds(newest_arrival_ - lost_since_) + " without a frame");
+    WarnOf("back after " + Seconds(newest_arrival_ - lost_since_) + " without a frame", thread);
     lost_since_ = 0;
   }
   ++rate_frames_;
@@ -185,10 +186,10 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
   try {
     KeepRaw(image);
   } catch (const std::exception& e) {
-    Complain(thread, e.what());
+    WarnOf(e.what(), thread);
   }
   Pack(&image);
-  thread.Say(std::move(image));
+  thread.Publish(std::move(image));
 }
 
 // The capture's image, where only a packed one leaves this host.
