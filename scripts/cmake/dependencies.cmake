@@ -25,7 +25,7 @@ rgbdt_external(Ceres::ceres CMAKE "find_dependency(Ceres)" DEBIAN libceres-dev
   REQUIRES "eigen3 libglog" LIBS "-lceres")
 rgbdt_external(protobuf::libprotobuf CMAKE "find_dependency(Protobuf)" DEBIAN libprotobuf-dev
   REQUIRES protobuf)
-rgbdt_external("lzf|.*/liblzf\\.(so|a)" DEBIAN liblzf-dev REQUIRES liblzf)
+rgbdt_external(lzf DEBIAN liblzf-dev REQUIRES liblzf)
 rgbdt_external(embree CMAKE "find_dependency(embree 3)" DEBIAN libembree-dev LIBS "-lembree3")
 rgbdt_external(spdlog::spdlog CMAKE "find_dependency(spdlog)" DEBIAN libspdlog-dev REQUIRES spdlog)
 rgbdt_external(nlohmann_json::nlohmann_json CMAKE "find_dependency(nlohmann_json)"

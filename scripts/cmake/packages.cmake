@@ -1,7 +1,7 @@
 # Debian packages: `cpack` in the build directory; scripts/package does all of it.
-#   rgbdt             the programs; what they load is read from them (dpkg-shlibdeps)
-#   librgbdt-dev      components calib, messages, bus
-#   librgbdt-rig-dev  the other components: what needs PCL, Embree, Aravis or pcap
+#   rgbdt         the programs; what they load is read from them (dpkg-shlibdeps)
+#   librgbdt-dev  components calib, messages, bus, runtime, and what all components share
+#   librgbdt-methods-dev, librgbdt-drivers-dev, librgbdt-simulate-dev    the other components
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "rgbdt authors <rgbdt@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -35,23 +35,27 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS liblcm-bin)  # rgbdt replay reads w
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA ${debian}/postinst ${debian}/prerm ${debian}/postrm)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-foreach(part dev rig_dev)
-  get_property(depends_${part} GLOBAL PROPERTY rgbdt_debian_of_${part})
-  get_property(parts_${part} GLOBAL PROPERTY rgbdt_parts_of_${part})
+set(description_of_dev "Components calib, messages, bus and runtime, LCM types and Protobuf schemas.")
+set(description_of_methods_dev "Components methods, present and nodes.")
+set(description_of_drivers_dev "Component drivers.")
+set(description_of_simulate_dev "Component simulate.")
+get_property(parts GLOBAL PROPERTY rgbdt_parts)
+list(REMOVE_DUPLICATES parts)
+foreach(part ${parts})
+  get_property(depends GLOBAL PROPERTY rgbdt_debian_of_${part})
+  get_property(needed_parts GLOBAL PROPERTY rgbdt_parts_of_${part})
+  if(NOT part STREQUAL dev)
+    list(APPEND needed_parts dev)
+  endif()
+  list(REMOVE_DUPLICATES depends)
+  list(REMOVE_DUPLICATES needed_parts)
+  list(REMOVE_ITEM needed_parts ${part})
+  foreach(needed ${needed_parts})
+    string(REPLACE _ - needed ${needed})
+    list(APPEND depends "librgbdt-${needed} (= ${PROJECT_VERSION})")
+  endforeach()
+  string(REPLACE _ - name ${part})
+  rgbdt_debian_package(${part} librgbdt-${name} "rgbdt to link, static: see find_package(rgbdt)"
+    DESCRIPTION ${description_of_${part}} DEPENDS ${depends})
 endforeach()
-if(rig_dev IN_LIST parts_dev)
-  message(FATAL_ERROR "a component of librgbdt-dev needs one of librgbdt-rig-dev")
-endif()
-list(REMOVE_DUPLICATES depends_dev)
-list(REMOVE_DUPLICATES depends_rig_dev)
-rgbdt_debian_package(dev librgbdt-dev "rgbdt's library, messages and bus"
-  DESCRIPTION "Static libraries, headers, LCM types and Protobuf schemas:"
-              "find_package(rgbdt COMPONENTS calib messages bus)."
-  DEPENDS ${depends_dev})
-if(depends_rig_dev)
-  rgbdt_debian_package(rig_dev librgbdt-rig-dev "rgbdt's nodes, drivers, methods, simulator"
-    DESCRIPTION "Static libraries and headers:"
-                "find_package(rgbdt COMPONENTS nodes drivers methods simulate)."
-    DEPENDS "librgbdt-dev (= ${PROJECT_VERSION})" ${depends_rig_dev})
-endif()
 include(CPack)

@@ -1,14 +1,14 @@
 # What of the tree is for those who link it. Run by itself (cmake -P), it lists the public headers.
 
 # The component of find_package that a folder is of: calib's folders are one, but for those that
-# load what the others do without (PCL, Embree). Empty: the programs' own.
+# load what the others do without. Empty: the programs' own.
 function(rgbdt_component_of_folder folder result)
   set(component)
-  if(folder MATCHES "^calib/(methods|simulate)")
+  if(folder MATCHES "^calib/(methods|present|simulate)")
     set(component ${CMAKE_MATCH_1})
   elseif(folder MATCHES "^calib/")
     set(component calib)
-  elseif(folder MATCHES "^services/(messages|bus|nodes|drivers)")
+  elseif(folder MATCHES "^services/(messages|bus|runtime|nodes|drivers)")
     set(component ${CMAKE_MATCH_1})
   elseif(folder STREQUAL lcmtypes)
     set(component messages)
