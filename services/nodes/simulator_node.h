@@ -10,7 +10,7 @@
 
 namespace rgbdt {
 
-/// SESSION_COMMAND -> LINE_SCAN, ENCODER, <CAMERA>_IMAGE, CORNER_SELECTION, SESSION_EVENT: the
+/// SESSION_COMMAND -> LINE_SCAN, ENCODER, `<CAMERA>_IMAGE`, CORNER_SELECTION, SESSION_EVENT: the
 /// synthetic rig on the bus. Its time is simulated and stands still until a command comes. Cameras
 /// take an image at each full second of simulated time and at each capture; each message is due
 /// when the real sensor would have sent it (a line after its last beam, an image after read-out).
