@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Makes manual pages from what programs print at --help: one a program, one a verb of rgbdt.
 
 Usage: man_pages.py OUT_DIR VERSION PROGRAM...
