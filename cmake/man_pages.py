@@ -2,6 +2,7 @@
 
 Usage: man_pages.py OUT_DIR VERSION PROGRAM...
 """
+import gzip
 import pathlib
 import re
 import subprocess
@@ -80,10 +81,11 @@ def main(out, version, *programs):
             texts[f"{name}-{verb}"] = help_of([program, verb])
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    for stale in folder.glob("*.1"):
+    for stale in folder.glob("*.1.gz"):
         stale.unlink()
     for name, text in texts.items():
-        (folder / f"{name}.1").write_text(page(name, text, version, sorted(texts)))
+        source = page(name, text, version, sorted(texts)).encode()
+        (folder / f"{name}.1.gz").write_bytes(gzip.compress(source, mtime=0))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ version=$("$prefix/bin/rgbdt" --version)
 for program in "$prefix"/bin/*; do
   name=${program##*/}
   [ "$("$program" --version)" = "$version" ] || complain "$name --version"
-  [ -s "$prefix/share/man/man1/$name.1" ] || complain "no manual page of $name"
+  [ -s "$prefix/share/man/man1/$name.1.gz" ] || complain "no manual page of $name"
   [ -s "$prefix/share/bash-completion/completions/$name" ] || complain "no completion of $name"
 done
 for file in share/rgbdt/lcmtypes/cloud_t.lcm include/rgbdt/lcmtypes/rgbdt/cloud_t.hpp \
@@ -38,7 +38,7 @@ fi
 
 # The manual: no warning, each verb's page, the examples as they are.
 if command -v man >/dev/null; then
-  for page in "$prefix"/share/man/man1/*.1; do
+  for page in "$prefix"/share/man/man1/*.1.gz; do
     said=$(MANROFFSEQ='' MANWIDTH=100 man --warnings -E UTF-8 -l -Tutf8 -Z "$page" 2>&1 >/dev/null)
     [ -z "$said" ] || complain "$page: $said"
   done
@@ -46,7 +46,7 @@ fi
 "$prefix/bin/rgbdt" --help | sed '0,/^Subcommands:/d' | awk '/^  [a-z]/ { print $1 }' >"$scratch/verbs"
 [ "$(wc -l <"$scratch/verbs")" -ge 10 ] || complain "rgbdt --help names $(wc -l <"$scratch/verbs") verbs"
 while read -r verb; do
-  grep -q "^rgbdt $verb" "$prefix/share/man/man1/rgbdt-$verb.1" || complain "the page of rgbdt $verb"
+  zgrep -q "^rgbdt $verb" "$prefix/share/man/man1/rgbdt-$verb.1.gz" || complain "the page of rgbdt $verb"
 done <"$scratch/verbs"
 
 # Completion, as bash asks for it.
