@@ -140,12 +140,14 @@ write_basic_package_version_file(${rgbdt_made}/rgbdt-config-version.cmake
 install(FILES ${rgbdt_made}/rgbdt-config.cmake ${rgbdt_made}/rgbdt-config-version.cmake
         DESTINATION ${rgbdt_config} COMPONENT dev)
 
-# The wire and the files: schemas for every language, and what is made of the wire's for C++.
+# The wire and the files: schemas for every language, and what was made of them for C++.
 file(GLOB lcm_types CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lcmtypes/*.lcm)
 install(FILES ${lcm_types} ${PROJECT_SOURCE_DIR}/lcmtypes/README.md
         DESTINATION ${rgbdt_share}/lcmtypes COMPONENT dev)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/include/ DESTINATION ${rgbdt_headers}
         COMPONENT dev FILES_MATCHING PATTERN *.hpp)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/calib/files/schema/generated/ DESTINATION ${rgbdt_headers}
+        COMPONENT dev FILES_MATCHING PATTERN *.pb.h)
 file(GLOB_RECURSE schemas CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} calib/*.proto)
 foreach(schema ${schemas})
   get_filename_component(folder ${schema} DIRECTORY)
