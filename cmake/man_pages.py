@@ -63,8 +63,10 @@ def page(name, text, version, see_also):
              ".SH SYNOPSIS", escape(usage), ".SH DESCRIPTION", *map(escape, prose)]
     for section, entries in sections.items():
         lines.append(f".SH {section.upper()}")
-        for entry in entries:
-            lines += [".TP", ".B " + escape(entry[0]), *map(escape, entry[1:])]
+        for term, *text in entries:
+            if section == "Subcommands":  # each has a page
+                text = [first_sentence(split_examples(text)[0])]
+            lines += [".TP", ".B " + escape(term), *map(escape, text)]
     if examples:
         lines += [".SH EXAMPLES", ".nf", *map(escape, examples), ".fi"]
     lines.append(".SH SEE ALSO")
