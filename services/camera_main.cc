@@ -3,6 +3,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "services/drivers/camera/camera_node.h"
 #include "services/runtime/process.h"
 
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
                  "where captured views stay raw when JPEG or PNG goes over the bus")
       ->capture_default_str();
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     const rgbdt::Rig rig = rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown);

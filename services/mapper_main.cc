@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "calib/model/version.h"
 #include "services/nodes/mapper_node.h"
 #include "services/runtime/process.h"
 
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   app.add_option("--every", every_s, "seconds from one writing to the next")
       ->check(CLI::Range(0.1, 86400.0))
       ->capture_default_str();
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::MapperNode node(options, out, rgbdt::FromSeconds(every_s));

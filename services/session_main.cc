@@ -5,6 +5,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "services/nodes/session_node.h"
 #include "services/runtime/process.h"
 #include "services/session_terminal.h"
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
                "you carry the board: asks for each pose and waits for Enter, or for the button in "
                "the viewer, however long");
   app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     return Run(flags);

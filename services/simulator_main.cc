@@ -5,6 +5,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
+#include "calib/model/version.h"
 #include "services/nodes/simulator_node.h"
 #include "services/runtime/process.h"
 
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--rig", rig_file, "write the rig (with its hand-measured guesses) here first");
   app.add_option("--truth", truth_file, "keep the truth here; no process reads it");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::SimulatorNode node(options, speed, [&](const rgbdt::Truth& truth) {

@@ -12,6 +12,7 @@
 #include "calib/methods/calibrate.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "calib/present/frames/page.h"
 #include "calib/present/frames/session_frames.h"
 #include "calib/present/layout/frame.h"
@@ -77,7 +78,7 @@ ServerOptions OptionsFrom(const Flags& flags) {
                                          : rgbdt::viewer::IsLoopback(options.address);
   if (!local) options.token = NewToken();
   options.page = rgbdt::viewer::Page();
-  options.hello = {{"type", "hello"}, {"version", RGBDT_VERSION}};
+  options.hello = {{"type", "hello"}, {"version", rgbdt::Version()}};
   return options;
 }
 
@@ -197,7 +198,7 @@ int ShowSession(const Flags& flags) {
       }).observations;
   rgbdt::viewer::SessionFramesOptions what;
   what.title = flags.session;
-  what.version = RGBDT_VERSION;
+  what.version = rgbdt::Version();
   const auto frames =
       rgbdt::viewer::SessionFrames(session, observations, ReportOf(session, observations), what);
   const Goodbye goodbye;
@@ -246,6 +247,7 @@ int main(int argc, char** argv) {
                "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
                "into a network namespace and starts rgbdt-viewer there");
   app.prefix_command();
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   flags.run = app.remaining();
   try {

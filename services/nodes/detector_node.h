@@ -13,7 +13,7 @@
 
 namespace rgbdt {
 
-/// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> OBSERVATION, one a
+/// CLOUD + `<CAMERA>_IMAGE` + CORNER_SELECTION + SESSION_COMMAND capture -> OBSERVATION, one a
 /// camera, then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
 /// view that never becomes complete is dropped when the next capture or a reset comes; the status
 /// says what it waits for. Another rig forgets everything.

@@ -25,7 +25,7 @@ struct SessionProgress {
 
 /// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
 /// answering events, writes the session directory (the one node that writes files). STATUS,
-/// SESSION_EVENT, SESSION_REQUEST, CLOUD, <CAMERA>_IMAGE, CORNER_SELECTION, REPORT -> RIG,
+/// SESSION_EVENT, SESSION_REQUEST, CLOUD, `<CAMERA>_IMAGE`, CORNER_SELECTION, REPORT -> RIG,
 /// SESSION_COMMAND, SESSION_EVENT (how far it is).
 /// It begins when assembler, detector, solver, fuser and the processes of the devices that the rig
 /// file names say that they are ready. next_pose and

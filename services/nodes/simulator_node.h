@@ -10,7 +10,7 @@
 
 namespace rgbdt {
 
-/// SESSION_COMMAND -> LINE_SCAN, ENCODER, <CAMERA>_IMAGE, CORNER_SELECTION, SESSION_EVENT: the
+/// SESSION_COMMAND -> LINE_SCAN, ENCODER, `<CAMERA>_IMAGE`, CORNER_SELECTION, SESSION_EVENT: the
 /// synthetic rig on the bus. Its time is simulated, `speed` times as fast as Advance's, and stands
 /// still until a command comes; what takes long to render holds it up. Cameras take an image at
 /// each full second of simulated time and at each capture; each message leaves when the real sensor

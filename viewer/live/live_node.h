@@ -21,7 +21,7 @@
 namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
-/// RIG, <CAMERA>_IMAGE, CLOUD, CORNER_SELECTION, OBSERVATION, CALIBRATION, REPORT, RGBDT_CLOUD,
+/// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, OBSERVATION, CALIBRATION, REPORT, RGBDT_CLOUD,
 /// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, SIGHTING, STATUS -> SESSION_REQUEST,
 /// CORNER_SELECTION. Nothing large is encoded here: a post makes its bytes when a browser is about
 /// to get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance

@@ -16,7 +16,7 @@
 
 namespace rgbdt {
 
-/// One GigE Vision or USB3 Vision camera -> <CAMERA>_IMAGE. Frames that are not whole, or not of
+/// One GigE Vision or USB3 Vision camera -> `<CAMERA>_IMAGE`. Frames that are not whole, or not of
 /// the rig file's size, are dropped, counted and named; none of them is published. A camera that is
 /// lost is looked for until it is back, and the gap is told.
 ///
