@@ -10,9 +10,9 @@ namespace rgbdt {
 /// Whether a camera sees the target, for a person who carries it: fast rather than exact, in the
 /// image shrunk to about 1000 px. `text` says why not. Throws InputError where the image is not
 /// what the rig says.
-Sighting LookForTarget(const Rig& rig, const Image& image);
+TargetStatus LookForTarget(const Rig& rig, const Image& image);
 
 /// The same for the LIDAR in a whole sweep; `text` says how far away the board is.
-Sighting LookForTarget(const Rig& rig, const Cloud& cloud);
+TargetStatus LookForTarget(const Rig& rig, const Cloud& cloud);
 
 }  // namespace rgbdt
