@@ -149,7 +149,7 @@ void CheckMisses(const cloud_t& wire) {
   }
 }
 
-// Of misses; a hit's is told by its point, to those who ask (DirectionOf).
+// Of misses only; a hit's direction follows from its point (DirectionOf).
 std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, std::size_t size) {
   std::vector<Eigen::Vector3f> directions(size, Eigen::Vector3f::Constant(kNan));
   for (std::size_t i = 0; i < wire.miss_index.size(); ++i) {
@@ -161,7 +161,7 @@ std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, std::size_t size) {
 
 }  // namespace
 
-// All but what is told of each point, line and miss.
+// All but the arrays.
 template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, cloud_t>& wire, StructOf<Copy, CloudChunk>& chunk) {
   auto& cloud = chunk.cloud;

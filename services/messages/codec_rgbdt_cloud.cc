@@ -90,7 +90,7 @@ void CheckCoordinates(const rgbdt_cloud_t& wire) {
   }
 }
 
-// A NaN compares as neither too small nor too large: it says that the value is unknown.
+// NaN stands for an unknown value: it compares as neither too small nor too large.
 void CheckPoints(const rgbdt_cloud_t& wire) {
   constexpr float kMost = std::numeric_limits<float>::max();
   CheckCoordinates(wire);
@@ -126,7 +126,7 @@ void CheckPose(const rgbdt_cloud_t& wire) {
 
 }  // namespace
 
-// All but what belongs to a point, and the times that hold only with something else.
+// All but the points, the pose and utime.
 template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, rgbdt_cloud_t>& wire,
             StructOf<Copy, RgbdtCloud>& cloud) {

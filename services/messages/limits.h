@@ -5,7 +5,7 @@
 
 namespace rgbdt {
 
-// What a message may hold beyond what its .lcm file says. Sender and receiver keep to the same.
+// Limits that the .lcm files do not state; the same for sender and receiver.
 
 /// No message is larger: LCM loses large messages first.
 inline constexpr std::size_t kMaxMessageBytes = 3 * 1024 * 1024;

@@ -11,12 +11,12 @@
 
 namespace rgbdt {
 
-/// How the fields of message types lie in bytes, to hold bytes against before lcm-gen's decoder
-/// reads them. LCM 1.3.1's decoders trust what they read: they size a vector by the count before
-/// looking whether the bytes are there (2^31 - 1: gigabytes; negative: an exception), multiply
-/// counts in `int` (2^30 floats: wraps to 0, passes the check and reads past the heap), take a
-/// string's length minus one for its length (0: an exception; negative: another, and the position
-/// runs backwards) and ignore bytes that are left over.
+/// The layouts of message types, to check bytes against before lcm-gen's decoder reads them.
+/// LCM 1.3.1's decoders trust what they read: they size a vector by the count before looking
+/// whether the bytes are there (2^31 - 1: gigabytes; negative: an exception), multiply counts in
+/// `int` (2^30 floats: wraps to 0, passes the check and reads past the heap), take a string's
+/// length minus one for its length (0: an exception; negative: another, and the position runs
+/// backwards) and ignore bytes that are left over.
 class Layouts {
  public:
   /// Throws std::logic_error at a type that is not known and at a count that is no earlier int32_t.
@@ -27,8 +27,8 @@ class Layouts {
   /// The types of lcmtypes/.
   static const Layouts& OfMessages();
 
-  /// Holds that `size` bytes are a fingerprint, whatever it is, and exactly one value of the type.
-  /// Throws InputError naming the field that does not fit.
+  /// Throws InputError, naming the field that does not fit, unless `size` bytes are exactly a
+  /// fingerprint (any) and one value of the type.
   void Check(std::string_view type, const std::uint8_t* data, std::size_t size) const;
 
  private:

@@ -222,7 +222,7 @@ TEST_F(RoundTrip, Status) {
   }
 }
 
-// A sensor that tells only points: what it does not tell comes back as "unknown", at full length,
+// A sensor that gives only points: what it does not give comes back as "unknown", at full length,
 // so that chunks with and without it can be joined.
 TEST(CloudOnTheWire, WhatIsUnknownComesBackAtFullLength) {
   CloudChunk chunk;

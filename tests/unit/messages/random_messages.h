@@ -111,7 +111,7 @@ class RandomMessages {
   }
   Image Picture() { return Picture(static_cast<PixelFormat>(Int(1, 7))); }
 
-  /// As a sensor that tells everything sends it.
+  /// As a sensor sends it that gives everything.
   CloudChunk Chunk(int lines, int beams) {
     CloudChunk chunk;
     chunk.seq = Seq();
