@@ -126,6 +126,10 @@ void CheckCovariance(std::string_view field, const double* rows, int size) {
   }
 }
 
+void CheckRows(std::string_view field, const std::vector<std::vector<double>>& rows) {
+  for (const std::vector<double>& row : rows) CheckFinite(field, row.data(), row.size());
+}
+
 void CheckCameraName(std::string_view field, const std::string& name) {
   bool good = !name.empty() && name.size() <= 32;
   for (const char c : name) good &= (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';

@@ -26,7 +26,7 @@ struct CalibrationMessage {
 using Message =
     std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, Observation,
                  CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
-                 SessionRequest, Sighting, Status, ReportText>;
+                 SessionRequest, TargetStatus, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "calib/camera/pixels.h"
-#include "calib/detect/sighting.h"
+#include "calib/detect/target_status.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/methods/detect_view.h"
 #include "calib/model/errors.h"

@@ -19,8 +19,8 @@ namespace rgbdt {
 /// says what it waits for. Another rig forgets everything.
 /// Corners that a person picks in an image of one of the newest kKeptViews views have that view
 /// detected once more, with them: its OBSERVATIONs come again, and the event of its capture.
-/// Once a second, where it `looks`, it says who sees the board just now (SIGHTING): one sensor at a
-/// time, that whose turn it is and that has something new.
+/// Once a second, where it `looks`, it sends whether a sensor sees the board now (TARGET_STATUS):
+/// one sensor at a time, the next in turn that has something new.
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;

@@ -158,13 +158,13 @@ TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
     }
     EXPECT_TRUE(node_.Advance(now * kMicrosecondsPerSecond + 900'000).empty());
   }
-  const auto sightings = Only<Sighting>(said);
-  ASSERT_EQ(sightings.size(), 2U);
-  EXPECT_EQ(sightings[0].camera, "thermal");
-  EXPECT_EQ(sightings[1].camera, "");
-  for (const Sighting& sighting : sightings) {
-    EXPECT_FALSE(sighting.seen);
-    EXPECT_NE(sighting.text, "");
+  const auto statuses = Only<TargetStatus>(said);
+  ASSERT_EQ(statuses.size(), 2U);
+  EXPECT_EQ(statuses[0].camera, "thermal");
+  EXPECT_EQ(statuses[1].camera, "");
+  for (const TargetStatus& status : statuses) {
+    EXPECT_FALSE(status.seen);
+    EXPECT_NE(status.text, "");
   }
   node_.Handle(Capture());
   node_.Handle(Blank("rgb", kCommand - 1));
@@ -252,17 +252,17 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
   const auto observations = Only<Observation>(expected);
   for (Utime now = 0; now < 3; ++now) {
     const Messages said = watching.Advance(now * kMicrosecondsPerSecond);
-    const Sighting sighting = Only<Sighting>(said).at(0);
-    EXPECT_TRUE(sighting.seen) << sighting.camera << ": " << sighting.text;
-    if (sighting.camera.empty()) {
-      EXPECT_LT((sighting.centre - observations[0].cloud->centre).norm(), 1e-6);
+    const TargetStatus status = Only<TargetStatus>(said).at(0);
+    EXPECT_TRUE(status.seen) << status.camera << ": " << status.text;
+    if (status.camera.empty()) {
+      EXPECT_LT((status.centre - observations[0].cloud->centre).norm(), 1e-6);
       continue;
     }
-    const auto& edges = *observations[sighting.camera == "rgb" ? 0 : 1].image;
-    ASSERT_EQ(sighting.corners.size(), edges.corners.size());
-    EXPECT_LT((sighting.corners[3] - edges.corners[3]).norm(), 1.0) << sighting.camera;
-    EXPECT_EQ(sighting.outline.size() % 4, 0U);
-    EXPECT_LT((sighting.outline[0] - edges.outline_corners[0]).norm(), 2.0) << sighting.camera;
+    const auto& edges = *observations[status.camera == "rgb" ? 0 : 1].image;
+    ASSERT_EQ(status.corners.size(), edges.corners.size());
+    EXPECT_LT((status.corners[3] - edges.corners[3]).norm(), 1.0) << status.camera;
+    EXPECT_EQ(status.outline.size() % 4, 0U);
+    EXPECT_LT((status.outline[0] - edges.outline_corners[0]).norm(), 2.0) << status.camera;
   }
 }
 

@@ -37,9 +37,9 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",         "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "OBSERVATION",
-          "CALIBRATION", "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
-          "SIGHTING",    "STATUS", "SESSION_EVENT"};
+  return {"RIG",           "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "OBSERVATION",
+          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
+          "TARGET_STATUS", "STATUS", "SESSION_EVENT"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
@@ -79,8 +79,8 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
     watch_.Hear(*event, &state_);
     changed_ = true;
-  } else if (const auto* sighting = std::get_if<Sighting>(&message)) {
-    OnSighting(*sighting);
+  } else if (const auto* target = std::get_if<TargetStatus>(&message)) {
+    OnTargetStatus(*target);
   } else if (const auto* status = std::get_if<Status>(&message)) {
     watch_.Hear(*status, now_s_);
   }
@@ -89,7 +89,7 @@ void LiveNode::Take(const Message& message) {
 void LiveNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = std::make_shared<const Rig>(ParseRig(text.text, "RIG message"));
-  sightings_.clear();  // of cameras that this rig may not have
+  target_status_.clear();  // of cameras that this rig may not have
   outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
 }
@@ -273,7 +273,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   for (const CameraSpec& camera : rig_->cameras) PostLiveOverlay(camera.name);
 }
 
-// The newest sighting's corners and the newest sweep, laid on a camera's image.
+// The newest target status' corners and the newest sweep, laid on a camera's image.
 void LiveNode::PostLiveOverlay(const std::string& camera) {
   if (!rig_) return;
   const CameraSpec& spec = rig_->Camera(camera);
@@ -281,13 +281,13 @@ void LiveNode::PostLiveOverlay(const std::string& camera) {
   Overlay overlay;
   overlay.camera = camera;
   overlay.calibrated = calibration != nullptr;
-  const auto seen = sightings_.find(camera);
-  if (seen != sightings_.end()) {
-    const Sighting& sighting = seen->second.sighting;
-    overlay.utime = sighting.utime;
-    overlay.text = (sighting.seen ? "board seen, " : "") + sighting.text;
-    overlay.corners = sighting.corners;
-    overlay.outline = sighting.outline;
+  const auto seen = target_status_.find(camera);
+  if (seen != target_status_.end()) {
+    const TargetStatus& status = seen->second.status;
+    overlay.utime = status.utime;
+    overlay.text = (status.seen ? "board seen, " : "") + status.text;
+    overlay.corners = status.corners;
+    overlay.outline = status.outline;
   }
   std::optional<Rigid3> camera_from_lidar;
   if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
@@ -302,30 +302,30 @@ void LiveNode::PostLiveOverlay(const std::string& camera) {
   outbox_->Send(std::move(post));
 }
 
-void LiveNode::OnSighting(const Sighting& sighting) {
-  if (!sighting.camera.empty()) RequireCamera(sighting.camera);
-  if (sightings_.size() > 32) sightings_.clear();
-  sightings_[sighting.camera] = {sighting, now_s_};
-  PostSightings();
-  if (rig_ && !sighting.camera.empty()) PostLiveOverlay(sighting.camera);
+void LiveNode::OnTargetStatus(const TargetStatus& status) {
+  if (!status.camera.empty()) RequireCamera(status.camera);
+  if (target_status_.size() > 32) target_status_.clear();
+  target_status_[status.camera] = {status, now_s_};
+  PostTargetStatus();
+  if (rig_ && !status.camera.empty()) PostLiveOverlay(status.camera);
 }
 
-void LiveNode::PostSightings() {
+void LiveNode::PostTargetStatus() {
   nlohmann::json sensors = nlohmann::json::array();
-  for (const auto& [camera, seen] : sightings_) {
+  for (const auto& [camera, seen] : target_status_) {
     std::string kind = "lidar";
     if (!camera.empty() && rig_) {
       kind = rig_->Camera(camera).kind == CameraKind::kColor ? "color" : "thermal";
     }
     sensors.push_back({{"sensor", camera.empty() ? "lidar" : camera},
                        {"kind", kind},
-                       {"seen", seen.sighting.seen},
-                       {"text", seen.sighting.text},
-                       {"utime", seen.sighting.utime},
+                       {"seen", seen.status.seen},
+                       {"text", seen.status.text},
+                       {"utime", seen.status.utime},
                        {"age_s", now_s_ - seen.at_s}});
   }
-  const nlohmann::json frame = {{"type", "sightings"}, {"sensors", sensors}};
-  outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }});
+  const nlohmann::json frame = {{"type", "target_status"}, {"sensors", sensors}};
+  outbox_->Send({"target_status", "", true, false, 0, [frame] { return JsonFrame(frame); }});
 }
 
 Messages LiveNode::Advance(Utime now) {

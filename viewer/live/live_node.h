@@ -22,7 +22,7 @@ namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, OBSERVATION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, SIGHTING, STATUS -> SESSION_REQUEST,
+/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS -> SESSION_REQUEST,
 /// CORNER_SELECTION. Nothing large is encoded here: a post makes its bytes when a browser is about
 /// to get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
 /// publishes what browsers asked for, and posts the session's state where it has changed, at most
@@ -60,11 +60,11 @@ class LiveNode : public Node {
   void ForgetRejected(const Observation& observation);
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
-  void OnSighting(const Sighting& sighting);
+  void OnTargetStatus(const TargetStatus& status);
   void CompleteView();
   void ShowCapture();
   void PostLiveOverlay(const std::string& camera);
-  void PostSightings();
+  void PostTargetStatus();
   void CountSigma(const CameraCalibration& calibration);
   ViewState* StateOf(const std::string& view);
   std::vector<Post> PostsOf(const KeptView& view) const;
@@ -83,11 +83,11 @@ class LiveNode : public Node {
   ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
   struct Seen {
-    Sighting sighting;
+    TargetStatus status;
     double at_s;
   };
-  std::map<std::string, Seen> sightings_;  // by camera; "": the LIDAR
-  Utime sweep_utime_ = 0;                  // of the newest whole sweep
+  std::map<std::string, Seen> target_status_;  // by camera; "": the LIDAR
+  Utime sweep_utime_ = 0;                      // of the newest whole sweep
   int sweep_part_ = 0;
   std::vector<Eigen::Vector3f> sweep_points_;  // as far as it has come
   std::shared_ptr<const std::vector<Eigen::Vector3f>> whole_sweep_;

@@ -9,12 +9,9 @@
 #include "tests/unit/messages/codec_testing.h"
 #include "tests/unit/messages/random_messages.h"
 
-// OBSERVATION: observation_v3_t is sent; logs from before hold observation_v2_t or observation_t.
-
 namespace rgbdt {
 namespace {
 
-using testing::BytesOf;
 using testing::ErrorAfter;
 using testing::ErrorOf;
 using testing::ExpectSameRigid;
@@ -37,8 +34,7 @@ void ExpectSameSide(const ImageSide& a, const ImageSide& b) {
   EXPECT_EQ(a.covariance, b.covariance);
 }
 
-// What observation_t carries of it.
-void ExpectSameFirstVersion(const ImageEdges& a, const ImageEdges& b) {
+void ExpectSame(const ImageEdges& a, const ImageEdges& b) {
   EXPECT_EQ(a.width, b.width);
   EXPECT_EQ(a.height, b.height);
   EXPECT_EQ(a.picked, b.picked);
@@ -46,16 +42,12 @@ void ExpectSameFirstVersion(const ImageEdges& a, const ImageEdges& b) {
   EXPECT_EQ(a.outline_corners, b.outline_corners);
   EXPECT_EQ(a.edge_pixels, b.edge_pixels);
   EXPECT_EQ(a.outline, b.outline);
-}
-
-void ExpectSame(const ImageEdges& a, const ImageEdges& b) {
-  ExpectSameFirstVersion(a, b);
   EXPECT_EQ(a.corner_sigma_px, b.corner_sigma_px);
   ExpectSamePose(a.pose, b.pose);
   for (std::size_t i = 0; i < 4; ++i) ExpectSameSide(a.sides[i], b.sides[i]);
 }
 
-void ExpectSameFirstVersion(const CloudEdges& a, const CloudEdges& b) {
+void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
   EXPECT_EQ(a.boundary, b.boundary);
   EXPECT_EQ(a.centre, b.centre);
   EXPECT_EQ(a.normal, b.normal);
@@ -63,11 +55,6 @@ void ExpectSameFirstVersion(const CloudEdges& a, const CloudEdges& b) {
   EXPECT_EQ(a.height_m, b.height_m);
   EXPECT_EQ(a.spacing_m, b.spacing_m);
   EXPECT_EQ(a.points, b.points);
-}
-
-// What observation_v2_t carries of it.
-void ExpectSameSecondVersion(const CloudEdges& a, const CloudEdges& b) {
-  ExpectSameFirstVersion(a, b);
   ExpectSamePose(a.pose, b.pose);
   ASSERT_EQ(a.crossings.size(), b.crossings.size());
   for (std::size_t i = 0; i < a.crossings.size(); ++i) {
@@ -75,23 +62,11 @@ void ExpectSameSecondVersion(const CloudEdges& a, const CloudEdges& b) {
     EXPECT_EQ(a.crossings[i].half_width_m, b.crossings[i].half_width_m);
     EXPECT_EQ(a.crossings[i].side, b.crossings[i].side);
     EXPECT_EQ(a.crossings[i].kind, b.crossings[i].kind);
-  }
-}
-
-void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
-  ASSERT_NO_FATAL_FAILURE(ExpectSameSecondVersion(a, b));
-  for (std::size_t i = 0; i < a.crossings.size(); ++i) {
     EXPECT_EQ(a.crossings[i].sigma_m, b.crossings[i].sigma_m);
   }
   EXPECT_EQ(a.scatter, b.scatter);
   EXPECT_EQ(a.raw_scatter, b.raw_scatter);
   EXPECT_EQ(a.scatter_sigma_m, b.scatter_sigma_m);
-}
-
-void ExpectNoScatter(const CloudEdges& cloud) {
-  for (const Crossing& crossing : cloud.crossings) EXPECT_EQ(crossing.sigma_m, 0);
-  EXPECT_EQ(cloud.scatter, Eigen::Matrix4d::Zero());
-  EXPECT_EQ(cloud.scatter_sigma_m, 0);
 }
 
 void ExpectSameHead(const Observation& a, const Observation& b) {
@@ -126,14 +101,9 @@ class ObservationOnTheWire : public ::testing::Test {
     return observation;
   }
 
-  /// Held to the same rules where the second version lies alone and where it is nested.
   template <typename Change>
-  std::string ErrorInSecondVersion(const Observation& observation, const Change& change) {
-    const Bytes second = BytesOf(ToSecondVersion(observation));
-    std::string alone = ErrorAfter<observation_v2_t>("OBSERVATION", second, change);
-    EXPECT_EQ(alone,
-              ErrorAfter<observation_v3_t>(observation, [&](auto& w) { change(w.observation); }));
-    return alone;
+  std::string Error(const Change& change) {
+    return ErrorAfter<observation_v3_t>(Whole(), change);
   }
 
   RandomMessages random_{3};
@@ -153,51 +123,6 @@ TEST_F(ObservationOnTheWire, ComesBackWhole) {
   }
 }
 
-// Logs from before observation_v2_t: what it added is as if never found.
-TEST_F(ObservationOnTheWire, TheFirstVersion) {
-  for (int round = 0; round < kRounds; ++round) {
-    const Observation a = random_.Seen();
-    const Bytes bytes = BytesOf(ToFirstVersion(a));
-    const auto b = std::get<Observation>(Decode("OBSERVATION", bytes.data(), bytes.size()));
-    ASSERT_NO_FATAL_FAILURE(ExpectSameHead(a, b));
-    EXPECT_TRUE(b.candidates.empty());
-    if (a.image) {
-      ExpectSameFirstVersion(*a.image, *b.image);
-      EXPECT_EQ(b.image->corner_sigma_px, 0);
-      EXPECT_FALSE(b.image->pose);
-      for (const ImageSide& side : b.image->sides) EXPECT_FALSE(side.seen);
-    }
-    if (a.cloud) {
-      ExpectSameFirstVersion(*a.cloud, *b.cloud);
-      EXPECT_FALSE(b.cloud->pose);
-      EXPECT_TRUE(b.cloud->crossings.empty());
-      ExpectNoScatter(*b.cloud);
-    }
-    ExpectSameHead(b, ThroughTheWire(b));  // and it can be sent on
-  }
-}
-
-// Logs from before observation_v3_t: what it added is as if never known.
-TEST_F(ObservationOnTheWire, TheSecondVersion) {
-  for (int round = 0; round < kRounds; ++round) {
-    const Observation a = random_.Seen();
-    const Bytes bytes = BytesOf(ToSecondVersion(a));
-    const auto b = std::get<Observation>(Decode("OBSERVATION", bytes.data(), bytes.size()));
-    ASSERT_NO_FATAL_FAILURE(ExpectSameHead(a, b));
-    if (a.image) ExpectSame(*a.image, *b.image);
-    if (a.cloud) {
-      ExpectSameSecondVersion(*a.cloud, *b.cloud);
-      ExpectNoScatter(*b.cloud);
-    }
-    ASSERT_EQ(a.candidates.size(), b.candidates.size());
-    for (std::size_t i = 0; i < a.candidates.size(); ++i) {
-      ExpectSameSecondVersion(a.candidates[i], b.candidates[i]);
-      ExpectNoScatter(b.candidates[i]);
-    }
-    ExpectSameHead(b, ThroughTheWire(b));  // and it can be sent on
-  }
-}
-
 // A sweep that sees the board with a thousand lines of two crossings, four times.
 TEST_F(ObservationOnTheWire, OfADenseSweepFitsTheBus) {
   Observation dense = random_.Seen();
@@ -211,19 +136,12 @@ TEST_F(ObservationOnTheWire, OfADenseSweepFitsTheBus) {
   EXPECT_EQ(ThroughTheWire(dense).candidates.size(), 4U);
 }
 
-TEST_F(ObservationOnTheWire, BadFieldsOfTheFirstVersion) {
-  const Observation observation = Whole();
-  const Bytes first = BytesOf(ToFirstVersion(observation));
-  // Held to the same rules where it lies alone and where it is nested.
-  const auto error = [&](auto change) {
-    const std::string alone = ErrorAfter<observation_t>("OBSERVATION", first, change);
-    EXPECT_EQ(alone, ErrorInSecondVersion(observation, [&](auto& w) { change(w.observation); }));
-    return alone;
-  };
+TEST_F(ObservationOnTheWire, BadFields) {
+  const auto error = [&](auto change) { return Error(change); };
   EXPECT_EQ(error([](auto&) {}), "no error");
   EXPECT_THAT(error([](auto& w) { w.view = "../../etc"; }), HasSubstr("view is"));
   EXPECT_THAT(error([](auto& w) { w.image_width = 3; }), HasSubstr("edge_pixel x is 3"));
-  EXPECT_THAT(error([](auto& w) { w.normal[0] = 2; }), HasSubstr("length of normal"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.normal[0] = 2; }), HasSubstr("cloud: length of normal"));
   EXPECT_THAT(error([](auto& w) { w.outline_corner_px[2][1] = NAN; }),
               HasSubstr("outline_corner_px[5] is nan"));
   EXPECT_THAT(error([](auto& w) {
@@ -249,16 +167,16 @@ TEST_F(ObservationOnTheWire, CornersThatWereNotSeenStayUnseen) {
 }
 
 TEST_F(ObservationOnTheWire, BadPoses) {
-  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
+  const auto error = [&](auto change) { return Error(change); };
   EXPECT_EQ(error([](auto&) {}), "no error");
   EXPECT_THAT(error([](auto& w) { w.image_pose.quaternion_wxyz[0] += 0.1; }),
               HasSubstr("image_pose: norm of quaternion_wxyz"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_pose.quaternion_wxyz[3] = NAN; }),
-              HasSubstr("cloud_pose: quaternion_wxyz[3] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.pose.quaternion_wxyz[3] = NAN; }),
+              HasSubstr("cloud: pose: quaternion_wxyz[3] is nan"));
   EXPECT_THAT(error([](auto& w) { w.image_pose.translation_m[1] = INFINITY; }),
               HasSubstr("image_pose: translation_m[1] is inf"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_pose.covariance[2][1] = NAN; }),
-              HasSubstr("cloud_pose: covariance[13] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.pose.covariance[2][1] = NAN; }),
+              HasSubstr("cloud: pose: covariance[13] is nan"));
   EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[5][5] = -1e-9; }),
               HasSubstr("image_pose: diagonal of covariance is -1e-09"));
   EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[4][0] += 1; }),
@@ -268,12 +186,12 @@ TEST_F(ObservationOnTheWire, BadPoses) {
   // What is not there is not read.
   EXPECT_EQ(error([](auto& w) { w.has_image_pose = 0, w.image_pose.translation_m[1] = NAN; }),
             "no error");
-  EXPECT_EQ(error([](auto& w) { w.has_cloud_pose = 0, w.cloud_pose.translation_m[1] = NAN; }),
+  EXPECT_EQ(error([](auto& w) { w.cloud.has_pose = 0, w.cloud.pose.translation_m[1] = NAN; }),
             "no error");
 }
 
 TEST_F(ObservationOnTheWire, BadSides) {
-  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
+  const auto error = [&](auto change) { return Error(change); };
   EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = -1; }), HasSubstr("corner_sigma_px is -1"));
   EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = NAN; }), HasSubstr("corner_sigma_px is nan"));
   EXPECT_THAT(error([](auto& w) { w.side[2].why = "\x1b"; }), HasSubstr("side[2]: why is"));
@@ -292,14 +210,14 @@ TEST_F(ObservationOnTheWire, BadSides) {
 }
 
 TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
-  const auto error = [&](auto change) { return ErrorInSecondVersion(Whole(), change); };
-  EXPECT_THAT(error([](auto& w) { w.cloud_crossing[1].point_m[2] = NAN; }),
-              HasSubstr("cloud_crossing[1]: point_m[2] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_crossing[0].half_width_m = -0.1; }),
+  const auto error = [&](auto change) { return Error(change); };
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[1].point_m[2] = NAN; }),
+              HasSubstr("cloud: crossing[1]: point_m[2] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].half_width_m = -0.1; }),
               HasSubstr("half_width_m is -0.1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_crossing[0].side = 4; }), HasSubstr("side is 4"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_crossing[0].side = -1; }), HasSubstr("side is -1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_crossing[0].kind = 0; }), HasSubstr("kind is 0"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].side = 4; }), HasSubstr("side is 4"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].side = -1; }), HasSubstr("side is -1"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].kind = 0; }), HasSubstr("kind is 0"));
   EXPECT_THAT(error([](auto& w) { w.candidate[1].crossing[0].kind = 4; }),
               HasSubstr("candidate[1]: crossing[0]: kind is 4"));
   EXPECT_THAT(error([](auto& w) { w.candidate[0].normal[1] = 3; }),
@@ -312,56 +230,34 @@ TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
 }
 
 TEST_F(ObservationOnTheWire, BadScatters) {
-  const Observation observation = Whole();
-  const auto error = [&](auto change) { return ErrorAfter<observation_v3_t>(observation, change); };
-  EXPECT_EQ(error([](auto&) {}), "no error");
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.crossing_sigma_m[1] = -0.1; }),
-              HasSubstr("cloud_scatter: crossing_sigma_m[1] is -0.1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.crossing_sigma_m[0] = INFINITY; }),
-              HasSubstr("cloud_scatter: crossing_sigma_m[0] is inf"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[2][1] = NAN; }),
-              HasSubstr("cloud_scatter: scatter[9] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.raw_scatter[1][2] = NAN; }),
-              HasSubstr("cloud_scatter: raw_scatter[6] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[0][0] = -2; }),
-              HasSubstr("cloud_scatter: diagonal of scatter is -2"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[3][3] = -1; }),
-              HasSubstr("cloud_scatter: diagonal of scatter is -1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter[3][0] = 1e3; }),
-              HasSubstr("cloud_scatter: asymmetry of scatter is"));
-  EXPECT_THAT(error([](auto& w) { w.cloud_scatter.scatter_sigma_m = NAN; }),
-              HasSubstr("cloud_scatter: scatter_sigma_m is nan"));
-  EXPECT_THAT(error([](auto& w) { w.candidate_scatter[1].scatter_sigma_m = -1; }),
-              HasSubstr("candidate_scatter[1]: scatter_sigma_m is -1"));
-  EXPECT_THAT(error([](auto& w) { w.candidate_scatter[0].scatter[1][1] = INFINITY; }),
-              HasSubstr("candidate_scatter[0]: scatter[5] is inf"));
+  const auto error = [&](auto change) { return Error(change); };
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[1].sigma_m = -0.1; }),
+              HasSubstr("cloud: crossing[1]: sigma_m is -0.1"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].sigma_m = INFINITY; }),
+              HasSubstr("cloud: crossing[0]: sigma_m is inf"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[2][1] = NAN; }),
+              HasSubstr("cloud: scatter[9] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.raw_scatter[1][2] = NAN; }),
+              HasSubstr("cloud: raw_scatter[6] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[0][0] = -2; }),
+              HasSubstr("cloud: diagonal of scatter is -2"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[3][3] = -1; }),
+              HasSubstr("cloud: diagonal of scatter is -1"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[3][0] = 1e3; }),
+              HasSubstr("cloud: asymmetry of scatter is"));
+  EXPECT_THAT(error([](auto& w) { w.cloud.scatter_sigma_m = NAN; }),
+              HasSubstr("cloud: scatter_sigma_m is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[1].scatter_sigma_m = -1; }),
+              HasSubstr("candidate[1]: scatter_sigma_m is -1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[1][1] = INFINITY; }),
+              HasSubstr("candidate[0]: scatter[5] is inf"));
   // What is not there is not read.
   EXPECT_EQ(error([](auto& w) {
-              w.observation.observation.has_cloud = 0;
-              w.observation.observation.rejected = "no board in view";
-              w.cloud_scatter.scatter_sigma_m = NAN;
-              w.cloud_scatter.num_crossings = 1, w.cloud_scatter.crossing_sigma_m = {NAN};
+              w.has_cloud = 0;
+              w.rejected = "no board in view";
+              w.cloud.scatter_sigma_m = NAN;
             }),
             "no error");
-}
-
-TEST_F(ObservationOnTheWire, ScattersOfOtherCounts) {
-  const Observation observation = Whole();
-  const auto error = [&](auto change) { return ErrorAfter<observation_v3_t>(observation, change); };
-  const auto resize = [](int size, board_scatter_t* w) {
-    w->num_crossings = size;
-    w->crossing_sigma_m.resize(static_cast<std::size_t>(size));
-  };
-  EXPECT_THAT(error([&](auto& w) { resize(3, &w.cloud_scatter); }),
-              HasSubstr("length of cloud_scatter.crossing_sigma_m is 3; expected 2"));
-  EXPECT_THAT(error([&](auto& w) { resize(0, &w.cloud_scatter); }),
-              HasSubstr("length of cloud_scatter.crossing_sigma_m is 0; expected 2"));
-  EXPECT_THAT(error([&](auto& w) { resize(1, &w.candidate_scatter[1]); }),
-              HasSubstr("length of candidate_scatter[1].crossing_sigma_m is 1; expected 2"));
-  EXPECT_THAT(error([](auto& w) { w.candidate_scatter.pop_back(), w.num_candidate_scatters = 1; }),
-              HasSubstr("length of candidate_scatter is 1; expected 2"));
-  EXPECT_THAT(error([](auto& w) { w.candidate_scatter.clear(), w.num_candidate_scatters = 0; }),
-              HasSubstr("length of candidate_scatter is 0; expected 2"));
 }
 
 TEST_F(ObservationOnTheWire, ASideThatNoByteHoldsIsRefusedWhereItWasMade) {

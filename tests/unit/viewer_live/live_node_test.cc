@@ -309,16 +309,16 @@ TEST_F(LiveNodeTest, TheBusIsPostedOnceASecondWithTheProcessesThatWereHeard) {
   EXPECT_EQ(posts_.Header("bus").at("processes")[0].at("process"), "session");
 }
 
-TEST_F(LiveNodeTest, SightingsSayWhoSeesTheBoard) {
-  Sighting sighting;
-  sighting.camera = "thermal";
-  sighting.utime = test::kStart;
-  sighting.seen = true;
-  sighting.text = "3.1 m away";
-  node_.Handle(sighting);
-  sighting.camera = "";
-  node_.Handle(sighting);
-  const json sensors = posts_.Header("sightings").at("sensors");
+TEST_F(LiveNodeTest, TargetStatusSaysWhoSeesTheBoard) {
+  TargetStatus status;
+  status.camera = "thermal";
+  status.utime = test::kStart;
+  status.seen = true;
+  status.text = "3.1 m away";
+  node_.Handle(status);
+  status.camera = "";
+  node_.Handle(status);
+  const json sensors = posts_.Header("target_status").at("sensors");
   ASSERT_EQ(sensors.size(), 2U);
   EXPECT_EQ(sensors[0].at("sensor"), "lidar");
   EXPECT_EQ(sensors[1].at("kind"), "thermal");

@@ -26,7 +26,7 @@ TEST(Refusal, LiveNode) {
   twin.PostTo(&twins_posts);
   Image wrong_size = test::Blank(TinyRig().cameras[0], kStart);
   wrong_size.pixels = cv::Mat(4, 4, CV_8UC1, cv::Scalar(0));
-  Sighting stranger;
+  TargetStatus stranger;
   stranger.camera = "front";
   CalibrationMessage strangers;
   strangers.calibration.camera = "front";
@@ -38,16 +38,16 @@ TEST(Refusal, LiveNode) {
   for (Message& bad : Messages{wrong_size, stranger, strangers}) {
     twins.bad.push_back(std::move(bad));
   }
-  Sighting sighting;
-  sighting.camera = "rgb";
-  sighting.seen = true;
-  Sighting of_lidar;
+  TargetStatus status;
+  status.camera = "rgb";
+  status.seen = true;
+  TargetStatus of_lidar;
   of_lidar.text = "too far away";
   CalibrationMessage calibration;
   calibration.utime = kStart;
   calibration.calibration.camera = "rgb";
   test::World world;
-  Messages good = {sighting, of_lidar, calibration, test::Ready("session")};
+  Messages good = {status, of_lidar, calibration, test::Ready("session")};
   SessionCommand command;
   command.command = 1;
   command.verb = SessionVerb::kSweep;
@@ -60,7 +60,7 @@ TEST(Refusal, LiveNode) {
   for (Message& message : world.Answer(command)) good.push_back(std::move(message));
   command.verb = SessionVerb::kSolve;
   for (Message& message : world.Answer(command)) good.push_back(std::move(message));
-  good.push_back(sighting);
+  good.push_back(status);
   twins.Feed(good);
   EXPECT_THAT(twins.refused, ::testing::Each(::testing::Gt(5)));
   EXPECT_EQ(posts.all, twins_posts.all);

@@ -1,16 +1,16 @@
-import type { SightingsFrame } from "../../protocol";
+import type { TargetStatusFrame } from "../../protocol";
 import { seconds } from "../words";
 
 const kStaleS = 5;
 
-type Sensor = SightingsFrame["sensors"][number];
+type Sensor = TargetStatusFrame["sensors"][number];
 
 function SensorBadge({ sensor }: { sensor: Sensor }) {
   const stale = sensor.age_s > kStaleS;
   const grade = stale ? "muted" : sensor.seen ? "good" : "bad";
   const said = stale ? `last looked ${seconds(sensor.age_s, 0)} ago` : sensor.seen ? "" : sensor.text;
   return (
-    <li class={`sighting ${grade}`} data-testid={`sighting-${sensor.sensor}`} data-seen={sensor.seen && !stale} title={sensor.text}>
+    <li class={grade} data-testid={`target-status-${sensor.sensor}`} data-seen={sensor.seen && !stale} title={sensor.text}>
       <strong>{sensor.sensor} <span aria-hidden="true">{stale ? "?" : sensor.seen ? "✓" : "✗"}</span></strong>
       <span class="visually-hidden">{stale ? "unknown" : sensor.seen ? "seen" : "not seen"}</span>
       {said && <span> ({said})</span>}
@@ -19,14 +19,14 @@ function SensorBadge({ sensor }: { sensor: Sensor }) {
 }
 
 /// "Board seen by: rgb ✓ thermal ✓ lidar ✗ (why)"
-export function SightingsLine({ sightings }: { sightings: SightingsFrame | null }) {
-  if (!sightings || sightings.sensors.length === 0) {
+export function TargetStatusLine({ targetStatus }: { targetStatus: TargetStatusFrame | null }) {
+  if (!targetStatus || targetStatus.sensors.length === 0) {
     return <p class="muted">Nobody looks for the board just now.</p>;
   }
   return (
-    <div class="sightings">
+    <div class="target-status">
       <span>Board seen by:</span>
-      <ul>{sightings.sensors.map((sensor) => <SensorBadge key={sensor.sensor} sensor={sensor} />)}</ul>
+      <ul>{targetStatus.sensors.map((sensor) => <SensorBadge key={sensor.sensor} sensor={sensor} />)}</ul>
     </div>
   );
 }

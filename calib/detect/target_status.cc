@@ -1,4 +1,4 @@
-#include "calib/detect/sighting.h"
+#include "calib/detect/target_status.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,46 +38,46 @@ std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Target& targe
 
 }  // namespace
 
-Sighting LookForTarget(const Rig& rig, const Image& image) {
+TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   const CameraSpec& spec = rig.Camera(image.camera);
   CheckImage(spec, image);
-  Sighting sighting;
-  sighting.camera = image.camera;
-  sighting.utime = image.utime;
+  TargetStatus status;
+  status.camera = image.camera;
+  status.utime = image.utime;
   cv::Mat grey = ToGrey(image);
   const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
   if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
   const CheckerboardResult found = FindCheckerboard(grey, rig.target);
-  sighting.text = found.why;
-  if (!found.board) return sighting;
+  status.text = found.why;
+  if (!found.board) return status;
   for (const Eigen::Vector2d& corner : found.board->corners) {
-    sighting.corners.push_back(Scaled(corner, shrink));
+    status.corners.push_back(Scaled(corner, shrink));
   }
   const Camera camera(spec);
-  const auto pose = PoseFromCorners(camera, rig.target, sighting.corners);
+  const auto pose = PoseFromCorners(camera, rig.target, status.corners);
   if (!pose) {
-    sighting.text = "a checkerboard that is not flat; check the lens in the rig file";
-    return sighting;
+    status.text = "a checkerboard that is not flat; check the lens in the rig file";
+    return status;
   }
-  sighting.seen = true;
+  status.seen = true;
   const Rigid3& camera_from_target = pose->pose.sensor_from_target;
-  sighting.outline = OutlineOf(camera, rig.target, camera_from_target);
-  sighting.text = Format("%.1f m away", camera_from_target.translation.norm());
-  return sighting;
+  status.outline = OutlineOf(camera, rig.target, camera_from_target);
+  status.text = Format("%.1f m away", camera_from_target.translation.norm());
+  return status;
 }
 
-Sighting LookForTarget(const Rig& rig, const Cloud& cloud) {
-  Sighting sighting;
-  sighting.utime = cloud.sweep_utime;
+TargetStatus LookForTarget(const Rig& rig, const Cloud& cloud) {
+  TargetStatus status;
+  status.utime = cloud.sweep_utime;
   BoardInCloudOptions options;
   options.range_sigma_m = rig.lidar.range_sigma_m;
   const BoardsInCloud boards = FindBoards(cloud, rig.target, options);
-  sighting.text = boards.why;
-  if (boards.candidates.empty()) return sighting;
-  sighting.seen = true;
-  sighting.centre = boards.candidates.front().centre;
-  sighting.text = Format("%.1f m away", sighting.centre.norm());
-  return sighting;
+  status.text = boards.why;
+  if (boards.candidates.empty()) return status;
+  status.seen = true;
+  status.centre = boards.candidates.front().centre;
+  status.text = Format("%.1f m away", status.centre.norm());
+  return status;
 }
 
 }  // namespace rgbdt
