@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "calib/model/version.h"
 #include "services/nodes/assembler_node.h"
 #include "services/runtime/process.h"
 
@@ -10,6 +11,7 @@ int main(int argc, char** argv) {
       "rgbdt-assembler"};
   std::string url;
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   rgbdt::AssemblerNode node;
   return rgbdt::RunOnLcm(node, url);

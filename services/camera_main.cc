@@ -3,6 +3,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "services/drivers/camera/camera_node.h"
 #include "services/runtime/process.h"
 
@@ -45,11 +46,12 @@ int main(int argc, char** argv) {
                  "where captured views stay raw when JPEG or PNG goes over the bus")
       ->capture_default_str();
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     const rgbdt::Rig rig = rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown);
     rgbdt::CameraNode node(CameraOf(rig, name), captures);
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-camera: %s\n", e.what());
     return 1;

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "calib/files/schema/rig_file.h"
+#include "calib/model/version.h"
 #include "services/drivers/lidar/lidar_node.h"
 #include "services/runtime/process.h"
 
@@ -17,10 +18,11 @@ int main(int argc, char** argv) {
   std::string rig_file;
   app.add_option("--rig", rig_file, "rig.textproto")->required();
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::LidarNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown).lidar);
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-lidar: %s\n", e.what());
     return 1;

@@ -2,6 +2,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "services/drivers/dynamixel/motor_node.h"
 #include "services/runtime/process.h"
 
@@ -38,10 +39,11 @@ int main(int argc, char** argv) {
   app.add_option("--rig", rig_file, "rig.textproto with lidar.turned_scanner.dynamixel")
       ->required();
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
     rgbdt::MotorNode node(ReadScanner(rig_file));
-    return rgbdt::RunDevice(node, url);
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-motor: %s\n", e.what());
     return 1;

@@ -1,44 +1,13 @@
 #include <CLI/CLI.hpp>
-#include <chrono>
+#include <cstdio>
 #include <map>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
-#include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "services/nodes/simulator_node.h"
 #include "services/runtime/process.h"
-
-namespace {
-
-using rgbdt::Utime;
-
-// Simulated time against the steady clock: what is due is published, `speed` times faster. After
-// time stood still, or rendering took long, it goes on from there and does not catch up: a burst
-// would fill the receivers' queues (lcm-logger's holds 30 messages).
-class Pacer {
- public:
-  explicit Pacer(double speed) : speed_(speed) {}
-
-  bool IsDue(Utime due) {
-    const auto now = std::chrono::steady_clock::now();
-    const double late_s =
-        std::chrono::duration<double>(now - wall_).count() - rgbdt::ToSeconds(due - sim_) / speed_;
-    if (late_s < 0 && late_s > -10) return false;
-    if (late_s > 0.02 || late_s <= -10) {
-      wall_ = now;
-      sim_ = due;
-    }
-    return true;
-  }
-
- private:
-  double speed_;
-  std::chrono::steady_clock::time_point wall_;
-  Utime sim_ = 0;
-};
-
-}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -60,23 +29,16 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--rig", rig_file, "write the rig (with its hand-measured guesses) here first");
   app.add_option("--truth", truth_file, "keep the truth here; no process reads it");
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
-    rgbdt::SimulatorNode node(options);
+    rgbdt::SimulatorNode node(options, speed, [&](const rgbdt::Truth& truth) {
+      if (!truth_file.empty()) rgbdt::WriteTruth(truth_file, truth);
+    });
     if (!rig_file.empty()) {
       rgbdt::WriteFileAtomically(rig_file, rgbdt::PrintRig(node.simulator().rig()));
     }
-    Pacer pacer(speed);
-    std::size_t views = 0;
-    return rgbdt::RunOnLcm(node, url, [&](rgbdt::NodeRunner& runner) {
-      while (node.NextDue() && pacer.IsDue(*node.NextDue())) runner.Publish(node.TakeNext());
-      const rgbdt::Truth& truth = node.simulator().truth();
-      if (!truth_file.empty() && truth.lidar_from_target.size() != views) {
-        rgbdt::WriteTruth(truth_file, truth);
-        views = truth.lidar_from_target.size();
-      }
-      return true;
-    });
+    return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-simulator: %s\n", e.what());
     return 1;

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 
+#include "calib/model/version.h"
 #include "services/nodes/solver_node.h"
 #include "services/runtime/process.h"
 
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
   std::string method = rgbdt::kAutoMethod;
   app.add_option("--method", method, rgbdt::kMethodHelp)->capture_default_str();
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   rgbdt::CalibrateOptions options;
   options.method = method;

@@ -12,14 +12,15 @@
 #include "calib/methods/calibrate.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "calib/present/frames/page.h"
 #include "calib/present/frames/session_frames.h"
 #include "calib/present/layout/frame.h"
 #include "services/bus/bus.h"
 #include "services/drivers/net/network_interfaces.h"
+#include "services/runtime/clock.h"
 #include "services/runtime/process.h"
 #include "viewer/live/bus_monitor.h"
-#include "viewer/live/clock.h"
 #include "viewer/live/live_node.h"
 #include "viewer/server/listening_socket.h"
 #include "viewer/server/server.h"
@@ -77,12 +78,12 @@ ServerOptions OptionsFrom(const Flags& flags) {
                                          : rgbdt::viewer::IsLoopback(options.address);
   if (!local) options.token = NewToken();
   options.page = rgbdt::viewer::Page();
-  options.hello = {{"type", "hello"}, {"version", RGBDT_VERSION}};
+  options.hello = {{"type", "hello"}, {"version", rgbdt::Version()}};
   return options;
 }
 
 // A phone cannot look up this machine's name: its addresses, where it listens at all of them.
-void SayWhere(const Server& server, const ServerOptions& options) {
+void PrintAddresses(const Server& server, const ServerOptions& options) {
   const std::string url = server.Url();
   std::printf("%s\n", url.c_str());
   if (options.socket < 0 && (options.address == "0.0.0.0" || options.address == "::")) {
@@ -151,17 +152,16 @@ nlohmann::json Browsers(const Server& server) {
   return all;
 }
 
-void PostBus(const rgbdt::viewer::LiveNode& node, const rgbdt::viewer::BusMonitor& monitor,
-             double now_s, Server* server) {
+nlohmann::json DescribeBus(const rgbdt::viewer::BusMonitor& monitor, double now_s,
+                           const Server& server) {
   nlohmann::json frame = {{"type", "bus"},
                           {"channels", monitor.Channels(now_s)},
-                          {"processes", node.Processes(now_s)},
-                          {"browsers", Browsers(*server)},
+                          {"browsers", Browsers(server)},
                           {"screen_ms", nullptr}};
-  if (const auto screen = server->Screen()) {
+  if (const auto screen = server.Screen()) {
     frame["screen_ms"] = {{"p50", screen->p50}, {"p95", screen->p95}, {"count", screen->count}};
   }
-  server->Send({"bus", "", true, false, 0, [frame] { return rgbdt::viewer::JsonFrame(frame); }, 0});
+  return frame;
 }
 
 int ShowBus(const Flags& flags) {
@@ -171,24 +171,13 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::LiveNode node;
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
-  SayWhere(server, options);
+  PrintAddresses(server, options);
   rgbdt::viewer::BusMonitor monitor;
-  double next_bus_s = 0;
+  node.PostBus([&](double now_s) { return DescribeBus(monitor, now_s, server); });
   return rgbdt::RunOnLcm(
-      node, flags.url,
-      [&](rgbdt::NodeRunner& runner) {
-        const double now_s = rgbdt::viewer::SteadySeconds();
-        runner.Publish(node.TakeMessages());
-        node.Tick(now_s);
-        if (now_s >= next_bus_s) {
-          next_bus_s = now_s + 1;
-          PostBus(node, monitor, now_s, &server);
-        }
-        return true;
-      },
-      [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-        monitor.Add(channel, data, size, rgbdt::viewer::SteadySeconds(),
-                    rgbdt::viewer::WallUtime());
+      node, flags.url, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        monitor.Add(channel, data, size, rgbdt::ToSeconds(rgbdt::SteadyUtime()),
+                    rgbdt::HostUtime());
       });
 }
 
@@ -209,7 +198,7 @@ int ShowSession(const Flags& flags) {
       }).views;
   rgbdt::viewer::SessionFramesOptions what;
   what.title = flags.session;
-  what.version = RGBDT_VERSION;
+  what.version = rgbdt::Version();
   const auto frames =
       rgbdt::viewer::SessionFrames(session, detections, ReportOf(session, detections), what);
   const Goodbye goodbye;
@@ -218,9 +207,9 @@ int ShowSession(const Flags& flags) {
   Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
   for (const auto& frame : frames) {
     if (frame.topic == "hello") continue;  // the server says it
-    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }, 0});
+    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }});
   }
-  SayWhere(server, options);
+  PrintAddresses(server, options);
   goodbye.Wait();
   return 0;
 }
@@ -258,6 +247,7 @@ int main(int argc, char** argv) {
                "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
                "into a network namespace and starts rgbdt-viewer there");
   app.prefix_command();
+  app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   flags.run = app.remaining();
   try {

@@ -7,7 +7,10 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/internal/intrinsics_bundle.h"
 #include "calib/camera/internal/intrinsics_start.h"
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/statistics.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -15,19 +18,6 @@ namespace {
 // Corners that fit perfectly have no scatter: nothing is an outlier below this [px].
 constexpr double kLeastSigma = 0.02;
 constexpr int kRounds = 8;
-
-std::string Number(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double Rms(const std::vector<Eigen::Vector2d>& residuals, const std::vector<bool>& used) {
   double sum = 0;
@@ -169,7 +159,7 @@ class Selection {
     const bool enough = all - used <= options_.max_left_out * all && used >= 6;
     if (enough && Rms(residuals, view.used) <= options_.max_view_ratio * median) return "";
     const double rms = Rms(residuals, std::vector<bool>(view.used.size(), true));
-    return "RMS " + Number(rms, 1) + " px, " + Number(rms / median, 0) +
+    return "RMS " + Fixed(rms, 1) + " px, " + Fixed(rms / median, 0) +
            " times the median of the views";
   }
 
@@ -255,12 +245,12 @@ std::string WhyNotConverged(const IntrinsicsResult& result, const IntrinsicsOpti
   const double sigma = std::max(result.Sigma(0) / result.lens.fx, result.Sigma(1) / result.lens.fy);
   if (!(sigma <= options.max_focal_sigma)) {
     return "not enough tilt: the focal length is known to " +
-           (sigma < 1 ? Number(100 * sigma, 1) + "% only" : "nothing better than a factor") +
+           (sigma < 1 ? Fixed(100 * sigma, 1) + "% only" : "nothing better than a factor") +
            "; tilt the board more (30 to 45 degrees), about both of its axes";
   }
   if (!solver.empty()) return solver;
   if (!(result.rms_px <= options.max_rms_px)) {
-    return "RMS " + Number(result.rms_px, 1) +
+    return "RMS " + Fixed(result.rms_px, 1) +
            " px: the corners do not fit this lens model; try another one";
   }
   return "";
@@ -269,20 +259,16 @@ std::string WhyNotConverged(const IntrinsicsResult& result, const IntrinsicsOpti
 }  // namespace
 
 void IntrinsicsOptions::Check() const {
-  const auto require = [](bool good, const char* field, double value, const char* expected) {
-    if (good) return;
-    throw InputError(std::string("intrinsics options: ") + field + " is " + std::to_string(value) +
-                     "; expected " + expected);
-  };
-  require(min_views >= 1, "min_views", min_views, "1 or more");
-  require(max_corner_sigmas > 0, "max_corner_sigmas", max_corner_sigmas, "more than 0");
-  require(max_left_out >= 0 && max_left_out <= 1, "max_left_out", max_left_out, "0 to 1");
-  require(max_view_ratio > 1, "max_view_ratio", max_view_ratio, "more than 1");
-  require(max_focal_sigma > 0, "max_focal_sigma", max_focal_sigma, "more than 0");
-  require(max_rms_px > 0, "max_rms_px", max_rms_px, "more than 0");
-  require(max_iterations >= 1, "max_iterations", max_iterations, "1 or more");
-  require(grid_columns >= 1 && grid_columns <= 100, "grid_columns", grid_columns, "1 to 100");
-  require(grid_rows >= 1 && grid_rows <= 100, "grid_rows", grid_rows, "1 to 100");
+  const OptionCheck check("intrinsics options");
+  check.Require(min_views >= 1, "min_views", min_views, "1 or more");
+  check.Require(max_corner_sigmas > 0, "max_corner_sigmas", max_corner_sigmas, "more than 0");
+  check.Require(max_left_out >= 0 && max_left_out <= 1, "max_left_out", max_left_out, "0 to 1");
+  check.Require(max_view_ratio > 1, "max_view_ratio", max_view_ratio, "more than 1");
+  check.Require(max_focal_sigma > 0, "max_focal_sigma", max_focal_sigma, "more than 0");
+  check.Require(max_rms_px > 0, "max_rms_px", max_rms_px, "more than 0");
+  check.Require(max_iterations >= 1, "max_iterations", max_iterations, "1 or more");
+  check.Require(grid_columns >= 1 && grid_columns <= 100, "grid_columns", grid_columns, "1 to 100");
+  check.Require(grid_rows >= 1 && grid_rows <= 100, "grid_rows", grid_rows, "1 to 100");
 }
 
 IntrinsicsResult CalibrateIntrinsics(const IntrinsicsInput& input,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/model/errors.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -45,10 +46,8 @@ float Percentile(const cv::Mat& grey, double fraction) {
     values.push_back(
         grey.at<float>(static_cast<int>(i) / grey.cols, static_cast<int>(i) % grey.cols));
   }
-  const auto nth = values.begin() +
-                   static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
+  const auto k = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
+  return Nth(std::move(values), k);
 }
 
 std::pair<float, float> StretchLimits(const cv::Mat& grey) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace rgbdt {
 namespace {
@@ -134,37 +135,31 @@ class View {
 // Tile after tile, and in each one camera after the other; sums only where a point needs them.
 class Blender {
  public:
-  Blender(const std::vector<BlendCamera>& cameras, std::size_t first, RgbdtCloud* fused)
-      : first_(first), fused_(*fused) {
+  Blender(const std::vector<BlendCamera>& cameras, std::size_t first, std::size_t size)
+      : first_(first), size_(size) {
     for (std::size_t c = 0; c < cameras.size(); ++c) {
       const View view(cameras[c], c, first);
-      if (!view.ShowsAny(first + fused->size())) continue;
+      if (!view.ShowsAny(first + size)) continue;
       const bool thermal = cameras[c].camera->spec().kind == CameraKind::kThermal;
       (thermal ? thermal_ : colour_).push_back(view);
     }
   }
 
-  BlendCounts Run() {
-    const std::size_t size = fused_.size();
-    fused_.rgb.clear();
-    fused_.temperature_k.clear();
-    fused_.temperature_sigma_k.clear();
-    fused_.thermal_counts.clear();
-    fused_.valid.clear();
-    fused_.rgb.reserve(size);
-    fused_.temperature_k.reserve(size);
-    fused_.temperature_sigma_k.reserve(size);
-    fused_.thermal_counts.reserve(size);
-    fused_.valid.reserve(size);
-    for (std::size_t begin = 0; begin < size; begin += Tile::kSize) {
+  Blended Run() {
+    blended_.rgb.reserve(size_);
+    blended_.temperature_k.reserve(size_);
+    blended_.temperature_sigma_k.reserve(size_);
+    blended_.thermal_counts.reserve(size_);
+    blended_.valid.reserve(size_);
+    for (std::size_t begin = 0; begin < size_; begin += Tile::kSize) {
       begin_ = first_ + begin;
-      count_ = std::min(Tile::kSize, size - begin);
+      count_ = std::min(Tile::kSize, size_ - begin);
       tile_.Clear();
       colour_.size() == 1 ? TakeColours(&colour_[0]) : BlendColours();
       thermal_.size() == 1 ? TakeTemperatures(&thermal_[0]) : BlendTemperatures();
       Append();
     }
-    return counts_;
+    return std::move(blended_);
   }
 
  private:
@@ -175,14 +170,14 @@ class Blender {
     std::uint32_t samples[Tile::kSize] = {};
     const auto same = [](std::uint32_t sample) { return sample; };
     while (view->Next(end())) {
-      counts_.hidden += view->Take(begin_, same, tile_.valid, samples);
+      blended_.hidden += view->Take(begin_, same, tile_.valid, samples);
     }
     for (std::size_t i = 0; i < count_; ++i) tile_.rgb[i] = RgbOf(samples[i]);
   }
 
   void TakeTemperatures(View* view) {
     while (view->Next(end())) {
-      counts_.hidden += view->Take(begin_, CountsOf, tile_.valid, tile_.thermal_counts);
+      blended_.hidden += view->Take(begin_, CountsOf, tile_.valid, tile_.thermal_counts);
       const std::size_t i = view->first_point() - begin_;
       view->temperatures().At(&tile_.thermal_counts[i], view->end_point() - begin_ - i,
                               &tile_.temperature_k[i], &tile_.temperature_sigma_k[i]);
@@ -194,7 +189,7 @@ class Blender {
     ClearSums();
     for (View& view : colour_) {
       while (view.Next(end())) {
-        counts_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+        blended_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
           const std::size_t i = point - begin_;
           const auto rgb = RgbOf(sample);
           tile_.valid[i] |= view.bit();
@@ -216,7 +211,7 @@ class Blender {
     ClearSums();
     for (View& view : thermal_) {
       while (view.Next(end())) {
-        counts_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+        blended_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
           tile_.valid[point - begin_] |= view.bit();
           AddTemperature(point - begin_, weight, CountsOf(sample), view.temperatures());
         });
@@ -254,18 +249,17 @@ class Blender {
     const auto append = [this](const auto* from, auto* to) {
       to->insert(to->end(), from, from + count_);
     };
-    append(tile_.rgb, &fused_.rgb);
-    append(tile_.temperature_k, &fused_.temperature_k);
-    append(tile_.temperature_sigma_k, &fused_.temperature_sigma_k);
-    append(tile_.thermal_counts, &fused_.thermal_counts);
-    append(tile_.valid, &fused_.valid);
-    for (std::size_t i = 0; i < count_; ++i) counts_.coloured += tile_.valid[i] != 0 ? 1 : 0;
+    append(tile_.rgb, &blended_.rgb);
+    append(tile_.temperature_k, &blended_.temperature_k);
+    append(tile_.temperature_sigma_k, &blended_.temperature_sigma_k);
+    append(tile_.thermal_counts, &blended_.thermal_counts);
+    append(tile_.valid, &blended_.valid);
+    for (std::size_t i = 0; i < count_; ++i) blended_.coloured += tile_.valid[i] != 0 ? 1 : 0;
   }
 
-  std::size_t first_;
-  RgbdtCloud& fused_;
+  std::size_t first_, size_;
   std::vector<View> colour_, thermal_;
-  BlendCounts counts_;
+  Blended blended_;
 
   Tile tile_;
   std::size_t begin_ = 0, count_ = 0;  // the tile's points, numbered as the sightings number them
@@ -275,8 +269,8 @@ class Blender {
 
 }  // namespace
 
-BlendCounts Blend(const std::vector<BlendCamera>& cameras, std::size_t first, RgbdtCloud* fused) {
-  return Blender(cameras, first, fused).Run();
+Blended Blend(const std::vector<BlendCamera>& cameras, std::size_t first, std::size_t size) {
+  return Blender(cameras, first, size).Run();
 }
 
 }  // namespace rgbdt

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "calib/fuse/depth_buffer.h"
 #include "calib/fuse/sightings.h"
-#include "calib/model/rgbdt_cloud.h"
 
 namespace rgbdt {
 
@@ -16,15 +17,19 @@ struct BlendCamera {
   const DepthBuffer* surfaces = nullptr;  ///< how squarely the camera looks at them; null: unknown
 };
 
-struct BlendCounts {
+/// What the cameras tell of points, in the terms of RgbdtCloud. All vectors are equally long.
+struct Blended {
+  std::vector<std::array<std::uint8_t, 3>> rgb;
+  std::vector<float> temperature_k, temperature_sigma_k, thermal_counts;
+  std::vector<std::uint32_t> valid;
   std::int64_t coloured = 0;  ///< points that at least one camera saw
-  std::int64_t hidden = 0;    ///< points that lie in an image, but behind something
+  std::int64_t hidden = 0;    ///< by camera: points that lie in its image, but behind something
 };
 
-/// Fills colour, temperature, counts and `valid` of all of the cloud's points, which are points
-/// [first, first + size) of those that the sightings number. Of several cameras of a kind that see
-/// a point, each counts by how squarely and how far from its border it looks, little where it is
-/// saturated; temperatures also by their sigmas. Counts are those of the camera that counts most.
-BlendCounts Blend(const std::vector<BlendCamera>& cameras, std::size_t first, RgbdtCloud* fused);
+/// Of points [first, first + size) of those that the sightings number. Of several cameras of a kind
+/// that see a point, each counts by how squarely and how far from its border it looks, little where
+/// it is saturated; temperatures also by their sigmas. Counts are those of the camera that counts
+/// most.
+Blended Blend(const std::vector<BlendCamera>& cameras, std::size_t first, std::size_t size);
 
 }  // namespace rgbdt

@@ -4,17 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "calib/fuse/internal/hits.h"
 #include "calib/fuse/internal/motion.h"
 
 namespace rgbdt {
 namespace {
-
-template <typename T>
-std::vector<T> Slice(const std::vector<T>& all, std::size_t first, std::size_t end) {
-  return {all.begin() + static_cast<std::ptrdiff_t>(first),
-          all.begin() + static_cast<std::ptrdiff_t>(end)};
-}
 
 void TransformPoints(const Rigid3& to_from, std::vector<Eigen::Vector3f>* points) {
   const Eigen::Matrix3f rotation = to_from.rotation.toRotationMatrix().cast<float>();
@@ -37,7 +30,7 @@ PoseTrack::Added SweepFuser::AddPose(const StampedPose& pose) {
 }
 
 void SweepFuser::Forget() {
-  if (sweep_.points.empty() && past_points_.empty()) return;
+  if (sweep_.empty() && past_points_.empty()) return;
   NextSweep();
   past_points_.clear();
   for (Eye& eye : eyes_) eye.now = eye.past = std::nullopt;
@@ -61,10 +54,10 @@ std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t index,
 }
 
 RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
-  RgbdtCloud hits = HitsOf(chunk);
+  Hits hits = HitsOf(chunk);
   counts_.points += static_cast<std::int64_t>(hits.size());
-  if (!sweep_.points.empty() && sweep_.sweep_utime != chunk.sweep_utime) NextSweep();  // end lost
-  if (sweep_.points.empty() && !hits.points.empty()) BeginSweep(hits);
+  if (!sweep_.empty() && sweep_utime_ != chunk.sweep_utime) NextSweep();  // end lost
+  if (sweep_.empty() && !hits.empty()) BeginSweep(chunk.sweep_utime, hits);
   const bool placed = Place(&hits);
   if (!placed) counts_.unplaced += static_cast<std::int64_t>(hits.size());
   const BlockedPoints points(hits.points);
@@ -73,37 +66,45 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
     eye.spacing.Add(chunk, eye.camera.camera_from_lidar);
     Look(hits, points, &eye);
   }
-  const BlendCounts blended = Blend(BlendCameras(), sweep_.size(), &hits);
+  Blended blended = Blend(BlendCameras(), sweep_.size(), hits.size());
   counts_.coloured += blended.coloured;
   counts_.hidden += blended.hidden;
-  if (!placed || hits.points.empty()) return hits;
-  Keep(hits);
-  if (map_from_sweep_) {
-    hits.frame_utime = hits.utime.front();
-    hits.map_from_lidar = poses_.At(hits.frame_utime);
-    TransformPoints(hits.map_from_lidar->Inverse() * *map_from_sweep_, &hits.points);
+  const bool keeps = placed && !hits.empty();
+  if (keeps) Keep(hits);
+  RgbdtCloud fused = Fused(chunk.sweep_utime, std::move(hits), std::move(blended));
+  if (keeps && map_from_sweep_) {
+    fused.frame_utime = fused.utime.front();
+    fused.map_from_lidar = poses_.At(fused.frame_utime);
+    TransformPoints(fused.map_from_lidar->Inverse() * *map_from_sweep_, &fused.points);
   }
-  return hits;
+  return fused;
 }
 
-// The chunk's points that returned, in the frames of their own times.
-RgbdtCloud SweepFuser::HitsOf(const Cloud& chunk) const {
-  RgbdtCloud hits;
-  hits.sweep_utime = chunk.sweep_utime;
+// What is published of points, in the frame that they are in.
+RgbdtCloud SweepFuser::Fused(Utime sweep_utime, Hits hits, Blended blended) const {
+  RgbdtCloud fused;
+  fused.sweep_utime = sweep_utime;
   for (const Eye& eye : eyes_) {
-    hits.cameras.push_back(eye.camera.spec().name);
-    hits.calibration_utime.push_back(eye.camera.calibration_utime);
+    fused.cameras.push_back(eye.camera.spec().name);
+    fused.calibration_utime.push_back(eye.camera.calibration_utime);
   }
-  AppendHits(chunk, &hits);
-  return hits;
+  fused.points = std::move(hits.points);
+  fused.intensity = std::move(hits.intensity);
+  fused.utime = std::move(hits.utime);
+  fused.rgb = std::move(blended.rgb);
+  fused.temperature_k = std::move(blended.temperature_k);
+  fused.temperature_sigma_k = std::move(blended.temperature_sigma_k);
+  fused.thermal_counts = std::move(blended.thermal_counts);
+  fused.valid = std::move(blended.valid);
+  return fused;
 }
 
-void SweepFuser::BeginSweep(const RgbdtCloud& hits) {
-  sweep_.sweep_utime = hits.sweep_utime;
-  sweep_.frame_utime = hits.utime.front();
+void SweepFuser::BeginSweep(Utime sweep_utime, const Hits& hits) {
+  sweep_utime_ = sweep_utime;
+  frame_utime_ = hits.utime.front();
   moved_ = false;
   too_long_ = false;
-  map_from_sweep_ = poses_.At(sweep_.frame_utime);
+  map_from_sweep_ = poses_.At(frame_utime_);
   if (!map_from_sweep_ || !map_from_past_) return;
   const Rigid3 past_from_sweep = map_from_past_->Inverse() * *map_from_sweep_;
   TransformPoints(past_from_sweep.Inverse(), &past_points_);
@@ -114,12 +115,10 @@ void SweepFuser::BeginSweep(const RgbdtCloud& hits) {
 // The sweep becomes the one before.
 void SweepFuser::NextSweep() {
   std::swap(past_points_, sweep_.points);
+  sweep_.Clear();
   map_from_past_ = map_from_sweep_;
   if (seen_points_ > 0) seen_through_.Clear();
   seen_points_ = 0;
-  sweep_.points.clear();
-  sweep_.intensity.clear();
-  sweep_.utime.clear();
   parted_ = 0;
   for (Eye& eye : eyes_) {
     eye.seen.Clear();
@@ -133,9 +132,9 @@ void SweepFuser::NextSweep() {
 }
 
 // From the frames of the points' own times to that of the sweep. False: not known.
-bool SweepFuser::Place(RgbdtCloud* hits) const {
+bool SweepFuser::Place(Hits* hits) const {
   if (poses_.empty()) return true;
-  if (!map_from_sweep_) return hits->points.empty();
+  if (!map_from_sweep_) return hits->empty();
   return PlaceInSweep(poses_, *map_from_sweep_, hits->utime, &hits->points);
 }
 
@@ -147,8 +146,7 @@ std::optional<Rigid3> SweepFuser::CameraFromSweep(const FusionCamera& camera, Ut
 }
 
 // The points from `first` on that the same image serves, and where it was taken.
-SweepFuser::Run SweepFuser::NextRun(const RgbdtCloud& hits, std::size_t first,
-                                    const Eye& eye) const {
+SweepFuser::Run SweepFuser::NextRun(const Hits& hits, std::size_t first, const Eye& eye) const {
   const Serving serving = eye.camera.ServingAt(hits.utime[first]);
   Run run{first, first + 1, serving.image, eye.camera_from_sweep};
   while (run.end < hits.size() && hits.utime[run.end] >= serving.from &&
@@ -226,7 +224,7 @@ void SweepFuser::AddToBuffer(const BlockedPoints& points, const Eye& eye,
 }
 
 // What the images that serve the points show of them, and what hides it.
-void SweepFuser::Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye) {
+void SweepFuser::Look(const Hits& hits, const BlockedPoints& points, Eye* eye) {
   const std::size_t before_chunk = eye->seen.size();
   for (std::size_t first = 0; first < hits.size();) {
     const Run run = NextRun(hits, first, *eye);
@@ -256,7 +254,7 @@ void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add
                  });
 }
 
-void SweepFuser::JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye) {
+void SweepFuser::JudgeFrom(const Hits& hits, std::size_t first, Eye* eye) {
   Sightings& seen = eye->seen;
   Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &seen);
   if (!eye->past || map_from_sweep_) return;
@@ -273,7 +271,7 @@ void SweepFuser::JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye) 
 }
 
 // Only where it is asked for.
-void SweepFuser::LookThrough(const RgbdtCloud& hits) {
+void SweepFuser::LookThrough(const Hits& hits) {
   const std::size_t all = sweep_.size() + hits.size();
   if (seen_points_ == all) return;
   seen_through_.Add(sweep_.points, std::min(seen_points_, sweep_.size()));
@@ -297,18 +295,13 @@ std::vector<BlendCamera> SweepFuser::BlendCameras() const {
   return cameras;
 }
 
-void SweepFuser::Keep(const RgbdtCloud& hits) {
+void SweepFuser::Keep(const Hits& hits) {
   if (too_long_ || sweep_.size() + hits.size() > kMaxSweepPoints) {
     too_long_ = true;
     for (Eye& eye : eyes_) eye.seen.CutBack(eye.seen.FirstFrom(sweep_.size()));
     return;
   }
-  const auto append = [](const auto& from, auto* to) {
-    to->insert(to->end(), from.begin(), from.end());
-  };
-  append(hits.points, &sweep_.points);
-  append(hits.intensity, &sweep_.intensity);
-  append(hits.utime, &sweep_.utime);
+  sweep_.Append(hits);
 }
 
 // Cells that suit the points' spacing as the whole sweep shows it: a first line alone does not.
@@ -325,19 +318,11 @@ void SweepFuser::FitCells() {
 }
 
 RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
-  RgbdtCloud part;
-  part.sweep_utime = sweep_.sweep_utime;
+  RgbdtCloud part =
+      Fused(sweep_utime_, sweep_.Part(first, end), Blend(BlendCameras(), first, end - first));
   part.whole_sweep = true;
-  part.points = Slice(sweep_.points, first, end);
-  part.intensity = Slice(sweep_.intensity, first, end);
-  part.utime = Slice(sweep_.utime, first, end);
-  for (const Eye& eye : eyes_) {
-    part.cameras.push_back(eye.camera.spec().name);
-    part.calibration_utime.push_back(eye.camera.calibration_utime);
-  }
   part.map_from_lidar = map_from_sweep_;
-  part.frame_utime = map_from_sweep_ ? sweep_.frame_utime : 0;
-  Blend(BlendCameras(), first, &part);
+  part.frame_utime = map_from_sweep_ ? frame_utime_ : 0;
   return part;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/fuse/blend.h"
+#include "calib/fuse/hits.h"
 #include "calib/fuse/point_spacing.h"
 #include "calib/fuse/seen_through.h"
 #include "calib/model/cloud.h"
@@ -85,17 +86,16 @@ class SweepFuser {
     Rigid3 camera_from_sweep;
   };
 
-  RgbdtCloud HitsOf(const Cloud& chunk) const;
-  void BeginSweep(const RgbdtCloud& hits);
+  void BeginSweep(Utime sweep_utime, const Hits& hits);
   void NextSweep();
   void Forget();
-  bool Place(RgbdtCloud* hits) const;
-  void Look(const RgbdtCloud& hits, const BlockedPoints& points, Eye* eye);
+  bool Place(Hits* hits) const;
+  void Look(const Hits& hits, const BlockedPoints& points, Eye* eye);
   void LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye);
-  void JudgeFrom(const RgbdtCloud& hits, std::size_t first, Eye* eye);
-  void LookThrough(const RgbdtCloud& hits);
+  void JudgeFrom(const Hits& hits, std::size_t first, Eye* eye);
+  void LookThrough(const Hits& hits);
   bool IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const;
-  Run NextRun(const RgbdtCloud& hits, std::size_t first, const Eye& eye) const;
+  Run NextRun(const Hits& hits, std::size_t first, const Eye& eye) const;
   std::optional<Rigid3> CameraFromSweep(const FusionCamera& camera, Utime utime) const;
   PointProjector ProjectorOf(const FusionCamera& camera, const Run& run) const;
   bool HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const;
@@ -103,9 +103,10 @@ class SweepFuser {
   void MakeBuffers(Eye* eye) const;
   void AddToBuffer(const BlockedPoints& points, const Eye& eye, DepthBuffer* buffer) const;
   void FitCells();
-  void Keep(const RgbdtCloud& hits);
+  void Keep(const Hits& hits);
   std::vector<RgbdtCloud> Parts();
   RgbdtCloud Part(std::size_t first, std::size_t end) const;
+  RgbdtCloud Fused(Utime sweep_utime, Hits hits, Blended blended) const;
   std::vector<BlendCamera> BlendCameras() const;
 
   std::vector<Eye> eyes_;
@@ -114,7 +115,9 @@ class SweepFuser {
   PoseTrack poses_;
 
   // The sweep so far, in its own frame; colours are not kept but made at its end.
-  RgbdtCloud sweep_;
+  Hits sweep_;
+  Utime sweep_utime_ = 0;
+  Utime frame_utime_ = 0;                 // that its frame is the LIDAR's of
   std::size_t parted_ = 0;                // points of it that Parts() gave back before its end
   std::optional<Rigid3> map_from_sweep_;  // nothing: no pose stream
   bool moved_ = false;                    // a camera did, within the sweep

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -91,12 +92,10 @@ void Append(const Voxel& voxel, double voxel_m, MapCloud* cloud) {
 }  // namespace
 
 void VoxelMapOptions::Check() const {
-  if (!(voxel_m >= 0.001 && voxel_m <= 100)) {
-    throw InputError("map: voxel_m is " + std::to_string(voxel_m) + "; expected 0.001 to 100 m");
-  }
-  if (max_voxels < 1 || max_voxels > 1'000'000'000) {
-    throw InputError("map: max_voxels is " + std::to_string(max_voxels) + "; expected 1 to 1e9");
-  }
+  const OptionCheck check("map");
+  check.Require(voxel_m >= 0.001 && voxel_m <= 100, "voxel_m", voxel_m, "0.001 to 100 m");
+  check.Require(max_voxels >= 1 && max_voxels <= 1'000'000'000, "max_voxels",
+                static_cast<double>(max_voxels), "1 to 1e9");
 }
 
 VoxelMap::VoxelMap(const VoxelMapOptions& options)

@@ -1,18 +1,26 @@
 #include "calib/model/cloud.h"
 
-#include <algorithm>
-
 namespace rgbdt {
+
+Eigen::Vector3f DirectionOf(const Cloud& cloud, std::size_t i) {
+  const Eigen::Vector3f& told = cloud.directions[i];
+  if (!cloud.IsHit(i) || told.allFinite()) return told;
+  const Eigen::Vector3f origin = cloud.origins.empty()
+                                     ? Eigen::Vector3f(0, 0, 0)
+                                     : cloud.origins[i / static_cast<std::size_t>(cloud.beams)];
+  return (cloud.points[i] - origin).normalized();
+}
 
 int LostLines(const Cloud& cloud) {
   if (!cloud.organised || cloud.directions.size() != cloud.size()) return 0;
+  const auto beams = static_cast<std::size_t>(cloud.beams);
   int lost = 0;
-  for (int line = 0; line < cloud.lines; ++line) {
-    const auto begin = cloud.directions.begin() + static_cast<std::ptrdiff_t>(line) * cloud.beams;
-    lost += std::none_of(begin, begin + cloud.beams,
-                         [](const Eigen::Vector3f& d) { return d.allFinite(); })
-                ? 1
-                : 0;
+  for (std::size_t line = 0; line < static_cast<std::size_t>(cloud.lines); ++line) {
+    bool any = false;
+    for (std::size_t i = line * beams; i < (line + 1) * beams && !any; ++i) {
+      any = cloud.IsHit(i) || cloud.directions[i].allFinite();
+    }
+    lost += any ? 0 : 1;
   }
   return lost;
 }

@@ -18,6 +18,11 @@ struct LineScan {
   double angle_step_rad = 0;   ///< from one beam to the next
   std::vector<float> range;    ///< [m]; NaN: nothing returned
   std::vector<float> intensity;  ///< 0 to 1, reflectivity-like; as long as `range`
+
+  /// When a beam was fired; of the beam after the last, when the line ends.
+  Utime FiredAt(std::size_t beam) const {
+    return utime + FromSeconds(static_cast<double>(beam) * beam_period_s);
+  }
 };
 
 /// One reading of the motor's encoder.
@@ -37,7 +42,7 @@ struct Cloud {
   int beams = 0;  ///< per line; an unorganised cloud is one line
   bool organised = true;
   std::vector<Eigen::Vector3f> points;      ///< NaN where the beam returned nothing
-  std::vector<Eigen::Vector3f> directions;  ///< unit, of each beam; empty: unknown
+  std::vector<Eigen::Vector3f> directions;  ///< unit, of each miss; of hits perhaps; empty: unknown
   std::vector<Eigen::Vector3f> origins;     ///< one a line: where its beams start; empty: zero
   std::vector<float> intensity;             ///< 0 to 1
   std::vector<Utime> utime;                 ///< of each point
@@ -46,6 +51,10 @@ struct Cloud {
   std::size_t size() const { return points.size(); }
   bool IsHit(std::size_t i) const { return std::isfinite(points[i].x()); }
 };
+
+/// Unit direction of a beam of a cloud that has directions, of a hit, too, where only its point
+/// tells it; NaN: unknown.
+Eigen::Vector3f DirectionOf(const Cloud& cloud, std::size_t i);
 
 /// How many lines of an organised sweep never came: of such a line not even directions are known.
 int LostLines(const Cloud& cloud);

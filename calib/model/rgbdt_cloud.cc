@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "calib/model/slice.h"
+
 namespace rgbdt {
 namespace {
-
-template <typename T>
-std::vector<T> Slice(const std::vector<T>& all, std::size_t first, std::size_t end) {
-  if (all.empty()) return {};
-  return {all.begin() + static_cast<std::ptrdiff_t>(first),
-          all.begin() + static_cast<std::ptrdiff_t>(end)};
-}
 
 RgbdtCloud PartOf(const RgbdtCloud& cloud, std::size_t first, std::size_t end) {
   RgbdtCloud part;

@@ -151,8 +151,8 @@ struct ViewDetection {
 /// found".
 std::string BriefReport(const ViewDetection& detection);
 
-/// What one sensor sees of the target just now.
-struct Sighting {
+/// Whether one sensor sees the target now.
+struct TargetStatus {
   std::int64_t seq = 0;
   Utime utime = 0;     ///< of the image, or the sweep's start
   std::string camera;  ///< empty: the LIDAR

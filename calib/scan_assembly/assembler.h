@@ -1,69 +1,88 @@
 #pragma once
 
-#include <deque>
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "calib/model/cloud.h"
 #include "calib/model/rig.h"
+#include "calib/scan_assembly/encoder_track.h"
 
 namespace rgbdt {
 
-/// One line in 3D: point_in_lidar = Rz(angle) * motor_from_scanner * (r cos a, 0, r sin a), with
-/// the motor's angle of each beam (the motor turns while a line is fired). `angles` [rad] is as
-/// long as the line. Misses keep their direction.
-Cloud LineToCloud(const TurnedScanner& scanner, const LineScan& line,
-                  const std::vector<double>& angles);
-
-/// Motor angle over time from encoder readings, interpolated linearly.
-class EncoderTrack {
+/// Lines and encoder readings, as they come -> chunks of sweeps. A chunk (one line) leaves as soon
+/// as the encoder has been read at or after the line's last beam; a sweep's first line waits kGrace
+/// longer. A line's place in the sweep is its number minus that of the sweep's first line, so lines
+/// may arrive kGrace out of order, among themselves or against the readings, and the cloud is the
+/// same, bit for bit. The sweep ends with the first reading kGrace after the encoder stopped naming
+/// it, or with a line of another sweep: then an empty chunk with `sweep_end`. Lines between a
+/// sweep's first and last that never came, or whose angles are not known (readings missing for more
+/// than kMaxGap), are counted in `lines_lost`. Refused with an InputError, which changes nothing: a
+/// reading that is not after the one before it, a line seen before, one whose sweep has ended, one
+/// more than kKept older than the newest reading. A clock set back by more than kClockReset begins
+/// anew. Between sweeps (sweep_utime 0) lines make no cloud.
+class Assembler {
  public:
-  /// Readings must come in the order of their times; one that does not is refused (false).
-  bool Add(const EncoderReading& reading);
+  static constexpr std::size_t kMaxWaiting = 1000;               ///< lines
+  static constexpr std::int64_t kMaxLines = 100000;              ///< of a sweep
+  static constexpr Utime kMaxGap = kMicrosecondsPerSecond / 10;  ///< between encoder readings
+  static constexpr Utime kGrace = kMicrosecondsPerSecond / 10;   ///< for late lines
+  static constexpr Utime kKept = kMicrosecondsPerSecond;         ///< of readings
+  static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
 
-  /// Between two readings the motor turns evenly.
-  struct Stretch {
-    Utime from = 0, until = 0;  ///< `until` is the next one's
-    double angle = 0;           ///< [rad] at `from`
-    double turn = 0;            ///< [rad] up to `until`
-
-    bool Contains(Utime utime) const { return from <= utime && utime < until; }
-    double AngleAt(Utime utime) const {
-      return angle + static_cast<double>(utime - from) / static_cast<double>(until - from) * turn;
-    }
+  /// Since the start, whatever scanners there were.
+  struct Counts {
+    std::int64_t lines_used = 0;
+    std::int64_t lines_lost = 0;
+    std::int64_t sweeps = 0;
   };
 
-  /// The stretch that holds a time, of two readings at most `max_gap` apart; nothing otherwise.
-  std::optional<Stretch> StretchAt(const TurnedScanner& scanner, Utime utime, Utime max_gap) const;
+  explicit Assembler(const TurnedScanner& scanner) : scanner_(scanner) {}
 
-  /// Angle [rad] at a time between two readings at most `max_gap` apart; nothing otherwise.
-  std::optional<double> AngleAt(const TurnedScanner& scanner, Utime utime, Utime max_gap) const;
+  /// Another geometry, which forgets the sweep at hand.
+  void SetScanner(const TurnedScanner& scanner);
 
-  /// The sweep that a time belongs to: that of the newest reading at or before it; 0: none.
-  Utime SweepAt(Utime utime) const;
+  std::vector<CloudChunk> Add(const EncoderReading& reading);
+  std::vector<CloudChunk> Add(const LineScan& line);
 
-  /// Newest reading's time; 0 before the first.
-  Utime newest() const { return readings_.empty() ? 0 : readings_.back().utime; }
-
-  /// Forgets what lies before `utime`, but for the last reading before it.
-  void ForgetBefore(Utime utime);
+  const Counts& counts() const { return counts_; }
+  /// Lines of the sweep at hand that have left; nothing between sweeps.
+  std::optional<std::size_t> LinesOfSweep() const;
 
  private:
-  std::deque<EncoderReading> readings_;
+  using Chunks = std::vector<CloudChunk>;
+
+  struct Sweep {
+    Utime utime = 0;
+    std::int64_t first_seq = 0;
+    std::set<int> sent;  // lines, by their place in the sweep
+    int lines = 0;       // up to the last that came, sent or not
+  };
+
+  struct Place {
+    Utime utime = 0;
+    std::int64_t seq = 0;
+  };
+
+  void CheckLine(const LineScan& line) const;
+  bool FitsSweep(const LineScan& line) const;
+  Utime SweepOf(const LineScan& line) const;
+  bool IsReady(const LineScan& line) const;
+  bool FollowsAllBefore(const LineScan& line) const;
+  Chunks Drain();
+  void AddToSweep(const LineScan& line, Chunks* out);
+  void EndSweep(Chunks* out);
+  void Forget();
+
+  TurnedScanner scanner_;
+  EncoderTrack track_;
+  std::map<Utime, LineScan> waiting_;
+  std::optional<Sweep> sweep_;
+  Utime ended_ = 0;              // the newest sweep that has ended
+  std::optional<Place> newest_;  // of the lines that are done with
+  Counts counts_;
 };
-
-/// The motor's angle [rad] when each beam of a line was fired; nothing where one is not known.
-std::optional<std::vector<double>> BeamAngles(const TurnedScanner& scanner,
-                                              const EncoderTrack& track, const LineScan& line,
-                                              Utime max_gap);
-
-/// Throws InputError where two chunks of a sweep differ in beams per line or in which of a cloud's
-/// vectors they fill.
-void RequireJoinable(const Cloud& a, const Cloud& b);
-
-/// Puts chunks back together, in the order of their lines; a chunk that came twice counts once.
-/// Lines that never came become lines of NaN without known directions, so neighbours in the cloud
-/// are neighbours in the sweep. Throws InputError where they are not joinable.
-Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
 
 }  // namespace rgbdt

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/statistics.h"
+#include "calib/model/text.h"
 #include "calib/scan_assembly/internal/scan_patches.h"
 #include "calib/scan_assembly/internal/scanner_directions.h"
 
@@ -138,9 +141,7 @@ void Solver::KeepConsistent() {
   std::vector<double> misfits;
   for (const ScanPatch& patch : found_.patches) misfits.push_back(patch.Misfit());
   if (misfits.empty()) return;
-  const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-  std::nth_element(misfits.begin(), middle, misfits.end());
-  const double most = kMost * std::max(NoiseScale(), *middle / kMedian);
+  const double most = kMost * std::max(NoiseScale(), Median(std::move(misfits)) / kMedian);
   auto& patches = found_.patches;
   patches.erase(std::remove_if(patches.begin(), patches.end(),
                                [&](const ScanPatch& patch) { return patch.Misfit() > most; }),
@@ -257,50 +258,39 @@ void Solver::Fill(ScannerGeometry* result) {
   if (result->converged) result->scanner.motor_from_scanner = estimate_;
 }
 
-void RequireMoreThan(double value, double least, const char* field) {
-  if (value > least && std::isfinite(value)) return;
-  throw InputError(std::string("scanner geometry: ") + field + " is " + std::to_string(value) +
-                   "; expected more than " + std::to_string(least));
-}
-
 std::string Line(const ScannerDirection& direction, bool as_above) {
   const double unit = direction.is_angle ? kDegree : 1e-3;
   const char* name = direction.is_angle ? "deg" : "mm";
-  char text[160];
   if (direction.observed) {
-    std::snprintf(text, sizeof text, "  %-15s %+9.4f %-3s +- %.4f\n", direction.name.c_str(),
-                  direction.change / unit, name, direction.sigma / unit);
-    return text;
+    return Format("  %-15s %+9.4f %-3s +- %.4f\n", direction.name.c_str(), direction.change / unit,
+                  name, direction.sigma / unit);
   }
-  std::snprintf(text, sizeof text,
-                "  %-15s not observed by this sweep, left as it was: ", direction.name.c_str());
-  return text + (as_above ? "as above" : direction.why) + "\n";
+  return Format("  %-15s not observed by this sweep, left as it was: ", direction.name.c_str()) +
+         (as_above ? "as above" : direction.why) + "\n";
 }
 
 }  // namespace
 
 void ScannerGeometryOptions::Check() const {
-  RequireMoreThan(range_sigma_m, 0, "range_sigma_m");
-  RequireMoreThan(lever_prior_m, 0, "lever_prior_m");
-  RequireMoreThan(tilt_prior_rad, 0, "tilt_prior_rad");
-  RequireMoreThan(observed_below, 0, "observed_below");
-  RequireMoreThan(min_patches, 0, "min_patches");
-  RequireMoreThan(static_cast<double>(max_beams), 0, "max_beams");
-  RequireMoreThan(max_iterations, 2, "max_iterations");
+  const OptionCheck check("scanner geometry");
+  check.Positive(range_sigma_m, "range_sigma_m");
+  check.Positive(lever_prior_m, "lever_prior_m");
+  check.Positive(tilt_prior_rad, "tilt_prior_rad");
+  check.Positive(observed_below, "observed_below");
+  check.AtLeast(min_patches, 1, "min_patches");
+  check.Positive(static_cast<double>(max_beams), "max_beams");
+  check.AtLeast(max_iterations, 3, "max_iterations");
 }
 
 std::string ScannerGeometry::BriefReport() const {
-  char text[800];
-  std::snprintf(text, sizeof text,
-                "%s\n%zu pieces of surface seen by both halves of the scan line (%zu beams; %.0f%% "
-                "of what was hit is seen twice), range noise %.1f mm\n"
-                "distance between the halves, RMS: %.2f mm before, %.2f mm after\n"
-                "change of motor_from_scanner (to its left: about and along the motor's axes), and "
-                "sigma:\n",
-                converged ? "converged" : ("NOT CONVERGED: " + status).c_str(), surfaces.size(),
-                beams, 100 * seen_twice, 1000 * range_sigma_m, 1000 * gap_before_m,
-                1000 * gap_after_m);
-  std::string report = text;
+  std::string report = Format(
+      "%s\n%zu pieces of surface seen by both halves of the scan line (%zu beams; %.0f%% "
+      "of what was hit is seen twice), range noise %.1f mm\n"
+      "distance between the halves, RMS: %.2f mm before, %.2f mm after\n"
+      "change of motor_from_scanner (to its left: about and along the motor's axes), and "
+      "sigma:\n",
+      converged ? "converged" : ("NOT CONVERGED: " + status).c_str(), surfaces.size(), beams,
+      100 * seen_twice, 1000 * range_sigma_m, 1000 * gap_before_m, 1000 * gap_after_m);
   std::string why;
   for (const ScannerDirection& direction : directions) {
     report += Line(direction, direction.why == why);

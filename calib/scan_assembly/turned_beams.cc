@@ -7,6 +7,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -16,16 +17,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 double Wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
-// NaNs aside; NaN of nothing.
-double Median(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }),
-               values.end());
-  if (values.empty()) return kNan;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Of angles that lie all over the circle's seam: their differences from one of them.
 double CircularMedian(std::vector<double> angles) {
   angles.erase(std::remove_if(angles.begin(), angles.end(), [](double a) { return std::isnan(a); }),
@@ -33,7 +24,7 @@ double CircularMedian(std::vector<double> angles) {
   if (angles.empty()) return kNan;
   std::vector<double> about;
   for (const double angle : angles) about.push_back(Wrapped(angle - angles.front()));
-  return Wrapped(angles.front() + Median(about));
+  return Wrapped(angles.front() + Median(std::move(about)));
 }
 
 Eigen::Vector3d Turned(const Eigen::Vector3d& v, double angle) {
@@ -166,7 +157,7 @@ std::optional<Numbering> Sweep::NumberingOf(bool rising) const {
     steps.push_back(step);
   }
   Numbering numbering;
-  numbering.step_rad = Median(steps);
+  numbering.step_rad = Median(std::move(steps), kNan);
   std::vector<double> firsts;
   for (std::size_t i = 0; i < places.size(); ++i) {
     firsts.push_back(angles[i] - numbering.step_rad * places[i]);

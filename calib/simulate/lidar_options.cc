@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/errors.h"
 #include "calib/simulate/internal/option_checks.h"
 
 namespace rgbdt::simulate {
 
 void BeamOptions::Check(const std::string& prefix) const {
   // Zero is refused because a rig file gives the range's sigma, which whitens residuals.
-  Positive(range_sigma_m, prefix + "range_sigma_m");
-  Between(divergence_rad, 0, 0.1, prefix + "divergence_rad");
-  Between(divergence_rings, 2, 8, prefix + "divergence_rings");
-  NotNegative(merge_m, prefix + "merge_m");
-  Between(min_return, 0, 1, prefix + "min_return");
-  Between(white_wall_reflectivity, 0.01, 1, prefix + "white_wall_reflectivity");
-  Positive(max_range_m, prefix + "max_range_m");
-  NotNegative(intensity_sigma, prefix + "intensity_sigma");
+  kCheck.Positive(range_sigma_m, prefix + "range_sigma_m");
+  kCheck.Between(divergence_rad, 0, 0.1, prefix + "divergence_rad");
+  kCheck.Between(divergence_rings, 2, 8, prefix + "divergence_rings");
+  kCheck.NotNegative(merge_m, prefix + "merge_m");
+  kCheck.Between(min_return, 0, 1, prefix + "min_return");
+  kCheck.Between(white_wall_reflectivity, 0.01, 1, prefix + "white_wall_reflectivity");
+  kCheck.Positive(max_range_m, prefix + "max_range_m");
+  kCheck.NotNegative(intensity_sigma, prefix + "intensity_sigma");
 }
 
 int SpinningOptions::columns() const {
@@ -25,18 +26,18 @@ int SpinningOptions::columns() const {
 
 void SpinningOptions::Check() const {
   BeamOptions::Check("spinning.");
-  Between(rings(), 2, 1024, "number of spinning.elevations_rad");
+  kCheck.Between(rings(), 2, 1024, "number of spinning.elevations_rad");
   for (std::size_t i = 0; i < elevations_rad.size(); ++i) {
-    Between(elevations_rad[i], -89 * kDegree, 89 * kDegree, "spinning.elevations_rad");
-    Require(i == 0 || elevations_rad[i] > elevations_rad[i - 1], "spinning.elevations_rad",
-            elevations_rad[i], "more than that of the ring below");
+    kCheck.Between(elevations_rad[i], -89 * kDegree, 89 * kDegree, "spinning.elevations_rad");
+    kCheck.Require(i == 0 || elevations_rad[i] > elevations_rad[i - 1], "spinning.elevations_rad",
+                   elevations_rad[i], "more than that of the ring below");
   }
-  Between(azimuth_step_rad, 0.01 * kDegree, 10 * kDegree, "spinning.azimuth_step_rad");
-  Between(first_azimuth_rad, -360 * kDegree, 360 * kDegree, "spinning.first_azimuth_rad");
-  Between(revolution_s, 1e-3, 60, "spinning.revolution_s");
-  Between(firing_share, 0, 1, "spinning.firing_share");
-  Between(ring_bias_sigma_m, 0, 1, "spinning.ring_bias_sigma_m");
-  Between(range_offset_m, -1, 1, "spinning.range_offset_m");
+  kCheck.Between(azimuth_step_rad, 0.01 * kDegree, 10 * kDegree, "spinning.azimuth_step_rad");
+  kCheck.Between(first_azimuth_rad, -360 * kDegree, 360 * kDegree, "spinning.first_azimuth_rad");
+  kCheck.Between(revolution_s, 1e-3, 60, "spinning.revolution_s");
+  kCheck.Between(firing_share, 0, 1, "spinning.firing_share");
+  kCheck.Between(ring_bias_sigma_m, 0, 1, "spinning.ring_bias_sigma_m");
+  kCheck.Between(range_offset_m, -1, 1, "spinning.range_offset_m");
 }
 
 SpinningOptions SpinningLidar(int rings) {

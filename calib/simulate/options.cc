@@ -11,103 +11,105 @@ namespace rgbdt::simulate {
 namespace {
 
 void Check(const ScannerOptions& o) {
-  Between(o.beams, 2, 10000, "scanner.beams");
-  Between(o.first_angle_rad, -180 * kDegree, 90 * kDegree, "scanner.first_angle_rad");
-  Positive(o.angle_step_rad, "scanner.angle_step_rad");
-  Between(o.angle_step_rad * (o.beams - 1), 0, 360 * kDegree, "scanner's angle of a line [rad]");
-  Positive(o.beam_period_s, "scanner.beam_period_s");
+  kCheck.Between(o.beams, 2, 10000, "scanner.beams");
+  kCheck.Between(o.first_angle_rad, -180 * kDegree, 90 * kDegree, "scanner.first_angle_rad");
+  kCheck.Positive(o.angle_step_rad, "scanner.angle_step_rad");
+  kCheck.Between(o.angle_step_rad * (o.beams - 1), 0, 360 * kDegree,
+                 "scanner's angle of a line [rad]");
+  kCheck.Positive(o.beam_period_s, "scanner.beam_period_s");
   const double line_us = o.beams * o.beam_period_s * 1e6;
-  Require(std::abs(line_us - std::round(line_us)) < 1e-6, "scanner.beams * beam_period_s [us]",
-          line_us, "whole microseconds");
-  Positive(o.motor_speed_rad_s, "scanner.motor_speed_rad_s");
-  Between(o.sweep_start_rad, -360 * kDegree, 360 * kDegree, "scanner.sweep_start_rad");
-  Between(o.sweep_rad, 1e-3, 360 * kDegree, "scanner.sweep_rad");
-  Require(std::isfinite(o.ticks_per_rad) && o.ticks_per_rad != 0, "scanner.ticks_per_rad",
-          o.ticks_per_rad, "a number other than zero");
-  Require(std::isfinite(o.zero_ticks), "scanner.zero_ticks", o.zero_ticks, "a finite number");
-  Require(o.lever_arm_m.norm() < 1, "length of scanner.lever_arm_m", o.lever_arm_m.norm(),
-          "less than 1");
-  Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),
-          "less than 0.5");
-  Require(o.guess_lever_m.norm() < 0.1, "length of scanner.guess_lever_m", o.guess_lever_m.norm(),
-          "less than 0.1");
-  Require(o.guess_tilt_rad.norm() < 0.2, "length of scanner.guess_tilt_rad",
-          o.guess_tilt_rad.norm(), "less than 0.2");
+  kCheck.Require(std::abs(line_us - std::round(line_us)) < 1e-6,
+                 "scanner.beams * beam_period_s [us]", line_us, "whole microseconds");
+  kCheck.Positive(o.motor_speed_rad_s, "scanner.motor_speed_rad_s");
+  kCheck.Between(o.sweep_start_rad, -360 * kDegree, 360 * kDegree, "scanner.sweep_start_rad");
+  kCheck.Between(o.sweep_rad, 1e-3, 360 * kDegree, "scanner.sweep_rad");
+  kCheck.Require(std::isfinite(o.ticks_per_rad) && o.ticks_per_rad != 0, "scanner.ticks_per_rad",
+                 o.ticks_per_rad, "a number other than zero");
+  kCheck.Require(std::isfinite(o.zero_ticks), "scanner.zero_ticks", o.zero_ticks,
+                 "a finite number");
+  kCheck.Require(o.lever_arm_m.norm() < 1, "length of scanner.lever_arm_m", o.lever_arm_m.norm(),
+                 "less than 1");
+  kCheck.Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),
+                 "less than 0.5");
+  kCheck.Require(o.guess_lever_m.norm() < 0.1, "length of scanner.guess_lever_m",
+                 o.guess_lever_m.norm(), "less than 0.1");
+  kCheck.Require(o.guess_tilt_rad.norm() < 0.2, "length of scanner.guess_tilt_rad",
+                 o.guess_tilt_rad.norm(), "less than 0.2");
   o.BeamOptions::Check("scanner.");
 }
 
 void Check(const CameraOptions& o, const std::string& field) {
-  Between(o.width, 8, 20000, field + "width");
-  Between(o.height, 8, 20000, field + "height");
-  Require(o.width % 2 == 0 && o.height % 2 == 0, field + "width * height",
-          double(o.width) * o.height, "an even width and an even height (mosaic)");
-  Positive(o.lens.fx, field + "lens.fx");
-  Positive(o.lens.fy, field + "lens.fy");
-  Require(o.position_m.norm() < 5, "length of " + field + "position_m", o.position_m.norm(),
-          "less than 5");
-  NotNegative(o.position_spread_m, field + "position_spread_m");
-  Between(o.tilt_rad, 0, 30 * kDegree, field + "tilt_rad");
-  Between(o.blur_px, 0, 20, field + "blur_px");
-  NotNegative(o.noise_dn, field + "noise_dn");
-  Between(o.white_dn, 1, 255, field + "white_dn");
-  NotNegative(o.netd_k, field + "netd_k");
-  Positive(o.gain_k, field + "gain_k");
-  NotNegative(o.offset_k, field + "offset_k");
-  Between(o.bits, 8, 16, field + "bits");
-  Positive(o.exposure_s, field + "exposure_s");
-  NotNegative(o.readout_s, field + "readout_s");
-  Between(o.dead_pixels, 0, 10000, field + "dead_pixels");
+  kCheck.Between(o.width, 8, 20000, field + "width");
+  kCheck.Between(o.height, 8, 20000, field + "height");
+  kCheck.Require(o.width % 2 == 0 && o.height % 2 == 0, field + "width * height",
+                 double(o.width) * o.height, "an even width and an even height (mosaic)");
+  kCheck.Positive(o.lens.fx, field + "lens.fx");
+  kCheck.Positive(o.lens.fy, field + "lens.fy");
+  kCheck.Require(o.position_m.norm() < 5, "length of " + field + "position_m", o.position_m.norm(),
+                 "less than 5");
+  kCheck.NotNegative(o.position_spread_m, field + "position_spread_m");
+  kCheck.Between(o.tilt_rad, 0, 30 * kDegree, field + "tilt_rad");
+  kCheck.Between(o.blur_px, 0, 20, field + "blur_px");
+  kCheck.NotNegative(o.noise_dn, field + "noise_dn");
+  kCheck.Between(o.white_dn, 1, 255, field + "white_dn");
+  kCheck.NotNegative(o.netd_k, field + "netd_k");
+  kCheck.Positive(o.gain_k, field + "gain_k");
+  kCheck.NotNegative(o.offset_k, field + "offset_k");
+  kCheck.Between(o.bits, 8, 16, field + "bits");
+  kCheck.Positive(o.exposure_s, field + "exposure_s");
+  kCheck.NotNegative(o.readout_s, field + "readout_s");
+  kCheck.Between(o.dead_pixels, 0, 10000, field + "dead_pixels");
   CheckLens(o.lens, o.width, o.height, field + "lens");
 }
 
 void Check(const BoardOptions& o) {
-  Between(o.squares_x, 3, 100, "board.squares_x");
-  Between(o.squares_y, 3, 100, "board.squares_y");
-  Positive(o.square_m, "board.square_m");
-  Require(o.width_m >= o.squares_x * o.square_m, "board.width_m", o.width_m,
-          "at least the squares' width");
-  Require(o.height_m >= o.squares_y * o.square_m, "board.height_m", o.height_m,
-          "at least the squares' height");
-  Positive(o.thickness_m, "board.thickness_m");
-  Between(o.black_reflectivity, 0, 1, "board.black_reflectivity");
-  Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");
-  Between(o.emissivity, 0.05, 1, "board.emissivity");
-  if (o.temperature_k) Between(*o.temperature_k, 150, 600, "board.temperature_k");
+  kCheck.Between(o.squares_x, 3, 100, "board.squares_x");
+  kCheck.Between(o.squares_y, 3, 100, "board.squares_y");
+  kCheck.Positive(o.square_m, "board.square_m");
+  kCheck.Require(o.width_m >= o.squares_x * o.square_m, "board.width_m", o.width_m,
+                 "at least the squares' width");
+  kCheck.Require(o.height_m >= o.squares_y * o.square_m, "board.height_m", o.height_m,
+                 "at least the squares' height");
+  kCheck.Positive(o.thickness_m, "board.thickness_m");
+  kCheck.Between(o.black_reflectivity, 0, 1, "board.black_reflectivity");
+  kCheck.Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");
+  kCheck.Between(o.emissivity, 0.05, 1, "board.emissivity");
+  if (o.temperature_k) kCheck.Between(*o.temperature_k, 150, 600, "board.temperature_k");
   if (o.black_minus_white_k)
-    Between(*o.black_minus_white_k, -100, 100, "board.black_minus_white_k");
-  if (o.gradient_k) Between(*o.gradient_k, -100, 100, "board.gradient_k");
-  if (o.glow_k) Between(*o.glow_k, -100, 100, "board.glow_k");
-  Positive(o.glow_radius_m, "board.glow_radius_m");
-  NotNegative(o.hidden_outline_m, "board.hidden_outline_m");
-  Positive(o.hidden_depth_m, "board.hidden_depth_m");
-  if (o.border_k) Between(*o.border_k, 150, 600, "board.border_k");
-  Between(o.border_to_white, 0, 1, "board.border_to_white");
-  Positive(o.stand_m, "board.stand_m");
-  Between(o.stand_reflectivity, 0, 1, "board.stand_reflectivity");
+    kCheck.Between(*o.black_minus_white_k, -100, 100, "board.black_minus_white_k");
+  if (o.gradient_k) kCheck.Between(*o.gradient_k, -100, 100, "board.gradient_k");
+  if (o.glow_k) kCheck.Between(*o.glow_k, -100, 100, "board.glow_k");
+  kCheck.Positive(o.glow_radius_m, "board.glow_radius_m");
+  kCheck.NotNegative(o.hidden_outline_m, "board.hidden_outline_m");
+  kCheck.Positive(o.hidden_depth_m, "board.hidden_depth_m");
+  if (o.border_k) kCheck.Between(*o.border_k, 150, 600, "board.border_k");
+  kCheck.Between(o.border_to_white, 0, 1, "board.border_to_white");
+  kCheck.Positive(o.stand_m, "board.stand_m");
+  kCheck.Between(o.stand_reflectivity, 0, 1, "board.stand_reflectivity");
 }
 
 void Check(const PoseOptions& o) {
-  Positive(o.min_range_m, "pose.min_range_m");
-  Require(o.max_range_m >= o.min_range_m, "pose.max_range_m", o.max_range_m,
-          "at least pose.min_range_m");
-  Between(o.max_tilt_rad, 0, 80 * kDegree, "pose.max_tilt_rad");
-  Between(o.max_roll_rad, 0, 180 * kDegree, "pose.max_roll_rad");
-  Between(o.image_margin, 0, 0.4, "pose.image_margin");
-  Between(o.sweep_margin_rad, 0, 1, "pose.sweep_margin_rad");
-  NotNegative(o.clearance_m, "pose.clearance_m");
-  Between(o.near_preference, 0.1, 10, "pose.near_preference");
-  Between(o.min_tilt, 0, 0.98, "pose.min_tilt");
-  Between(o.max_azimuth_rad, 0, 180 * kDegree, "pose.max_azimuth_rad");
-  Between(o.min_elevation_rad, -80 * kDegree, 80 * kDegree, "pose.min_elevation_rad");
-  Between(o.max_elevation_rad, o.min_elevation_rad, 80 * kDegree, "pose.max_elevation_rad");
-  Between(o.outside_image, 0, 0.9, "pose.outside_image");
+  kCheck.Positive(o.min_range_m, "pose.min_range_m");
+  kCheck.Require(o.max_range_m >= o.min_range_m, "pose.max_range_m", o.max_range_m,
+                 "at least pose.min_range_m");
+  kCheck.Between(o.max_tilt_rad, 0, 80 * kDegree, "pose.max_tilt_rad");
+  kCheck.Between(o.max_roll_rad, 0, 180 * kDegree, "pose.max_roll_rad");
+  kCheck.Between(o.image_margin, 0, 0.4, "pose.image_margin");
+  kCheck.Between(o.sweep_margin_rad, 0, 1, "pose.sweep_margin_rad");
+  kCheck.NotNegative(o.clearance_m, "pose.clearance_m");
+  kCheck.Between(o.near_preference, 0.1, 10, "pose.near_preference");
+  kCheck.Between(o.min_tilt, 0, 0.98, "pose.min_tilt");
+  kCheck.Between(o.max_azimuth_rad, 0, 180 * kDegree, "pose.max_azimuth_rad");
+  kCheck.Between(o.min_elevation_rad, -80 * kDegree, 80 * kDegree, "pose.min_elevation_rad");
+  kCheck.Between(o.max_elevation_rad, o.min_elevation_rad, 80 * kDegree, "pose.max_elevation_rad");
+  kCheck.Between(o.outside_image, 0, 0.9, "pose.outside_image");
 }
 
 void Check(const HolderOptions& o) {
-  Between(o.hands, 0, 4, "holder.hands");
-  Between(o.hand_reach_m, 0, 0.3, "holder.hand_reach_m");
-  Between(o.hand_k, 250, 350, "holder.hand_k");
-  Between(o.person_aside_m, -2, 2, "holder.person_aside_m");
+  kCheck.Between(o.hands, 0, 4, "holder.hands");
+  kCheck.Between(o.hand_reach_m, 0, 0.3, "holder.hand_reach_m");
+  kCheck.Between(o.hand_k, 250, 350, "holder.hand_k");
+  kCheck.Between(o.person_aside_m, -2, 2, "holder.person_aside_m");
 }
 
 }  // namespace
@@ -181,18 +183,18 @@ void Options::Check() const {
   simulate::Check(pose);
   clutter.Check();
   simulate::Check(holder);
-  Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
-  Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");
-  Require(world.reflected_temperature_k == 0 ||
-              (world.reflected_temperature_k > 100 && world.reflected_temperature_k < 500),
-          "world.reflected_temperature_k", world.reflected_temperature_k,
-          "0 (the scene's own) or 100 to 500");
-  Positive(world.lamp_range_m, "world.lamp_range_m");
-  Between(guess_rotation_rad, 0, 90 * kDegree, "guess_rotation_rad");
-  NotNegative(guess_translation_m, "guess_translation_m");
-  NotNegative(pick_sigma_px, "pick_sigma_px");
-  Between(supersampling, 1, 16, "supersampling");
-  Between(threads, 0, 256, "threads");
+  kCheck.Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
+  kCheck.Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");
+  kCheck.Require(world.reflected_temperature_k == 0 ||
+                     (world.reflected_temperature_k > 100 && world.reflected_temperature_k < 500),
+                 "world.reflected_temperature_k", world.reflected_temperature_k,
+                 "0 (the scene's own) or 100 to 500");
+  kCheck.Positive(world.lamp_range_m, "world.lamp_range_m");
+  kCheck.Between(guess_rotation_rad, 0, 90 * kDegree, "guess_rotation_rad");
+  kCheck.NotNegative(guess_translation_m, "guess_translation_m");
+  kCheck.NotNegative(pick_sigma_px, "pick_sigma_px");
+  kCheck.Between(supersampling, 1, 16, "supersampling");
+  kCheck.Between(threads, 0, 256, "threads");
 }
 
 void UseLidar(int rings, Options* options) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "calib/model/beam_priors.h"
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
 
@@ -23,15 +24,15 @@ enum SharedUnknown {
   kSharedUnknowns
 };
 
-/// What is known beforehand of the solve's unknowns besides the poses. All but the thickness about
-/// zero. What a beam's width does to an edge is an angle, outwards positive.
+/// What is known beforehand of the solve's unknowns besides the poses; the values' reasons stand in
+/// beam_priors.h. All but the thickness about zero.
 struct BoardPriors {
-  double class_sigma_rad = 1.5e-3;  ///< shift of each class of crossing (CrossingKind)
-  double side_sigma_rad = 0.3e-3;   ///< further shift of each side in each view
-  double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside
-  double thickness_m = 0.010, thickness_sigma_m = 0.010;  ///< of the board: its rim may be seen
-  double outline_sigma_m = 0.001;      ///< each side's place against the pattern, as cut
-  double range_offset_sigma_m = 1e-9;  ///< true range minus measured; next to nothing: known as 0
+  double class_sigma_rad = kSharedClassShiftSigmaRad;  ///< shift of each class (CrossingKind)
+  double side_sigma_rad = kSideShiftSigmaRad;          ///< further shift of each side in each view
+  double blur_rad = kCrossingBlurRad;  ///< how exactly one beam tells inside from outside
+  double thickness_m = kBoardThicknessM, thickness_sigma_m = kBoardThicknessSigmaM;
+  double outline_sigma_m = kOutlineSigmaM;             ///< each side's place against the pattern
+  double range_offset_sigma_m = kNoRangeOffsetSigmaM;  ///< true range minus measured
 
   std::array<double, kSharedUnknowns> Means() const;
   double Sigma(int unknown) const;

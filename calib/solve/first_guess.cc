@@ -160,7 +160,7 @@ void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* g
       information += robust * j.transpose() * weight * j;
       gradient += robust * j.transpose() * weight * residual;
     }
-    const double prior = options.range_offset ? options.range_offset_sigma_m : 1e-9;
+    const double prior = options.range_offset ? options.range_offset_sigma_m : kNoRangeOffsetSigmaM;
     information(6, 6) += 1 / (prior * prior);
     gradient[6] -= offset / (prior * prior);
     const Vector7d step = information.ldlt().solve(gradient);

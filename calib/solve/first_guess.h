@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/beam_priors.h"
 #include "calib/model/view_detection.h"
 #include "calib/solve/camera_views.h"
 
@@ -23,8 +24,8 @@ inline constexpr PoseGate kAcceptGate{0.02, 0.075, 0.04, 0.09};
 inline constexpr PoseGate kJudgeGate{0.2, 0.4, 0.5, 1.0};
 
 struct FirstGuessOptions {
-  bool range_offset = false;          ///< estimate a constant that the LIDAR's ranges are off by
-  double range_offset_sigma_m = 0.1;  ///< its prior, about zero
+  bool range_offset = false;  ///< estimate a constant that the LIDAR's ranges are off by
+  double range_offset_sigma_m = kRangeOffsetSigmaM;  ///< its prior, about zero
 
   /// Throws InputError naming the field and its value.
   void Check() const;

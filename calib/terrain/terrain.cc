@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 #include "calib/terrain/internal/cells.h"
 #include "calib/terrain/internal/ground.h"
@@ -192,33 +193,29 @@ void Interpolate(const TerrainOptions& options, TerrainGrid* grid) {
 }  // namespace
 
 void TerrainOptions::Check() const {
-  const auto require = [](bool good, const char* field, double value, const char* expected) {
-    if (good) return;
-    throw InputError("terrain: " + std::string(field) + " is " + std::to_string(value) +
-                     "; expected " + expected);
-  };
+  const OptionCheck check("terrain");
   const auto metres = [&](double value, const char* field) {
-    require(value > 0 && value <= 1000, field, value, "above 0, up to 1000 m");
+    check.Require(value > 0 && value <= 1000, field, value, "above 0, up to 1000 m");
   };
-  require(cell_m >= 0.02 && cell_m <= 10, "cell_m", cell_m, "0.02 to 10 m");
-  require(max_slope_rad > 0 && max_slope_rad < 1.2, "max_slope_rad", max_slope_rad,
-          "above 0, below 1.2 rad");
-  require(site_max_slope_rad > 0 && site_max_slope_rad < 1.2, "site_max_slope_rad",
-          site_max_slope_rad, "above 0, below 1.2 rad");
+  check.Require(cell_m >= 0.02 && cell_m <= 10, "cell_m", cell_m, "0.02 to 10 m");
+  check.Require(max_slope_rad > 0 && max_slope_rad < 1.2, "max_slope_rad", max_slope_rad,
+                "above 0, below 1.2 rad");
+  check.Require(site_max_slope_rad > 0 && site_max_slope_rad < 1.2, "site_max_slope_rad",
+                site_max_slope_rad, "above 0, below 1.2 rad");
   metres(max_step_m, "max_step_m");
   metres(max_roughness_m, "max_roughness_m");
   metres(vehicle_width_m, "vehicle_width_m");
   metres(vehicle_height_m, "vehicle_height_m");
-  require(vehicle_height_m > max_step_m, "vehicle_height_m", vehicle_height_m,
-          "more than max_step_m");
+  check.Require(vehicle_height_m > max_step_m, "vehicle_height_m", vehicle_height_m,
+                "more than max_step_m");
   metres(site_radius_m, "site_radius_m");
   metres(site_headroom_m, "site_headroom_m");
-  require(min_points >= 1 && min_points <= 1000, "min_points", min_points, "1 to 1000");
-  require(min_obstacle_points >= 1 && min_obstacle_points <= 1000, "min_obstacle_points",
-          min_obstacle_points, "1 to 1000");
-  require(max_sites >= 0 && max_sites <= 1000, "max_sites", max_sites, "0 to 1000");
-  require(max_cells >= 1 && max_cells <= 100'000'000, "max_cells", static_cast<double>(max_cells),
-          "1 to 1e8");
+  check.Require(min_points >= 1 && min_points <= 1000, "min_points", min_points, "1 to 1000");
+  check.Require(min_obstacle_points >= 1 && min_obstacle_points <= 1000, "min_obstacle_points",
+                min_obstacle_points, "1 to 1000");
+  check.Require(max_sites >= 0 && max_sites <= 1000, "max_sites", max_sites, "0 to 1000");
+  check.Require(max_cells >= 1 && max_cells <= 100'000'000, "max_cells",
+                static_cast<double>(max_cells), "1 to 1e8");
 }
 
 Eigen::Vector2d TerrainGrid::Centre(std::size_t cell) const {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "calib/model/text.h"
 #include "services/doctor/checks.h"
 
 namespace rgbdt {
@@ -10,12 +11,6 @@ namespace {
 constexpr int kPlainMtu = 1500, kJumboMtu = 9000;
 constexpr double kFastBitsPerS = 300e6;  // 25 thousand packets a second of 1500 bytes
 constexpr double kUsable = 0.95;         // of a link, beside what headers and gaps take
-
-std::string Format(const char* format, double number) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, number);
-  return text;
-}
 
 std::string Mbit(double bits_per_s) { return Format("%.0f Mbit/s", bits_per_s / 1e6); }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "calib/model/text.h"
 #include "services/bus/multicast.h"
 #include "services/doctor/checks.h"
 
@@ -108,9 +109,7 @@ Finding CheckDisk(const DiskFacts& facts) {
   if (facts.free_bytes < 0)
     return Warning("disk", "cannot tell how much is free in " + facts.folder);
   const double gigabytes = static_cast<double>(facts.free_bytes) / kGigabyte;
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f GB free in ", gigabytes);
-  const std::string what = text + facts.folder;
+  const std::string what = Format("%.1f GB free in ", gigabytes) + facts.folder;
   if (gigabytes >= kMinFreeGigabytes) return Ok("disk", what);
   const std::string mend = "du -xh --max-depth=2 " + facts.folder + " | sort -h | tail";
   if (gigabytes < kFullGigabytes) return Problem("disk", what + ", too little for a view", mend);

@@ -1,32 +1,14 @@
 #include "services/drivers/clock_fit.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
-namespace {
-
-void Require(bool good, const char* field, double value, const char* expected) {
-  if (!good) {
-    throw InputError(std::string("clock fit: ") + field + " is " + std::to_string(value) +
-                     "; expected " + expected);
-  }
-}
-
-}  // namespace
-
-Utime HostUtime() {
-  using Microseconds = std::chrono::duration<Utime, std::micro>;
-  return std::chrono::duration_cast<Microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::optional<Utime> PtpToUtc(Utime stamp, Utime arrival) {
   constexpr Utime kMostApart = 60 * kMicrosecondsPerSecond;
   constexpr Utime kMostOff = kMicrosecondsPerSecond / 5;
@@ -48,13 +30,15 @@ std::int64_t CounterUnwrapper::Unwrap(std::int64_t reading) {
 }
 
 void ClockFitOptions::Check() const {
-  Require(tick_us > 0, "tick_us", tick_us, "a number above 0");
-  Require(window_s > 0, "window_s", window_s, "a number above 0");
-  Require(max_points >= 2, "max_points", max_points, "2 or more");
-  Require(base_s > 0 && base_s <= window_s, "base_s", base_s, "above 0, up to window_s");
-  Require(max_rate >= 0 && max_rate < 0.1, "max_rate", max_rate, "0 to 0.1");
-  Require(step_us > 0, "step_us", static_cast<double>(step_us), "a number above 0");
-  Require(step_wait_us > 0, "step_wait_us", static_cast<double>(step_wait_us), "a number above 0");
+  const OptionCheck check("clock fit");
+  check.Require(tick_us > 0, "tick_us", tick_us, "a number above 0");
+  check.Require(window_s > 0, "window_s", window_s, "a number above 0");
+  check.Require(max_points >= 2, "max_points", max_points, "2 or more");
+  check.Require(base_s > 0 && base_s <= window_s, "base_s", base_s, "above 0, up to window_s");
+  check.Require(max_rate >= 0 && max_rate < 0.1, "max_rate", max_rate, "0 to 0.1");
+  check.Require(step_us > 0, "step_us", static_cast<double>(step_us), "a number above 0");
+  check.Require(step_wait_us > 0, "step_wait_us", static_cast<double>(step_wait_us),
+                "a number above 0");
 }
 
 ClockFit::ClockFit(const ClockFitOptions& options) : options_(options) { options.Check(); }

@@ -8,9 +8,6 @@
 
 namespace rgbdt {
 
-/// This machine's clock: [us, UTC].
-Utime HostUtime();
-
 /// A stamp of a clock that follows PTP, in UTC. PTP counts TAI, whole seconds ahead of UTC (37
 /// since 2017), though some masters hand out UTC: how many, its arrival here tells. Nothing where
 /// the two clocks are more than a minute or, apart from whole seconds, more than 0.2 s apart: then

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -50,9 +51,7 @@ void Fail(std::string_view field, const std::string& value, const std::string& e
 }
 
 void Fail(std::string_view field, double value, const std::string& expected) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  Fail(field, std::string(text), expected);
+  Fail(field, Format("%.9g", value), expected);
 }
 
 std::string Printable(std::string_view text, std::size_t max_bytes) {
@@ -125,6 +124,10 @@ void CheckCovariance(std::string_view field, const double* rows, int size) {
       }
     }
   }
+}
+
+void CheckRows(std::string_view field, const std::vector<std::vector<double>>& rows) {
+  for (const std::vector<double>& row : rows) CheckFinite(field, row.data(), row.size());
 }
 
 void CheckCameraName(std::string_view field, const std::string& name) {

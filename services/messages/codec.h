@@ -8,13 +8,13 @@
 
 namespace rgbdt {
 
-// Sender and receiver hold a message to the same rules (check.h): Encode refuses what Decode would
-// drop, so a bad message is named where it was made.
+// Sender and receiver apply the same rules (check.h): Encode refuses what Decode would refuse, so
+// an error names the process that made a bad message.
 //
 // What has crossed the bus once crosses again bit for bit. On the first crossing:
 // - a cloud's vectors come back as long as its points, so that chunks can be joined; what was
 //   empty is NaN (directions, intensity), 65535 (ring) or the sweep's time (utime). Origins stay
-//   empty. A hit's direction is computed from origin and point; a miss' travels.
+//   empty. A miss' direction travels; a hit's is NaN and follows from its point (DirectionOf).
 // - a quaternion is normalised.
 // - a JPEG or PNG arrives decoded, as kMono8, kMono16 or kBgr8. To send one, give an Image the
 //   format kJpeg or kPng and plain pixels: Encode compresses them.

@@ -1,28 +1,30 @@
 #include "services/messages/check.h"
-#include "services/messages/internal/codec_geometry.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 
 namespace rgbdt {
 
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
+            StructOf<Copy, CalibrationMessage>& message) {
+  auto& calibration = message.calibration;
+  copy(wire.utime, message.utime);
+  copy(wire.seq, message.seq);
+  copy(wire.camera, calibration.camera);
+  copy(wire.rig_hash, message.rig_hash);
+  copy(wire.method, message.method);
+  copy(wire.converged, calibration.converged);
+  copy(wire.status, calibration.status);
+  copy.Pose(wire.quaternion_wxyz, wire.translation_m, calibration.camera_from_lidar);
+  copy.Optional(wire.has_covariance, wire.covariance, calibration.covariance);
+}
+
 calibration_t ToWire(const CalibrationMessage& message) {
-  const CameraCalibration& calibration = message.calibration;
-  calibration_t wire{};
-  wire.utime = message.utime;
-  wire.seq = message.seq;
-  wire.camera = calibration.camera;
-  wire.rig_hash = message.rig_hash;
-  wire.method = message.method;
-  wire.converged = static_cast<std::int8_t>(calibration.converged);
-  wire.status = calibration.status;
-  RigidToWire(calibration.camera_from_lidar, wire.quaternion_wxyz, wire.translation_m);
-  wire.has_covariance = static_cast<std::int8_t>(calibration.covariance.has_value());
-  if (calibration.covariance) MatrixToWire(*calibration.covariance, wire.covariance);
-  return wire;
+  return FieldsToWire<calibration_t>(message);
 }
 
 void Check(const calibration_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckCameraName("camera", wire.camera);
   CheckName("rig_hash", wire.rig_hash, true);
   CheckName("method", wire.method, true);
@@ -33,44 +35,26 @@ void Check(const calibration_t& wire) {
 }
 
 CalibrationMessage FromWire(const calibration_t& wire) {
-  CalibrationMessage message;
-  message.utime = wire.utime;
-  message.seq = wire.seq;
-  message.rig_hash = wire.rig_hash;
-  message.method = wire.method;
-  CameraCalibration& calibration = message.calibration;
-  calibration.camera = wire.camera;
-  calibration.converged = wire.converged != 0;
-  calibration.status = wire.status;
-  calibration.camera_from_lidar = RigidFromWire(wire.quaternion_wxyz, wire.translation_m);
-  if (wire.has_covariance != 0) calibration.covariance = MatrixFromWire(wire.covariance);
-  return message;
+  return FieldsFromWire<CalibrationMessage>(wire);
 }
 
-pose_t ToWire(const StampedPose& pose) {
-  pose_t wire;
-  wire.utime = pose.utime;
-  wire.seq = pose.seq;
-  wire.source = pose.source;
-  RigidToWire(pose.map_from_lidar, wire.quaternion_wxyz, wire.translation_m);
-  return wire;
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, pose_t>& wire, StructOf<Copy, StampedPose>& pose) {
+  copy(wire.utime, pose.utime);
+  copy(wire.seq, pose.seq);
+  copy(wire.source, pose.source);
+  copy.Pose(wire.quaternion_wxyz, wire.translation_m, pose.map_from_lidar);
 }
+
+pose_t ToWire(const StampedPose& pose) { return FieldsToWire<pose_t>(pose); }
 
 void Check(const pose_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckName("source", wire.source, true);
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);
 }
 
-StampedPose FromWire(const pose_t& wire) {
-  StampedPose pose;
-  pose.utime = wire.utime;
-  pose.seq = wire.seq;
-  pose.source = wire.source;
-  pose.map_from_lidar = RigidFromWire(wire.quaternion_wxyz, wire.translation_m);
-  return pose;
-}
+StampedPose FromWire(const pose_t& wire) { return FieldsFromWire<StampedPose>(wire); }
 
 }  // namespace rgbdt

@@ -3,12 +3,12 @@
 
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr std::int64_t kMaxLines = 1'000'000;  // of a sweep, and beams of a line
 
 // A ring is an int16 on the wire, -1 for unknown: 65535 as uint16, by conversion both ways.
 
@@ -149,16 +149,9 @@ void CheckMisses(const cloud_t& wire) {
   }
 }
 
-std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, const Cloud& cloud) {
-  std::vector<Eigen::Vector3f> directions(cloud.size());
-  for (std::size_t line = 0, i = 0; line < static_cast<std::size_t>(cloud.lines); ++line) {
-    const Eigen::Vector3f origin =
-        cloud.origins.empty() ? Eigen::Vector3f(0, 0, 0) : cloud.origins[line];
-    for (int beam = 0; beam < cloud.beams; ++beam, ++i) {
-      // NaN for a miss, without more ado.
-      directions[i] = (cloud.points[i] - origin).normalized();
-    }
-  }
+// Of misses only; a hit's direction follows from its point (DirectionOf).
+std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, std::size_t size) {
+  std::vector<Eigen::Vector3f> directions(size, Eigen::Vector3f::Constant(kNan));
   for (std::size_t i = 0; i < wire.miss_index.size(); ++i) {
     directions[static_cast<std::size_t>(wire.miss_index[i])] = {wire.miss_x[i], wire.miss_y[i],
                                                                 wire.miss_z[i]};
@@ -168,21 +161,27 @@ std::vector<Eigen::Vector3f> Directions(const cloud_t& wire, const Cloud& cloud)
 
 }  // namespace
 
+// All but the arrays.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, cloud_t>& wire, StructOf<Copy, CloudChunk>& chunk) {
+  auto& cloud = chunk.cloud;
+  copy(wire.seq, chunk.seq);
+  copy(wire.sweep_utime, cloud.sweep_utime);
+  copy(wire.organised, cloud.organised);
+  copy(wire.first_line, cloud.first_line);
+  copy(wire.num_lines, cloud.lines);
+  copy(wire.num_beams, cloud.beams);
+  copy(wire.sweep_end, chunk.sweep_end);
+  copy(wire.sweep_lines, chunk.sweep_lines);
+  copy(wire.lines_lost, chunk.lines_lost);
+}
+
 cloud_t ToWire(const CloudChunk& chunk) {
   const Cloud& cloud = chunk.cloud;
   CheckLengths(cloud);
-  cloud_t wire;
-  wire.seq = chunk.seq;
-  wire.sweep_utime = cloud.sweep_utime;
-  wire.organised = static_cast<std::int8_t>(cloud.organised);
-  wire.first_line = cloud.first_line;
-  wire.num_lines = cloud.lines;
-  wire.num_beams = cloud.beams;
+  auto wire = FieldsToWire<cloud_t>(chunk);
   wire.num_points = CountOf(cloud.size(), "num_points");
   wire.num_origins = CountOf(cloud.origins.size(), "num_origins");
-  wire.sweep_end = static_cast<std::int8_t>(chunk.sweep_end);
-  wire.sweep_lines = chunk.sweep_lines;
-  wire.lines_lost = chunk.lines_lost;
   Split(cloud.points, &wire.x_m, &wire.y_m, &wire.z_m);
   Split(cloud.origins, &wire.origin_x_m, &wire.origin_y_m, &wire.origin_z_m);
   wire.intensity = cloud.intensity;
@@ -196,7 +195,6 @@ cloud_t ToWire(const CloudChunk& chunk) {
 
 void Check(const cloud_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckUtime("sweep_utime", wire.sweep_utime);
   CheckShape(wire);
   CheckOrigins(wire);
@@ -206,20 +204,11 @@ void Check(const cloud_t& wire) {
 }
 
 CloudChunk FromWire(const cloud_t& wire) {
-  CloudChunk chunk;
-  chunk.seq = wire.seq;
-  chunk.sweep_end = wire.sweep_end != 0;
-  chunk.sweep_lines = wire.sweep_lines;
-  chunk.lines_lost = wire.lines_lost;
+  auto chunk = FieldsFromWire<CloudChunk>(wire);
   Cloud& cloud = chunk.cloud;
-  cloud.sweep_utime = wire.sweep_utime;
-  cloud.organised = wire.organised != 0;
-  cloud.first_line = wire.first_line;
-  cloud.lines = wire.num_lines;
-  cloud.beams = wire.num_beams;
   cloud.points = Join(wire.x_m, wire.y_m, wire.z_m);
   cloud.origins = Join(wire.origin_x_m, wire.origin_y_m, wire.origin_z_m);
-  cloud.directions = Directions(wire, cloud);
+  cloud.directions = Directions(wire, cloud.size());
   cloud.intensity = wire.intensity;
   cloud.ring.assign(wire.ring.begin(), wire.ring.end());
   cloud.utime.resize(wire.utime_offset_us.size());

@@ -6,6 +6,7 @@
 #include "calib/model/errors.h"
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 #include "services/messages/internal/image_file.h"
 
 // 16-bit pixels are little-endian on the wire and copied as they are.
@@ -13,9 +14,6 @@ static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "16-bit pixels need swa
 
 namespace rgbdt {
 namespace {
-
-// A decoded BGR image of this many pixels takes 200 MB: the most that one message may cost.
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 
 bool IsFile(PixelFormat format) {
   return format == PixelFormat::kJpeg || format == PixelFormat::kPng;
@@ -49,20 +47,6 @@ void CopyRows(const cv::Mat& pixels, image_t* wire) {
   }
 }
 
-radiometry_t ToWire(const Radiometry& radiometry) {
-  radiometry_t wire;
-  wire.kind = static_cast<std::int8_t>(radiometry.kind);
-  wire.gain_k_per_count = radiometry.gain;
-  wire.offset_k = radiometry.offset;
-  wire.planck_r = radiometry.r;
-  wire.planck_b = radiometry.b;
-  wire.planck_f = radiometry.f;
-  wire.planck_o = radiometry.o;
-  wire.emissivity = radiometry.emissivity;
-  wire.reflected_temperature_k = radiometry.reflected_temperature_k;
-  return wire;
-}
-
 void Check(const radiometry_t& wire) {
   CheckRange("radiometry.kind", wire.kind, radiometry_t::NONE, radiometry_t::PLANCK);
   const double numbers[] = {
@@ -83,22 +67,6 @@ void Check(const radiometry_t& wire) {
   CheckNotNegative("radiometry.reflected_temperature_k", wire.reflected_temperature_k);
 }
 
-// Without a conversion nothing else counts: senders may leave all at zero.
-Radiometry FromWire(const radiometry_t& wire) {
-  Radiometry radiometry;
-  if (wire.kind == radiometry_t::NONE) return radiometry;
-  radiometry.kind = static_cast<Radiometry::Kind>(wire.kind);
-  radiometry.gain = wire.gain_k_per_count;
-  radiometry.offset = wire.offset_k;
-  radiometry.r = wire.planck_r;
-  radiometry.b = wire.planck_b;
-  radiometry.f = wire.planck_f;
-  radiometry.o = wire.planck_o;
-  radiometry.emissivity = wire.emissivity;
-  radiometry.reflected_temperature_k = wire.reflected_temperature_k;
-  return radiometry;
-}
-
 void CheckRawSize(const image_t& wire) {
   const auto format = static_cast<PixelFormat>(wire.pixel_format);
   const std::int64_t row_bytes = std::int64_t{wire.width} * BytesPerPixel(format);
@@ -109,20 +77,38 @@ void CheckRawSize(const image_t& wire) {
 
 }  // namespace
 
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, radiometry_t>& wire,
+            StructOf<Copy, Radiometry>& radiometry) {
+  copy(wire.kind, radiometry.kind);
+  copy(wire.gain_k_per_count, radiometry.gain);
+  copy(wire.offset_k, radiometry.offset);
+  copy(wire.planck_r, radiometry.r);
+  copy(wire.planck_b, radiometry.b);
+  copy(wire.planck_f, radiometry.f);
+  copy(wire.planck_o, radiometry.o);
+  copy(wire.emissivity, radiometry.emissivity);
+  copy(wire.reflected_temperature_k, radiometry.reflected_temperature_k);
+}
+
+// All but the pixels and the radiometry.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, image_t>& wire, StructOf<Copy, Image>& image) {
+  copy(wire.utime, image.utime);
+  copy(wire.seq, image.seq);
+  copy(wire.camera, image.camera);
+  copy(wire.frame_number, image.frame_number);
+  copy(wire.device_utime, image.device_utime);
+  copy(wire.exposure_s, image.exposure_s);
+  copy(wire.pixel_format, image.format);
+  copy(wire.shutter_correcting, image.shutter_correcting);
+}
+
 image_t ToWire(const Image& image) {
-  image_t wire;
-  wire.utime = image.utime;
-  wire.seq = image.seq;
-  wire.camera = image.camera;
-  wire.frame_number = image.frame_number;
-  wire.device_utime = image.device_utime;
-  wire.exposure_s = image.exposure_s;
+  auto wire = FieldsToWire<image_t>(image);
+  wire.radiometry = FieldsToWire<radiometry_t>(image.radiometry);
   wire.width = image.pixels.cols;
   wire.height = image.pixels.rows;
-  wire.stride = 0;
-  wire.pixel_format = static_cast<std::int32_t>(image.format);
-  wire.radiometry = ToWire(image.radiometry);
-  wire.shutter_correcting = static_cast<std::int8_t>(image.shutter_correcting);
   if (IsFile(image.format)) {
     wire.data = EncodeImageFile(image.pixels, image.format);
   } else if (image.pixels.type() != MatType(image.format)) {
@@ -138,7 +124,6 @@ image_t ToWire(const Image& image) {
 
 void Check(const image_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckCameraName("camera", wire.camera);
   CheckRange("frame_number", wire.frame_number, 0, std::numeric_limits<std::int64_t>::max());
   CheckNotNegative("exposure_s", wire.exposure_s);
@@ -151,16 +136,11 @@ void Check(const image_t& wire) {
 }
 
 Image FromWire(const image_t& wire) {
-  Image image;
-  image.utime = wire.utime;
-  image.seq = wire.seq;
-  image.camera = wire.camera;
-  image.frame_number = wire.frame_number;
-  image.device_utime = wire.device_utime;
-  image.exposure_s = wire.exposure_s;
-  image.format = static_cast<PixelFormat>(wire.pixel_format);
-  image.radiometry = FromWire(wire.radiometry);
-  image.shutter_correcting = wire.shutter_correcting != 0;
+  auto image = FieldsFromWire<Image>(wire);
+  // Without a conversion nothing else counts: senders may leave all at zero.
+  if (wire.radiometry.kind != radiometry_t::NONE) {
+    image.radiometry = FieldsFromWire<Radiometry>(wire.radiometry);
+  }
   if (IsFile(image.format)) {
     image.pixels = DecodeImageFile(wire.data, image.format, wire.width, wire.height);
     image.format = FormatOf(image.pixels);

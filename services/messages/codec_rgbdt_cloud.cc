@@ -5,11 +5,10 @@
 
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr std::int64_t kMaxCameras = 32;  // bits of `valid`
 
 void CheckLengths(const RgbdtCloud& cloud) {
   const std::size_t size = cloud.size();
@@ -18,6 +17,7 @@ void CheckLengths(const RgbdtCloud& cloud) {
   CheckLength("utime", cloud.utime.size(), size, false);
   CheckLength("rgb", cloud.rgb.size(), size, false);
   CheckLength("temperature_k", cloud.temperature_k.size(), size, false);
+  CheckLength("temperature_sigma_k", cloud.temperature_sigma_k.size(), size, false);
   CheckLength("thermal_counts", cloud.thermal_counts.size(), size, false);
   CheckLength("valid", cloud.valid.size(), size, false);
 }
@@ -59,6 +59,20 @@ void PointsToWire(const RgbdtCloud& cloud, rgbdt_cloud_t* wire) {
   }
 }
 
+void PointsFromWire(const rgbdt_cloud_t& wire, RgbdtCloud* cloud) {
+  const std::size_t size = wire.x_m.size();
+  cloud->points.resize(size);
+  cloud->utime.resize(size);
+  cloud->rgb.resize(size);
+  cloud->valid.resize(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    cloud->points[i] = {wire.x_m[i], wire.y_m[i], wire.z_m[i]};
+    cloud->utime[i] = wire.utime + wire.utime_offset_us[i];
+    cloud->rgb[i] = {wire.red[i], wire.green[i], wire.blue[i]};
+    cloud->valid[i] = static_cast<std::uint32_t>(wire.valid[i]);
+  }
+}
+
 void CheckCoordinates(const rgbdt_cloud_t& wire) {
   const auto within = [](float v) { return std::abs(v) <= kMaxMetres; };  // not so for NaN
   unsigned bad = 0;
@@ -76,7 +90,7 @@ void CheckCoordinates(const rgbdt_cloud_t& wire) {
   }
 }
 
-// A NaN compares as neither too small nor too large: it says that the value is unknown.
+// NaN stands for an unknown value: it compares as neither too small nor too large.
 void CheckPoints(const rgbdt_cloud_t& wire) {
   constexpr float kMost = std::numeric_limits<float>::max();
   CheckCoordinates(wire);
@@ -86,6 +100,9 @@ void CheckPoints(const rgbdt_cloud_t& wire) {
   CheckEach(
       "temperature_k", wire.temperature_k, [](float v) { return !(v < 0) & !(v > kMost); },
       "0 or more, or NaN: unknown");
+  CheckEach(
+      "temperature_sigma_k", wire.temperature_sigma_k,
+      [](float v) { return !(v < 0) & !(v > kMost); }, "0 or more, or NaN: unknown");
   CheckEach(
       "thermal_counts", wire.thermal_counts, [](float v) { return !(std::abs(v) > kMost); },
       "a number, or NaN: unknown");
@@ -101,25 +118,40 @@ void CheckPoints(const rgbdt_cloud_t& wire) {
       "bits of the cameras named only");
 }
 
+void CheckPose(const rgbdt_cloud_t& wire) {
+  CheckUtime("frame_utime", wire.frame_utime);
+  CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
+  CheckFinite("translation_m", wire.translation_m, 3);
+}
+
 }  // namespace
 
-rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud) {
+// All but the points, the pose and utime.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, rgbdt_cloud_t>& wire,
+            StructOf<Copy, RgbdtCloud>& cloud) {
+  copy(wire.seq, cloud.seq);
+  copy(wire.sweep_utime, cloud.sweep_utime);
+  copy(wire.sweep_end, cloud.sweep_end);
+  copy(wire.whole_sweep, cloud.whole_sweep);
+  copy.List("num_cameras", wire.num_cameras, wire.camera, cloud.cameras);
+  copy(wire.calibration_utime, cloud.calibration_utime);
+}
+
+rgbdt_cloud_t ToWire(const RgbdtCloud& cloud) {
   CheckLengths(cloud);
-  rgbdt_cloud_t wire;
+  auto wire = FieldsToWire<rgbdt_cloud_t>(cloud);
   wire.utime = cloud.utime.empty() ? cloud.sweep_utime : cloud.utime.front();
   CheckUtime("utime", wire.utime);
-  wire.seq = cloud.seq;
-  wire.sweep_utime = cloud.sweep_utime;
-  wire.sweep_end = static_cast<std::int8_t>(cloud.sweep_end);
-  wire.calibration_utime =
-      cloud.calibration_utime.empty()
-          ? 0
-          : *std::max_element(cloud.calibration_utime.begin(), cloud.calibration_utime.end());
-  wire.num_cameras = CountOf(cloud.cameras.size(), "num_cameras");
-  wire.camera = cloud.cameras;
+  if (cloud.map_from_lidar) {
+    wire.has_pose = 1;
+    wire.frame_utime = cloud.frame_utime;
+    CopyToWire().Pose(wire.quaternion_wxyz, wire.translation_m, *cloud.map_from_lidar);
+  }
   wire.num_points = CountOf(cloud.size(), "num_points");
   wire.intensity = cloud.intensity;
   wire.temperature_k = cloud.temperature_k;
+  wire.temperature_sigma_k = cloud.temperature_sigma_k;
   wire.thermal_counts = cloud.thermal_counts;
   PointsToWire(cloud, &wire);
   return wire;
@@ -127,38 +159,27 @@ rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud) {
 
 void Check(const rgbdt_cloud_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckUtime("sweep_utime", wire.sweep_utime);
-  CheckUtimeOrZero("calibration_utime", wire.calibration_utime);
   CheckRange("num_cameras", wire.num_cameras, 0, kMaxCameras);
   for (std::size_t i = 0; i < wire.camera.size(); ++i) {
     CheckCameraName(At("camera", i), wire.camera[i]);
+    CheckUtimeOrZero(At("calibration_utime", i), wire.calibration_utime[i]);
   }
+  if (wire.has_pose != 0) CheckPose(wire);
   CheckPoints(wire);
 }
 
 RgbdtCloud FromWire(rgbdt_cloud_t wire) {
-  const std::size_t size = wire.x_m.size();
-  RgbdtCloud cloud;
-  cloud.seq = wire.seq;
-  cloud.sweep_utime = wire.sweep_utime;
-  cloud.sweep_end = wire.sweep_end != 0;
-  cloud.calibration_utime.assign(wire.camera.size(), wire.calibration_utime);
-  cloud.cameras = std::move(wire.camera);
+  auto cloud = FieldsFromWire<RgbdtCloud>(wire);
+  if (wire.has_pose != 0) {
+    cloud.frame_utime = wire.frame_utime;
+    CopyFromWire().Pose(wire.quaternion_wxyz, wire.translation_m, cloud.map_from_lidar.emplace());
+  }
   cloud.intensity = std::move(wire.intensity);
   cloud.temperature_k = std::move(wire.temperature_k);
+  cloud.temperature_sigma_k = std::move(wire.temperature_sigma_k);
   cloud.thermal_counts = std::move(wire.thermal_counts);
-  cloud.points.resize(size);
-  cloud.utime.resize(size);
-  cloud.rgb.resize(size);
-  cloud.valid.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    cloud.points[i] = {wire.x_m[i], wire.y_m[i], wire.z_m[i]};
-    cloud.utime[i] = wire.utime + wire.utime_offset_us[i];
-    cloud.rgb[i] = {wire.red[i], wire.green[i], wire.blue[i]};
-    cloud.valid[i] = static_cast<std::uint32_t>(wire.valid[i]);
-  }
-  cloud.temperature_sigma_k.assign(size, std::numeric_limits<float>::quiet_NaN());
+  PointsFromWire(wire, &cloud);
   return cloud;
 }
 

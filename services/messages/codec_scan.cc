@@ -3,27 +3,30 @@
 
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 
 namespace rgbdt {
 
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, line_scan_t>& wire, StructOf<Copy, LineScan>& line) {
+  copy(wire.utime, line.utime);
+  copy(wire.seq, line.seq);
+  copy(wire.beam_period_s, line.beam_period_s);
+  copy(wire.first_angle_rad, line.first_angle_rad);
+  copy(wire.angle_step_rad, line.angle_step_rad);
+  copy.List("num_beams", wire.num_beams, wire.range_m, line.range);
+  copy(wire.intensity, line.intensity);
+}
+
 line_scan_t ToWire(const LineScan& line) {
   CheckLength("intensity", line.intensity.size(), line.range.size());
-  line_scan_t wire;
-  wire.utime = line.utime;
-  wire.seq = line.seq;
-  wire.beam_period_s = line.beam_period_s;
-  wire.first_angle_rad = line.first_angle_rad;
-  wire.angle_step_rad = line.angle_step_rad;
-  wire.num_beams = CountOf(line.range.size(), "num_beams");
-  wire.range_m = line.range;
-  wire.intensity = line.intensity;
+  auto wire = FieldsToWire<line_scan_t>(line);
   wire.intensity.resize(line.range.size(), std::numeric_limits<float>::quiet_NaN());
   return wire;
 }
 
 void Check(const line_scan_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckNotNegative("beam_period_s", wire.beam_period_s);
   CheckFinite("first_angle_rad", wire.first_angle_rad);
   CheckFinite("angle_step_rad", wire.angle_step_rad);
@@ -39,41 +42,25 @@ void Check(const line_scan_t& wire) {
   }
 }
 
-LineScan FromWire(const line_scan_t& wire) {
-  LineScan line;
-  line.utime = wire.utime;
-  line.seq = wire.seq;
-  line.beam_period_s = wire.beam_period_s;
-  line.first_angle_rad = wire.first_angle_rad;
-  line.angle_step_rad = wire.angle_step_rad;
-  line.range = wire.range_m;
-  line.intensity = wire.intensity;
-  return line;
+LineScan FromWire(const line_scan_t& wire) { return FieldsFromWire<LineScan>(wire); }
+
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, encoder_t>& wire,
+            StructOf<Copy, EncoderReading>& reading) {
+  copy(wire.utime, reading.utime);
+  copy(wire.seq, reading.seq);
+  copy(wire.ticks, reading.ticks);
+  copy(wire.sweep_utime, reading.sweep_utime);
 }
 
-encoder_t ToWire(const EncoderReading& reading) {
-  encoder_t wire;
-  wire.utime = reading.utime;
-  wire.seq = reading.seq;
-  wire.ticks = reading.ticks;
-  wire.sweep_utime = reading.sweep_utime;
-  return wire;
-}
+encoder_t ToWire(const EncoderReading& reading) { return FieldsToWire<encoder_t>(reading); }
 
 void Check(const encoder_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckRange("ticks", wire.ticks, -kMaxInteger, kMaxInteger);
   CheckUtimeOrZero("sweep_utime", wire.sweep_utime);
 }
 
-EncoderReading FromWire(const encoder_t& wire) {
-  EncoderReading reading;
-  reading.utime = wire.utime;
-  reading.seq = wire.seq;
-  reading.ticks = wire.ticks;
-  reading.sweep_utime = wire.sweep_utime;
-  return reading;
-}
+EncoderReading FromWire(const encoder_t& wire) { return FieldsFromWire<EncoderReading>(wire); }
 
 }  // namespace rgbdt

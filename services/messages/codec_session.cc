@@ -1,56 +1,46 @@
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
+#include "services/messages/internal/fields.h"
 
 namespace rgbdt {
-namespace {
 
-constexpr std::int64_t kMaxCameras = 32;
-constexpr std::int64_t kMaxCounters = 1000;
-
-}  // namespace
-
-// The rig has no time of its own.
-rig_t ToWire(const RigText& rig) {
-  rig_t wire;
-  wire.utime = 0;
-  wire.seq = rig.seq;
-  wire.hash = rig.hash;
-  wire.text = rig.text;
-  return wire;
+// The rig has no time of its own: its utime is 0.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, rig_t>& wire, StructOf<Copy, RigText>& rig) {
+  copy(wire.seq, rig.seq);
+  copy(wire.hash, rig.hash);
+  copy(wire.text, rig.text);
 }
+
+rig_t ToWire(const RigText& rig) { return FieldsToWire<rig_t>(rig); }
 
 void Check(const rig_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckName("hash", wire.hash, true);
   CheckText("text", wire.text, kMaxMessageBytes);
 }
 
-RigText FromWire(const rig_t& wire) {
-  RigText rig;
-  rig.seq = wire.seq;
-  rig.hash = wire.hash;
-  rig.text = wire.text;
-  return rig;
+RigText FromWire(const rig_t& wire) { return FieldsFromWire<RigText>(wire); }
+
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, session_command_t>& wire,
+            StructOf<Copy, SessionCommand>& command) {
+  copy(wire.utime, command.utime);
+  copy(wire.seq, command.seq);
+  copy(wire.command, command.command);
+  copy(wire.verb, command.verb);
+  copy(wire.view, command.view);
+  copy(wire.sweep_utime, command.sweep_utime);
+  copy(wire.heldout, command.heldout);
+  copy.List("num_picked", wire.num_picked, wire.picked_camera, command.picked_cameras);
 }
 
 session_command_t ToWire(const SessionCommand& command) {
-  session_command_t wire;
-  wire.utime = command.utime;
-  wire.seq = command.seq;
-  wire.command = command.command;
-  wire.verb = static_cast<std::int8_t>(command.verb);
-  wire.view = command.view;
-  wire.sweep_utime = command.sweep_utime;
-  wire.heldout = static_cast<std::int8_t>(command.heldout);
-  wire.num_picked = CountOf(command.picked_cameras.size(), "num_picked");
-  wire.picked_camera = command.picked_cameras;
-  return wire;
+  return FieldsToWire<session_command_t>(command);
 }
 
 void Check(const session_command_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckRange("command", wire.command, 0, kMaxInteger);
   CheckRange("verb", wire.verb, session_command_t::NEXT_POSE, session_command_t::RESET);
   CheckName("view", wire.view, true);
@@ -62,34 +52,26 @@ void Check(const session_command_t& wire) {
 }
 
 SessionCommand FromWire(const session_command_t& wire) {
-  SessionCommand command;
-  command.utime = wire.utime;
-  command.seq = wire.seq;
-  command.command = wire.command;
-  command.verb = static_cast<SessionVerb>(wire.verb);
-  command.view = wire.view;
-  command.sweep_utime = wire.sweep_utime;
-  command.heldout = wire.heldout != 0;
-  command.picked_cameras = wire.picked_camera;
-  return command;
+  return FieldsFromWire<SessionCommand>(wire);
 }
 
-session_event_t ToWire(const SessionEvent& event) {
-  session_event_t wire;
-  wire.utime = event.utime;
-  wire.seq = event.seq;
-  wire.command = event.command;
-  wire.source = event.source;
-  wire.kind = static_cast<std::int8_t>(event.kind);
-  wire.text = event.text;
-  wire.sweep_utime = event.sweep_utime;
-  wire.fraction = event.fraction;
-  return wire;
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, session_event_t>& wire,
+            StructOf<Copy, SessionEvent>& event) {
+  copy(wire.utime, event.utime);
+  copy(wire.seq, event.seq);
+  copy(wire.command, event.command);
+  copy(wire.source, event.source);
+  copy(wire.kind, event.kind);
+  copy(wire.text, event.text);
+  copy(wire.sweep_utime, event.sweep_utime);
+  copy(wire.fraction, event.fraction);
 }
+
+session_event_t ToWire(const SessionEvent& event) { return FieldsToWire<session_event_t>(event); }
 
 void Check(const session_event_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckRange("command", wire.command, 0, kMaxInteger);
   CheckName("source", wire.source);
   CheckRange("kind", wire.kind, session_event_t::PROGRESS, session_event_t::FAILED);
@@ -98,51 +80,43 @@ void Check(const session_event_t& wire) {
   if (!(wire.fraction >= 0 && wire.fraction <= 1)) Fail("fraction", wire.fraction, "0 to 1");
 }
 
-SessionEvent FromWire(const session_event_t& wire) {
-  SessionEvent event;
-  event.utime = wire.utime;
-  event.seq = wire.seq;
-  event.command = wire.command;
-  event.source = wire.source;
-  event.kind = static_cast<EventKind>(wire.kind);
-  event.text = wire.text;
-  event.sweep_utime = wire.sweep_utime;
-  event.fraction = wire.fraction;
-  return event;
+SessionEvent FromWire(const session_event_t& wire) { return FieldsFromWire<SessionEvent>(wire); }
+
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, session_request_t>& wire,
+            StructOf<Copy, SessionRequest>& request) {
+  copy(wire.utime, request.utime);
+  copy(wire.seq, request.seq);
+  copy(wire.request, request.request);
+  copy(wire.heldout, request.heldout);
 }
 
 session_request_t ToWire(const SessionRequest& request) {
-  session_request_t wire;
-  wire.utime = request.utime;
-  wire.seq = request.seq;
-  wire.request = static_cast<std::int8_t>(request.request);
-  wire.heldout = static_cast<std::int8_t>(request.heldout);
-  return wire;
+  return FieldsToWire<session_request_t>(request);
 }
 
 void Check(const session_request_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckRange("request", wire.request, session_request_t::NEXT_POSE, session_request_t::FINISH);
 }
 
 SessionRequest FromWire(const session_request_t& wire) {
-  SessionRequest request;
-  request.utime = wire.utime;
-  request.seq = wire.seq;
-  request.request = static_cast<SessionRequestKind>(wire.request);
-  request.heldout = wire.heldout != 0;
-  return request;
+  return FieldsFromWire<SessionRequest>(wire);
+}
+
+// All but the counters.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, status_t>& wire, StructOf<Copy, Status>& status) {
+  copy(wire.utime, status.utime);
+  copy(wire.seq, status.seq);
+  copy(wire.process, status.process);
+  copy(wire.ready, status.ready);
+  copy(wire.text, status.text);
+  copy(wire.last_problem, status.last_problem);
 }
 
 status_t ToWire(const Status& status) {
-  status_t wire;
-  wire.utime = status.utime;
-  wire.seq = status.seq;
-  wire.process = status.process;
-  wire.ready = static_cast<std::int8_t>(status.ready);
-  wire.text = status.text;
-  wire.last_problem = status.last_problem;
+  auto wire = FieldsToWire<status_t>(status);
   wire.num_counters = CountOf(status.counters.size(), "num_counters");
   for (const auto& [name, value] : status.counters) {
     wire.counter_name.push_back(name);
@@ -153,7 +127,6 @@ status_t ToWire(const Status& status) {
 
 void Check(const status_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckName("process", wire.process);
   CheckText("text", wire.text);
   CheckText("last_problem", wire.last_problem);
@@ -164,39 +137,27 @@ void Check(const status_t& wire) {
 }
 
 Status FromWire(const status_t& wire) {
-  Status status;
-  status.utime = wire.utime;
-  status.seq = wire.seq;
-  status.process = wire.process;
-  status.ready = wire.ready != 0;
-  status.text = wire.text;
-  status.last_problem = wire.last_problem;
+  auto status = FieldsFromWire<Status>(wire);
   for (std::size_t i = 0; i < wire.counter_name.size(); ++i) {
     status.counters.emplace_back(wire.counter_name[i], wire.counter_value[i]);
   }
   return status;
 }
 
-report_t ToWire(const ReportText& report) {
-  report_t wire;
-  wire.utime = report.utime;
-  wire.seq = report.seq;
-  wire.json = report.json;
-  return wire;
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, report_t>& wire, StructOf<Copy, ReportText>& report) {
+  copy(wire.utime, report.utime);
+  copy(wire.seq, report.seq);
+  copy(wire.json, report.json);
 }
+
+report_t ToWire(const ReportText& report) { return FieldsToWire<report_t>(report); }
 
 void Check(const report_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
-  CheckSeq(wire.seq);
   CheckText("json", wire.json, kMaxMessageBytes);
 }
 
-ReportText FromWire(const report_t& wire) {
-  ReportText report;
-  report.utime = wire.utime;
-  report.seq = wire.seq;
-  report.json = wire.json;
-  return report;
-}
+ReportText FromWire(const report_t& wire) { return FieldsFromWire<ReportText>(wire); }
 
 }  // namespace rgbdt

@@ -1,5 +1,6 @@
 #include "services/messages/message.h"
 
+#include <algorithm>
 #include <cctype>
 
 namespace rgbdt {
@@ -17,7 +18,7 @@ struct Channel {
   std::string operator()(const Image& image) const { return ImageChannel(image.camera); }
   std::string operator()(const CloudChunk&) const { return "CLOUD"; }
   std::string operator()(const CornerSelection&) const { return "CORNER_SELECTION"; }
-  std::string operator()(const Observation&) const { return "OBSERVATION"; }
+  std::string operator()(const ViewDetection&) const { return "DETECTION"; }
   std::string operator()(const CalibrationMessage&) const { return "CALIBRATION"; }
   std::string operator()(const RgbdtCloud& cloud) const {
     return cloud.whole_sweep ? "RGBDT_SWEEP" : "RGBDT_CLOUD";
@@ -27,7 +28,7 @@ struct Channel {
   std::string operator()(const SessionCommand&) const { return "SESSION_COMMAND"; }
   std::string operator()(const SessionEvent&) const { return "SESSION_EVENT"; }
   std::string operator()(const SessionRequest&) const { return "SESSION_REQUEST"; }
-  std::string operator()(const Sighting&) const { return "SIGHTING"; }
+  std::string operator()(const TargetStatus&) const { return "TARGET_STATUS"; }
   std::string operator()(const Status&) const { return "STATUS"; }
   std::string operator()(const ReportText&) const { return "REPORT"; }
 };
@@ -39,7 +40,11 @@ struct Time {
   Utime operator()(const RgbdtCloud& cloud) const {
     return cloud.utime.empty() ? cloud.sweep_utime : cloud.utime.front();
   }
-  Utime operator()(const Observation& observation) const { return observation.image_utime; }
+  Utime operator()(const ViewDetection& detection) const {
+    Utime newest = 0;
+    for (const ImageDetection& image : detection.images) newest = std::max(newest, image.utime);
+    return newest != 0 ? newest : detection.sweep_utime;
+  }
   Utime operator()(const RigText&) const { return 0; }
   template <typename T>
   Utime operator()(const T& message) const {

@@ -24,9 +24,9 @@ struct CalibrationMessage {
 
 /// Everything that crosses the bus, decoded and checked.
 using Message =
-    std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, Observation,
+    std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, ViewDetection,
                  CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
-                 SessionRequest, Sighting, Status, ReportText>;
+                 SessionRequest, TargetStatus, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

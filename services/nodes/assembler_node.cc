@@ -1,177 +1,59 @@
 #include "services/nodes/assembler_node.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
+namespace {
+
+Messages ToMessages(std::vector<CloudChunk> chunks) {
+  Messages messages;
+  messages.reserve(chunks.size());
+  for (CloudChunk& chunk : chunks) messages.emplace_back(std::move(chunk));
+  return messages;
+}
+
+}  // namespace
 
 Messages AssemblerNode::Handle(const Message& message) {
   if (const auto* rig = std::get_if<RigText>(&message)) {
     OnRig(*rig);
     return {};
   }
-  if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
+  if (!assembler_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* reading = std::get_if<EncoderReading>(&message)) {
-    OnReading(*reading);
-  } else if (const auto* line = std::get_if<LineScan>(&message)) {
-    OnLine(*line);
+    return ToMessages(assembler_->Add(*reading));
   }
-  return Drain();
+  if (const auto* line = std::get_if<LineScan>(&message)) return ToMessages(assembler_->Add(*line));
+  return {};
 }
 
 void AssemblerNode::OnRig(const RigText& text) {
-  if (rig_ && rig_->hash == text.hash) return;
-  Rig rig = ParseRig(text.text, "RIG message");
+  if (assembler_ && rig_hash_ == text.hash) return;
+  const Rig rig = ParseRig(text.text, "RIG message");
   if (!rig.lidar.turned_scanner) {
     throw InputError("the rig's lidar has no turned_scanner: nothing to assemble");
   }
-  rig_ = std::move(rig);
-  Forget();
-}
-
-void AssemblerNode::OnReading(const EncoderReading& reading) {
-  if (reading.utime < track_.newest() - kClockReset) Forget();
-  if (!track_.Add(reading)) {
-    throw InputError("encoder reading of " + std::to_string(reading.utime) +
-                     " us is not after the one before it (" + std::to_string(track_.newest()) +
-                     " us)");
+  if (assembler_) {
+    assembler_->SetScanner(*rig.lidar.turned_scanner);
+  } else {
+    assembler_.emplace(*rig.lidar.turned_scanner);
   }
-}
-
-void AssemblerNode::OnLine(const LineScan& line) {
-  CheckLine(line);
-  if (waiting_.size() >= kMaxWaiting) {
-    waiting_.erase(waiting_.begin());
-    ++lines_lost_;
-  }
-  waiting_.emplace(line.utime, line);
-}
-
-// What is refused is refused when it comes, so that it costs no other line its place.
-void AssemblerNode::CheckLine(const LineScan& line) const {
-  const std::string of = "line of " + std::to_string(line.utime) + " us ";
-  if (waiting_.count(line.utime) != 0) throw InputError(of + "came twice");
-  if (track_.newest() == 0 || line.utime > track_.newest()) return;  // its sweep is not known yet
-  if (line.utime < track_.newest() - kKept) {
-    throw InputError(of + "is more than 1 s older than the newest encoder reading (" +
-                     std::to_string(track_.newest()) + " us)");
-  }
-  const Utime sweep = SweepOf(line);
-  if (sweep != 0 && sweep <= ended_) throw InputError(of + "came after its sweep had ended");
-  if (sweep_ && sweep == sweep_->utime && !FitsSweep(line)) {
-    throw InputError(of + "has number " + std::to_string(line.seq) +
-                     ", which came before or does not fit the sweep that began with number " +
-                     std::to_string(sweep_->first_seq));
-  }
-}
-
-bool AssemblerNode::FitsSweep(const LineScan& line) const {
-  const std::int64_t place = line.seq - sweep_->first_seq;
-  return place >= 0 && place <= kMaxLines && sweep_->sent.count(static_cast<int>(place)) == 0;
-}
-
-namespace {
-
-Utime EndOf(const LineScan& line) {
-  return line.utime + FromSeconds(static_cast<double>(line.range.size()) * line.beam_period_s);
-}
-
-}  // namespace
-
-// A sweep's name is its start: where the reading at its start is missing, the next one tells.
-Utime AssemblerNode::SweepOf(const LineScan& line) const {
-  const Utime sweep = track_.SweepAt(line.utime);
-  if (sweep != 0) return sweep;
-  const Utime next = track_.SweepAt(EndOf(line));
-  return next <= line.utime ? next : 0;
-}
-
-bool AssemblerNode::IsReady(const LineScan& line) const {
-  if (EndOf(line) > track_.newest()) return false;
-  const Utime sweep = SweepOf(line);
-  const bool first = sweep != 0 && !(sweep_ && sweep_->utime == sweep);
-  return !first || FollowsAllBefore(line) || EndOf(line) + kGrace <= track_.newest();
-}
-
-// Whether nothing that is still to come can lie before the line, in its sweep or the one before.
-bool AssemblerNode::FollowsAllBefore(const LineScan& line) const {
-  if (!sweep_) return newest_ && line.seq == newest_->seq + 1;
-  return static_cast<int>(sweep_->sent.size()) == sweep_->lines &&
-         line.seq == sweep_->first_seq + sweep_->lines;
-}
-
-Messages AssemblerNode::Drain() {
-  Messages out;
-  while (!waiting_.empty() && IsReady(waiting_.begin()->second)) {
-    const LineScan line = std::move(waiting_.begin()->second);
-    waiting_.erase(waiting_.begin());
-    Add(line, &out);
-  }
-  const auto names_it = [&](Utime at) { return track_.SweepAt(at) == sweep_->utime; };
-  if (sweep_ && !names_it(track_.newest()) && !names_it(track_.newest() - kGrace)) EndSweep(&out);
-  track_.ForgetBefore(track_.newest() - kKept - kGrace);
-  return out;
-}
-
-void AssemblerNode::Add(const LineScan& line, Messages* out) {
-  if (!newest_ || line.utime > newest_->utime) newest_ = Place{line.utime, line.seq};
-  const Utime sweep_utime = SweepOf(line);
-  if (sweep_utime == 0) return;
-  if (sweep_utime <= ended_) {  // not known yet when the line came
-    ++lines_lost_;
-    return;
-  }
-  if (sweep_ && sweep_->utime != sweep_utime) EndSweep(out);
-  if (!sweep_) sweep_ = Sweep{sweep_utime, line.seq, {}, 0};
-  if (!FitsSweep(line)) {
-    ++lines_lost_;
-    return;
-  }
-  const int place = static_cast<int>(line.seq - sweep_->first_seq);
-  sweep_->lines = std::max(sweep_->lines, place + 1);
-  const TurnedScanner& scanner = *rig_->lidar.turned_scanner;
-  const auto angles = BeamAngles(scanner, track_, line, kMaxGap);
-  if (!angles) return;
-  sweep_->sent.insert(place);
-  CloudChunk chunk;
-  chunk.cloud = LineToCloud(scanner, line, *angles);
-  chunk.cloud.sweep_utime = sweep_utime;
-  chunk.cloud.first_line = place;
-  out->push_back(std::move(chunk));
-  ++lines_used_;
-}
-
-void AssemblerNode::EndSweep(Messages* out) {
-  CloudChunk end;
-  end.cloud.sweep_utime = sweep_->utime;
-  end.sweep_lines = sweep_->lines;
-  end.cloud.first_line = end.sweep_lines;
-  end.sweep_end = true;
-  end.lines_lost = end.sweep_lines - static_cast<int>(sweep_->sent.size());
-  lines_lost_ += end.lines_lost;
-  out->push_back(std::move(end));
-  ended_ = sweep_->utime;
-  sweep_.reset();
-  ++sweeps_;
-}
-
-void AssemblerNode::Forget() {
-  track_ = {};
-  waiting_.clear();
-  sweep_.reset();
-  ended_ = 0;
-  newest_.reset();
+  rig_hash_ = rig.hash;
 }
 
 Status AssemblerNode::GetStatus() const {
+  const auto counts = assembler_ ? assembler_->counts() : Assembler::Counts{};
+  const auto lines = assembler_ ? assembler_->LinesOfSweep() : std::nullopt;
   Status status;
-  status.ready = rig_.has_value();
-  status.text = !rig_    ? "waits for the rig (RIG)"
-                : sweep_ ? "assembling a sweep, " + std::to_string(sweep_->sent.size()) + " lines"
-                         : "waits for a sweep";
-  status.counters = {{"lines", lines_used_}, {"lines lost", lines_lost_}, {"sweeps", sweeps_}};
+  status.ready = assembler_.has_value();
+  status.text = !assembler_ ? "waits for the rig (RIG)"
+                : lines     ? "assembling a sweep, " + std::to_string(*lines) + " lines"
+                            : "waits for a sweep";
+  status.counters = {
+      {"lines", counts.lines_used}, {"lines lost", counts.lines_lost}, {"sweeps", counts.sweeps}};
   return status;
 }
 

@@ -1,36 +1,18 @@
 #pragma once
 
-#include <map>
 #include <optional>
-#include <set>
+#include <string>
 #include <vector>
 
-#include "calib/model/rig.h"
 #include "calib/scan_assembly/assembler.h"
 #include "services/runtime/node.h"
 
 namespace rgbdt {
 
-/// LINE_SCAN + ENCODER -> CLOUD. A chunk (one line) leaves as soon as the encoder has been read at
-/// or after the line's last beam; a sweep's first line waits kGrace longer. A line's place in the
-/// sweep is its number minus that of the sweep's first line, so lines may arrive kGrace out of
-/// order, among themselves or against the readings, and the cloud is the same, bit for bit. The
-/// sweep ends with the first reading kGrace after the encoder stopped naming it, or with a line of
-/// another sweep: then an empty chunk with `sweep_end`. Lines between a sweep's first and last that
-/// never came, or whose angles are not known (readings missing for more than kMaxGap), are counted
-/// in `lines_lost`. Refused: a reading that is not after the one before it, a line seen before, one
-/// whose sweep has ended, one more than kKept older than the newest reading. A clock set back by
-/// more than kClockReset begins anew. Between sweeps (sweep_utime 0) lines make no cloud. Another
-/// rig forgets the sweep at hand.
+/// LINE_SCAN + ENCODER -> CLOUD: what leaves when, in which order lines may come, and which are
+/// refused stands in Assembler. Needs the rig first; another rig forgets the sweep at hand.
 class AssemblerNode : public Node {
  public:
-  static constexpr std::size_t kMaxWaiting = 1000;               ///< lines
-  static constexpr std::int64_t kMaxLines = 100000;              ///< of a sweep
-  static constexpr Utime kMaxGap = kMicrosecondsPerSecond / 10;  ///< between encoder readings
-  static constexpr Utime kGrace = kMicrosecondsPerSecond / 10;   ///< for late lines
-  static constexpr Utime kKept = kMicrosecondsPerSecond;         ///< of readings
-  static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
-
   std::string name() const override { return "assembler"; }
   std::vector<std::string> Subscriptions() const override {
     return {"RIG", "LINE_SCAN", "ENCODER"};
@@ -39,40 +21,10 @@ class AssemblerNode : public Node {
   Status GetStatus() const override;
 
  private:
-  struct Sweep {
-    Utime utime = 0;
-    std::int64_t first_seq = 0;
-    std::set<int> sent;  // lines, by their place in the sweep
-    int lines = 0;       // up to the last that came, sent or not
-  };
+  void OnRig(const RigText& text);
 
-  struct Place {
-    Utime utime = 0;
-    std::int64_t seq = 0;
-  };
-
-  void OnRig(const RigText& rig);
-  void OnReading(const EncoderReading& reading);
-  void OnLine(const LineScan& line);
-  void CheckLine(const LineScan& line) const;
-  bool FitsSweep(const LineScan& line) const;
-  Utime SweepOf(const LineScan& line) const;
-  bool IsReady(const LineScan& line) const;
-  bool FollowsAllBefore(const LineScan& line) const;
-  Messages Drain();
-  void Add(const LineScan& line, Messages* out);
-  void EndSweep(Messages* out);
-  void Forget();
-
-  std::optional<Rig> rig_;
-  EncoderTrack track_;
-  std::map<Utime, LineScan> waiting_;
-  std::optional<Sweep> sweep_;
-  Utime ended_ = 0;              // the newest sweep that has ended
-  std::optional<Place> newest_;  // of the lines that are done with
-  std::int64_t lines_used_ = 0;
-  std::int64_t lines_lost_ = 0;
-  std::int64_t sweeps_ = 0;
+  std::string rig_hash_;
+  std::optional<Assembler> assembler_;  // from the first rig on
 };
 
 }  // namespace rgbdt

@@ -3,14 +3,15 @@
 #include <algorithm>
 
 #include "calib/camera/pixels.h"
-#include "calib/detect/sighting.h"
+#include "calib/detect/target_status.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/methods/detect_view.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
 
-DetectorNode::DetectorNode(std::string method) : method_(std::move(method)) {
+DetectorNode::DetectorNode(std::string method, Looks looks)
+    : method_(std::move(method)), looks_(looks) {
   RequireMethod(method_);
 }
 
@@ -87,7 +88,7 @@ Messages DetectorNode::OnPicks(const CornerSelection& picks) {
 Messages DetectorNode::DetectOrFail(const View& view, SessionEvent event) {
   try {
     return Detect(view, event);
-  } catch (const InputError& e) {
+  } catch (const std::exception& e) {
     event.kind = EventKind::kFailed;
     event.text = e.what();
     return {event};
@@ -105,7 +106,17 @@ Messages DetectorNode::Detect(const View& view, SessionEvent event) {
   return {std::move(detection), std::move(event)};
 }
 
-Messages DetectorNode::Republish() {
+Messages DetectorNode::Advance(Utime now) {
+  if (looks_ == Looks::kNo || !look_.IsDue(now)) return {};
+  try {
+    return LookAtNext();
+  } catch (const std::exception& e) {
+    Warn(std::string("looking for the board: ") + e.what());
+    return {};
+  }
+}
+
+Messages DetectorNode::LookAtNext() {
   if (!rig_ || view_.active()) return {};
   const std::size_t sensors = rig_->cameras.size() + 1;
   for (std::size_t i = 0; i < sensors; ++i) {

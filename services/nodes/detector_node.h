@@ -9,32 +9,37 @@
 #include "calib/model/rig.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
+#include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
-/// CLOUD + <CAMERA>_IMAGE + CORNER_SELECTION + SESSION_COMMAND capture -> DETECTION, one a view,
-/// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A
-/// view that never becomes complete is dropped when the next capture or a reset comes; the status
-/// says what it waits for. Another rig forgets everything.
+/// CLOUD + `<CAMERA>_IMAGE` + CORNER_SELECTION + SESSION_COMMAND capture -> DETECTION, one a view,
+/// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A view that
+/// never becomes complete is dropped when the next capture or a reset comes; the status says what it
+/// waits for. Another rig forgets everything.
 /// Corners that a person picks in an image of one of the newest kKeptViews views have that view
 /// detected once more, with them: its DETECTION comes again, and the event of its capture.
-/// At 1 Hz, live only, it says who sees the board just now (SIGHTING): one sensor at a time, that
-/// whose turn it is and that has something new.
+/// Once a second, where it `looks`, it sends whether a sensor sees the board now (TARGET_STATUS):
+/// one sensor at a time, the next in turn that has something new.
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;
 
+  /// Whether somebody watches; nobody does in a replay, and a look takes as long as a detection.
+  enum class Looks { kYes, kNo };
+
   /// Throws InputError for an unknown method.
-  explicit DetectorNode(std::string method = kAutoMethod);
+  explicit DetectorNode(std::string method = kAutoMethod, Looks looks = Looks::kYes);
   std::string name() const override { return "detector"; }
   std::vector<std::string> Subscriptions() const override {
     return {"RIG", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "SESSION_COMMAND"};
   }
   Messages Handle(const Message& message) override;
-  Messages Republish() override;
+  Messages Advance(Utime now) override;
   Status GetStatus() const override;
 
  private:
+  Messages LookAtNext();
   void OnRig(const RigText& rig);
   void OnCommand(const SessionCommand& command);
   Messages OnPicks(const CornerSelection& picks);
@@ -43,6 +48,8 @@ class DetectorNode : public Node {
   Messages Detect(const View& view, SessionEvent event);
 
   std::string method_;
+  Looks looks_;
+  Periodic look_{kMicrosecondsPerSecond};
   std::optional<Rig> rig_;
   ViewCollector view_;
   std::int64_t views_ = 0;

@@ -37,8 +37,9 @@ Messages FuserNode::Handle(const Message& message) {
 
 void FuserNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
-  rig_ = ParseRig(text.text, "RIG message");
-  fuser_.emplace(rig_->cameras, rig_->lidar.range_sigma_m);
+  Rig rig = ParseRig(text.text, "RIG message");
+  fuser_ = SweepFuser(rig.cameras, rig.lidar.range_sigma_m);
+  rig_ = std::move(rig);
   newest_image_.clear();
 }
 
@@ -72,11 +73,11 @@ void FuserNode::OnPose(const StampedPose& pose) {
       break;
     case PoseTrack::Added::kJump:
       ++pose_jumps_;
-      throw InputError("POSE of " + pose.source + " jumps to (" +
-                       std::to_string(pose.map_from_lidar.translation.x()) + ", " +
-                       std::to_string(pose.map_from_lidar.translation.y()) + ", " +
-                       std::to_string(pose.map_from_lidar.translation.z()) +
-                       ") m, faster than any rig moves; what was seen before it is given up");
+      Warn("POSE of " + pose.source + " jumps to (" +
+           std::to_string(pose.map_from_lidar.translation.x()) + ", " +
+           std::to_string(pose.map_from_lidar.translation.y()) + ", " +
+           std::to_string(pose.map_from_lidar.translation.z()) +
+           ") m, faster than any rig moves; what was seen before it is given up");
   }
 }
 

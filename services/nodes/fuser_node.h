@@ -11,14 +11,14 @@
 
 namespace rgbdt {
 
-/// CLOUD + <CAMERA>_IMAGE + CALIBRATION + POSE -> RGBDT_CLOUD, one message for each chunk (more for
-/// one of more than SweepFuser::kPartPoints), at once,
-/// and RGBDT_SWEEP, each sweep once more at its end, judged as a whole (SweepFuser). Nothing waits
-/// for the future: a point is coloured by the image that serves its time, so live and replay agree
-/// as long as `readout_s` in the rig file is not below the true delay. Before a calibration comes
-/// the cloud goes out without colour; a new one holds from the next chunk on. A calibration of
-/// another rig is refused. An image older than the camera's newest by more than kClockReset means
-/// that the clock was set back: the camera's images go. Memory is bounded.
+/// CLOUD + `<CAMERA>_IMAGE` + CALIBRATION + POSE -> RGBDT_CLOUD, one message for each chunk (more
+/// for one of more than SweepFuser::kPartPoints), at once, and RGBDT_SWEEP, each sweep once more at
+/// its end, judged as a whole (SweepFuser). Nothing waits for the future: a point is coloured by
+/// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
+/// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
+/// one holds from the next chunk on. A calibration of another rig is refused. An image older than
+/// the camera's newest by more than kClockReset means that the clock was set back: the camera's
+/// images go. Memory is bounded.
 class FuserNode : public Node {
  public:
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;

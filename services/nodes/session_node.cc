@@ -14,8 +14,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kStartTimeout = 30;  // s, until everybody is ready
-constexpr double kPatience = 1e9;     // s, with a person who carries the board
+constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
+constexpr double kPatience = 1e9;  // s, with a person who carries the board
 
 std::string ViewName(int number) {
   char name[16];
@@ -36,13 +36,17 @@ void RequireNoViews(const std::filesystem::path& directory) {
 }  // namespace
 
 SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path directory,
-                         OnProgress progress)
+                         OnProgress progress, BoardStands board_stands)
     : script_(std::move(script)),
       rig_(std::move(rig)),
       directory_(std::move(directory)),
-      progress_(std::move(progress)) {
+      progress_(std::move(progress)),
+      board_stands_(std::move(board_stands)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
   RequireNoViews(directory_);
+  for (SessionStep& step : script_.steps) {
+    if (board_stands_ && step.kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
+  }
 }
 
 SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress)
@@ -77,10 +81,10 @@ void SessionNode::Take(const Message& message) {
     collector_.Add(*image);
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     rig_.Camera(picks->camera);
-    collector_.Add(*picks);
     OnPicks(*picks);
+    collector_.Add(*picks);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
-    report_ = *report;
+    report_ = ReportFromJson(report->json, "REPORT message");
   }
 }
 
@@ -168,42 +172,34 @@ void SessionNode::SaveView() {
     WriteView(directory_, *view);
     view_saved_ = true;
     for (const Image& image : view->images) images_[{image.camera, image.utime}] = view->name;
-  } catch (const InputError& e) {
+  } catch (const std::exception& e) {
     Fail(e.what());
   }
 }
 
-Messages SessionNode::Advance(double wall_s) {
-  now_s_ = wall_s;
-  Messages out = GoOn();
+Messages SessionNode::Advance(Utime now) {
+  now_ = now;
+  if (!began_) began_ = now;
+  Messages out;
+  if (rig_repeat_.IsDue(now)) out.push_back(RigText{0, rig_.hash, rig_.text});
+  try {
+    AskWhetherBoardStands();
+    for (Message& message : GoOn()) out.push_back(std::move(message));
+  } catch (const std::exception& e) {  // a file that cannot be written, a person who is gone
+    Fail(e.what());
+  }
   std::move(told_.begin(), told_.end(), std::back_inserter(out));
   told_.clear();
   return out;
 }
 
 Messages SessionNode::GoOn() {
-  const double wall_s = now_s_;
   if (finished_ || idle()) return {};
-  if (!started_) {
-    const std::string who = WhoIsNotReady();
-    if (!who.empty()) {
-      if (!by_request_ && wall_s > kStartTimeout) Fail("not ready after 30 s: " + who);
-      return {};
-    }
-    started_ = true;
-    WriteRig(directory_, rig_);
-    Messages out = Send(SessionVerb::kReset);
-    if (by_request_) {
-      Tell(EventKind::kDone, "ready", 1);
-      return out;
-    }
-    for (Message& message : Begin()) out.push_back(std::move(message));
-    return out;
-  }
+  if (!started_) return Start();
   if (!waiting_) return Begin();
   if (!StepDone()) {
     const bool waits = step().kind == SessionStep::Kind::kWait;
-    if (!waits && wall_s - step_began_s_ > step().timeout_s) {
+    if (!waits && ToSeconds(now_ - step_began_) > step().timeout_s) {
       Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
            WhatIsMissing());
     }
@@ -212,6 +208,23 @@ Messages SessionNode::GoOn() {
   if (!finished_) EndStep();
   if (finished_ || idle()) return {};
   return Begin();
+}
+
+Messages SessionNode::Start() {
+  const std::string who = WhoIsNotReady();
+  if (!who.empty()) {
+    if (!by_request_ && now_ - *began_ > kStartTimeout) Fail("not ready after 30 s: " + who);
+    return {};
+  }
+  WriteRig(directory_, rig_);
+  started_ = true;
+  Messages out = Send(SessionVerb::kReset);
+  if (by_request_) {
+    Tell(EventKind::kDone, "ready", 1);
+    return out;
+  }
+  for (Message& message : Begin()) out.push_back(std::move(message));
+  return out;
 }
 
 void SessionNode::EndStep() {
@@ -226,7 +239,7 @@ void SessionNode::EndStep() {
 Messages SessionNode::Begin() {
   waiting_ = true;
   answered_ = false;
-  step_began_s_ = now_s_;
+  step_began_ = now_;
   switch (step().kind) {
     case SessionStep::Kind::kNextPose:
       view_ = ViewName(++view_number_);
@@ -282,7 +295,7 @@ Messages SessionNode::Send(SessionVerb verb) {
 bool SessionNode::StepDone() {
   switch (step().kind) {
     case SessionStep::Kind::kWait:
-      return now_s_ - step_began_s_ >= step().wait_s;
+      return ToSeconds(now_ - step_began_) >= step().wait_s;
     case SessionStep::Kind::kSave:
       return true;
     case SessionStep::Kind::kCapture:
@@ -297,13 +310,12 @@ void SessionNode::Save() {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
     return;
   }
-  const Report report = ReportFromJson(report_->json);
-  WriteReport(directory_ / "report.json", report);
-  const Calibration calibration = report.ToCalibration();
+  WriteReport(directory_ / "report.json", *report_);
+  const Calibration calibration = report_->ToCalibration();
   if (!calibration.cameras.empty()) {
     WriteCalibration(directory_ / "calibration.textproto", calibration);
   }
-  for (const CameraReport& camera : report.cameras) {
+  for (const CameraReport& camera : report_->cameras) {
     if (camera.solved()) continue;
     Fail("camera " + camera.calibration.camera + ": " + camera.calibration.status);
     return;
@@ -365,6 +377,10 @@ void SessionNode::PoseIsSet() {
   if (WaitsForPose()) answered_ = true;
 }
 
+void SessionNode::AskWhetherBoardStands() {
+  if (board_stands_ && WaitsForPose() && board_stands_()) PoseIsSet();
+}
+
 // Processes without which a session leads nowhere.
 std::vector<std::string> SessionNode::Needed() const {
   std::vector<std::string> needed = {"assembler", "detector", "solver", "fuser"};
@@ -402,8 +418,6 @@ std::string SessionNode::WhatIsMissing() const {
          (found->second.last_problem.empty() ? ""
                                              : "; last problem: " + found->second.last_problem);
 }
-
-Messages SessionNode::Republish() { return {RigText{0, rig_.hash, rig_.text}}; }
 
 Status SessionNode::GetStatus() const {
   Status status;

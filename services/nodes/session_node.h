@@ -7,9 +7,11 @@
 #include <string>
 
 #include "calib/files/schema/session_script.h"
+#include "calib/model/calibration.h"
 #include "calib/model/rig.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
+#include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
@@ -23,7 +25,7 @@ struct SessionProgress {
 
 /// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
 /// answering events, writes the session directory (the one node that writes files). STATUS,
-/// SESSION_EVENT, SESSION_REQUEST, CLOUD, <CAMERA>_IMAGE, CORNER_SELECTION, REPORT -> RIG,
+/// SESSION_EVENT, SESSION_REQUEST, CLOUD, `<CAMERA>_IMAGE`, CORNER_SELECTION, REPORT -> RIG,
 /// SESSION_COMMAND, SESSION_EVENT (how far it is).
 /// It begins when assembler, detector, solver, fuser and the processes of the devices that the rig
 /// file names say that they are ready. next_pose and
@@ -34,14 +36,18 @@ struct SessionProgress {
 /// a person leads says it and goes on. Each capture that a person asks for is followed by solve and
 /// evaluate, so that there always is a report. Corners that a person picks in an image of a view
 /// that is on disk are written to it, and once the detector has looked again, a session that a
-/// person leads solves again. The wall clock is handed in, it serves time-outs only.
+/// person leads solves again. Advance's time serves time-outs and waits, and RIG once a second.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
+  /// Whether the person who carries the board has put it where the next view wants it; asked in
+  /// each Advance until it has. What it throws ends the session.
+  using BoardStands = std::function<bool()>;
 
   /// Throws InputError where the script makes no sense, and where `directory` holds views already:
-  /// two sessions' views must not mix.
-  SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress);
+  /// two sessions' views must not mix. With `board_stands` a pose may take as long as it does.
+  SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress,
+              BoardStands board_stands = {});
   /// A session that a person leads, by SESSION_REQUEST.
   SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress);
 
@@ -51,23 +57,22 @@ class SessionNode : public Node {
             ".*_IMAGE", "CORNER_SELECTION", "REPORT"};
   }
   Messages Handle(const Message& message) override;
-  Messages Republish() override;
+  /// Goes on as far as possible.
+  Messages Advance(Utime now) override;
   Status GetStatus() const override;
+  bool finished() const override { return finished_; }
+  /// A person's Enter is to be noticed.
+  Utime LongestWait() const override { return 20'000; }
 
-  /// Goes on as far as possible; `wall_s` [s] only grows.
-  Messages Advance(double wall_s);
-
-  /// The board is to be carried to its next place; PoseIsSet() says that it stands there, where
-  /// nobody on the bus does.
-  bool WaitsForPose() const;
-  void PoseIsSet();
-
-  bool finished() const { return finished_; }
   const std::string& failure() const { return failure_; }  ///< empty: none so far
 
  private:
   const SessionStep& step() const { return script_.steps[index_]; }
   Messages GoOn();
+  Messages Start();
+  bool WaitsForPose() const;
+  void PoseIsSet();
+  void AskWhetherBoardStands();
   Messages Begin();
   Messages BeginCapture();
   Messages Send(SessionVerb verb);
@@ -95,11 +100,14 @@ class SessionNode : public Node {
   Rig rig_;
   std::filesystem::path directory_;
   OnProgress progress_;
+  BoardStands board_stands_;
+  Periodic rig_repeat_{kMicrosecondsPerSecond};
 
   std::map<std::string, Status> statuses_;
   Utime newest_utime_ = 0;
-  double now_s_ = 0;  // wall clock, newest handed in
-  double step_began_s_ = 0;
+  Utime now_ = 0;               // Advance's newest
+  std::optional<Utime> began_;  // its first
+  Utime step_began_ = 0;
   bool started_ = false;  // everybody was ready
   bool waiting_ = false;  // the step at hand was begun
   std::size_t index_ = 0;
@@ -115,7 +123,7 @@ class SessionNode : public Node {
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;
-  std::optional<ReportText> report_;
+  std::optional<Report> report_;
   bool finished_ = false;
   std::string failure_;
 };

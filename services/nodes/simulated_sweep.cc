@@ -3,7 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "calib/scan_assembly/assembler.h"
+#include "calib/scan_assembly/encoder_track.h"
+#include "calib/scan_assembly/line_to_cloud.h"
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "services/nodes/simulator_node.h"
 
 namespace rgbdt {

@@ -11,7 +11,8 @@ constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 }  // namespace
 
-SimulatorNode::SimulatorNode(const simulate::Options& options) : simulator_(options) {}
+SimulatorNode::SimulatorNode(const simulate::Options& options, double speed, OnTruth on_truth)
+    : simulator_(options), on_truth_(std::move(on_truth)), pacer_(speed) {}
 
 // Read-out and transfer of the slowest camera.
 Utime SimulatorNode::Delay() const {
@@ -128,20 +129,31 @@ void SimulatorNode::PlanCapture(const SessionCommand& command) {
   PlanEvent(newest_planned_, command.command, EventKind::kDone, "images taken", 0, 1);
 }
 
-std::optional<Utime> SimulatorNode::NextDue() const {
-  if (agenda_.empty()) return std::nullopt;
-  return agenda_.begin()->first;
+Messages SimulatorNode::Advance(Utime now) {
+  Messages out;
+  while (!agenda_.empty() && pacer_.WaitFor(agenda_.begin()->first, now) == 0) {
+    const auto next = agenda_.begin();
+    now_ = next->first;
+    const Task task = std::move(next->second);
+    agenda_.erase(next);
+    try {
+      for (Message& message : Do(task)) out.push_back(std::move(message));
+    } catch (const std::exception& e) {
+      Warn(e.what());
+    }
+  }
+  return out;
 }
 
-Messages SimulatorNode::TakeNext() {
-  const auto next = agenda_.begin();
-  const Utime due = next->first;
-  const Task task = std::move(next->second);
-  agenda_.erase(next);
-  now_ = due;
+void SimulatorNode::ShowView(const std::string& view) {
+  simulator_.ShowView(views_++, view);
+  if (on_truth_) on_truth_(simulator_.truth());
+}
+
+Messages SimulatorNode::Do(const Task& task) {
   switch (task.kind) {
     case Task::Kind::kShow:
-      simulator_.ShowView(views_++, task.text);
+      ShowView(task.text);
       return {};
     case Task::Kind::kEncoder:
       return {simulator_.Encoder(task.utime, task.sweep_utime)};
@@ -159,7 +171,7 @@ Messages SimulatorNode::TakeNext() {
     case Task::Kind::kEvent: {
       SessionEvent event;
       event.command = task.command;
-      event.utime = due;
+      event.utime = now_;
       event.source = name();
       event.kind = task.event;
       event.text = task.text;

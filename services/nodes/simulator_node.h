@@ -1,37 +1,42 @@
 #pragma once
 
+#include <functional>
 #include <map>
-#include <memory>
-#include <optional>
 #include <string>
 
 #include "calib/simulate/simulator.h"
 #include "services/runtime/node.h"
+#include "services/runtime/pacer.h"
 
 namespace rgbdt {
 
-/// SESSION_COMMAND -> LINE_SCAN, ENCODER, <CAMERA>_IMAGE, CORNER_SELECTION, SESSION_EVENT: the
-/// synthetic rig on the bus. Its time is simulated and stands still until a command comes. Cameras
-/// take an image at each full second of simulated time and at each capture; each message is due
-/// when the real sensor would have sent it (a line after its last beam, an image after read-out).
+/// SESSION_COMMAND -> LINE_SCAN, ENCODER, `<CAMERA>_IMAGE`, CORNER_SELECTION, SESSION_EVENT: the
+/// synthetic rig on the bus. Its time is simulated, `speed` times as fast as Advance's, and stands
+/// still until a command comes; what takes long to render holds it up. Cameras take an image at
+/// each full second of simulated time and at each capture; each message leaves when the real sensor
+/// would have sent it (a line after its last beam, an image after read-out).
 class SimulatorNode : public Node {
  public:
   static constexpr Utime kEpoch = 1'433'160'000'000'000;  ///< 2015-06-01, a sunny day
   static constexpr Utime kEncoderPeriod = 10'000;         ///< 100 Hz
 
-  explicit SimulatorNode(const simulate::Options& options);
+  /// Who keeps the truth; called when the board has been put elsewhere.
+  using OnTruth = std::function<void(const Truth& truth)>;
+
+  explicit SimulatorNode(const simulate::Options& options, double speed = 1, OnTruth on_truth = {});
 
   std::string name() const override { return "simulator"; }
   std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }
   Messages Handle(const Message& message) override;
+  /// May render for seconds.
+  Messages Advance(Utime now) override;
+  Utime LongestWait() const override { return 2000; }
   Status GetStatus() const override;
 
-  /// When the next message is due; nothing while time stands still.
-  std::optional<Utime> NextDue() const;
-  /// The messages due next. Only when NextDue() says so. May render for seconds.
-  Messages TakeNext();
-
   const simulate::Simulator& simulator() const { return simulator_; }
+  /// The simulated time.
+  Utime simulated_now() const { return now_; }
+  bool time_stands_still() const { return agenda_.empty(); }
 
  private:
   struct Task {
@@ -46,6 +51,8 @@ class SimulatorNode : public Node {
     double fraction = 0;
   };
 
+  Messages Do(const Task& task);
+  void ShowView(const std::string& view);
   void At(Utime due, Task task) { agenda_.emplace(due, std::move(task)); }
   void PlanPose(const SessionCommand& command);
   void PlanSweep(const SessionCommand& command);
@@ -56,6 +63,8 @@ class SimulatorNode : public Node {
   Utime Delay() const;
 
   simulate::Simulator simulator_;
+  OnTruth on_truth_;
+  Pacer pacer_;
   std::multimap<Utime, Task> agenda_;  // by the time they are due
   Utime now_ = kEpoch;
   Utime newest_planned_ = kEpoch;

@@ -43,8 +43,10 @@ Messages SolverNode::Handle(const Message& message) {
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
   if (const auto* detection = std::get_if<ViewDetection>(&message)) {
     for (const ImageDetection& image : detection->images) rig_->Camera(image.camera);
-    detections_[detection->view] = *detection;
-    Solve(false);
+    Detections all = detections_;
+    all[detection->view] = *detection;
+    report_ = Solve(all, false);
+    detections_ = std::move(all);
     return Calibrations();
   }
   if (const auto* command = std::get_if<SessionCommand>(&message)) return OnCommand(*command);
@@ -68,7 +70,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
     event.text = "no view yet; capture views of the target first";
     return {event};
   }
-  Solve(true);
+  report_ = Solve(detections_, true);
   Messages out = Calibrations();
   out.push_back(ReportText{0, report_->utime, ReportToJson(*report_)});
   event.text = Brief(*report_, evaluate);
@@ -76,13 +78,13 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   return out;
 }
 
-void SolverNode::Solve(bool for_report) {
+Report SolverNode::Solve(const Detections& detections, bool for_report) const {
   std::vector<ViewDetection> all;
-  for (const auto& [view, detection] : detections_) all.push_back(detection);
+  for (const auto& [view, detection] : detections) all.push_back(detection);
   CalibrateOptions options = options_;
   options.wide_start &= for_report;
   options.diagnostics &= for_report;
-  report_ = Calibrate(*rig_, all, options);
+  return Calibrate(*rig_, all, options);
 }
 
 Messages SolverNode::Calibrations() const {
@@ -95,7 +97,10 @@ Messages SolverNode::Calibrations() const {
   return out;
 }
 
-Messages SolverNode::Republish() { return Calibrations(); }
+Messages SolverNode::Advance(Utime now) {
+  if (!repeat_.IsDue(now)) return {};
+  return Calibrations();
+}
 
 Status SolverNode::GetStatus() const {
   Status status;

@@ -8,14 +8,15 @@
 #include "calib/model/calibration.h"
 #include "calib/model/rig.h"
 #include "services/runtime/node.h"
+#include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
 /// DETECTION -> CALIBRATION and REPORT. Solves again after each view, always from the first guess
 /// and from all views so far, so the order in which they came does not matter; a detection of a
 /// view seen before replaces it. SESSION_COMMAND: solve and evaluate are answered with an event and
-/// the report, reset forgets all. The calibration is repeated at 1 Hz. A camera that was not solved
-/// yet has no calibration on the bus.
+/// the report, reset forgets all. The calibration is repeated once a second. A camera that was not
+/// solved yet has no calibration on the bus.
 class SolverNode : public Node {
  public:
   explicit SolverNode(CalibrateOptions options = {});
@@ -25,21 +26,25 @@ class SolverNode : public Node {
     return {"RIG", "DETECTION", "SESSION_COMMAND"};
   }
   Messages Handle(const Message& message) override;
-  Messages Republish() override;
+  Messages Advance(Utime now) override;
   Status GetStatus() const override;
 
   /// The newest report; none before the first view.
   const std::optional<Report>& report() const { return report_; }
 
  private:
-  void Solve(bool for_report);  // for a report: with a second start, folds, the next view
+  using Detections = std::map<std::string, ViewDetection>;  // by view
+
+  // For a report: with a second start, folds, the next view.
+  Report Solve(const Detections& detections, bool for_report) const;
   Messages Calibrations() const;
   Messages OnCommand(const SessionCommand& command);
 
   CalibrateOptions options_;
   std::optional<Rig> rig_;
-  std::map<std::string, ViewDetection> detections_;  // by view
+  Detections detections_;
   std::optional<Report> report_;
+  Periodic repeat_{kMicrosecondsPerSecond};
 };
 
 }  // namespace rgbdt

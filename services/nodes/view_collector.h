@@ -9,39 +9,9 @@
 #include "calib/model/rig.h"
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
+#include "calib/scan_assembly/sweep_collector.h"
 
 namespace rgbdt {
-
-/// Sweeps by their name, as their chunks come in. Keeps the newest kMinSweeps, and of a LIDAR that
-/// sweeps many times a second as many as have kKeptPoints, kMaxSweeps at most: a capture names a
-/// sweep that ended a while ago.
-class SweepCollector {
- public:
-  static constexpr std::size_t kMinSweeps = 3, kMaxSweeps = 100;
-  static constexpr std::size_t kKeptPoints = 6'000'000;
-  static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
-  static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
-
-  /// Throws InputError for a chunk that cannot be joined to those of its sweep.
-  void Add(const CloudChunk& chunk);
-  /// The complete sweep, or nothing while its end has not come.
-  std::optional<Cloud> Complete(Utime sweep_utime) const;
-  bool Ended(Utime sweep_utime) const;
-  /// Name of the newest sweep that is complete; 0: none is.
-  Utime NewestEnded() const;
-  void Clear() { sweeps_.clear(); }
-
- private:
-  struct Sweep {
-    std::vector<CloudChunk> chunks;
-    std::size_t points = 0;
-    bool ended = false;
-  };
-  static void Check(const Sweep& sweep, const CloudChunk& chunk);
-  void ForgetOldest();
-
-  std::map<Utime, Sweep> sweeps_;
-};
 
 /// The view that a capture command asks for, put together from the bus: the sweep it names, each
 /// camera's first image with utime >= the command's and at most kImageWait after it, up to two of

@@ -3,6 +3,7 @@
 #include <exception>
 #include <string>
 
+#include "calib/model/version.h"
 #include "services/rgbdt/verbs.h"
 
 int main(int argc, char** argv) {
@@ -10,6 +11,7 @@ int main(int argc, char** argv) {
       "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic",
       "rgbdt"};
+  app.set_version_flag("--version", rgbdt::Version());
   app.require_subcommand(1);
   int exit_code = 0;
   const std::string verb = argc > 1 ? argv[1] : "";

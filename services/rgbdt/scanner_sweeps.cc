@@ -11,7 +11,6 @@
 #include "calib/scan_assembly/assembler.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
-#include "services/nodes/assembler_node.h"
 
 namespace rgbdt {
 namespace {
@@ -81,7 +80,7 @@ ScannerSweeps FromLog(const std::string& path) {
   std::map<Utime, TurnedBeams> sweeps;
   for (const LineScan& line : log.lines) {
     const Utime sweep = log.track.SweepAt(line.utime);
-    const auto angles = BeamAngles(scanner, log.track, line, AssemblerNode::kMaxGap);
+    const auto angles = BeamAngles(scanner, log.track, line, Assembler::kMaxGap);
     if (sweep != 0 && angles) AppendLine(line, *angles, &sweeps[sweep]);
   }
   ScannerSweeps read;

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 
@@ -66,11 +68,19 @@ void PrintProblems(const NodeRunner& runner) {
                static_cast<long long>(runner.gaps()), status.last_problem.c_str());
 }
 
+// To the newest time that any of them has heard.
+void Advance(const std::array<NodeRunner*, 4>& runners, MemoryBus* bus) {
+  Utime now = 0;
+  for (const NodeRunner* runner : runners) now = std::max(now, runner->newest_utime());
+  for (NodeRunner* runner : runners) runner->Advance(now);
+  bus->Run();
+}
+
 int Run(const Flags& flags) {
   LogReader log(flags.log);
   MemoryBus bus;
   AssemblerNode assembler;
-  DetectorNode detector(flags.method);
+  DetectorNode detector(flags.method, DetectorNode::Looks::kNo);
   CalibrateOptions options;
   options.method = flags.method;
   SolverNode solver(options);
@@ -79,6 +89,8 @@ int Run(const Flags& flags) {
   NodeRunner detector_runner(&detector, &bus);
   NodeRunner solver_runner(&solver, &bus);
   NodeRunner fuser_runner(&fuser, &bus);
+  const std::array<NodeRunner*, 4> runners = {&assembler_runner, &detector_runner, &solver_runner,
+                                              &fuser_runner};
   InputChannels input;
   bool has_calibration = false;
   std::int64_t events = 0;
@@ -88,16 +100,14 @@ int Run(const Flags& flags) {
       has_calibration |= event->channel == "CALIBRATION";
       bus.Publish(event->channel, event->bytes);
       bus.Run();
+      Advance(runners, &bus);
     }
     ++events;
     const int now = static_cast<int>(100 * log.position() / std::max<std::int64_t>(1, log.size()));
     if (now / 5 != percent / 5) std::fprintf(stderr, "replay: %d%%\n", now);
     percent = now;
   }
-  for (const NodeRunner* runner :
-       {&assembler_runner, &detector_runner, &solver_runner, &fuser_runner}) {
-    PrintProblems(*runner);
-  }
+  for (const NodeRunner* runner : runners) PrintProblems(*runner);
   if (log.unreadable_bytes() > 0) {
     std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
                  flags.log.c_str(), static_cast<long long>(log.unreadable_bytes()));

@@ -6,6 +6,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/map_files.h"
+#include "calib/model/text.h"
 #include "calib/present/pictures/terrain_json.h"
 #include "calib/present/pictures/terrain_picture.h"
 #include "calib/terrain/terrain.h"
@@ -32,9 +33,7 @@ void PrintSites(const std::vector<LandingSite>& sites) {
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const LandingSite& site = sites[i];
     const auto number = [](double value, const char* format) {
-      char text[32] = "-";
-      if (std::isfinite(value)) std::snprintf(text, sizeof text, format, value);
-      return std::string(text);
+      return std::isfinite(value) ? Format(format, value) : "-";
     };
     std::printf("%4zu %8.2f %8.2f %8.2f %9.2f %10.1f %9.0f %8s %7s %6.2f\n", i + 1, site.centre.x(),
                 site.centre.y(), site.centre.z(), site.radius_m, site.slope_rad / kDegree,

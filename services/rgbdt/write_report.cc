@@ -9,6 +9,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
+#include "calib/model/version.h"
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/page.h"
 #include "calib/present/pictures/colouring_picture.h"
@@ -111,7 +112,7 @@ std::string ViewerPage(const Session& session, const std::vector<ViewDetection>&
                        const Report& report) {
   viewer::SessionFramesOptions options;
   options.title = session.root.lexically_normal().string();
-  options.version = RGBDT_VERSION;
+  options.version = Version();
   std::vector<viewer::NamedFrame> frames =
       viewer::SessionFrames(session, detections, report, options);
   for (const CameraReport& camera : report.cameras) {

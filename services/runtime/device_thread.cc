@@ -13,49 +13,49 @@ void DeviceThread::Run() {
       serve_(*this);
       break;
     } catch (const std::exception& e) {
-      Complain(e.what());
+      Warn(e.what());
     }
-    Sleep(kRetryMs);
+    Sleep(kRetryMs * 1000);
   }
   returned_ = true;
 }
 
-bool DeviceThread::Sleep(int ms) {
+bool DeviceThread::Sleep(Utime us) {
   std::unique_lock<std::mutex> lock(mutex_);
-  wake_.wait_for(lock, std::chrono::milliseconds(ms), [this] { return stopping_.load(); });
+  wake_.wait_for(lock, std::chrono::microseconds(us), [this] { return stopping_.load(); });
   return !stopping_;
 }
 
-void DeviceThread::Say(Message message) {
+void DeviceThread::Publish(Message message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (news_.messages.size() >= most_waiting_) {
-    news_.messages.erase(news_.messages.begin());
+  if (output_.messages.size() >= most_waiting_) {
+    output_.messages.erase(output_.messages.begin());
     ++overflown_;
   }
-  news_.messages.push_back(std::move(message));
+  output_.messages.push_back(std::move(message));
 }
 
-void DeviceThread::Complain(const std::string& problem) {
+void DeviceThread::Warn(const std::string& warning) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (news_.problems.size() < kMaxWaiting) news_.problems.push_back(problem);
+  if (output_.warnings.size() < kMaxWaiting) output_.warnings.push_back(warning);
 }
 
-DeviceNews DeviceThread::TakeNews() {
-  DeviceNews news;
+DeviceOutput DeviceThread::Take() {
+  DeviceOutput output;
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::swap(news, news_);
+  std::swap(output, output_);
   if (overflown_ > 0) {
-    news.problems.push_back("the machine does not keep up: " + std::to_string(overflown_) +
-                            " messages of the device were given up");
+    output.warnings.push_back("the machine does not keep up: " + std::to_string(overflown_) +
+                              " messages of the device were given up");
     overflown_ = 0;
   }
-  return news;
+  return output;
 }
 
 bool DeviceThread::ended() const {
   if (!returned_) return false;
   const std::lock_guard<std::mutex> lock(mutex_);
-  return news_.messages.empty() && news_.problems.empty();
+  return output_.messages.empty() && output_.warnings.empty();
 }
 
 void DeviceThread::Stop() {
@@ -65,6 +65,12 @@ void DeviceThread::Stop() {
   }
   wake_.notify_all();
   if (thread_.joinable()) thread_.join();
+}
+
+Messages DeviceNode::TakeFrom(DeviceThread* thread) const {
+  DeviceOutput output = thread->Take();
+  for (const std::string& warning : output.warnings) Warn(warning);
+  return std::move(output.messages);
 }
 
 }  // namespace rgbdt

@@ -19,17 +19,17 @@ class DeviceError : public std::runtime_error {
   explicit DeviceError(const std::string& what) : std::runtime_error(what) {}
 };
 
-/// What a device had to tell since it was asked last.
-struct DeviceNews {
+/// What a device's thread has published and warned of since it was asked last.
+struct DeviceOutput {
   Messages messages;
-  std::vector<std::string> problems;
+  std::vector<std::string> warnings;
 };
 
-/// A thread that serves one device and may wait for it, and what it tells the process's loop.
+/// A thread that serves one device and may wait for it, and its output for the process's loop.
 ///
-/// `serve` opens the device and serves it until Stopping(). When it throws, the reason is told and
-/// it is called again kRetryMs later, for as long as it takes: a device that was unplugged comes
-/// back without a restart. When it returns, there is nothing more to serve (a file's end).
+/// `serve` opens the device and serves it until Stopping(). When it throws, the reason is a warning
+/// and it is called again kRetryMs later, for as long as it takes: a device that was unplugged
+/// comes back without a restart. When it returns, there is nothing more to serve (a file's end).
 class DeviceThread {
  public:
   static constexpr int kRetryMs = 500;
@@ -46,13 +46,13 @@ class DeviceThread {
   /// For `serve`.
   bool Stopping() const { return stopping_; }
   /// Sleeps, but not once it is to stop: then false.
-  bool Sleep(int ms);
-  void Say(Message message);
-  void Complain(const std::string& problem);
+  bool Sleep(Utime us);
+  void Publish(Message message);
+  void Warn(const std::string& warning);
 
   /// For the process's loop.
-  DeviceNews TakeNews();
-  /// `serve` has returned and all that it said was taken.
+  DeviceOutput Take();
+  /// `serve` has returned and all its output was taken.
   bool ended() const;
   void Stop();
 
@@ -63,18 +63,21 @@ class DeviceThread {
   std::size_t most_waiting_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  DeviceNews news_;
+  DeviceOutput output_;
   std::int64_t overflown_ = 0;
   std::atomic<bool> stopping_{false};
   std::atomic<bool> returned_{false};
   std::thread thread_;  // last: it uses all the others
 };
 
-/// A node that speaks for a device.
+/// A node that speaks for a device, which a thread of its own serves.
 class DeviceNode : public Node {
  public:
-  virtual DeviceNews TakeNews() = 0;
-  virtual bool ended() const = 0;
+  Utime LongestWait() const override { return 2000; }
+
+ protected:
+  /// The thread's messages; its warnings become the node's.
+  Messages TakeFrom(DeviceThread* thread) const;
 };
 
 }  // namespace rgbdt

@@ -1,17 +1,21 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "services/messages/message.h"
 
 namespace rgbdt {
 
-/// One role of the system as a pure machine: messages in, messages out. No clock, no bus, no
-/// threads, no files but where a role's header says so. What a node waits for, merges by time,
+/// One role of the system as a pure machine: messages and time in, messages out. No clock, no bus,
+/// no threads, no files but where a role's header says so. What a node waits for, merges by time,
 /// drops and guarantees stands in its header. `rgbdt replay` and the processes run the same nodes.
 class Node {
  public:
+  using WarningHandler = std::function<void(const std::string& warning)>;
+
   virtual ~Node() = default;
 
   /// Name of the process: "assembler".
@@ -21,14 +25,35 @@ class Node {
   virtual std::vector<std::string> Subscriptions() const = 0;
 
   /// Takes one message. Throws InputError for one that cannot be used: the caller drops it, counts
-  /// it and names it in the status. The node's state is then as before.
+  /// it and names it in the status. The node is then as if the message had never come. What follows
+  /// from a message and is not its sender's fault is a warning.
   virtual Messages Handle(const Message& message) = 0;
 
-  /// What is to be heard again by who came late; called at 1 Hz by a process, never in a replay.
-  virtual Messages Republish() { return {}; }
+  /// It is `now` [us]: does and says what is due, and what is repeated for who came late. The clock
+  /// is the caller's: it only grows, its zero is anywhere, and no message's time is of it. A
+  /// process hands in its machine's steady clock, between messages and every LongestWait() at
+  /// least; `rgbdt replay` the newest time in a message. What goes wrong is a warning.
+  virtual Messages Advance(Utime /*now*/) { return {}; }
+
+  /// How long nobody may need to call Advance [us], where no message comes.
+  virtual Utime LongestWait() const { return 50'000; }
 
   /// Ready, and what it does or waits for. The caller adds name, times and its own counters.
   virtual Status GetStatus() const = 0;
+
+  /// There is nothing left to do: the process ends.
+  virtual bool finished() const { return false; }
+
+  /// Who is told of warnings, e.g. "POSE of gps jumps ...": from within Handle and Advance.
+  void SetWarningHandler(WarningHandler handler) { warning_handler_ = std::move(handler); }
+
+ protected:
+  void Warn(const std::string& warning) const {
+    if (warning_handler_) warning_handler_(warning);
+  }
+
+ private:
+  WarningHandler warning_handler_;
 };
 
 }  // namespace rgbdt

@@ -35,6 +35,7 @@ void AddCounters(const std::string& what, const std::map<std::string, std::int64
 }  // namespace
 
 NodeRunner::NodeRunner(Node* node, Bus* bus) : node_(node), bus_(bus) {
+  node_->SetWarningHandler([this](const std::string& warning) { NameProblem(warning); });
   for (const std::string& channel : node_->Subscriptions()) {
     bus_->Subscribe(channel, [this](const std::string& name, const std::uint8_t* data,
                                     std::size_t size) { OnBytes(name, data, size); });
@@ -47,11 +48,11 @@ void NodeRunner::OnBytes(const std::string& channel, const std::uint8_t* data, s
   Guard(channel, [&] {
     const Message message = Decode(channel, data, size);
     CountGap(channel, message);
+    answers = node_->Handle(message);
     // Another process' health is not this one's time.
     if (!std::holds_alternative<Status>(message)) {
       newest_utime_ = std::max(newest_utime_, UtimeOf(message));
     }
-    answers = node_->Handle(message);
   });
   Publish(std::move(answers));
 }
@@ -83,8 +84,9 @@ void NodeRunner::PublishOne(Message message) {
   });
 }
 
-void NodeRunner::Tick() {
-  Guard("repeating", [&] { Publish(node_->Republish()); });
+void NodeRunner::Advance(Utime now) {
+  Guard("advancing", [&] { Publish(node_->Advance(now)); });
+  if (!status_.IsDue(now)) return;
   Guard("status", [&] { PublishOne(GetStatus()); });
 }
 

@@ -7,13 +7,14 @@
 #include "services/bus/bus.h"
 #include "services/bus/sequence.h"
 #include "services/runtime/node.h"
+#include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
 /// Puts a node on a bus: decodes what the node subscribes to, hands it over, numbers and publishes
 /// what comes back. A message that cannot be decoded or used is dropped, counted and named in the
 /// status; gaps in the senders' numbers are counted by channel. No exception leaves a handler, and
-/// none leaves Publish and Tick: what cannot be sent is dropped, counted and named likewise.
+/// none leaves Advance: what cannot be sent is dropped, counted and named likewise.
 ///
 /// Numbers (sequence.h) are kept by channel, on STATUS, SESSION_EVENT and POSE by channel and
 /// sender, since several processes speak there. Late and repeated messages are handed over as they
@@ -25,41 +26,42 @@ class NodeRunner {
 
   /// Subscribes at once. Both outlive the runner, and the runner the bus' deliveries.
   NodeRunner(Node* node, Bus* bus);
+  ~NodeRunner() { node_->SetWarningHandler({}); }
   NodeRunner(const NodeRunner&) = delete;
   NodeRunner& operator=(const NodeRunner&) = delete;
 
-  /// Numbers and publishes, as if the node had said it.
-  void Publish(Messages messages);
-
-  /// Names a problem of the node's own: in the status and to the problem handler.
-  void NameProblem(const std::string& problem);
-
-  /// At 1 Hz: what the node repeats, and its status.
-  void Tick();
+  /// It is `now` [us] of the caller's clock (Node::Advance): publishes what the node then says, and
+  /// once a second its status.
+  void Advance(Utime now);
 
   /// The node's own, with the runner's name, time, newest problem and counters: "received",
   /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "dropped CLOUD",
   /// "gaps CLOUD".
   Status GetStatus() const;
 
-  /// Called with each problem, e.g. "CLOUD: num_points is -1".
+  /// Called with each problem, the node's warnings among them, e.g. "CLOUD: num_points is -1".
   void SetProblemHandler(ProblemHandler handler) { problem_handler_ = std::move(handler); }
 
   std::int64_t received() const { return received_; }
   std::int64_t dropped() const { return dropped_; }
   std::int64_t gaps() const { return gaps_; }
+  /// The newest time in a message that was taken; 0 before the first.
+  Utime newest_utime() const { return newest_utime_; }
 
  private:
   void OnBytes(const std::string& channel, const std::uint8_t* data, std::size_t size);
   void CountGap(const std::string& channel, const Message& message);
+  void Publish(Messages messages);
   void PublishOne(Message message);
   /// Runs `action`; what it throws is counted and named.
   void Guard(const std::string& channel, const std::function<void()>& action);
   void Drop(const std::string& channel, const std::string& what);
+  void NameProblem(const std::string& problem);
 
   Node* node_;
   Bus* bus_;
   ProblemHandler problem_handler_;
+  Periodic status_{kMicrosecondsPerSecond};
   std::map<std::string, std::int64_t> next_seq_;      // of what is published, by sequence
   std::map<std::string, SequenceCounter> sequences_;  // of what is received
   std::map<std::string, std::int64_t> dropped_by_channel_, gaps_by_channel_;

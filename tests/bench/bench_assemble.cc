@@ -9,7 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "calib/scan_assembly/assembler.h"
+#include "calib/scan_assembly/encoder_track.h"
+#include "calib/scan_assembly/line_to_cloud.h"
 #include "services/nodes/assembler_node.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/stages.h"
@@ -90,7 +91,7 @@ std::function<void()> OnTrack(std::int64_t points, const LineWork& work) {
   });
 }
 
-// Each beam by itself, at its own angle: the formula as it stands in assembler.h.
+// Each beam by itself, at its own angle: the formula as it stands in line_to_cloud.h.
 std::function<void()> ByEigen(std::int64_t points) {
   const TurnedScanner scanner = *MakeBenchRig().rig.lidar.turned_scanner;
   const Eigen::Isometry3d motor_from_scanner =
@@ -101,7 +102,7 @@ std::function<void()> ByEigen(std::int64_t points) {
     for (std::size_t i = 0; i < line.range.size(); ++i) {
       const double after = static_cast<double>(i) * line.beam_period_s;
       const auto angle =
-          track.AngleAt(scanner, line.utime + FromSeconds(after), AssemblerNode::kMaxGap);
+          track.AngleAt(scanner, line.utime + FromSeconds(after), Assembler::kMaxGap);
       const double a = line.first_angle_rad + static_cast<double>(i) * line.angle_step_rad;
       const double r = static_cast<double>(line.range[i]);
       const Eigen::Vector3d in_scanner(r * std::cos(a), 0, r * std::sin(a));
@@ -137,8 +138,8 @@ std::function<void()> ByPcl(std::int64_t points) {
       flat[i].z = line.range[i] * sines[i];
       flat[i].intensity = line.intensity[i];
     }
-    const auto angle = track.AngleAt(scanner, line.utime + TurningScanner::kLinePeriod / 2,
-                                     AssemblerNode::kMaxGap);
+    const auto angle =
+        track.AngleAt(scanner, line.utime + TurningScanner::kLinePeriod / 2, Assembler::kMaxGap);
     const Eigen::Isometry3d turned =
         Eigen::AngleAxisd(angle.value(), Eigen::Vector3d::UnitZ()) * motor_from_scanner;
     pcl::transformPointCloud(flat, cloud, turned.matrix().cast<float>());

@@ -8,7 +8,7 @@
 
 #include "calib/files/schema/report_file.h"
 #include "calib/methods/calibrate.h"
-#include "calib/scan_assembly/assembler.h"
+#include "calib/scan_assembly/line_to_cloud.h"
 #include "services/messages/codec.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"

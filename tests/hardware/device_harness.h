@@ -13,7 +13,7 @@ namespace rgbdt {
 /// What a device's thread has told so far.
 struct Told {
   Messages messages;
-  std::vector<std::string> problems;
+  std::vector<std::string> warnings;
 
   template <typename T>
   std::vector<T> All() const {
@@ -29,22 +29,33 @@ struct Told {
     for (const Message& message : messages) count += std::holds_alternative<T>(message) ? 1 : 0;
     return count;
   }
-  bool HasProblem(const std::string& part) const {
-    for (const std::string& problem : problems) {
-      if (problem.find(part) != std::string::npos) return true;
+  bool HasWarning(const std::string& part) const {
+    for (const std::string& warning : warnings) {
+      if (warning.find(part) != std::string::npos) return true;
     }
     return false;
   }
 };
 
-/// Takes news from a thread or node until `enough` says so; false after `timeout_s`.
+inline DeviceOutput OutputOf(DeviceThread* thread) { return thread->Take(); }
+
+/// What a node publishes and warns of.
+inline DeviceOutput OutputOf(DeviceNode* node) {
+  DeviceOutput output;
+  node->SetWarningHandler([&](const std::string& text) { output.warnings.push_back(text); });
+  output.messages = node->Advance(0);
+  node->SetWarningHandler({});
+  return output;
+}
+
+/// Takes the output of a thread or node until `enough` says so; false after `timeout_s`.
 template <typename Source, typename Enough>
 bool Collect(Source* source, Told* told, const Enough& enough, double timeout_s = 30) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   while (std::chrono::steady_clock::now() < until) {
-    DeviceNews news = source->TakeNews();
-    for (Message& message : news.messages) told->messages.push_back(std::move(message));
-    for (std::string& problem : news.problems) told->problems.push_back(std::move(problem));
+    DeviceOutput output = OutputOf(source);
+    for (Message& message : output.messages) told->messages.push_back(std::move(message));
+    for (std::string& warning : output.warnings) told->warnings.push_back(std::move(warning));
     if (enough(*told)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

@@ -11,6 +11,7 @@
 
 #include "services/drivers/dynamixel/motor_node.h"
 #include "services/drivers/dynamixel/serial_port.h"
+#include "tests/hardware/device_harness.h"
 #include "tests/hardware/dynamixel_peer.h"
 
 namespace rgbdt {
@@ -69,9 +70,9 @@ class Listener {
   }
   bool WaitFor(const std::function<bool()>& holds) {
     return Within(20, [&] {
-      DeviceNews news = node_->TakeNews();
-      Keep(std::move(news.messages));
-      for (const std::string& problem : news.problems) problems_ += problem + "\n";
+      DeviceOutput output = OutputOf(node_.get());
+      Keep(std::move(output.messages));
+      for (const std::string& warning : output.warnings) warnings_ += warning + "\n";
       return holds();
     });
   }
@@ -100,7 +101,7 @@ class Listener {
 
   const std::vector<EncoderReading>& readings() const { return readings_; }
   const std::vector<SessionEvent>& events() const { return events_; }
-  const std::string& problems() const { return problems_; }
+  const std::string& warnings() const { return warnings_; }
   std::vector<EncoderReading> OfSweep(Utime sweep_utime) const {
     std::vector<EncoderReading> found;
     for (const EncoderReading& reading : readings_) {
@@ -123,7 +124,7 @@ class Listener {
   std::unique_ptr<MotorNode> node_;
   std::vector<EncoderReading> readings_;
   std::vector<SessionEvent> events_;
-  std::string problems_;
+  std::string warnings_;
 };
 
 // By how much each stamp is off [us]: how long before or after it the servo really was there.
@@ -217,7 +218,7 @@ TEST_P(DynamixelSweep, ReadsOftenWithTheServosOwnTimes) {
     EXPECT_LT(Quantile(errors, 0.95), StampBound(motor));
   }
   EXPECT_EQ(motor.Counter("sweeps"), 1);
-  EXPECT_THAT(motor.problems(), Not(HasSubstr("servo")));
+  EXPECT_THAT(motor.warnings(), Not(HasSubstr("servo")));
   motor.Destroy();
   EXPECT_FALSE(peer.state().torque);
 }
@@ -316,7 +317,7 @@ TEST(DynamixelMotor, FailsWithAServoThatFallsSilentAndFindsItAgain) {
   EXPECT_FALSE(peer.state().torque);
   motor.Send(SweepCommand(3));
   EXPECT_EQ(motor.WaitForEnd(3).kind, EventKind::kDone);
-  EXPECT_THAT(motor.problems(), HasSubstr("baud rate"));
+  EXPECT_THAT(motor.warnings(), HasSubstr("baud rate"));
 }
 
 TEST(DynamixelMotor, FailsWithTheServosHardwareError) {
@@ -364,7 +365,7 @@ TEST(DynamixelMotor, RefusesASweepBeyondTheServosLimitsBeforeAnythingMoves) {
   EXPECT_EQ(peer.state().moves, 0);
   EXPECT_FALSE(peer.state().torque);
   ASSERT_TRUE(motor.WaitForReadings(5));  // where it stands is told nevertheless
-  EXPECT_THAT(motor.problems(), HasSubstr("limits"));
+  EXPECT_THAT(motor.warnings(), HasSubstr("limits"));
 }
 
 TEST(DynamixelMotor, ManyTurnsHaveNoLimits) {

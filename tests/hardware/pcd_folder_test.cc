@@ -100,9 +100,9 @@ TEST_F(PcdFolderTest, BadOnesAreNamedAndPassedOver) {
   std::ofstream(fs::path(device_.folder) / "readme.txt") << "not looked at";
   const Told told = PlayAll();
   ASSERT_EQ(told.Count<CloudChunk>(), 2u);
-  ASSERT_EQ(told.problems.size(), 2u);
-  EXPECT_THAT(told.problems[0], HasSubstr("2.pcd"));
-  EXPECT_THAT(told.problems[1], HasSubstr("3.pcd: its time"));
+  ASSERT_EQ(told.warnings.size(), 2u);
+  EXPECT_THAT(told.warnings[0], HasSubstr("2.pcd"));
+  EXPECT_THAT(told.warnings[1], HasSubstr("3.pcd: its time"));
 }
 
 TEST_F(PcdFolderTest, WithoutFilesOrFolderSaysSo) {

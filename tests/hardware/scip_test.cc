@@ -188,7 +188,7 @@ struct Rig {
     return Collect(&thread, &told, [&](const Told& t) { return t.Count<LineScan>() >= count; });
   }
   bool WaitForProblem(const std::string& part) {
-    return Collect(&thread, &told, [&](const Told& t) { return t.HasProblem(part); });
+    return Collect(&thread, &told, [&](const Told& t) { return t.HasWarning(part); });
   }
 
   ScipPeer peer;
@@ -224,7 +224,7 @@ TEST(ScipScanner, AStreamAgainstTheTruth) {
   const Status status = rig.scanner.report().GetStatus();
   EXPECT_TRUE(status.ready);
   EXPECT_THAT(status.text, HasSubstr("UTM-30LX-EW"));
-  EXPECT_TRUE(rig.told.problems.empty()) << rig.told.problems[0];
+  EXPECT_TRUE(rig.told.warnings.empty()) << rig.told.warnings[0];
 }
 
 TEST(ScipScanner, TellsBadScansAndGoesOn) {
@@ -248,7 +248,7 @@ TEST(ScipScanner, ConnectsAgainAndTellsTheGap) {
     ASSERT_TRUE(rig.WaitForLines(3));
     rig.peer.Inject(fault);
     ASSERT_TRUE(rig.WaitForProblem(why));
-    EXPECT_TRUE(rig.told.HasProblem("127.0.0.1:" + std::to_string(rig.peer.port())));
+    EXPECT_TRUE(rig.told.HasWarning("127.0.0.1:" + std::to_string(rig.peer.port())));
     ASSERT_TRUE(rig.WaitForProblem("is back; no lines for"));
     ASSERT_TRUE(rig.WaitForLines(rig.told.Count<LineScan>() + 3));
     EXPECT_EQ(rig.peer.clients(), 2);
@@ -263,7 +263,7 @@ TEST(ScipScanner, WithoutIntensitiesAndTimeMode) {
   Rig rig(options);
   ASSERT_TRUE(rig.WaitForLines(5));
   EXPECT_TRUE(rig.told.All<LineScan>()[0].intensity.empty());
-  EXPECT_TRUE(rig.told.HasProblem("does not tell its time"));
+  EXPECT_TRUE(rig.told.HasWarning("does not tell its time"));
   EXPECT_THAT(rig.peer.commands(), ElementsAre("TM2", "QT", "SCIP2.0", "VV", "PP", "TM0",
                                                "ME0100030001000", "MD0100030001000"));
 }
@@ -273,7 +273,7 @@ TEST(ScipScanner, ThatWasLeftInItsTimeMode) {
   options.time_mode_on = true;
   Rig rig(options);
   ASSERT_TRUE(rig.WaitForLines(3));
-  EXPECT_TRUE(rig.told.problems.empty());
+  EXPECT_TRUE(rig.told.warnings.empty());
 }
 
 TEST(ScipScanner, NobodyThereSaysWhatToDo) {
@@ -285,8 +285,8 @@ TEST(ScipScanner, NobodyThereSaysWhatToDo) {
   ScipScanner scanner({"127.0.0.1", port});
   DeviceThread thread([&](DeviceThread& self) { scanner.Serve(self); });
   Told told;
-  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.problems.empty(); }));
-  EXPECT_THAT(told.problems[0], HasSubstr("is it switched on"));
+  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.warnings.empty(); }));
+  EXPECT_THAT(told.warnings[0], HasSubstr("is it switched on"));
   EXPECT_FALSE(scanner.report().GetStatus().ready);
 }
 

@@ -11,6 +11,7 @@
 
 #include "calib/model/errors.h"
 #include "services/drivers/lidar/lidar_node.h"
+#include "services/runtime/clock.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
 
@@ -83,7 +84,7 @@ TEST_F(VelodyneRecording, OfAnyKindIsPlayed) {
       EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kStart), 225 * 110.592, 2);
       EXPECT_EQ(source.report().count("packets"), 160);
       EXPECT_EQ(source.report().count("bad packets"), 0);
-      EXPECT_TRUE(told.problems.empty());
+      EXPECT_TRUE(told.warnings.empty());
     }
   }
 }
@@ -125,16 +126,16 @@ TEST_F(VelodyneRecording, DamageInsideIsToldAndTheRestIsPlayed) {
   EXPECT_EQ(told.Count<CloudChunk>(), 2u);
   EXPECT_EQ(source.report().count("bad packets"), 3);
   EXPECT_EQ(source.report().count("lost packets"), 3);
-  EXPECT_TRUE(told.HasProblem("has 692 bytes") || told.HasProblem("has 700 bytes"));
-  EXPECT_TRUE(told.HasProblem("cut short; record them whole"));
-  EXPECT_TRUE(told.HasProblem("damaged.pcap: is damaged or cut short"));
+  EXPECT_TRUE(told.HasWarning("has 692 bytes") || told.HasWarning("has 700 bytes"));
+  EXPECT_TRUE(told.HasWarning("cut short; record them whole"));
+  EXPECT_TRUE(told.HasWarning("damaged.pcap: is damaged or cut short"));
 }
 
 TEST_F(VelodyneRecording, OfAnotherPortSaysSo) {
   PcapWriter writer;
   writer.port = 2369;
   VelodyneSource source(Device(Record(writer, Encoder(), 3)));
-  EXPECT_TRUE(PlayAll(&source).HasProblem("no packets to UDP port 2368, but"));
+  EXPECT_TRUE(PlayAll(&source).HasWarning("no packets to UDP port 2368, but"));
 }
 
 using VelodyneNode = Files;
@@ -160,7 +161,7 @@ TEST_F(VelodyneNode, ASweepCommandIsDoneWithTheFirstWholeOneAfterIt) {
   EXPECT_TRUE(node.GetStatus().ready);
   // No sweep begins any more.
   command.command = 8;
-  ASSERT_TRUE(Collect(&node, &told, [&](const Told&) { return node.ended(); }));
+  ASSERT_TRUE(Collect(&node, &told, [&](const Told&) { return node.finished(); }));
   node.Handle(command);
   ASSERT_TRUE(Collect(&node, &told, [](const Told& t) { return t.Count<SessionEvent>() == 2; }));
   EXPECT_EQ(told.All<SessionEvent>()[1].kind, EventKind::kFailed);
@@ -222,7 +223,7 @@ TEST(VelodyneLive, APortIsListenedAt) {
   EXPECT_GT(late, -10);
   EXPECT_LT(late, 20'000);  // the least delay of 160 packets on a busy machine
   EXPECT_EQ(source.report().count("bad packets"), 1);
-  EXPECT_TRUE(told.HasProblem("has 3 bytes"));
+  EXPECT_TRUE(told.HasWarning("has 3 bytes"));
 }
 
 TEST(VelodyneLive, APortInUseSaysSo) {
@@ -232,8 +233,8 @@ TEST(VelodyneLive, APortInUseSaysSo) {
   VelodyneSource source(device);
   DeviceThread thread([&](DeviceThread& self) { source.Serve(self); });
   Told told;
-  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.problems.empty(); }));
-  EXPECT_THAT(told.problems[0], HasSubstr("is in use"));
+  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.warnings.empty(); }));
+  EXPECT_THAT(told.warnings[0], HasSubstr("is in use"));
 }
 
 }  // namespace

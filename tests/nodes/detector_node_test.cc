@@ -155,24 +155,34 @@ TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
 }
 
 TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
-  EXPECT_TRUE(node_.Republish().empty());
+  EXPECT_TRUE(node_.Advance(0).empty());
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Blank("thermal"));
   Messages said;
-  for (int tick = 0; tick < 10; ++tick) {
-    for (Message& message : node_.Republish()) said.push_back(std::move(message));
+  for (Utime now = 1; now < 10; ++now) {
+    for (Message& message : node_.Advance(now * kMicrosecondsPerSecond)) {
+      said.push_back(std::move(message));
+    }
+    EXPECT_TRUE(node_.Advance(now * kMicrosecondsPerSecond + 900'000).empty());
   }
-  const auto sightings = Only<Sighting>(said);
-  ASSERT_EQ(sightings.size(), 2U);
-  EXPECT_EQ(sightings[0].camera, "thermal");
-  EXPECT_EQ(sightings[1].camera, "");
-  for (const Sighting& sighting : sightings) {
-    EXPECT_FALSE(sighting.seen);
-    EXPECT_NE(sighting.text, "");
+  const auto statuses = Only<TargetStatus>(said);
+  ASSERT_EQ(statuses.size(), 2U);
+  EXPECT_EQ(statuses[0].camera, "thermal");
+  EXPECT_EQ(statuses[1].camera, "");
+  for (const TargetStatus& status : statuses) {
+    EXPECT_FALSE(status.seen);
+    EXPECT_NE(status.text, "");
   }
   node_.Handle(Capture());
   node_.Handle(Blank("rgb", kCommand - 1));
-  EXPECT_TRUE(node_.Republish().empty()) << "a capture comes first";
+  EXPECT_TRUE(node_.Advance(100 * kMicrosecondsPerSecond).empty()) << "a capture comes first";
+}
+
+TEST(DetectorNodeReplayTest, WhereNobodyWatchesItDoesNotLook) {
+  DetectorNode node(kAutoMethod, DetectorNode::Looks::kNo);
+  node.Handle(test::TextOf(TinyRig()));
+  node.Handle(Blank("thermal"));
+  EXPECT_TRUE(node.Advance(kMicrosecondsPerSecond).empty());
 }
 
 TEST_F(DetectorNodeTest, ResetForgetsTheCapture) {
@@ -260,18 +270,19 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
   test::HandleAll(&watching, {test::TextOf(rig)});
   test::HandleAll(&watching, cloud);
   test::HandleAll(&watching, images);
-  for (int tick = 0; tick < 3; ++tick) {
-    const Sighting sighting = Only<Sighting>(watching.Republish()).at(0);
-    EXPECT_TRUE(sighting.seen) << sighting.camera << ": " << sighting.text;
-    if (sighting.camera.empty()) {
-      EXPECT_LT((sighting.centre - detection.cloud.candidates[0].centre).norm(), 1e-6);
+  for (Utime now = 0; now < 3; ++now) {
+    const Messages said = watching.Advance(now * kMicrosecondsPerSecond);
+    const TargetStatus status = Only<TargetStatus>(said).at(0);
+    EXPECT_TRUE(status.seen) << status.camera << ": " << status.text;
+    if (status.camera.empty()) {
+      EXPECT_LT((status.centre - detection.cloud.candidates[0].centre).norm(), 1e-6);
       continue;
     }
-    const auto& edges = *detection.Find(sighting.camera)->edges;
-    ASSERT_EQ(sighting.corners.size(), edges.corners.size());
-    EXPECT_LT((sighting.corners[3] - edges.corners[3]).norm(), 1.0) << sighting.camera;
-    EXPECT_EQ(sighting.outline.size() % 4, 0U);
-    EXPECT_LT((sighting.outline[0] - edges.outline_corners[0]).norm(), 2.0) << sighting.camera;
+    const auto& edges = *detection.Find(status.camera)->edges;
+    ASSERT_EQ(status.corners.size(), edges.corners.size());
+    EXPECT_LT((status.corners[3] - edges.corners[3]).norm(), 1.0) << status.camera;
+    EXPECT_EQ(status.outline.size() % 4, 0U);
+    EXPECT_LT((status.outline[0] - edges.outline_corners[0]).norm(), 2.0) << status.camera;
   }
 }
 

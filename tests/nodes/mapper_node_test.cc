@@ -1,8 +1,10 @@
 #include "services/nodes/mapper_node.h"
 
+#include <filesystem>
 #include <limits>
 
 #include "tests/nodes/nodes_testing.h"
+#include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -66,6 +68,41 @@ TEST(MapperNode, APoseThatIsMissingIsRefusedAndTheMapStays) {
   EXPECT_THAT(InputErrorOf([&] { node.Handle(Chunk(2.05F)); }), HasSubstr("pose"));
   EXPECT_EQ(node.map().size(), 1U);
   EXPECT_THAT(node.GetStatus().text, HasSubstr("pose stream"));
+}
+
+TEST(MapperNode, SavesAMapThatHasChangedAndNotTooOften) {
+  const test::TempDir dir;
+  VoxelMapOptions options;
+  MapperNode node(options, dir / "map.ply", 5 * kMicrosecondsPerSecond);
+  const auto saved_at = [&](Utime seconds) {
+    std::filesystem::remove(dir / "map.ply");
+    node.Advance(seconds * kMicrosecondsPerSecond);
+    return std::filesystem::exists(dir / "map.ply");
+  };
+  EXPECT_FALSE(saved_at(0)) << "a map without points";
+  node.Handle(Chunk(1));
+  EXPECT_TRUE(saved_at(1));
+  node.Handle(Chunk(2));
+  EXPECT_FALSE(saved_at(3)) << "it took two seconds";
+  EXPECT_FALSE(saved_at(22));
+  EXPECT_TRUE(saved_at(23));
+  EXPECT_FALSE(saved_at(1000)) << "nothing has changed";
+  node.Handle(Chunk(3));
+  node.Save();
+  EXPECT_TRUE(std::filesystem::exists(dir / "map.ply"));
+}
+
+TEST(MapperNode, AMapThatCannotBeSavedIsAWarningAndIsTriedAgain) {
+  const test::TempDir dir;
+  test::WriteQuickly(dir / "file", "");
+  MapperNode node(VoxelMapOptions(), dir / "file" / "map.ply", kMicrosecondsPerSecond);
+  std::vector<std::string> warnings;
+  node.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
+  node.Handle(Chunk(1));
+  for (const Utime now : {0, 1, 2'000'000}) node.Advance(now);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_THAT(warnings[1], HasSubstr("map.ply"));
+  EXPECT_NE(InputErrorOf([&] { node.Save(); }), "");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ class SessionByRequestTest : public ::testing::Test {
   // Until there is nothing to do; a second a turn, a minute at most.
   void Run() {
     for (int turn = 0; turn < 60; ++turn) {
-      const Messages said = node_.Advance(time_s_ += 1);
+      const Messages said = test::AdvanceTo(time_s_ += 1, &node_);
       for (const SessionEvent& event : Only<SessionEvent>(said)) events_.push_back(event);
       for (const SessionCommand& command : Only<SessionCommand>(said)) {
         test::HandleAll(&node_, world_.Answer(command));
@@ -191,7 +191,7 @@ TEST_F(SessionByRequestTest, CornersPickedDuringAnotherCaptureAreNotLost) {
   picks.corners = {{{1, 1}, {9, 1}, {9, 9}, {1, 9}}};
   const SessionCommand capture = world_.commands[2];
   Ask(SessionRequestKind::kCapture);
-  const auto sweep = Only<SessionCommand>(node_.Advance(time_s_ += 1));
+  const auto sweep = Only<SessionCommand>(test::AdvanceTo(time_s_ += 1, &node_));
   ASSERT_EQ(sweep.size(), 1U);
   node_.Handle(picks);
   node_.Handle(world_.Event(capture, "detector"));
@@ -213,7 +213,7 @@ TEST(SessionByScriptTest, APersonMaySayThatTheBoardStandsAndNothingElse) {
   for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
     node.Handle(test::Ready(process));
   }
-  node.Advance(0);
+  test::AdvanceTo(0, &node);
   SessionRequest request;
   request.request = SessionRequestKind::kCapture;
   EXPECT_THAT(ErrorOf([&] { node.Handle(request); }), HasSubstr("a script leads"));
@@ -221,7 +221,7 @@ TEST(SessionByScriptTest, APersonMaySayThatTheBoardStandsAndNothingElse) {
   EXPECT_EQ(Counter(node.GetStatus(), "steps"), 2);
   request.request = SessionRequestKind::kPoseIsSet;
   node.Handle(request);
-  EXPECT_EQ(Only<SessionCommand>(node.Advance(1)).at(0).verb, SessionVerb::kSweep);
+  EXPECT_EQ(Only<SessionCommand>(test::AdvanceTo(1, &node)).at(0).verb, SessionVerb::kSweep);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"
@@ -13,6 +14,7 @@
 namespace rgbdt {
 namespace {
 
+using test::AdvanceTo;
 using test::Blank;
 using test::ErrorOf;
 using test::kStart;
@@ -43,7 +45,7 @@ class SessionNodeTest : public ::testing::Test {
   // Until the session ends or a minute of its clock is over.
   void Run() {
     for (double t = 0; t < 60 && !node_->finished(); t += 0.1) {
-      for (const SessionCommand& command : Only<SessionCommand>(node_->Advance(t))) {
+      for (const SessionCommand& command : Only<SessionCommand>(AdvanceTo(t, node_.get()))) {
         test::HandleAll(node_.get(), world_.Answer(command));
       }
     }
@@ -92,13 +94,17 @@ TEST_F(SessionNodeTest, TheHappyPathWritesTheSessionDirectory) {
 
 TEST_F(SessionNodeTest, WaitsUntilEverybodyIsReady) {
   Start(Script(kOneView));
-  EXPECT_EQ(Only<RigText>(node_->Republish()).at(0).hash, TinyRig().hash);
+  for (const Utime now : {0, 1}) {
+    EXPECT_EQ(Only<RigText>(node_->Advance(now * kMicrosecondsPerSecond)).at(0).hash,
+              TinyRig().hash);
+  }
+  EXPECT_TRUE(node_->Advance(kMicrosecondsPerSecond).empty()) << "the rig, once a second";
   for (const char* process : {"assembler", "solver", "fuser"}) node_->Handle(Ready(process));
   node_->Handle(Ready("detector", "waits for the rig (RIG)", false));
-  EXPECT_TRUE(node_->Advance(1).empty());
+  EXPECT_TRUE(AdvanceTo(1, node_.get()).empty());
   EXPECT_THAT(node_->GetStatus().text, HasSubstr("rgbdt-detector (waits for the rig (RIG))"));
   node_->Handle(Ready("detector"));
-  const auto commands = Only<SessionCommand>(node_->Advance(1.1));
+  const auto commands = Only<SessionCommand>(AdvanceTo(1.1, node_.get()));
   ASSERT_EQ(commands.size(), 2U);
   EXPECT_EQ(commands[0].verb, SessionVerb::kReset);
   EXPECT_EQ(commands[1].verb, SessionVerb::kNextPose);
@@ -113,28 +119,49 @@ TEST_F(SessionNodeTest, TheDevicesOfTheRigFileAreWaitedForToo) {
   for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
     node.Handle(Ready(process));
   }
-  EXPECT_TRUE(node.Advance(1).empty());
+  EXPECT_TRUE(AdvanceTo(1, &node).empty());
   EXPECT_THAT(node.GetStatus().text,
               AllOf(HasSubstr("rgbdt-camera-rgb (not heard)"), HasSubstr("rgbdt-lidar"),
                     HasSubstr("rgbdt-motor"), ::testing::Not(HasSubstr("thermal"))));
   for (const char* process : {"camera-rgb", "lidar", "motor"}) node.Handle(Ready(process));
-  EXPECT_FALSE(node.Advance(2).empty());
+  EXPECT_FALSE(AdvanceTo(2, &node).empty());
 }
 
-TEST_F(SessionNodeTest, APersonWhoCarriesTheBoardSaysSo) {
-  Start(Script({Kind::kNextPose, Kind::kSweep}));
-  EXPECT_FALSE(node_->WaitsForPose());
-  EverybodyReady();
-  node_->Advance(0);
-  EXPECT_TRUE(node_->WaitsForPose());
-  EXPECT_TRUE(node_->Advance(1).empty());
-  node_->PoseIsSet();
-  EXPECT_FALSE(node_->WaitsForPose());
-  const auto commands = Only<SessionCommand>(node_->Advance(2));
+TEST_F(SessionNodeTest, APersonWhoCarriesTheBoardIsAskedUntilItStands) {
+  int asked = 0;
+  bool stands = false;
+  SessionNode node(Script({Kind::kNextPose, Kind::kSweep}), TinyRig(), dir_ / "session", {}, [&] {
+    ++asked;
+    return stands;
+  });
+  AdvanceTo(0, &node);
+  EXPECT_EQ(asked, 0);
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(Ready(process));
+  }
+  AdvanceTo(0, &node);
+  EXPECT_EQ(test::Counter(node.GetStatus(), "waits for pose"), 1);
+  EXPECT_TRUE(AdvanceTo(1, &node).empty());
+  EXPECT_TRUE(AdvanceTo(10'000, &node).empty()) << "nobody is hurried";
+  EXPECT_EQ(asked, 2);
+  stands = true;
+  const auto commands = Only<SessionCommand>(AdvanceTo(10'001, &node));
   ASSERT_EQ(commands.size(), 1U);
   EXPECT_EQ(commands[0].verb, SessionVerb::kSweep);
-  node_->PoseIsSet();  // too late, of no effect
-  EXPECT_TRUE(node_->Advance(3).empty());
+  EXPECT_TRUE(AdvanceTo(10'002, &node).empty());
+  EXPECT_EQ(asked, 3);
+}
+
+TEST_F(SessionNodeTest, APersonWhoIsGoneEndsTheSession) {
+  SessionNode node(Script({Kind::kNextPose}), TinyRig(), dir_ / "session", {},
+                   []() -> bool { throw InputError("nobody can press Enter"); });
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(Ready(process));
+  }
+  AdvanceTo(0, &node);
+  AdvanceTo(1, &node);
+  EXPECT_TRUE(node.finished());
+  EXPECT_THAT(node.failure(), AllOf(HasSubstr("next pose"), HasSubstr("nobody can press Enter")));
 }
 
 TEST_F(SessionNodeTest, ABoardThatNobodyCarriesIsNamedWithWhatToDo) {
@@ -149,9 +176,10 @@ TEST_F(SessionNodeTest, NobodyThereIsNamedAfterHalfAMinute) {
   Start(Script(kOneView));
   node_->Handle(Ready("assembler"));
   node_->Handle(Ready("solver", "waits for the rig (RIG)", false));
-  node_->Advance(29);
+  AdvanceTo(1000, node_.get());  // the clock's zero is anywhere
+  AdvanceTo(1029, node_.get());
   EXPECT_FALSE(node_->finished());
-  node_->Advance(31);
+  AdvanceTo(1031, node_.get());
   ASSERT_TRUE(node_->finished());
   EXPECT_THAT(node_->failure(), AllOf(HasSubstr("start"), HasSubstr("rgbdt-detector (not heard)"),
                                       HasSubstr("rgbdt-solver (waits for the rig (RIG))"),
@@ -202,27 +230,27 @@ TEST_F(SessionNodeTest, AFailedEventEndsTheSessionWithItsReason) {
     ASSERT_TRUE(node_->finished());
     EXPECT_THAT(node_->failure(), HasSubstr("the motor is stuck"));
     EXPECT_EQ(world_.commands.back().verb, verb) << "nothing more is asked for";
-    EXPECT_TRUE(Only<SessionCommand>(node_->Advance(70)).empty());
+    EXPECT_TRUE(Only<SessionCommand>(AdvanceTo(70, node_.get())).empty());
   }
 }
 
 TEST_F(SessionNodeTest, AnswersToOtherCommandsDoNotCount) {
   Start(Script(kOneView));
   EverybodyReady();
-  auto commands = Only<SessionCommand>(node_->Advance(0));
+  auto commands = Only<SessionCommand>(AdvanceTo(0, node_.get()));
   SessionEvent stray = world_.Event(commands.back(), "simulator");
   stray.command += 100;
   node_->Handle(stray);
-  EXPECT_TRUE(node_->Advance(0.1).empty());
+  EXPECT_TRUE(AdvanceTo(0.1, node_.get()).empty());
   stray.command -= 100;
   stray.kind = EventKind::kProgress;
   stray.fraction = 0.5;
   node_->Handle(stray);
-  EXPECT_TRUE(node_->Advance(0.2).empty());
+  EXPECT_TRUE(AdvanceTo(0.2, node_.get()).empty());
   EXPECT_EQ(progress_.back().fraction, 0.5);
   stray.kind = EventKind::kDone;
   node_->Handle(stray);
-  EXPECT_EQ(Only<SessionCommand>(node_->Advance(0.3)).size(), 1U);
+  EXPECT_EQ(Only<SessionCommand>(AdvanceTo(0.3, node_.get())).size(), 1U);
 }
 
 TEST_F(SessionNodeTest, AWaitMayBeLongerThanTheTimeOut) {
@@ -230,10 +258,10 @@ TEST_F(SessionNodeTest, AWaitMayBeLongerThanTheTimeOut) {
   script.steps[0].wait_s = 25;
   Start(script);
   EverybodyReady();
-  node_->Advance(0);
-  node_->Advance(24);
+  AdvanceTo(0, node_.get());
+  AdvanceTo(24, node_.get());
   EXPECT_FALSE(node_->finished());
-  node_->Advance(25.5);
+  AdvanceTo(25.5, node_.get());
   EXPECT_TRUE(node_->finished());
   EXPECT_EQ(node_->failure(), "");
 }
@@ -263,6 +291,15 @@ TEST_F(SessionNodeTest, AViewThatCannotBeWrittenEndsTheSession) {
   std::filesystem::create_symlink(dir_ / "file", dir_ / "session/views");
   Run();
   EXPECT_THAT(node_->failure(), HasSubstr((dir_ / "session/views").string()));
+}
+
+TEST_F(SessionNodeTest, ADirectoryThatCannotBeWrittenEndsTheSession) {
+  Start(Script(kOneView));
+  EverybodyReady();
+  test::WriteQuickly(dir_ / "session", "");
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("start"), HasSubstr((dir_ / "session").string())));
+  EXPECT_TRUE(world_.commands.empty());
 }
 
 TEST_F(SessionNodeTest, ViewsOfAnEarlierSessionStayUntouched) {

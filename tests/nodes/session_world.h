@@ -39,6 +39,15 @@ inline Status Ready(const std::string& process, const std::string& text = "fine"
   return status;
 }
 
+/// Advances to a time [s]; what the node says besides the rig, which it repeats.
+inline Messages AdvanceTo(double seconds, Node* node) {
+  Messages out;
+  for (Message& message : node->Advance(FromSeconds(seconds))) {
+    if (!std::holds_alternative<RigText>(message)) out.push_back(std::move(message));
+  }
+  return out;
+}
+
 inline Image Blank(const CameraSpec& camera, Utime utime) {
   Image image;
   image.camera = camera.name;

@@ -22,12 +22,12 @@ SessionCommand Command(std::int64_t number, SessionVerb verb) {
 
 class SimulatorNodeTest : public ::testing::Test {
  protected:
-  // Everything due, until time stands still; when each was due goes to due_.
+  // Until time stands still; when each message left goes to due_.
   Messages RunOut(SimulatorNode* node) {
     Messages out;
-    while (const auto due = node->NextDue()) {
-      for (Message& message : node->TakeNext()) {
-        due_.push_back(*due);
+    for (; !node->time_stands_still(); now_ += 100) {
+      for (Message& message : node->Advance(now_)) {
+        due_.push_back(node->simulated_now());
         out.push_back(std::move(message));
       }
     }
@@ -46,17 +46,47 @@ class SimulatorNodeTest : public ::testing::Test {
 
   SimulatorNode node_{test::TinyOptions()};
   std::vector<Utime> due_;
+  Utime now_ = 77;
 };
 
 TEST_F(SimulatorNodeTest, TimeStandsStillUntilACommandComes) {
-  EXPECT_FALSE(node_.NextDue().has_value());
+  EXPECT_TRUE(node_.time_stands_still());
   EXPECT_TRUE(node_.GetStatus().ready);
+  EXPECT_TRUE(node_.Advance(0).empty());
   node_.Handle(Command(1, SessionVerb::kNextPose));
-  EXPECT_EQ(node_.NextDue(), SimulatorNode::kEpoch);
+  EXPECT_FALSE(node_.time_stands_still());
+  const auto events = Only<SessionEvent>(node_.Advance(1000 * kMicrosecondsPerSecond));
+  ASSERT_EQ(events.size(), 1U) << "what was due while time stood still is not made up for";
+  EXPECT_EQ(events[0].utime, SimulatorNode::kEpoch);
+  now_ = 1000 * kMicrosecondsPerSecond;
   RunOut(&node_);
-  EXPECT_FALSE(node_.NextDue().has_value());
+  EXPECT_EQ(now_ / kMicrosecondsPerSecond, 1002) << "the board is carried for two seconds";
   node_.Handle(Command(2, SessionVerb::kSolve));
-  EXPECT_FALSE(node_.NextDue().has_value());
+  EXPECT_TRUE(node_.time_stands_still());
+}
+
+TEST_F(SimulatorNodeTest, ASpeedShortensTheWait) {
+  SimulatorNode fast(test::TinyOptions(), 10);
+  fast.Handle(Command(1, SessionVerb::kNextPose));
+  RunOut(&fast);
+  EXPECT_NEAR(ToSeconds(now_), 0.21, 0.01);
+}
+
+TEST_F(SimulatorNodeTest, TheTruthIsToldWhenTheBoardHasMoved) {
+  std::vector<std::size_t> views;
+  SimulatorNode node(test::TinyOptions(), 1,
+                     [&](const Truth& truth) { views.push_back(truth.lidar_from_target.size()); });
+  View(&node);
+  EXPECT_THAT(views, ::testing::ElementsAre(1));
+}
+
+TEST_F(SimulatorNodeTest, WhatCannotBeSimulatedIsAWarning) {
+  std::vector<std::string> warnings;
+  node_.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
+  node_.Handle(Command(1, SessionVerb::kCapture));  // before any board: there is nothing to pick
+  const auto events = Only<SessionEvent>(RunOut(&node_));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("no board to pick corners")));
+  EXPECT_EQ(events.size(), 1U);
 }
 
 TEST_F(SimulatorNodeTest, MessagesComeWhenTheRealSensorWouldHaveSentThem) {

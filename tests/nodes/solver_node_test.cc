@@ -132,10 +132,11 @@ TEST_F(SolverNodeTest, WithoutViewsSolvingFailsWithTheReason) {
 }
 
 TEST_F(SolverNodeTest, RepeatsTheCalibration) {
-  EXPECT_TRUE(node_.Republish().empty());
+  EXPECT_TRUE(node_.Advance(0).empty());
   const Messages last = node_.Handle(World().views[0]);
   FeedWorld();
-  const auto repeated = Only<CalibrationMessage>(node_.Republish());
+  EXPECT_TRUE(node_.Advance(kMicrosecondsPerSecond - 1).empty());
+  const auto repeated = Only<CalibrationMessage>(node_.Advance(kMicrosecondsPerSecond));
   ASSERT_EQ(repeated.size(), 1U);
   EXPECT_EQ(Encode(repeated[0]),
             Encode(Only<CalibrationMessage>(node_.Handle(Command(SessionVerb::kSolve)))[0]));
@@ -147,7 +148,7 @@ TEST_F(SolverNodeTest, ResetAndAnotherRigForgetAll) {
   EXPECT_TRUE(node_.report().has_value());
   node_.Handle(Command(SessionVerb::kReset));
   EXPECT_FALSE(node_.report().has_value());
-  EXPECT_TRUE(node_.Republish().empty());
+  EXPECT_TRUE(node_.Advance(0).empty());
   EXPECT_EQ(node_.GetStatus().text, "waits for views");
   FeedWorld();
   node_.Handle(test::TextOf(MakeRig(0.03)));

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "calib/methods/calibrate.h"
+#include "calib/model/statistics.h"
 #include "tests/real/acfr.h"
 
 namespace rgbdt {
@@ -22,11 +23,6 @@ struct Splits {
     return static_cast<double>(inside) / static_cast<double>(chi2.size());
   }
 };
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::string& method) {
   CalibrateOptions options;

@@ -1,5 +1,6 @@
 #include "tests/replay/harness.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "calib/files/schema/calibration_file.h"
@@ -15,8 +16,9 @@ bool IsInput(const std::string& channel) {
          channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND";
 }
 
-Services::Services(Bus* bus)
-    : assembler_runner(&assembler, bus),
+Services::Services(Bus* bus, DetectorNode::Looks looks)
+    : detector(kAutoMethod, looks),
+      assembler_runner(&assembler, bus),
       detector_runner(&detector, bus),
       solver_runner(&solver, bus),
       fuser_runner(&fuser, bus) {}
@@ -69,19 +71,16 @@ SessionRun RunSession(const simulate::Options& options, const SessionScript& scr
   SimulatorNode simulator(options);
   run.rig = RigOf(simulator.simulator());
   SessionNode session(script, run.rig, directory, {});
-  Services services(&bus);
+  Services services(&bus, DetectorNode::Looks::kYes);
   NodeRunner simulator_runner(&simulator, &bus);
   NodeRunner session_runner(&session, &bus);
-  constexpr int kMaxTurns = 1'000'000;
-  for (int turn = 0; turn < kMaxTurns && !session.finished(); ++turn) {
-    if (turn % 500 == 0) {  // once a second or so
-      session_runner.Tick();
-      bus.Run();
-      for (NodeRunner* runner : services.runners()) runner->Tick();
-    }
-    session_runner.Publish(session.Advance(turn * 0.001));
-    bus.Run();
-    if (simulator.NextDue()) simulator_runner.Publish(simulator.TakeNext());
+  std::vector<NodeRunner*> runners = services.runners();
+  runners.push_back(&session_runner);
+  runners.push_back(&simulator_runner);
+  constexpr Utime kTurn = 10'000;
+  constexpr Utime kLongest = 3600 * kMicrosecondsPerSecond;
+  for (Utime now = 0; now < kLongest && !session.finished(); now += kTurn) {
+    for (NodeRunner* runner : runners) runner->Advance(now);
     bus.Run();
   }
   if (!session.finished()) throw std::runtime_error("the session did not end");
@@ -94,10 +93,16 @@ SessionRun RunSession(const simulate::Options& options, const SessionScript& scr
 }
 
 std::unique_ptr<Services> Replay(const Recording& recording, MemoryBus* bus) {
-  auto services = std::make_unique<Services>(bus);
+  auto services = std::make_unique<Services>(bus, DetectorNode::Looks::kNo);
   for (const Recorded& message : recording) {
     if (!IsInput(message.channel)) continue;
     bus->Publish(message.channel, message.bytes);
+    bus->Run();
+    Utime now = 0;
+    for (const NodeRunner* runner : services->runners()) {
+      now = std::max(now, runner->newest_utime());
+    }
+    for (NodeRunner* runner : services->runners()) runner->Advance(now);
     bus->Run();
   }
   return services;

@@ -32,7 +32,7 @@ bool IsInput(const std::string& channel);
 
 /// Assembler, detector, solver, fuser on a bus.
 struct Services {
-  explicit Services(Bus* bus);
+  Services(Bus* bus, DetectorNode::Looks looks);
 
   AssemblerNode assembler;
   DetectorNode detector;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
+#include "calib/model/statistics.h"
 #include "calib/simulate/lidar_options.h"
 #include "tests/study/sampled_images.h"
 
@@ -156,9 +157,7 @@ double MedianLength(const Eigen::Matrix3d& covariance) {
                                noise.Normal(3 * i + 2));
     lengths.push_back((root * draw).norm());
   }
-  const auto middle = lengths.begin() + kDraws / 2;
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return Median(std::move(lengths));
 }
 
 class Bound {

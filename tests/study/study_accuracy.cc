@@ -7,11 +7,8 @@
 // none is given. A line of CSV for each session, method and camera.
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <fstream>
-#include <iostream>
 #include <map>
-#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -24,6 +21,7 @@
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/rendered_sessions.h"
 #include "tests/study/sampled_sessions.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -243,21 +241,15 @@ void Run(Question question, int sessions, std::uint64_t seed, const std::string&
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc < 8) {
-    std::cerr << "Usage: study_accuracy sampled|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED "
-                 "CSV [METHOD...]\n";
-    return 2;
-  }
-  try {
-    cv::setNumThreads(1);
-    rgbdt::study::Question question{argv[1], argv[2]};
-    question.views = std::stoi(argv[3]);
-    question.heldout = std::stoi(argv[4]);
-    if (argc > 8) question.methods.assign(argv + 8, argv + argc);
-    rgbdt::study::Run(question, std::stoi(argv[5]), std::stoull(argv[6]), argv[7]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_accuracy: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Question question{arguments[0], arguments[1]};
+    question.views = std::stoi(arguments[2]);
+    question.heldout = std::stoi(arguments[3]);
+    if (arguments.size() > 7) question.methods.assign(arguments.begin() + 7, arguments.end());
+    rgbdt::study::Run(question, std::stoi(arguments[4]), std::stoull(arguments[5]), arguments[6]);
+  };
+  return rgbdt::study::StudyMain(
+      {"study_accuracy",
+       "sampled|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7, 1000, run},
+      argc, argv);
 }

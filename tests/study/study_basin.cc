@@ -9,9 +9,7 @@
 // roll and 40 deg yaw off and with none; for every tenth session `paper` from the former, too.
 // Lines: method,start,success.
 #include <cstdio>
-#include <exception>
 #include <fstream>
-#include <iostream>
 #include <stdexcept>
 #include <string>
 
@@ -21,6 +19,7 @@
 #include "calib/simulate/options.h"
 #include "tests/study/objectives.h"
 #include "tests/study/paired_sessions.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -220,15 +219,10 @@ void Run(const std::string& what, int count, std::uint64_t seed, const std::stri
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::cerr << "Usage: study_basin random|starts COUNT SEED CSV\n";
-    return 2;
-  }
-  try {
-    rgbdt::study::Run(argv[1], std::stoi(argv[2]), std::stoull(argv[3]), argv[4]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_basin: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(arguments[0], std::stoi(arguments[1]), std::stoull(arguments[2]),
+                      arguments[3]);
+  };
+  return rgbdt::study::StudyMain({"study_basin", "random|starts COUNT SEED CSV", 4, 4, run}, argc,
+                                 argv);
 }

@@ -4,7 +4,6 @@
 // CSV and says how far it is. Without arguments it names the classes.
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "tests/study/cloud_scenes.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -44,20 +44,21 @@ void RunClass(const CloudClass& cloud_class, int count, std::uint64_t seed, std:
   std::fflush(stdout);
 }
 
-void Run(int argc, char** argv) {
-  std::ofstream csv(argv[3]);
+void Run(const std::vector<std::string>& arguments) {
+  const std::string& path = arguments[2];
+  std::ofstream csv(path);
   csv << "class,scene,scenery,form,range_m,found,first,candidates,rotation_deg,centre_mm,chi2,ms,"
          "why\n";
-  for (int i = 4; i < argc; ++i) {
+  for (std::size_t i = 3; i < arguments.size(); ++i) {
     bool known = false;
     for (const CloudClass& cloud_class : CloudClasses()) {
-      if (cloud_class.name != argv[i]) continue;
+      if (cloud_class.name != arguments[i]) continue;
       known = true;
-      RunClass(cloud_class, std::stoi(argv[1]), std::stoull(argv[2]), &csv);
+      RunClass(cloud_class, std::stoi(arguments[0]), std::stoull(arguments[1]), &csv);
     }
-    if (!known) throw std::runtime_error(std::string("no class ") + argv[i]);
+    if (!known) throw std::runtime_error("no class " + arguments[i]);
   }
-  if (!csv.flush()) throw std::runtime_error(std::string("cannot write ") + argv[3]);
+  if (!csv.flush()) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace
@@ -70,15 +71,6 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
-  if (argc < 5) {
-    std::cerr << "Usage: study_cloud_detection COUNT SEED CSV CLASS...\n";
-    return 2;
-  }
-  try {
-    rgbdt::study::Run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "study_cloud_detection: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  return rgbdt::study::StudyMain(
+      {"study_cloud_detection", "COUNT SEED CSV CLASS...", 4, 1000, rgbdt::study::Run}, argc, argv);
 }

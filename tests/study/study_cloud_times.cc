@@ -4,10 +4,7 @@
 // A line of CSV for each cloud. Times are of this machine: compare those of one run only.
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <fstream>
-#include <iostream>
-#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,6 +16,7 @@
 #include "calib/simulate/internal/spinning.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -94,16 +92,8 @@ void Run(int count, std::uint64_t seed, const std::string& path) {
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::cerr << "Usage: study_cloud_times COUNT SEED CSV\n";
-    return 2;
-  }
-  try {
-    cv::setNumThreads(1);
-    rgbdt::study::Run(std::stoi(argv[1]), std::stoull(argv[2]), argv[3]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_cloud_times: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(std::stoi(arguments[0]), std::stoull(arguments[1]), arguments[2]);
+  };
+  return rgbdt::study::StudyMain({"study_cloud_times", "COUNT SEED CSV", 3, 3, run}, argc, argv);
 }

@@ -4,11 +4,8 @@
 // error, detected and sampled, and what it makes of the board's pose.
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <fstream>
-#include <iostream>
 #include <memory>
-#include <opencv2/core/utility.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,6 +16,7 @@
 #include "calib/simulate/simulator.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -90,16 +88,8 @@ void Run(int count, std::uint64_t seed, const std::string& path) {
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::cerr << "Usage: study_corner_noise COUNT SEED CSV\n";
-    return 2;
-  }
-  try {
-    cv::setNumThreads(1);
-    rgbdt::study::Run(std::stoi(argv[1]), std::stoull(argv[2]), argv[3]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_corner_noise: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(std::stoi(arguments[0]), std::stoull(arguments[1]), arguments[2]);
+  };
+  return rgbdt::study::StudyMain({"study_corner_noise", "COUNT SEED CSV", 3, 3, run}, argc, argv);
 }

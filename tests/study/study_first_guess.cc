@@ -4,15 +4,14 @@
 // clutter, the cloud of every third one not its own; turned scanner, 32 and 16 rings in turn.
 // A line of CSV for each session.
 #include <cstdio>
-#include <exception>
 #include <fstream>
-#include <iostream>
 #include <stdexcept>
 #include <string>
 
 #include "calib/solve/first_guess.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sessions.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -116,15 +115,10 @@ void Run(const std::string& kind, int sessions, std::uint64_t seed, const std::s
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::cerr << "Usage: study_first_guess good|wrong SESSIONS SEED CSV\n";
-    return 2;
-  }
-  try {
-    rgbdt::study::Run(argv[1], std::stoi(argv[2]), std::stoull(argv[3]), argv[4]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_first_guess: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(arguments[0], std::stoi(arguments[1]), std::stoull(arguments[2]),
+                      arguments[3]);
+  };
+  return rgbdt::study::StudyMain({"study_first_guess", "good|wrong SESSIONS SEED CSV", 4, 4, run},
+                                 argc, argv);
 }

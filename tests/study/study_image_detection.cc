@@ -6,16 +6,15 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <exception>
 #include <fstream>
 #include <iostream>
-#include <opencv2/core/utility.hpp>
 #include <stdexcept>
 #include <string>
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/image/checkerboard.h"
 #include "tests/study/image_scenes.h"
+#include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
@@ -117,16 +116,10 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
-  if (argc < 4) {
-    std::cerr << "Usage: study_image_detection COUNT SEED CSV [CLASS]\n";
-    return 2;
-  }
-  try {
-    cv::setNumThreads(1);  // times are those of one core
-    rgbdt::study::Run(std::stoi(argv[1]), std::stoull(argv[2]), argv[3], argc > 4 ? argv[4] : "");
-  } catch (const std::exception& error) {
-    std::cerr << "study_image_detection: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(std::stoi(arguments[0]), std::stoull(arguments[1]), arguments[2],
+                      arguments.size() > 3 ? arguments[3] : "");
+  };
+  return rgbdt::study::StudyMain({"study_image_detection", "COUNT SEED CSV [CLASS]", 3, 4, run},
+                                 argc, argv);
 }

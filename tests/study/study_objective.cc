@@ -6,15 +6,14 @@
 // downhill from each low place of the grid. A line of CSV for each place; see objectives.h for what
 // is minimised.
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iostream>
 #include <stdexcept>
 #include <string>
 
 #include "tests/study/objectives.h"
+#include "tests/study/study_main.h"
 #include "tests/study/surface_minima.h"
 
 namespace rgbdt::study {
@@ -165,15 +164,10 @@ void Run(const std::string& what, int steps, std::uint64_t seed, const std::stri
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::cerr << "Usage: study_objective slices|surfaces STEPS SEED CSV\n";
-    return 2;
-  }
-  try {
-    rgbdt::study::Run(argv[1], std::stoi(argv[2]), std::stoull(argv[3]), argv[4]);
-  } catch (const std::exception& error) {
-    std::cerr << "study_objective: " << error.what() << "\n";
-    return 1;
-  }
-  return 0;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(arguments[0], std::stoi(arguments[1]), std::stoull(arguments[2]),
+                      arguments[3]);
+  };
+  return rgbdt::study::StudyMain({"study_objective", "slices|surfaces STEPS SEED CSV", 4, 4, run},
+                                 argc, argv);
 }

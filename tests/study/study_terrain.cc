@@ -2,11 +2,11 @@
 // Usage: study_terrain SCENE FIRST_SEED SEEDS OUT.csv
 // SCENE: course, outdoor, indoor, night. A line a sweep: turned scanner and 64 rings, range noise
 // of 10 and 30 mm.
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <stdexcept>
 
+#include "tests/study/study_main.h"
 #include "tests/study/terrain_scenes.h"
 
 namespace rgbdt::study {
@@ -24,34 +24,36 @@ void Write(const TerrainCase& which, const TerrainScore& score, std::ostream* cs
        << score.sites_on_obstacle << '\n';
 }
 
-void Run(TerrainScene scene, std::uint64_t first, std::uint64_t seeds, std::ostream* csv) {
+void Run(const std::string& scene, std::uint64_t first, std::uint64_t seeds,
+         const std::string& path) {
+  const auto found = kScenes.find(scene);
+  if (found == kScenes.end()) {
+    throw std::runtime_error("SCENE is " + scene + "; there are: course, outdoor, indoor, night");
+  }
   const TerrainOptions options;
-  *csv << "scene,seed,range_sigma_mm,known,right,missed,invented,seen,seen_known,sites,"
-          "sites_on_obstacle\n";
+  std::ofstream csv(path);
+  csv << "scene,seed,range_sigma_mm,known,right,missed,invented,seen,seen_known,sites,"
+         "sites_on_obstacle\n";
   for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
     for (const int rings : {0, 64}) {
       for (const double sigma : {0.01, 0.03}) {
-        const TerrainCase which{scene, seed, sigma, rings};
+        const TerrainCase which{found->second, seed, sigma, rings};
         const TerrainWorld world(which);
-        Write(which, Score(world, FindTerrain(world.cloud(), options), options), csv);
+        Write(which, Score(world, FindTerrain(world.cloud(), options), options), &csv);
       }
     }
   }
+  if (!csv.flush()) throw std::runtime_error("cannot write " + path);
 }
 
 }  // namespace
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  const auto scene = argc == 5 ? rgbdt::study::kScenes.find(argv[1]) : rgbdt::study::kScenes.end();
-  if (scene == rgbdt::study::kScenes.end()) {
-    std::fprintf(stderr,
-                 "usage: study_terrain course|outdoor|indoor|night FIRST_SEED SEEDS OUT.csv\n");
-    return 1;
-  }
-  std::ofstream csv(argv[4]);
-  rgbdt::study::Run(scene->second, std::strtoull(argv[2], nullptr, 10),
-                    std::strtoull(argv[3], nullptr, 10), &csv);
-  csv.close();
-  return csv ? 0 : 1;
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(arguments[0], std::stoull(arguments[1]), std::stoull(arguments[2]),
+                      arguments[3]);
+  };
+  return rgbdt::study::StudyMain(
+      {"study_terrain", "course|outdoor|indoor|night FIRST_SEED SEEDS CSV", 4, 4, run}, argc, argv);
 }

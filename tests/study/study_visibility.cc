@@ -1,18 +1,19 @@
 // Whether the fuser colours what a camera sees, and nothing else: scenes by scenes, against shadow
 // rays. For scripts/study visibility.
 
-#include <cstdio>
-#include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "calib/model/errors.h"
+#include "tests/study/study_main.h"
 #include "tests/study/visibility.h"
 
 namespace rgbdt::study {
 namespace {
 
-void Run(const std::string& sensor, int scenes, std::uint64_t seed, std::FILE* csv) {
-  std::fprintf(csv, "sensor,seed,judged,hidden,hidden_coloured,visible,visible_coloured\n");
+void Run(const std::string& sensor, int scenes, std::uint64_t seed, const std::string& path) {
+  std::ofstream csv(path);
+  csv << "sensor,seed,judged,hidden,hidden_coloured,visible,visible_coloured\n";
   for (int i = 0; i < scenes; ++i) {
     simulate::Options options;
     options.seed = seed * 1000 + static_cast<std::uint64_t>(i);
@@ -22,34 +23,23 @@ void Run(const std::string& sensor, int scenes, std::uint64_t seed, std::FILE* c
     simulate::UseLidar(turned ? 0 : std::stoi(sensor), &options);
     const VisibilityScores scores = ScoreVisibility(options);
     const auto write = [&](const char* judged, const VisibilityScore& s) {
-      std::fprintf(csv, "%s,%llu,%s,%ld,%ld,%ld,%ld\n", sensor.c_str(),
-                   static_cast<unsigned long long>(options.seed), judged, s.hidden,
-                   s.hidden_coloured, s.visible, s.visible_coloured);
+      csv << sensor << ',' << options.seed << ',' << judged << ',' << s.hidden << ','
+          << s.hidden_coloured << ',' << s.visible << ',' << s.visible_coloured << '\n';
     };
     write("whole", scores.whole);
     write("live", scores.live);
   }
-}
-
-int Main(int argc, char** argv) {
-  if (argc != 5) {
-    std::fprintf(stderr, "usage: study_visibility turned|dense|128|64|32|16 SCENES SEED OUT.csv\n");
-    return 2;
-  }
-  std::FILE* csv = std::fopen(argv[4], "w");
-  if (csv == nullptr) throw InputError(std::string(argv[4]) + ": cannot be written");
-  Run(argv[1], std::atoi(argv[2]), std::strtoull(argv[3], nullptr, 10), csv);
-  return std::fclose(csv) == 0 ? 0 : 1;
+  if (!csv.flush()) throw InputError(path + ": cannot be written");
 }
 
 }  // namespace
 }  // namespace rgbdt::study
 
 int main(int argc, char** argv) {
-  try {
-    return rgbdt::study::Main(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "study_visibility: %s\n", e.what());
-    return 1;
-  }
+  const auto run = [](const std::vector<std::string>& arguments) {
+    rgbdt::study::Run(arguments[0], std::stoi(arguments[1]), std::stoull(arguments[2]),
+                      arguments[3]);
+  };
+  return rgbdt::study::StudyMain(
+      {"study_visibility", "turned|dense|128|64|32|16 SCENES SEED CSV", 4, 4, run}, argc, argv);
 }

@@ -11,7 +11,6 @@
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
 #include "calib/present/layout/frame.h"
-#include "viewer/live/clock.h"
 #include "viewer/live/kept_view.h"
 
 namespace rgbdt::viewer {
@@ -40,19 +39,22 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",         "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "DETECTION",
-          "CALIBRATION", "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
-          "SIGHTING",    "STATUS", "SESSION_EVENT"};
+  return {"RIG",           "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "DETECTION",
+          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
+          "TARGET_STATUS", "STATUS", "SESSION_EVENT"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  now_s_ = SteadySeconds();
   Take(message);
   if (!std::holds_alternative<Status>(message)) {
     newest_utime_ = std::max(newest_utime_, UtimeOf(message));
   }
-  CompleteView();
+  try {
+    CompleteView();
+  } catch (const std::exception& e) {
+    Warn(std::string("a view cannot be shown: ") + e.what());
+  }
   return {};
 }
 
@@ -79,8 +81,8 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
     watch_.Hear(*event, &state_);
     changed_ = true;
-  } else if (const auto* sighting = std::get_if<Sighting>(&message)) {
-    OnSighting(*sighting);
+  } else if (const auto* target = std::get_if<TargetStatus>(&message)) {
+    OnTargetStatus(*target);
   } else if (const auto* status = std::get_if<Status>(&message)) {
     watch_.Hear(*status, now_s_);
   }
@@ -89,7 +91,8 @@ void LiveNode::Take(const Message& message) {
 void LiveNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   rig_ = std::make_shared<const Rig>(ParseRig(text.text, "RIG message"));
-  outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }, 0});
+  target_status_.clear();  // of cameras that this rig may not have
+  outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
 }
 
@@ -111,6 +114,11 @@ void LiveNode::OnCommand(const SessionCommand& command) {
   state_.mode = before.mode;
   state_.can = before.can;
   changed_ = true;
+}
+
+// Before a rig has come any will do.
+void LiveNode::RequireCamera(const std::string& camera) const {
+  if (rig_) rig_->Camera(camera);
 }
 
 // Null where there are too many: a stranger's names do not fill the memory.
@@ -172,7 +180,7 @@ void LiveNode::OnImage(const Image& image) {
   post.watch = "camera/" + image.camera;
   post.heavy = true;
   post.make = [shared] { return ImageFrame(*shared, "", true); };
-  post.came_s = now_s_;
+  post.timed = true;
   outbox_->Send(std::move(post));
 }
 
@@ -203,6 +211,7 @@ void LiveNode::ForgetRejected(const std::string& view) {
 
 void LiveNode::OnCalibration(const CalibrationMessage& message) {
   const CameraCalibration& camera = message.calibration;
+  RequireCamera(camera.camera);
   auto& all = state_.calibration.cameras;
   const auto same = std::find_if(all.begin(), all.end(), [&](const CameraCalibration& c) {
     return c.camera == camera.camera;
@@ -243,7 +252,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   if (!cloud.whole_sweep) {
     const auto number = static_cast<int>(cloud.seq % 1'000'000'000);
     outbox_->Send({"chunk/" + std::to_string(cloud.seq), "cloud", false, true, kPointBytes,
-                   [shared, number] { return CloudFrame(*shared, number); }, now_s_});
+                   [shared, number] { return CloudFrame(*shared, number); }, true});
     return;
   }
   if (cloud.sweep_utime != sweep_utime_) {
@@ -254,7 +263,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   }
   const int part = sweep_part_++;
   outbox_->Send({"sweep/" + std::to_string(part), "cloud", true, true, kPointBytes,
-                 [shared, part] { return CloudFrame(*shared, part); }, now_s_});
+                 [shared, part] { return CloudFrame(*shared, part); }, true});
   if (sweep_points_.size() < kMaxSweepPoints) {
     sweep_points_.insert(sweep_points_.end(), cloud.points.begin(), cloud.points.end());
   }
@@ -264,7 +273,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
   for (const CameraSpec& camera : rig_->cameras) PostLiveOverlay(camera.name);
 }
 
-// The newest sighting's corners and the newest sweep, laid on a camera's image.
+// The newest target status' corners and the newest sweep, laid on a camera's image.
 void LiveNode::PostLiveOverlay(const std::string& camera) {
   if (!rig_) return;
   const CameraSpec& spec = rig_->Camera(camera);
@@ -272,13 +281,13 @@ void LiveNode::PostLiveOverlay(const std::string& camera) {
   Overlay overlay;
   overlay.camera = camera;
   overlay.calibrated = calibration != nullptr;
-  const auto seen = sightings_.find(camera);
-  if (seen != sightings_.end()) {
-    const Sighting& sighting = seen->second.sighting;
-    overlay.utime = sighting.utime;
-    overlay.text = (sighting.seen ? "board seen, " : "") + sighting.text;
-    overlay.corners = sighting.corners;
-    overlay.outline = sighting.outline;
+  const auto seen = target_status_.find(camera);
+  if (seen != target_status_.end()) {
+    const TargetStatus& status = seen->second.status;
+    overlay.utime = status.utime;
+    overlay.text = (status.seen ? "board seen, " : "") + status.text;
+    overlay.corners = status.corners;
+    overlay.outline = status.outline;
   }
   std::optional<Rigid3> camera_from_lidar;
   if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
@@ -293,45 +302,52 @@ void LiveNode::PostLiveOverlay(const std::string& camera) {
   outbox_->Send(std::move(post));
 }
 
-void LiveNode::OnSighting(const Sighting& sighting) {
-  if (sightings_.size() > 32) sightings_.clear();
-  sightings_[sighting.camera] = {sighting, now_s_};
-  PostSightings();
-  if (rig_ && !sighting.camera.empty()) PostLiveOverlay(sighting.camera);
+void LiveNode::OnTargetStatus(const TargetStatus& status) {
+  if (!status.camera.empty()) RequireCamera(status.camera);
+  if (target_status_.size() > 32) target_status_.clear();
+  target_status_[status.camera] = {status, now_s_};
+  PostTargetStatus();
+  if (rig_ && !status.camera.empty()) PostLiveOverlay(status.camera);
 }
 
-void LiveNode::PostSightings() {
+void LiveNode::PostTargetStatus() {
   nlohmann::json sensors = nlohmann::json::array();
-  for (const auto& [camera, seen] : sightings_) {
+  for (const auto& [camera, seen] : target_status_) {
     std::string kind = "lidar";
     if (!camera.empty() && rig_) {
       kind = rig_->Camera(camera).kind == CameraKind::kColor ? "color" : "thermal";
     }
     sensors.push_back({{"sensor", camera.empty() ? "lidar" : camera},
                        {"kind", kind},
-                       {"seen", seen.sighting.seen},
-                       {"text", seen.sighting.text},
-                       {"utime", seen.sighting.utime},
+                       {"seen", seen.status.seen},
+                       {"text", seen.status.text},
+                       {"utime", seen.status.utime},
                        {"age_s", now_s_ - seen.at_s}});
   }
-  const nlohmann::json frame = {{"type", "sightings"}, {"sensors", sensors}};
-  outbox_->Send({"sightings", "", true, false, 0, [frame] { return JsonFrame(frame); }, 0});
+  const nlohmann::json frame = {{"type", "target_status"}, {"sensors", sensors}};
+  outbox_->Send({"target_status", "", true, false, 0, [frame] { return JsonFrame(frame); }});
 }
 
-void LiveNode::Tick(double now_s) {
+Messages LiveNode::Advance(Utime now) {
+  nlohmann::json bus;  // asked for without the lock: the server has locks of its own
+  if (describe_bus_ && bus_.IsDue(now)) bus = describe_bus_(ToSeconds(now));
   const std::lock_guard<std::mutex> lock(mutex_);
-  now_s_ = now_s;
-  if (watch_.Update(now_s, &state_)) changed_ = true;
-  if (!changed_ || now_s - posted_s_ < kBetweenStates) return;
-  changed_ = false;
-  posted_s_ = now_s;
-  outbox_->Send({"session", "", true, false, 0,
-                 [bytes = SessionFrame(state_, rig_.get())] { return bytes; }, 0});
-}
-
-Messages LiveNode::TakeMessages() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  now_s_ = ToSeconds(now);
+  PostState();
+  if (!bus.is_null()) {
+    bus["processes"] = watch_.Processes(now_s_);
+    outbox_->Send({"bus", "", true, false, 0, [bus] { return JsonFrame(bus); }});
+  }
   return std::exchange(messages_, {});
+}
+
+void LiveNode::PostState() {
+  if (watch_.Update(now_s_, &state_)) changed_ = true;
+  if (!changed_ || now_s_ - posted_s_ < kBetweenStates) return;
+  changed_ = false;
+  posted_s_ = now_s_;
+  outbox_->Send({"session", "", true, false, 0,
+                 [bytes = SessionFrame(state_, rig_.get())] { return bytes; }});
 }
 
 std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
@@ -382,11 +398,6 @@ std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
     }
   }
   return posts;
-}
-
-nlohmann::json LiveNode::Processes(double now_s) const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return watch_.Processes(now_s);
 }
 
 Status LiveNode::GetStatus() const {

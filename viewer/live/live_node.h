@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "calib/present/frames/session_state.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
+#include "services/runtime/periodic.h"
 #include "viewer/live/kept_view.h"
 #include "viewer/live/session_watch.h"
 #include "viewer/server/outbox.h"
@@ -19,11 +21,13 @@
 namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
-/// RIG, <CAMERA>_IMAGE, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, SIGHTING, STATUS -> SESSION_REQUEST,
+/// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
+/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS -> SESSION_REQUEST,
 /// CORNER_SELECTION. Nothing large is encoded here: a post makes its bytes when a browser is about
-/// to get it. Of each view its images are kept as JPEG, and some points of its cloud.
-/// Handle, Tick and TakeMessages belong to the bus' thread, OnBrowser to the server's.
+/// to get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
+/// publishes what browsers asked for, and posts the session's state where it has changed, at most
+/// ten times a second.
+/// All but OnBrowser belong to the bus' thread, that to the server's.
 class LiveNode : public Node {
  public:
   /// Where posts go from now on; it outlives the node. Before the first message.
@@ -32,23 +36,23 @@ class LiveNode : public Node {
   std::string name() const override { return "viewer"; }
   std::vector<std::string> Subscriptions() const override;
   Messages Handle(const Message& message) override;
+  Messages Advance(Utime now) override;
+  /// What a browser asks for is to be noticed.
+  Utime LongestWait() const override { return 2000; }
   Status GetStatus() const override;
 
   /// What a browser asked for. Throws InputError where it cannot be done, in words for a person.
   std::vector<Post> OnBrowser(const nlohmann::json& message);
 
-  /// What is to be published for the browsers.
-  Messages TakeMessages();
-
-  /// Posts what has changed, the session's state at most ten times a second. `now_s` of the steady
-  /// clock.
-  void Tick(double now_s);
-
-  /// The processes of a BusFrame.
-  nlohmann::json Processes(double now_s) const;
+  /// A BusFrame but for its processes, at a time [s] of Advance's clock.
+  using DescribeBus = std::function<nlohmann::json(double now_s)>;
+  /// The bus is posted once a second. Before the first Advance.
+  void PostBus(DescribeBus describe) { describe_bus_ = std::move(describe); }
 
  private:
   void Take(const Message& message);
+  void RequireCamera(const std::string& camera) const;
+  void PostState();
   void OnRig(const RigText& text);
   void OnCommand(const SessionCommand& command);
   void OnImage(const Image& image);
@@ -56,18 +60,20 @@ class LiveNode : public Node {
   void ForgetRejected(const std::string& view);
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
-  void OnSighting(const Sighting& sighting);
+  void OnTargetStatus(const TargetStatus& status);
   void CompleteView();
   void ShowCapture();
   void PostLiveOverlay(const std::string& camera);
-  void PostSightings();
+  void PostTargetStatus();
   void CountSigma(const CameraCalibration& calibration);
   ViewState* StateOf(const std::string& view);
   std::vector<Post> PostsOf(const KeptView& view) const;
 
   Outbox* outbox_ = nullptr;
+  DescribeBus describe_bus_;
+  Periodic bus_{kMicrosecondsPerSecond};
   mutable std::mutex mutex_;  // guards all below
-  double now_s_ = 0;
+  double now_s_ = 0;          // Advance's
   Utime newest_utime_ = 0;
   std::shared_ptr<const Rig> rig_;
   SessionState state_;
@@ -77,11 +83,11 @@ class LiveNode : public Node {
   ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
   struct Seen {
-    Sighting sighting;
+    TargetStatus status;
     double at_s;
   };
-  std::map<std::string, Seen> sightings_;  // by camera; "": the LIDAR
-  Utime sweep_utime_ = 0;                  // of the newest whole sweep
+  std::map<std::string, Seen> target_status_;  // by camera; "": the LIDAR
+  Utime sweep_utime_ = 0;                      // of the newest whole sweep
   int sweep_part_ = 0;
   std::vector<Eigen::Vector3f> sweep_points_;  // as far as it has come
   std::shared_ptr<const std::vector<Eigen::Vector3f>> whole_sweep_;

@@ -23,9 +23,8 @@ struct Post {
   /// The frame; made when the first browser is about to get it, once, and not at all if none does.
   /// An exception drops the post.
   std::function<std::string()> make;
-  /// Of the steady clock when it came from the bus [s]; 0: it did not. From there to the browser's
-  /// ack is the time to the screen.
-  double came_s = 0;
+  /// From when it was sent to the browser's ack is the time to the screen.
+  bool timed = false;
 };
 
 /// Where posts go. Thread-safe; never blocks.

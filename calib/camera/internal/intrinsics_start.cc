@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "calib/camera/lens.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -77,12 +78,6 @@ double Rms(const Lens& lens, const Rigid3& pose, const Points& points, const Pix
     sum += (pixel - pixels[i]).squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(points.size()));
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // All views' poses through this lens; returns the median of their RMS, infinite where most fail.

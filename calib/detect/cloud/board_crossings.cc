@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -114,14 +116,8 @@ class MemberFinder {
         across.push_back((flat_[i + width_] - flat_[i]).norm());
       }
     }
-    const auto median = [](std::vector<double>* v) {
-      if (v->empty()) return 0.0;
-      const auto middle = v->begin() + static_cast<std::ptrdiff_t>(v->size() / 2);
-      std::nth_element(v->begin(), middle, v->end());
-      return *middle;
-    };
-    members->column_spacing_m = median(&along);
-    members->row_spacing_m = median(&across);
+    members->column_spacing_m = Median(std::move(along));
+    members->row_spacing_m = Median(std::move(across));
   }
 
   // Crossings along rows (or along columns), with what each stands for of a side across it.

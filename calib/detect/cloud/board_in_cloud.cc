@@ -10,6 +10,7 @@
 #include "calib/detect/cloud/internal/board_plane.h"
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -325,20 +326,15 @@ BoardsInCloud FindAtNoise(const RangeGrid& grid, const Target& target,
 }  // namespace
 
 void BoardInCloudOptions::Check() const {
-  const auto require = [](double value, const char* name) {
-    if (!(value > 0) || !std::isfinite(value)) {
-      throw InputError(std::string("BoardInCloudOptions.") + name + " is " + std::to_string(value) +
-                       "; expected a positive number");
-    }
-  };
-  require(range_sigma_m, "range_sigma_m");
-  require(max_range_m, "max_range_m");
-  require(max_candidates, "max_candidates");
-  require(edge.class_sigma_rad, "edge.class_sigma_rad");
-  require(edge.side_sigma_rad, "edge.side_sigma_rad");
-  require(edge.blur_rad, "edge.blur_rad");
-  require(edge.thickness_m, "edge.thickness_m");
-  require(edge.thickness_sigma_m, "edge.thickness_sigma_m");
+  const OptionCheck check("board in cloud");
+  check.Positive(range_sigma_m, "range_sigma_m");
+  check.Positive(max_range_m, "max_range_m");
+  check.Positive(max_candidates, "max_candidates");
+  check.Positive(edge.class_sigma_rad, "edge.class_sigma_rad");
+  check.Positive(edge.side_sigma_rad, "edge.side_sigma_rad");
+  check.Positive(edge.blur_rad, "edge.blur_rad");
+  check.Positive(edge.thickness_m, "edge.thickness_m");
+  check.Positive(edge.thickness_sigma_m, "edge.thickness_sigma_m");
 }
 
 BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,

@@ -4,17 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 using Angles = RangeGrid::Angles;
 

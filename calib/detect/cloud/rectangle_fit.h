@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "calib/detect/cloud/board_crossings.h"
+#include "calib/model/beam_priors.h"
 
 namespace rgbdt {
 
-/// Physics of a beam that has a width. What it does to an edge is an angle: with range it becomes a
-/// length. Outwards is positive.
+/// Physics of a beam that has a width; the values' reasons stand in beam_priors.h.
 struct BeamEdgeOptions {
-  double class_sigma_rad = 0.6e-3;  ///< prior of each class's shift (CrossingKind), about zero
-  double side_sigma_rad = 0.3e-3;   ///< prior of each side's own shift, about zero
-  double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside
-  /// Prior of the board's thickness: where its rim faces the LIDAR, the board looks wider.
-  double thickness_m = 0.010, thickness_sigma_m = 0.010;
+  double class_sigma_rad = kViewClassShiftSigmaRad;  ///< each class's shift (CrossingKind)
+  double side_sigma_rad = kSideShiftSigmaRad;        ///< each side's own shift
+  double blur_rad = kCrossingBlurRad;  ///< how exactly one beam tells inside from outside
+  /// Prior of the board's thickness.
+  double thickness_m = kBoardThicknessM, thickness_sigma_m = kBoardThicknessSigmaM;
 };
 
 /// A rectangle of known size in a plane. Its sides: 0 top (v negative), 1 right, 2 bottom, 3 left.

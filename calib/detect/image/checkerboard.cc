@@ -11,6 +11,7 @@
 #include "calib/detect/image/internal/grid_model.h"
 #include "calib/detect/image/internal/pattern_match.h"
 #include "calib/detect/image/internal/saddles.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -48,12 +49,6 @@ cv::Mat Resized(const cv::Mat& grey, double scale) {
 // Pixel centres lie at integers: (x + 0.5) scales, not x.
 Eigen::Vector2d Scaled(const Eigen::Vector2d& place, double scale) {
   return (place.array() + 0.5) * scale - 0.5;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::string Size(const Target& target) {

@@ -5,6 +5,8 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -42,10 +44,7 @@ double SquareContrast(const cv::Mat& grey, const Target& target,
       }
     }
   }
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::abs(*middle);
+  return std::abs(Median(std::move(steps)));
 }
 
 }  // namespace rgbdt

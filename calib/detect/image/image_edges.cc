@@ -9,6 +9,7 @@
 #include "calib/detect/image/internal/board_sides.h"
 #include "calib/detect/image/internal/clipped.h"
 #include "calib/detect/image/internal/corner_order.h"
+#include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/target_pose.h"
 
@@ -116,15 +117,10 @@ std::vector<Eigen::Vector2i> EdgePixelsIn(const std::array<Chain, 4>& sides, con
   return pixels;
 }
 
-float Bilinear(const cv::Mat& m, const Eigen::Vector2d& p) {
-  const int x = static_cast<int>(std::floor(p.x()));
-  const int y = static_cast<int>(std::floor(p.y()));
-  if (x < 0 || y < 0 || x + 1 >= m.cols || y + 1 >= m.rows) return 0;
-  const auto fx = static_cast<float>(p.x() - x);
-  const auto fy = static_cast<float>(p.y() - y);
-  const float top = (1 - fx) * m.at<float>(y, x) + fx * m.at<float>(y, x + 1);
-  const float bottom = (1 - fx) * m.at<float>(y + 1, x) + fx * m.at<float>(y + 1, x + 1);
-  return (1 - fy) * top + fy * bottom;
+// 0 on the last row and column and beyond: no edge is looked for there.
+float InnerValue(const cv::Mat& m, const Eigen::Vector2d& p) {
+  const bool inside = p.x() >= 0 && p.y() >= 0 && p.x() < m.cols - 1 && p.y() < m.rows - 1;
+  return inside ? Interpolate(m, p.x(), p.y()) : 0;
 }
 
 // Offset [px] along `normal` of the steepest gradient near `p`, by a parabola through the peak.
@@ -137,7 +133,7 @@ std::optional<double> EdgeOffset(const Gradient& g, const Eigen::Vector2d& p,
   for (int i = 0; i <= kSteps; ++i) {
     const Eigen::Vector2d at = p + (i * kStep - kReach) * normal;
     steepness[static_cast<std::size_t>(i)] =
-        std::abs(Bilinear(g.x, at) * normal.x() + Bilinear(g.y, at) * normal.y());
+        std::abs(InnerValue(g.x, at) * normal.x() + InnerValue(g.y, at) * normal.y());
   }
   const auto best = std::max_element(steepness.begin(), steepness.end());
   if (best == steepness.begin() || best == steepness.end() - 1 || *best < g.threshold) {

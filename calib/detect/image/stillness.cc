@@ -12,6 +12,8 @@
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/target_pose.h"
+#include "calib/model/statistics.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -237,10 +239,7 @@ double MedianShift(const Sight& sight, const Rigid3& later) {
     const auto b = sight.camera->Project(later * point);
     if (a && b) shifts.push_back((*a - *b).norm());
   }
-  if (shifts.empty()) return 0;
-  const auto middle = shifts.begin() + static_cast<std::ptrdiff_t>(shifts.size() / 2);
-  std::nth_element(shifts.begin(), middle, shifts.end());
-  return *middle;
+  return Median(std::move(shifts));
 }
 
 // How far the board's centre went [m]. Along the line of sight an image tells little: that part
@@ -256,12 +255,6 @@ double CentreShift(const TargetPose& before, const TargetPose& after) {
       PointCovariance(after.covariance, after.sensor_from_target.translation);
   const double sigma = std::sqrt(sight.dot(covariance * sight));
   return std::abs(along) > 3 * sigma ? std::hypot(along, across) : across;
-}
-
-std::string Text(const char* format, double a) {
-  char text[64];
-  std::snprintf(text, sizeof(text), format, a);
-  return text;
 }
 
 }  // namespace
@@ -289,13 +282,13 @@ std::string WhyNotStill(const Camera& camera, const Target& target, const cv::Ma
     const auto later = PoseIn(sight, other.grey);
     if (!later) {
       return "board moved: not found again in the image " +
-             Text("%.1f s after the sweep's start", other.after_start_s);
+             Format("%.1f s after the sweep's start", other.after_start_s);
     }
     const double shift_px = MedianShift(sight, later->pose.sensor_from_target);
     if (shift_px <= kStillPx) continue;
-    return "board moved " + Text("%.0f", 1000 * CentreShift(sight.pose.pose, later->pose)) +
-           " mm during the sweep (" + Text("%.1f", shift_px) + " px in the image " +
-           Text("%.1f s after its start)", other.after_start_s);
+    return "board moved " + Format("%.0f", 1000 * CentreShift(sight.pose.pose, later->pose)) +
+           " mm during the sweep (" + Format("%.1f", shift_px) + " px in the image " +
+           Format("%.1f s after its start)", other.after_start_s);
   }
   return "";
 }

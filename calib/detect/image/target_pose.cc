@@ -8,6 +8,7 @@
 
 #include "calib/camera/pixel_by_point.h"
 #include "calib/detect/image/internal/corner_order.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -163,9 +164,7 @@ bool Descend(const Camera& camera, const Points& model, const Pixels& corners,
 double ScaleOf(const Pixels& residuals) {
   std::vector<double> lengths;
   for (const Eigen::Vector2d& r : residuals) lengths.push_back(r.norm());
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return std::max(*middle / 1.1774, kSigmaFloorPx);
+  return std::max(Median(std::move(lengths)) / 1.1774, kSigmaFloorPx);
 }
 
 struct Fit {

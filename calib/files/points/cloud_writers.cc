@@ -29,6 +29,12 @@ void AddVectors(const std::string& prefix, const std::vector<Eigen::Vector3f>& v
   }
 }
 
+std::vector<Eigen::Vector3f> AllDirections(const Cloud& cloud) {
+  std::vector<Eigen::Vector3f> directions(cloud.directions.size());
+  for (std::size_t i = 0; i < directions.size(); ++i) directions[i] = DirectionOf(cloud, i);
+  return directions;
+}
+
 std::string PcdBytes(const std::vector<Column>& columns, std::size_t width, std::size_t height,
                      const std::vector<std::string>& comments) {
   std::string fields, sizes, types, counts;
@@ -133,7 +139,8 @@ void WritePcd(const std::filesystem::path& path, const Cloud& cloud) {
     columns.push_back(
         MakeColumn<std::int32_t>("beam", [beams](std::size_t i) { return i % beams; }));
   }
-  if (!cloud.directions.empty()) AddVectors("dir_", cloud.directions, 1, &columns);
+  const std::vector<Eigen::Vector3f> directions = AllDirections(cloud);
+  if (!directions.empty()) AddVectors("dir_", directions, 1, &columns);
   if (!cloud.origins.empty()) AddVectors("origin_", cloud.origins, beams, &columns);
   WriteFileAtomically(
       path, PcdBytes(columns, beams, cloud.size() / beams,

@@ -14,6 +14,7 @@
 #include "calib/files/points/internal/ply_table.h"
 #include "calib/files/points/internal/records.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -58,12 +59,6 @@ std::vector<Column> Columns(const MapCloud& map) {
 std::string PlyType(const Column& column) {
   if (column.type == 'F') return column.size == 8 ? "double" : "float";
   return column.size == 1 ? "uchar" : "uint";
-}
-
-std::string Exact(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return error == std::errc() ? std::string(text, end) : "0";
 }
 
 // One word, whatever the frame is called.

@@ -17,7 +17,7 @@ void ExportOpenCv(const std::filesystem::path& path, const Rig& rig,
                   const Calibration& calibration);
 
 /// The static_transform_publisher command lines of ROS 1 and ROS 2: parent the LIDAR, child
-/// <camera>_optical_frame, so the pose of the camera in the LIDAR frame (lidar_from_camera).
+/// `<camera>_optical_frame`, so the pose of the camera in the LIDAR frame (lidar_from_camera).
 void ExportRosStaticTransform(const std::filesystem::path& path, const Rig& rig,
                               const Calibration& calibration);
 

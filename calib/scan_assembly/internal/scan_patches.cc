@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -156,9 +158,8 @@ double RangeNoise(const PlacedBeams& all) {
     }
   });
   if (variances.empty()) return 0;
-  const auto place = static_cast<std::ptrdiff_t>(kFlat * static_cast<double>(variances.size()));
-  std::nth_element(variances.begin(), variances.begin() + place, variances.end());
-  return std::sqrt(variances[static_cast<std::size_t>(place)]);
+  const auto place = static_cast<std::size_t>(kFlat * static_cast<double>(variances.size()));
+  return std::sqrt(Nth(std::move(variances), place));
 }
 
 }  // namespace rgbdt

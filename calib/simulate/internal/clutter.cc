@@ -186,15 +186,15 @@ void ClutterOptions::Check() const {
        {"clutter.table_m", table_m},
        {"clutter.panel_m", panel_m}}};
   for (const auto& [field, size] : sizes) {
-    Between(size.x(), 0.1, 3, field);
-    Between(size.y(), 0.1, 2.3, field);
+    kCheck.Between(size.x(), 0.1, 3, field);
+    kCheck.Between(size.y(), 0.1, 2.3, field);
   }
-  Between(table_height_m, 0.2, 1.5, "clutter.table_height_m");
-  Between(door_ajar_rad, 0, 90 * kDegree, "clutter.door_ajar_rad");
-  Between(near_m, 1, 100, "clutter.near_m");
-  Between(far_m, near_m, 100, "clutter.far_m");
-  Between(min_azimuth_rad, 0, 180 * kDegree, "clutter.min_azimuth_rad");
-  Between(max_azimuth_rad, min_azimuth_rad, 180 * kDegree, "clutter.max_azimuth_rad");
+  kCheck.Between(table_height_m, 0.2, 1.5, "clutter.table_height_m");
+  kCheck.Between(door_ajar_rad, 0, 90 * kDegree, "clutter.door_ajar_rad");
+  kCheck.Between(near_m, 1, 100, "clutter.near_m");
+  kCheck.Between(far_m, near_m, 100, "clutter.far_m");
+  kCheck.Between(min_azimuth_rad, 0, 180 * kDegree, "clutter.min_azimuth_rad");
+  kCheck.Between(max_azimuth_rad, min_azimuth_rad, 180 * kDegree, "clutter.max_azimuth_rad");
 }
 
 ClutterThing MakeDoor(const ClutterOptions& options) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt::terrain {
 namespace {
 
@@ -17,12 +19,6 @@ constexpr double kLeastTolerance = 0.02;  // [m] what a cell's height may always
 
 int CellsIn(double metres, const TerrainGrid& grid, int least, int most) {
   return std::clamp(static_cast<int>(std::lround(metres / grid.cell_m)), least, most);
-}
-
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
 }
 
 struct Neighbour {
@@ -67,7 +63,8 @@ Eigen::Vector2d MedianGradient(Window* window, const TerrainGrid& grid) {
   if (std::min(along_x.size(), along_y.size()) < kLeastDifferences) {
     return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
-  return Eigen::Vector2d(Median(&along_x), Median(&along_y)) / (lag * grid.cell_m);
+  return Eigen::Vector2d(Median(std::move(along_x)), Median(std::move(along_y))) /
+         (lag * grid.cell_m);
 }
 
 // Least squares over the cells that lie near the plane with this gradient through the middle one;
@@ -84,8 +81,7 @@ Eigen::Vector2d Refined(const Eigen::Vector2d& gradient, Window* window, const T
       off.push_back(std::abs(height - gradient.dot(Eigen::Vector2d(x, y))));
     }
   }
-  std::vector<double> sorted = off;
-  const double tolerance = std::max(kLeastTolerance, 3 * 1.4826 * Median(&sorted));
+  const double tolerance = std::max(kLeastTolerance, 3 * 1.4826 * Median(off));
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   std::size_t used = 0;

@@ -6,7 +6,9 @@
 #include "calib/camera/pixels.h"
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "services/drivers/camera/internal/frame_format.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -20,11 +22,7 @@ const CameraSpec& WithDevice(const CameraSpec& spec) {
                    "\"; add device { serial: \"...\" } or device { address: \"...\" } to it");
 }
 
-std::string Seconds(Utime duration) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f s", ToSeconds(duration));
-  return text;
-}
+std::string Seconds(Utime duration) { return Format("%.1f s", ToSeconds(duration)); }
 
 }  // namespace
 
@@ -42,8 +40,8 @@ Messages CameraNode::Handle(const Message& message) {
   return {};
 }
 
-void CameraNode::Complain(DeviceThread& thread, const std::string& what) {
-  thread.Complain(spec_.name + ": " + what);
+void CameraNode::WarnOf(const std::string& what, DeviceThread& thread) const {
+  thread.Warn(spec_.name + ": " + what);
 }
 
 CameraNode::~CameraNode() {
@@ -81,7 +79,7 @@ void CameraNode::Serve(DeviceThread& thread) {
 void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
   using Trigger = CameraDevice::Trigger;
   const bool free_running = spec_.device->trigger == Trigger::kFree;
-  for (const std::string& remark : camera->remarks()) Complain(*thread, remark);
+  for (const std::string& remark : camera->remarks()) WarnOf(remark, *thread);
   ptp_ = camera->FollowsPtp();
   if (!free_running) {  // it may send nothing for long
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -148,7 +146,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++health_.incomplete;
     }
-    Complain(thread, "a frame is not whole and was dropped: " + frame.problem);
+    WarnOf("a frame is not whole and was dropped: " + frame.problem, thread);
     return;
   }
   Image image;
@@ -167,7 +165,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
       const std::lock_guard<std::mutex> lock(mutex_);
       ++health_.unfit;
     }
-    Complain(thread, e.what());
+    WarnOf(e.what(), thread);
     return;
   }
   if (spec_.kind == CameraKind::kThermal) {
@@ -175,7 +173,7 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
     image.shutter_correcting = shutter_.Add(image.pixels, image.utime);
   }
   if (lost_since_ != 0) {
-    Complain(thread, "back after " + Seconds(newest_arrival_ - lost_since_) + " without a frame");
+    WarnOf("back after " + Seconds(newest_arrival_ - lost_since_) + " without a frame", thread);
     lost_since_ = 0;
   }
   ++rate_frames_;
@@ -188,10 +186,10 @@ void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
   try {
     KeepRaw(image);
   } catch (const std::exception& e) {
-    Complain(thread, e.what());
+    WarnOf(e.what(), thread);
   }
   Pack(&image);
-  thread.Say(std::move(image));
+  thread.Publish(std::move(image));
 }
 
 // The capture's image, where only a packed one leaves this host.
@@ -226,13 +224,8 @@ Status CameraNode::GetStatus() const {
   if (!health_.streaming) {
     status.text = health_.frames == 0 ? "waits for its camera" : "lost its camera, looks for it";
   } else {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.1f frames/s", health_.rate_hz);
-    status.text = text;
-    if (health_.celsius) {
-      std::snprintf(text, sizeof text, ", camera at %.0f deg C", *health_.celsius);
-      status.text += text;
-    }
+    status.text = Format("%.1f frames/s", health_.rate_hz);
+    if (health_.celsius) status.text += Format(", camera at %.0f deg C", *health_.celsius);
   }
   status.counters = {{"frames", health_.frames},
                      {"incomplete frames", health_.incomplete},

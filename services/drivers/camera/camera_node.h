@@ -16,7 +16,7 @@
 
 namespace rgbdt {
 
-/// One GigE Vision or USB3 Vision camera -> <CAMERA>_IMAGE. Frames that are not whole, or not of
+/// One GigE Vision or USB3 Vision camera -> `<CAMERA>_IMAGE`. Frames that are not whole, or not of
 /// the rig file's size, are dropped, counted and named; none of them is published. A camera that is
 /// lost is looked for until it is back, and the gap is told.
 ///
@@ -46,8 +46,8 @@ class CameraNode : public DeviceNode {
   std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
-  DeviceNews TakeNews() override { return thread_.TakeNews(); }
-  bool ended() const override { return thread_.ended(); }
+  Messages Advance(Utime /*now*/) override { return TakeFrom(&thread_); }
+  bool finished() const override { return thread_.ended(); }
 
  private:
   // What the status tells.
@@ -72,7 +72,7 @@ class CameraNode : public DeviceNode {
   void KeepRaw(const Image& image);
   void Pack(Image* image) const;
   void AskHealth(GenicamCamera* camera);
-  void Complain(DeviceThread& thread, const std::string& what);
+  void WarnOf(const std::string& what, DeviceThread& thread) const;
 
   CameraSpec spec_;
   std::filesystem::path captures_;

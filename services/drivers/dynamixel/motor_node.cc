@@ -22,8 +22,8 @@ void TakePriority() {
   pthread_setschedparam(pthread_self(), SCHED_RR, &priority);
 }
 
-void Complain(const std::string& problem, DeviceThread* thread) {
-  if (!problem.empty()) thread->Complain(problem);
+void WarnIfAny(const std::string& warning, DeviceThread* thread) {
+  if (!warning.empty()) thread->Warn(warning);
 }
 
 const TurnedScanner& WithMotor(const TurnedScanner& scanner) {
@@ -71,7 +71,7 @@ void MotorNode::Serve(DeviceThread* thread) {
   TakePriority();
   try {
     TurningMotor motor(scanner_, &counters_);
-    Complain(motor.WhyOutOfReach(), thread);
+    WarnIfAny(motor.WhyOutOfReach(), thread);
     SetText(true, motor.model_name() + " on " + scanner_.motor->port + ", waits for a command");
     ServeMotor(&motor, thread);
   } catch (const std::exception& e) {
@@ -90,7 +90,7 @@ void MotorNode::ServeMotor(TurningMotor* motor, DeviceThread* thread) {
     const auto reading = motor->Read();
     if (!reading) continue;  // the next try at once
     OnReading(*reading, motor, thread);
-    if (++readings == kReadingsToJudgeBy) Complain(motor->WhyPoorReadings(), thread);
+    if (++readings == kReadingsToJudgeBy) WarnIfAny(motor->WhyPoorReadings(), thread);
     // What was held up is made good, but not without end.
     due = std::max(due + period, Clock::now() - kMaxBehind * period);
     std::this_thread::sleep_until(due);
@@ -122,7 +122,7 @@ void MotorNode::OnReading(const PositionReading& reading, TurningMotor* motor,
   message.utime = reading.utime;
   message.ticks = reading.ticks;
   message.sweep_utime = step.sweep_utime;
-  thread->Say(message);
+  thread->Publish(message);
   if (step.move_to) motor->MoveTo(*step.move_to);
   if (!sweep_) return;
   if (step.done) {
@@ -132,17 +132,17 @@ void MotorNode::OnReading(const PositionReading& reading, TurningMotor* motor,
     motor->TorqueOff();
     EndSweep(EventKind::kFailed, step.failure, thread);
   } else {
-    SayProgress(reading.utime, thread);
+    PublishProgress(reading.utime, thread);
   }
 }
 
-void MotorNode::SayProgress(Utime utime, DeviceThread* thread) {
+void MotorNode::PublishProgress(Utime utime, DeviceThread* thread) {
   if (utime < next_progress_) return;
   next_progress_ = utime + kProgressPeriod;
   SessionEvent event = EventOf(sweep_->command(), EventKind::kProgress, sweep_->Text());
   event.sweep_utime = sweep_->sweep_utime();
   event.fraction = sweep_->fraction();
-  thread->Say(event);
+  thread->Publish(event);
 }
 
 // Also of a sweep that was asked for and has not begun.
@@ -152,7 +152,7 @@ void MotorNode::EndSweep(EventKind kind, const std::string& text, DeviceThread* 
   SessionEvent event = EventOf(*command_, kind, text);
   event.fraction = kind == EventKind::kDone ? 1 : 0;
   if (kind == EventKind::kDone && sweep_) event.sweep_utime = sweep_->sweep_utime();
-  thread->Say(event);
+  thread->Publish(event);
   sweep_.reset();
   command_.reset();
 }

@@ -32,15 +32,15 @@ class MotorNode : public DeviceNode {
   std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
-  DeviceNews TakeNews() override { return thread_.TakeNews(); }
-  bool ended() const override { return thread_.ended(); }
+  Messages Advance(Utime /*now*/) override { return TakeFrom(&thread_); }
+  bool finished() const override { return thread_.ended(); }
 
  private:
   void Serve(DeviceThread* thread);
   void ServeMotor(TurningMotor* motor, DeviceThread* thread);
   void BeginSweep(TurningMotor* motor, DeviceThread* thread);
   void OnReading(const PositionReading& reading, TurningMotor* motor, DeviceThread* thread);
-  void SayProgress(Utime utime, DeviceThread* thread);
+  void PublishProgress(Utime utime, DeviceThread* thread);
   void EndSweep(EventKind kind, const std::string& text, DeviceThread* thread);
   SessionEvent EventOf(std::int64_t command, EventKind kind, const std::string& text) const;
   void SetText(bool connected, const std::string& text);

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/text.h"
+
 namespace rgbdt {
 namespace {
 
 constexpr double kDegree = 3.14159265358979 / 180;
 
 double Distance(std::int64_t a, std::int64_t b) { return std::abs(static_cast<double>(a - b)); }
-
-std::string OneDecimal(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
 
 }  // namespace
 
@@ -27,7 +23,7 @@ double MotorSweep::Degrees(std::int64_t ticks) const {
 
 std::string MotorSweep::Text() const {
   if (phase_ != Phase::kSweep) return "moving to the sweep's start";
-  return "sweeping to " + OneDecimal(Degrees(goal_)) + " deg";
+  return "sweeping to " + Fixed(Degrees(goal_), 1) + " deg";
 }
 
 void MotorSweep::GoTo(std::int64_t goal, const PositionReading& reading, Step* step) {
@@ -83,8 +79,8 @@ bool MotorSweep::Arrived(const PositionReading& reading) {
 
 std::string MotorSweep::Stall(const PositionReading& reading) const {
   if (reading.utime - advanced_ < kStalled) return "";
-  return "the motor stands at " + OneDecimal(Degrees(reading.ticks)) + " deg on its way to " +
-         OneDecimal(Degrees(goal_)) +
+  return "the motor stands at " + Fixed(Degrees(reading.ticks), 1) + " deg on its way to " +
+         Fixed(Degrees(goal_), 1) +
          " deg; its torque is off now: see what blocks it, and whether it has power";
 }
 

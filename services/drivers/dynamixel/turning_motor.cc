@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/model/text.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {
@@ -37,9 +38,7 @@ Utime ToUtime(double steady_us) {
 
 std::string Degrees(const TurnedScanner& scanner, std::int64_t ticks) {
   const double angle = (static_cast<double>(ticks) - scanner.zero_ticks) / scanner.ticks_per_rad;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", angle * 360 / kTwoPi);
-  return text;
+  return Fixed(angle * 360 / kTwoPi, 1);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -115,9 +117,8 @@ void ScipScanner::AlignClock(Connection& c) {
   c.clock.emplace(FromSeconds(scan_s));
   const scip::Block on = Ask(c, scip::kTimeModeOn);
   if (on.status() != "00" && on.status() != "02") {
-    c.thread.Complain(c.link.name() + ": does not tell its time (" +
-                      scip::StatusText("TM0", on.status()) +
-                      "); lines may bear times some ms late");
+    c.thread.Warn(c.link.name() + ": does not tell its time (" +
+                  scip::StatusText("TM0", on.status()) + "); lines may bear times some ms late");
     return;
   }
   for (int i = 0; i < kTimesAsked; ++i) {
@@ -148,7 +149,7 @@ void ScipScanner::Stream(Connection& c) {
     c.reader.Append(c.link.Receive(kSliceMs));
     while (const auto block = c.reader.Take()) {
       if (!scip::IsScan(*block)) {
-        c.thread.Complain(c.link.name() + ": " + scip::StatusText(block->echo(), block->status()));
+        c.thread.Warn(c.link.name() + ": " + scip::StatusText(block->echo(), block->status()));
         continue;
       }
       OnScan(c, *block, c.link.arrival());
@@ -170,14 +171,14 @@ void ScipScanner::OnScan(Connection& c, const scip::Block& block, Utime arrival)
     }
   } catch (const InputError& e) {
     report_.Count("bad lines");
-    c.thread.Complain(c.link.name() + ": " + e.what());
+    c.thread.Warn(c.link.name() + ": " + e.what());
     return;
   }
   const ScipClock::ScanTime time = c.clock->AddScan(scan.time_ms, arrival);
   if (time.was_set) {
     c.last_ms.reset();
-    c.thread.Complain(c.link.name() +
-                      ": its clock or this machine's was set; the lines' times begin anew");
+    c.thread.Warn(c.link.name() +
+                  ": its clock or this machine's was set; the lines' times begin anew");
   }
   const double turns =
       c.last_ms ? static_cast<double>(time.ms - *c.last_ms) * c.scanner.rpm / 60e3 : 1;
@@ -185,7 +186,7 @@ void ScipScanner::OnScan(Connection& c, const scip::Block& block, Utime arrival)
   if (lost > 0) report_.Count("lost lines", lost);
   c.last_ms = time.ms;
   TellGap(c, time.utime);
-  c.thread.Say(ToLineScan(c.scanner, scan, time.utime));
+  c.thread.Publish(ToLineScan(c.scanner, scan, time.utime));
   report_.Count("lines");
 }
 
@@ -196,10 +197,8 @@ void ScipScanner::TellGap(Connection& c, Utime utime) {
     return;
   }
   if (last_line_ != 0) {
-    char text[80];
-    std::snprintf(text, sizeof(text), ": is back; no lines for %.1f s",
-                  ToSeconds(utime - last_line_));
-    c.thread.Complain(c.link.name() + text);
+    c.thread.Warn(c.link.name() +
+                  Format(": is back; no lines for %.1f s", ToSeconds(utime - last_line_)));
     report_.Count("reconnects");
   }
   last_line_ = utime;

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "calib/model/errors.h"
-#include "services/drivers/clock_fit.h"
 #include "services/drivers/hokuyo/scip_scanner.h"
 #include "services/drivers/lidar/internal/pcd_folder.h"
 #include "services/drivers/velodyne/velodyne_source.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -103,10 +103,9 @@ void LidarNode::FailPending(Messages* messages) {
   pending_.clear();
 }
 
-DeviceNews LidarNode::TakeNews() {
-  DeviceNews news = thread_->TakeNews();
+Messages LidarNode::Advance(Utime /*now*/) {
   Messages messages;
-  for (Message& message : news.messages) {
+  for (Message& message : TakeFrom(thread_.get())) {
     const auto* chunk = std::get_if<CloudChunk>(&message);
     Messages answers;
     if (chunk != nullptr && chunk->sweep_end) AnswerWith(*chunk, &answers);
@@ -114,8 +113,7 @@ DeviceNews LidarNode::TakeNews() {
     for (Message& answer : answers) messages.push_back(std::move(answer));
   }
   if (thread_->ended()) FailPending(&messages);
-  news.messages = std::move(messages);
-  return news;
+  return messages;
 }
 
 }  // namespace rgbdt

@@ -25,8 +25,8 @@ class LidarNode : public DeviceNode {
   std::vector<std::string> Subscriptions() const override;
   Messages Handle(const Message& message) override;
   Status GetStatus() const override { return source_->report().GetStatus(); }
-  DeviceNews TakeNews() override;
-  bool ended() const override { return thread_->ended(); }
+  Messages Advance(Utime now) override;
+  bool finished() const override { return thread_->ended(); }
 
   /// What serves the device.
   class Source {

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <memory>
 
-#include "services/drivers/clock_fit.h"
+#include "services/runtime/clock.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "services/drivers/velodyne/velodyne_source.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {

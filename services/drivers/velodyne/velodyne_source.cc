@@ -4,7 +4,8 @@
 
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
-#include "services/drivers/pacer.h"
+#include "services/runtime/clock.h"
+#include "services/runtime/pacer.h"
 
 namespace rgbdt {
 namespace {
@@ -25,7 +26,7 @@ VelodyneSource::VelodyneSource(const VelodyneDevice& device)
 }
 
 void VelodyneSource::Serve(DeviceThread& thread) {
-  if (device_.model == VelodyneDevice::Model::kHdl64e) thread.Complain(kNominal);
+  if (device_.model == VelodyneDevice::Model::kHdl64e) thread.Warn(kNominal);
   try {
     live() ? Listen(thread) : Play(thread);
   } catch (const std::exception& e) {
@@ -46,9 +47,9 @@ void VelodyneSource::Listen(DeviceThread& thread) {
       last = Clock::now();
     } else if (Clock::now() - last > std::chrono::milliseconds(kSilenceMs)) {
       report_.Set("hears nothing at " + where, false);
-      thread.Complain(where +
-                      ": no packets for 2 s; is the LIDAR on, does it send to this "
-                      "machine's address and this port, and does a firewall let it in?");
+      thread.Warn(where +
+                  ": no packets for 2 s; is the LIDAR on, does it send to this "
+                  "machine's address and this port, and does a firewall let it in?");
       last = Clock::now();
     }
   }
@@ -67,21 +68,20 @@ void VelodyneSource::Play(DeviceThread& thread) {
         continue;
       }
       ++ours;
-      if (!pacer.Wait(&thread, datagram->utime)) return;
+      if (!thread.Sleep(pacer.WaitFor(datagram->utime, SteadyUtime()))) return;
       if (datagram->cut) {
         report_.Count("bad packets");
-        thread.Complain(device_.pcap + ": was recorded with packets cut short; record them whole");
+        thread.Warn(device_.pcap + ": was recorded with packets cut short; record them whole");
         continue;
       }
       Take(thread, datagram->payload, datagram->utime);
     }
   } catch (const InputError& e) {
-    thread.Complain(e.what());
+    thread.Warn(e.what());
   }
   if (ours == 0) {
-    thread.Complain(device_.pcap + ": has no packets to UDP port " + std::to_string(device_.port) +
-                    ", but " + std::to_string(others) +
-                    " to others; correct the port in the rig file");
+    thread.Warn(device_.pcap + ": has no packets to UDP port " + std::to_string(device_.port) +
+                ", but " + std::to_string(others) + " to others; correct the port in the rig file");
   }
   report_.Set(device_.pcap + " has ended", true);
 }
@@ -96,7 +96,7 @@ void VelodyneSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>&
     sweeps = sweeps_.Add(packet, utime);
   } catch (const InputError& e) {
     report_.Count("bad packets");
-    thread.Complain(e.what());
+    thread.Warn(e.what());
     return;
   }
   report_.SetSweepBegun(sweeps_.begun());
@@ -105,11 +105,11 @@ void VelodyneSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>&
   lost_told_ = sweeps_.lost_packets();
   if (sweeps_.clock_steps() != steps_told_) {
     steps_told_ = sweeps_.clock_steps();
-    thread.Complain("the LIDAR's clock or this machine's was set; the points' times begin anew");
+    thread.Warn("the LIDAR's clock or this machine's was set; the points' times begin anew");
   }
   for (const Cloud& sweep : sweeps) {
     report_.Count("sweeps");
-    for (CloudChunk& chunk : SplitSweep(sweep)) thread.Say(std::move(chunk));
+    for (CloudChunk& chunk : SplitSweep(sweep)) thread.Publish(std::move(chunk));
     report_.Set(velodyne::SensorOf(device_.model).name + (live() ? "" : " from " + device_.pcap),
                 true);
   }

@@ -1,14 +1,19 @@
 #include "services/messages/internal/codec_board.h"
 
+#include <limits>
+
+#include "services/messages/internal/fields.h"
+
 namespace rgbdt {
 
-target_pose_t ToWire(const TargetPose& pose) {
-  target_pose_t wire;
-  RigidToWire(pose.sensor_from_target, wire.quaternion_wxyz, wire.translation_m);
-  MatrixToWire(pose.covariance, wire.covariance);
-  wire.half_turn_known = static_cast<std::int8_t>(pose.half_turn_known);
-  return wire;
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, target_pose_t>& wire, StructOf<Copy, TargetPose>& pose) {
+  copy.Pose(wire.quaternion_wxyz, wire.translation_m, pose.sensor_from_target);
+  copy(wire.covariance, pose.covariance);
+  copy(wire.half_turn_known, pose.half_turn_known);
 }
+
+target_pose_t ToWire(const TargetPose& pose) { return FieldsToWire<target_pose_t>(pose); }
 
 void Check(const target_pose_t& wire) {
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
@@ -16,111 +21,98 @@ void Check(const target_pose_t& wire) {
   CheckCovariance("covariance", wire.covariance[0], 6);
 }
 
-TargetPose FromWire(const target_pose_t& wire) {
-  return {RigidFromWire(wire.quaternion_wxyz, wire.translation_m), MatrixFromWire(wire.covariance),
-          wire.half_turn_known != 0};
+TargetPose FromWire(const target_pose_t& wire) { return FieldsFromWire<TargetPose>(wire); }
+
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, image_side_t>& wire, StructOf<Copy, ImageSide>& side) {
+  copy(wire.seen, side.seen);
+  copy(wire.why, side.why);
+  copy.List("num_curve", wire.num_curve, wire.curve_px, side.curve);
+  copy(wire.covariance_px2, side.covariance);
 }
 
-image_side_t ToWire(const ImageSide& side) {
-  image_side_t wire;
-  wire.seen = static_cast<std::int8_t>(side.seen);
-  wire.why = side.why;
-  wire.num_curve = CountOf(side.curve.size(), "num_curve");
-  wire.curve_px = RowsToWire(side.curve);
-  MatrixToWire(side.covariance, wire.covariance_px2);
-  return wire;
-}
+image_side_t ToWire(const ImageSide& side) { return FieldsToWire<image_side_t>(side); }
 
 void Check(const image_side_t& wire) {
   CheckText("why", wire.why);
   CheckRows("curve_px", wire.curve_px);
   CheckCovariance("covariance_px2", wire.covariance_px2[0], 2);
-  // The covariance speaks of the curve's two ends.
+  // The covariance is that of the curve's two ends.
   if (wire.seen != 0 && wire.num_curve < 2) {
     Fail("num_curve", wire.num_curve, "2 or more, as the side is seen");
   }
 }
 
-ImageSide FromWire(const image_side_t& wire) {
-  return {wire.seen != 0, wire.why, RowsFromWire<Eigen::Vector2d>(wire.curve_px),
-          MatrixFromWire(wire.covariance_px2)};
+ImageSide FromWire(const image_side_t& wire) { return FieldsFromWire<ImageSide>(wire); }
+
+// All but the side, an int that must fit into a byte.
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, board_crossing_t>& wire,
+            StructOf<Copy, Crossing>& crossing) {
+  copy(wire.point_m, crossing.point);
+  copy(wire.half_width_m, crossing.half_width_m);
+  copy(wire.sigma_m, crossing.sigma_m);
+  copy(wire.kind, crossing.kind);
 }
 
 board_crossing_t ToWire(const Crossing& crossing) {
-  board_crossing_t wire;
-  VectorToWire(crossing.point, wire.point_m);
-  wire.half_width_m = crossing.half_width_m;
-  // Before it is cut to the wire's byte.
   CheckRange("side", crossing.side, board_crossing_t::TOP, board_crossing_t::LEFT);
+  auto wire = FieldsToWire<board_crossing_t>(crossing);
   wire.side = static_cast<std::int8_t>(crossing.side);
-  wire.kind = static_cast<std::int8_t>(crossing.kind);
   return wire;
 }
 
 void Check(const board_crossing_t& wire) {
   CheckFinite("point_m", wire.point_m, 3);
   CheckNotNegative("half_width_m", wire.half_width_m);
+  CheckNotNegative("sigma_m", wire.sigma_m);
   CheckRange("side", wire.side, board_crossing_t::TOP, board_crossing_t::LEFT);
   CheckRange("kind", wire.kind, board_crossing_t::NO_RETURN, board_crossing_t::MERGED);
 }
 
 Crossing FromWire(const board_crossing_t& wire) {
-  return {Eigen::Vector3d(wire.point_m), wire.half_width_m, wire.side,
-          static_cast<CrossingKind>(wire.kind)};
+  auto crossing = FieldsFromWire<Crossing>(wire);
+  crossing.side = wire.side;
+  return crossing;
 }
 
-cloud_board_t ToWire(const CloudEdges& cloud) {
-  cloud_board_t wire{};
-  BoardToWire(cloud, &wire);
-  wire.has_pose = static_cast<std::int8_t>(cloud.pose.has_value());
-  if (cloud.pose) wire.pose = ToWire(*cloud.pose);
-  wire.num_crossings = CountOf(cloud.crossings.size(), "num_crossings");
-  wire.crossing = PartsToWire(cloud.crossings);
-  return wire;
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, cloud_board_t>& wire,
+            StructOf<Copy, CloudEdges>& cloud) {
+  copy(wire.camera, cloud.camera);
+  copy.List("num_boundary", wire.num_boundary, wire.boundary_m, cloud.boundary);
+  copy(wire.centre_m, cloud.centre);
+  copy(wire.normal, cloud.normal);
+  copy(wire.width_m, cloud.width_m);
+  copy(wire.height_m, cloud.height_m);
+  copy(wire.spacing_m, cloud.spacing_m);
+  copy(wire.num_board_points, cloud.points);
+  copy.Optional(wire.has_pose, wire.pose, cloud.pose);
+  copy.List("num_crossings", wire.num_crossings, wire.crossing, cloud.crossings);
+  copy(wire.scatter, cloud.scatter);
+  copy(wire.raw_scatter, cloud.raw_scatter);
+  copy(wire.scatter_sigma_m, cloud.scatter_sigma_m);
 }
+
+cloud_board_t ToWire(const CloudEdges& cloud) { return FieldsToWire<cloud_board_t>(cloud); }
 
 void Check(const cloud_board_t& wire) {
-  CheckBoard(wire);
+  if (!wire.camera.empty()) CheckCameraName("camera", wire.camera);
+  CheckRows("boundary_m", wire.boundary_m);
+  CheckFinite("centre_m", wire.centre_m, 3);
+  CheckUnitVector("normal", Eigen::Vector3d(wire.normal));
+  CheckNotNegative("width_m", wire.width_m);
+  CheckNotNegative("height_m", wire.height_m);
+  CheckNotNegative("spacing_m", wire.spacing_m);
+  CheckRange("num_board_points", wire.num_board_points, 0,
+             std::numeric_limits<std::int32_t>::max());
   if (wire.has_pose != 0) CheckPart("pose", wire.pose);
   CheckParts("crossing", wire.crossing);
-}
-
-CloudEdges FromWire(const cloud_board_t& wire) {
-  CloudEdges cloud = BoardFromWire(wire);
-  if (wire.has_pose != 0) cloud.pose = FromWire(wire.pose);
-  cloud.crossings = PartsFromWire(wire.crossing);
-  return cloud;
-}
-
-board_scatter_t ScatterToWire(const CloudEdges& cloud) {
-  board_scatter_t wire;
-  wire.num_crossings = CountOf(cloud.crossings.size(), "num_crossings");
-  wire.crossing_sigma_m.reserve(cloud.crossings.size());
-  for (const Crossing& crossing : cloud.crossings) {
-    wire.crossing_sigma_m.push_back(crossing.sigma_m);
-  }
-  MatrixToWire(cloud.scatter, wire.scatter);
-  MatrixToWire(cloud.raw_scatter, wire.raw_scatter);
-  wire.scatter_sigma_m = cloud.scatter_sigma_m;
-  return wire;
-}
-
-void Check(const board_scatter_t& wire) {
-  for (std::size_t i = 0; i < wire.crossing_sigma_m.size(); ++i) {
-    CheckNotNegative(At("crossing_sigma_m", i), wire.crossing_sigma_m[i]);
-  }
   CheckCovariance("scatter", wire.scatter[0], 4);
   CheckCovariance("raw_scatter", wire.raw_scatter[0], 4);
   CheckNotNegative("scatter_sigma_m", wire.scatter_sigma_m);
 }
 
-void ScatterFromWire(const board_scatter_t& wire, CloudEdges* cloud) {
-  for (std::size_t i = 0; i < cloud->crossings.size(); ++i) {
-    cloud->crossings[i].sigma_m = wire.crossing_sigma_m[i];
-  }
-  cloud->scatter = MatrixFromWire(wire.scatter);
-  cloud->raw_scatter = MatrixFromWire(wire.raw_scatter);
-  cloud->scatter_sigma_m = wire.scatter_sigma_m;
-}
+CloudEdges FromWire(const cloud_board_t& wire) { return FieldsFromWire<CloudEdges>(wire); }
 
 }  // namespace rgbdt

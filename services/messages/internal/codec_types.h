@@ -1,9 +1,9 @@
 #pragma once
 
-// Inside the codec: what each type's pair of conversions looks like. For every struct S of
+// Inside the codec: what each message's pair of conversions looks like. For every struct S of
 // `Message` and its LCM type W:
 //   W ToWire(const S&)     copies; throws InputError where vectors differ in length
-//   void Check(const W&)   semantics, the same when sending and when receiving (check.h)
+//   void Check(const W&)   rules, the same when sending and when receiving (check.h); seq apart
 //   S FromWire(const W&)   after Check; by value where the struct takes over long vectors
 // ToWire guards sizes before it allocates: no array is longer than a message has bytes.
 
@@ -13,19 +13,16 @@
 #include <lcmtypes/rgbdt/encoder_t.hpp>
 #include <lcmtypes/rgbdt/image_t.hpp>
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
-#include <lcmtypes/rgbdt/observation_t.hpp>
-#include <lcmtypes/rgbdt/observation_v2_t.hpp>
-#include <lcmtypes/rgbdt/observation_v3_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
-#include <lcmtypes/rgbdt/rgbdt_cloud_v2_t.hpp>
 #include <lcmtypes/rgbdt/rig_t.hpp>
 #include <lcmtypes/rgbdt/session_command_t.hpp>
 #include <lcmtypes/rgbdt/session_event_t.hpp>
 #include <lcmtypes/rgbdt/session_request_t.hpp>
-#include <lcmtypes/rgbdt/sighting_t.hpp>
 #include <lcmtypes/rgbdt/status_t.hpp>
+#include <lcmtypes/rgbdt/target_status_t.hpp>
+#include <lcmtypes/rgbdt/view_detection_t.hpp>
 
 #include "services/messages/message.h"
 
@@ -50,39 +47,22 @@ void Check(const cloud_t& wire);
 CloudChunk FromWire(const cloud_t& wire);
 
 // codec_rgbdt_cloud.cc
-/// What the first version carries: of the calibrations' times the newest, no pose and no sigmas.
-rgbdt_cloud_t ToFirstVersion(const RgbdtCloud& cloud);
+rgbdt_cloud_t ToWire(const RgbdtCloud& cloud);
 void Check(const rgbdt_cloud_t& wire);
 RgbdtCloud FromWire(rgbdt_cloud_t wire);
 
-// codec_rgbdt_cloud_v2.cc
-rgbdt_cloud_v2_t ToWire(const RgbdtCloud& cloud);
-void Check(const rgbdt_cloud_v2_t& wire);
-RgbdtCloud FromWire(rgbdt_cloud_v2_t wire);
-
-// codec_observation.cc
+// codec_target.cc
 corner_selection_t ToWire(const CornerSelection& selection);
 void Check(const corner_selection_t& wire);
 CornerSelection FromWire(const corner_selection_t& wire);
-/// What the first version carries: no poses, sides, crossings and candidates.
-observation_t ToFirstVersion(const Observation& observation);
-void Check(const observation_t& wire);
-Observation FromWire(const observation_t& wire);
+target_status_t ToWire(const TargetStatus& status);
+void Check(const target_status_t& wire);
+TargetStatus FromWire(const target_status_t& wire);
 
-sighting_t ToWire(const Sighting& sighting);
-void Check(const sighting_t& wire);
-Sighting FromWire(const sighting_t& wire);
-
-// codec_observation_v2.cc
-/// What the second version carries: no crossings' sigmas and no scatter.
-observation_v2_t ToSecondVersion(const Observation& observation);
-void Check(const observation_v2_t& wire);
-Observation FromWire(const observation_v2_t& wire);
-
-// codec_observation_v3.cc
-observation_v3_t ToWire(const Observation& observation);
-void Check(const observation_v3_t& wire);
-Observation FromWire(const observation_v3_t& wire);
+// codec_observation.cc
+view_detection_t ToWire(const ViewDetection& detection);
+void Check(const view_detection_t& wire);
+ViewDetection FromWire(const view_detection_t& wire);
 
 // codec_calibration.cc
 calibration_t ToWire(const CalibrationMessage& message);

@@ -1,11 +1,9 @@
 #include "services/messages/internal/layout.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstring>
 #include <stdexcept>
-#include <string>
 
 #include "calib/model/errors.h"
 
@@ -13,67 +11,55 @@ namespace rgbdt {
 namespace {
 
 constexpr std::size_t kFingerprintBytes = 8;
+constexpr std::uint64_t kLeastString = 5;  // its length and its NUL
 
-struct Struct {
-  std::string_view name;
-  std::string_view layout;
-};
-
-// What lies within other types.
-constexpr std::array<Struct, 8> kStructs = {{
-    {"observation_t",
-     "2q 2s q b s b 2i b 8d #num_corners num_corners*2d #num_edge_pixels num_edge_pixels*2h "
-     "#num_outline num_outline*2d b #num_boundary num_boundary*3d 3d 3d 3d i 2d"},
-    {"observation_v2_t",
-     "observation_t d b target_pose_t 4image_side_t b target_pose_t #num_cloud_crossings "
-     "num_cloud_crossings*board_crossing_t #num_candidates num_candidates*cloud_board_t"},
-    {"target_pose_t", "43d b"},
-    {"image_side_t", "b s #num_curve num_curve*2d 4d"},
-    {"board_crossing_t", "4d 2b"},
-    {"cloud_board_t",
-     "#num_boundary num_boundary*3d 3d 3d 3d i b target_pose_t #num_crossings "
-     "num_crossings*board_crossing_t"},
-    {"board_scatter_t", "#num_crossings num_crossings*d 33d"},
-    {"rgbdt_cloud_t",
-     "3q b q #num_cameras num_cameras*s #num_points num_points*f num_points*f num_points*f "
-     "num_points*f num_points*i num_points*b num_points*b num_points*b num_points*f num_points*f "
-     "num_points*i"},
-}};
-
-std::string_view LayoutOf(std::string_view name) {
-  for (const Struct& known : kStructs) {
-    if (known.name == name) return known.layout;
-  }
-  throw std::logic_error("layout: unknown struct " + std::string(name));
+// 0: not one of LCM's own types.
+std::uint64_t BytesOf(std::string_view type) {
+  if (type == "int64_t" || type == "double") return 8;
+  if (type == "int32_t" || type == "float") return 4;
+  if (type == "int16_t") return 2;
+  if (type == "int8_t" || type == "byte" || type == "boolean") return 1;
+  return type == "string" ? kLeastString : 0;
 }
 
-std::uint64_t BytesOf(char type) {
-  switch (type) {
-    case 'q':
-    case 'd':
-      return 8;
-    case 'i':
-    case 'f':
-      return 4;
-    case 'h':
-      return 2;
-    case 'b':
-      return 1;
-  }
-  throw std::logic_error(std::string("layout: unknown type ") + type);
+bool IsNumber(const std::string& size) {
+  return std::isdigit(static_cast<unsigned char>(size.front())) != 0;
 }
 
-class Walker {
+// The fields that count others', in their order.
+std::vector<std::string> CountsOf(const LcmType& type) {
+  std::vector<std::string> counts;
+  for (const LcmField& field : type.fields) {
+    const bool counts_others =
+        std::any_of(type.fields.begin(), type.fields.end(), [&](const LcmField& other) {
+          return std::find(other.sizes.begin(), other.sizes.end(), field.name) != other.sizes.end();
+        });
+    if (counts_others) counts.push_back(field.name);
+  }
+  return counts;
+}
+
+[[noreturn]] void Fail(const LcmType& type, const std::string& field, const std::string& why) {
+  throw std::logic_error(type.name + "." + field + ": " + why);
+}
+
+}  // namespace
+
+// Goes through a message field by field.
+class Layouts::Walker {
  public:
   Walker(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {
     Skip(kFingerprintBytes, "the fingerprint");
   }
 
-  void Fields(std::string_view layout) {
-    while (!layout.empty()) {
-      const std::size_t end = std::min(layout.find(' '), layout.size());
-      if (end > 0) Token(layout.substr(0, end));
-      layout.remove_prefix(std::min(end + 1, layout.size()));
+  void Fields(const Type& type) {
+    std::vector<std::uint64_t> counts;
+    for (const Field& field : type.fields) {
+      if (field.is_count) {
+        counts.push_back(ReadCount(field));
+      } else {
+        Elements(field, NumberOf(field, counts));
+      }
     }
   }
 
@@ -84,57 +70,38 @@ class Walker {
   }
 
  private:
-  struct NamedCount {
-    std::string_view name;
-    std::uint64_t value = 0;
-  };
-
-  void Token(std::string_view token) {
-    if (token.front() == '#') return ReadCount(token.substr(1));
-    const std::string_view whole = token;
-    std::uint64_t times = 1;
-    const std::size_t star = token.find('*');
-    if (star != std::string_view::npos) {
-      times = Count(token.substr(0, star));
-      token.remove_prefix(star + 1);
+  // After each count no more elements than bytes are left. So nothing overflows, and a decoder that
+  // allocates an array's outer sizes first does not allocate more either.
+  std::uint64_t NumberOf(const Field& field, const std::vector<std::uint64_t>& counts) const {
+    std::uint64_t number = 1;
+    for (const std::size_t count : field.counts) {
+      number *= counts[count];
+      Hold(number * field.bytes, field.name);
     }
-    std::uint64_t repeat = 0;
-    for (; std::isdigit(static_cast<unsigned char>(token.front())) != 0; token.remove_prefix(1)) {
-      repeat = 10 * repeat + static_cast<std::uint64_t>(token.front() - '0');
-    }
-    if (repeat > 0) times *= repeat;
-    if (token.size() > 1) return Structs(token, times);
-    if (token.front() != 's') return Skip(times * BytesOf(token.front()), whole);
-    for (std::uint64_t i = 0; i < times; ++i) SkipString();
+    return number * field.repeats;
   }
 
-  // Every struct takes bytes, so a forged `times` soon finds none left.
-  void Structs(std::string_view name, std::uint64_t times) {
-    const std::string_view layout = LayoutOf(name);
-    const auto counts = counts_;
-    for (std::uint64_t i = 0; i < times; ++i) {
-      counts_ = {};
-      Fields(layout);
+  void Elements(const Field& field, std::uint64_t number) {
+    if (field.part == nullptr && !field.is_string) return Skip(number * field.bytes, field.name);
+    for (std::uint64_t i = 0; i < number; ++i) {
+      if (field.is_string) {
+        SkipString(field.name);
+      } else {
+        Fields(*field.part);
+      }
     }
-    counts_ = counts;
   }
 
-  std::uint64_t Count(std::string_view name) const {
-    for (const NamedCount& count : counts_) {
-      if (count.name == name) return count.value;
-    }
-    throw std::logic_error("layout: no count " + std::string(name));
-  }
-
-  // Counts fit into 31 bits and an element into 24 bytes, so nothing overflows 64.
-  void Skip(std::uint64_t bytes, std::string_view what) {
-    if (bytes <= size_ - at_) {
-      at_ += bytes;
-      return;
-    }
+  void Hold(std::uint64_t bytes, std::string_view what) const {
+    if (bytes <= size_ - at_) return;
     throw InputError("the message is cut short: " + std::string(what) + " needs " +
                      std::to_string(bytes) + " bytes at byte " + std::to_string(at_) + " of " +
                      std::to_string(size_));
+  }
+
+  void Skip(std::uint64_t bytes, std::string_view what) {
+    Hold(bytes, what);
+    at_ += bytes;
   }
 
   std::int32_t ReadInt(std::string_view what) {
@@ -144,22 +111,20 @@ class Walker {
                                      std::uint32_t{p[2]} << 8 | std::uint32_t{p[3]});
   }
 
-  void ReadCount(std::string_view name) {
-    const std::int32_t value = ReadInt(name);
-    if (value < 0) throw InputError(std::string(name) + " is " + std::to_string(value));
-    NamedCount& free = *std::find_if(counts_.begin(), counts_.end(),
-                                     [](const NamedCount& c) { return c.name.empty(); });
-    free = {name, static_cast<std::uint64_t>(value)};
+  std::uint64_t ReadCount(const Field& field) {
+    const std::int32_t value = ReadInt(field.name);
+    if (value < 0) throw InputError(field.name + " is " + std::to_string(value));
+    return static_cast<std::uint64_t>(value);
   }
 
   // A length that includes the closing NUL, the characters, NUL.
-  void SkipString() {
-    const std::int32_t length = ReadInt("a string's length");
-    if (length < 1) throw InputError("a string's length is " + std::to_string(length));
+  void SkipString(const std::string& name) {
+    const std::int32_t length = ReadInt(name);
+    if (length < 1) throw InputError("length of " + name + " is " + std::to_string(length));
     const std::uint8_t* text = data_ + at_;
-    Skip(static_cast<std::uint64_t>(length), "a string");
+    Skip(static_cast<std::uint64_t>(length), name);
     if (std::memchr(text, 0, static_cast<std::size_t>(length)) != text + length - 1) {
-      throw InputError("a string at byte " + std::to_string(text - data_) +
+      throw InputError(name + " at byte " + std::to_string(text - data_) +
                        " does not end with its only NUL");
     }
   }
@@ -167,15 +132,63 @@ class Walker {
   const std::uint8_t* data_;
   std::size_t size_;
   std::size_t at_ = 0;
-  std::array<NamedCount, 8> counts_;
 };
 
-}  // namespace
+Layouts::Layouts(const std::vector<LcmType>& types) {
+  for (const LcmType& type : types) types_[type.name];  // all names first: fields point to types
+  for (const LcmType& type : types) {
+    if (type.fields.empty()) throw std::logic_error(type.name + " has no fields");
+    std::vector<Field>& fields = types_[type.name].fields;
+    for (const LcmField& field : type.fields) fields.push_back(MakeField(type, field));
+  }
+}
 
-void CheckLayout(std::string_view layout, const std::uint8_t* data, std::size_t size) {
+const Layouts& Layouts::OfMessages() {
+  static const Layouts layouts(ParseLcm(LcmFiles()));
+  return layouts;
+}
+
+void Layouts::Check(std::string_view type, const std::uint8_t* data, std::size_t size) const {
+  const auto known = types_.find(type);
+  if (known == types_.end()) throw std::logic_error("no .lcm file has a " + std::string(type));
   Walker walker(data, size);
-  walker.Fields(layout);
+  walker.Fields(known->second);
   walker.End();
+}
+
+Layouts::Field Layouts::MakeField(const LcmType& type, const LcmField& field) const {
+  Field made;
+  made.name = field.name;
+  made.bytes = BytesOf(field.type);
+  made.is_string = field.type == "string";
+  if (made.bytes == 0) {
+    const auto part = types_.find(field.type);
+    if (part == types_.end()) Fail(type, field.name, "unknown type " + field.type);
+    made.part = &part->second;
+    made.bytes = 1;
+  }
+  const std::vector<std::string> counts = CountsOf(type);
+  made.is_count = std::find(counts.begin(), counts.end(), field.name) != counts.end();
+  if (made.is_count && (field.type != "int32_t" || !field.sizes.empty())) {
+    Fail(type, field.name, "a count is one int32_t");
+  }
+  for (const std::string& size : field.sizes) AddSize(type, size, &made);
+  return made;
+}
+
+void Layouts::AddSize(const LcmType& type, const std::string& size, Field* field) const {
+  if (IsNumber(size)) {
+    field->repeats *= std::stoul(size);
+    return;
+  }
+  const std::vector<Field>& before = types_.find(type.name)->second.fields;
+  const auto is_named = [&](const Field& other) { return other.name == size; };
+  if (std::none_of(before.begin(), before.end(), is_named)) {
+    Fail(type, field->name, "no field " + size + " before it");
+  }
+  const std::vector<std::string> counts = CountsOf(type);
+  const auto count = std::find(counts.begin(), counts.end(), size);
+  field->counts.push_back(static_cast<std::size_t>(count - counts.begin()));
 }
 
 }  // namespace rgbdt

@@ -163,11 +163,11 @@ TEST_F(Invalid, Session) {
   };
   EXPECT_THAT(request([](auto& w) { w.request = 0; }), HasSubstr("request is 0"));
   EXPECT_THAT(request([](auto& w) { w.request = 5; }), HasSubstr("request is 5"));
-  const auto sighting = [&](auto change) {
-    return ErrorAfter<sighting_t>(random_.Sighted(), change);
+  const auto target = [&](auto change) {
+    return ErrorAfter<target_status_t>(random_.TargetSeen(), change);
   };
-  EXPECT_THAT(sighting([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
-  EXPECT_THAT(sighting([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
+  EXPECT_THAT(target([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
+  EXPECT_THAT(target([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));

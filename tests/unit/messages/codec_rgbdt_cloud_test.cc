@@ -11,7 +11,6 @@
 namespace rgbdt {
 namespace {
 
-using testing::BytesOf;
 using testing::ErrorAfter;
 using testing::ErrorOf;
 using testing::ExpectSameRigid;
@@ -27,21 +26,6 @@ void ExpectSame(const std::vector<float>& a, const std::vector<float>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_TRUE(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i]))) << a[i] << " " << b[i];
   }
-}
-
-// What rgbdt_cloud_t carries of it.
-void ExpectSameFirstVersion(const RgbdtCloud& a, const RgbdtCloud& b) {
-  EXPECT_EQ(a.seq, b.seq);
-  EXPECT_EQ(a.sweep_utime, b.sweep_utime);
-  EXPECT_EQ(a.sweep_end, b.sweep_end);
-  EXPECT_EQ(a.cameras, b.cameras);
-  EXPECT_EQ(a.points, b.points);
-  ExpectSame(a.intensity, b.intensity);
-  EXPECT_EQ(a.utime, b.utime);
-  EXPECT_EQ(a.rgb, b.rgb);
-  ExpectSame(a.temperature_k, b.temperature_k);
-  ExpectSame(a.thermal_counts, b.thermal_counts);
-  EXPECT_EQ(a.valid, b.valid);
 }
 
 class RgbdtCloudOnTheWire : public ::testing::Test {
@@ -62,30 +46,23 @@ TEST_F(RgbdtCloudOnTheWire, ComesBackWhole) {
   for (int round = 0; round < kRounds; ++round) {
     const RgbdtCloud a = random_.Fused();
     const RgbdtCloud b = ThroughTheWire(a);
-    ExpectSameFirstVersion(a, b);
+    EXPECT_EQ(a.seq, b.seq);
+    EXPECT_EQ(a.sweep_utime, b.sweep_utime);
+    EXPECT_EQ(a.sweep_end, b.sweep_end);
     EXPECT_EQ(a.whole_sweep, b.whole_sweep);
+    EXPECT_EQ(a.cameras, b.cameras);
     EXPECT_EQ(a.calibration_utime, b.calibration_utime);
     EXPECT_EQ(a.frame_utime, b.frame_utime);
     ASSERT_EQ(a.map_from_lidar.has_value(), b.map_from_lidar.has_value());
     if (a.map_from_lidar) ExpectSameRigid(*a.map_from_lidar, *b.map_from_lidar);
+    EXPECT_EQ(a.points, b.points);
+    ExpectSame(a.intensity, b.intensity);
+    EXPECT_EQ(a.utime, b.utime);
+    EXPECT_EQ(a.rgb, b.rgb);
+    ExpectSame(a.temperature_k, b.temperature_k);
     ExpectSame(a.temperature_sigma_k, b.temperature_sigma_k);
-  }
-}
-
-// Logs from before rgbdt_cloud_v2_t: what it added is as if never known.
-TEST_F(RgbdtCloudOnTheWire, TheFirstVersion) {
-  for (int round = 0; round < kRounds; ++round) {
-    const RgbdtCloud a = random_.Fused();
-    const Bytes bytes = BytesOf(ToFirstVersion(a));
-    const auto b = std::get<RgbdtCloud>(Decode("RGBDT_CLOUD", bytes.data(), bytes.size()));
-    ExpectSameFirstVersion(a, b);
-    EXPECT_FALSE(b.whole_sweep);
-    const Utime newest = std::max(a.calibration_utime[0], a.calibration_utime[1]);
-    EXPECT_EQ(b.calibration_utime, (std::vector<Utime>{newest, newest}));
-    EXPECT_FALSE(b.map_from_lidar);
-    EXPECT_EQ(b.frame_utime, 0);
-    ExpectSame(b.temperature_sigma_k, std::vector<float>(a.size(), testing::kNan));
-    ExpectSameFirstVersion(b, ThroughTheWire(b));  // and it can be sent on
+    ExpectSame(a.thermal_counts, b.thermal_counts);
+    EXPECT_EQ(a.valid, b.valid);
   }
 }
 
@@ -101,9 +78,6 @@ TEST_F(RgbdtCloudOnTheWire, AChunkAndASweepHaveTheirOwnChannels) {
   const Bytes sweep = Encode(cloud);
   EXPECT_THAT(ErrorOf([&] { Decode("RGBDT_CLOUD", sweep.data(), sweep.size()); }),
               HasSubstr("belongs on channel RGBDT_SWEEP"));
-  const Bytes first = BytesOf(ToFirstVersion(cloud));
-  EXPECT_THAT(ErrorOf([&] { Decode("RGBDT_SWEEP", first.data(), first.size()); }),
-              HasSubstr("no rgbdt_cloud_v2_t"));
 }
 
 TEST_F(RgbdtCloudOnTheWire, HoldsAsManyPointsAsItsTypeSays) {
@@ -124,15 +98,10 @@ TEST_F(RgbdtCloudOnTheWire, HoldsAsManyPointsAsItsTypeSays) {
   EXPECT_THAT(ErrorOf([&] { Encode(cloud); }), HasSubstr("send a cloud in chunks"));
 }
 
-// Held to the same rules where the first version lies alone and where it is nested.
-TEST_F(RgbdtCloudOnTheWire, BadFieldsOfTheFirstVersion) {
+TEST_F(RgbdtCloudOnTheWire, BadPoints) {
   const RgbdtCloud cloud = Whole();
-  const Bytes first = BytesOf(ToFirstVersion(cloud));
-  const auto error = [&](auto change) {
-    const std::string alone = ErrorAfter<rgbdt_cloud_t>("RGBDT_CLOUD", first, change);
-    EXPECT_EQ(alone, ErrorAfter<rgbdt_cloud_v2_t>(cloud, [&](auto& w) { change(w.cloud); }));
-    return alone;
-  };
+  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_t>(cloud, change); };
+  EXPECT_EQ(error([](auto&) {}), "no error");
   EXPECT_THAT(error([](auto& w) { w.z_m[2] = NAN; }), HasSubstr("point[2]"));
   EXPECT_THAT(error([](auto& w) { w.x_m[1] = -INFINITY; }), HasSubstr("point[1] is (-inf"));
   EXPECT_THAT(error([](auto& w) { w.y_m[0] = 2e6; }), HasSubstr("point[0]"));
@@ -149,33 +118,33 @@ TEST_F(RgbdtCloudOnTheWire, BadFieldsOfTheFirstVersion) {
               "no error");
   EXPECT_THAT(error([](auto& w) { w.utime = 5, w.utime_offset_us.assign(w.x_m.size(), -5); }),
               HasSubstr("utime_offset_us[0] is -5"));
-  EXPECT_THAT(error([](auto& w) { w.calibration_utime = -1; }), HasSubstr("calibration_utime"));
-}
-
-TEST_F(RgbdtCloudOnTheWire, BadFieldsOfTheSecondVersion) {
-  const RgbdtCloud cloud = Whole();
-  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_v2_t>(cloud, change); };
-  EXPECT_EQ(error([](auto&) {}), "no error");
-  EXPECT_THAT(error([](auto& w) { w.cloud.camera.assign(33, "rgb"), w.cloud.num_cameras = 33; }),
-              HasSubstr("num_cameras is 33"));
-  EXPECT_THAT(error([](auto& w) { w.camera_calibration_utime[1] = -1; }),
-              HasSubstr("camera_calibration_utime[1] is -1"));
-  EXPECT_THAT(error([](auto& w) { w.camera_calibration_utime[0] = std::int64_t{1} << 60; }),
-              HasSubstr("camera_calibration_utime[0] is"));
-  EXPECT_THAT(error([](auto& w) { w.camera_calibration_utime.resize(w.num_calibrations = 1); }),
-              HasSubstr("length of camera_calibration_utime is 1; expected 2"));
   EXPECT_THAT(error([](auto& w) { w.temperature_sigma_k[2] = -0.5F; }),
               HasSubstr("temperature_sigma_k[2] is -0.5"));
   EXPECT_THAT(error([](auto& w) { w.temperature_sigma_k[0] = INFINITY; }),
               HasSubstr("temperature_sigma_k[0] is inf"));
   EXPECT_EQ(error([](auto& w) { w.temperature_sigma_k[0] = NAN; }), "no error");
-  EXPECT_THAT(error([](auto& w) { w.temperature_sigma_k.clear(), w.num_sigmas = 0; }),
-              HasSubstr("length of temperature_sigma_k is 0"));
+}
+
+TEST_F(RgbdtCloudOnTheWire, BadCameras) {
+  const RgbdtCloud cloud = Whole();
+  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_t>(cloud, change); };
+  const auto resize = [](int size, auto& w) {
+    w.num_cameras = size;
+    w.camera.resize(static_cast<std::size_t>(size), "rgb");
+    w.calibration_utime.resize(static_cast<std::size_t>(size));
+  };
+  EXPECT_EQ(error([&](auto& w) { resize(32, w); }), "no error");
+  EXPECT_THAT(error([&](auto& w) { resize(33, w); }), HasSubstr("num_cameras is 33"));
+  EXPECT_THAT(error([](auto& w) { w.camera[1] = "RGB"; }), HasSubstr("camera[1] is"));
+  EXPECT_THAT(error([](auto& w) { w.calibration_utime[1] = -1; }),
+              HasSubstr("calibration_utime[1] is -1"));
+  EXPECT_THAT(error([](auto& w) { w.calibration_utime[0] = std::int64_t{1} << 60; }),
+              HasSubstr("calibration_utime[0] is"));
 }
 
 TEST_F(RgbdtCloudOnTheWire, BadPoses) {
   const RgbdtCloud cloud = Whole();
-  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_v2_t>(cloud, change); };
+  const auto error = [&](auto change) { return ErrorAfter<rgbdt_cloud_t>(cloud, change); };
   EXPECT_THAT(error([](auto& w) { w.frame_utime = 0; }), HasSubstr("frame_utime is 0"));
   EXPECT_THAT(error([](auto& w) { w.quaternion_wxyz[0] += 0.1; }), HasSubstr("norm of quaternion"));
   EXPECT_THAT(error([](auto& w) { w.quaternion_wxyz[3] = NAN; }), HasSubstr("quaternion_wxyz[3]"));

@@ -191,22 +191,22 @@ TEST_F(RoundTrip, Session) {
   }
 }
 
-TEST_F(RoundTrip, RequestAndSighting) {
+TEST_F(RoundTrip, RequestAndTargetStatus) {
   for (int round = 0; round < kRounds; ++round) {
     const SessionRequest a = random_.Request();
     const SessionRequest b = ThroughTheWire(a);
     EXPECT_EQ(a.utime, b.utime);
     EXPECT_EQ(a.request, b.request);
     EXPECT_EQ(a.heldout, b.heldout);
-    const Sighting sighting = random_.Sighted();
-    const Sighting back = ThroughTheWire(sighting);
-    EXPECT_EQ(sighting.utime, back.utime);
-    EXPECT_EQ(sighting.camera, back.camera);
-    EXPECT_EQ(sighting.seen, back.seen);
-    EXPECT_EQ(sighting.text, back.text);
-    EXPECT_EQ(sighting.corners, back.corners);
-    EXPECT_EQ(sighting.outline, back.outline);
-    EXPECT_EQ(sighting.centre, back.centre);
+    const TargetStatus status = random_.TargetSeen();
+    const TargetStatus back = ThroughTheWire(status);
+    EXPECT_EQ(status.utime, back.utime);
+    EXPECT_EQ(status.camera, back.camera);
+    EXPECT_EQ(status.seen, back.seen);
+    EXPECT_EQ(status.text, back.text);
+    EXPECT_EQ(status.corners, back.corners);
+    EXPECT_EQ(status.outline, back.outline);
+    EXPECT_EQ(status.centre, back.centre);
   }
 }
 
@@ -222,7 +222,7 @@ TEST_F(RoundTrip, Status) {
   }
 }
 
-// A sensor that tells only points: what it does not tell comes back as "unknown", at full length,
+// A sensor that gives only points: what it does not give comes back as "unknown", at full length,
 // so that chunks with and without it can be joined.
 TEST(CloudOnTheWire, WhatIsUnknownComesBackAtFullLength) {
   CloudChunk chunk;

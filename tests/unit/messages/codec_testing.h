@@ -33,7 +33,7 @@ Bytes BytesOf(const Wire& wire) {
   return bytes;
 }
 
-/// What Decode says of a valid message, encoded, whose LCM fields were changed.
+/// Decode's error about a valid message, encoded, whose LCM fields were changed.
 template <typename Wire, typename Change>
 std::string ErrorAfter(const std::string& channel, const Bytes& good, const Change& change) {
   Wire wire;

@@ -111,7 +111,7 @@ class RandomMessages {
   }
   Image Picture() { return Picture(static_cast<PixelFormat>(Int(1, 7))); }
 
-  /// As a sensor that tells everything sends it.
+  /// As a sensor sends it that gives everything.
   CloudChunk Chunk(int lines, int beams) {
     CloudChunk chunk;
     chunk.seq = Seq();
@@ -296,24 +296,24 @@ class RandomMessages {
   SessionRequest Request() {
     return {Seq(), Time(), static_cast<SessionRequestKind>(Int(1, 4)), Coin()};
   }
-  Sighting Sighted() {
-    Sighting sighting;
-    sighting.seq = Seq();
-    sighting.utime = Time();
-    if (Coin()) sighting.camera = Name();
-    sighting.seen = Coin();
-    sighting.text = Text();
-    sighting.corners = Rows<Eigen::Vector2d>(Int(0, 20));
-    sighting.outline = Rows<Eigen::Vector2d>(Int(0, 20));
-    sighting.centre = Rows<Eigen::Vector3d>(1)[0];
-    return sighting;
+  TargetStatus TargetSeen() {
+    TargetStatus status;
+    status.seq = Seq();
+    status.utime = Time();
+    if (Coin()) status.camera = Name();
+    status.seen = Coin();
+    status.text = Text();
+    status.corners = Rows<Eigen::Vector2d>(Int(0, 20));
+    status.outline = Rows<Eigen::Vector2d>(Int(0, 20));
+    status.centre = Rows<Eigen::Vector3d>(1)[0];
+    return status;
   }
   ReportText Report() { return {Seq(), Time(), "{\"method\": \"paper\"}"}; }
 
   /// One of every alternative.
   Messages OneOfEach() {
-    return {Line(), Encoder(), Picture(), Chunk(), Corners(), Seen(),    Calibrated(), Fused(),
-            Pose(), RigFile(), Command(), Event(), Request(), Sighted(), Health(),     Report()};
+    return {Line(), Encoder(), Picture(), Chunk(), Corners(), Seen(),       Calibrated(), Fused(),
+            Pose(), RigFile(), Command(), Event(), Request(), TargetSeen(), Health(),     Report()};
   }
 
  private:

@@ -32,8 +32,9 @@ class ScriptedNode : public Node {
     if (reading->ticks == -4) return {Pose(NAN), Pose(1)};
     return Messages(static_cast<std::size_t>(reading->ticks), Pose(1));
   }
-  Messages Republish() override {
-    if (republish_throws) throw std::runtime_error("cannot repeat");
+  Messages Advance(Utime now) override {
+    if (advance_throws) throw std::runtime_error("cannot repeat");
+    Warn("it is " + std::to_string(now));
     return {RigText{0, "hash", "text"}};
   }
   Status GetStatus() const override {
@@ -52,7 +53,7 @@ class ScriptedNode : public Node {
   }
 
   std::vector<std::string> handled;
-  bool republish_throws = false;
+  bool advance_throws = false;
 };
 
 class NodeRunnerTest : public ::testing::Test {
@@ -122,7 +123,7 @@ TEST_F(NodeRunnerTest, RubbishIsCountedAndNamed) {
                                      HasSubstr("RGB_IMAGE: the message is no image_t"),
                                      Not(HasSubstr("\x1b"))));
   published_.clear();
-  runner_.Tick();  // the status carries all this and is a valid message
+  runner_.Advance(0);  // the status carries all this and is a valid message
   bus_.Run();
   ASSERT_EQ(published_.size(), 2U);
   EXPECT_EQ(std::get<Status>(published_[1]).last_problem, problems_.back());
@@ -177,13 +178,16 @@ TEST_F(NodeRunnerTest, CalibrationsOfSeveralCamerasAreOneRow) {
   EXPECT_EQ(runner_.gaps(), 0);
 }
 
-TEST_F(NodeRunnerTest, TickRepeatsAndSaysStatus) {
+TEST_F(NodeRunnerTest, AdvancePublishesWhatTheNodeSaysAndOnceASecondItsStatus) {
   SendReading(5, 0);
-  runner_.Tick();
-  runner_.Tick();
+  for (const Utime now : {0, 999'999}) runner_.Advance(now);
   bus_.Run();
-  ASSERT_EQ(published_.size(), 4U);
+  EXPECT_EQ(published_.size(), 3U);
+  runner_.Advance(1'000'000);
+  bus_.Run();
+  ASSERT_EQ(published_.size(), 5U);
   EXPECT_EQ(SeqOf(published_[2]), 1);
+  EXPECT_EQ(SeqOf(published_[4]), 1);
   const auto& rig = std::get<RigText>(published_[0]);
   EXPECT_EQ(rig.text, "text");
   const auto& status = std::get<Status>(published_[1]);
@@ -191,16 +195,17 @@ TEST_F(NodeRunnerTest, TickRepeatsAndSaysStatus) {
   EXPECT_EQ(status.utime, 1005);
   EXPECT_TRUE(status.ready);
   EXPECT_EQ(status.text, "waits");
-  EXPECT_EQ(status.last_problem, "");
+  EXPECT_EQ(status.last_problem, "it is 0");
+  EXPECT_EQ(runner_.dropped(), 0) << "a warning costs no message";
   EXPECT_EQ(status.counters[0], (std::pair<std::string, std::int64_t>("received", 1)));
 }
 
-TEST_F(NodeRunnerTest, TickSurvivesTheNode) {
-  node_.republish_throws = true;
-  runner_.Tick();
+TEST_F(NodeRunnerTest, AdvanceSurvivesTheNode) {
+  node_.advance_throws = true;
+  runner_.Advance(0);
   bus_.Run();
   ASSERT_EQ(published_.size(), 1U);
-  EXPECT_EQ(std::get<Status>(published_[0]).last_problem, "repeating: cannot repeat");
+  EXPECT_EQ(std::get<Status>(published_[0]).last_problem, "advancing: cannot repeat");
 }
 
 TEST_F(NodeRunnerTest, StrangersDoNotFillTheStatus) {

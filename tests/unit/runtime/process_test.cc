@@ -22,36 +22,43 @@ class SilentNode : public Node {
   int handled = 0;
 };
 
+/// Speaks to itself, and ends after ten turns; or ends by a signal.
+class TalkingNode : public SilentNode {
+ public:
+  Messages Advance(Utime) override {
+    if (signal != 0) raise(signal);
+    ++turns;
+    return {EncoderReading{1, 0, 0, 0}};
+  }
+  Utime LongestWait() const override { return 2000; }
+  bool finished() const override { return turns >= 10; }
+  int turns = 0;
+  int signal = 0;
+};
+
 TEST(ProblemLog, TheSameAtMostEveryFiveSeconds) {
   std::vector<std::string> lines;
   ProblemLog log([&](const std::string& line) { lines.push_back(line); });
-  for (int i = 0; i <= 50; ++i) log.Add("CLOUD: bad", 0.1 * i);
-  log.Add("CLOUD: worse", 5);
+  for (int i = 0; i <= 50; ++i) log.Add("CLOUD: bad", 100'000 * i);
+  log.Add("CLOUD: worse", 5'000'000);
   EXPECT_EQ(lines, (std::vector<std::string>{"CLOUD: bad", "CLOUD: bad (and 49 times more since)",
                                              "CLOUD: worse"}));
 }
 
 // LCM's memory queue needs no network: the whole loop of a process in a test.
-TEST(RunOnLcm, DeliversUntilIdleEndsIt) {
-  SilentNode node;
-  int turns = 0;
-  const int result = RunOnLcm(node, "memq://", [&](NodeRunner& runner) {
-    runner.Publish({EncoderReading{1, 0, 0, 0}});
-    return ++turns < 10;
-  });
-  EXPECT_EQ(result, 0);
-  EXPECT_GE(node.handled, 9);
+TEST(RunOnLcm, DeliversUntilTheNodeIsFinished) {
+  TalkingNode node;
+  EXPECT_EQ(RunOnLcm(node, "memq://"), 0);
+  EXPECT_EQ(node.turns, 10);
+  EXPECT_GE(node.handled, 8);
 }
 
 TEST(RunOnLcm, SignalEndsItCleanly) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    SilentNode node;
-    EXPECT_EQ(RunOnLcm(node, "memq://",
-                       [&](NodeRunner&) {
-                         raise(signal);
-                         return true;
-                       }),
-              0);
+    TalkingNode node;
+    node.signal = signal;
+    EXPECT_EQ(RunOnLcm(node, "memq://"), 0);
+    EXPECT_EQ(node.turns, 1);
   }
 }
 

@@ -1,11 +1,14 @@
 #include "calib/scan_assembly/sweep_chunks.h"
 
-#include <gtest/gtest.h>
+#include <cmath>
 
-#include "calib/scan_assembly/assembler.h"
+#include "tests/unit/matchers.h"
 
 namespace rgbdt {
 namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 Cloud Made(int lines, int beams, bool organised) {
   Cloud cloud;
@@ -68,6 +71,122 @@ TEST(SplitSweep, AnEmptySweepStillEnds) {
   ASSERT_EQ(chunks.size(), 1u);
   EXPECT_TRUE(chunks[0].sweep_end);
   EXPECT_EQ(chunks[0].cloud.sweep_utime, 9);
+}
+
+// A chunk of `lines` lines whose points' x is their line in the sweep.
+CloudChunk ChunkOf(int first_line, int lines, int beams) {
+  CloudChunk chunk;
+  chunk.cloud.sweep_utime = 77;
+  chunk.cloud.first_line = first_line;
+  chunk.cloud.lines = lines;
+  chunk.cloud.beams = beams;
+  for (int line = first_line; line < first_line + lines; ++line) {
+    chunk.cloud.origins.emplace_back(0.F, 0.F, static_cast<float>(line));
+    for (int beam = 0; beam < beams; ++beam) {
+      const auto x = static_cast<float>(line);
+      const auto y = static_cast<float>(beam);
+      chunk.cloud.points.emplace_back(x, y, 0.F);
+      chunk.cloud.directions.emplace_back(x, y, 1.F);
+      chunk.cloud.intensity.push_back(x);
+      chunk.cloud.utime.push_back(1000 * line + beam);
+      chunk.cloud.ring.push_back(static_cast<std::uint16_t>(beam));
+    }
+  }
+  return chunk;
+}
+
+std::vector<int> LinesOf(const Cloud& cloud) {
+  std::vector<int> lines;
+  for (int line = 0; line < cloud.lines; ++line) {
+    lines.push_back(
+        static_cast<int>(cloud.points[static_cast<std::size_t>(line * cloud.beams)].x()));
+  }
+  return lines;
+}
+
+TEST(JoinChunks, PutsLinesInOrderWhateverOrderTheyComeIn) {
+  const std::vector<CloudChunk> in_order = {ChunkOf(0, 2, 3), ChunkOf(2, 1, 3), ChunkOf(3, 2, 3)};
+  const std::vector<CloudChunk> shuffled = {in_order[2], in_order[0], in_order[1]};
+  for (const auto& chunks : {in_order, shuffled}) {
+    const Cloud sweep = JoinChunks(chunks);
+    EXPECT_EQ(sweep.sweep_utime, 77);
+    EXPECT_EQ(sweep.first_line, 0);
+    EXPECT_EQ(sweep.beams, 3);
+    EXPECT_THAT(LinesOf(sweep), ElementsAre(0, 1, 2, 3, 4));
+    ASSERT_EQ(sweep.size(), 15U);
+    ASSERT_EQ(sweep.origins.size(), 5U);
+    for (std::size_t i = 0; i < sweep.size(); ++i) {  // every vector in step with the points
+      const float line = sweep.points[i].x();
+      const float beam = sweep.points[i].y();
+      EXPECT_EQ(sweep.directions[i], Eigen::Vector3f(line, beam, 1));
+      EXPECT_EQ(sweep.intensity[i], line);
+      EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * line + beam));
+      EXPECT_EQ(sweep.ring[i], static_cast<std::uint16_t>(beam));
+      EXPECT_EQ(sweep.origins[i / 3].z(), line);
+    }
+  }
+}
+
+TEST(JoinChunks, MissingLinesKeepTheirPlaceAndAreKnownToBeLost) {
+  const Cloud sweep = JoinChunks({ChunkOf(3, 2, 3), ChunkOf(0, 2, 3)});
+  EXPECT_EQ(sweep.lines, 5);
+  ASSERT_EQ(sweep.points.size(), 15U);
+  for (std::size_t i = 0; i < 15; ++i) {
+    EXPECT_EQ(std::isnan(sweep.points[i].x()), i / 3 == 2) << i;
+  }
+  EXPECT_EQ(LostLines(sweep), 1);
+  EXPECT_EQ(LostLines(JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 3, 3)})), 0);
+  // Every vector stays in step with the points, so the lines behind the gap keep what is theirs.
+  ASSERT_EQ(sweep.directions.size(), 15U);
+  ASSERT_EQ(sweep.intensity.size(), 15U);
+  ASSERT_EQ(sweep.utime.size(), 15U);
+  ASSERT_EQ(sweep.ring.size(), 15U);
+  ASSERT_EQ(sweep.origins.size(), 5U);
+  for (std::size_t i = 9; i < 15; ++i) {
+    EXPECT_EQ(sweep.points[i].x(), static_cast<float>(i / 3));
+    EXPECT_EQ(sweep.intensity[i], static_cast<float>(i / 3));
+    EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * (i / 3) + i % 3));
+    EXPECT_EQ(sweep.origins[i / 3].z(), static_cast<float>(i / 3));
+  }
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(sweep.ring[i], i % 3);
+}
+
+TEST(JoinChunks, AChunkThatCameTwiceCountsOnce) {
+  const Cloud sweep = JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 1, 3), ChunkOf(0, 2, 3)});
+  EXPECT_THAT(LinesOf(sweep), ElementsAre(0, 1, 2));
+}
+
+TEST(JoinChunks, AnUnorganisedSweepIsOneLine) {
+  CloudChunk first = ChunkOf(0, 1, 3);
+  CloudChunk second = ChunkOf(1, 1, 5);
+  first.cloud.organised = second.cloud.organised = false;
+  const Cloud sweep = JoinChunks({first, second});
+  EXPECT_FALSE(sweep.organised);
+  EXPECT_EQ(sweep.lines, 1);
+  EXPECT_EQ(sweep.beams, 8);
+  EXPECT_EQ(sweep.size(), 8U);
+}
+
+TEST(JoinChunks, TheEmptyChunkThatEndsASweepAddsNothing) {
+  CloudChunk end;
+  end.sweep_end = true;
+  EXPECT_THAT(LinesOf(JoinChunks({ChunkOf(0, 2, 3), end})), ElementsAre(0, 1));
+  EXPECT_EQ(JoinChunks({end}).size(), 0U);
+  EXPECT_EQ(JoinChunks({}).size(), 0U);
+}
+
+TEST(JoinChunks, DifferentBeamsPerLineAreAnErrorWithBothNumbers) {
+  const std::string message = InputErrorOf([] {
+    JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 1, 4)});
+  });
+  EXPECT_THAT(message, HasSubstr("3 and 4 beams"));
+}
+
+TEST(JoinChunks, ChunksThatFillOtherVectorsAreAnError) {
+  CloudChunk without_times = ChunkOf(2, 1, 3);
+  without_times.cloud.utime.clear();
+  const std::string message = InputErrorOf([&] { JoinChunks({ChunkOf(0, 2, 3), without_times}); });
+  EXPECT_THAT(message, HasSubstr("differ in what they tell"));
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "calib/scan_assembly/assembler.h"
+#include "calib/scan_assembly/line_to_cloud.h"
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {

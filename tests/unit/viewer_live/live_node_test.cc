@@ -6,7 +6,6 @@
 #include "calib/model/errors.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"
-#include "viewer/live/clock.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -63,7 +62,7 @@ class LiveNodeTest : public ::testing::Test {
 
   // The newest state of the session.
   json State() {
-    node_.Tick(tick_s_ += 0.2);
+    node_.Advance(now_ += 200'000);
     return posts_.Header("session");
   }
   SessionCommand Capture(const std::string& view, Utime sweep) const {
@@ -108,7 +107,7 @@ class LiveNodeTest : public ::testing::Test {
 
   Posts posts_;
   LiveNode node_;
-  double tick_s_ = 0;
+  Utime now_ = 0;
 };
 
 TEST_F(LiveNodeTest, TheRigIsPostedOnce) {
@@ -224,20 +223,20 @@ TEST_F(LiveNodeTest, AResetForgetsTheViews) {
 TEST_F(LiveNodeTest, WhatABrowserAsksForGoesToTheBus) {
   const json request = {{"type", "request"}, {"request", "capture"}, {"heldout", true}};
   EXPECT_THAT(ErrorOf([&] { node_.OnBrowser(request); }), HasSubstr("rgbdt-session"));
-  EXPECT_TRUE(node_.TakeMessages().empty());
+  EXPECT_TRUE(node_.Advance(0).empty());
   SessionRuns(true);
   node_.OnBrowser(request);
   node_.OnBrowser({{"type", "pick"},
                    {"camera", "thermal"},
                    {"image_utime", test::kStart},
                    {"corners", {{1.5, 2}, {30, 2}, {30, 20}, {1, 20}}}});
-  const Messages said = node_.TakeMessages();
+  const Messages said = node_.Advance(1);
   ASSERT_EQ(said.size(), 2U);
   EXPECT_EQ(std::get<SessionRequest>(said[0]).request, SessionRequestKind::kCapture);
   EXPECT_TRUE(std::get<SessionRequest>(said[0]).heldout);
   EXPECT_EQ(std::get<CornerSelection>(said[1]).image_utime, test::kStart);
   EXPECT_EQ(std::get<CornerSelection>(said[1]).corners[0], Eigen::Vector2d(1.5, 2));
-  EXPECT_TRUE(node_.TakeMessages().empty());
+  EXPECT_TRUE(node_.Advance(2).empty());
   EXPECT_THAT(ErrorOf([&] {
                 node_.OnBrowser({{"type", "pick"},
                                  {"camera", "front"},
@@ -250,7 +249,6 @@ TEST_F(LiveNodeTest, WhatABrowserAsksForGoesToTheBus) {
 TEST_F(LiveNodeTest, WhatMayBeAskedForFollowsTheSession) {
   EXPECT_EQ(State().at("mode"), "none");
   SessionRuns(false);
-  tick_s_ = SteadySeconds();
   EXPECT_EQ(State().at("mode"), "script");
   EXPECT_THAT(State().at("can"), IsEmpty());
   SessionRuns(true);
@@ -267,7 +265,7 @@ TEST_F(LiveNodeTest, WhatMayBeAskedForFollowsTheSession) {
   EXPECT_EQ(state.at("busy"), "");
   EXPECT_EQ(state.at("failure"), "the motor is stuck");
   EXPECT_EQ(state.at("can"), json({"capture"}));
-  tick_s_ += 100;
+  now_ += 100 * kMicrosecondsPerSecond;
   EXPECT_EQ(State().at("mode"), "none") << "it was not heard for long";
 }
 
@@ -331,16 +329,26 @@ TEST_F(LiveNodeTest, SigmaIsCountedByTheViewsUsed) {
             sigma[0].at("cameras")[0].at("rotation_deg"));
 }
 
-TEST_F(LiveNodeTest, SightingsSayWhoSeesTheBoard) {
-  Sighting sighting;
-  sighting.camera = "thermal";
-  sighting.utime = test::kStart;
-  sighting.seen = true;
-  sighting.text = "3.1 m away";
-  node_.Handle(sighting);
-  sighting.camera = "";
-  node_.Handle(sighting);
-  const json sensors = posts_.Header("sightings").at("sensors");
+TEST_F(LiveNodeTest, TheBusIsPostedOnceASecondWithTheProcessesThatWereHeard) {
+  node_.PostBus([](double now_s) { return json{{"type", "bus"}, {"at", now_s}}; });
+  SessionRuns(true);
+  for (const Utime now : {0, 999'999, 1'000'000}) node_.Advance(now);
+  const auto topics = posts_.Topics();
+  EXPECT_EQ(std::count(topics.begin(), topics.end(), "bus"), 2);
+  EXPECT_EQ(posts_.Header("bus").at("at"), 1.0);
+  EXPECT_EQ(posts_.Header("bus").at("processes")[0].at("process"), "session");
+}
+
+TEST_F(LiveNodeTest, TargetStatusSaysWhoSeesTheBoard) {
+  TargetStatus status;
+  status.camera = "thermal";
+  status.utime = test::kStart;
+  status.seen = true;
+  status.text = "3.1 m away";
+  node_.Handle(status);
+  status.camera = "";
+  node_.Handle(status);
+  const json sensors = posts_.Header("target_status").at("sensors");
   ASSERT_EQ(sensors.size(), 2U);
   EXPECT_EQ(sensors[0].at("sensor"), "lidar");
   EXPECT_EQ(sensors[1].at("kind"), "thermal");

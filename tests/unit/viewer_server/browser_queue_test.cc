@@ -9,6 +9,7 @@
 #include "calib/present/layout/frame.h"
 #include "test_browser.h"
 #include "viewer/server/internal/frame_layout.h"
+#include "viewer/server/internal/steady_seconds.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -119,14 +120,19 @@ TEST(BrowserQueue, LargeOnesGoOneByOne) {
   EXPECT_THAT(Names(&queue), ElementsAre("2"));
 }
 
-TEST(BrowserQueue, AckTellsWhenThePostCame) {
+TEST(BrowserQueue, AckTellsWhenATimedPostWasSent) {
   BrowserQueue queue;
   Post post = HeavyPost("a");
-  post.came_s = 12.5;
+  post.timed = true;
+  const double before = SteadySeconds();
   Offer(&queue, post);
+  const double after = SteadySeconds();
   Offer(&queue, HeavyPost("b"));
   Names(&queue);
-  EXPECT_EQ(queue.Acked(1), 12.5);
+  const auto sent = queue.Acked(1);
+  ASSERT_TRUE(sent);
+  EXPECT_GE(*sent, before);
+  EXPECT_LE(*sent, after);
   EXPECT_EQ(queue.Acked(1), std::nullopt);
   EXPECT_EQ(queue.Acked(2), std::nullopt);
 }

@@ -182,8 +182,8 @@ export interface SessionFrame {
 export type Report = Record<string, unknown> & { method?: string; cameras?: Record<string, Record<string, unknown>> };
 
 /// Who sees the board just now.
-export interface SightingsFrame {
-  type: "sightings";
+export interface TargetStatusFrame {
+  type: "target_status";
   sensors: { sensor: string; kind: "color" | "thermal" | "lidar"; seen: boolean; text: string; utime: number; age_s: number }[];
 }
 
@@ -219,7 +219,7 @@ export interface NoticeFrame {
 
 export type Header =
   | Hello | RigFrame | ImageFrame | OverlayFrame | ThumbFrame | CloudFrame | SessionFrame
-  | SightingsFrame | BusFrame | NoticeFrame;
+  | TargetStatusFrame | BusFrame | NoticeFrame;
 
 export type ToBridge =
   | { type: "hello"; token: string } // first of all

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import type {
   BusFrame, CloudFrame, Frame, Hello, ImageFrame, NoticeFrame, OverlayFrame, RigFrame,
-  SessionFrame, SightingsFrame, ToBridge,
+  SessionFrame, TargetStatusFrame, ToBridge,
 } from "./protocol";
 import { floats, octets } from "./protocol";
 
@@ -23,7 +23,7 @@ export const connection = signal<Connection>("connecting");
 export const hello = signal<Hello | null>(null);
 export const rig = signal<RigFrame | null>(null);
 export const session = signal<SessionFrame | null>(null);
-export const sightings = signal<SightingsFrame | null>(null);
+export const targetStatus = signal<TargetStatusFrame | null>(null);
 export const bus = signal<BusFrame | null>(null);
 export const notices = signal<(NoticeFrame & { at: number })[]>([]);
 export const images = signal<ReadonlyMap<string, ShownImage>>(new Map());
@@ -68,7 +68,7 @@ export function take(frame: Frame): void {
     case "hello": hello.value = header; break;
     case "rig": rig.value = header; break;
     case "session": session.value = header; break;
-    case "sightings": sightings.value = header; break;
+    case "target_status": targetStatus.value = header; break;
     case "bus": bus.value = header; break;
     case "notice": notices.value = [...notices.value.slice(-4), { ...header, at: Date.now() }]; break;
     case "image": {

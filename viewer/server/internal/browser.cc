@@ -6,6 +6,7 @@
 
 #include "viewer/server/internal/frame_layout.h"
 #include "viewer/server/internal/message.h"
+#include "viewer/server/internal/steady_seconds.h"
 #include "viewer/server/listening_socket.h"
 
 namespace rgbdt::viewer {
@@ -17,11 +18,6 @@ constexpr std::chrono::seconds kHelloTime{10};
 constexpr std::chrono::seconds kCloseTime{5};
 constexpr std::chrono::seconds kIdleTime{60};
 constexpr std::chrono::seconds kHandshakeTime{10};
-
-double SteadySeconds() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
-}
 
 std::string PeerText(const beast::tcp_stream& stream) {
   beast::error_code error;
@@ -164,8 +160,8 @@ void Browser::OnWatch(const nlohmann::json& message) {
 }
 
 void Browser::OnAck(const nlohmann::json& message) {
-  const auto came_s = queue_.Acked(message["id"].get<std::uint32_t>());
-  if (came_s) hub_->screen.Add(SteadySeconds() - *came_s);
+  const auto sent_s = queue_.Acked(message["id"].get<std::uint32_t>());
+  if (sent_s) hub_->screen.Add(SteadySeconds() - *sent_s);
   Pump();
 }
 

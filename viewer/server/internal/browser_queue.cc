@@ -92,7 +92,8 @@ std::optional<BrowserQueue::Outgoing> BrowserQueue::Outgo(const SharedPost& post
   out.id = ++last_id_;
   out.bytes = CutBytes(post, *out.frame);
   if (post->post().heavy) {
-    unacked_[out.id] = {out.bytes, post->post().came_s};
+    unacked_[out.id] = {out.bytes, std::nullopt};
+    if (post->post().timed) unacked_[out.id].sent_s = post->sent_s();
     unacked_bytes_ += out.bytes;
   }
   return out;
@@ -116,8 +117,7 @@ std::optional<double> BrowserQueue::Acked(std::uint32_t id) {
   const Unacked acked = found->second;
   unacked_bytes_ -= acked.bytes;
   unacked_.erase(found);
-  if (acked.came_s <= 0) return std::nullopt;
-  return acked.came_s;
+  return acked.sent_s;
 }
 
 }  // namespace rgbdt::viewer

@@ -34,7 +34,7 @@ class BrowserQueue {
   /// Empty: nothing waits, or acks must come first. Makes the frame.
   std::optional<Outgoing> Next();
 
-  /// When the frame's post came from the bus [s, steady clock]; empty where it did not, and for ids
+  /// When the frame's post was sent [s, steady clock]; empty where that is not timed, and for ids
   /// that no ack is awaited of.
   std::optional<double> Acked(std::uint32_t id);
 
@@ -45,7 +45,7 @@ class BrowserQueue {
  private:
   struct Unacked {
     std::size_t bytes = 0;
-    double came_s = 0;
+    std::optional<double> sent_s;  // nothing: not timed
   };
   bool Watches(const std::string& key) const { return key.empty() || watched_.count(key) != 0; }
   void DropBeyond(TopicQueue* queue);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "viewer/server/internal/steady_seconds.h"
 #include "viewer/server/outbox.h"
 
 namespace rgbdt::viewer {
@@ -10,15 +11,17 @@ namespace rgbdt::viewer {
 /// A post whose frame is made when it is first asked for, once for all browsers.
 class LazyPost {
  public:
-  explicit LazyPost(Post post) : post_(std::move(post)) {}
+  explicit LazyPost(Post post) : post_(std::move(post)), sent_s_(SteadySeconds()) {}
 
   const Post& post() const { return post_; }
+  double sent_s() const { return sent_s_; }  ///< of the steady clock [s]
 
   /// The frame; null where it could not be made. Only on the server's thread.
   std::shared_ptr<const std::string> Frame();
 
  private:
   Post post_;
+  double sent_s_;
   bool asked_ = false;
   std::shared_ptr<const std::string> frame_;
 };

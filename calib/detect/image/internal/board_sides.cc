@@ -7,6 +7,7 @@
 
 #include "calib/detect/image/internal/edge_profiles.h"
 #include "calib/detect/image/internal/side_line.h"
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -225,14 +226,14 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
 }  // namespace
 
 void BoardSidesOptions::Check() const {
-  const auto require = [](bool good, const std::string& field, double value) {
-    if (!good) throw InputError("board sides: " + field + " is " + std::to_string(value));
-  };
-  require(size_tolerance_m >= 0 && size_tolerance_m < 0.1, "size_tolerance_m", size_tolerance_m);
-  require(thickness_m >= 0 && thickness_m < 0.2, "thickness_m", thickness_m);
-  require(max_thickness_px >= 0, "max_thickness_px", max_thickness_px);
-  require(min_share > 0 && min_share <= 1, "min_share", min_share);
-  require(max_sigma_px > 0, "max_sigma_px", max_sigma_px);
+  const OptionCheck check("board sides");
+  check.Require(size_tolerance_m >= 0 && size_tolerance_m < 0.1, "size_tolerance_m",
+                size_tolerance_m, "0 to below 0.1 m");
+  check.Require(thickness_m >= 0 && thickness_m < 0.2, "thickness_m", thickness_m,
+                "0 to below 0.2 m");
+  check.NotNegative(max_thickness_px, "max_thickness_px");
+  check.Require(min_share > 0 && min_share <= 1, "min_share", min_share, "above 0, up to 1");
+  check.Positive(max_sigma_px, "max_sigma_px");
 }
 
 std::array<ImageSide, 4> FitBoardSides(const cv::Mat& grey, const cv::Mat& clipped,

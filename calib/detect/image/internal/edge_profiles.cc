@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib/detect/image/internal/clipped.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -104,10 +105,9 @@ double NoiseOf(const cv::Mat& grey) {
     }
   }
   if (differences.empty()) return 1;
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
   // Where an image is black through and through there is still the rounding to whole values.
-  return std::hypot(static_cast<double>(*middle) / (0.6745 * std::sqrt(6.0)), std::sqrt(1.0 / 12));
+  return std::hypot(static_cast<double>(Median(std::move(differences))) / (0.6745 * std::sqrt(6.0)),
+                    std::sqrt(1.0 / 12));
 }
 
 std::vector<Profile> ProfilesAcross(const cv::Mat& grey, const cv::Mat& clipped, const Curve& curve,

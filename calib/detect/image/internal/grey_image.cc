@@ -7,6 +7,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -17,10 +19,7 @@ float TypicalStep(const cv::Mat& grey) {
     const float* row = grey.ptr<float>(y);
     for (int x = 0; x + 1 < grey.cols; x += 5) steps.push_back(std::abs(row[x + 1] - row[x]));
   }
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return Median(std::move(steps));
 }
 
 std::array<float, 8> Neighbours(const cv::Mat& grey, int y, int x) {

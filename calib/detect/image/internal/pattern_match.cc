@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/detect/image/internal/grey_image.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -84,12 +85,6 @@ std::vector<double> Alternation(const Edges& edges, int column, int row, bool do
     steps.push_back(edges.At(column + (down ? 0 : k), row + (down ? k : 0), down));
   }
   return steps;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double ShareBetween(const std::vector<double>& values, double low, double high) {

@@ -11,6 +11,7 @@
 #include "calib/detect/image/internal/grid_model.h"
 #include "calib/detect/image/internal/pattern_ends.h"
 #include "calib/detect/image/internal/pick_alignment.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -25,13 +26,6 @@ constexpr double kLeastChi2 = 15;       // CornerPose::second_pose_chi2
 constexpr double kMostPickPx = 12;      // from a pick to the board's corner
 constexpr double kMostOff = 0.4;        // of the corners: what hides the others reaches into some
 constexpr int kRounds = 3;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // What the image has where inner corners should be, in the target's order.
 struct Measured {

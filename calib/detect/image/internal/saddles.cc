@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/detect/image/internal/grey_image.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -44,9 +45,7 @@ cv::Mat SaddlenessOf(const cv::Mat& f, float* typical) {
     }
     for (int x = 1 + y % 7; x + 1 < f.cols; x += 7) sizes.push_back(std::abs(At(f, y, x).xy));
   }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  *typical = *middle;
+  *typical = Median(std::move(sizes));
   return out;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -95,9 +97,7 @@ double ScaleOf(const std::vector<Sample>& samples) {
   std::vector<double> ratios;
   ratios.reserve(samples.size());
   for (const Sample& s : samples) ratios.push_back(std::abs(s.residual) / s.sigma);
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::clamp(*middle / 0.6745, 0.3, 3.0);
+  return std::clamp(Median(std::move(ratios)) / 0.6745, 0.3, 3.0);
 }
 
 // Tukey's biweight: an edge 4.685 scales away counts nothing.

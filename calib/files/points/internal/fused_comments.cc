@@ -5,6 +5,7 @@
 
 #include "calib/files/points/internal/record_table.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -12,13 +13,6 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 constexpr std::size_t kMaxCameras = 32;  // bits of `valid`
-
-// As many digits as it takes to read the same bits back.
-std::string Exact(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return std::string(text, end);
-}
 
 // One word in one line, whatever a camera is called.
 std::string Word(std::string name) {

@@ -7,8 +7,8 @@
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
-#include "services/drivers/clock_fit.h"
-#include "services/drivers/pacer.h"
+#include "services/runtime/clock.h"
+#include "services/runtime/pacer.h"
 
 namespace rgbdt {
 namespace fs = std::filesystem;
@@ -59,7 +59,7 @@ std::optional<Cloud> PcdFolder::Read(DeviceThread& thread, const fs::path& file)
     return cloud;
   } catch (const std::exception& e) {
     report_.Count("bad files");
-    thread.Complain(e.what());
+    thread.Warn(e.what());
     return std::nullopt;
   }
 }
@@ -70,13 +70,13 @@ void PcdFolder::Serve(DeviceThread& thread) {
     const std::optional<Cloud> cloud = Read(thread, files_[i]);
     if (!cloud) continue;
     last_ = cloud->sweep_utime;
-    if (!pacer.Wait(&thread, last_)) return;
+    if (!thread.Sleep(pacer.WaitFor(last_, SteadyUtime()))) return;
     report_.SetSweepBegun(last_);
     report_.Set("file " + std::to_string(i + 1) + " of " + std::to_string(files_.size()) + " in " +
                     device_.folder,
                 true);
     report_.Count("sweeps");
-    for (CloudChunk& chunk : SplitSweep(*cloud)) thread.Say(std::move(chunk));
+    for (CloudChunk& chunk : SplitSweep(*cloud)) thread.Publish(std::move(chunk));
   }
 }
 

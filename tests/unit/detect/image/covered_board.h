@@ -10,6 +10,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/model/rig.h"
+#include "calib/model/statistics.h"
 #include "calib/model/view_detection.h"
 #include "tests/unit/matchers.h"
 
@@ -55,9 +56,7 @@ inline Paint PaintLike(const cv::Mat& pixels, const cv::Rect& around) {
       steps.push_back(std::abs(values.at<float>(y, x + 2) - values.at<float>(y, x)));
     }
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return {cv::mean(values)[0], *middle / (0.6745 * std::sqrt(2.0))};
+  return {cv::mean(values)[0], Median(std::move(steps)) / (0.6745 * std::sqrt(2.0))};
 }
 
 /// Paints a cover over the board in raw pixels (8 or 16 bit, a mosaic stays one): brightness as

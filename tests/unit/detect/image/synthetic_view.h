@@ -4,7 +4,8 @@
 
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
-#include "calib/scan_assembly/assembler.h"
+#include "calib/scan_assembly/line_to_cloud.h"
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "calib/simulate/simulator.h"
 
 namespace rgbdt {

@@ -1,4 +1,4 @@
-import type { BusFrame, SightingsFrame } from "../protocol";
+import type { BusFrame, TargetStatusFrame } from "../protocol";
 
 const wave = (base: number, seconds: number): number => base * (1 + 0.05 * Math.sin(seconds) + 0.03 * (Math.random() - 0.5));
 
@@ -30,11 +30,11 @@ export function busFrame(seconds: number): BusFrame {
   };
 }
 
-export function sightingsFrame(seconds: number): SightingsFrame {
+export function targetStatusFrame(seconds: number): TargetStatusFrame {
   const utime = Date.now() * 1000;
   const seen = Math.sin(seconds / 5) > 0;
   return {
-    type: "sightings",
+    type: "target_status",
     sensors: [
       { sensor: "lidar", kind: "lidar", seen: true, text: "board 3.42 m away", utime, age_s: 0.8 },
       { sensor: "rgb", kind: "color", seen: true, text: "board found, 35 corners", utime, age_s: 0.2 },

@@ -1,13 +1,13 @@
 // The session: what is to be done now, what came of it, and how sure the result is.
 import type { CameraState, SessionFrame } from "../protocol";
-import { rig, session, sightings } from "../store";
+import { rig, session, targetStatus } from "../store";
 import { px } from "./words";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
 import { EventLog } from "./session/event_log";
 import { ReportSection, SigmaPictures } from "./session/report";
 import type { ReportMessage } from "./session/report_message";
-import { SightingsLine } from "./session/sightings_line";
+import { TargetStatusLine } from "./session/target_status_line";
 import { HeldoutErrors, SigmaCharts } from "./session/sureness";
 import { Progress, VerdictCard } from "./session/verdict";
 import { ViewCards } from "./session/view_cards";
@@ -38,7 +38,7 @@ function CameraVerdicts({ cameras }: { cameras: CameraState[] }) {
 function Now({ session: state }: { session: SessionFrame }) {
   return (
     <section class="card now" aria-label="Now">
-      {state.mode !== "finished" && <SightingsLine sightings={sightings.value} />}
+      {state.mode !== "finished" && <TargetStatusLine targetStatus={targetStatus.value} />}
       {state.next_view && <NextView next={state.next_view} />}
       <Progress session={state} />
       {state.mode !== "finished" && <Controls session={state} />}

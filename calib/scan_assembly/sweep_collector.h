@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "calib/model/cloud.h"
+
+namespace rgbdt {
+
+/// Sweeps by their name, as their chunks come in. Keeps the newest kMinSweeps, and of a LIDAR that
+/// sweeps many times a second as many as have kKeptPoints, kMaxSweeps at most: a capture names a
+/// sweep that ended a while ago.
+class SweepCollector {
+ public:
+  static constexpr std::size_t kMinSweeps = 3, kMaxSweeps = 100;
+  static constexpr std::size_t kKeptPoints = 6'000'000;
+  static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
+  static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
+
+  /// Throws InputError for a chunk that cannot be joined to those of its sweep.
+  void Add(const CloudChunk& chunk);
+  /// The complete sweep, or nothing while its end has not come.
+  std::optional<Cloud> Complete(Utime sweep_utime) const;
+  bool Ended(Utime sweep_utime) const;
+  /// Name of the newest sweep that is complete; 0: none is.
+  Utime NewestEnded() const;
+  void Clear() { sweeps_.clear(); }
+
+ private:
+  struct Sweep {
+    std::vector<CloudChunk> chunks;
+    std::size_t points = 0;
+    bool ended = false;
+  };
+  static void Check(const Sweep& sweep, const CloudChunk& chunk);
+  void ForgetOldest();
+
+  std::map<Utime, Sweep> sweeps_;
+};
+
+}  // namespace rgbdt

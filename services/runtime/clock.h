@@ -1,0 +1,25 @@
+#pragma once
+
+#include <chrono>
+
+#include "calib/model/time.h"
+
+namespace rgbdt {
+
+/// The machine's steady clock [us]; its zero is anywhere.
+inline Utime SteadyUtime() {
+  using Microseconds = std::chrono::duration<Utime, std::micro>;
+  return std::chrono::duration_cast<Microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+/// The machine's wall clock [us, UTC].
+inline Utime HostUtime() {
+  using Microseconds = std::chrono::duration<Utime, std::micro>;
+  return std::chrono::duration_cast<Microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace rgbdt
