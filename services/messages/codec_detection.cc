@@ -133,8 +133,6 @@ void Check(const view_detection_t& wire) {
   }
 }
 
-ViewDetection FromWire(const view_detection_t& wire) {
-  return FieldsFromWire<ViewDetection>(wire);
-}
+ViewDetection FromWire(const view_detection_t& wire) { return FieldsFromWire<ViewDetection>(wire); }
 
 }  // namespace rgbdt

@@ -7,9 +7,9 @@
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/session.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

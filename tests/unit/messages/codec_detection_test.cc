@@ -67,157 +67,191 @@ void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
   EXPECT_EQ(a.scatter, b.scatter);
   EXPECT_EQ(a.raw_scatter, b.raw_scatter);
   EXPECT_EQ(a.scatter_sigma_m, b.scatter_sigma_m);
+  EXPECT_EQ(a.camera, b.camera);
 }
 
-void ExpectSameHead(const Observation& a, const Observation& b) {
-  EXPECT_EQ(a.view, b.view);
+void ExpectSame(const ImageDetection& a, const ImageDetection& b) {
   EXPECT_EQ(a.camera, b.camera);
+  EXPECT_EQ(a.utime, b.utime);
+  EXPECT_EQ(a.why_not, b.why_not);
+  EXPECT_EQ(a.detect_s, b.detect_s);
+  ASSERT_EQ(a.edges.has_value(), b.edges.has_value());
+  if (a.edges) ExpectSame(*a.edges, *b.edges);
+}
+
+void ExpectSame(const ViewDetection& a, const ViewDetection& b) {
+  EXPECT_EQ(a.view, b.view);
   EXPECT_EQ(a.seq, b.seq);
   EXPECT_EQ(a.sweep_utime, b.sweep_utime);
-  EXPECT_EQ(a.image_utime, b.image_utime);
   EXPECT_EQ(a.heldout, b.heldout);
-  EXPECT_EQ(a.rejected, b.rejected);
-  EXPECT_EQ(a.detect_image_s, b.detect_image_s);
-  EXPECT_EQ(a.detect_cloud_s, b.detect_cloud_s);
-  ASSERT_EQ(a.image.has_value(), b.image.has_value());
-  ASSERT_EQ(a.cloud.has_value(), b.cloud.has_value());
+  EXPECT_EQ(a.cloud.why_not, b.cloud.why_not);
+  EXPECT_EQ(a.cloud.detect_s, b.cloud.detect_s);
+  ASSERT_EQ(a.images.size(), b.images.size());
+  for (std::size_t i = 0; i < a.images.size(); ++i) ExpectSame(a.images[i], b.images[i]);
+  ASSERT_EQ(a.cloud.candidates.size(), b.cloud.candidates.size());
+  for (std::size_t i = 0; i < a.cloud.candidates.size(); ++i) {
+    ExpectSame(a.cloud.candidates[i], b.cloud.candidates[i]);
+  }
 }
 
 constexpr int kRounds = 100;
 
-class ObservationOnTheWire : public ::testing::Test {
+class DetectionOnTheWire : public ::testing::Test {
  protected:
-  /// Image and cloud, with all that they may hold.
-  Observation Whole() {
-    Observation observation = random_.Seen();
-    observation.image = random_.Edges();
-    observation.image->edge_pixels = {{3, 4}};
-    observation.image->pose = random_.PoseOfTarget();
-    observation.cloud = random_.Boundary();
-    observation.cloud->pose = random_.PoseOfTarget();
-    observation.cloud->crossings.assign(2, random_.WhereAScanLeaves());
-    observation.candidates.assign(2, *observation.cloud);
-    observation.rejected = "";
-    return observation;
+  /// One image and two candidates, with all that they may hold.
+  ViewDetection Whole() {
+    ViewDetection detection = random_.Seen();
+    ImageDetection image = random_.InImage();
+    image.edges = random_.Edges();
+    image.edges->edge_pixels = {{3, 4}};
+    image.edges->pose = random_.PoseOfTarget();
+    image.why_not = "";
+    detection.images = {image};
+    CloudEdges board = random_.Boundary();
+    board.pose = random_.PoseOfTarget();
+    board.crossings.assign(2, random_.WhereAScanLeaves());
+    detection.cloud.candidates.assign(2, board);
+    detection.cloud.why_not = "";
+    return detection;
   }
 
   template <typename Change>
   std::string Error(const Change& change) {
-    return ErrorAfter<observation_v3_t>(Whole(), change);
+    return ErrorAfter<view_detection_t>(Whole(), change);
   }
 
   RandomMessages random_{3};
 };
 
-TEST_F(ObservationOnTheWire, ComesBackWhole) {
+TEST_F(DetectionOnTheWire, ComesBackWhole) {
   for (int round = 0; round < kRounds; ++round) {
-    const Observation a = random_.Seen();
-    const Observation b = ThroughTheWire(a);
-    ASSERT_NO_FATAL_FAILURE(ExpectSameHead(a, b));
-    if (a.image) ExpectSame(*a.image, *b.image);
-    if (a.cloud) ExpectSame(*a.cloud, *b.cloud);
-    ASSERT_EQ(a.candidates.size(), b.candidates.size());
-    for (std::size_t i = 0; i < a.candidates.size(); ++i) {
-      ExpectSame(a.candidates[i], b.candidates[i]);
-    }
+    const ViewDetection a = random_.Seen();
+    ASSERT_NO_FATAL_FAILURE(ExpectSame(a, ThroughTheWire(a)));
   }
 }
 
-// A sweep that sees the board with a thousand lines of two crossings, four times.
-TEST_F(ObservationOnTheWire, OfADenseSweepFitsTheBus) {
-  Observation dense = random_.Seen();
-  dense.image = random_.Edges();
-  dense.image->edge_pixels = random_.Rows<Eigen::Vector2i>(20'000, 0, 99);
-  dense.cloud = random_.Boundary();
-  dense.cloud->boundary = random_.Rows<Eigen::Vector3d>(2000);
-  dense.cloud->crossings.assign(2000, random_.WhereAScanLeaves());
-  dense.candidates.assign(4, *dense.cloud);
+// A sweep that sees the board with a thousand lines of two crossings, four times; two cameras.
+TEST_F(DetectionOnTheWire, OfADenseSweepFitsTheBus) {
+  ViewDetection dense = Whole();
+  dense.images[0].edges->edge_pixels = random_.Rows<Eigen::Vector2i>(20'000, 0, 99);
+  dense.images.push_back(dense.images[0]);
+  CloudEdges& board = dense.cloud.candidates[0];
+  board.boundary = random_.Rows<Eigen::Vector3d>(2000);
+  board.crossings.assign(2000, random_.WhereAScanLeaves());
+  dense.cloud.candidates.assign(4, CloudEdges(board));
   EXPECT_LT(Encode(dense).size(), 1'000'000U);
-  EXPECT_EQ(ThroughTheWire(dense).candidates.size(), 4U);
+  EXPECT_EQ(ThroughTheWire(dense).cloud.candidates.size(), 4U);
 }
 
-TEST_F(ObservationOnTheWire, BadFields) {
+TEST_F(DetectionOnTheWire, TellsTheTimeOfItsNewestPart) {
+  ViewDetection detection = Whole();
+  detection.sweep_utime = 7;
+  detection.images.push_back(detection.images[0]);
+  detection.images[1].utime = detection.images[0].utime + 5;
+  EXPECT_EQ(UtimeOf(detection), detection.images[1].utime);
+  detection.images.clear();
+  EXPECT_EQ(UtimeOf(detection), 7);
+}
+
+TEST_F(DetectionOnTheWire, BadFields) {
   const auto error = [&](auto change) { return Error(change); };
   EXPECT_EQ(error([](auto&) {}), "no error");
   EXPECT_THAT(error([](auto& w) { w.view = "../../etc"; }), HasSubstr("view is"));
-  EXPECT_THAT(error([](auto& w) { w.image_width = 3; }), HasSubstr("edge_pixel x is 3"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.normal[0] = 2; }), HasSubstr("cloud: length of normal"));
-  EXPECT_THAT(error([](auto& w) { w.outline_corner_px[2][1] = NAN; }),
+  EXPECT_THAT(error([](auto& w) { w.image[0].image_width = 3; }), HasSubstr("edge_pixel x is 3"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].normal[0] = 2; }),
+              HasSubstr("candidate[0]: length of normal"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].outline_corner_px[2][1] = NAN; }),
               HasSubstr("outline_corner_px[5] is nan"));
   EXPECT_THAT(error([](auto& w) {
-                w.num_corners = 1, w.corner_px = {{1, NAN}};
+                w.image[0].num_corners = 1, w.image[0].corner_px = {{1, NAN}};
               }),
               HasSubstr("corner_px[1] is nan"));
   EXPECT_THAT(error([](auto& w) {
-                w.num_corners = 1, w.corner_px = {{INFINITY, 1}};
+                w.image[0].num_corners = 1, w.image[0].corner_px = {{INFINITY, 1}};
               }),
               HasSubstr("corner_px[0] is inf"));
-  EXPECT_THAT(error([](auto& w) { w.has_cloud = 0; }), HasSubstr("a reason"));
-  EXPECT_THAT(error([](auto& w) { w.rejected = "\xff"; }), HasSubstr("rejected is"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].has_edges = 0; }), HasSubstr("image[0]: why_not is"));
+  EXPECT_THAT(error([](auto& w) { w.num_candidates = 0, w.candidate.clear(); }),
+              HasSubstr("cloud_why_not is"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_why_not = "\xff"; }), HasSubstr("cloud_why_not is"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].why_not = "\xff"; }), HasSubstr("why_not is"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].camera = "../x"; }), HasSubstr("camera is"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].camera = "../x"; }), HasSubstr("camera is"));
+  EXPECT_THAT(error([](auto& w) { w.cloud_detect_s = -1; }), HasSubstr("cloud_detect_s is -1"));
+  EXPECT_THAT(error([](auto& w) { w.num_images = 33, w.image.resize(33, w.image[0]); }),
+              HasSubstr("num_images is 33"));
 }
 
-TEST_F(ObservationOnTheWire, CornersThatWereNotSeenStayUnseen) {
-  Observation observation = Whole();
-  observation.image->corners = {{1.5, 2.5}, UnseenCorner(), {3.5, 4.5}};
-  const std::vector<Eigen::Vector2d> corners = ThroughTheWire(observation).image->corners;
+TEST_F(DetectionOnTheWire, CornersThatWereNotSeenStayUnseen) {
+  ViewDetection detection = Whole();
+  detection.images[0].edges->corners = {{1.5, 2.5}, UnseenCorner(), {3.5, 4.5}};
+  const std::vector<Eigen::Vector2d> sent = detection.images[0].edges->corners;
+  const std::vector<Eigen::Vector2d> corners = ThroughTheWire(detection).images[0].edges->corners;
   ASSERT_EQ(corners.size(), 3U);
-  EXPECT_EQ(corners[0], observation.image->corners[0]);
+  EXPECT_EQ(corners[0], sent[0]);
   EXPECT_FALSE(IsSeen(corners[1]));
-  EXPECT_EQ(corners[2], observation.image->corners[2]);
+  EXPECT_EQ(corners[2], sent[2]);
 }
 
-TEST_F(ObservationOnTheWire, BadPoses) {
+TEST_F(DetectionOnTheWire, BadPoses) {
   const auto error = [&](auto change) { return Error(change); };
   EXPECT_EQ(error([](auto&) {}), "no error");
-  EXPECT_THAT(error([](auto& w) { w.image_pose.quaternion_wxyz[0] += 0.1; }),
-              HasSubstr("image_pose: norm of quaternion_wxyz"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.pose.quaternion_wxyz[3] = NAN; }),
-              HasSubstr("cloud: pose: quaternion_wxyz[3] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.image_pose.translation_m[1] = INFINITY; }),
-              HasSubstr("image_pose: translation_m[1] is inf"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.pose.covariance[2][1] = NAN; }),
-              HasSubstr("cloud: pose: covariance[13] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[5][5] = -1e-9; }),
-              HasSubstr("image_pose: diagonal of covariance is -1e-09"));
-  EXPECT_THAT(error([](auto& w) { w.image_pose.covariance[4][0] += 1; }),
-              HasSubstr("image_pose: asymmetry of covariance is 1"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].pose.quaternion_wxyz[0] += 0.1; }),
+              HasSubstr("image[0]: pose: norm of quaternion_wxyz"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].pose.quaternion_wxyz[3] = NAN; }),
+              HasSubstr("candidate[0]: pose: quaternion_wxyz[3] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].pose.translation_m[1] = INFINITY; }),
+              HasSubstr("image[0]: pose: translation_m[1] is inf"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].pose.covariance[2][1] = NAN; }),
+              HasSubstr("candidate[0]: pose: covariance[13] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].pose.covariance[5][5] = -1e-9; }),
+              HasSubstr("image[0]: pose: diagonal of covariance is -1e-09"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].pose.covariance[4][0] += 1; }),
+              HasSubstr("image[0]: pose: asymmetry of covariance is 1"));
   EXPECT_THAT(error([](auto& w) { w.candidate[1].pose.translation_m[0] = NAN; }),
               HasSubstr("candidate[1]: pose: translation_m[0] is nan"));
   // What is not there is not read.
-  EXPECT_EQ(error([](auto& w) { w.has_image_pose = 0, w.image_pose.translation_m[1] = NAN; }),
+  EXPECT_EQ(error([](auto& w) { w.image[0].has_pose = 0, w.image[0].pose.translation_m[1] = NAN; }),
             "no error");
-  EXPECT_EQ(error([](auto& w) { w.cloud.has_pose = 0, w.cloud.pose.translation_m[1] = NAN; }),
+  EXPECT_EQ(error([](auto& w) {
+              w.candidate[0].has_pose = 0, w.candidate[0].pose.translation_m[1] = NAN;
+            }),
             "no error");
 }
 
-TEST_F(ObservationOnTheWire, BadSides) {
+TEST_F(DetectionOnTheWire, BadSides) {
   const auto error = [&](auto change) { return Error(change); };
-  EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = -1; }), HasSubstr("corner_sigma_px is -1"));
-  EXPECT_THAT(error([](auto& w) { w.corner_sigma_px = NAN; }), HasSubstr("corner_sigma_px is nan"));
-  EXPECT_THAT(error([](auto& w) { w.side[2].why = "\x1b"; }), HasSubstr("side[2]: why is"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].corner_sigma_px = -1; }),
+              HasSubstr("corner_sigma_px is -1"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].corner_sigma_px = NAN; }),
+              HasSubstr("corner_sigma_px is nan"));
+  EXPECT_THAT(error([](auto& w) { w.image[0].side[2].why = "\x1b"; }),
+              HasSubstr("side[2]: why is"));
   EXPECT_THAT(error([](auto& w) {
-                w.side[3].num_curve = 1, w.side[3].curve_px = {{1, NAN}};
+                w.image[0].side[3].num_curve = 1, w.image[0].side[3].curve_px = {{1, NAN}};
               }),
               HasSubstr("side[3]: curve_px[1] is nan"));
   EXPECT_THAT(error([](auto& w) {
-                w.side[0].seen = 1, w.side[0].num_curve = 1, w.side[0].curve_px = {{1, 2}};
+                w.image[0].side[0].seen = 1, w.image[0].side[0].num_curve = 1,
+                w.image[0].side[0].curve_px = {{1, 2}};
               }),
               HasSubstr("side[0]: num_curve is 1; expected 2 or more"));
-  EXPECT_THAT(error([](auto& w) { w.side[1].covariance_px2[1][1] = -1; }),
+  EXPECT_THAT(error([](auto& w) { w.image[0].side[1].covariance_px2[1][1] = -1; }),
               HasSubstr("side[1]: diagonal of covariance_px2 is -1"));
-  EXPECT_THAT(error([](auto& w) { w.side[1].covariance_px2[0][1] += 1; }),
+  EXPECT_THAT(error([](auto& w) { w.image[0].side[1].covariance_px2[0][1] += 1; }),
               HasSubstr("side[1]: asymmetry of covariance_px2 is 1"));
 }
 
-TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
+TEST_F(DetectionOnTheWire, BadCrossingsAndCandidates) {
   const auto error = [&](auto change) { return Error(change); };
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[1].point_m[2] = NAN; }),
-              HasSubstr("cloud: crossing[1]: point_m[2] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].half_width_m = -0.1; }),
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[1].point_m[2] = NAN; }),
+              HasSubstr("candidate[0]: crossing[1]: point_m[2] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[0].half_width_m = -0.1; }),
               HasSubstr("half_width_m is -0.1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].side = 4; }), HasSubstr("side is 4"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].side = -1; }), HasSubstr("side is -1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].kind = 0; }), HasSubstr("kind is 0"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[0].side = 4; }), HasSubstr("side is 4"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[0].side = -1; }),
+              HasSubstr("side is -1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[0].kind = 0; }), HasSubstr("kind is 0"));
   EXPECT_THAT(error([](auto& w) { w.candidate[1].crossing[0].kind = 4; }),
               HasSubstr("candidate[1]: crossing[0]: kind is 4"));
   EXPECT_THAT(error([](auto& w) { w.candidate[0].normal[1] = 3; }),
@@ -229,41 +263,41 @@ TEST_F(ObservationOnTheWire, BadCrossingsAndCandidates) {
       HasSubstr("num_candidates is 101"));
 }
 
-TEST_F(ObservationOnTheWire, BadScatters) {
+TEST_F(DetectionOnTheWire, BadScatters) {
   const auto error = [&](auto change) { return Error(change); };
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[1].sigma_m = -0.1; }),
-              HasSubstr("cloud: crossing[1]: sigma_m is -0.1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.crossing[0].sigma_m = INFINITY; }),
-              HasSubstr("cloud: crossing[0]: sigma_m is inf"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[2][1] = NAN; }),
-              HasSubstr("cloud: scatter[9] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.raw_scatter[1][2] = NAN; }),
-              HasSubstr("cloud: raw_scatter[6] is nan"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[0][0] = -2; }),
-              HasSubstr("cloud: diagonal of scatter is -2"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[3][3] = -1; }),
-              HasSubstr("cloud: diagonal of scatter is -1"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.scatter[3][0] = 1e3; }),
-              HasSubstr("cloud: asymmetry of scatter is"));
-  EXPECT_THAT(error([](auto& w) { w.cloud.scatter_sigma_m = NAN; }),
-              HasSubstr("cloud: scatter_sigma_m is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[1].sigma_m = -0.1; }),
+              HasSubstr("candidate[0]: crossing[1]: sigma_m is -0.1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].crossing[0].sigma_m = INFINITY; }),
+              HasSubstr("candidate[0]: crossing[0]: sigma_m is inf"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[2][1] = NAN; }),
+              HasSubstr("candidate[0]: scatter[9] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].raw_scatter[1][2] = NAN; }),
+              HasSubstr("candidate[0]: raw_scatter[6] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[0][0] = -2; }),
+              HasSubstr("candidate[0]: diagonal of scatter is -2"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[3][3] = -1; }),
+              HasSubstr("candidate[0]: diagonal of scatter is -1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[3][0] = 1e3; }),
+              HasSubstr("candidate[0]: asymmetry of scatter is"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter_sigma_m = NAN; }),
+              HasSubstr("candidate[0]: scatter_sigma_m is nan"));
   EXPECT_THAT(error([](auto& w) { w.candidate[1].scatter_sigma_m = -1; }),
               HasSubstr("candidate[1]: scatter_sigma_m is -1"));
   EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[1][1] = INFINITY; }),
               HasSubstr("candidate[0]: scatter[5] is inf"));
   // What is not there is not read.
   EXPECT_EQ(error([](auto& w) {
-              w.has_cloud = 0;
-              w.rejected = "no board in view";
-              w.cloud.scatter_sigma_m = NAN;
+              w.image[0].has_edges = 0;
+              w.image[0].why_not = "no board in view";
+              w.image[0].corner_sigma_px = NAN;
             }),
             "no error");
 }
 
-TEST_F(ObservationOnTheWire, ASideThatNoByteHoldsIsRefusedWhereItWasMade) {
-  Observation observation = Whole();
-  observation.cloud->crossings[0].side = 256;
-  EXPECT_THAT(ErrorOf([&] { Encode(observation); }), HasSubstr("side is 256"));
+TEST_F(DetectionOnTheWire, ASideThatNoByteHoldsIsRefusedWhereItWasMade) {
+  ViewDetection detection = Whole();
+  detection.cloud.candidates[0].crossings[0].side = 256;
+  EXPECT_THAT(ErrorOf([&] { Encode(detection); }), HasSubstr("side is 256"));
 }
 
 }  // namespace

@@ -56,28 +56,32 @@ class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
     for (const Message& message : random_.OneOfEach()) {
       samples.push_back({ChannelOf(message), Encode(message)});
     }
-    samples.push_back({"OBSERVATION", Encode(SmallButWhole())});
+    samples.push_back({"DETECTION", Encode(SmallButWhole())});
     EXPECT_LT(samples.back().bytes.size(), kForgedBytes);
     samples.push_back({"RGBDT_SWEEP", Encode(SmallSweep())});
     return samples;
   }
 
   // Every nested struct, within the bytes whose counts are forged.
-  Observation SmallButWhole() {
-    Observation observation = random_.Seen();
-    observation.image = ImageEdges{};
-    observation.image->width = observation.image->height = 100;
-    observation.image->outline_corners.fill({1, 2});
+  ViewDetection SmallButWhole() {
+    ViewDetection detection = random_.Seen();
+    ImageDetection image = random_.InImage();
+    image.why_not = "";
+    image.edges = ImageEdges{};
+    image.edges->width = image.edges->height = 100;
+    image.edges->outline_corners.fill({1, 2});
     ImageSide side = random_.Side();
     side.curve.resize(2, {3, 4});
-    observation.image->pose = random_.PoseOfTarget();
-    observation.image->sides.fill(side);
-    observation.cloud = random_.Boundary();
-    observation.cloud->boundary.resize(1);
-    observation.cloud->pose = random_.PoseOfTarget();
-    observation.cloud->crossings.assign(2, random_.WhereAScanLeaves());
-    observation.candidates.assign(2, *observation.cloud);
-    return observation;
+    image.edges->pose = random_.PoseOfTarget();
+    image.edges->sides.fill(side);
+    detection.images = {image};
+    CloudEdges board = random_.Boundary();
+    board.boundary.resize(1);
+    board.pose = random_.PoseOfTarget();
+    board.crossings.assign(2, random_.WhereAScanLeaves());
+    detection.cloud.candidates.assign(2, board);
+    detection.cloud.why_not = "";
+    return detection;
   }
 
   // With a pose, and its last count within the bytes whose counts are forged.

@@ -30,14 +30,14 @@ Fingerprint Of(std::uint64_t frozen) {
 const Fingerprint kFingerprints[] = {
     Of<board_crossing_t>(0x5e8f49c77d39f5f6U),
     Of<calibration_t>(0xc21f3b8901adb5f5U),
-    Of<cloud_board_t>(0x6ca88b487d73a574U),
+    Of<cloud_board_t>(0xc632f59328d6d147U),
     Of<cloud_t>(0x125e8ff78f44efb8U),
     Of<corner_selection_t>(0x02f689fdcac537a0U),
     Of<encoder_t>(0x7aad6668dd2e9ec1U),
+    Of<image_detection_t>(0x2ce9e958f8e31161U),
     Of<image_side_t>(0xd4257e8462efb945U),
     Of<image_t>(0xf724a27bdd3abd9cU),
     Of<line_scan_t>(0x62ff83194fdec7fcU),
-    Of<observation_v3_t>(0x1566a4213359964dU),
     Of<pose_t>(0xfd782618dd276dcfU),
     Of<radiometry_t>(0x2570e4bcc16de0dbU),
     Of<report_t>(0x5c2dc84a6180ae4dU),
@@ -49,6 +49,7 @@ const Fingerprint kFingerprints[] = {
     Of<status_t>(0xcc7326579c48e529U),
     Of<target_pose_t>(0x9d6616d77af99f13U),
     Of<target_status_t>(0x283a34272dbe5254U),
+    Of<view_detection_t>(0x865d59c6dda26073U),
 };
 
 TEST(Fingerprint, IsWhatItWas) {

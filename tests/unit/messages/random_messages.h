@@ -156,23 +156,30 @@ class RandomMessages {
     return selection;
   }
 
-  Observation Seen() {
-    Observation observation;
-    observation.view = "00" + std::to_string(Int(10, 99));
-    observation.camera = Name();
-    observation.seq = Seq();
-    observation.sweep_utime = Time();
-    observation.image_utime = Time();
-    observation.heldout = Coin();
-    observation.detect_image_s = Number(0, 3);
-    observation.detect_cloud_s = Number(0, 3);
-    if (Int(0, 3) != 0) observation.image = Edges();
-    if (Int(0, 3) != 0) observation.cloud = Boundary();
-    if (!observation.image || !observation.cloud || Int(0, 3) == 0) {
-      observation.rejected = "no board in view";
+  ImageDetection InImage() {
+    ImageDetection image;
+    image.camera = Name();
+    image.utime = Time();
+    image.detect_s = Number(0, 3);
+    if (Int(0, 3) != 0) image.edges = Edges();
+    if (!image.edges || Int(0, 3) == 0) image.why_not = "no board in view";
+    return image;
+  }
+
+  ViewDetection Seen() {
+    ViewDetection detection;
+    detection.view = "00" + std::to_string(Int(10, 99));
+    detection.seq = Seq();
+    detection.sweep_utime = Time();
+    detection.heldout = Coin();
+    for (int i = Int(0, 3); i > 0; --i) detection.images.push_back(InImage());
+    for (int i = Int(0, 3); i > 0; --i) {
+      detection.cloud.candidates.push_back(Boundary());
+      if (Coin()) detection.cloud.candidates.back().camera = Name();
     }
-    for (int i = Int(0, 3); i > 0; --i) observation.candidates.push_back(Boundary());
-    return observation;
+    if (detection.cloud.candidates.empty()) detection.cloud.why_not = "no board in the cloud";
+    detection.cloud.detect_s = Number(0, 3);
+    return detection;
   }
   TargetPose PoseOfTarget() { return {Rigid(), Covariance<6>(), Coin()}; }
   ImageSide Side() {
