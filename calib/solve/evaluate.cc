@@ -29,12 +29,12 @@ struct Sums {
   }
 };
 
-Sums Judge(const Camera& camera, const CameraView& observation, const Rigid3& camera_from_lidar) {
-  const ImageEdges& image = *observation.image;
+Sums Judge(const Camera& camera, const CameraView& view, const Rigid3& camera_from_lidar) {
+  const ImageEdges& image = *view.image;
   const DistanceField field(image.width, image.height, image.edge_pixels);
   const double unseen = 0.5 * image.width;
   Sums sums;
-  for (const Eigen::Vector3d& point : observation.cloud->boundary) {
+  for (const Eigen::Vector3d& point : view.cloud->boundary) {
     const auto pixel = camera.Project(camera_from_lidar * point);
     const double distance = pixel ? DistanceToOutline(*pixel, image.outline) : unseen;
     sums.transform += pixel ? field.Nearest(*pixel) : unseen;
@@ -44,8 +44,8 @@ Sums Judge(const Camera& camera, const CameraView& observation, const Rigid3& ca
   return sums;
 }
 
-ViewQuality QualityOf(const CameraView& observation, const Sums& sums) {
-  return {observation.view, observation.heldout, sums.transform / sums.points,
+ViewQuality QualityOf(const CameraView& view, const Sums& sums) {
+  return {view.view, view.heldout, sums.transform / sums.points,
           std::sqrt(sums.squared / sums.points), std::nullopt};
 }
 
@@ -60,9 +60,9 @@ double DistanceToOutline(const Eigen::Vector2d& pixel,
   return best;
 }
 
-ViewQuality JudgeView(const CameraSpec& camera, const CameraView& observation,
+ViewQuality JudgeView(const CameraSpec& camera, const CameraView& view,
                       const Rigid3& camera_from_lidar) {
-  return QualityOf(observation, Judge(Camera(camera), observation, camera_from_lidar));
+  return QualityOf(view, Judge(Camera(camera), view, camera_from_lidar));
 }
 
 void JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& usable,
@@ -71,10 +71,10 @@ void JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& u
   Sums train;
   Sums heldout;
   report->views.clear();
-  for (const CameraView* observation : usable) {
-    const Sums sums = Judge(camera, *observation, report->calibration.camera_from_lidar);
-    report->views.push_back(QualityOf(*observation, sums));
-    (observation->heldout ? heldout : train).Add(sums);
+  for (const CameraView* view : usable) {
+    const Sums sums = Judge(camera, *view, report->calibration.camera_from_lidar);
+    report->views.push_back(QualityOf(*view, sums));
+    (view->heldout ? heldout : train).Add(sums);
   }
   const auto fill = [](const Sums& sums, std::optional<double>* transform,
                        std::optional<double>* rms) {
@@ -86,15 +86,15 @@ void JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& u
   fill(heldout, &report->distance_transform_px.heldout, &report->edge_rms_px.heldout);
 }
 
-EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& observation,
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
                          const CameraCalibration& calibration) {
   EdgeMisfit misfit;
-  if (!observation.image->pose || !observation.cloud->pose) return misfit;
-  const TargetPose& seen = *observation.image->pose;
+  if (!view.image->pose || !view.cloud->pose) return misfit;
+  const TargetPose& seen = *view.image->pose;
   const Rigid3 lidar_from_camera = calibration.camera_from_lidar.Inverse();
   // The crossings' sides are told in the axes of the cloud's pose.
   Rigid3 camera_from_target = seen.sensor_from_target;
-  if (HalfTurned(lidar_from_camera * camera_from_target, *observation.cloud->pose)) {
+  if (HalfTurned(lidar_from_camera * camera_from_target, *view.cloud->pose)) {
     camera_from_target = camera_from_target * kHalfTurn;
   }
   Matrix6d covariance = kCornersAlike * kCornersAlike * seen.covariance;
@@ -102,7 +102,7 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& observation,
   const Matrix6d to_target = Adjoint(camera_from_target.Inverse());
   const Matrix6d in_target = to_target * covariance * to_target.transpose();
   const Rigid3 lidar_from_target = lidar_from_camera * camera_from_target;
-  for (const Crossing& crossing : observation.cloud->crossings) {
+  for (const Crossing& crossing : view.cloud->crossings) {
     if (!(crossing.sigma_m > 0)) continue;
     const CrossingResidual r =
         ResidualOf(model.target, model.priors, crossing, lidar_from_target, model.shared, 0);
@@ -120,15 +120,15 @@ void JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& us
                 CameraReport* report) {
   EdgeMisfit train;
   EdgeMisfit heldout;
-  for (const CameraView* observation : usable) {
-    const EdgeMisfit one = MisfitOfEdges(model, *observation, report->calibration);
+  for (const CameraView* view : usable) {
+    const EdgeMisfit one = MisfitOfEdges(model, *view, report->calibration);
     if (one.count == 0) continue;
-    EdgeMisfit& sum = observation->heldout ? heldout : train;
+    EdgeMisfit& sum = view->heldout ? heldout : train;
     sum.squared += one.squared;
     sum.count += one.count;
-    for (ViewQuality& view : report->views) {
-      if (view.view == observation->view) {
-        view.edge_rms_whitened = std::sqrt(one.squared / one.count);
+    for (ViewQuality& quality : report->views) {
+      if (quality.view == view->view) {
+        quality.edge_rms_whitened = std::sqrt(one.squared / one.count);
       }
     }
   }

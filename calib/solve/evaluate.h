@@ -19,7 +19,7 @@ double DistanceToOutline(const Eigen::Vector2d& pixel, const std::vector<Eigen::
 /// distance_transform_px: mean of the distance transform at the projected points (the paper's
 /// reprojection error). edge_rms_px: RMS distance to the fitted outline. A point that the lens
 /// cannot see counts half the image's width.
-ViewQuality JudgeView(const CameraSpec& camera, const CameraView& observation,
+ViewQuality JudgeView(const CameraSpec& camera, const CameraView& view,
                       const Rigid3& camera_from_lidar);
 
 /// What the distances of a board's crossings from its sides are held against.
@@ -39,7 +39,7 @@ struct EdgeMisfit {
 /// Each crossing's distance from its side, where the image's pose and `calibration` put it, over
 /// its sigma: of the crossing's interval, the side's own shift, the image's pose and the
 /// calibration (where it has a covariance). Zero crossings where the view has none with sigmas.
-EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& observation,
+EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
                          const CameraCalibration& calibration);
 
 /// Fills in `edge_rms_whitened` of a camera's report and of its views, which JudgeCamera has

@@ -93,8 +93,9 @@ Messages Views(int count) {
 
 // How long it took is the wall clock's.
 void ForgetDurations(Message* message) {
-  if (auto* observation = std::get_if<Observation>(message)) {
-    observation->detect_image_s = observation->detect_cloud_s = 0;
+  if (auto* detection = std::get_if<ViewDetection>(message)) {
+    for (ImageDetection& image : detection->images) image.detect_s = 0;
+    detection->cloud.detect_s = 0;
   }
 }
 
@@ -241,11 +242,11 @@ TEST(Refusal, Solver) {
   camera.camera_from_lidar_guess = GuessOff(world.camera_from_lidar, 0.02, 0.03, 5);
   rig.cameras = {camera};
   const RigText text = test::TextOf(ParseRig(PrintRig(rig), "test rig"));
-  Observation stranger = world.views[0];
-  stranger.camera = "front";
+  ViewDetection stranger = world.views[0];
+  stranger.images[0].camera = "front";
   // Its edges lie outside of the image: the paper's distance transform has nothing to go by.
-  Observation outside = world.views[1];
-  for (auto& pixel : outside.image->edge_pixels) pixel = {-100, -100};
+  ViewDetection outside = world.views[1];
+  for (auto& pixel : outside.images[0].edges->edge_pixels) pixel = {-100, -100};
 
   CalibrateOptions by_paper;
   by_paper.method = kPaperMethod;

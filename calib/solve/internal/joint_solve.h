@@ -18,7 +18,7 @@ struct JointProblem {
 };
 
 /// The boards of all views used, each brought into one set of axes for all cameras: the target's
-/// own, where one of them knows it. An observation whose camera takes another board of the cloud
+/// own, where one of them knows it. A view whose camera takes another board of the cloud
 /// than the cameras before it becomes rejected. `range_offset_sigma_m`: 0 where it is not asked
 /// for.
 JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
