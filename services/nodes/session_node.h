@@ -87,8 +87,8 @@ class SessionNode : public Node {
   void EndStep();
   void Append(SessionStep::Kind kind, bool heldout = false);
   bool idle() const { return by_request_ && started_ && index_ >= script_.steps.size(); }
-  void Tell(EventKind kind, const std::string& text, double fraction);
-  void Say(const std::string& text, double fraction);
+  void PublishEvent(EventKind kind, const std::string& text, double fraction);
+  void ReportProgress(const std::string& text, double fraction);
   void Announce(const std::string& text);
   std::string WithView(const std::string& text) const;
   std::vector<std::string> Needed() const;
@@ -119,7 +119,7 @@ class SessionNode : public Node {
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, std::string> captures_;                 // view by its capture's command
-  Messages told_;                                                // not yet sent
+  Messages events_;                                              // not yet published
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;

@@ -79,7 +79,7 @@ void CameraNode::Serve(DeviceThread& thread) {
 void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
   using Trigger = CameraDevice::Trigger;
   const bool free_running = spec_.device->trigger == Trigger::kFree;
-  for (const std::string& remark : camera->remarks()) WarnOf(remark, *thread);
+  for (const std::string& warning : camera->warnings()) WarnOf(warning, *thread);
   ptp_ = camera->FollowsPtp();
   if (!free_running) {  // it may send nothing for long
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -18,7 +18,7 @@ namespace rgbdt {
 
 /// One GigE Vision or USB3 Vision camera -> `<CAMERA>_IMAGE`. Frames that are not whole, or not of
 /// the rig file's size, are dropped, counted and named; none of them is published. A camera that is
-/// lost is looked for until it is back, and the gap is told.
+/// lost is looked for until it is back, and the gap is a warning.
 ///
 /// `utime` is the exposure's middle on the host's clock: the device's stamps through ClockFit,
 /// where a frame's first packet leaves at the exposure's end at the earliest. So it does not matter

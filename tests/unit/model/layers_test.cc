@@ -55,6 +55,8 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/bus", {"services/messages"}},
       {"services/runtime", {"services/bus", "services/messages"}},
       {"services/nodes", {"calib/*", "services/messages", "services/runtime"}},
+      {"services/replay",
+       {"calib/*", "services/messages", "services/bus", "services/runtime", "services/nodes"}},
       {"services/drivers", {"services/messages", "services/runtime"}},
       {"services/drivers/*",
        {"calib/camera", "calib/scan_assembly", "calib/files", "calib/files/points",
