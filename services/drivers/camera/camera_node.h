@@ -38,8 +38,9 @@ class CameraNode : public DeviceNode {
   /// Frames that wait for the bus, which packs them; the oldest go first.
   static constexpr std::size_t kMaxWaiting = 8;
 
-  /// Throws InputError where the rig file has no device for it.
-  CameraNode(const CameraSpec& spec, std::filesystem::path captures);
+  /// `camera`: its name; empty where only one camera of the rig has a device. Throws InputError
+  /// where the rig file has no device for it, or there is a choice.
+  CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures);
   ~CameraNode() override;
 
   std::string name() const override { return "camera-" + spec_.name; }
