@@ -32,7 +32,7 @@ void PrintFused(const Status& fuser) {
 
 void PrintProblems(const NodeRunner& runner) {
   const Status status = runner.GetStatus();
-  if (runner.dropped() == 0 && runner.gaps() == 0) return;
+  if (status.last_problem.empty() && runner.gaps() == 0) return;
   std::fprintf(stderr, "%s: %lld messages dropped, %lld missing; last problem: %s\n",
                status.process.c_str(), static_cast<long long>(runner.dropped()),
                static_cast<long long>(runner.gaps()), status.last_problem.c_str());

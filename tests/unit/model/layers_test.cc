@@ -246,6 +246,27 @@ TEST(Layers, EveryTargetLinksNoMoreThanItMayInclude) {
   EXPECT_GE(targets, 25);
 }
 
+// A README that is a table of contents, where a folder has more than five sources.
+TEST(Layers, EveryLargeFolderOfServicesHasATableOfContents) {
+  std::map<std::string, std::vector<std::string>> sources;  // by folder
+  for (const std::string& path : AllFiles()) {
+    if (IsSource(path) && StartsWith(path, "services")) sources[FolderOf(path)].push_back(path);
+  }
+  int large = 0;
+  for (const auto& [folder, paths] : sources) {
+    if (paths.size() <= 5) continue;
+    const std::string readme = ReadText(kRoot / folder / "README.md");
+    for (const std::string& path : paths) {
+      std::string name = fs::path(path).stem().string();
+      static const std::regex process("[a-z]+_main");
+      name = std::regex_replace(name, process, "*_main");
+      EXPECT_NE(readme.find(name), std::string::npos) << folder << "/README.md: " << path;
+    }
+    ++large;
+  }
+  EXPECT_GE(large, 10);
+}
+
 TEST(Layers, TheTestItselfCanFail) {
   EXPECT_THAT(IncludesOf("#include \"calib/model/rig.h\"\n  # include <lcm/lcm-cpp.hpp>\n"
                          "// the text include \"x\"\n"),
