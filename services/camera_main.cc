@@ -2,33 +2,9 @@
 #include <cstdio>
 
 #include "calib/files/schema/rig_file.h"
-#include "calib/model/errors.h"
 #include "calib/model/version.h"
 #include "services/drivers/camera/camera_node.h"
 #include "services/runtime/process.h"
-
-namespace {
-
-// The one named, or the only one that has a device.
-const rgbdt::CameraSpec& CameraOf(const rgbdt::Rig& rig, const std::string& name) {
-  if (!name.empty()) return rig.Camera(name);
-  const rgbdt::CameraSpec* found = nullptr;
-  for (const rgbdt::CameraSpec& camera : rig.cameras) {
-    if (!camera.device) continue;
-    if (found != nullptr) {
-      throw rgbdt::InputError("the rig has more than one camera with a device; which? --camera " +
-                              found->name + " or --camera " + camera.name);
-    }
-    found = &camera;
-  }
-  if (found == nullptr) {
-    throw rgbdt::InputError(
-        "no camera in the rig file has device { ... }; scripts/rigs/README.md has examples");
-  }
-  return *found;
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -49,8 +25,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", rgbdt::Version());
   CLI11_PARSE(app, argc, argv);
   try {
-    const rgbdt::Rig rig = rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown);
-    rgbdt::CameraNode node(CameraOf(rig, name), captures);
+    rgbdt::CameraNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown), name,
+                           captures);
     return rgbdt::RunOnLcm(node, url);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-camera: %s\n", e.what());

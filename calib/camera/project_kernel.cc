@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "calib/camera/wide_loops.h"
+#include "calib/camera/simd_dispatch.h"
 
 namespace rgbdt {
 namespace {
@@ -12,7 +12,7 @@ constexpr float kPi = 3.14159265359F;
 constexpr float kMost = 1e6F;  // of a pixel, and of an inverse range
 
 // The angle of (x, y), y >= 0, from the x axis: 0 to pi, within 3e-7 rad. Without branches, so that
-// the loop stays wide. Polynomial: Abramowitz and Stegun 1964, 4.4.49.
+// the loop is vectorised. Polynomial: Abramowitz and Stegun 1964, 4.4.49.
 inline float AngleOf(float x, float y) {
   const float ax = std::fabs(x);
   const float more = ax < y ? y : ax;
@@ -111,7 +111,7 @@ inline __attribute__((always_inline)) void Run(const KernelProjection& k,
 
 }  // namespace
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void ProjectKernel(const KernelProjection& k, const float* points, std::size_t count,
                    const PixelArrays& out) {
   float* u = out.u;
@@ -131,7 +131,7 @@ void ProjectKernel(const KernelProjection& k, const float* points, std::size_t c
   }
 }
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void FindBox(const float* points, std::size_t count, float* least, float* most) {
   // Coordinates as they lie, as many side by side as both threes and SIMD registers go into.
   constexpr std::size_t kSide = 48;

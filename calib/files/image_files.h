@@ -8,13 +8,8 @@
 
 namespace rgbdt {
 
-/// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
-/// rotation by EXIF. Throws InputError naming the file where it cannot be read or decoded.
+/// DecodeImage of a file. Throws InputError naming it where it cannot be read or decoded.
 cv::Mat DecodeImageFile(const std::filesystem::path& path);
-
-/// The same from bytes, e.g. of an image message of the format kJpeg or kPng; `where` stands for
-/// the file in the error message.
-cv::Mat DecodeImage(const std::string& bytes, const std::string& where);
 
 /// `pixels` (8 or 16 bit; 1 or 3 channels) as the bytes of a PNG. `compression` 0 to 9; the default
 /// is for speed: a raw camera image is mostly noise, and more takes seconds to save little.

@@ -27,23 +27,23 @@ bool IsSaturated(CameraKind kind, std::uint32_t sample) {
   return std::max({rgb[0], rgb[1], rgb[2]}) > 250;
 }
 
-// How far sighting i of this camera counts where another camera sees the point, too.
+// How far sample i of this camera counts where another camera sees the point, too.
 float WeightOf(const BlendCamera& camera, std::size_t i) {
   constexpr float kBorder = 0.05F;  // of the image's width: less and less from there to the border
   constexpr float kSaturated = 0.02F;
-  const float u = camera.sightings->u[i];
-  const float v = camera.sightings->v[i];
+  const float u = camera.samples->u[i];
+  const float v = camera.samples->v[i];
   const CameraSpec& spec = camera.camera->spec();
   const auto width = static_cast<float>(spec.width);
   const float border =
       std::min({u, v, width - 1 - u, static_cast<float>(spec.height) - 1 - v}) / (kBorder * width);
   float weight = std::min(1.0F, border);
   if (camera.surfaces != nullptr) weight *= camera.surfaces->CosineAt(u, v);
-  if (IsSaturated(spec.kind, camera.sightings->sample[i])) weight *= kSaturated;
+  if (IsSaturated(spec.kind, camera.samples->sample[i])) weight *= kSaturated;
   return std::max(kLeastWeight, weight);
 }
 
-// What is told of a few points in a row: written here, in the processor's nearest memory, and then
+// What a few points in a row become: written here, in the processor's nearest memory, and then
 // once to the cloud.
 struct Tile {
   static constexpr std::size_t kSize = 512;
@@ -60,12 +60,12 @@ struct Tile {
   }
 };
 
-// One camera and how far its sightings are told.
+// One camera and how far its samples have been blended.
 class View {
  public:
   View(const BlendCamera& camera, std::size_t index, std::size_t first_point)
       : camera_(&camera),
-        seen_(camera.sightings),
+        seen_(camera.samples),
         bit_(1U << index),
         next_(seen_->FirstFrom(first_point)) {}
 
@@ -73,7 +73,7 @@ class View {
     return next_ < seen_->size() && seen_->point[next_] < end_point;
   }
 
-  // Goes to the next sightings of points before `end_point` that one radiometry goes for.
+  // Goes to the next samples of points before `end_point` that one radiometry goes for.
   bool Next(std::size_t end_point) {
     first_ = next_;
     if (!ShowsAny(end_point)) return false;
@@ -84,51 +84,51 @@ class View {
     return true;
   }
 
-  // Of these sightings.
+  // Of these samples.
   std::size_t first_point() const { return seen_->point[first_]; }
   std::size_t end_point() const { return seen_->point[next_ - 1] + std::size_t{1}; }
   const TemperatureTable& temperatures() const { return *seen_->runs[run_].temperatures; }
 
   // By point from `begin` on: which cameras see it, and of those that this one does value(sample).
-  // Returns how many it does not see as something is in the way.
+  // Returns how many are occluded from it.
   template <typename T, typename Value>
   std::int64_t Take(std::size_t begin, Value value, std::uint32_t* valid, T* values) const {
     const std::uint32_t* point = seen_->point.data();
     const std::uint32_t* sample = seen_->sample.data();
-    const std::uint8_t* hidden = seen_->hidden.data();
+    const std::uint8_t* occluded = seen_->occluded.data();
     const std::uint32_t bit = bit_;
-    std::int64_t all_hidden = 0;
+    std::int64_t all_occluded = 0;
     for (std::size_t s = first_; s < next_; ++s) {
       const std::size_t i = point[s] - begin;
-      const bool is_hidden = hidden[s] != 0;
-      valid[i] |= is_hidden ? 0U : bit;
-      values[i] = is_hidden ? values[i] : value(sample[s]);
-      all_hidden += is_hidden ? 1 : 0;
+      const bool is_occluded = occluded[s] != 0;
+      valid[i] |= is_occluded ? 0U : bit;
+      values[i] = is_occluded ? values[i] : value(sample[s]);
+      all_occluded += is_occluded ? 1 : 0;
     }
-    return all_hidden;
+    return all_occluded;
   }
 
-  // take(point, its weight, sample) where nothing is in the way. Returns where something is.
+  // take(point, its weight, sample) where it is not occluded. Returns how many are.
   template <typename Take>
   std::int64_t ForSeen(Take take) const {
-    std::int64_t all_hidden = 0;
+    std::int64_t all_occluded = 0;
     for (std::size_t s = first_; s < next_; ++s) {
-      if (seen_->hidden[s] != 0) {
-        ++all_hidden;
+      if (seen_->occluded[s] != 0) {
+        ++all_occluded;
       } else {
         take(seen_->point[s], WeightOf(*camera_, s), seen_->sample[s]);
       }
     }
-    return all_hidden;
+    return all_occluded;
   }
 
   std::uint32_t bit() const { return bit_; }
 
  private:
   const BlendCamera* camera_;
-  const Sightings* seen_;
+  const PointSamples* seen_;
   std::uint32_t bit_;
-  std::size_t next_, first_ = 0;  // sightings
+  std::size_t next_, first_ = 0;  // samples
   std::size_t run_ = 0;           // of theirs
 };
 
@@ -170,14 +170,14 @@ class Blender {
     std::uint32_t samples[Tile::kSize] = {};
     const auto same = [](std::uint32_t sample) { return sample; };
     while (view->Next(end())) {
-      blended_.hidden += view->Take(begin_, same, tile_.valid, samples);
+      blended_.occluded += view->Take(begin_, same, tile_.valid, samples);
     }
     for (std::size_t i = 0; i < count_; ++i) tile_.rgb[i] = RgbOf(samples[i]);
   }
 
   void TakeTemperatures(View* view) {
     while (view->Next(end())) {
-      blended_.hidden += view->Take(begin_, CountsOf, tile_.valid, tile_.thermal_counts);
+      blended_.occluded += view->Take(begin_, CountsOf, tile_.valid, tile_.thermal_counts);
       const std::size_t i = view->first_point() - begin_;
       view->temperatures().At(&tile_.thermal_counts[i], view->end_point() - begin_ - i,
                               &tile_.temperature_k[i], &tile_.temperature_sigma_k[i]);
@@ -189,13 +189,15 @@ class Blender {
     ClearSums();
     for (View& view : colour_) {
       while (view.Next(end())) {
-        blended_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
-          const std::size_t i = point - begin_;
-          const auto rgb = RgbOf(sample);
-          tile_.valid[i] |= view.bit();
-          weight_[i] += weight;
-          for (std::size_t c = 0; c < 3; ++c) sums_[i][c] += weight * static_cast<float>(rgb[c]);
-        });
+        blended_.occluded +=
+            view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+              const std::size_t i = point - begin_;
+              const auto rgb = RgbOf(sample);
+              tile_.valid[i] |= view.bit();
+              weight_[i] += weight;
+              for (std::size_t c = 0; c < 3; ++c)
+                sums_[i][c] += weight * static_cast<float>(rgb[c]);
+            });
       }
     }
     for (std::size_t i = 0; i < count_; ++i) {
@@ -211,10 +213,11 @@ class Blender {
     ClearSums();
     for (View& view : thermal_) {
       while (view.Next(end())) {
-        blended_.hidden += view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
-          tile_.valid[point - begin_] |= view.bit();
-          AddTemperature(point - begin_, weight, CountsOf(sample), view.temperatures());
-        });
+        blended_.occluded +=
+            view.ForSeen([&](std::size_t point, float weight, std::uint32_t sample) {
+              tile_.valid[point - begin_] |= view.bit();
+              AddTemperature(point - begin_, weight, CountsOf(sample), view.temperatures());
+            });
       }
     }
     for (std::size_t i = 0; i < count_; ++i) {
@@ -262,7 +265,7 @@ class Blender {
   Blended blended_;
 
   Tile tile_;
-  std::size_t begin_ = 0, count_ = 0;  // the tile's points, numbered as the sightings number them
+  std::size_t begin_ = 0, count_ = 0;  // the tile's points, numbered as the samples number them
   std::array<float, Tile::kSize> weight_, best_;
   std::array<std::array<float, 3>, Tile::kSize> sums_;
 };

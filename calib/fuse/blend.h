@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "calib/fuse/depth_buffer.h"
-#include "calib/fuse/sightings.h"
+#include "calib/fuse/point_samples.h"
 
 namespace rgbdt {
 
 /// What one camera of the rig brings in.
 struct BlendCamera {
   const FusionCamera* camera = nullptr;
-  const Sightings* sightings = nullptr;
+  const PointSamples* samples = nullptr;
   const DepthBuffer* surfaces = nullptr;  ///< how squarely the camera looks at them; null: unknown
 };
 
@@ -23,10 +23,10 @@ struct Blended {
   std::vector<float> temperature_k, temperature_sigma_k, thermal_counts;
   std::vector<std::uint32_t> valid;
   std::int64_t coloured = 0;  ///< points that at least one camera saw
-  std::int64_t hidden = 0;    ///< by camera: points that lie in its image, but behind something
+  std::int64_t occluded = 0;  ///< by camera: points that lie in its image, but behind something
 };
 
-/// Of points [first, first + size) of those that the sightings number. Of several cameras of a kind
+/// Of points [first, first + size) of those that the samples number. Of several cameras of a kind
 /// that see a point, each counts by how squarely and how far from its border it looks, little where
 /// it is saturated; temperatures also by their sigmas. Counts are those of the camera that counts
 /// most.

@@ -110,10 +110,10 @@ void DepthBuffer::Close() {
   end_column_ = 0;
 }
 
-void DepthBuffer::FindHidden(const DepthBuffer& other, const PixelColumns& points,
-                             std::size_t count, std::uint8_t* hidden) const {
-  rgbdt::FindHidden(grid_, planes_.data(), other.planes_.data(), absolute_m_, points, count,
-                    hidden);
+void DepthBuffer::FindOccluded(const DepthBuffer& other, const PixelColumns& points,
+                               std::size_t count, std::uint8_t* occluded) const {
+  rgbdt::FindOccluded(grid_, planes_.data(), other.planes_.data(), absolute_m_, points, count,
+                      occluded);
 }
 
 float DepthBuffer::CosineAt(float u, float v) const {

@@ -8,29 +8,30 @@
 
 namespace rgbdt {
 
-/// The surfaces that hide things from a camera, as a cloud shows them: cells somewhat larger than
-/// the points' spacing in the image, each with the plane of its nearest points. Of a plane, 1/range
-/// is linear in the pixel (but for the lens's distortion within a cell), so a slanted surface does
-/// not hide itself, however coarse the cells. Depth buffering: Catmull 1974; its slope: King 2004.
+/// The surfaces that occlude things from a camera, as a cloud shows them: cells somewhat larger
+/// than the points' spacing in the image, each with the plane of its nearest points. Of a plane,
+/// 1/range is linear in the pixel (but for the lens's distortion within a cell), so a slanted
+/// surface does not hide itself, however coarse the cells. Depth buffering: Catmull 1974; its
+/// slope: King 2004.
 class DepthBuffer {
  public:
   /// Cells of this size [px], along u and v; `range_sigma_m`: noise of a range.
   DepthBuffer(const Camera& camera, const Eigen::Vector2d& cell_px, double range_sigma_m);
 
-  /// The block's first `count` points. Those a little outside of the image count, too: they hide
-  /// what lies inside.
+  /// The block's first `count` points. Those a little outside of the image count, too: they
+  /// occlude what lies inside.
   void Add(const PixelBlock& block, std::size_t count);
 
   /// Makes surfaces of what was added since the last call.
   void Close();
 
-  /// hidden[i] = 1 where point i, a pixel of the image, is hidden by what was added and closed,
+  /// occluded[i] = 1 where point i, a pixel of the image, is occluded by what was added and closed,
   /// here or in another buffer of the same cells; otherwise 0.
-  void FindHidden(const DepthBuffer& other, const PixelColumns& points, std::size_t count,
-                  std::uint8_t* hidden) const;
+  void FindOccluded(const DepthBuffer& other, const PixelColumns& points, std::size_t count,
+                    std::uint8_t* occluded) const;
 
-  /// Whether a point at this pixel of the image is hidden.
-  bool Hides(float u, float v, float inverse_range) const {
+  /// Whether a point at this pixel of the image is occluded.
+  bool Occludes(float u, float v, float inverse_range) const {
     return IsBehind(SurfaceAt(u, v), inverse_range, absolute_m_);
   }
 

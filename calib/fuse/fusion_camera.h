@@ -44,7 +44,6 @@ class FusionCamera {
   /// An image serves a point when it is the newest whose utime + readout_s is not after the point's
   /// time, and not more than kMaxAge before it.
   Serving ServingAt(Utime point_utime) const;
-  const PreparedImage* ImageAt(Utime point_utime) const { return ServingAt(point_utime).image; }
 
   /// All points are served by the newest image, whatever their times: for files, where a view's
   /// image belongs to its cloud because the session says so.

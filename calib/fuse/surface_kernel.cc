@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "calib/camera/wide_loops.h"
+#include "calib/camera/simd_dispatch.h"
 
 namespace rgbdt {
 namespace {
@@ -81,7 +81,7 @@ inline __attribute__((always_inline)) void Offer(const CellGrid& grid, const Sur
 
 }  // namespace
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void FindCells(const CellGrid& grid, const PixelColumns& points, std::size_t count,
                std::int32_t* cells) {
   const CellGrid g = grid;
@@ -98,7 +98,7 @@ void FindCells(const CellGrid& grid, const PixelColumns& points, std::size_t cou
   }
 }
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void MakeSurfels(const CellGrid& grid, const float* sums, std::size_t first, std::size_t end,
                  float* surfels) {
   float* u = surfels;
@@ -114,7 +114,7 @@ void MakeSurfels(const CellGrid& grid, const float* sums, std::size_t first, std
   }
 }
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void MakeSlopes(const CellGrid& grid, std::size_t first, std::size_t end, float* surfels) {
   const Surfels s(grid, surfels);
   float* slope_u = surfels + (s.by_u - s.u);
@@ -147,7 +147,7 @@ void MakeSlopes(const CellGrid& grid, std::size_t first, std::size_t end, float*
 }
 
 // Of the surfaces in and beside a cell that reach its middle, the nearest there counts.
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void MakePlanes(const CellGrid& grid, const float* surfels, std::size_t first, std::size_t end,
                 float* planes) {
   const CellGrid g = grid;
@@ -177,10 +177,10 @@ void MakePlanes(const CellGrid& grid, const float* surfels, std::size_t first, s
 }
 
 // In steps, as what is fetched from anywhere is best fetched at once: the processor waits for many.
-RGBDT_WIDE_LOOPS
-void FindHidden(const CellGrid& grid, const float* planes, const float* other_planes,
-                float absolute_m, const PixelColumns& points, std::size_t count,
-                std::uint8_t* hidden) {
+RGBDT_SIMD_DISPATCH
+void FindOccluded(const CellGrid& grid, const float* planes, const float* other_planes,
+                  float absolute_m, const PixelColumns& points, std::size_t count,
+                  std::uint8_t* occluded) {
   const CellGrid g = grid;
   const auto columns = static_cast<std::int32_t>(g.columns);
   const PixelColumns p = points;
@@ -197,15 +197,15 @@ void FindHidden(const CellGrid& grid, const float* planes, const float* other_pl
   }
   const float* a = &one[0][0];
   const float* b = &other[0][0];
-  std::int32_t is_hidden[kSurfaceBlock];
+  std::int32_t is_occluded[kSurfaceBlock];
   for (std::size_t i = 0; i < count; ++i) {
     const float u = p.u[i];
     const float v = p.v[i];
     const float in_one = a[4 * i] + a[4 * i + 1] * u + a[4 * i + 2] * v;
     const float in_other = b[4 * i] + b[4 * i + 1] * u + b[4 * i + 2] * v;
-    is_hidden[i] = IsBehind(in_one > in_other ? in_one : in_other, p.w[i], absolute_m) ? 1 : 0;
+    is_occluded[i] = IsBehind(in_one > in_other ? in_one : in_other, p.w[i], absolute_m) ? 1 : 0;
   }
-  for (std::size_t i = 0; i < count; ++i) hidden[i] = static_cast<std::uint8_t>(is_hidden[i]);
+  for (std::size_t i = 0; i < count; ++i) occluded[i] = static_cast<std::uint8_t>(is_occluded[i]);
 }
 
 }  // namespace rgbdt

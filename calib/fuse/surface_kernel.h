@@ -51,17 +51,17 @@ void MakeSlopes(const CellGrid& grid, std::size_t first, std::size_t end, float*
 void MakePlanes(const CellGrid& grid, const float* surfels, std::size_t first, std::size_t end,
                 float* planes);
 
-/// Whether a surface hides what has this inverse range: it lies behind it, and not only by the
+/// Whether a surface occludes what has this inverse range: it lies behind it, and not only by the
 /// noise.
 inline bool IsBehind(float surface, float inverse_range, float absolute_m) {
   constexpr float kBehind = 0.005F;  // of the range, besides the noise
   return surface - inverse_range > inverse_range * (kBehind + inverse_range * absolute_m);
 }
 
-/// hidden[i] = 1 where point i, a pixel of the image, is behind its cell's surface in one of both;
-/// otherwise 0.
-void FindHidden(const CellGrid& grid, const float* planes, const float* other_planes,
-                float absolute_m, const PixelColumns& points, std::size_t count,
-                std::uint8_t* hidden);
+/// occluded[i] = 1 where point i, a pixel of the image, is behind its cell's surface in one of
+/// both; otherwise 0.
+void FindOccluded(const CellGrid& grid, const float* planes, const float* other_planes,
+                  float absolute_m, const PixelColumns& points, std::size_t count,
+                  std::uint8_t* occluded);
 
 }  // namespace rgbdt

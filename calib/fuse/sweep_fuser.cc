@@ -19,7 +19,7 @@ void TransformPoints(const Rigid3& to_from, std::vector<Eigen::Vector3f>* points
 
 SweepFuser::SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigma_m)
     : range_sigma_m_(range_sigma_m), seen_through_(range_sigma_m) {
-  for (const CameraSpec& camera : cameras) eyes_.emplace_back(camera);
+  for (const CameraSpec& camera : cameras) states_.emplace_back(camera);
 }
 
 PoseTrack::Added SweepFuser::AddPose(const StampedPose& pose) {
@@ -33,23 +33,23 @@ void SweepFuser::Forget() {
   if (sweep_.empty() && past_points_.empty()) return;
   NextSweep();
   past_points_.clear();
-  for (Eye& eye : eyes_) eye.now = eye.past = std::nullopt;
+  for (CameraState& state : states_) state.now = state.past = std::nullopt;
 }
 
 std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t index,
                                                    const Rigid3& camera_from_lidar, Utime utime) {
-  Eye& eye = eyes_[index];
+  CameraState& state = states_[index];
   const bool same =
-      eye.camera.calibrated && eye.camera.calibration_utime == utime &&
-      eye.camera.camera_from_lidar.translation == camera_from_lidar.translation &&
-      eye.camera.camera_from_lidar.rotation.coeffs() == camera_from_lidar.rotation.coeffs();
+      state.camera.calibrated && state.camera.calibration_utime == utime &&
+      state.camera.camera_from_lidar.translation == camera_from_lidar.translation &&
+      state.camera.camera_from_lidar.rotation.coeffs() == camera_from_lidar.rotation.coeffs();
   if (same) return {};
   std::vector<RgbdtCloud> parts = Parts();
-  eye.camera.calibrated = true;
-  eye.camera.camera_from_lidar = camera_from_lidar;
-  eye.camera.calibration_utime = utime;
-  eye.spacing = PointSpacing(eye.camera.camera());
-  eye.now = eye.past = std::nullopt;  // made again by the next chunk, from the points kept
+  state.camera.calibrated = true;
+  state.camera.camera_from_lidar = camera_from_lidar;
+  state.camera.calibration_utime = utime;
+  state.spacing = PointSpacing(state.camera.camera());
+  state.now = state.past = std::nullopt;  // made again by the next chunk, from the points kept
   return parts;
 }
 
@@ -59,16 +59,16 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
   if (!sweep_.empty() && sweep_utime_ != chunk.sweep_utime) NextSweep();  // end lost
   if (sweep_.empty() && !hits.empty()) BeginSweep(chunk.sweep_utime, hits);
   const bool placed = Place(&hits);
-  if (!placed) counts_.unplaced += static_cast<std::int64_t>(hits.size());
+  if (!placed) counts_.without_pose += static_cast<std::int64_t>(hits.size());
   const BlockedPoints points(hits.points);
-  for (Eye& eye : eyes_) {
-    if (!placed || !eye.camera.calibrated) continue;
-    eye.spacing.Add(chunk, eye.camera.camera_from_lidar);
-    Look(hits, points, &eye);
+  for (CameraState& state : states_) {
+    if (!placed || !state.camera.calibrated) continue;
+    state.spacing.Add(chunk, state.camera.camera_from_lidar);
+    SampleImages(hits, points, &state);
   }
   Blended blended = Blend(BlendCameras(), sweep_.size(), hits.size());
   counts_.coloured += blended.coloured;
-  counts_.hidden += blended.hidden;
+  counts_.occluded += blended.occluded;
   const bool keeps = placed && !hits.empty();
   if (keeps) Keep(hits);
   RgbdtCloud fused = Fused(chunk.sweep_utime, std::move(hits), std::move(blended));
@@ -84,9 +84,9 @@ RgbdtCloud SweepFuser::FuseChunk(const Cloud& chunk) {
 RgbdtCloud SweepFuser::Fused(Utime sweep_utime, Hits hits, Blended blended) const {
   RgbdtCloud fused;
   fused.sweep_utime = sweep_utime;
-  for (const Eye& eye : eyes_) {
-    fused.cameras.push_back(eye.camera.spec().name);
-    fused.calibration_utime.push_back(eye.camera.calibration_utime);
+  for (const CameraState& state : states_) {
+    fused.cameras.push_back(state.camera.spec().name);
+    fused.calibration_utime.push_back(state.camera.calibration_utime);
   }
   fused.points = std::move(hits.points);
   fused.intensity = std::move(hits.intensity);
@@ -108,7 +108,8 @@ void SweepFuser::BeginSweep(Utime sweep_utime, const Hits& hits) {
   if (!map_from_sweep_ || !map_from_past_) return;
   const Rigid3 past_from_sweep = map_from_past_->Inverse() * *map_from_sweep_;
   TransformPoints(past_from_sweep.Inverse(), &past_points_);
-  for (Eye& eye : eyes_) eye.camera_from_sweep = eye.camera_from_sweep * past_from_sweep;
+  for (CameraState& state : states_)
+    state.camera_from_sweep = state.camera_from_sweep * past_from_sweep;
   map_from_past_ = map_from_sweep_;
 }
 
@@ -120,13 +121,13 @@ void SweepFuser::NextSweep() {
   if (seen_points_ > 0) seen_through_.Clear();
   seen_points_ = 0;
   parted_ = 0;
-  for (Eye& eye : eyes_) {
-    eye.seen.Clear();
-    std::swap(eye.past, eye.now);
-    if (!eye.past) {
-      eye.now = std::nullopt;
-    } else if (eye.now) {
-      eye.now->Clear();  // its memory serves again
+  for (CameraState& state : states_) {
+    state.seen.Clear();
+    std::swap(state.past, state.now);
+    if (!state.past) {
+      state.now = std::nullopt;
+    } else if (state.now) {
+      state.now->Clear();  // its memory serves again
     }
   }
 }
@@ -146,15 +147,16 @@ std::optional<Rigid3> SweepFuser::CameraFromSweep(const FusionCamera& camera, Ut
 }
 
 // The points from `first` on that the same image serves, and where it was taken.
-SweepFuser::Run SweepFuser::NextRun(const Hits& hits, std::size_t first, const Eye& eye) const {
-  const Serving serving = eye.camera.ServingAt(hits.utime[first]);
-  Run run{first, first + 1, serving.image, eye.camera_from_sweep};
+SweepFuser::Run SweepFuser::NextRun(const Hits& hits, std::size_t first,
+                                    const CameraState& state) const {
+  const Serving serving = state.camera.ServingAt(hits.utime[first]);
+  Run run{first, first + 1, serving.image, state.camera_from_sweep};
   while (run.end < hits.size() && hits.utime[run.end] >= serving.from &&
          hits.utime[run.end] < serving.until) {
     ++run.end;
   }
   const Utime utime = run.image != nullptr ? run.image->utime : hits.utime[first];
-  const auto camera_from_sweep = CameraFromSweep(eye.camera, utime);
+  const auto camera_from_sweep = CameraFromSweep(state.camera, utime);
   if (camera_from_sweep) {
     run.camera_from_sweep = *camera_from_sweep;
   } else {
@@ -177,101 +179,102 @@ PointProjector SweepFuser::ProjectorOf(const FusionCamera& camera, const Run& ru
 }
 
 // By more than a part of a cell, for what is 2 m away.
-bool SweepFuser::HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const {
+bool SweepFuser::HasMoved(const CameraState& state, const Rigid3& camera_from_sweep) const {
   constexpr double kNearM = 2;
   constexpr double kPart = 0.25;
-  const double angle = RotationDistance(camera_from_sweep, eye.camera_from_sweep) +
-                       CentreDistance(camera_from_sweep, eye.camera_from_sweep) / kNearM;
-  const Lens& lens = eye.camera.camera().lens();
-  return angle * std::max(lens.fx, lens.fy) > kPart * eye.cell_px.minCoeff();
+  const double angle = RotationDistance(camera_from_sweep, state.camera_from_sweep) +
+                       CentreDistance(camera_from_sweep, state.camera_from_sweep) / kNearM;
+  const Lens& lens = state.camera.camera().lens();
+  return angle * std::max(lens.fx, lens.fy) > kPart * state.cell_px.minCoeff();
 }
 
 // Sees to buffers that are made for this place. True: made anew, the chunk is not in them.
-bool SweepFuser::StandAt(const Rigid3& camera_from_sweep, Eye* eye) {
-  const bool any = eye->now || eye->past;
-  const bool moved = any && HasMoved(*eye, camera_from_sweep);
+bool SweepFuser::PlaceBuffers(const Rigid3& camera_from_sweep, CameraState* state) {
+  const bool any = state->now || state->past;
+  const bool moved = any && HasMoved(*state, camera_from_sweep);
   if (any && !moved) {
-    if (!eye->now) eye->now.emplace(eye->camera.camera(), eye->cell_px, range_sigma_m_);
+    if (!state->now) state->now.emplace(state->camera.camera(), state->cell_px, range_sigma_m_);
     return false;
   }
   moved_ |= moved;
-  if (!any) eye->cell_px = eye->spacing.CellPx();
-  eye->camera_from_sweep = camera_from_sweep;
-  MakeBuffers(eye);
+  if (!any) state->cell_px = state->spacing.CellPx();
+  state->camera_from_sweep = camera_from_sweep;
+  MakeBuffers(state);
   return true;
 }
 
-// What hides things from eye.camera_from_sweep, as far as kept points show it.
-void SweepFuser::MakeBuffers(Eye* eye) const {
+// What occludes things from state.camera_from_sweep, as far as kept points show it.
+void SweepFuser::MakeBuffers(CameraState* state) const {
   const auto make = [&](const std::vector<Eigen::Vector3f>& points) {
-    DepthBuffer buffer(eye->camera.camera(), eye->cell_px, range_sigma_m_);
-    AddToBuffer(BlockedPoints(points), *eye, &buffer);
+    DepthBuffer buffer(state->camera.camera(), state->cell_px, range_sigma_m_);
+    AddToBuffer(BlockedPoints(points), *state, &buffer);
     return buffer;
   };
-  eye->now.emplace(make(sweep_.points));
-  eye->past = std::nullopt;
-  if (!past_points_.empty()) eye->past.emplace(make(past_points_));
+  state->now.emplace(make(sweep_.points));
+  state->past = std::nullopt;
+  if (!past_points_.empty()) state->past.emplace(make(past_points_));
 }
 
-void SweepFuser::AddToBuffer(const BlockedPoints& points, const Eye& eye,
+void SweepFuser::AddToBuffer(const BlockedPoints& points, const CameraState& state,
                              DepthBuffer* buffer) const {
-  PointProjector(eye.camera.camera(), eye.camera_from_sweep)
-      .ForBlocks(eye.view, points, 0, points.size(),
+  PointProjector(state.camera.camera(), state.camera_from_sweep)
+      .ForBlocks(state.view, points, 0, points.size(),
                  [&](std::size_t, std::size_t count, const PixelBlock& block) {
                    buffer->Add(block, count);
                  });
   buffer->Close();
 }
 
-// What the images that serve the points show of them, and what hides it.
-void SweepFuser::Look(const Hits& hits, const BlockedPoints& points, Eye* eye) {
-  const std::size_t before_chunk = eye->seen.size();
+// What the images that serve the points show of them, and what occludes it.
+void SweepFuser::SampleImages(const Hits& hits, const BlockedPoints& points, CameraState* state) {
+  const std::size_t before_chunk = state->seen.size();
   for (std::size_t first = 0; first < hits.size();) {
-    const Run run = NextRun(hits, first, *eye);
-    const bool anew = StandAt(run.camera_from_sweep, eye);
+    const Run run = NextRun(hits, first, *state);
+    const bool anew = PlaceBuffers(run.camera_from_sweep, state);
     // While nothing moves, what is looked at goes into the buffer on the way.
     const bool still = !map_from_sweep_;
-    if (!still && (anew || first == 0)) AddToBuffer(points, *eye, &*eye->now);
-    const std::size_t before_run = eye->seen.size();
-    LookAtRun(points, run, still, eye);
-    if (!still) JudgeFrom(hits, before_run, eye);
+    if (!still && (anew || first == 0)) AddToBuffer(points, *state, &*state->now);
+    const std::size_t before_run = state->seen.size();
+    SampleRun(points, run, still, state);
+    if (!still) TestOcclusionFrom(hits, before_run, state);
     first = run.end;
   }
   if (map_from_sweep_ || hits.size() == 0) return;
-  eye->now->Close();
-  JudgeFrom(hits, before_chunk, eye);
+  state->now->Close();
+  TestOcclusionFrom(hits, before_chunk, state);
 }
 
-void SweepFuser::LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye) {
-  if (run.image == nullptr) counts_.untimely += static_cast<std::int64_t>(run.end - run.first);
-  ProjectorOf(eye->camera, run)
-      .ForBlocks(eye->view, points, run.first, run.end,
+void SweepFuser::SampleRun(const BlockedPoints& points, const Run& run, bool add,
+                           CameraState* state) {
+  if (run.image == nullptr) counts_.without_image += static_cast<std::int64_t>(run.end - run.first);
+  ProjectorOf(state->camera, run)
+      .ForBlocks(state->view, points, run.first, run.end,
                  [&](std::size_t first, std::size_t count, const PixelBlock& block) {
-                   if (add) eye->now->Add(block, count);
+                   if (add) state->now->Add(block, count);
                    if (run.image == nullptr) return;
-                   SampleImage(eye->camera, *run.image, block, sweep_.size() + first, count,
-                               &eye->seen);
+                   SampleImage(state->camera, *run.image, block, sweep_.size() + first, count,
+                               &state->seen);
                  });
 }
 
-void SweepFuser::JudgeFrom(const Hits& hits, std::size_t first, Eye* eye) {
-  Sightings& seen = eye->seen;
-  Judge(*eye->now, eye->past ? &*eye->past : nullptr, first, &seen);
-  if (!eye->past || map_from_sweep_) return;
-  const auto next_hidden = [&seen](std::size_t from) {
-    const auto begin = seen.hidden.begin();
+void SweepFuser::TestOcclusionFrom(const Hits& hits, std::size_t first, CameraState* state) {
+  PointSamples& seen = state->seen;
+  TestOcclusion(*state->now, state->past ? &*state->past : nullptr, first, &seen);
+  if (!state->past || map_from_sweep_) return;
+  const auto next_occluded = [&seen](std::size_t from) {
+    const auto begin = seen.occluded.begin();
     return static_cast<std::size_t>(
-        std::find(begin + static_cast<std::ptrdiff_t>(from), seen.hidden.end(), 1) - begin);
+        std::find(begin + static_cast<std::ptrdiff_t>(from), seen.occluded.end(), 1) - begin);
   };
-  for (std::size_t i = next_hidden(first); i < seen.size(); i = next_hidden(i + 1)) {
-    if (eye->now->Hides(seen.u[i], seen.v[i], seen.inverse_range[i])) continue;
-    LookThrough(hits);
-    if (IsGone(*eye, hits.points[seen.point[i] - sweep_.size()], i)) seen.hidden[i] = 0;
+  for (std::size_t i = next_occluded(first); i < seen.size(); i = next_occluded(i + 1)) {
+    if (state->now->Occludes(seen.u[i], seen.v[i], seen.inverse_range[i])) continue;
+    UpdateSeenThrough(hits);
+    if (IsGone(*state, hits.points[seen.point[i] - sweep_.size()], i)) seen.occluded[i] = 0;
   }
 }
 
 // Only where it is asked for.
-void SweepFuser::LookThrough(const Hits& hits) {
+void SweepFuser::UpdateSeenThrough(const Hits& hits) {
   const std::size_t all = sweep_.size() + hits.size();
   if (seen_points_ == all) return;
   seen_through_.Add(sweep_.points, std::min(seen_points_, sweep_.size()));
@@ -280,17 +283,18 @@ void SweepFuser::LookThrough(const Hits& hits) {
 }
 
 // Whether what the sweep before saw in front of a point is there no more.
-bool SweepFuser::IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const {
-  const Sightings& seen = eye.seen;
-  const float surface = eye.past->SurfaceAt(seen.u[sighting], seen.v[sighting]);
-  const Eigen::Vector3f centre = eye.camera_from_sweep.Inverse().translation.cast<float>();
-  return seen_through_.IsGone(centre + seen.inverse_range[sighting] / surface * (point - centre));
+bool SweepFuser::IsGone(const CameraState& state, const Eigen::Vector3f& point,
+                        std::size_t sample) const {
+  const PointSamples& seen = state.seen;
+  const float surface = state.past->SurfaceAt(seen.u[sample], seen.v[sample]);
+  const Eigen::Vector3f centre = state.camera_from_sweep.Inverse().translation.cast<float>();
+  return seen_through_.IsGone(centre + seen.inverse_range[sample] / surface * (point - centre));
 }
 
 std::vector<BlendCamera> SweepFuser::BlendCameras() const {
   std::vector<BlendCamera> cameras;
-  for (const Eye& eye : eyes_) {
-    cameras.push_back({&eye.camera, &eye.seen, eye.now ? &*eye.now : nullptr});
+  for (const CameraState& state : states_) {
+    cameras.push_back({&state.camera, &state.seen, state.now ? &*state.now : nullptr});
   }
   return cameras;
 }
@@ -298,7 +302,7 @@ std::vector<BlendCamera> SweepFuser::BlendCameras() const {
 void SweepFuser::Keep(const Hits& hits) {
   if (too_long_ || sweep_.size() + hits.size() > kMaxSweepPoints) {
     too_long_ = true;
-    for (Eye& eye : eyes_) eye.seen.CutBack(eye.seen.FirstFrom(sweep_.size()));
+    for (CameraState& state : states_) state.seen.CutBack(state.seen.FirstFrom(sweep_.size()));
     return;
   }
   sweep_.Append(hits);
@@ -307,13 +311,13 @@ void SweepFuser::Keep(const Hits& hits) {
 // Cells that suit the points' spacing as the whole sweep shows it: a first line alone does not.
 void SweepFuser::FitCells() {
   constexpr double kEnough = 1.15;
-  for (Eye& eye : eyes_) {
-    if (!eye.now) continue;
-    const Eigen::Vector2d cell = eye.spacing.CellPx();
-    const Eigen::Array2d ratio = cell.array() / eye.cell_px.array();
+  for (CameraState& state : states_) {
+    if (!state.now) continue;
+    const Eigen::Vector2d cell = state.spacing.CellPx();
+    const Eigen::Array2d ratio = cell.array() / state.cell_px.array();
     if (ratio.maxCoeff() < kEnough && ratio.minCoeff() > 1 / kEnough) continue;
-    eye.cell_px = cell;
-    MakeBuffers(&eye);
+    state.cell_px = cell;
+    MakeBuffers(&state);
   }
 }
 
@@ -328,9 +332,9 @@ RgbdtCloud SweepFuser::Part(std::size_t first, std::size_t end) const {
 
 // What was kept since the last parts.
 std::vector<RgbdtCloud> SweepFuser::Parts() {
-  for (Eye& eye : eyes_) {
-    if (moved_ || !eye.now) continue;
-    Judge(*eye.now, nullptr, eye.seen.FirstFrom(parted_), &eye.seen);
+  for (CameraState& state : states_) {
+    if (moved_ || !state.now) continue;
+    TestOcclusion(*state.now, nullptr, state.seen.FirstFrom(parted_), &state.seen);
   }
   std::vector<RgbdtCloud> parts;
   for (; parted_ < sweep_.size(); parted_ += parts.back().size()) {

@@ -20,24 +20,26 @@ namespace rgbdt {
 struct FusionCounts {
   std::int64_t points = 0;
   std::int64_t coloured = 0;  ///< seen by at least one camera
-  std::int64_t hidden = 0;    ///< by camera: in its image, but behind something
-  std::int64_t untimely = 0;  ///< by camera: calibrated, but without an image of the point's time
-  std::int64_t unplaced = 0;  ///< the pose stream does not tell where the rig was
+  std::int64_t occluded = 0;  ///< by camera: in its image, but behind something
+  std::int64_t without_image =
+      0;  ///< by camera: calibrated, but without an image of the point's time
+  std::int64_t without_pose = 0;  ///< the pose stream does not tell where the rig was
 };
 
 /// Colours a cloud that comes in chunks, as it comes, and each sweep once more at its end.
 ///
 /// Each hit is projected into the image of each camera that serves its time (FusionCamera), through
-/// the full lens model, and sampled bilinearly; it is coloured where nothing of this sweep so far
-/// and of the sweep before is in the way (DepthBuffer); while the rig stands, what this sweep has
-/// seen through is taken for gone (SeenThrough). At a sweep's end all of its points are
-/// judged by the whole sweep: what hides a point may have come after it.
+/// the full lens model, and sampled bilinearly; it is coloured where no point of this sweep so far
+/// or of the sweep before occludes it (DepthBuffer); while the rig stands, what this sweep has
+/// seen through is taken for gone (SeenThrough). At a sweep's end all of its points are tested for
+/// occlusion by the whole sweep: what occludes a point may have come after it.
 ///
-/// While poses come (AddPose) the rig's motion is taken out: all points of a chunk are in the LIDAR
-/// frame of its first one's time, all points of a sweep in that of its own first, and images are
-/// looked at from where they were taken, row by row where the camera rolls (CameraSpec::rolling_s).
-/// Points of times that the poses do not tell stay uncoloured, in the frame of their own time.
-/// While the rig moves, a sweep's end keeps its chunks' verdicts on what is hidden.
+/// While poses come (AddPose) the rig's motion is compensated: all points of a chunk are in the
+/// LIDAR frame of its first one's time, all points of a sweep in that of its own first, and images
+/// are looked at from where they were taken, row by row where the camera rolls
+/// (CameraSpec::rolling_s). Points of times that the poses do not tell stay uncoloured, in the
+/// frame of their own time. While the rig moves, a sweep's end keeps what its chunks were found to
+/// be.
 class SweepFuser {
  public:
   /// Points of a sweep that are kept until its end; longer ones have none.
@@ -48,28 +50,29 @@ class SweepFuser {
   /// `range_sigma_m`: noise of the LIDAR's ranges.
   SweepFuser(const std::vector<CameraSpec>& cameras, double range_sigma_m);
 
-  std::size_t cameras() const { return eyes_.size(); }
-  FusionCamera& camera(std::size_t index) { return eyes_[index].camera; }
-  const FusionCamera& camera(std::size_t index) const { return eyes_[index].camera; }
+  std::size_t cameras() const { return states_.size(); }
+  FusionCamera& camera(std::size_t index) { return states_[index].camera; }
+  const FusionCamera& camera(std::size_t index) const { return states_[index].camera; }
   const FusionCounts& counts() const { return counts_; }
 
   PoseTrack::Added AddPose(const StampedPose& pose);
 
-  /// From the next chunk on. What the sweep has so far is judged and given back as if it ended
-  /// here: no message mixes two calibrations.
+  /// From the next chunk on. What the sweep has so far is tested for occlusion and given back as if
+  /// it ended here: no message mixes two calibrations.
   std::vector<RgbdtCloud> SetCalibration(std::size_t camera, const Rigid3& camera_from_lidar,
                                          Utime utime);
 
   /// A chunk of a sweep, coloured at once; in the order of its points, misses left out.
   RgbdtCloud FuseChunk(const Cloud& chunk);
 
-  /// The sweep's points, judged as a whole, in messages of kPartPoints; the last has sweep_end.
+  /// The sweep's points, tested for occlusion as a whole, in messages of kPartPoints; the last has
+  /// sweep_end.
   std::vector<RgbdtCloud> EndSweep();
 
  private:
-  // What a camera sees, and what hides things from it.
-  struct Eye {
-    explicit Eye(const CameraSpec& spec)
+  // What a camera sees, and what occludes things from it.
+  struct CameraState {
+    explicit CameraState(const CameraSpec& spec)
         : camera(spec), view(camera.camera()), spacing(camera.camera()) {}
     FusionCamera camera;
     ViewBounds view;
@@ -77,7 +80,7 @@ class SweepFuser {
     std::optional<DepthBuffer> now, past;  // of this sweep, of the one before
     Rigid3 camera_from_sweep;              // where they were made for
     Eigen::Vector2d cell_px{0, 0};         // theirs
-    Sightings seen;                        // of the sweep; points numbered as it numbers them
+    PointSamples seen;                     // of the sweep; points numbered as it numbers them
   };
   // Points of the chunk that one image serves; or none.
   struct Run {
@@ -90,18 +93,19 @@ class SweepFuser {
   void NextSweep();
   void Forget();
   bool Place(Hits* hits) const;
-  void Look(const Hits& hits, const BlockedPoints& points, Eye* eye);
-  void LookAtRun(const BlockedPoints& points, const Run& run, bool add, Eye* eye);
-  void JudgeFrom(const Hits& hits, std::size_t first, Eye* eye);
-  void LookThrough(const Hits& hits);
-  bool IsGone(const Eye& eye, const Eigen::Vector3f& point, std::size_t sighting) const;
-  Run NextRun(const Hits& hits, std::size_t first, const Eye& eye) const;
+  void SampleImages(const Hits& hits, const BlockedPoints& points, CameraState* state);
+  void SampleRun(const BlockedPoints& points, const Run& run, bool add, CameraState* state);
+  void TestOcclusionFrom(const Hits& hits, std::size_t first, CameraState* state);
+  void UpdateSeenThrough(const Hits& hits);
+  bool IsGone(const CameraState& state, const Eigen::Vector3f& point, std::size_t sample) const;
+  Run NextRun(const Hits& hits, std::size_t first, const CameraState& state) const;
   std::optional<Rigid3> CameraFromSweep(const FusionCamera& camera, Utime utime) const;
   PointProjector ProjectorOf(const FusionCamera& camera, const Run& run) const;
-  bool HasMoved(const Eye& eye, const Rigid3& camera_from_sweep) const;
-  bool StandAt(const Rigid3& camera_from_sweep, Eye* eye);
-  void MakeBuffers(Eye* eye) const;
-  void AddToBuffer(const BlockedPoints& points, const Eye& eye, DepthBuffer* buffer) const;
+  bool HasMoved(const CameraState& state, const Rigid3& camera_from_sweep) const;
+  bool PlaceBuffers(const Rigid3& camera_from_sweep, CameraState* state);
+  void MakeBuffers(CameraState* state) const;
+  void AddToBuffer(const BlockedPoints& points, const CameraState& state,
+                   DepthBuffer* buffer) const;
   void FitCells();
   void Keep(const Hits& hits);
   std::vector<RgbdtCloud> Parts();
@@ -109,7 +113,7 @@ class SweepFuser {
   RgbdtCloud Fused(Utime sweep_utime, Hits hits, Blended blended) const;
   std::vector<BlendCamera> BlendCameras() const;
 
-  std::vector<Eye> eyes_;
+  std::vector<CameraState> states_;
   double range_sigma_m_;
   FusionCounts counts_;
   PoseTrack poses_;

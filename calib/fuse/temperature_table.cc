@@ -5,7 +5,7 @@
 #include <limits>
 #include <tuple>
 
-#include "calib/camera/wide_loops.h"
+#include "calib/camera/simd_dispatch.h"
 #include "calib/fuse/radiometry.h"
 
 namespace rgbdt {
@@ -54,12 +54,12 @@ void TemperatureTable::At(const float* counts, std::size_t count, float* kelvin,
     std::fill_n(kelvin, count, kNone);
     std::fill_n(sigma_k, count, kNone);
   } else {
-    AtWide(table_.data(), counts, count, kelvin, sigma_k);
+    AtSimd(table_.data(), counts, count, kelvin, sigma_k);
   }
 }
 
-RGBDT_WIDE_LOOPS
-void TemperatureTable::AtWide(const Temperature* table, const float* counts, std::size_t count,
+RGBDT_SIMD_DISPATCH
+void TemperatureTable::AtSimd(const Temperature* table, const float* counts, std::size_t count,
                               float* kelvin, float* sigma_k) {
   RGBDT_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {

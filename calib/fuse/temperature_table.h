@@ -34,7 +34,7 @@ class TemperatureTable {
   static constexpr std::size_t kCounts = 65536;
   static constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-  // Without branches, so that a loop of it is wide.
+  // Without branches, so that a loop of it is vectorised.
   static Temperature Between(const Temperature* table, float counts) {
     const bool in = (counts >= 0) & (counts <= static_cast<float>(kCounts - 1));
     const float inside = in ? counts : 0;
@@ -47,7 +47,7 @@ class TemperatureTable {
     const float sigma_k = a.sigma_k + share * (b.sigma_k - a.sigma_k);
     return {in ? kelvin : kNone, in ? sigma_k : kNone};
   }
-  static void AtWide(const Temperature* table, const float* counts, std::size_t count,
+  static void AtSimd(const Temperature* table, const float* counts, std::size_t count,
                      float* kelvin, float* sigma_k);
 
   Radiometry radiometry_;

@@ -12,7 +12,7 @@ namespace rgbdt {
 
 struct VoxelMapOptions {
   double voxel_m = 0.1;                ///< edge of a voxel [m], 0.001 to 100
-  std::size_t max_voxels = 5'000'000;  ///< 1 to 1e9; up to kVoxelBytes each
+  std::size_t max_voxels = 5'000'000;  ///< 1 to 1e9; up to VoxelStore::kBytesPerVoxel each
 
   /// Throws InputError naming the field and its value.
   void Check() const;
@@ -32,9 +32,6 @@ struct VoxelMapOptions {
 /// some ten million points a voxel on, new ones no longer move it.
 class VoxelMap {
  public:
-  /// The bound: an entry and its share of the index at their fullest.
-  static constexpr std::size_t kVoxelBytes = VoxelStore::kBytesPerVoxel;
-
   explicit VoxelMap(const VoxelMapOptions& options);
 
   /// Throws InputError, and leaves the map as it was, for a cloud whose vectors differ in length

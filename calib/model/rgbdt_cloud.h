@@ -18,8 +18,8 @@ struct RgbdtCloud {
   std::int64_t seq = 0;
   Utime sweep_utime = 0;
   bool sweep_end = false;
-  /// False: a chunk, as soon as it could be coloured. True: part of a whole sweep, where what hides
-  /// a point from a camera may have come after it.
+  /// False: a chunk, as soon as it could be coloured. True: part of a whole sweep, its points
+  /// tested for occlusion by all others, those after them, too.
   bool whole_sweep = false;
   std::vector<std::string> cameras;  ///< bit i of `valid` stands for cameras[i]; 32 at most
   /// Of each camera's calibration; 0: none yet, it coloured nothing.

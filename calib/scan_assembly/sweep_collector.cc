@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
@@ -24,14 +25,14 @@ void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
   RequireJoinable(first->cloud, chunk.cloud);
 }
 
-void SweepCollector::Add(const CloudChunk& chunk) {
+void SweepCollector::Add(CloudChunk chunk) {
   const auto found = sweeps_.find(chunk.cloud.sweep_utime);
   static const Sweep kNone;
   Check(found == sweeps_.end() ? kNone : found->second, chunk);
   Sweep& sweep = sweeps_[chunk.cloud.sweep_utime];
-  sweep.chunks.push_back(chunk);
   sweep.points += chunk.cloud.size();
   sweep.ended |= chunk.sweep_end;
+  sweep.chunks.push_back(std::move(chunk));
   ForgetOldest();
 }
 

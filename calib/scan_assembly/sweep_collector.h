@@ -20,7 +20,7 @@ class SweepCollector {
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
 
   /// Throws InputError for a chunk that cannot be joined to those of its sweep.
-  void Add(const CloudChunk& chunk);
+  void Add(CloudChunk chunk);
   /// The complete sweep, or nothing while its end has not come.
   std::optional<Cloud> Complete(Utime sweep_utime) const;
   bool Ended(Utime sweep_utime) const;

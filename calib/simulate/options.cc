@@ -114,16 +114,6 @@ void Check(const HolderOptions& o) {
 
 }  // namespace
 
-ScannerOptions DenseScanner() {
-  constexpr double kLines = 800;
-  ScannerOptions o;
-  const double fan = o.angle_step_rad * (o.beams - 1);
-  o.beams = 900;
-  o.angle_step_rad = fan / (o.beams - 1);
-  o.beam_period_s = o.sweep_rad / o.motor_speed_rad_s / kLines / o.beams;
-  return o;
-}
-
 ScannerOptions FullTurnScanner() {
   ScannerOptions o;
   o.beams = 540;

@@ -37,9 +37,6 @@ struct ScannerOptions : BeamOptions {
   Eigen::Vector3d guess_lever_m{0, 0, 0}, guess_tilt_rad{0, 0, 0};
 };
 
-/// A fine, slow sweep: 800 lines of 900 beams, 720,000 points over the same field.
-ScannerOptions DenseScanner();
-
 /// All the way round with a line of 270 degrees over the vertical: 556 lines of 540 beams in half a
 /// minute. Every surface but the floor underneath is seen twice.
 ScannerOptions FullTurnScanner();

@@ -20,7 +20,7 @@ using terrain::Layers;
 using terrain::Nearest;
 using terrain::Patch;
 
-// How far the ground is taken to go on under what hides it [m].
+// How far the ground is taken to go on under what occludes it [m].
 constexpr float kGroundReach = 2;
 
 // How wrong the ground's height may be where it is not seen, per metre.

@@ -22,7 +22,7 @@ class Bus {
 };
 
 /// Delivers within one process, in the order published: a message published by a handler waits
-/// until those before it are delivered. Subscribers hear a message in the order they subscribed,
+/// until those before it are delivered. Subscribers get a message in the order they subscribed,
 /// and what is published from then on.
 class MemoryBus : public Bus {
  public:

@@ -41,21 +41,4 @@ class LogReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes an LCM log.
-class LogWriter {
- public:
-  /// Throws InputError where the file cannot be made.
-  explicit LogWriter(const std::string& path);
-  ~LogWriter();
-
-  /// Throws InputError where it cannot be written.
-  void Write(const std::string& channel, const Bytes& bytes, Utime receive_utime);
-  /// Flushes and closes; throws InputError where that fails. The destructor does it silently.
-  void Close();
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
-
 }  // namespace rgbdt

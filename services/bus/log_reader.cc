@@ -7,11 +7,17 @@
 #include <cstring>
 
 #include "calib/model/errors.h"
-#include "services/bus/internal/log_format.h"
 #include "services/bus/log.h"
 
 namespace rgbdt {
 namespace {
+
+// An event of an LCM log, big-endian: sync word, event number (8), time (8), channel's length (4),
+// data's length (4), channel, data. (lcm/eventlog.c)
+constexpr std::uint32_t kLogSync = 0xEDA1DA01;
+constexpr std::int64_t kLogHeaderBytes = 28;
+constexpr std::int64_t kLogMaxChannelBytes = 255;   // LCM itself: 63
+constexpr std::int64_t kLogMaxDataBytes = 1 << 28;  // LCM_MAX_MESSAGE_SIZE
 
 struct Header {
   std::int64_t number;

@@ -14,7 +14,7 @@
 
 namespace rgbdt {
 
-// What `rgbdt doctor` looks at, gathered here and judged by doctor_checks.h.
+// What `rgbdt doctor` looks at, gathered here and judged by checks.h.
 
 /// How much a socket may keep for a reader who is busy [byte].
 struct BufferFacts {

@@ -11,7 +11,7 @@
 
 namespace rgbdt {
 
-/// What a device's thread tells for the status of its process.
+/// What a device's thread reports for the status of its process.
 class DeviceReport {
  public:
   /// What it does or waits for, and whether it is of use.

@@ -110,7 +110,7 @@ image_t ToWire(const Image& image) {
   wire.width = image.pixels.cols;
   wire.height = image.pixels.rows;
   if (IsFile(image.format)) {
-    wire.data = EncodeImageFile(image.pixels, image.format);
+    wire.data = EncodeSentImage(image.pixels, image.format);
   } else if (image.pixels.type() != MatType(image.format)) {
     Fail("type of pixels", cv::typeToString(image.pixels.type()),
          cv::typeToString(MatType(image.format)) + " for pixel_format " +
@@ -142,7 +142,7 @@ Image FromWire(const image_t& wire) {
     image.radiometry = FieldsFromWire<Radiometry>(wire.radiometry);
   }
   if (IsFile(image.format)) {
-    image.pixels = DecodeImageFile(wire.data, image.format, wire.width, wire.height);
+    image.pixels = DecodeSentImage(wire.data, image.format, wire.width, wire.height);
     image.format = FormatOf(image.pixels);
   } else {
     // The header does not own the bytes, hence the clone; it does not write to them either.

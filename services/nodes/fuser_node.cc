@@ -117,11 +117,14 @@ Status FuserNode::GetStatus() const {
                 : !calibrated ? "no calibration yet: clouds go out without colour"
                               : "fusing";
   const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
-  status.counters = {
-      {"points", counts.points},           {"coloured", counts.coloured},
-      {"hidden", counts.hidden},           {"without an image of their time", counts.untimely},
-      {"without a pose", counts.unplaced}, {"shutter frames", shutter_frames_},
-      {"pose jumps", pose_jumps_},         {"old poses", old_poses_}};
+  status.counters = {{"points", counts.points},
+                     {"coloured", counts.coloured},
+                     {"occluded", counts.occluded},
+                     {"without an image of their time", counts.without_image},
+                     {"without a pose", counts.without_pose},
+                     {"shutter frames", shutter_frames_},
+                     {"pose jumps", pose_jumps_},
+                     {"old poses", old_poses_}};
   return status;
 }
 

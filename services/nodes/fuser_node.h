@@ -13,7 +13,7 @@ namespace rgbdt {
 
 /// CLOUD + `<CAMERA>_IMAGE` + CALIBRATION + POSE -> RGBDT_CLOUD, one message for each chunk (more
 /// for one of more than SweepFuser::kPartPoints), at once, and RGBDT_SWEEP, each sweep once more at
-/// its end, judged as a whole (SweepFuser). Nothing waits for the future: a point is coloured by
+/// its end, tested for occlusion as a whole. Nothing waits for the future: a point is coloured by
 /// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
 /// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
 /// one holds from the next chunk on. A calibration of another rig is refused. An image older than

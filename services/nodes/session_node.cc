@@ -141,7 +141,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   if (event.source == name()) return;
   const auto capture = captures_.find(event.command);
   if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
-    Tell(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
+    PublishEvent(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
     if (!by_request_ || finished_ || event.kind != EventKind::kDone) return;
     Append(SessionStep::Kind::kSolve);
     Append(SessionStep::Kind::kEvaluate);
@@ -153,7 +153,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
     return;
   }
   if (event.kind == EventKind::kProgress) {
-    Say(event.text, event.fraction);
+    ReportProgress(event.text, event.fraction);
     return;
   }
   const std::string wanted = AnsweredBy(step().kind);
@@ -161,7 +161,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   answered_ = true;
   last_answer_ = event.text;
   if (event.sweep_utime != 0) sweep_utime_ = event.sweep_utime;
-  Say(event.text, 1);
+  ReportProgress(event.text, 1);
 }
 
 void SessionNode::SaveView() {
@@ -188,8 +188,8 @@ Messages SessionNode::Advance(Utime now) {
   } catch (const std::exception& e) {  // a file that cannot be written, a person who is gone
     Fail(e.what());
   }
-  std::move(told_.begin(), told_.end(), std::back_inserter(out));
-  told_.clear();
+  std::move(events_.begin(), events_.end(), std::back_inserter(out));
+  events_.clear();
   return out;
 }
 
@@ -220,7 +220,7 @@ Messages SessionNode::Start() {
   started_ = true;
   Messages out = Send(SessionVerb::kReset);
   if (by_request_) {
-    Tell(EventKind::kDone, "ready", 1);
+    PublishEvent(EventKind::kDone, "ready", 1);
     return out;
   }
   for (Message& message : Begin()) out.push_back(std::move(message));
@@ -233,7 +233,7 @@ void SessionNode::EndStep() {
   if (step().kind == SessionStep::Kind::kCapture) view_taken_ = true;
   if (++index_ < script_.steps.size()) return;
   finished_ = !by_request_ || saved;
-  Tell(EventKind::kDone, saved ? "saved to " + directory_.string() : last_answer_, 1);
+  PublishEvent(EventKind::kDone, saved ? "saved to " + directory_.string() : last_answer_, 1);
 }
 
 Messages SessionNode::Begin() {
@@ -320,7 +320,7 @@ void SessionNode::Save() {
     Fail("camera " + camera.calibration.camera + ": " + camera.calibration.status);
     return;
   }
-  Say("saved to " + directory_.string(), 1);
+  ReportProgress("saved to " + directory_.string(), 1);
 }
 
 void SessionNode::Fail(const std::string& why) {
@@ -330,7 +330,7 @@ void SessionNode::Fail(const std::string& why) {
                                         std::to_string(script_.steps.size()) + ", ";
   failure_ = which + (index_ < script_.steps.size() && started_ ? NameOf(step().kind) : "start") +
              (view_.empty() ? "" : ", view " + view_) + ": " + why;
-  Tell(EventKind::kFailed, failure_, 1);
+  PublishEvent(EventKind::kFailed, failure_, 1);
   finished_ = !leads;
   if (!leads) return;
   // What was to follow is dropped; the person decides.
@@ -339,7 +339,7 @@ void SessionNode::Fail(const std::string& why) {
   view_taken_ = true;
 }
 
-void SessionNode::Tell(EventKind kind, const std::string& text, double fraction) {
+void SessionNode::PublishEvent(EventKind kind, const std::string& text, double fraction) {
   SessionEvent event;
   event.command = command_;
   event.utime = newest_utime_;
@@ -347,7 +347,7 @@ void SessionNode::Tell(EventKind kind, const std::string& text, double fraction)
   event.kind = kind;
   event.text = text;
   event.fraction = fraction;
-  told_.push_back(std::move(event));
+  events_.push_back(std::move(event));
 }
 
 std::string SessionNode::WithView(const std::string& text) const {
@@ -357,7 +357,7 @@ std::string SessionNode::WithView(const std::string& text) const {
   return (of_view ? "view " + view_ + ": " : "") + text;
 }
 
-void SessionNode::Say(const std::string& text, double fraction) {
+void SessionNode::ReportProgress(const std::string& text, double fraction) {
   if (!progress_) return;
   progress_({static_cast<int>(index_) + 1, static_cast<int>(script_.steps.size()), WithView(text),
              fraction});
@@ -365,8 +365,8 @@ void SessionNode::Say(const std::string& text, double fraction) {
 
 // How a step begins: for who watches this process, and for the bus.
 void SessionNode::Announce(const std::string& text) {
-  Say(text, 0);
-  Tell(EventKind::kProgress, WithView(text), 0);
+  ReportProgress(text, 0);
+  PublishEvent(EventKind::kProgress, WithView(text), 0);
 }
 
 bool SessionNode::WaitsForPose() const {

@@ -24,19 +24,18 @@ struct SessionProgress {
 };
 
 /// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
-/// answering events, writes the session directory (the one node that writes files). STATUS,
-/// SESSION_EVENT, SESSION_REQUEST, CLOUD, `<CAMERA>_IMAGE`, CORNER_SELECTION, REPORT -> RIG,
-/// SESSION_COMMAND, SESSION_EVENT (how far it is).
-/// It begins when assembler, detector, solver, fuser and the processes of the devices that the rig
-/// file names say that they are ready. next_pose and
-/// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
-/// evaluate with the solver's. Save writes the report, and the calibration
-/// of the cameras that were solved. A failed event, no answer in the step's time, a camera that
-/// could not be solved, or a file that cannot be written ends the session with the reason; one that
-/// a person leads says it and goes on. Each capture that a person asks for is followed by solve and
-/// evaluate, so that there always is a report. Corners that a person picks in an image of a view
-/// that is on disk are written to it, and once the detector has looked again, a session that a
-/// person leads solves again. Advance's time serves time-outs and waits, and RIG once a second.
+/// answering events, writes the session directory. STATUS, SESSION_EVENT, SESSION_REQUEST, CLOUD,
+/// `<CAMERA>_IMAGE`, CORNER_SELECTION, REPORT -> RIG, SESSION_COMMAND, SESSION_EVENT (how far it
+/// is). It begins when assembler, detector, solver, fuser and the processes of the rig file's
+/// devices are ready (STATUS). next_pose and sweep end with anybody's done, capture with the
+/// detector's and the view on disk, solve and evaluate with the solver's. save writes the report,
+/// and the calibration of the cameras that were solved. A failed event, no answer in the step's
+/// time, a camera that could not be solved, or a file that cannot be written ends the session with
+/// the reason; one that a person leads publishes the reason and goes on. Each capture that a person
+/// asks for is followed by solve and evaluate, so that there always is a report. Corners that a
+/// person picks in an image of a view that is on disk are written to it, and once the detector has
+/// detected it again, a session that a person leads solves again. Advance's time serves time-outs
+/// and waits, and RIG once a second.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
@@ -87,8 +86,8 @@ class SessionNode : public Node {
   void EndStep();
   void Append(SessionStep::Kind kind, bool heldout = false);
   bool idle() const { return by_request_ && started_ && index_ >= script_.steps.size(); }
-  void Tell(EventKind kind, const std::string& text, double fraction);
-  void Say(const std::string& text, double fraction);
+  void PublishEvent(EventKind kind, const std::string& text, double fraction);
+  void ReportProgress(const std::string& text, double fraction);
   void Announce(const std::string& text);
   std::string WithView(const std::string& text) const;
   std::vector<std::string> Needed() const;
@@ -119,7 +118,7 @@ class SessionNode : public Node {
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, std::string> captures_;                 // view by its capture's command
-  Messages told_;                                                // not yet sent
+  Messages events_;                                              // not yet published
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/model/rig.h"
@@ -20,6 +21,9 @@ namespace rgbdt {
 /// does not matter. The newest images before the command are kept (kKept a camera) so that one may
 /// come early; an image older than those by more than kClockReset means that the clock was set
 /// back, and they go. A thermal camera's images from while its shutter corrects are left out.
+///
+/// Detector, session and viewer have one each and get the same view, since it depends on the
+/// messages' times alone (services/README.md, "A view").
 class ViewCollector {
  public:
   static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
@@ -30,7 +34,7 @@ class ViewCollector {
   /// `seconds_kept`: 0 where nobody asks whether the board stood still.
   explicit ViewCollector(std::size_t seconds_kept = kSecondsKept) : seconds_kept_(seconds_kept) {}
 
-  void Add(const CloudChunk& chunk) { sweeps_.Add(chunk); }
+  void Add(CloudChunk chunk) { sweeps_.Add(std::move(chunk)); }
   void Add(const Image& image);
   void Add(const CornerSelection& picks);
   /// A new capture replaces one that never became complete.

@@ -4,7 +4,6 @@
 #include "calib/methods/calibrate.h"
 #include "calib/methods/detect_session.h"
 #include "calib/present/report/report_table.h"
-#include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
 

@@ -6,7 +6,6 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/methods/calibrate.h"
 #include "calib/methods/detect_session.h"
-#include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
 

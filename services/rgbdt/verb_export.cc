@@ -4,7 +4,6 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/exports.h"
 #include "calib/files/schema/rig_file.h"
-#include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

@@ -10,7 +10,6 @@
 #include "calib/fuse/fuse.h"
 #include "calib/model/errors.h"
 #include "calib/present/pictures/cloud_picture.h"
-#include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

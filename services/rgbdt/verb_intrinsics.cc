@@ -11,7 +11,6 @@
 #include "calib/model/errors.h"
 #include "calib/present/report/intrinsics_html.h"
 #include "calib/present/report/intrinsics_text.h"
-#include "services/rgbdt/paths.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

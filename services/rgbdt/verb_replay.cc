@@ -1,19 +1,15 @@
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/report_table.h"
 #include "services/bus/log.h"
-#include "services/nodes/assembler_node.h"
-#include "services/nodes/detector_node.h"
-#include "services/nodes/fuser_node.h"
-#include "services/nodes/solver_node.h"
+#include "services/replay/replay.h"
 #include "services/rgbdt/verbs.h"
 #include "services/rgbdt/write_report.h"
-#include "services/runtime/node_runner.h"
 
 namespace rgbdt {
 namespace {
@@ -22,32 +18,6 @@ struct Flags {
   std::string log;
   std::string out = "out/replay";
   std::string method = kAutoMethod;
-};
-
-// What sensors, people and the session said. All else in a log is what nodes made of it.
-bool IsInput(const std::string& channel) {
-  static const std::string kImage = "_IMAGE";
-  return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
-         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND" || channel == "POSE" ||
-         (channel.size() > kImage.size() &&
-          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
-}
-
-// What is taken from a log, as far as it has been read.
-class InputChannels {
- public:
-  bool Takes(const std::string& channel) {
-    has_lines_ |= channel == "LINE_SCAN";
-    has_session_ |= channel == "SESSION_COMMAND";
-    // A log of clouds only (a 3D LIDAR) has no lines; one with lines gets its clouds from them.
-    if (channel == "CLOUD") return !has_lines_;
-    // A log of a session gets its calibration from its views; any other brings it along.
-    if (channel == "CALIBRATION") return !has_session_;
-    return IsInput(channel);
-  }
-
- private:
-  bool has_lines_ = false, has_session_ = false;
 };
 
 void PrintFused(const Status& fuser) {
@@ -62,73 +32,54 @@ void PrintFused(const Status& fuser) {
 
 void PrintProblems(const NodeRunner& runner) {
   const Status status = runner.GetStatus();
-  if (runner.dropped() == 0 && runner.gaps() == 0) return;
+  if (status.last_problem.empty() && runner.gaps() == 0) return;
   std::fprintf(stderr, "%s: %lld messages dropped, %lld missing; last problem: %s\n",
                status.process.c_str(), static_cast<long long>(runner.dropped()),
                static_cast<long long>(runner.gaps()), status.last_problem.c_str());
 }
 
-// To the newest time that any of them has heard.
-void Advance(const std::array<NodeRunner*, 4>& runners, MemoryBus* bus) {
-  Utime now = 0;
-  for (const NodeRunner* runner : runners) now = std::max(now, runner->newest_utime());
-  for (NodeRunner* runner : runners) runner->Advance(now);
-  bus->Run();
-}
-
-int Run(const Flags& flags) {
-  LogReader log(flags.log);
-  MemoryBus bus;
-  AssemblerNode assembler;
-  DetectorNode detector(flags.method, DetectorNode::Looks::kNo);
-  CalibrateOptions options;
-  options.method = flags.method;
-  SolverNode solver(options);
-  FuserNode fuser;
-  NodeRunner assembler_runner(&assembler, &bus);
-  NodeRunner detector_runner(&detector, &bus);
-  NodeRunner solver_runner(&solver, &bus);
-  NodeRunner fuser_runner(&fuser, &bus);
-  const std::array<NodeRunner*, 4> runners = {&assembler_runner, &detector_runner, &solver_runner,
-                                              &fuser_runner};
-  InputChannels input;
-  bool has_calibration = false;
+// What the log holds; how many messages.
+std::int64_t ReplayLog(const std::string& path, Replay* replay) {
+  LogReader log(path);
   std::int64_t events = 0;
   int percent = -1;
   while (const auto event = log.Next()) {
-    if (input.Takes(event->channel)) {
-      has_calibration |= event->channel == "CALIBRATION";
-      bus.Publish(event->channel, event->bytes);
-      bus.Run();
-      Advance(runners, &bus);
-    }
+    replay->Take(event->channel, event->bytes);
     ++events;
     const int now = static_cast<int>(100 * log.position() / std::max<std::int64_t>(1, log.size()));
     if (now / 5 != percent / 5) std::fprintf(stderr, "replay: %d%%\n", now);
     percent = now;
   }
-  for (const NodeRunner* runner : runners) PrintProblems(*runner);
+  for (const NodeRunner* runner : replay->runners()) PrintProblems(*runner);
   if (log.unreadable_bytes() > 0) {
     std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
-                 flags.log.c_str(), static_cast<long long>(log.unreadable_bytes()));
+                 path.c_str(), static_cast<long long>(log.unreadable_bytes()));
   }
-  if (!solver.report() && has_calibration) {
-    PrintFused(fuser_runner.GetStatus());
+  return events;
+}
+
+int Run(const Flags& flags) {
+  Replay replay(flags.method);
+  const std::int64_t events = ReplayLog(flags.log, &replay);
+  const auto [assembler, detector, solver, fuser] = replay.runners();
+  const std::optional<Report>& report = replay.solver().report();
+  if (!report && replay.took_calibration()) {
+    PrintFused(fuser->GetStatus());
     return 0;
   }
-  if (!solver.report()) {
+  if (!report) {
     throw InputError(
         flags.log + ": " + std::to_string(events) +
         " messages, but no view was captured in them, nor do they hold a calibration; solver: " +
-        solver.GetStatus().text + "; detector: " + detector.GetStatus().text);
+        solver->GetStatus().text + "; detector: " + detector->GetStatus().text);
   }
   const std::filesystem::path out = flags.out;
-  const std::string written = WriteIfSolved(out, *solver.report());
-  WriteReport(out / "report.json", *solver.report());
-  std::fputs(ReportTable(*solver.report()).c_str(), stdout);
-  PrintFused(fuser_runner.GetStatus());
+  const std::string written = WriteIfSolved(out, *report);
+  WriteReport(out / "report.json", *report);
+  std::fputs(ReportTable(*report).c_str(), stdout);
+  PrintFused(fuser->GetStatus());
   std::printf("%s report.json\n", written.c_str());
-  return AllConverged(*solver.report()) ? 0 : 1;
+  return AllConverged(*report) ? 0 : 1;
 }
 
 }  // namespace

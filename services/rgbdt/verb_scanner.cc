@@ -6,7 +6,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/present/pictures/scanner_picture.h"
 #include "calib/scan_assembly/scanner_geometry.h"
-#include "services/rgbdt/scanner_sweeps.h"
+#include "services/replay/scanner_sweeps.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 namespace rgbdt {
@@ -19,6 +20,12 @@ void AddMap(CLI::App* app, int* exit_code);
 void AddTerrain(CLI::App* app, int* exit_code);
 void AddExport(CLI::App* app, int* exit_code);
 void AddDoctor(CLI::App* app, int* exit_code);
+
+/// What the user gave, or else the default.
+inline std::filesystem::path PathOr(const std::string& given,
+                                    const std::filesystem::path& otherwise) {
+  return given.empty() ? otherwise : std::filesystem::path(given);
+}
 
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }

@@ -17,7 +17,7 @@
 #include "calib/present/report/report_table.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
-#include "services/rgbdt/paths.h"
+#include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
 namespace {

@@ -21,7 +21,7 @@ class Node {
   /// Name of the process: "assembler".
   virtual std::string name() const = 0;
 
-  /// Channels to hear, as regular expressions: "CLOUD", ".*_IMAGE".
+  /// Channels to subscribe to, as regular expressions: "CLOUD", ".*_IMAGE".
   virtual std::vector<std::string> Subscriptions() const = 0;
 
   /// Takes one message. Throws InputError for one that cannot be used: the caller drops it, counts
@@ -29,13 +29,14 @@ class Node {
   /// from a message and is not its sender's fault is a warning.
   virtual Messages Handle(const Message& message) = 0;
 
-  /// It is `now` [us]: does and says what is due, and what is repeated for who came late. The clock
-  /// is the caller's: it only grows, its zero is anywhere, and no message's time is of it. A
-  /// process hands in its machine's steady clock, between messages and every LongestWait() at
-  /// least; `rgbdt replay` the newest time in a message. What goes wrong is a warning.
+  /// It is `now` [us]: does what is due, and repeats what processes that start late need. The clock
+  /// is the caller's. It only grows; its zero is anywhere, and messages' times are of other clocks.
+  /// A process hands in its machine's steady clock, after each batch of messages and every
+  /// LongestWait() at least; `rgbdt replay` hands in the newest time in a message. What goes wrong
+  /// is a warning.
   virtual Messages Advance(Utime /*now*/) { return {}; }
 
-  /// How long nobody may need to call Advance [us], where no message comes.
+  /// The longest time between two calls of Advance [us] where no message comes.
   virtual Utime LongestWait() const { return 50'000; }
 
   /// Ready, and what it does or waits for. The caller adds name, times and its own counters.
@@ -44,7 +45,7 @@ class Node {
   /// There is nothing left to do: the process ends.
   virtual bool finished() const { return false; }
 
-  /// Who is told of warnings, e.g. "POSE of gps jumps ...": from within Handle and Advance.
+  /// Called with each warning, e.g. "POSE of gps jumps ...", from within Handle and Advance.
   void SetWarningHandler(WarningHandler handler) { warning_handler_ = std::move(handler); }
 
  protected:

@@ -30,7 +30,7 @@ class NodeRunner {
   NodeRunner(const NodeRunner&) = delete;
   NodeRunner& operator=(const NodeRunner&) = delete;
 
-  /// It is `now` [us] of the caller's clock (Node::Advance): publishes what the node then says, and
+  /// It is `now` [us] of the caller's clock (Node::Advance): publishes what the node then has, and
   /// once a second its status.
   void Advance(Utime now);
 

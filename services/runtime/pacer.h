@@ -7,9 +7,9 @@
 
 namespace rgbdt {
 
-/// Plays what was recorded or simulated at its own pace, or `speed` times as fast: the first time
-/// that it is told is now. Who is late by more than kMaxLate goes on from there and does not catch
-/// up: a burst would fill the receivers' queues (lcm-logger's holds 30 messages).
+/// Plays what was recorded or simulated at its own pace, or `speed` times as fast. The first time
+/// asked for is now. A delay of more than kMaxLate is not caught up with: a burst would fill the
+/// receivers' queues (lcm-logger's holds 30 messages).
 class Pacer {
  public:
   static constexpr Utime kMaxLate = 20'000;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "calib/model/time.h"
 
 namespace rgbdt {
@@ -13,15 +11,17 @@ class Periodic {
   explicit Periodic(Utime period) : period_(period) {}
 
   bool IsDue(Utime now) {
-    if (next_ && now < *next_) return false;
-    const bool missed = !next_ || now - *next_ >= period_;
-    next_ = (missed ? now : *next_) + period_;
+    if (begun_ && now < next_) return false;
+    const bool missed = !begun_ || now - next_ >= period_;
+    next_ = (missed ? now : next_) + period_;
+    begun_ = true;
     return true;
   }
 
  private:
   Utime period_;
-  std::optional<Utime> next_;
+  bool begun_ = false;
+  Utime next_ = 0;
 };
 
 }  // namespace rgbdt

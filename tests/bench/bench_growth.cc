@@ -24,6 +24,7 @@
 #include "calib/simulate/internal/spinning.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "tests/bench/analytic_cloud.h"
+#include "tests/simulated_variants.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/paired_sessions.h"
 #include "tests/study/sampled_images.h"

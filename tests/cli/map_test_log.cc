@@ -2,8 +2,8 @@
 // warm, and one of poses only. Usage: map_test_log FUSED OTHER
 #include <cmath>
 
-#include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "tests/log_writer.h"
 
 namespace {
 
@@ -38,7 +38,7 @@ RgbdtCloud Line(int number) {
   return cloud;
 }
 
-void Write(rgbdt::LogWriter* log, const rgbdt::Message& message) {
+void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
 }
 
@@ -46,10 +46,10 @@ void Write(rgbdt::LogWriter* log, const rgbdt::Message& message) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return 1;
-  rgbdt::LogWriter fused(argv[1]);
+  rgbdt::test::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
-  rgbdt::LogWriter other(argv[2]);
+  rgbdt::test::LogWriter other(argv[2]);
   rgbdt::StampedPose pose;
   pose.utime = kNow;
   pose.source = "odometry";

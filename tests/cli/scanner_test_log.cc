@@ -5,18 +5,18 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
-#include "services/bus/log.h"
 #include "services/messages/codec.h"
 #include "services/nodes/simulator_node.h"
+#include "tests/log_writer.h"
 
 namespace rgbdt {
 namespace {
 
-void Write(const Message& message, Utime utime, LogWriter* log) {
+void Write(const Message& message, Utime utime, test::LogWriter* log) {
   log->Write(ChannelOf(message), Encode(message), utime);
 }
 
-void WriteSweep(const simulate::Simulator& simulator, LogWriter* log) {
+void WriteSweep(const simulate::Simulator& simulator, test::LogWriter* log) {
   const Utime start = SimulatorNode::kEpoch;
   const Utime end = start + simulator.sweep_lines() * simulator.line_period();
   std::int64_t seq = 0;
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   options.scanner = simulate::FullTurnScanner();
   const simulate::Simulator simulator(options);
   const std::string text = ReadWholeFile(argv[2]);
-  LogWriter log(argv[1]);
+  test::LogWriter log(argv[1]);
   Write(RigText{0, HashOfRigText(text), text}, SimulatorNode::kEpoch, &log);
   WriteSweep(simulator, &log);
   log.Close();

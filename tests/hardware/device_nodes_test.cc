@@ -10,12 +10,15 @@
 namespace rgbdt {
 namespace {
 
+using ::testing::HasSubstr;
+
 // Whatever the bus says to a device's node, it refuses nothing: what it cannot do is an event.
 TEST(DeviceNodes, TakeAnyMessage) {
   const test::TempDir dir;
-  TurnedScanner scanner;
-  scanner.motor = DynamixelDevice();
-  scanner.motor->port = (dir / "nothing").string();
+  LidarSpec turned;
+  turned.turned_scanner.emplace();
+  turned.turned_scanner->motor.emplace();
+  turned.turned_scanner->motor->port = (dir / "nothing").string();
   CameraSpec camera;
   camera.name = "rgb";
   camera.device = CameraDevice();
@@ -24,8 +27,10 @@ TEST(DeviceNodes, TakeAnyMessage) {
   test::WriteQuickly(dir / "clouds" / "1.pcd", "no PCD file");
   LidarSpec lidar;
   lidar.device = PcdFolderDevice{(dir / "clouds").string(), 0.1};
-  MotorNode motor(scanner);
-  CameraNode camera_node(camera, dir / "captures");
+  Rig rig;
+  rig.cameras = {camera};
+  MotorNode motor(turned);
+  CameraNode camera_node(rig, "", dir / "captures");
   LidarNode lidar_node(lidar);
   for (DeviceNode* node : std::vector<DeviceNode*>{&motor, &camera_node, &lidar_node}) {
     for (const SessionVerb verb : {SessionVerb::kReset, SessionVerb::kNextPose, SessionVerb::kSweep,
@@ -39,6 +44,24 @@ TEST(DeviceNodes, TakeAnyMessage) {
     EXPECT_NO_THROW(node->Handle(Status())) << node->name();
     EXPECT_NO_THROW(node->Advance(0)) << node->name();
   }
+}
+
+TEST(DeviceNodes, WithoutADeviceSayWhatToAdd) {
+  LidarSpec lidar;
+  EXPECT_THAT(test::ErrorOf([&] { MotorNode node(lidar); }), HasSubstr("no turned_scanner"));
+  lidar.turned_scanner.emplace();
+  EXPECT_THAT(test::ErrorOf([&] { MotorNode node(lidar); }), HasSubstr("dynamixel { port"));
+  EXPECT_THAT(test::ErrorOf([&] { LidarNode node(lidar); }), HasSubstr("hokuyo { address"));
+  Rig rig;
+  rig.cameras.resize(2);
+  rig.cameras[0].name = "rgb";
+  rig.cameras[1].name = "thermal";
+  EXPECT_THAT(test::ErrorOf([&] { CameraNode node(rig, "", ""); }), HasSubstr("no camera in"));
+  EXPECT_THAT(test::ErrorOf([&] { CameraNode node(rig, "rgb", ""); }),
+              HasSubstr("how to reach camera \"rgb\""));
+  for (CameraSpec& camera : rig.cameras) camera.device.emplace();
+  EXPECT_THAT(test::ErrorOf([&] { CameraNode node(rig, "", ""); }),
+              HasSubstr("--camera rgb or --camera thermal"));
 }
 
 }  // namespace

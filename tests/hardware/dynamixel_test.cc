@@ -59,7 +59,11 @@ bool Within(double seconds, const std::function<bool()>& holds) {
 // What a node said, and waiting for it to say something.
 class Listener {
  public:
-  explicit Listener(const TurnedScanner& scanner) : node_(std::make_unique<MotorNode>(scanner)) {}
+  explicit Listener(const TurnedScanner& scanner) {
+    LidarSpec lidar;
+    lidar.turned_scanner = scanner;
+    node_ = std::make_unique<MotorNode>(lidar);
+  }
 
   MotorNode& node() { return *node_; }
   void Destroy() { node_.reset(); }

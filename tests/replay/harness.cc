@@ -1,6 +1,5 @@
 #include "tests/replay/harness.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "calib/files/schema/calibration_file.h"
@@ -8,17 +7,8 @@
 
 namespace rgbdt::test {
 
-bool IsInput(const std::string& channel) {
-  static const std::string kImage = "_IMAGE";
-  const bool image = channel.size() > kImage.size() &&
-                     channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0;
-  return image || channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
-         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND";
-}
-
-Services::Services(Bus* bus, DetectorNode::Looks looks)
-    : detector(kAutoMethod, looks),
-      assembler_runner(&assembler, bus),
+Services::Services(Bus* bus)
+    : assembler_runner(&assembler, bus),
       detector_runner(&detector, bus),
       solver_runner(&solver, bus),
       fuser_runner(&fuser, bus) {}
@@ -37,7 +27,7 @@ std::int64_t Services::dropped() const {
          fuser_runner.dropped();
 }
 
-std::string Services::Calibration() const {
+std::string CalibrationOf(const SolverNode& solver) {
   return solver.report() ? PrintCalibration(solver.report()->ToCalibration()) : "";
 }
 
@@ -71,7 +61,7 @@ SessionRun RunSession(const simulate::Options& options, const SessionScript& scr
   SimulatorNode simulator(options);
   run.rig = RigOf(simulator.simulator());
   SessionNode session(script, run.rig, directory, {});
-  Services services(&bus, DetectorNode::Looks::kYes);
+  Services services(&bus);
   NodeRunner simulator_runner(&simulator, &bus);
   NodeRunner session_runner(&session, &bus);
   std::vector<NodeRunner*> runners = services.runners();
@@ -85,27 +75,15 @@ SessionRun RunSession(const simulate::Options& options, const SessionScript& scr
   }
   if (!session.finished()) throw std::runtime_error("the session did not end");
   run.failure = session.failure();
-  run.calibration = services.Calibration();
+  run.calibration = CalibrationOf(services.solver);
   run.truth = simulator.simulator().truth();
   run.gaps = services.gaps() + session_runner.gaps() + simulator_runner.gaps();
   run.dropped = services.dropped() + session_runner.dropped() + simulator_runner.dropped();
   return run;
 }
 
-std::unique_ptr<Services> Replay(const Recording& recording, MemoryBus* bus) {
-  auto services = std::make_unique<Services>(bus, DetectorNode::Looks::kNo);
-  for (const Recorded& message : recording) {
-    if (!IsInput(message.channel)) continue;
-    bus->Publish(message.channel, message.bytes);
-    bus->Run();
-    Utime now = 0;
-    for (const NodeRunner* runner : services->runners()) {
-      now = std::max(now, runner->newest_utime());
-    }
-    for (NodeRunner* runner : services->runners()) runner->Advance(now);
-    bus->Run();
-  }
-  return services;
+void Feed(const Recording& recording, Replay* replay) {
+  for (const Recorded& message : recording) replay->Take(message.channel, message.bytes);
 }
 
 }  // namespace rgbdt::test

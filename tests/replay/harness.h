@@ -16,6 +16,7 @@
 #include "services/nodes/session_node.h"
 #include "services/nodes/simulator_node.h"
 #include "services/nodes/solver_node.h"
+#include "services/replay/replay.h"
 #include "services/runtime/node_runner.h"
 
 namespace rgbdt::test {
@@ -27,12 +28,9 @@ struct Recorded {
 };
 using Recording = std::vector<Recorded>;
 
-/// What sensors, people and the session said; all else is what the nodes made of it.
-bool IsInput(const std::string& channel);
-
 /// Assembler, detector, solver, fuser on a bus.
 struct Services {
-  Services(Bus* bus, DetectorNode::Looks looks);
+  explicit Services(Bus* bus);
 
   AssemblerNode assembler;
   DetectorNode detector;
@@ -43,9 +41,10 @@ struct Services {
   std::vector<NodeRunner*> runners();
   std::int64_t gaps() const;
   std::int64_t dropped() const;
-  /// calibration.textproto of what the solver has.
-  std::string Calibration() const;
 };
+
+/// calibration.textproto of what the solver has.
+std::string CalibrationOf(const SolverNode& solver);
 
 /// `views` views, the third and every third after it held out, thermal corners picked by a person.
 SessionScript MakeScript(int views);
@@ -63,7 +62,7 @@ struct SessionRun {
 SessionRun RunSession(const simulate::Options& options, const SessionScript& script,
                       const std::filesystem::path& directory);
 
-/// Feeds a recording's input channels to fresh services, in order.
-std::unique_ptr<Services> Replay(const Recording& recording, MemoryBus* bus);
+/// All of a recording, in order.
+void Feed(const Recording& recording, Replay* replay);
 
 }  // namespace rgbdt::test

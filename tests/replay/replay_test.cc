@@ -11,8 +11,8 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/detect_view.h"
-#include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "tests/log_writer.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/replay/harness.h"
 #include "tests/unit/files/test_data.h"
@@ -22,9 +22,9 @@
 namespace rgbdt {
 namespace {
 
+using test::LogWriter;
 using test::Recorded;
 using test::Recording;
-using test::Services;
 using ::testing::HasSubstr;
 
 std::string Contents(const std::filesystem::path& path) {
@@ -108,16 +108,19 @@ TEST_F(ReplayTest, TheSessionCalibratesBothCameras) {
 }
 
 TEST_F(ReplayTest, TheInputsAloneGiveTheSameBitForBit) {
-  MemoryBus bus;
+  Replay replay(kAutoMethod);
   Recording made;
-  bus.Subscribe("CLOUD|DETECTION|CALIBRATION",
-                [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-                  made.push_back({channel, Bytes(data, data + size)});
-                });
-  const auto services = test::Replay(run_->recording, &bus);
-  EXPECT_EQ(services->Calibration(), run_->calibration);
-  EXPECT_EQ(services->gaps(), 0);
-  EXPECT_EQ(services->dropped(), 0);
+  replay.bus().Subscribe(
+      "CLOUD|DETECTION|CALIBRATION",
+      [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        made.push_back({channel, Bytes(data, data + size)});
+      });
+  test::Feed(run_->recording, &replay);
+  EXPECT_EQ(test::CalibrationOf(replay.solver()), run_->calibration);
+  for (const NodeRunner* runner : replay.runners()) {
+    EXPECT_EQ(runner->gaps(), 0);
+    EXPECT_EQ(runner->dropped(), 0);
+  }
   // The clouds, too, are those of the session.
   const auto clouds = [](const Recording& recording) {
     std::vector<Bytes> bytes;
@@ -142,21 +145,23 @@ TEST_F(ReplayTest, ADroppedAndTwoReorderedMessagesAreCountedAndHardlyMatter) {
   // The middle of the first sweep: 300 lines over 60 degrees, of which the board fills a part.
   damaged.erase(damaged.begin() + static_cast<std::ptrdiff_t>(lines[150]));
 
-  MemoryBus bus;
+  Replay replay(kAutoMethod);
   std::int64_t lost = 0;
-  bus.Subscribe("CLOUD",
-                [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-                  lost += std::get<CloudChunk>(Decode(channel, data, size)).lines_lost;
-                });
-  const auto services = test::Replay(damaged, &bus);
+  replay.bus().Subscribe(
+      "CLOUD", [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        lost += std::get<CloudChunk>(Decode(channel, data, size)).lines_lost;
+      });
+  test::Feed(damaged, &replay);
   EXPECT_EQ(lost, 1);
-  EXPECT_EQ(test::Counter(services->assembler.GetStatus(), "lines lost"), 1);
-  EXPECT_EQ(services->assembler_runner.gaps(), 1);
-  EXPECT_EQ(test::Counter(services->assembler_runner.GetStatus(), "gaps LINE_SCAN"), 1);
-  EXPECT_EQ(test::Counter(services->assembler_runner.GetStatus(), "late"), 2);
-  ASSERT_TRUE(services->solver.report().has_value());
+  const NodeRunner& assembler = *replay.runners()[0];
+  EXPECT_EQ(assembler.gaps(), 1);
+  for (const auto& [counter, count] :
+       {std::pair("lines lost", 1), std::pair("gaps LINE_SCAN", 1), std::pair("late", 2)}) {
+    EXPECT_EQ(test::Counter(assembler.GetStatus(), counter), count) << counter;
+  }
+  ASSERT_TRUE(replay.solver().report().has_value());
   const Calibration whole = ReadCalibration(*dir_ / "session/calibration.textproto");
-  for (const CameraReport& camera : services->solver.report()->cameras) {
+  for (const CameraReport& camera : replay.solver().report()->cameras) {
     EXPECT_TRUE(camera.calibration.converged);
     const PoseError error = ErrorOf(camera.calibration.camera_from_lidar,
                                     whole.Find(camera.calibration.camera)->camera_from_lidar);
@@ -171,10 +176,10 @@ TEST_F(ReplayTest, ReorderedLinesAloneGiveTheSameBitForBit) {
   const auto lines = PlacesOf("LINE_SCAN");
   std::swap(reordered[lines[300]], reordered[lines[301]]);
   std::swap(reordered[lines[450]], reordered[lines[451]]);
-  MemoryBus bus;
-  const auto services = test::Replay(reordered, &bus);
-  EXPECT_EQ(services->gaps(), 0);
-  EXPECT_EQ(services->Calibration(), run_->calibration);
+  Replay replay(kAutoMethod);
+  test::Feed(reordered, &replay);
+  for (const NodeRunner* runner : replay.runners()) EXPECT_EQ(runner->gaps(), 0);
+  EXPECT_EQ(test::CalibrationOf(replay.solver()), run_->calibration);
 }
 
 TEST_F(ReplayTest, TheSessionDirectoryGivesTheSameBitForBit) {
@@ -207,9 +212,8 @@ TEST_F(ReplayTest, ALogWithoutASessionIsFusedByTheCalibrationInIt) {
   ASSERT_GE(calibrations.size(), 2U);
   Recording drive = {run_->recording[PlacesOf("RIG").front()]};
   for (const Recorded& message : run_->recording) {
-    if (test::IsInput(message.channel) && message.channel != "SESSION_COMMAND") {
-      drive.push_back(message);
-    }
+    if (message.channel == "SESSION_COMMAND" || message.channel == "CALIBRATION") continue;
+    drive.push_back(message);
   }
   const std::string command =
       "replay " + (*dir_ / "drive.lcmlog").string() + " --out " + (*dir_ / "drive").string();

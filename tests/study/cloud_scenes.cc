@@ -5,6 +5,7 @@
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/spinning.h"
+#include "tests/simulated_variants.h"
 
 namespace rgbdt::study {
 namespace {

@@ -14,6 +14,7 @@
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/spinning.h"
+#include "tests/simulated_variants.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
 #include "tests/study/study_main.h"

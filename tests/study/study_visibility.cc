@@ -5,6 +5,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
+#include "tests/simulated_variants.h"
 #include "tests/study/study_main.h"
 #include "tests/study/visibility.h"
 

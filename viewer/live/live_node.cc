@@ -64,7 +64,7 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* image = std::get_if<Image>(&message)) {
     OnImage(*image);
   } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
-    collector_.Add(*chunk);
+    OnChunk(*chunk);
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
     collector_.Add(*picks);
   } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
@@ -79,12 +79,12 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
     OnCommand(*command);
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
-    watch_.Hear(*event, &state_);
+    watch_.Add(*event, &state_);
     changed_ = true;
   } else if (const auto* target = std::get_if<TargetStatus>(&message)) {
     OnTargetStatus(*target);
   } else if (const auto* status = std::get_if<Status>(&message)) {
-    watch_.Hear(*status, now_s_);
+    watch_.Add(*status, now_s_);
   }
 }
 
@@ -169,6 +169,20 @@ void LiveNode::CompleteView() {
   changed_ = true;
   for (Post& post : ThumbPosts(*kept)) outbox_->Send(std::move(post));
   views_[view->name] = std::move(kept);
+}
+
+// Only what the page shows of a view: without directions and times a point takes 16 bytes, not 38.
+void LiveNode::OnChunk(const CloudChunk& chunk) {
+  CloudChunk shown;
+  shown.cloud.sweep_utime = chunk.cloud.sweep_utime;
+  shown.cloud.first_line = chunk.cloud.first_line;
+  shown.cloud.lines = chunk.cloud.lines;
+  shown.cloud.beams = chunk.cloud.beams;
+  shown.cloud.organised = chunk.cloud.organised;
+  shown.cloud.points = chunk.cloud.points;
+  shown.cloud.intensity = chunk.cloud.intensity;
+  shown.sweep_end = chunk.sweep_end;
+  collector_.Add(std::move(shown));
 }
 
 void LiveNode::OnImage(const Image& image) {

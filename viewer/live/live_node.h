@@ -55,6 +55,7 @@ class LiveNode : public Node {
   void PostState();
   void OnRig(const RigText& text);
   void OnCommand(const SessionCommand& command);
+  void OnChunk(const CloudChunk& chunk);
   void OnImage(const Image& image);
   void OnDetection(const ViewDetection& detection);
   void ForgetRejected(const std::string& view);

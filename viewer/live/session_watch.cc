@@ -17,12 +17,12 @@ std::int64_t CounterOf(const Status& status, const std::string& name) {
 
 }  // namespace
 
-void SessionWatch::Hear(const Status& status, double now_s) {
+void SessionWatch::Add(const Status& status, double now_s) {
   if (processes_.size() >= kMaxProcesses && processes_.count(status.process) == 0) return;
   processes_[status.process] = {status, now_s};
 }
 
-void SessionWatch::Hear(const SessionEvent& event, SessionState* state) {
+void SessionWatch::Add(const SessionEvent& event, SessionState* state) {
   const bool of_session = event.source == "session";
   state->fraction = event.fraction;
   if (event.kind == EventKind::kProgress) {
@@ -41,7 +41,7 @@ void SessionWatch::Hear(const SessionEvent& event, SessionState* state) {
 
 bool SessionWatch::Running(const std::string& process, double now_s) const {
   const auto found = processes_.find(process);
-  return found != processes_.end() && now_s - found->second.at_s < kGone;
+  return found != processes_.end() && now_s - found->second.received_s < kGone;
 }
 
 bool SessionWatch::Update(double now_s, SessionState* state) const {
@@ -71,16 +71,16 @@ bool SessionWatch::Update(double now_s, SessionState* state) const {
 
 nlohmann::json SessionWatch::Processes(double now_s) const {
   nlohmann::json all = nlohmann::json::array();
-  for (const auto& [process, heard] : processes_) {
+  for (const auto& [name, process] : processes_) {
     nlohmann::json counters = nlohmann::json::array();
-    for (const auto& [name, value] : heard.status.counters) {
-      counters.push_back({{"name", name}, {"value", value}});
+    for (const auto& [counter, value] : process.status.counters) {
+      counters.push_back({{"name", counter}, {"value", value}});
     }
-    all.push_back({{"process", process},
-                   {"ready", heard.status.ready},
-                   {"text", heard.status.text},
-                   {"last_problem", heard.status.last_problem},
-                   {"age_s", now_s - heard.at_s},
+    all.push_back({{"process", name},
+                   {"ready", process.status.ready},
+                   {"text", process.status.text},
+                   {"last_problem", process.status.last_problem},
+                   {"age_s", now_s - process.received_s},
                    {"counters", counters}});
   }
   return all;

@@ -15,10 +15,10 @@ class SessionWatch {
  public:
   static constexpr double kGone = 5;  ///< s without a STATUS: the process is gone
 
-  void Hear(const Status& status, double now_s);
+  void Add(const Status& status, double now_s);
 
   /// Sets what an event tells: busy, fraction, failure, log.
-  void Hear(const SessionEvent& event, SessionState* state);
+  void Add(const SessionEvent& event, SessionState* state);
 
   /// Sets what is so by now: mode, can, step, steps, busy. Returns whether any of it changed.
   bool Update(double now_s, SessionState* state) const;
@@ -29,12 +29,12 @@ class SessionWatch {
   nlohmann::json Processes(double now_s) const;
 
  private:
-  struct Heard {
+  struct Process {
     Status status;
-    double at_s;
+    double received_s;
   };
-  std::map<std::string, Heard> processes_;
-  std::string doing_;  // what the session itself says it does
+  std::map<std::string, Process> processes_;
+  std::string doing_;  // what the session itself is at
 };
 
 }  // namespace rgbdt::viewer

@@ -178,8 +178,9 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   const auto seen_sides =
       std::count_if(rectangle.side_coverage.begin(), rectangle.side_coverage.end(),
                     [](double coverage) { return coverage >= 0.4; });
-  constexpr double kMostStrain = 6;
-  if (seen_sides < 3 || rectangle.coverage < 0.55 || rectangle.strain > kMostStrain) {
+  constexpr double kMostPriorDeviation = 6;
+  if (seen_sides < 3 || rectangle.coverage < 0.55 ||
+      rectangle.prior_deviation > kMostPriorDeviation) {
     return std::nullopt;
   }
   Filling filling = Fill(members, rectangle, target);
@@ -349,13 +350,13 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
   constexpr double kMostSigma = 0.045;
   BoardInCloudOptions noisier = options;
-  const BoardsInCloud as_told = FindAtNoise(grid, target, noisier);
-  BoardsInCloud boards = as_told;
+  const BoardsInCloud as_stated = FindAtNoise(grid, target, noisier);
+  BoardsInCloud boards = as_stated;
   while (boards.candidates.empty() && 2 * noisier.range_sigma_m <= kMostSigma) {
     noisier.range_sigma_m *= 2;
     boards = FindAtNoise(grid, target, noisier);
   }
-  return boards.candidates.empty() ? as_told : boards;
+  return boards.candidates.empty() ? as_stated : boards;
 }
 
 }  // namespace rgbdt

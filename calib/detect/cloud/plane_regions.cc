@@ -122,7 +122,7 @@ class RegionFinder {
 
   // Grows over neighbours, past single cells that are missing. False: not a board's size.
   bool Grow(int row, int column, PlaneSums* sums, PlaneRegion* region) {
-    region->plane = sums->Fit(nullptr);
+    region->plane = sums->Fit();
     PlaneSums grown;
     std::vector<Place> places = {{row, column}};
     seen_[Index(row, column)] = 1;
@@ -137,7 +137,7 @@ class RegionFinder {
       low = low.cwiseMin(here);
       high = high.cwiseMax(here);
       if (grown.count() == refit_at) {
-        region->plane = grown.Fit(nullptr);
+        region->plane = grown.Fit();
         refit_at *= 2;
       }
       for (const auto& [dr, dc] : kNeighbours) {
@@ -155,7 +155,7 @@ class RegionFinder {
       }
     }
     if (grown.count() < 6 || (high - low).maxCoeff() > options_.largest_m) return false;
-    region->plane = grown.Fit(&region->rms_m);
+    region->plane = grown.Fit();
     Bound(places, region);
     return region->last_column - region->first_column < grid_.columns();
   }

@@ -27,7 +27,7 @@ class PlaneSums {
   int count() const { return count_; }
   Eigen::Vector3d Mean() const { return sum_ / count_; }
   /// At least three points. `rms`: of the distances to the plane [m]; may be null.
-  Plane Fit(double* rms) const;
+  Plane Fit(double* rms = nullptr) const;
 
  private:
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
@@ -39,7 +39,6 @@ class PlaneSums {
 /// limits where it wraps, so that a piece is never torn at the seam.
 struct PlaneRegion {
   Plane plane;
-  double rms_m = 0;
   std::vector<Eigen::Vector3f> points;  ///< of the cells looked at, every `row_stride`-th and so on
   int first_row = 0, last_row = 0, first_column = 0, last_column = 0;
 };

@@ -96,7 +96,7 @@ std::vector<double> MetresAlong(const std::vector<FlatCrossing>& crossings,
 }
 
 // The best places, best first: one where both sides are seen; two where each explains one side
-// (something flush with the board hides the other).
+// (something flush with the board occludes the other).
 std::vector<Peak> BestAlong(const std::vector<FlatCrossing>& crossings, const Eigen::Vector2d& axis,
                             double extent, double other) {
   constexpr double kApart = 0.05;
@@ -214,7 +214,7 @@ class Refiner {
   }
 
   // Of one of `same` crossings in one gap: the truth is evenly spread over the interval, but at the
-  // same place of it for all of them, so together they tell no more of that than one; and a beam
+  // same place of it for all of them, so together they are worth one; and a beam
   // does not end sharply, which averages out.
   double Variance(const FlatCrossing& c, const Eigen::Vector2d& normal, int same) const {
     const double half = c.half_m * normal.dot(c.outward);
@@ -226,7 +226,7 @@ class Refiner {
   void Assign(const Parameters& x, double gate) {
     const Axes axes(x[2]);
     side_.assign(crossings_.size(), -1);
-    std::map<std::pair<std::size_t, int>, int> told;
+    std::map<std::pair<std::size_t, int>, int> cells;
     std::map<std::tuple<std::size_t, bool, int>, int> gaps;
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       const FlatCrossing& c = crossings_[i];
@@ -246,14 +246,14 @@ class Refiner {
         }
       }
       if (side_[i] < 0) continue;
-      ++told[{c.cell, side_[i]}];
+      ++cells[{c.cell, side_[i]}];
       ++gaps[{c.gap, c.along_row, side_[i]}];
     }
     shared_.assign(crossings_.size(), 1);
     same_.assign(crossings_.size(), 1);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       if (side_[i] < 0) continue;
-      shared_[i] = told[{crossings_[i].cell, side_[i]}];
+      shared_[i] = cells[{crossings_[i].cell, side_[i]}];
       same_[i] = gaps[{crossings_[i].gap, crossings_[i].along_row, side_[i]}];
     }
   }
@@ -309,7 +309,7 @@ class Refiner {
     }
     for (int k = 3; k < kParameters; ++k) {
       const double off = x[k] - (k == kThickness ? options_.thickness_m : 0);
-      out.strain = std::hypot(out.strain, off / PriorSigma(k));
+      out.prior_deviation = std::hypot(out.prior_deviation, off / PriorSigma(k));
     }
     out.thickness_m = x[kThickness];
     out.thickness_sigma_m = std::sqrt(covariance(kThickness, kThickness));

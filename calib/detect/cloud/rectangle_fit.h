@@ -27,12 +27,12 @@ struct FlatRectangle {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of centre (u, v) and angle
   std::array<double, 3> shift_rad{}, shift_sigma_rad{};  ///< of each class of crossing
   double thickness_m = 0, thickness_sigma_m = 0;
-  /// How far the shifts and the thickness are from their priors, in sigmas, all together: a board
-  /// of another size makes itself fit by them.
-  double strain = 0;
+  /// How far the shifts and the thickness are from their priors, in sigmas: the root of the priors'
+  /// cost. A board of another size makes itself fit by them.
+  double prior_deviation = 0;
   std::vector<int> side;  ///< by crossing: the side that it lies on; -1: none
   /// By crossing: half of its interval across its side, and the sigma of the side's place that it
-  /// gives, what others tell again counted once.
+  /// gives, errors that it shares with others taken into account.
   std::vector<double> half_width_m, sigma_m;
 };
 
@@ -46,7 +46,7 @@ std::vector<FlatRectangle> VoteForRectangles(const std::vector<FlatCrossing>& cr
 
 /// Least squares over the crossings' intervals from a rectangle nearby: place, angle, one shift a
 /// class of crossing and one a side, and the thickness of the board's rim. Crossings far off are
-/// left out. Two crossings of one cell tell the same twice, and count as one together. Its
+/// left out. Two crossings of one cell share their error, and count as one together. Its
 /// covariance carries the shifts' priors.
 FlatRectangle RefineRectangle(const std::vector<FlatCrossing>& crossings, double width_m,
                               double height_m, const FlatRectangle& start,

@@ -22,7 +22,7 @@ constexpr double kLeastGrown = 0.4;     // of the pattern's corners, for a grid 
 constexpr double kGridTolerance = 0.2;  // of a saddle, of the distance to the next
 constexpr int kMostMeasured = 4;        // places of the pattern in a grid
 constexpr double kSure = 0.015;         // uncertainty of corners, of the distance to the next
-constexpr double kMostLeft = 0.5;       // median of CornerFit::left; noise at 4 x NETD
+constexpr double kMostResidual = 0.5;   // median of CornerFit::residual; noise at 4 x NETD
 constexpr double kMostLost = 0.05;      // of the corners, that may be measured by their neighbours
 
 // A size at which to look: the image shrunk by a whole number or enlarged, then blurred.
@@ -58,7 +58,7 @@ std::string Size(const Target& target) {
 struct Measured {
   CornerGrid corners;
   std::map<std::pair<int, int>, double> contrasts;  ///< as CornerFit's
-  double sigma_px = 0, blur_px = 0, left = 0;       ///< medians
+  double sigma_px = 0, blur_px = 0, residual = 0;   ///< medians
 };
 
 // Every corner of the pattern that can be measured in the full image.
@@ -67,7 +67,7 @@ Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<doub
   Measured measured;
   std::vector<double> sigmas;
   std::vector<double> blurs;
-  std::vector<double> lefts;
+  std::vector<double> residuals;
   for (int row = match.row; row < match.row + match.rows(target); ++row) {
     for (int column = match.column; column < match.column + match.columns(target); ++column) {
       const auto fit = FitCorner(grey, model.At(column, row), model.Steps(column, row),
@@ -77,13 +77,13 @@ Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<doub
       measured.contrasts[{column, row}] = fit->contrast;
       sigmas.push_back(fit->sigma_px);
       blurs.push_back(fit->blur_px);
-      lefts.push_back(fit->left);
+      residuals.push_back(fit->residual);
     }
   }
   if (!sigmas.empty()) {
     measured.sigma_px = Median(sigmas);
     measured.blur_px = Median(blurs);
-    measured.left = Median(lefts);
+    measured.residual = Median(residuals);
   }
   return measured;
 }
@@ -218,7 +218,7 @@ bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
   DropWrong(contrast, *fine, &measured);
   const double corners = target_.corners_x() * target_.corners_y();
   if (static_cast<double>(measured.corners.size()) < (1 - kMostLost) * corners ||
-      measured.left > kMostLeft) {
+      measured.residual > kMostResidual) {
     return false;
   }
   const auto last = GridModel::Fit(measured.corners, kGridTolerance);

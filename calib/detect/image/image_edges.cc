@@ -264,7 +264,7 @@ Located FromPickedBoard(const cv::Mat& grey, const Camera& camera, const Target&
 void AddPose(const Image& image, const cv::Mat& grey, const Camera& camera, const Target& target,
              const CornerPose& pose, ImageEdges* edges) {
   edges->pose = pose.pose;
-  edges->corner_sigma_px = pose.alike * pose.corner_sigma_px;
+  edges->corner_sigma_px = pose.inflation * pose.corner_sigma_px;
   edges->sides = FitBoardSides(grey, Clipped(image), camera, target, pose.pose);
 }
 

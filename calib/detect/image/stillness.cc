@@ -48,7 +48,7 @@ std::size_t CountSeen(const Pixels& corners) {
   return static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), IsSeen));
 }
 
-// Share of the corners that may be off the rest: what hides a part of the board reaches into the
+// Share of the corners that may be off the rest: what occludes a part of the board reaches into the
 // windows of the corners beside it.
 double MostOff(const Pixels& corners) { return CountSeen(corners) < corners.size() ? 0.4 : 0.2; }
 
@@ -218,7 +218,7 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
     if (pose) return pose;
   }
   const bool partly_hidden = CountSeen(sight.corners) < sight.corners.size();
-  if (partly_hidden) {  // what hides it may have moved on
+  if (partly_hidden) {  // what occludes it may have moved on
     auto pose =
         fitted(CornersNear(grey, *sight.camera, *sight.target, sight.pose.pose.sensor_from_target));
     if (pose) return pose;

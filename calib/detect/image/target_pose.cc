@@ -222,10 +222,11 @@ bool SamePose(const Rigid3& a, const Rigid3& b) {
          (a.translation - b.translation).norm() < 1e-6 * a.translation.norm();
 }
 
-// Errors that are alike over neighbouring corners count as fewer: the sum of the residuals'
+// Correlated errors of neighbouring corners inflate the covariance: the sum of the residuals'
 // autocorrelation over the grid, lags weighed by Bartlett's triangle (Newey and West 1987). What
 // the pose itself has taken up of them is not in the residuals, so it is rather too small.
-double Alike(const Target& target, const Pixels& residuals, const std::vector<double>& weights) {
+double InflationOf(const Target& target, const Pixels& residuals,
+                   const std::vector<double>& weights) {
   constexpr int kLags = 4;
   const int columns = target.corners_x();
   const int rows = target.corners_y();
@@ -298,8 +299,8 @@ std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& targe
   out.pose.sensor_from_target = fit.pose;
   const std::vector<double> weights = Among(target, seen, fit.weights, 0.0);
   const Eigen::Vector2d none = Eigen::Vector2d::Zero();
-  out.alike = Alike(target, Among(target, seen, residuals, none), weights);
-  out.pose.covariance = std::pow(out.alike * fit.sigma, 2) * ldlt.solve(Matrix6d::Identity());
+  out.inflation = InflationOf(target, Among(target, seen, residuals, none), weights);
+  out.pose.covariance = std::pow(out.inflation * fit.sigma, 2) * ldlt.solve(Matrix6d::Identity());
   if (!out.pose.covariance.allFinite()) return std::nullopt;
   out.pose.covariance = 0.5 * (out.pose.covariance + out.pose.covariance.transpose()).eval();
   out.corner_sigma_px = fit.sigma;

@@ -16,13 +16,13 @@ struct CornerPose {
   /// half_turn_known is false: corners alone do not tell.
   TargetPose pose;
   double corner_sigma_px = 0;  ///< of a corner along x or y, from the residuals of those used
-  /// By how much neighbours' residuals being alike (a lens not quite known, uneven light) makes the
-  /// pose less certain than independent ones would; 1 or more. The covariance has it in.
-  double alike = 1;
+  /// By how much correlated residuals of neighbouring corners (a lens not quite known, uneven
+  /// light) enlarge the pose's sigmas; 1 or more. The covariance has it in.
+  double inflation = 1;
   std::vector<bool> used;  ///< for each corner: false is not seen, or off the rest and left out
-  /// A plane has a second pose that looks much alike, its tilt mirrored. Sum of squared residuals
-  /// of that one minus that of this one, over sigma^2; infinite where there is no such second pose.
-  /// Below some 10 the tilt is not certain.
+  /// A plane has a second pose that looks much the same, its tilt mirrored. Sum of squared
+  /// residuals of that one minus that of this one, over sigma^2; infinite where there is no such
+  /// second pose. Below some 10 the tilt is not certain.
   double second_pose_chi2 = 0;
 };
 

@@ -7,8 +7,8 @@
 
 namespace rgbdt {
 
-/// Takes points [m] from the LIDAR frames of their own times to that of the sweep. False: the poses
-/// do not tell of all of these times; the points are then as before.
+/// Motion compensation: takes points [m] from the LIDAR frames of their own times to that of the
+/// sweep. False: the poses do not tell of all of these times; the points are then as before.
 bool PlaceInSweep(const PoseTrack& poses, const Rigid3& map_from_sweep,
                   const std::vector<Utime>& utime, std::vector<Eigen::Vector3f>* points);
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "calib/camera/wide_loops.h"
+#include "calib/camera/simd_dispatch.h"
 
 namespace rgbdt {
 namespace {
@@ -45,7 +45,7 @@ inline float Byte(std::uint32_t word, int number) {
 }  // namespace
 
 // In steps, as what is fetched from anywhere is best fetched at once: the processor waits for many.
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void SampleColours(const ImageRows& image, const float* u, const float* v, std::size_t count,
                    std::uint32_t* samples) {
   const ImageRows im = image;
@@ -78,7 +78,7 @@ void SampleColours(const ImageRows& image, const float* u, const float* v, std::
   }
 }
 
-RGBDT_WIDE_LOOPS
+RGBDT_SIMD_DISPATCH
 void SampleFloats(const ImageRows& image, const float* u, const float* v, std::size_t count,
                   float* samples) {
   const ImageRows im = image;

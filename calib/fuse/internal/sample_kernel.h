@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/fuse only: the loops of sightings.h over points that lie in an image.
+// Inside calib/fuse only: the loops of point_samples.h over points that lie in an image.
 
 #include <cstddef>
 #include <cstdint>

@@ -97,9 +97,9 @@ bool Crowded(const World& empty, const Eigen::Vector3d& point, double clearance)
   return false;
 }
 
-bool Hidden(const World& empty, const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d offset = point - eye;
-  return empty.caster().Blocked(eye, offset.normalized(), offset.norm());
+bool Hidden(const World& empty, const Eigen::Vector3d& sensor, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d offset = point - sensor;
+  return empty.caster().Blocked(sensor, offset.normalized(), offset.norm());
 }
 
 /// Elevation that later attempts draw closer to: the middle of the LIDAR's field, but no lower than
@@ -190,9 +190,9 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
     if (point.z() < options.world.ground_z_m + options.pose.clearance_m) return "in the ground";
     if (Crowded(empty, point, options.pose.clearance_m)) return "too close to an object";
     const double azimuth = std::atan2(point.y(), point.x());
-    const Eigen::Vector3d eye =
+    const Eigen::Vector3d sensor =
         options.spinning ? Eigen::Vector3d::Zero() : scanner.Centre(azimuth);
-    if (Hidden(empty, eye, point)) return "hidden from the LIDAR";
+    if (Hidden(empty, sensor, point)) return "hidden from the LIDAR";
     for (const CameraRenderer& camera : cameras) {
       if (Hidden(empty, camera.CentreInLidar(), point)) {
         return "hidden from " + camera.options().name;

@@ -29,7 +29,7 @@ std::vector<Station> Stations(const BoardOptions& options) {
 
 /// Mean apparent temperature behind a stretch of the outline; nothing if that is sky or stand, or
 /// varies by more than 1 K.
-std::optional<double> BackgroundAt(const World& world, const Eigen::Vector3d& eye,
+std::optional<double> BackgroundAt(const World& world, const Eigen::Vector3d& camera_centre,
                                    const Station& station, double length_m) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
@@ -40,10 +40,10 @@ std::optional<double> BackgroundAt(const World& world, const Eigen::Vector3d& ey
     const Eigen::Vector2d place = station.place + along * station.along + 0.03 * station.outwards;
     const Eigen::Vector3d target =
         world.board()->lidar_from_target() * Eigen::Vector3d(place.x(), place.y(), 0);
-    const Eigen::Vector3d direction = (target - eye).normalized();
-    const Hit hit = world.caster().Cast(eye, direction);
+    const Eigen::Vector3d direction = (target - camera_centre).normalized();
+    const Hit hit = world.caster().Cast(camera_centre, direction);
     if (!hit.hit() || world.IsMoving(hit)) return std::nullopt;
-    const double apparent = SeeHeat(world, eye, direction, 0.01).value[0];
+    const double apparent = SeeHeat(world, camera_centre, direction, 0.01).value[0];
     low = std::min(low, apparent);
     high = std::max(high, apparent);
     sum += apparent;
@@ -54,14 +54,15 @@ std::optional<double> BackgroundAt(const World& world, const Eigen::Vector3d& ey
 
 }  // namespace
 
-HeatMap HideOutline(const World& world, const Eigen::Vector3d& eye, const BoardOptions& options) {
+HeatMap HideOutline(const World& world, const Eigen::Vector3d& camera_centre,
+                    const BoardOptions& options) {
   HeatMap heat = world.board()->heat();
   if (options.hidden_outline_m == 0) return heat;
   const HeatMap before = heat;
   double least = std::numeric_limits<double>::infinity();
   for (const Station& station : Stations(options)) {
     const std::optional<double> apparent =
-        BackgroundAt(world, eye, station, options.hidden_outline_m);
+        BackgroundAt(world, camera_centre, station, options.hidden_outline_m);
     if (!apparent) continue;
     const double behind =
         SurfaceTemperature(*apparent, options.emissivity, world.scene().reflected_temperature_k);

@@ -82,16 +82,6 @@ void FillRing(const SpinningOptions& options, const std::vector<BeamReturn>& ret
   }
 }
 
-/// Numbers 0 ... count - 1 in an order drawn from the seed (Fisher and Yates).
-std::vector<std::size_t> DrawOrder(std::size_t count, std::optional<std::uint64_t> seed) {
-  std::vector<std::size_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = i;
-  if (!seed) return order;
-  const Noise noise(*seed, 0, "order");
-  for (std::size_t i = count; i > 1; --i) std::swap(order[i - 1], order[noise.Bits(i) % i]);
-  return order;
-}
-
 }  // namespace
 
 double RingBias(const SpinningOptions& options, std::uint64_t seed, int ring) {
@@ -109,28 +99,6 @@ Cloud SpinningSweep(const World& world, const SpinningOptions& options, std::uin
     FillRing(options, CastRing(world, options, ring), noise, bias, ring, &cloud);
   });
   return cloud;
-}
-
-Cloud Unorganised(const Cloud& cloud, bool keep_ring, std::optional<std::uint64_t> shuffle) {
-  std::vector<std::size_t> hits;
-  for (const std::size_t i : DrawOrder(cloud.size(), shuffle)) {
-    if (cloud.IsHit(i)) hits.push_back(i);
-  }
-  const auto take = [&hits](const auto& from, auto* to) {
-    if (from.empty()) return;
-    to->reserve(hits.size());
-    for (const std::size_t i : hits) to->push_back(from[i]);
-  };
-  Cloud result;
-  result.sweep_utime = cloud.sweep_utime;
-  result.organised = false;
-  result.lines = 1;
-  result.beams = static_cast<int>(hits.size());
-  take(cloud.points, &result.points);
-  take(cloud.intensity, &result.intensity);
-  take(cloud.utime, &result.utime);
-  if (keep_ring) take(cloud.ring, &result.ring);
-  return result;
 }
 
 }  // namespace rgbdt::simulate

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "calib/model/cloud.h"
 #include "calib/simulate/internal/world.h"
@@ -18,9 +17,5 @@ Cloud SpinningSweep(const World& world, const SpinningOptions& options, std::uin
 
 /// The constant bias [m] of a ring's ranges.
 double RingBias(const SpinningOptions& options, std::uint64_t seed, int ring);
-
-/// A cloud as most files hold it: hits only, without directions and origins, not organised.
-/// `shuffle`: points in an order drawn from this seed.
-Cloud Unorganised(const Cloud& cloud, bool keep_ring, std::optional<std::uint64_t> shuffle = {});
 
 }  // namespace rgbdt::simulate

@@ -16,7 +16,26 @@ namespace {
 constexpr int kWaitMs = 50;
 constexpr Utime kAskEvery = kMicrosecondsPerSecond;
 
-const CameraSpec& WithDevice(const CameraSpec& spec) {
+const CameraSpec& TheOnlyOneWithDevice(const Rig& rig) {
+  const CameraSpec* found = nullptr;
+  for (const CameraSpec& camera : rig.cameras) {
+    if (!camera.device) continue;
+    if (found != nullptr) {
+      throw InputError("the rig has more than one camera with a device; which? --camera " +
+                       found->name + " or --camera " + camera.name);
+    }
+    found = &camera;
+  }
+  if (found == nullptr) {
+    throw InputError(
+        "no camera in the rig file has device { ... }; scripts/rigs/README.md has examples");
+  }
+  return *found;
+}
+
+const CameraSpec& WithDevice(const Rig& rig, const std::string& camera) {
+  if (camera.empty()) return TheOnlyOneWithDevice(rig);
+  const CameraSpec& spec = rig.Camera(camera);
   if (spec.device) return spec;
   throw InputError("the rig file says nothing of how to reach camera \"" + spec.name +
                    "\"; add device { serial: \"...\" } or device { address: \"...\" } to it");
@@ -26,8 +45,8 @@ std::string Seconds(Utime duration) { return Format("%.1f s", ToSeconds(duration
 
 }  // namespace
 
-CameraNode::CameraNode(const CameraSpec& spec, std::filesystem::path captures)
-    : spec_(WithDevice(spec)),
+CameraNode::CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures)
+    : spec_(WithDevice(rig, camera)),
       captures_(std::move(captures)),
       thread_([this](DeviceThread& thread) { Serve(thread); }, kMaxWaiting) {}
 
@@ -79,7 +98,7 @@ void CameraNode::Serve(DeviceThread& thread) {
 void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
   using Trigger = CameraDevice::Trigger;
   const bool free_running = spec_.device->trigger == Trigger::kFree;
-  for (const std::string& remark : camera->remarks()) WarnOf(remark, *thread);
+  for (const std::string& warning : camera->warnings()) WarnOf(warning, *thread);
   ptp_ = camera->FollowsPtp();
   if (!free_running) {  // it may send nothing for long
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -18,7 +18,7 @@ namespace rgbdt {
 
 /// One GigE Vision or USB3 Vision camera -> `<CAMERA>_IMAGE`. Frames that are not whole, or not of
 /// the rig file's size, are dropped, counted and named; none of them is published. A camera that is
-/// lost is looked for until it is back, and the gap is told.
+/// lost is looked for until it is back, and the gap is a warning.
 ///
 /// `utime` is the exposure's middle on the host's clock: the device's stamps through ClockFit,
 /// where a frame's first packet leaves at the exposure's end at the earliest. So it does not matter
@@ -38,8 +38,9 @@ class CameraNode : public DeviceNode {
   /// Frames that wait for the bus, which packs them; the oldest go first.
   static constexpr std::size_t kMaxWaiting = 8;
 
-  /// Throws InputError where the rig file has no device for it.
-  CameraNode(const CameraSpec& spec, std::filesystem::path captures);
+  /// `camera`: its name; empty where only one camera of the rig has a device. Throws InputError
+  /// where the rig file has no device for it, or there is a choice.
+  CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures);
   ~CameraNode() override;
 
   std::string name() const override { return "camera-" + spec_.name; }

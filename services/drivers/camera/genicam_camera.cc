@@ -154,7 +154,7 @@ struct GenicamCamera::Impl {
     } else {
       arv_camera_gv_auto_packet_size(camera.get(), error.out());
     }
-    if (error) remarks.push_back("the packets' size was not taken: " + error.text());
+    if (error) warnings.push_back("the packets' size was not taken: " + error.text());
   }
 
   void SetTrigger() {
@@ -173,28 +173,28 @@ struct GenicamCamera::Impl {
   void Set(const std::string& name, const std::string& value) {
     ArvGcNode* node = arv_device_get_feature(device, name.c_str());
     if (!ARV_IS_GC_FEATURE_NODE(node)) {
-      remarks.push_back("it has no feature " + name +
-                        "; `arv-tool-0.8 features` lists what it has");
+      warnings.push_back("it has no feature " + name +
+                         "; `arv-tool-0.8 features` lists what it has");
       return;
     }
     Error error;
     if (ARV_IS_GC_COMMAND(node)) {
       arv_device_execute_command(device, name.c_str(), error.out());
-      if (error) remarks.push_back(name + " was refused: " + error.text());
+      if (error) warnings.push_back(name + " was refused: " + error.text());
       return;
     }
     ArvGcFeatureNode* feature = ARV_GC_FEATURE_NODE(node);
     arv_gc_feature_node_set_value_from_string(feature, value.c_str(), error.out());
     if (error) {
-      remarks.push_back(name + " = " + value + " was refused: " + error.text());
+      warnings.push_back(name + " = " + value + " was refused: " + error.text());
       return;
     }
     Error reading;
     const char* got = arv_gc_feature_node_get_value_as_string(feature, reading.out());
     if (reading || got == nullptr) {
-      remarks.push_back(name + " cannot be read back: " + reading.text());
+      warnings.push_back(name + " cannot be read back: " + reading.text());
     } else if (!Agree(value, got)) {
-      remarks.push_back(name + " is " + got + " after it was set to " + value);
+      warnings.push_back(name + " is " + got + " after it was set to " + value);
     }
   }
 
@@ -217,7 +217,7 @@ struct GenicamCamera::Impl {
 
   CameraSpec spec;
   CameraDevice device_spec;
-  std::vector<std::string> remarks;
+  std::vector<std::string> warnings;
   std::atomic<bool> lost{false};
   Owned<ArvCamera> camera;
   ArvDevice* device = nullptr;  // the camera's
@@ -228,7 +228,7 @@ GenicamCamera::GenicamCamera(const CameraSpec& spec) : impl_(std::make_unique<Im
 
 GenicamCamera::~GenicamCamera() = default;
 
-const std::vector<std::string>& GenicamCamera::remarks() const { return impl_->remarks; }
+const std::vector<std::string>& GenicamCamera::warnings() const { return impl_->warnings; }
 
 bool GenicamCamera::Next(int timeout_ms,
                          const std::function<void(const CameraFrame& frame)>& take) {

@@ -32,11 +32,11 @@ class GenicamCamera {
   static constexpr int kSocketBytes = 8 * 1024 * 1024;
 
   /// Sets size, pixel format and trigger as the rig file says, then the features that it lists, in
-  /// order; reads each back. What the camera did not take is told in remarks().
+  /// order; reads each back. What the camera did not take is in warnings().
   explicit GenicamCamera(const CameraSpec& spec);
   ~GenicamCamera();
 
-  const std::vector<std::string>& remarks() const;
+  const std::vector<std::string>& warnings() const;
 
   /// Hands over the next buffer, whole or not; false: none came in time.
   bool Next(int timeout_ms, const std::function<void(const CameraFrame& frame)>& take);

@@ -26,15 +26,23 @@ void WarnIfAny(const std::string& warning, DeviceThread* thread) {
   if (!warning.empty()) thread->Warn(warning);
 }
 
-const TurnedScanner& WithMotor(const TurnedScanner& scanner) {
-  if (!scanner.motor) throw InputError("the rig's turned_scanner has no dynamixel section");
-  return scanner;
+const TurnedScanner& WithMotor(const LidarSpec& lidar) {
+  if (!lidar.turned_scanner) {
+    throw InputError("the rig's lidar has no turned_scanner, so there is no motor to drive");
+  }
+  if (!lidar.turned_scanner->motor) {
+    throw InputError(
+        "the rig's lidar.turned_scanner has no dynamixel section; add to it, with your own values: "
+        "dynamixel { port: \"/dev/ttyUSB0\" baud: 57600 id: 1 from_deg: -90 to_deg: 90 "
+        "speed_deg_s: 20 }");
+  }
+  return *lidar.turned_scanner;
 }
 
 }  // namespace
 
-MotorNode::MotorNode(const TurnedScanner& scanner)
-    : scanner_(WithMotor(scanner)), thread_([this](DeviceThread& thread) { Serve(&thread); }) {}
+MotorNode::MotorNode(const LidarSpec& lidar)
+    : scanner_(WithMotor(lidar)), thread_([this](DeviceThread& thread) { Serve(&thread); }) {}
 
 SessionEvent MotorNode::EventOf(std::int64_t command, EventKind kind,
                                 const std::string& text) const {

@@ -25,8 +25,8 @@ class MotorNode : public DeviceNode {
   static constexpr Utime kPeriod = 5000;  ///< between readings, where the line allows it
   static constexpr Utime kProgressPeriod = 250'000;
 
-  /// Throws InputError where the scanner has no motor.
-  explicit MotorNode(const TurnedScanner& scanner);
+  /// Throws InputError, with what to add to the rig file, where there is no motor to drive.
+  explicit MotorNode(const LidarSpec& lidar);
 
   std::string name() const override { return "motor"; }
   std::vector<std::string> Subscriptions() const override { return {"SESSION_COMMAND"}; }

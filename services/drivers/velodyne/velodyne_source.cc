@@ -101,10 +101,10 @@ void VelodyneSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>&
   }
   report_.SetSweepBegun(sweeps_.begun());
   report_.Count("packets");
-  report_.Count("lost packets", sweeps_.lost_packets() - lost_told_);
-  lost_told_ = sweeps_.lost_packets();
-  if (sweeps_.clock_steps() != steps_told_) {
-    steps_told_ = sweeps_.clock_steps();
+  report_.Count("lost packets", sweeps_.lost_packets() - lost_reported_);
+  lost_reported_ = sweeps_.lost_packets();
+  if (sweeps_.clock_steps() != steps_reported_) {
+    steps_reported_ = sweeps_.clock_steps();
     thread.Warn("the LIDAR's clock or this machine's was set; the points' times begin anew");
   }
   for (const Cloud& sweep : sweeps) {

@@ -84,7 +84,7 @@ class VelodyneSource {
   VelodyneDevice device_;
   DeviceReport report_;
   VelodyneSweeps sweeps_;
-  std::int64_t lost_told_ = 0, steps_told_ = 0;
+  std::int64_t lost_reported_ = 0, steps_reported_ = 0;
   std::atomic<int> port_{0};
 };
 

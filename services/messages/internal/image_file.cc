@@ -6,6 +6,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
+#include "calib/model/image_codec.h"
 
 namespace rgbdt {
 namespace {
@@ -51,7 +52,7 @@ std::optional<Size> JpegSize(const std::vector<std::uint8_t>& bytes) {
 
 }  // namespace
 
-cv::Mat DecodeImageFile(const std::vector<std::uint8_t>& bytes, PixelFormat format, int width,
+cv::Mat DecodeSentImage(const std::vector<std::uint8_t>& bytes, PixelFormat format, int width,
                         int height) {
   const std::string name = NameOf(format);
   const std::optional<Size> size = format == PixelFormat::kPng ? PngSize(bytes) : JpegSize(bytes);
@@ -62,12 +63,7 @@ cv::Mat DecodeImageFile(const std::vector<std::uint8_t>& bytes, PixelFormat form
                      std::to_string(size->height) + " px; the message says " +
                      std::to_string(width) + " x " + std::to_string(height));
   }
-  cv::Mat pixels;
-  try {
-    pixels = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const std::exception& e) {
-    throw InputError("the " + name + " cannot be decoded: " + e.what());
-  }
+  cv::Mat pixels = DecodeImage(bytes.data(), bytes.size(), "the " + name);
   if (pixels.cols != width || pixels.rows != height) {
     throw InputError("the " + name + " cannot be decoded");
   }
@@ -79,7 +75,7 @@ cv::Mat DecodeImageFile(const std::vector<std::uint8_t>& bytes, PixelFormat form
   return pixels;
 }
 
-std::vector<std::uint8_t> EncodeImageFile(const cv::Mat& pixels, PixelFormat format) {
+std::vector<std::uint8_t> EncodeSentImage(const cv::Mat& pixels, PixelFormat format) {
   const bool sixteen = pixels.type() == CV_16UC1 && format == PixelFormat::kPng;
   if (pixels.empty() || (pixels.type() != CV_8UC1 && pixels.type() != CV_8UC3 && !sixteen)) {
     throw InputError(std::string("pixels of this type cannot be sent as ") + NameOf(format));

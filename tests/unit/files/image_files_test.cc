@@ -3,6 +3,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "calib/files/atomic_file.h"
+#include "calib/model/image_codec.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -43,7 +44,7 @@ TEST(ImageFiles, AJpegIsNearlyTheSamePicture) {
     cv::Mat image(40, 60, type, cv::Scalar(40, 90, 200));
     image.colRange(0, 30) = cv::Scalar(200, 60, 30);
     const std::string good = EncodeJpeg(image, 95);
-    const cv::Mat back = DecodeImage(good, "a.jpg");
+    const cv::Mat back = DecodeImage(good.data(), good.size(), "a.jpg");
     ASSERT_EQ(back.type(), type);
     ASSERT_EQ(back.size(), image.size());
     EXPECT_LT(cv::norm(back.colRange(0, 24), image.colRange(0, 24), cv::NORM_INF), 6);
@@ -70,7 +71,9 @@ TEST(ImageFiles, FormatFollowsTheTypeOrWhatIsTold) {
 }
 
 TEST(ImageFiles, DamagedFilesNeverCrashAndAreNamed) {
-  const auto parse = [](const std::string& bytes) { DecodeImage(bytes, "a.png"); };
+  const auto parse = [](const std::string& bytes) {
+    DecodeImage(bytes.data(), bytes.size(), "a.png");
+  };
   const std::string png = EncodePng(Random(CV_16UC1));
   test::ParseTruncations(png, parse);
   test::ParseDamaged(png, parse, 100);
@@ -85,7 +88,8 @@ TEST(ImageFiles, DamagedFilesNeverCrashAndAreNamed) {
 TEST(ImageFiles, AForgedSizeIsAnError) {
   std::string png = EncodePng(Random(CV_8UC1));
   for (std::size_t i = 16; i < 24; ++i) png[i] = '\x7f';  // width and height in the header
-  EXPECT_THAT(test::ErrorOf([&] { DecodeImage(png, "huge.png"); }), HasSubstr("huge.png"));
+  EXPECT_THAT(test::ErrorOf([&] { DecodeImage(png.data(), png.size(), "huge.png"); }),
+              HasSubstr("huge.png"));
 }
 
 }  // namespace

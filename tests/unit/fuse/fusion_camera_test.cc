@@ -12,15 +12,15 @@ using testing::HasSubstr;
 PreparedImage At(Utime utime) { return {utime, cv::Mat(31, 41, CV_8UC3, cv::Scalar(1, 2, 3)), {}}; }
 
 Utime ServedBy(const FusionCamera& camera, Utime point) {
-  const PreparedImage* image = camera.ImageAt(point);
+  const PreparedImage* image = camera.ServingAt(point).image;
   return image == nullptr ? -1 : image->utime;
 }
 
-class ImageAtTest : public testing::Test {
+class ServingTest : public testing::Test {
  protected:
   static constexpr Utime kReadout = 30'000;
 
-  ImageAtTest() : camera_(WithReadout()) {}
+  ServingTest() : camera_(WithReadout()) {}
   static CameraSpec WithReadout() {
     CameraSpec spec = SpecOf(CameraKind::kColor);
     spec.readout_s = 0.03;
@@ -29,7 +29,7 @@ class ImageAtTest : public testing::Test {
   FusionCamera camera_;
 };
 
-TEST_F(ImageAtTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
+TEST_F(ServingTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
   camera_.AddImage(At(1'000'000));
   camera_.AddImage(At(1'500'000));
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout - 1), -1);
@@ -39,31 +39,31 @@ TEST_F(ImageAtTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
   EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
 }
 
-TEST_F(ImageAtTest, AnImageServesNoLongerThanItsMaximumAge) {
+TEST_F(ServingTest, AnImageServesNoLongerThanItsMaximumAge) {
   camera_.AddImage(At(1'000'000));
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge), 1'000'000);
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge + 1), -1);
 }
 
-TEST_F(ImageAtTest, AnOlderImageDoesNotStandInForOneThatIsTooOld) {
+TEST_F(ServingTest, AnOlderImageDoesNotStandInForOneThatIsTooOld) {
   camera_.AddImage(At(1'000'000));
   camera_.AddImage(At(1'500'000));
   EXPECT_EQ(ServedBy(camera_, 1'500'000 + FusionCamera::kMaxAge + 1), -1);
 }
 
-TEST_F(ImageAtTest, TheOrderInWhichImagesComeDoesNotMatter) {
+TEST_F(ServingTest, TheOrderInWhichImagesComeDoesNotMatter) {
   for (const Utime utime : {3, 1, 4, 2, 5}) camera_.AddImage(At(utime * 100'000));
   for (const Utime utime : {1, 2, 3, 4, 5}) {
     EXPECT_EQ(ServedBy(camera_, utime * 100'000 + kReadout), utime * 100'000);
   }
 }
 
-TEST_F(ImageAtTest, TheSameImageTwiceIsOne) {
+TEST_F(ServingTest, TheSameImageTwiceIsOne) {
   camera_.AddImage(At(1'000'000));
   PreparedImage again = At(1'000'000);
   again.pixels.setTo(cv::Scalar(9, 9, 9));
   camera_.AddImage(again);
-  EXPECT_EQ(camera_.ImageAt(1'100'000)->pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(1, 2, 3));
+  EXPECT_EQ(camera_.ServingAt(1'100'000).image->pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(1, 2, 3));
   // It takes no place either: all of kMaxImages are still there.
   for (Utime n = 1; n < static_cast<Utime>(FusionCamera::kMaxImages); ++n) {
     camera_.AddImage(At(1'000'000 + n * 1000));
@@ -72,7 +72,7 @@ TEST_F(ImageAtTest, TheSameImageTwiceIsOne) {
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout), 1'000'000);
 }
 
-TEST_F(ImageAtTest, TheOldestOfTooManyGoes) {
+TEST_F(ServingTest, TheOldestOfTooManyGoes) {
   for (Utime n = 0; n <= static_cast<Utime>(FusionCamera::kMaxImages); ++n) {
     camera_.AddImage(At(1'000'000 + n * 1000));
   }
@@ -80,7 +80,7 @@ TEST_F(ImageAtTest, TheOldestOfTooManyGoes) {
   EXPECT_EQ(ServedBy(camera_, 1'001'000 + kReadout), 1'001'000);
 }
 
-TEST_F(ImageAtTest, ForgettingKeepsTheImageThatServesFromThenOn) {
+TEST_F(ServingTest, ForgettingKeepsTheImageThatServesFromThenOn) {
   camera_.AddImage(At(1'000'000));
   camera_.AddImage(At(1'500'000));
   camera_.AddImage(At(2'000'000));
@@ -93,7 +93,7 @@ TEST_F(ImageAtTest, ForgettingKeepsTheImageThatServesFromThenOn) {
   EXPECT_EQ(ServedBy(camera_, 2'100'000), 2'000'000);
 }
 
-TEST_F(ImageAtTest, ServingAllTimesTakesTheNewestImage) {
+TEST_F(ServingTest, ServingAllTimesTakesTheNewestImage) {
   camera_.ServeAllTimes();
   EXPECT_EQ(ServedBy(camera_, 5), -1);
   camera_.AddImage(At(1'500'000));

@@ -162,7 +162,7 @@ TEST_P(Moving, PosesTakeTheMotionOutOfCloudAndImages) {
     EXPECT_LT(worst.colour, 3);
     EXPECT_LT(worst.metres, 1e-3);
   }
-  EXPECT_EQ(session.counts.unplaced, 0);
+  EXPECT_EQ(session.counts.without_pose, 0);
   ASSERT_THAT(session.parts, SizeIs(1));
   EXPECT_EQ(session.parts[0].frame_utime, kNow);
   EXPECT_EQ(session.chunks[7].frame_utime, kNow + 7 * 20'000);
@@ -195,7 +195,7 @@ TEST(SweepFuser, WhereThePosesDoNotTellNothingIsColoured) {
   EXPECT_THAT(fused.valid, Each(0U));
   EXPECT_FALSE(fused.map_from_lidar);
   EXPECT_EQ(fused.points, line.points);
-  EXPECT_EQ(fuser.counts().unplaced, 40);
+  EXPECT_EQ(fuser.counts().without_pose, 40);
   EXPECT_THAT(fuser.EndSweep(), SizeIs(0));
 }
 
@@ -374,7 +374,7 @@ TEST(SweepFuser, ACloudFromTheFutureIsNotColouredAndCounted) {
   fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
   const Utime future = kNow + 3600 * kSecond;
   EXPECT_THAT(fuser.FuseChunk(LineAt(still, future, 0, future, 0)).valid, Each(0U));
-  EXPECT_EQ(fuser.counts().untimely, 40);
+  EXPECT_EQ(fuser.counts().without_image, 40);
   EXPECT_THAT(fuser.FuseChunk(LineAt(still, kNow, 0, kNow, 0)).valid, Each(1U));
 }
 

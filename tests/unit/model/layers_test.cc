@@ -55,6 +55,8 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/bus", {"services/messages"}},
       {"services/runtime", {"services/bus", "services/messages"}},
       {"services/nodes", {"calib/*", "services/messages", "services/runtime"}},
+      {"services/replay",
+       {"calib/*", "services/messages", "services/bus", "services/runtime", "services/nodes"}},
       {"services/drivers", {"services/messages", "services/runtime"}},
       {"services/drivers/*",
        {"calib/camera", "calib/scan_assembly", "calib/files", "calib/files/points",
@@ -242,6 +244,27 @@ TEST(Layers, EveryTargetLinksNoMoreThanItMayInclude) {
     ++targets;
   }
   EXPECT_GE(targets, 25);
+}
+
+// A README that is a table of contents, where a folder has more than five sources.
+TEST(Layers, EveryLargeFolderOfServicesHasATableOfContents) {
+  std::map<std::string, std::vector<std::string>> sources;  // by folder
+  for (const std::string& path : AllFiles()) {
+    if (IsSource(path) && StartsWith(path, "services")) sources[FolderOf(path)].push_back(path);
+  }
+  int large = 0;
+  for (const auto& [folder, paths] : sources) {
+    if (paths.size() <= 5) continue;
+    const std::string readme = ReadText(kRoot / folder / "README.md");
+    for (const std::string& path : paths) {
+      std::string name = fs::path(path).stem().string();
+      static const std::regex process("[a-z]+_main");
+      name = std::regex_replace(name, process, "*_main");
+      EXPECT_NE(readme.find(name), std::string::npos) << folder << "/README.md: " << path;
+    }
+    ++large;
+  }
+  EXPECT_GE(large, 10);
 }
 
 TEST(Layers, TheTestItselfCanFail) {

@@ -9,6 +9,7 @@
 
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
+#include "tests/simulated_variants.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

@@ -9,6 +9,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"
+#include "tests/simulated_variants.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {

@@ -7,7 +7,8 @@
 namespace rgbdt {
 namespace {
 
-// Sums over the points, row by row: sum of j j' and j z, less what rows tell again.
+// Sums over the points, row by row: sum of j j' and j z, less what the correlated noise of rows
+// takes off.
 template <int kSize>
 struct RowSums {
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -29,9 +30,9 @@ struct RowSums {
         sum += j;
         sum_z += z;
       }
-      const double repeated = noise.Repeated(static_cast<double>(i - first));
-      h.noalias() -= repeated * sum * sum.transpose();
-      g.noalias() -= repeated * sum_z * sum;
+      const double correlated = noise.Correlated(static_cast<double>(i - first));
+      h.noalias() -= correlated * sum * sum.transpose();
+      g.noalias() -= correlated * sum_z * sum;
       first = i;
     }
   }
@@ -79,7 +80,7 @@ Eigen::Matrix4d ScatterOf(const std::vector<int>& rows, const RowNoise& noise, P
 
 }  // namespace
 
-double RowNoise::Repeated(double points) const {
+double RowNoise::Correlated(double points) const {
   const double between = between_m * between_m;
   return between / (within_m * within_m + points * between);
 }

@@ -20,9 +20,9 @@ struct RowNoise {
   double within_m = 0;   ///< sigma of a point about its row
   double between_m = 0;  ///< sigma of a row about the plane: its range bias
 
-  /// Of points in one row, how much of what they tell is told again by each: the inverse of
-  /// within^2 I + between^2 11' is (I - repeated 11') / within^2.
-  double Repeated(double points) const;
+  /// What the correlated noise of a row takes off each point's weight: the inverse of
+  /// within^2 I + between^2 11' is (I - correlated 11') / within^2.
+  double Correlated(double points) const;
 };
 
 /// The plane of a board's points and how exactly they tell it. `near` is a plane some millimetres

@@ -67,10 +67,10 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
         p.x * p.x * p.y, p.x * p.y * p.y, p.y * p.y * p.y;
     if (fixed.shape) j.segment<3>(2).setZero();
     if (fixed.cubic) j.tail<kCubic>().setZero();
-    const double left = p.value - j.tail<kLinear>().dot(u.tail<kLinear>());
+    const double residual = p.value - j.tail<kLinear>().dot(u.tail<kLinear>());
     sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(j);
-    sums.right += left * j;
-    sums.squares += left * left;
+    sums.right += residual * j;
+    sums.squares += residual * residual;
   }
   sums.normal = sums.normal.selfadjointView<Eigen::Lower>();
   if (fixed.shape) sums.normal.diagonal().segment<3>(2).setOnes();
@@ -196,7 +196,7 @@ std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& p
   fit.blur_px = s.unknowns[4];
   const double variance = s.at.squares / spare;
   if (!(variance < fit.contrast * fit.contrast)) return std::nullopt;  // not much of a corner
-  fit.left = std::sqrt(variance) / std::abs(fit.contrast);
+  fit.residual = std::sqrt(variance) / std::abs(fit.contrast);
   const Normal inverse = s.at.normal.ldlt().solve(Normal::Identity());
   const Eigen::Matrix2d covariance = variance * inverse.topLeftCorner<2, 2>();
   fit.sigma_px = std::sqrt(std::max(0.0, covariance.eigenvalues().real().maxCoeff()));

@@ -13,7 +13,7 @@ struct CornerFit {
   /// it, are the lighter ones.
   double contrast = 0;
   double blur_px = 0;   ///< sigma of the edges
-  double left = 0;      ///< RMS of what the fit leaves over, of the contrast
+  double residual = 0;  ///< RMS of what the fit leaves over, of the contrast
   double sigma_px = 0;  ///< of the place along its worst direction, from what the fit leaves over
 };
 

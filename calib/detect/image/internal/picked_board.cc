@@ -20,11 +20,11 @@ using Pixels = std::vector<Eigen::Vector2d>;
 
 constexpr int kLeastCorners = 8;
 constexpr double kLeastSpread = 0.7;    // RMS across the corners' longest direction, in squares
-constexpr double kMostLeft = 0.5;       // median of CornerFit::left, as for FindCheckerboard
+constexpr double kMostResidual = 0.5;   // median of CornerFit::residual, as for FindCheckerboard
 constexpr double kGridTolerance = 0.2;  // of the distance to the next corner
 constexpr double kLeastChi2 = 15;       // CornerPose::second_pose_chi2
 constexpr double kMostPickPx = 12;      // from a pick to the board's corner
-constexpr double kMostOff = 0.4;        // of the corners: what hides the others reaches into some
+constexpr double kMostOff = 0.4;  // of the corners: what occludes the others reaches into some
 constexpr int kRounds = 3;
 
 // What the image has where inner corners should be, in the target's order.
@@ -48,12 +48,12 @@ struct Measured {
   double sigma_px() const {
     return MedianOf([](const CornerFit& f) { return f.sigma_px; });
   }
-  double left() const {
-    return MedianOf([](const CornerFit& f) { return f.left; });
+  double residual() const {
+    return MedianOf([](const CornerFit& f) { return f.residual; });
   }
   // RMS of what a fit leaves over, in grey values.
   double noise() const {
-    return MedianOf([](const CornerFit& f) { return f.left * std::abs(f.contrast); });
+    return MedianOf([](const CornerFit& f) { return f.residual * std::abs(f.contrast); });
   }
   std::size_t count() const {
     const auto good = std::count_if(fits.begin(), fits.end(), [](const auto& f) { return f; });
@@ -84,8 +84,8 @@ Measured Measure(const cv::Mat& grey, const Target& target, const BoardMap& map,
   return measured;
 }
 
-// Takes out what does not look like most: light and dark exchanged, another contrast, or more left
-// over by the fit, as where something covers a part of what was looked at.
+// Takes out what does not look like most: light and dark exchanged, another contrast, or a larger
+// residual, as where something covers a part of what was looked at.
 void DropUnlike(Measured* measured) {
   const double contrast = measured->contrast();
   const double noise = measured->noise();
@@ -93,10 +93,10 @@ void DropUnlike(Measured* measured) {
   for (auto& fit : measured->fits) {
     if (!fit) continue;
     const double relative = fit->contrast / contrast;
-    const bool alike = relative > 0.25 && relative < 4;
-    const double left = fit->left * std::abs(fit->contrast);
-    const bool clean = left < 1.3 * noise + 0.01 * std::abs(contrast);
-    if (!alike || !clean || fit->sigma_px > 3 * sigma + 0.02) fit.reset();
+    const bool similar = relative > 0.25 && relative < 4;
+    const double residual = fit->residual * std::abs(fit->contrast);
+    const bool clean = residual < 1.3 * noise + 0.01 * std::abs(contrast);
+    if (!similar || !clean || fit->sigma_px > 3 * sigma + 0.02) fit.reset();
   }
 }
 
@@ -115,8 +115,8 @@ void DropOffGrid(const Target& target, Measured* measured) {
   }
 }
 
-// Without those beside a corner that was not measured: what hides that one may reach into what was
-// looked at, too faint to be noticed, and pull the place aside.
+// Without those beside a corner that was not measured: what occludes that one may reach into what
+// was looked at, too faint to be noticed, and pull the place aside.
 Pixels FarFromHidden(const Target& target, const Measured& measured) {
   const int columns = target.corners_x();
   const auto hidden = [&](int column, int row) {
@@ -169,7 +169,7 @@ bool Enough(const Target& target, const Pixels& corners) {
 }
 
 bool Enough(const Target& target, const Measured& measured) {
-  return measured.left() < kMostLeft && Enough(target, measured.places());
+  return measured.residual() < kMostResidual && Enough(target, measured.places());
 }
 
 std::string WhyNotEnough(const Target& target, const Measured& measured) {
@@ -182,7 +182,8 @@ std::string WhyNotEnough(const Target& target, const Measured& measured) {
          "again with less of the board hidden";
 }
 
-// The pose that the corners farthest from what hides some agree on; without enough of those, all.
+// The pose that the corners farthest from what occludes some agree on; without enough of those,
+// all.
 std::optional<CornerPose> FirstPose(const Camera& camera, const Target& target,
                                     const Measured& measured) {
   const Pixels sure = FarFromHidden(target, measured);

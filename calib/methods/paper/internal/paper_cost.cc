@@ -13,12 +13,12 @@ PaperCost::PaperCost(const Camera* camera, const DistanceField* field,
     : camera_(camera), field_(field), points_(points), start_(start) {
   set_num_residuals(static_cast<int>(points->size()));
   mutable_parameter_block_sizes()->push_back(6);
-  if (field->beyond() == FieldBeyond::kSmooth) wide_.emplace(camera);
+  if (field->beyond() == FieldBeyond::kSmooth) extrapolated_.emplace(camera);
 }
 
 double PaperCost::Residual(const Eigen::Vector3d& point_in_camera) const {
-  return wide_ ? field_->Value(wide_->Project(point_in_camera))
-               : PaperResidual(*camera_, *field_, point_in_camera);
+  return extrapolated_ ? field_->Value(extrapolated_->Project(point_in_camera))
+                       : PaperResidual(*camera_, *field_, point_in_camera);
 }
 
 void PaperCost::Residuals(const Vector6d& delta, double* residuals) const {

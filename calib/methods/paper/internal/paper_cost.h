@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/methods/paper/internal/wide_camera.h"
+#include "calib/methods/paper/internal/extrapolated_projection.h"
 #include "calib/model/rigid3.h"
 #include "calib/solve/distance_field.h"
 
@@ -22,7 +22,7 @@ namespace rgbdt {
 /// delta the 6 parameters (rx, ry, rz [rad], tx, ty, tz [m], camera axes) about the start. A point
 /// outside the image takes the border pixel's value, one that no lens could see (behind the camera)
 /// half the image's width; with a field that goes on smoothly, each takes what the field says where
-/// WideCamera puts it. Derivatives by central differences of 1e-6 (paper II-A.3).
+/// ExtrapolatedProjection puts it. Derivatives by central differences of 1e-6 (paper II-A.3).
 class PaperCost : public ceres::CostFunction {
  public:
   static constexpr double kDelta = 1e-6;
@@ -49,7 +49,7 @@ class PaperCost : public ceres::CostFunction {
   const DistanceField* field_;
   const std::vector<Eigen::Vector3d>* points_;
   Rigid3 start_;
-  std::optional<WideCamera> wide_;  // with a smooth field only
+  std::optional<ExtrapolatedProjection> extrapolated_;  // with a smooth field only
 };
 
 /// The residual of one point with the paper's own field: see PaperCost.

@@ -13,6 +13,7 @@
 #include "calib/simulate/internal/board.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/spinning.h"
+#include "tests/simulated_variants.h"
 
 namespace rgbdt {
 namespace {

@@ -1,4 +1,4 @@
-#include "calib/methods/paper/internal/wide_camera.h"
+#include "calib/methods/paper/internal/extrapolated_projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +25,10 @@ double FarthestCorner(const Camera& camera) {
 
 }  // namespace
 
-WideCamera::WideCamera(const Camera* camera) : camera_(camera), limit_(FarthestCorner(*camera)) {}
+ExtrapolatedProjection::ExtrapolatedProjection(const Camera* camera)
+    : camera_(camera), limit_(FarthestCorner(*camera)) {}
 
-Eigen::Vector2d WideCamera::Project(const Eigen::Vector3d& p) const {
+Eigen::Vector2d ExtrapolatedProjection::Project(const Eigen::Vector3d& p) const {
   const double aside = p.head<2>().norm();
   const double angle = std::atan2(aside, p.z());
   if (angle <= limit_) {
@@ -38,7 +39,7 @@ Eigen::Vector2d WideCamera::Project(const Eigen::Vector3d& p) const {
   return Beyond(angle, aside > 0 ? Eigen::Vector2d(p.head<2>() / aside) : Eigen::Vector2d(1, 0));
 }
 
-Eigen::Vector2d WideCamera::Beyond(double angle, const Eigen::Vector2d& towards) const {
+Eigen::Vector2d ExtrapolatedProjection::Beyond(double angle, const Eigen::Vector2d& towards) const {
   const double sine = std::sin(limit_);
   const double cosine = std::cos(limit_);
   const Eigen::Vector3d last(sine * towards.x(), sine * towards.y(), cosine);

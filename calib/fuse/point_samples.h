@@ -11,17 +11,17 @@
 
 namespace rgbdt {
 
-/// Those points of a cloud that lie in one camera's image, hidden or not, and what the image shows
-/// there.
-struct Sightings {
+/// Those points of a cloud that project into one camera's image, occluded or not, and what the
+/// image shows there.
+struct PointSamples {
   std::vector<std::uint32_t> point;  ///< which of the cloud's points, rising
   std::vector<float> u, v;           ///< [px]
   std::vector<float> inverse_range;  ///< from the camera's centre [1/m]
   /// Of a colour camera red | green << 8 | blue << 16; of a thermal one the bits of a float,
   /// counts.
   std::vector<std::uint32_t> sample;
-  std::vector<std::uint8_t> hidden;  ///< 1: something is in the way; as far as Judge() went
-  /// Sightings from `first` on, and before the next run, are of images with this radiometry.
+  std::vector<std::uint8_t> occluded;  ///< 1: it is; as far as TestOcclusion() went
+  /// Samples from `first` on, and before the next run, are of images with this radiometry.
   struct Run {
     std::size_t first = 0;
     std::shared_ptr<const TemperatureTable> temperatures;
@@ -29,7 +29,7 @@ struct Sightings {
   std::vector<Run> runs;
 
   std::size_t size() const { return point.size(); }
-  /// The first sighting, from `begin` on, of this point or a later one; size(): none.
+  /// The first sample, from `begin` on, of this point or a later one; size(): none.
   std::size_t FirstFrom(std::size_t point_number, std::size_t begin = 0) const;
   void Clear() { CutBack(0); }
   /// To the first `size`.
@@ -39,11 +39,11 @@ struct Sightings {
 /// Adds the block's points that lie in the image, sampled bilinearly; goes on with a run.
 /// `first_point`: the number of the block's first one.
 void SampleImage(const FusionCamera& camera, const PreparedImage& image, const PixelBlock& block,
-                 std::size_t first_point, std::size_t count, Sightings* sightings);
+                 std::size_t first_point, std::size_t count, PointSamples* samples);
 
-/// Fills in which of sightings [first, size()) are hidden by `now`, or by `past` if there is one.
-void Judge(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
-           Sightings* sightings);
+/// Fills in which of samples [first, size()) are occluded by `now`, or by `past` if there is one.
+void TestOcclusion(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
+                   PointSamples* samples);
 
 /// A thermal sample's counts.
 inline float CountsOf(std::uint32_t sample) {

@@ -11,10 +11,10 @@ namespace rgbdt {
 /// the camera's own; beyond, the pixel moves on outwards as fast as it did there, for each radian
 /// off the axis. So value and slope are continuous all round, but for straight behind the camera,
 /// which no side is nearer to.
-class WideCamera {
+class ExtrapolatedProjection {
  public:
   /// `camera` outlives it.
-  explicit WideCamera(const Camera* camera);
+  explicit ExtrapolatedProjection(const Camera* camera);
 
   /// Always finite for finite points.
   Eigen::Vector2d Project(const Eigen::Vector3d& point_in_camera) const;

@@ -1,4 +1,4 @@
-#include "calib/methods/paper/internal/wide_camera.h"
+#include "calib/methods/paper/internal/extrapolated_projection.h"
 
 #include <cmath>
 
@@ -30,27 +30,29 @@ CameraSpec CameraNamed(const std::string& lens) {
   return lens == "fisheye" ? FisheyeCamera() : lens == "folding" ? FoldingCamera() : WorldCamera();
 }
 
-class WideCameraOf : public testing::TestWithParam<std::string> {
+class ExtrapolatedProjectionOf : public testing::TestWithParam<std::string> {
  protected:
   const Camera camera_{CameraNamed(GetParam())};
-  const WideCamera wide_{&camera_};
+  const ExtrapolatedProjection extrapolated_{&camera_};
 };
 
-TEST_P(WideCameraOf, EveryPixelOfTheImageIsTheCamerasOwn) {
+TEST_P(ExtrapolatedProjectionOf, EveryPixelOfTheImageIsTheCamerasOwn) {
   for (double u = 0; u <= 639; u += 639.0 / 16) {
     for (double v = 0; v <= 479; v += 479.0 / 16) {
       const auto direction = camera_.Unproject({u, v});
       ASSERT_TRUE(direction);
       const Eigen::Vector3d point = 2.7 * 0.999999 * *direction;
-      ASSERT_EQ(wide_.Project(point), *camera_.Project(point)) << u << ", " << v;
+      ASSERT_EQ(extrapolated_.Project(point), *camera_.Project(point)) << u << ", " << v;
     }
   }
 }
 
-TEST_P(WideCameraOf, ValueAndSlopeGoOnAtTheLimit) {
+TEST_P(ExtrapolatedProjectionOf, ValueAndSlopeGoOnAtTheLimit) {
   constexpr double kStep = 1e-6;
   for (double side = 0; side < 2 * M_PI; side += 0.1) {
-    const auto at = [&](double step) { return wide_.Project(Towards(wide_.limit() + step, side)); };
+    const auto at = [&](double step) {
+      return extrapolated_.Project(Towards(extrapolated_.limit() + step, side));
+    };
     ASSERT_THAT(at(kStep), EigenNear(at(0), 2e-3));  // some 500 to 1000 px/rad
     const Eigen::Vector2d inside = (at(0) - at(-kStep)) / kStep;
     const Eigen::Vector2d outside = (at(kStep) - at(0)) / kStep;
@@ -59,12 +61,12 @@ TEST_P(WideCameraOf, ValueAndSlopeGoOnAtTheLimit) {
   }
 }
 
-TEST_P(WideCameraOf, FartherOffTheAxisIsFartherOutToStraightBehind) {
-  const Eigen::Vector2d centre = wide_.Project({0, 0, 1});
+TEST_P(ExtrapolatedProjectionOf, FartherOffTheAxisIsFartherOutToStraightBehind) {
+  const Eigen::Vector2d centre = extrapolated_.Project({0, 0, 1});
   for (double side = 0; side < 2 * M_PI; side += 0.3) {
     double before = 0;
     for (double angle = 1 * kDegree; angle < M_PI; angle += 1 * kDegree) {
-      const double here = (wide_.Project(Towards(angle, side)) - centre).norm();
+      const double here = (extrapolated_.Project(Towards(angle, side)) - centre).norm();
       ASSERT_GT(here, before) << angle / kDegree << " deg";
       before = here;
     }
@@ -72,7 +74,8 @@ TEST_P(WideCameraOf, FartherOffTheAxisIsFartherOutToStraightBehind) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, WideCameraOf, testing::Values("pinhole", "fisheye", "folding"));
+INSTANTIATE_TEST_SUITE_P(Lenses, ExtrapolatedProjectionOf,
+                         testing::Values("pinhole", "fisheye", "folding"));
 
 }  // namespace
 }  // namespace rgbdt

@@ -1,4 +1,4 @@
-#include "calib/fuse/sightings.h"
+#include "calib/fuse/point_samples.h"
 
 #include <algorithm>
 #include <cstring>
@@ -43,7 +43,7 @@ void Append(const T* from, std::size_t count, std::vector<T>* to) {
 
 }  // namespace
 
-std::size_t Sightings::FirstFrom(std::size_t point_number, std::size_t begin) const {
+std::size_t PointSamples::FirstFrom(std::size_t point_number, std::size_t begin) const {
   if (begin == size() || point[begin] >= point_number) return begin;
   // Each point has a number of its own, so that it cannot lie further on than this.
   const std::size_t end = std::min(size(), begin + point_number - point[begin]);
@@ -52,18 +52,18 @@ std::size_t Sightings::FirstFrom(std::size_t point_number, std::size_t begin) co
   return static_cast<std::size_t>(std::lower_bound(first, last, point_number) - point.begin());
 }
 
-void Sightings::CutBack(std::size_t size) {
+void PointSamples::CutBack(std::size_t size) {
   point.resize(size);
   u.resize(size);
   v.resize(size);
   inverse_range.resize(size);
   sample.resize(size);
-  hidden.resize(std::min(size, hidden.size()));
+  occluded.resize(std::min(size, occluded.size()));
   while (!runs.empty() && runs.back().first >= size) runs.pop_back();
 }
 
 void SampleImage(const FusionCamera& camera, const PreparedImage& image, const PixelBlock& block,
-                 std::size_t first_point, std::size_t count, Sightings* sightings) {
+                 std::size_t first_point, std::size_t count, PointSamples* samples) {
   const cv::Mat& pixels = image.pixels;
   Inside in;
   FindInside(block, first_point, count, pixels, &in);
@@ -76,27 +76,27 @@ void SampleImage(const FusionCamera& camera, const PreparedImage& image, const P
   } else {
     SampleColours(rows, in.u, in.v, in.size, in.sample);
   }
-  std::vector<Sightings::Run>& runs = sightings->runs;
+  std::vector<PointSamples::Run>& runs = samples->runs;
   if (runs.empty() || runs.back().temperatures != image.temperatures) {
-    runs.push_back({sightings->size(), image.temperatures});
+    runs.push_back({samples->size(), image.temperatures});
   }
-  Append(in.point, in.size, &sightings->point);
-  Append(in.u, in.size, &sightings->u);
-  Append(in.v, in.size, &sightings->v);
-  Append(in.inverse_range, in.size, &sightings->inverse_range);
-  Append(in.sample, in.size, &sightings->sample);
+  Append(in.point, in.size, &samples->point);
+  Append(in.u, in.size, &samples->u);
+  Append(in.v, in.size, &samples->v);
+  Append(in.inverse_range, in.size, &samples->inverse_range);
+  Append(in.sample, in.size, &samples->sample);
 }
 
-void Judge(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
-           Sightings* sightings) {
-  sightings->hidden.resize(first);
-  while (first < sightings->size()) {
-    std::uint8_t hidden[PixelBlock::kSize];
-    const std::size_t count = std::min(PixelBlock::kSize, sightings->size() - first);
-    const PixelColumns points{&sightings->u[first], &sightings->v[first],
-                              &sightings->inverse_range[first]};
-    now.FindHidden(past != nullptr ? *past : now, points, count, hidden);
-    Append(hidden, count, &sightings->hidden);
+void TestOcclusion(const DepthBuffer& now, const DepthBuffer* past, std::size_t first,
+                   PointSamples* samples) {
+  samples->occluded.resize(first);
+  while (first < samples->size()) {
+    std::uint8_t occluded[PixelBlock::kSize];
+    const std::size_t count = std::min(PixelBlock::kSize, samples->size() - first);
+    const PixelColumns points{&samples->u[first], &samples->v[first],
+                              &samples->inverse_range[first]};
+    now.FindOccluded(past != nullptr ? *past : now, points, count, occluded);
+    Append(occluded, count, &samples->occluded);
     first += count;
   }
 }

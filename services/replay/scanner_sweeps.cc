@@ -1,4 +1,4 @@
-#include "services/rgbdt/scanner_sweeps.h"
+#include "services/replay/scanner_sweeps.h"
 
 #include <filesystem>
 #include <map>

@@ -1,0 +1,74 @@
+#include "calib/model/image_codec.h"
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+std::uint32_t BigEndian(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  }
+  return value;
+}
+
+// CRC-32 as PNG's chunks carry it (ISO 3309).
+std::uint32_t Crc(const char* bytes, std::size_t size) {
+  static const std::array<std::uint32_t, 256> table = [] {
+    std::array<std::uint32_t, 256> entries{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      std::uint32_t entry = i;
+      for (int bit = 0; bit < 8; ++bit) entry = (entry >> 1) ^ ((entry & 1) * 0xEDB88320u);
+      entries[i] = entry;
+    }
+    return entries;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFu;
+  for (std::size_t i = 0; i < size; ++i) {
+    crc = table[(crc ^ static_cast<unsigned char>(bytes[i])) & 255] ^ (crc >> 8);
+  }
+  return ~crc;
+}
+
+// Whether a PNG is all there and undamaged; true for other formats. Looked at before decoding,
+// because libpng would complain on stderr.
+bool IsWholeIfPng(std::string_view bytes) {
+  const std::string_view signature = "\x89PNG\r\n\x1a\n";
+  if (bytes.compare(0, 8, signature) != 0) return true;
+  std::size_t at = 8;
+  while (bytes.size() - at >= 12) {
+    const std::size_t length = BigEndian(bytes, at);
+    if (length > bytes.size() - at - 12) return false;
+    if (Crc(&bytes[at + 4], length + 4) != BigEndian(bytes, at + 8 + length)) return false;
+    if (bytes.compare(at + 4, 4, "IEND") == 0) return true;
+    at += 12 + length;
+  }
+  return false;
+}
+
+}  // namespace
+
+cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
+  if (size == 0) throw InputError(where + " is empty; expected an image");
+  cv::Mat image;
+  std::string reason = "damaged, cut short or of an unknown format";
+  try {
+    if (IsWholeIfPng({static_cast<const char*>(bytes), size})) {
+      const cv::Mat view(1, static_cast<int>(size), CV_8UC1, const_cast<void*>(bytes));
+      image = cv::imdecode(view, cv::IMREAD_UNCHANGED);
+    }
+  } catch (const std::exception& error) {  // cv::Exception or bad_alloc (a forged size)
+    reason = error.what();
+  }
+  if (image.empty()) throw InputError(where + " cannot be decoded as an image: " + reason);
+  return image;
+}
+
+}  // namespace rgbdt

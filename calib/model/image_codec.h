@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core/mat.hpp>
+#include <string>
+
+namespace rgbdt {
+
+/// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
+/// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be decoded
+/// and for a PNG that is cut short or damaged.
+cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where);
+
+}  // namespace rgbdt

@@ -1,0 +1,56 @@
+#include "services/replay/replay.h"
+
+#include <algorithm>
+
+namespace rgbdt {
+namespace {
+
+CalibrateOptions OptionsOf(const std::string& method) {
+  CalibrateOptions options;
+  options.method = method;
+  return options;
+}
+
+// What sensors, people and the session said.
+bool IsInput(const std::string& channel) {
+  static const std::string kImage = "_IMAGE";
+  return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
+         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND" || channel == "POSE" ||
+         (channel.size() > kImage.size() &&
+          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
+}
+
+}  // namespace
+
+Replay::Replay(const std::string& method)
+    : detector_(method, DetectorNode::Looks::kNo),
+      solver_(OptionsOf(method)),
+      assembler_runner_(&assembler_, &bus_),
+      detector_runner_(&detector_, &bus_),
+      solver_runner_(&solver_, &bus_),
+      fuser_runner_(&fuser_, &bus_),
+      runners_{&assembler_runner_, &detector_runner_, &solver_runner_, &fuser_runner_} {}
+
+bool Replay::IsOfUse(const std::string& channel) {
+  has_lines_ |= channel == "LINE_SCAN";
+  has_session_ |= channel == "SESSION_COMMAND";
+  // A log of clouds only (a 3D LIDAR) has no lines; one with lines gets its clouds from them.
+  if (channel == "CLOUD") return !has_lines_;
+  // A log of a session gets its calibration from its views; any other brings it along.
+  if (channel == "CALIBRATION") return !has_session_;
+  return IsInput(channel);
+}
+
+bool Replay::Take(const std::string& channel, const Bytes& bytes) {
+  if (!IsOfUse(channel)) return false;
+  took_calibration_ |= channel == "CALIBRATION";
+  bus_.Publish(channel, bytes);
+  bus_.Run();
+  Utime now = 0;
+  for (const NodeRunner* runner : runners_) now = std::max(now, runner->newest_utime());
+  for (NodeRunner* runner : runners_) runner->Advance(now);
+  bus_.Run();
+  return true;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,36 @@
+#include "calib/model/text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace rgbdt {
+namespace {
+
+TEST(Format, IsPrintfsTextHoweverLong) {
+  EXPECT_EQ(Format("%.1f m, %s", 2.25, "left"), "2.2 m, left");
+  EXPECT_EQ(Format("%300d", 7).size(), 300U);
+  EXPECT_EQ(Format("%s", ""), "");
+}
+
+TEST(Fixed, HasSoManyDecimals) {
+  EXPECT_EQ(Fixed(1.005, 0), "1");
+  EXPECT_EQ(Fixed(-1.25, 3), "-1.250");
+  EXPECT_EQ(Fixed(std::numeric_limits<double>::infinity(), 2), "inf");
+  EXPECT_EQ(Fixed(std::numeric_limits<double>::max(), 2).size(), 312U);
+}
+
+TEST(Exact, ReadsBackAsTheSameBits) {
+  EXPECT_EQ(Exact(0.1), "0.1");
+  EXPECT_EQ(Exact(-3), "-3");
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 10000; ++i) {
+    const double value = std::ldexp(static_cast<double>(random()) - 9.2e18, i % 600 - 300);
+    ASSERT_EQ(std::stod(Exact(value)), value);
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt
