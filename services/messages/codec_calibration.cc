@@ -12,8 +12,8 @@ calibration_t ToWire(const CalibrationMessage& message) {
   wire.camera = calibration.camera;
   wire.rig_hash = message.rig_hash;
   wire.method = message.method;
-  wire.converged = static_cast<std::int8_t>(calibration.converged);
-  wire.status = calibration.status;
+  wire.status = static_cast<std::int8_t>(calibration.status);
+  wire.detail = calibration.detail;
   RigidToWire(calibration.camera_from_lidar, wire.quaternion_wxyz, wire.translation_m);
   wire.has_covariance = static_cast<std::int8_t>(calibration.covariance.has_value());
   if (calibration.covariance) MatrixToWire(*calibration.covariance, wire.covariance);
@@ -26,7 +26,8 @@ void Check(const calibration_t& wire) {
   CheckCameraName("camera", wire.camera);
   CheckName("rig_hash", wire.rig_hash, true);
   CheckName("method", wire.method, true);
-  CheckText("status", wire.status);
+  CheckRange("status", wire.status, calibration_t::NOT_SOLVED, calibration_t::CONVERGED);
+  CheckText("detail", wire.detail);
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);
   if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);
@@ -40,8 +41,8 @@ CalibrationMessage FromWire(const calibration_t& wire) {
   message.method = wire.method;
   CameraCalibration& calibration = message.calibration;
   calibration.camera = wire.camera;
-  calibration.converged = wire.converged != 0;
-  calibration.status = wire.status;
+  calibration.status = static_cast<SolveStatus>(wire.status);
+  calibration.detail = wire.detail;
   calibration.camera_from_lidar = RigidFromWire(wire.quaternion_wxyz, wire.translation_m);
   if (wire.has_covariance != 0) calibration.covariance = MatrixFromWire(wire.covariance);
   return message;
