@@ -2,8 +2,8 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
-#include "calib/model/view_detection.h"
 #include "calib/model/rig.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 

@@ -45,7 +45,7 @@ TEST(EdgeRmsWhitened, GrowsWhereTheCalibrationIsWrong) {
 
 TEST(MisfitOfEdges, OfAViewWithoutPosesOrSigmasThereIsNone) {
   SolveWorld world;
-  const CameraCalibration truth{"rgb", world.camera_from_lidar[0], {}, true, ""};
+  const CameraCalibration truth{"rgb", world.camera_from_lidar[0], {}, SolveStatus::kConverged, ""};
   const EdgeModel model{world.rig.target};
   CameraView view = CameraViewOf("rgb", world.detections[0]);
   EXPECT_EQ(MisfitOfEdges(model, view, truth).count,
