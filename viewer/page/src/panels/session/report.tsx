@@ -35,11 +35,16 @@ function Figures({ camera }: { camera: CameraReport }) {
   return <Table title="How well it fits" head={["", "Views used", "Views kept for the check"]} rows={rows} />;
 }
 
+function statusText({ status, detail }: { status?: string; detail?: string }): string {
+  const words = (status ?? "NOT_SOLVED").toLowerCase().replace(/_/g, " ");
+  return detail ? `${words}: ${detail}` : words;
+}
+
 function Facts({ camera }: { camera: CameraReport }) {
   const times = camera.seconds ?? {};
   const offset = camera.range_offset_m;
   const rows = [
-    ["Solve", `${camera.converged ? "converged" : "did not converge"}${camera.status && camera.status !== "converged" ? `: ${camera.status}` : ""}`],
+    ["Solve", statusText(camera)],
     ["Views", `${count(camera.views?.used?.length ?? 0, "view")} used, ${camera.views?.heldout?.length ?? 0} kept for the check, ${camera.views?.rejected?.length ?? 0} rejected`],
     ["First guess away from the truth", poseError(camera.first_guess_error)],
     ["Result away from the truth", poseError(camera.truth_error)],
@@ -67,7 +72,7 @@ function Sigma({ camera }: { camera: CameraReport }) {
 }
 
 function Views({ camera }: { camera: CameraReport }) {
-  const rejected = camera.views?.rejected ?? [], remarks = camera.views?.remarks ?? [];
+  const rejected = camera.views?.rejected ?? [], warnings = camera.views?.warnings ?? [];
   const rows = (camera.view_quality ?? []).map((view) => [
     view.view, view.heldout ? "kept for the check" : "used", px(view.edge_rms_px), sigmas(view.edge_rms_whitened),
     px(view.distance_transform_px),
@@ -76,7 +81,7 @@ function Views({ camera }: { camera: CameraReport }) {
     <>
       <Table title="Views" head={["View", "", "Edge RMS", "In sigmas", "Distance transform"]} rows={rows} />
       <Table title="Rejected views" head={["View", "Why"]} rows={rejected.map(({ view, why }) => [view, why])} />
-      {remarks.length > 0 && <ul>{remarks.map((remark) => <li key={remark}>{remark}</li>)}</ul>}
+      {warnings.length > 0 && <ul>{warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
     </>
   );
 }
@@ -96,7 +101,7 @@ function Checks({ camera }: { camera: CameraReport }) {
         ])} />
       <Table title="From other starts" head={["Start", "Ended", "Distance transform", "Away from the result"]}
         rows={(camera.other_starts ?? []).map((start) => [
-          start.start, start.converged ? "converged" : start.status ?? "did not converge", px(start.distance_transform_px),
+          start.start, statusText(start), px(start.distance_transform_px),
           poseError(start.from_result),
         ])} />
       <Table title="What was solved for besides the pose" head={["Unknown", "Value", "1 sigma"]}
