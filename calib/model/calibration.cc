@@ -2,10 +2,35 @@
 
 namespace rgbdt {
 
+namespace {
+
+const char* NameOf(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kNotSolved:
+      return "not calibrated";
+    case SolveStatus::kUndetermined:
+    case SolveStatus::kDegenerate:
+      return "degenerate";
+    case SolveStatus::kNotConverged:
+      return "not converged";
+    case SolveStatus::kFirstGuessKept:
+      return "converged; the first guess was kept";
+    case SolveStatus::kConverged:
+      break;
+  }
+  return "converged";
+}
+
+}  // namespace
+
+std::string CameraCalibration::StatusText() const {
+  return detail.empty() ? NameOf(status) : std::string(NameOf(status)) + ": " + detail;
+}
+
 Calibration Report::ToCalibration() const {
   Calibration calibration{method, rig_hash, utime, {}};
   for (const CameraReport& camera : cameras) {
-    if (camera.solved()) calibration.cameras.push_back(camera.calibration);
+    if (camera.calibration.solved()) calibration.cameras.push_back(camera.calibration);
   }
   return calibration;
 }

@@ -11,13 +11,34 @@
 
 namespace rgbdt {
 
+/// How a camera's solve ended.
+enum class SolveStatus {
+  kNotSolved = 0,       ///< no pose: too few views, or none that agree
+  kUndetermined = 1,    ///< no pose: a single view, or several poses that fit alike
+  kNotConverged = 2,    ///< a pose short of the optimum
+  kDegenerate = 3,      ///< a pose that the views leave loose in some direction
+  kFirstGuessKept = 4,  ///< it fits views left out better than the refined pose
+  kConverged = 5,
+};
+
 /// Where one camera sits: point_in_camera = camera_from_lidar * point_in_lidar.
 struct CameraCalibration {
   std::string camera;
   Rigid3 camera_from_lidar;
   std::optional<Matrix6d> covariance;  ///< of delta (rigid3.h), camera axes; absent: not estimated
-  bool converged = false;
-  std::string status;  ///< "converged", or why not
+  SolveStatus status = SolveStatus::kNotSolved;
+  std::string detail;  ///< in words: why, and what to do; empty where there is nothing to say
+
+  /// Whether the pose is more than the rig's guess, be it good or not.
+  bool solved() const {
+    return status != SolveStatus::kNotSolved && status != SolveStatus::kUndetermined;
+  }
+  /// Whether the pose is one to use.
+  bool converged() const {
+    return status == SolveStatus::kConverged || status == SolveStatus::kFirstGuessKept;
+  }
+  /// Status and detail as a person reads them: "converged", "degenerate: only one view; ...".
+  std::string StatusText() const;
 };
 
 struct Calibration {
@@ -116,7 +137,7 @@ struct CameraReport {
   std::optional<Rigid3> first_guess;  ///< camera_from_lidar that the solve began from
   std::vector<std::string> used, heldout;
   std::vector<RejectedView> rejected;
-  std::vector<std::string> remarks;    ///< what a person should know of the views, in words
+  std::vector<std::string> warnings;   ///< what a person should know of the views, in words
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
   TrainHeldout edge_rms_whitened;      ///< RMS of the crossings' distances, each in its sigmas
@@ -130,9 +151,6 @@ struct CameraReport {
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views
-
-  /// Whether the pose is more than the rig's guess: there were views enough to solve it.
-  bool solved() const { return distance_transform_px.train.has_value(); }
 };
 
 /// Two cameras' pose relative to each other, by way of the LIDAR against by their images alone.

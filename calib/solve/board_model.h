@@ -38,11 +38,11 @@ struct BoardPriors {
   double Sigma(int unknown) const;
 };
 
-/// A detector's errors within one image are partly alike, more than their residuals show: poses
-/// from rendered colour images are off by about half as much again as the corners' scatter has it
-/// (scripts/study detection, corners; those from thermal ones are not). Sigmas of corners are
-/// enlarged by this.
-inline constexpr double kCornersAlike = 1.4;
+/// A detector's errors within one image are partly correlated, more than their residuals show:
+/// poses from rendered colour images are off by about half as much again as the corners' scatter
+/// has it (scripts/study detection, corners; those from thermal ones are not). Sigmas of corners
+/// are enlarged by this factor.
+inline constexpr double kCornerSigmaInflation = 1.4;
 
 /// A crossing against its side. All on the board, metres and radians.
 struct CrossingResidual {

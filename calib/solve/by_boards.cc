@@ -55,7 +55,6 @@ void FillNuisances(const JointProblem& joint, const JointResult& result, CameraR
   }
 }
 
-// How far the sides differ among each other: what no class explains.
 // How much single sides differ: the solve's own estimate, from so many sides.
 void FillSideSpread(const JointProblem& joint, CameraReport* report) {
   double sides = 0;
@@ -75,10 +74,10 @@ void TakeJoint(const CalibrateOptions& options, const JointProblem& joint,
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
     CameraReport& report = joint.cameras[c].views->report;
     const bool converged = result.solution.converged;
-    report.calibration = {
-        joint.cameras[c].views->spec->name, result.solution.state.camera_from_lidar[c],
-        CovarianceOf(result, c), converged,
-        converged ? "converged" : "not converged: the joint solve did not settle"};
+    report.calibration = {joint.cameras[c].views->spec->name,
+                          result.solution.state.camera_from_lidar[c], CovarianceOf(result, c),
+                          converged ? SolveStatus::kConverged : SolveStatus::kNotConverged,
+                          converged ? "" : "the joint solve did not settle"};
     FillNuisances(joint, result, &report);
     FillSideSpread(joint, &report);
     if (!options.first_guess.range_offset) continue;

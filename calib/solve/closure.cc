@@ -25,7 +25,7 @@ struct Alone {
 
 // Of the board's pose in the image.
 Matrix6d ByImage(const Observation& view) {
-  return kCornersAlike * kCornersAlike * view.image->pose->covariance;
+  return kCornerSigmaInflation * kCornerSigmaInflation * view.image->pose->covariance;
 }
 
 Alone FromOneView(const Observation& view, const Rigid3& near) {

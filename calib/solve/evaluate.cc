@@ -97,7 +97,7 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const Observation& observation,
   if (HalfTurned(lidar_from_camera * camera_from_target, *observation.cloud->pose)) {
     camera_from_target = camera_from_target * kHalfTurn;
   }
-  Matrix6d covariance = kCornersAlike * kCornersAlike * seen.covariance;
+  Matrix6d covariance = kCornerSigmaInflation * kCornerSigmaInflation * seen.covariance;
   if (calibration.covariance) covariance += *calibration.covariance;
   const Matrix6d to_target = Adjoint(camera_from_target.Inverse());
   const Matrix6d in_target = to_target * covariance * to_target.transpose();

@@ -13,18 +13,16 @@ namespace {
 
 using Views = std::vector<const Observation*>;
 
-std::string OneViewStatus(const Views& used) {
-  return used.size() == 1 && used[0]->cloud->pose
-             ? WhyDegenerate({used[0]->cloud->pose->sensor_from_target})
-             : "";
-}
-
 bool EnoughViews(const CalibrateOptions& options, CameraViews* camera) {
   const Views used = camera->Used();
   if (static_cast<int>(used.size()) >= options.min_views) return true;
-  const std::string degenerate = OneViewStatus(used);
-  camera->report.calibration.status =
-      degenerate.empty() ? TooFewViews(used.size(), options) : degenerate;
+  CameraCalibration& calibration = camera->report.calibration;
+  if (used.size() == 1 && used[0]->cloud->pose) {
+    calibration.status = SolveStatus::kUndetermined;
+    calibration.detail = WhyDegenerate({used[0]->cloud->pose->sensor_from_target});
+  } else {
+    calibration.detail = TooFewViews(used.size(), options);
+  }
   return false;
 }
 
@@ -35,7 +33,7 @@ std::string Place(const Eigen::Vector3d& p) {
 }
 
 // Names what else in the clouds looks like the target: a second board, a door, a poster.
-void RemarkOthers(CameraViews* camera) {
+void WarnOfOthers(CameraViews* camera) {
   int views = 0;
   std::string example;
   for (const Observation* o : camera->Usable()) {
@@ -49,7 +47,7 @@ void RemarkOthers(CameraViews* camera) {
               Place(other->centre) + " (LIDAR frame)";
   }
   if (example.empty()) return;
-  camera->report.remarks.push_back(
+  camera->report.warnings.push_back(
       "something else of the target's size stands in " + std::to_string(views) + " of " +
       std::to_string(camera->Usable().size()) +
       " clouds, e.g. a second board; the views together chose the target. " + example +
@@ -64,7 +62,8 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
   guess = GuessFromBoards(camera->Used(), options.first_guess);
   if (!guess.camera_from_lidar) {
     camera->report.calibration.status =
-        (guess.ambiguous ? "degenerate: " : "not calibrated: ") + guess.status;
+        guess.ambiguous ? SolveStatus::kUndetermined : SolveStatus::kNotSolved;
+    camera->report.calibration.detail = guess.status;
     return guess;
   }
   for (Observation& o : camera->all) {
@@ -75,7 +74,7 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
     return guess;
   }
   camera->report.first_guess = guess.camera_from_lidar;
-  RemarkOthers(camera);
+  WarnOfOthers(camera);
   return guess;
 }
 
@@ -95,8 +94,8 @@ void CheckDegenerate(CameraViews* camera) {
   std::string why = WhyDegenerate(BoardsOf(*camera));
   if (why.empty() && calibration.covariance) why = WhyLoose(*calibration.covariance);
   if (why.empty()) return;
-  calibration.converged = false;
-  calibration.status = why;
+  calibration.status = SolveStatus::kDegenerate;
+  calibration.detail = why;
   calibration.covariance.reset();
 }
 

@@ -19,8 +19,8 @@ void CalibrateOptions::Check() const {
 }
 
 std::string TooFewViews(std::size_t usable, const CalibrateOptions& options) {
-  return "not calibrated: " + std::to_string(usable) + " usable views, at least " +
-         std::to_string(options.min_views) + " are needed";
+  return std::to_string(usable) + " usable views, at least " + std::to_string(options.min_views) +
+         " are needed";
 }
 
 }  // namespace rgbdt

@@ -25,7 +25,7 @@ struct CalibrateOptions {
   void Check() const;
 };
 
-/// The status of a camera without enough views.
+/// The detail of the status of a camera without enough views.
 std::string TooFewViews(std::size_t usable, const CalibrateOptions& options);
 
 }  // namespace rgbdt

@@ -13,8 +13,8 @@ void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
   copy(wire.camera, calibration.camera);
   copy(wire.rig_hash, message.rig_hash);
   copy(wire.method, message.method);
-  copy(wire.converged, calibration.converged);
   copy(wire.status, calibration.status);
+  copy(wire.detail, calibration.detail);
   copy.Pose(wire.quaternion_wxyz, wire.translation_m, calibration.camera_from_lidar);
   copy.Optional(wire.has_covariance, wire.covariance, calibration.covariance);
 }
@@ -28,7 +28,8 @@ void Check(const calibration_t& wire) {
   CheckCameraName("camera", wire.camera);
   CheckName("rig_hash", wire.rig_hash, true);
   CheckName("method", wire.method, true);
-  CheckText("status", wire.status);
+  CheckRange("status", wire.status, calibration_t::NOT_SOLVED, calibration_t::CONVERGED);
+  CheckText("detail", wire.detail);
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);
   if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);

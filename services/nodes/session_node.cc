@@ -316,8 +316,8 @@ void SessionNode::Save() {
     WriteCalibration(directory_ / "calibration.textproto", calibration);
   }
   for (const CameraReport& camera : report_->cameras) {
-    if (camera.solved()) continue;
-    Fail("camera " + camera.calibration.camera + ": " + camera.calibration.status);
+    if (camera.calibration.solved()) continue;
+    Fail("camera " + camera.calibration.camera + ": " + camera.calibration.StatusText());
     return;
   }
   ReportProgress("saved to " + directory_.string(), 1);

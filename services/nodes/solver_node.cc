@@ -20,7 +20,7 @@ std::string Brief(const Report& report, bool heldout) {
     if (value) {
       text << *value << (heldout ? " px on held-out views" : " px");
     } else {
-      text << (heldout ? "no view held out" : camera.calibration.status);
+      text << (heldout ? "no view held out" : camera.calibration.StatusText());
     }
   }
   return text.str();

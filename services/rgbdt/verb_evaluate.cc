@@ -35,7 +35,7 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->sigma = before.sigma;
   camera->nuisance = before.nuisance;
   camera->folds = before.folds;
-  camera->remarks = before.remarks;
+  camera->warnings = before.warnings;
   camera->halves = before.halves;
   camera->solve_s = before.solve_s;
 }

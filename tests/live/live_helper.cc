@@ -130,7 +130,7 @@ int Garbage(const Arguments& processes) {
 
 void Print(const CameraCalibration& calibration) {
   const Rigid3& pose = calibration.camera_from_lidar;
-  std::printf("%s %s", calibration.camera.c_str(), calibration.status.c_str());
+  std::printf("%s %s", calibration.camera.c_str(), calibration.StatusText().c_str());
   for (const double value :
        {pose.rotation.w(), pose.rotation.x(), pose.rotation.y(), pose.rotation.z(),
         pose.translation.x(), pose.translation.y(), pose.translation.z()}) {

@@ -82,8 +82,9 @@ class World {
     for (const CameraSpec& camera : TinyRig().cameras) {
       report.cameras.emplace_back();
       report.cameras.back().calibration.camera = camera.name;
-      report.cameras.back().calibration.converged = solved;
-      report.cameras.back().calibration.status = solved ? "converged" : "2 usable views";
+      report.cameras.back().calibration.status =
+          solved ? SolveStatus::kConverged : SolveStatus::kNotSolved;
+      if (!solved) report.cameras.back().calibration.detail = "2 usable views";
       if (solved) report.cameras.back().distance_transform_px.train = 1;
     }
     report.method = "paper";

@@ -18,7 +18,7 @@ TEST(Acfr, TheBoardsFindThemselves) {
   EXPECT_EQ(with_corners, 14);
   const Report report = Calibrate(rig, detected->observations);
   const CameraReport& camera = report.cameras.at(0);
-  ASSERT_TRUE(camera.calibration.converged) << camera.calibration.status;
+  ASSERT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
   // The views together choose the board and leave out what is none: at least 12 of 14 clouds.
   EXPECT_GE(camera.used.size() + camera.heldout.size(), 12U);
   const PoseError error = ErrorOf(*camera.first_guess, PublishedCameraFromLidar());
@@ -51,9 +51,9 @@ TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
   std::printf(
       "%s; from the published mean %.2f deg, %.0f mm (the guess: %.2f deg, %.0f mm); "
       "held out %.1f px\n",
-      camera.calibration.status.c_str(), from_published.rotation_deg, from_published.translation_mm,
-      guess_from_published.rotation_deg, guess_from_published.translation_mm,
-      *camera.distance_transform_px.heldout);
+      camera.calibration.StatusText().c_str(), from_published.rotation_deg,
+      from_published.translation_mm, guess_from_published.rotation_deg,
+      guess_from_published.translation_mm, *camera.distance_transform_px.heldout);
   EXPECT_LT(from_published.rotation_deg, guess_from_published.rotation_deg);
   // The report's figures are those of the calibration that it carries.
   const Report again = Evaluate(session.rig, observations, report.ToCalibration());

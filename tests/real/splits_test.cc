@@ -81,9 +81,9 @@ TEST(Acfr, TheResultLiesByThePublishedMean) {
   const Report report = Calibrate(detected->session.rig, detected->observations);
   const CameraCalibration& calibration = report.cameras.at(0).calibration;
   const PoseError error = ErrorOf(calibration.camera_from_lidar, PublishedCameraFromLidar());
-  std::printf("%s: %.2f deg, %.1f mm from the published mean\n", calibration.status.c_str(),
+  std::printf("%s: %.2f deg, %.1f mm from the published mean\n", calibration.StatusText().c_str(),
               error.rotation_deg, error.translation_mm);
-  ASSERT_TRUE(calibration.converged) << calibration.status;
+  ASSERT_TRUE(calibration.converged()) << calibration.StatusText();
   EXPECT_LE(error.rotation_deg, 1.0);
   EXPECT_LE(error.translation_mm, 40);
 }

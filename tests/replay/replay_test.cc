@@ -99,7 +99,7 @@ TEST_F(ReplayTest, TheSessionCalibratesBothCameras) {
   AddTruth(run_->truth, &report);
   ASSERT_EQ(report.cameras.size(), 2U);
   for (const CameraReport& camera : report.cameras) {
-    EXPECT_TRUE(camera.calibration.converged) << camera.calibration.status;
+    EXPECT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
     EXPECT_EQ(camera.heldout.size() + camera.used.size() + camera.rejected.size(), 6U);
     // The paper's method ends within a degree or so (issue 2); how well, the study says.
     EXPECT_LT(camera.truth_error->rotation_deg, 2) << camera.calibration.camera;
@@ -162,7 +162,7 @@ TEST_F(ReplayTest, ADroppedAndTwoReorderedMessagesAreCountedAndHardlyMatter) {
   ASSERT_TRUE(replay.solver().report().has_value());
   const Calibration whole = ReadCalibration(*dir_ / "session/calibration.textproto");
   for (const CameraReport& camera : replay.solver().report()->cameras) {
-    EXPECT_TRUE(camera.calibration.converged);
+    EXPECT_TRUE(camera.calibration.converged());
     const PoseError error = ErrorOf(camera.calibration.camera_from_lidar,
                                     whole.Find(camera.calibration.camera)->camera_from_lidar);
     EXPECT_LT(error.rotation_deg, 0.2) << camera.calibration.camera;

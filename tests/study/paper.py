@@ -27,7 +27,7 @@ def read(folder):
                     "seed": int(path.stem),
                     "camera": camera,
                     "views_used": len(c["views"]["used"]),
-                    "converged": c["converged"],
+                    "converged": c["status"] in ("CONVERGED", "FIRST_GUESS_KEPT"),
                     "rotation_deg": c["truth_error"]["rotation_deg"],
                     "translation_mm": c["truth_error"]["translation_mm"],
                     "guess_rotation_deg": c["first_guess_error"]["rotation_deg"],

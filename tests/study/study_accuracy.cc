@@ -80,8 +80,9 @@ Report GuessOnly(const Rig& rig, const std::vector<Observation>& observations) {
     result.solve_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.calibration.camera = camera.name;
-    result.calibration.converged = guess.camera_from_lidar.has_value();
-    result.calibration.status = guess.status;
+    result.calibration.status =
+        guess.camera_from_lidar ? SolveStatus::kConverged : SolveStatus::kNotSolved;
+    result.calibration.detail = guess.status;
     if (!guess.camera_from_lidar) continue;
     result.calibration.camera_from_lidar = *guess.camera_from_lidar;
     result.calibration.covariance = guess.covariance;
@@ -109,7 +110,7 @@ Report JudgeTruth(const Trial& trial) {
   Calibration calibration;
   calibration.method = kAutoMethod;
   for (const auto& [camera, pose] : trial.truth.camera_from_lidar) {
-    calibration.cameras.push_back({camera, pose, std::nullopt, true, "truth"});
+    calibration.cameras.push_back({camera, pose, std::nullopt, SolveStatus::kConverged, ""});
   }
   return Evaluate(trial.rig, heldout, calibration);
 }
@@ -161,7 +162,7 @@ class Table {
         Write(truth.cameras[i].distance_transform_px.heldout);
         Write(board_chi2);
         csv_ << ',' << 1e3 * camera.solve_s << ',' << 1e3 * seconds << ",\""
-             << camera.calibration.status << "\"\n";
+             << camera.calibration.StatusText() << "\"\n";
       }
     }
   }
@@ -189,7 +190,7 @@ class Table {
       sigma_deg = std::sqrt(found.covariance->topLeftCorner<3, 3>().trace()) / simulate::kDegree;
       sigma_mm = 1e3 * std::sqrt(found.covariance->bottomRightCorner<3, 3>().trace());
     }
-    csv_ << ',' << found.camera << ',' << found.converged << ',' << camera.used.size() << ','
+    csv_ << ',' << found.camera << ',' << found.converged() << ',' << camera.used.size() << ','
          << error.rotation_deg << ',' << error.translation_mm;
     for (const auto& value : {chi2, inside, sigma_deg, sigma_mm}) Write(value);
   }

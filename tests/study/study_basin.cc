@@ -69,7 +69,7 @@ Result ByPaper(const PairedSession& session, std::size_t camera, const Rigid3& g
   options.smooth_field = smooth_field;
   const CameraCalibration found =
       SolvePaper(spec, ViewsOfCamera(session.by_paper, spec.name), guess, options);
-  return ResultOf(found.camera_from_lidar, session.camera_from_lidar[camera], found.converged);
+  return ResultOf(found.camera_from_lidar, session.camera_from_lidar[camera], found.converged());
 }
 
 // The joint solve alone: no vote, no first guess of its own.
@@ -77,7 +77,7 @@ Result ByRefinement(const PairedSession& session, std::size_t camera, const Rigi
   const BoardProblem problem = ProblemOf(session, camera, 1000, guess);
   const BoardSolution found = SolveBoards(problem, StartOf(problem, {guess}));
   return ResultOf(found.state.camera_from_lidar[0], session.camera_from_lidar[camera],
-                  found.converged);
+                  found.converged());
 }
 
 // As `rgbdt calibrate` runs it: all cameras, whatever the rig's guesses are.
@@ -94,7 +94,7 @@ std::vector<Result> ByBoards(const PairedSession& session,
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const CameraCalibration& found = report.cameras[c].calibration;
     results.push_back(
-        ResultOf(found.camera_from_lidar, session.camera_from_lidar[c], found.converged));
+        ResultOf(found.camera_from_lidar, session.camera_from_lidar[c], found.converged()));
   }
   return results;
 }

@@ -27,8 +27,8 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
   if (camera.has_covariance()) {
     out.covariance = text::ToMatrix(camera.covariance(), place.In("covariance"));
   }
-  out.converged = camera.converged();
-  out.status = camera.status();
+  out.status = text::ToStatus(camera.status(), place);
+  out.detail = camera.detail();
   return out;
 }
 
@@ -38,8 +38,8 @@ void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) 
   if (camera.covariance && camera.covariance->allFinite()) {
     text::FromMatrix(*camera.covariance, out->mutable_covariance());
   }
-  out->set_converged(camera.converged);
-  out->set_status(text::ValidUtf8(camera.status));
+  out->set_status(text::FromStatus(camera.status));
+  out->set_detail(text::ValidUtf8(camera.detail));
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ bool HasTerms(const Lens& lens, std::size_t from) {
 }
 
 std::string StatusComment(const Exported& camera) {
-  if (camera.calibration.converged) return {};
-  std::string status = camera.calibration.status;
+  if (camera.calibration.converged()) return {};
+  std::string status = camera.calibration.StatusText();
   for (char& c : status) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }

@@ -41,6 +41,19 @@ void Fill(const Rigid3& pose, Pose* out) {
 
 }  // namespace
 
+SolveStatus ToStatus(proto::SolveStatus status, const Place& place) {
+  if (!proto::SolveStatus_IsValid(status)) {
+    place.Fail("status", "is " + std::to_string(status) + "; expected a status's name");
+  }
+  return static_cast<SolveStatus>(status);
+}
+
+proto::SolveStatus FromStatus(SolveStatus status) {
+  static_assert(static_cast<int>(SolveStatus::kDegenerate) == proto::DEGENERATE &&
+                static_cast<int>(SolveStatus::kConverged) == proto::CONVERGED);
+  return static_cast<proto::SolveStatus>(status);
+}
+
 void RequireFinite(double number, const Place& place, const std::string& field) {
   if (!std::isfinite(number)) {
     place.Fail(field, "is " + std::to_string(number) + "; expected a finite number");

@@ -7,6 +7,7 @@
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
+#include "calib/model/calibration.h"
 #include "calib/model/image.h"
 #include "calib/model/rigid3.h"
 
@@ -26,11 +27,14 @@ void RequireFinite(double number, const Place& place, const std::string& field);
 Rigid3 ToRigid3(const proto::Pose& pose, const Place& place);
 Rigid3 ToRigid3(const proto::RigidMotion& pose, const Place& place);
 Matrix6d ToMatrix(const proto::Covariance& covariance, const Place& place);
+/// Throws InputError for a number that is no status.
+SolveStatus ToStatus(proto::SolveStatus status, const Place& place);
 
 /// Both with a normalised quaternion.
 void FromRigid3(const Rigid3& pose, proto::Pose* out);
 void FromRigid3(const Rigid3& pose, proto::RigidMotion* out);
 void FromMatrix(const Matrix6d& covariance, proto::Covariance* out);
+proto::SolveStatus FromStatus(SolveStatus status);
 
 /// Gain, offset and so on; emissivity and reflected temperature are the caller's.
 Radiometry ToRadiometry(const proto::LinearRadiometry& linear, const Place& place);

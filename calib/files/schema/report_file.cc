@@ -35,8 +35,8 @@ void FromViews(const CameraReport& camera, proto::CameraReport* out) {
     rejected->set_view(ValidUtf8(view.view));
     rejected->set_why(ValidUtf8(view.why));
   }
-  for (const std::string& remark : camera.remarks) {
-    out->mutable_views()->add_remarks(ValidUtf8(remark));
+  for (const std::string& warning : camera.warnings) {
+    out->mutable_views()->add_warnings(ValidUtf8(warning));
   }
   for (const ViewQuality& view : camera.views) {
     proto::ViewQuality* quality = out->add_view_quality();
@@ -54,7 +54,7 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
   const proto::Views& views = message.views();
   camera->used.assign(views.used().begin(), views.used().end());
   camera->heldout.assign(views.heldout().begin(), views.heldout().end());
-  camera->remarks.assign(views.remarks().begin(), views.remarks().end());
+  camera->warnings.assign(views.warnings().begin(), views.warnings().end());
   for (const proto::RejectedView& view : views.rejected()) {
     camera->rejected.push_back({view.view(), view.why()});
   }
@@ -70,8 +70,8 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
 void FromStart(const StartResult& start, proto::StartResult* out) {
   out->set_start(ValidUtf8(start.start));
   text::FromRigid3(start.calibration.camera_from_lidar, out->mutable_camera_from_lidar());
-  out->set_converged(start.calibration.converged);
-  out->set_status(ValidUtf8(start.calibration.status));
+  out->set_status(text::FromStatus(start.calibration.status));
+  out->set_detail(ValidUtf8(start.calibration.detail));
   if (start.distance_transform_px && std::isfinite(*start.distance_transform_px)) {
     out->set_distance_transform_px(*start.distance_transform_px);
   }
@@ -86,8 +86,8 @@ StartResult ToStart(const proto::StartResult& message, const std::string& camera
   start.calibration.camera = camera;
   start.calibration.camera_from_lidar =
       text::ToRigid3(message.camera_from_lidar(), place.In("camera_from_lidar"));
-  start.calibration.converged = message.converged();
-  start.calibration.status = message.status();
+  start.calibration.status = text::ToStatus(message.status(), place);
+  start.calibration.detail = message.detail();
   if (message.has_distance_transform_px()) {
     start.distance_transform_px = message.distance_transform_px();
   }
@@ -99,8 +99,8 @@ StartResult ToStart(const proto::StartResult& message, const std::string& camera
 void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   const CameraCalibration& calibration = camera.calibration;
   text::FromRigid3(calibration.camera_from_lidar, out->mutable_camera_from_lidar());
-  out->set_converged(calibration.converged);
-  out->set_status(ValidUtf8(calibration.status));
+  out->set_status(text::FromStatus(calibration.status));
+  out->set_detail(ValidUtf8(calibration.detail));
   if (calibration.covariance && calibration.covariance->allFinite()) {
     text::FromMatrix(*calibration.covariance, out->mutable_covariance());
   }
@@ -128,8 +128,8 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   camera.calibration.camera = name;
   camera.calibration.camera_from_lidar =
       text::ToRigid3(message.camera_from_lidar(), place.In("camera_from_lidar"));
-  camera.calibration.converged = message.converged();
-  camera.calibration.status = message.status();
+  camera.calibration.status = text::ToStatus(message.status(), place);
+  camera.calibration.detail = message.detail();
   if (message.has_covariance()) {
     camera.calibration.covariance = text::ToMatrix(message.covariance(), place.In("covariance"));
   }

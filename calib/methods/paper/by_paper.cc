@@ -94,14 +94,15 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   CameraCalibration result;
   result.camera = spec.name;
   result.camera_from_lidar = Exp(delta) * start;
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.status = result.converged ? "converged" : "not converged: " + summary.message;
+  const bool converged = summary.termination_type == ceres::CONVERGENCE;
+  result.status = converged ? SolveStatus::kConverged : SolveStatus::kNotConverged;
+  if (!converged) result.detail = summary.message;
   // Where most points miss the image the gradient vanishes, which Ceres takes for a minimum; not so
   // where the field goes on.
   const double share = ShareInImage(camera, used, result.camera_from_lidar);
   if (!options.smooth_field && share < kMinShareInImage) {
-    result.converged = false;
-    result.status = "not converged: only " + std::to_string(std::lround(100 * share)) +
+    result.status = SolveStatus::kNotConverged;
+    result.detail = "only " + std::to_string(std::lround(100 * share)) +
                     "% of the boundary points project into the image; start nearer";
   }
   return result;
@@ -115,7 +116,7 @@ void CalibrateByPaper(const CalibrateOptions& options, CameraViews* views) {
   report.calibration.camera_from_lidar = guess;
   const Views used = views->Used();
   if (static_cast<int>(used.size()) < options.min_views) {
-    report.calibration.status =
+    report.calibration.detail =
         TooFewViews(used.size(), options) +
         (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
     return;

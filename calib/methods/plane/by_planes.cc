@@ -48,21 +48,22 @@ CameraCalibration SolvePlanes(const std::vector<const Observation*>& used, const
   constexpr int kIterations = 50;
   CameraCalibration result;
   result.camera_from_lidar = start;
-  for (int i = 0; i < kIterations && !result.converged; ++i) {
+  bool converged = false;
+  for (int i = 0; i < kIterations && !converged; ++i) {
     const Sums sums = SumsAt(used, result.camera_from_lidar);
     const Vector6d step = sums.h.ldlt().solve(sums.g);
     if (!step.allFinite()) break;
     result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
-    result.converged = step.norm() < 1e-10;
+    converged = step.norm() < 1e-10;
   }
   const Sums sums = SumsAt(used, result.camera_from_lidar);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(sums.h);
-  if (!result.converged || !(eigen.eigenvalues()[0] > 1e-9 * eigen.eigenvalues()[5])) {
-    result.converged = false;
-    result.status = "degenerate: the boards' planes leave the pose loose; tilt the board otherwise";
+  if (!converged || !(eigen.eigenvalues()[0] > 1e-9 * eigen.eigenvalues()[5])) {
+    result.status = SolveStatus::kDegenerate;
+    result.detail = "the boards' planes leave the pose loose; tilt the board otherwise";
     return result;
   }
-  result.status = "converged";
+  result.status = SolveStatus::kConverged;
   const double variance = sums.squares / std::max(1.0, sums.points - 6);
   const Matrix6d inverse = sums.h.ldlt().solve(Matrix6d::Identity());
   result.covariance = 0.5 * variance * (inverse + inverse.transpose());

@@ -48,7 +48,7 @@ SigmaStep SigmaStepOf(const Report& report) {
   SigmaStep step;
   for (const CameraReport& camera : report.cameras) {
     const auto sigma = SigmaOf(camera.calibration);
-    if (!sigma || !camera.solved()) continue;
+    if (!sigma || !camera.calibration.solved()) continue;
     step.cameras[camera.calibration.camera] = *sigma;
     step.views = std::max(step.views, static_cast<int>(camera.used.size()));
   }

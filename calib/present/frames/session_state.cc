@@ -208,7 +208,7 @@ json CameraOf(const SessionState& state, const JudgedCamera& judged) {
   const auto utime = state.calibration_utime.find(judged.camera);
   json out = {{"camera", judged.camera},
               {"calibrated", calibration != nullptr},
-              {"status", calibration == nullptr ? "not calibrated yet" : calibration->status},
+              {"status", calibration == nullptr ? "not calibrated yet" : calibration->StatusText()},
               {"utime", utime == state.calibration_utime.end() ? 0 : utime->second},
               {"camera_from_lidar", nullptr},
               {"rotation_sigma_deg", nullptr},
@@ -223,8 +223,8 @@ json CameraOf(const SessionState& state, const JudgedCamera& judged) {
       out["rotation_sigma_deg"] = sigma->first;
       out["centre_sigma_mm"] = sigma->second;
     }
-  } else if (judged.report != nullptr && !judged.report->calibration.status.empty()) {
-    out["status"] = judged.report->calibration.status;
+  } else if (judged.report != nullptr && !judged.report->calibration.detail.empty()) {
+    out["status"] = judged.report->calibration.StatusText();
   }
   if (judged.report != nullptr) {
     out["heldout_edge_px"] = Optional(judged.report->edge_rms_px.heldout);

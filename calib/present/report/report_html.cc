@@ -137,9 +137,11 @@ std::string ViewsHtml(const CameraReport& camera) {
                    [](const Line& a, const Line& b) { return NaturalLess(a.view, b.view); });
   Rows rows;
   for (const Line& line : lines) rows.push_back(line.cells);
-  std::string remarks;
-  for (const std::string& remark : camera.remarks) remarks += "<p>" + Escape(remark) + "</p>\n";
-  return Heading(3, "Views") + remarks +
+  std::string warnings;
+  for (const std::string& warning : camera.warnings) {
+    warnings += "<p>" + Escape(warning) + "</p>\n";
+  }
+  return Heading(3, "Views") + warnings +
          html::Table({"view", "role", "edge RMS [px]", "distance transform [px]", "why rejected"},
                      rows);
 }
@@ -148,10 +150,11 @@ std::string StartsHtml(const CameraReport& camera) {
   if (camera.other_starts.empty()) return {};
   Rows rows;
   for (const StartResult& start : camera.other_starts) {
-    rows.push_back({Escape(start.start),
-                    start.calibration.converged ? "yes" : "no: " + Escape(start.calibration.status),
-                    Optional(start.distance_transform_px, 2), PoseErrorText(start.from_result),
-                    start.truth_error ? PoseErrorText(*start.truth_error) : "–"});
+    rows.push_back(
+        {Escape(start.start),
+         start.calibration.converged() ? "yes" : "no: " + Escape(start.calibration.StatusText()),
+         Optional(start.distance_transform_px, 2), PoseErrorText(start.from_result),
+         start.truth_error ? PoseErrorText(*start.truth_error) : "–"});
   }
   return Heading(3, "The same solve from other starts") +
          html::Table({"start", "converged", "distance transform [px]", "away from the result",

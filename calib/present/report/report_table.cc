@@ -43,18 +43,17 @@ std::string ColourSigma(const CameraReport& camera) {
 }
 
 // What a camera's column has no room for.
-std::string Remarks(const CameraReport& camera) {
+std::string Warnings(const CameraReport& camera) {
   const std::string& name = camera.calibration.camera;
-  const std::string& status = camera.calibration.status;
   std::string text;
-  if (!camera.calibration.converged || (!status.empty() && status != "converged")) {
-    text += name + ": " + status + "\n";
+  if (camera.calibration.status != SolveStatus::kConverged) {
+    text += name + ": " + camera.calibration.StatusText() + "\n";
   }
   for (const RejectedView& view : camera.rejected) {
     text += name + ": view " + view.view + " rejected: " + view.why + "\n";
   }
-  for (const std::string& remark : camera.remarks) {
-    text += name + ": " + remark + "\n";
+  for (const std::string& warning : camera.warnings) {
+    text += name + ": " + warning + "\n";
   }
   return text;
 }
@@ -73,7 +72,7 @@ std::string ReportTable(const Report& report) {
   };
   row("method " + report.method, [](const CameraReport& c) { return c.calibration.camera; });
   row("status", [](const CameraReport& c) {
-    return std::string(c.calibration.converged ? "converged" : "NOT CONVERGED");
+    return std::string(c.calibration.converged() ? "converged" : "NOT CONVERGED");
   });
   row("views used / held out / rejected", [](const CameraReport& c) {
     return fmt::format("{} / {} / {}", c.used.size(), c.heldout.size(), c.rejected.size());
@@ -115,14 +114,14 @@ std::string ReportTable(const Report& report) {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  for (const CameraReport& camera : report.cameras) text += Remarks(camera);
+  for (const CameraReport& camera : report.cameras) text += Warnings(camera);
   if (report.next_view) text += "next view: " + report.next_view->words + "\n";
   return text;
 }
 
 bool AllConverged(const Report& report) {
   return std::all_of(report.cameras.begin(), report.cameras.end(),
-                     [](const CameraReport& c) { return c.calibration.converged; });
+                     [](const CameraReport& c) { return c.calibration.converged(); });
 }
 
 }  // namespace rgbdt

@@ -41,7 +41,7 @@ std::string ViewsToTake(int found) {
 }
 
 bool WasJudged(const CameraReport* report) {
-  return report != nullptr && (report->solved() || report->edge_rms_px.heldout.has_value());
+  return report != nullptr && (report->edge_rms_px.train || report->edge_rms_px.heldout);
 }
 
 // Worst 1 sigma of a colour at kColoursAtM over all cameras [px]; nothing where one has none.
@@ -123,8 +123,8 @@ VerdictWords VerdictOf(const JudgedCamera& camera, const std::optional<NextView>
   }
   if (camera.calibrated) return {"none", "Calibrated, but not judged on views yet", {}};
   VerdictWords words{"none", kNoneYet, {ViewsToTake(camera.views_found)}};
-  if (camera.report != nullptr && !camera.report->calibration.status.empty()) {
-    words.reasons.push_back("The solve says: " + camera.report->calibration.status);
+  if (camera.report != nullptr && !camera.report->calibration.detail.empty()) {
+    words.reasons.push_back("The solve says: " + camera.report->calibration.StatusText());
   }
   return words;
 }

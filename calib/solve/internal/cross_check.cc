@@ -71,7 +71,7 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
   const auto at = static_cast<Index>(6 * camera);
   const CameraCalibration fold_calibration{
       report.calibration.camera, solution.state.camera_from_lidar[camera],
-      Matrix6d(solution.covariance.block<6, 6>(at, at)), true, ""};
+      Matrix6d(solution.covariance.block<6, 6>(at, at)), SolveStatus::kConverged, ""};
   const EdgeModel edges{joint.problem.target, solution.state.shared, joint.problem.priors};
   Judged judged;
   judged.fold.from_result =
@@ -120,12 +120,13 @@ void KeepGuess(const GuessedCamera& camera) {
   }
   char text[200];
   std::snprintf(text, sizeof text,
-                "converged; the first guess was kept: on views left out it fits better than the "
-                "refined pose (chi-square %.1f against %.1f a view)",
+                "on views left out it fits better than the refined pose (chi-square %.1f against "
+                "%.1f a view)",
                 guessed, refined);
   report.calibration.camera_from_lidar = *camera.guess.camera_from_lidar;
   report.calibration.covariance = camera.guess.covariance;
-  report.calibration.status = text;
+  report.calibration.status = SolveStatus::kFirstGuessKept;
+  report.calibration.detail = text;
 }
 
 void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::size_t parts) {

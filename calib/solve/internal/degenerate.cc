@@ -38,7 +38,7 @@ const char* AxisOf(const Eigen::Vector3d& v) {
 }  // namespace
 
 std::string WhyDegenerate(const std::vector<Rigid3>& boards) {
-  if (boards.empty()) return "degenerate: no view";
+  if (boards.empty()) return "no view";
   const Eigen::Vector3d normal = MeanNormal(boards);
   double angle = 0;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -50,15 +50,15 @@ std::string WhyDegenerate(const std::vector<Rigid3>& boards) {
   double apart = 0;
   for (const Rigid3& board : boards) apart = std::max(apart, (board.translation - middle).norm());
   if (boards.size() == 1 || angle < kParallelRad) {
-    return (boards.size() == 1 ? std::string("degenerate: only one view")
-                               : "degenerate: the board was parallel to itself in all " +
+    return (boards.size() == 1 ? std::string("only one view")
+                               : "the board was parallel to itself in all " +
                                      std::to_string(boards.size()) + " views") +
            "; shifts of the camera across the board's normal " + Direction(normal) +
            " and turns about it (LIDAR frame) are loose. Next: tilt the board by 20 to 40 deg, to "
            "different sides";
   }
   if (apart < kOnePlaceM) {
-    return "degenerate: the board was at one place in all " + std::to_string(boards.size()) +
+    return "the board was at one place in all " + std::to_string(boards.size()) +
            " views; a turn of the camera about that place (" + Place(middle) +
            ", LIDAR frame) and a shift of it look alike. Next: hold the board nearer, farther, and "
            "to both sides";
@@ -75,11 +75,11 @@ std::string WhyLoose(const Matrix6d& covariance) {
   char text[200];
   if (turn / kLooseRad >= shift / kLooseM) {
     std::snprintf(text, sizeof text,
-                  "degenerate: turns about the camera's %s are known to %.1f deg only (1 sigma)",
+                  "turns about the camera's %s are known to %.1f deg only (1 sigma)",
                   AxisOf(turns.eigenvectors().col(2)), turn * 180 / M_PI);
   } else {
     std::snprintf(text, sizeof text,
-                  "degenerate: shifts along the camera's %s are known to %.0f mm only (1 sigma)",
+                  "shifts along the camera's %s are known to %.0f mm only (1 sigma)",
                   AxisOf(shifts.eigenvectors().col(2)), shift * 1000);
   }
   return std::string(text) + "; add views with the board elsewhere and tilted otherwise";

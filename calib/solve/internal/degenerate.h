@@ -7,8 +7,8 @@
 
 namespace rgbdt {
 
-/// Why boards at these places leave a camera's pose loose, and in which direction, in words that
-/// begin with "degenerate: "; empty: they do not. One board, boards all parallel, or all at one
+/// Why boards at these places leave a camera's pose loose, and in which direction, in words; empty:
+/// they do not. One board, boards all parallel, or all at one
 /// place: a shift or a turn of the camera is then told by the boards' edges alone or not at all.
 std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target);
 

@@ -204,7 +204,7 @@ bool DropSide(JointProblem* joint, const BoardState& state) {
   if (worst <= most) return false;
   joint->problem.views[view].sides[side] = false;
   for (const BoardSight& sight : joint->problem.views[view].sights) {
-    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.remarks.push_back(
+    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.warnings.push_back(
         "view " + joint->problem.views[view].name + ": the board's " + kSideNames[side] +
         " side in the cloud lies " + Fixed(worst * 1000, 1) +
         " mrad from where the other sides put it; that side is left out, the view is used");

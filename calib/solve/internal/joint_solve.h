@@ -38,7 +38,7 @@ struct JointResult {
 /// and solves again. What is left out is gone from the problem, and rejected with its reason among
 /// the cameras' observations. A view's own estimate of a camera against that of all others: beyond
 /// what chance does once in 20,000 views, it is out. A side's own shift beyond 4 of its sigmas: its
-/// crossings are out, and a remark says so.
+/// crossings are out, and a warning says so.
 JointResult SolveJointly(JointProblem* joint);
 
 /// Of camera `index` [delta of rigid3.h], the variance factor counted in.

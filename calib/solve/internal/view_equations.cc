@@ -40,7 +40,8 @@ void ViewEquations::AddCorners(const BoardSight& sight) {
   const auto model = problem_.target.InnerCorners();
   const auto& seen = sight.image->corners;
   if (seen.size() != model.size()) return;
-  const double sigma = kCornersAlike * std::max(kLeastCornerPx, sight.image->corner_sigma_px);
+  const double sigma =
+      kCornerSigmaInflation * std::max(kLeastCornerPx, sight.image->corner_sigma_px);
   Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
   Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {

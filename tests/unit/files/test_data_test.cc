@@ -54,7 +54,8 @@ CameraSpec MakeThermal() {
 
 CameraReport MakeCameraReport(const std::string& name) {
   CameraReport camera;
-  camera.calibration = {name, MakePose(0.4, {0.1, 0.2, 0.3}), std::nullopt, true, "converged"};
+  camera.calibration = {name, MakePose(0.4, {0.1, 0.2, 0.3}), std::nullopt, SolveStatus::kConverged,
+                        ""};
   camera.first_guess = MakePose(0.41, {0.12, 0.2, 0.3});
   camera.used = {"0001", "0002", "0004", "0005", "0007"};
   camera.heldout = {"0003"};
@@ -65,7 +66,8 @@ CameraReport MakeCameraReport(const std::string& name) {
                   {"0003", true, 1.0 / 3, 0.625, std::nullopt}};
   StartResult start;
   start.start = "30 deg about x, 40 deg about z";
-  start.calibration = {name, MakePose(0.5, {0, 0, 1}), std::nullopt, false, "stopped"};
+  start.calibration = {name, MakePose(0.5, {0, 0, 1}), std::nullopt, SolveStatus::kNotConverged,
+                       "stopped"};
   start.distance_transform_px = 3.5;
   start.from_result = {5.7, 700.5};
   camera.other_starts = {start};

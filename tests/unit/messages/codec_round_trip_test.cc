@@ -148,8 +148,8 @@ TEST_F(RoundTrip, Calibration) {
     EXPECT_EQ(a.rig_hash, b.rig_hash);
     EXPECT_EQ(a.method, b.method);
     EXPECT_EQ(a.calibration.camera, b.calibration.camera);
-    EXPECT_EQ(a.calibration.converged, b.calibration.converged);
     EXPECT_EQ(a.calibration.status, b.calibration.status);
+    EXPECT_EQ(a.calibration.detail, b.calibration.detail);
     ExpectSameRigid(a.calibration.camera_from_lidar, b.calibration.camera_from_lidar);
     EXPECT_EQ(a.calibration.covariance, b.calibration.covariance);
   }

@@ -234,8 +234,8 @@ class RandomMessages {
     message.method = "paper";
     message.calibration.camera = Name();
     message.calibration.camera_from_lidar = Rigid();
-    message.calibration.converged = Coin();
-    message.calibration.status = Text();
+    message.calibration.status = static_cast<SolveStatus>(Int(0, 5));
+    message.calibration.detail = Text();
     if (Coin()) message.calibration.covariance = Covariance<6>();
     return message;
   }

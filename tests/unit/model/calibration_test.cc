@@ -46,20 +46,39 @@ TEST(Report, ToCalibrationKeepsTheSolvedCamerasAndWhereItComesFrom) {
   report.utime = 42;
   report.cameras.resize(3);
   report.cameras[0].calibration.camera = "rgb";
-  report.cameras[0].distance_transform_px.train = 1.5;
+  report.cameras[0].calibration.status = SolveStatus::kConverged;
   report.cameras[1].calibration.camera = "thermal";
-  report.cameras[1].calibration.status = "not converged: stopped";
-  report.cameras[1].distance_transform_px.train = 9.5;
+  report.cameras[1].calibration.status = SolveStatus::kNotConverged;
   report.cameras[2].calibration.camera = "lwir";
-  report.cameras[2].calibration.status = "not calibrated: 0 usable views";
+  report.cameras[2].calibration.detail = "0 usable views";
   const Calibration calibration = report.ToCalibration();
   EXPECT_EQ(calibration.method, "paper");
   EXPECT_EQ(calibration.rig_hash, "abc");
   EXPECT_EQ(calibration.utime, 42);
   ASSERT_EQ(calibration.cameras.size(), 2U);
   ASSERT_NE(calibration.Find("thermal"), nullptr);
-  EXPECT_EQ(calibration.Find("thermal")->status, "not converged: stopped");
+  EXPECT_EQ(calibration.Find("thermal")->status, SolveStatus::kNotConverged);
   EXPECT_EQ(calibration.Find("lwir"), nullptr) << "a guess is no calibration";
+}
+
+TEST(CameraCalibration, SaysHowItsSolveEnded) {
+  CameraCalibration calibration;
+  EXPECT_EQ(calibration.StatusText(), "not calibrated");
+  EXPECT_FALSE(calibration.solved());
+  calibration.detail = "the reason";
+  const std::map<SolveStatus, std::string> texts = {
+      {SolveStatus::kNotSolved, "not calibrated: the reason"},
+      {SolveStatus::kUndetermined, "degenerate: the reason"},
+      {SolveStatus::kNotConverged, "not converged: the reason"},
+      {SolveStatus::kDegenerate, "degenerate: the reason"},
+      {SolveStatus::kFirstGuessKept, "converged; the first guess was kept: the reason"},
+      {SolveStatus::kConverged, "converged: the reason"}};
+  for (const auto& [status, text] : texts) {
+    calibration.status = status;
+    EXPECT_EQ(calibration.StatusText(), text);
+    EXPECT_EQ(calibration.solved(), status >= SolveStatus::kNotConverged) << text;
+    EXPECT_EQ(calibration.converged(), status >= SolveStatus::kFirstGuessKept) << text;
+  }
 }
 
 }  // namespace

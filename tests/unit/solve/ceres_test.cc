@@ -322,7 +322,7 @@ class CeresBoards {
     const auto model = problem_.target.InnerCorners();
     for (std::size_t i = 0; i < model.size(); ++i) {
       Add(CornerResidual{seen, model[sight.turned ? model.size() - 1 - i : i], image.corners[i],
-                         kCornersAlike * image.corner_sigma_px},
+                         kCornerSigmaInflation * image.corner_sigma_px},
           2, {camera, board}, new TailLoss(2));
     }
     const auto corners = problem_.target.OutlineCorners();

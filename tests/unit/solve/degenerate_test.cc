@@ -17,8 +17,8 @@ TEST(WhyDegenerate, OfATiltedAndMovedBoardThereIsNothingToSay) {
 }
 
 TEST(WhyDegenerate, OneView) {
-  EXPECT_THAT(WhyDegenerate({Boards()[0]}), StartsWith("degenerate: only one view"));
-  EXPECT_THAT(WhyDegenerate({}), StartsWith("degenerate: no view"));
+  EXPECT_THAT(WhyDegenerate({Boards()[0]}), StartsWith("only one view"));
+  EXPECT_THAT(WhyDegenerate({}), StartsWith("no view"));
 }
 
 TEST(WhyDegenerate, ParallelBoardsWhoseRollSaysNothing) {
@@ -27,8 +27,7 @@ TEST(WhyDegenerate, ParallelBoardsWhoseRollSaysNothing) {
     boards[i].rotation =
         (boards[0] * RotationAbout({0, 0, 1}, 0.2 * static_cast<double>(i))).rotation;
   }
-  EXPECT_THAT(WhyDegenerate(boards),
-              AllOf(StartsWith("degenerate: "), HasSubstr("parallel"), HasSubstr(" 10 views")));
+  EXPECT_THAT(WhyDegenerate(boards), AllOf(HasSubstr("parallel"), HasSubstr(" 10 views")));
   boards[3] = boards[3] * RotationAbout({1, 0, 0}, 0.3);
   EXPECT_EQ(WhyDegenerate(boards), "");
 }
@@ -36,8 +35,8 @@ TEST(WhyDegenerate, ParallelBoardsWhoseRollSaysNothing) {
 TEST(WhyDegenerate, OnePlace) {
   auto boards = Boards();
   for (Rigid3& board : boards) board.translation = {3, 0.5, 0};
-  EXPECT_THAT(WhyDegenerate(boards), AllOf(StartsWith("degenerate: the board was at one place"),
-                                           HasSubstr("x 3.0, y 0.5, z 0.0 m")));
+  EXPECT_THAT(WhyDegenerate(boards),
+              AllOf(StartsWith("the board was at one place"), HasSubstr("x 3.0, y 0.5, z 0.0 m")));
   boards[3].translation.y() += 0.4;
   EXPECT_EQ(WhyDegenerate(boards), "");
 }
@@ -46,20 +45,19 @@ TEST(WhyLoose, NamesTheDirectionThatIsLoosest) {
   Matrix6d covariance = 1e-8 * Matrix6d::Identity();
   EXPECT_EQ(WhyLoose(covariance), "");
   covariance(4, 4) = 0.15 * 0.15;
-  EXPECT_THAT(
-      WhyLoose(covariance),
-      StartsWith("degenerate: shifts along the camera's y (down) are known to 150 mm only"));
+  EXPECT_THAT(WhyLoose(covariance),
+              StartsWith("shifts along the camera's y (down) are known to 150 mm only"));
   covariance(2, 2) = 0.1 * 0.1;  // 5.7 deg
   EXPECT_THAT(WhyLoose(covariance),
-              StartsWith("degenerate: turns about the camera's z (forward) are known to 5.7 deg"));
+              StartsWith("turns about the camera's z (forward) are known to 5.7 deg"));
 }
 
 // Through Calibrate.
 
 void ExpectDegenerate(const Report& report, const std::string& why) {
   for (const CameraReport& camera : report.cameras) {
-    EXPECT_THAT(camera.calibration.status, AllOf(StartsWith("degenerate: "), HasSubstr(why)));
-    EXPECT_FALSE(camera.calibration.converged);
+    EXPECT_THAT(camera.calibration.StatusText(), AllOf(StartsWith("degenerate: "), HasSubstr(why)));
+    EXPECT_FALSE(camera.calibration.converged());
     EXPECT_FALSE(camera.calibration.covariance);
     EXPECT_FALSE(camera.sigma);
   }

@@ -45,7 +45,7 @@ TEST(EdgeRmsWhitened, GrowsWhereTheCalibrationIsWrong) {
 
 TEST(MisfitOfEdges, OfAViewWithoutPosesOrSigmasThereIsNone) {
   SolveWorld world;
-  const CameraCalibration truth{"rgb", world.camera_from_lidar[0], {}, true, ""};
+  const CameraCalibration truth{"rgb", world.camera_from_lidar[0], {}, SolveStatus::kConverged, ""};
   const EdgeModel model{world.rig.target};
   Observation o = world.At(0, 0);
   EXPECT_EQ(MisfitOfEdges(model, o, truth).count, static_cast<double>(o.cloud->crossings.size()));

@@ -38,8 +38,7 @@ TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   const Report report = Calibrate(world.rig, world.observations, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
-    EXPECT_TRUE(camera.calibration.converged);
-    EXPECT_EQ(camera.calibration.status, "converged");
+    EXPECT_EQ(camera.calibration.status, SolveStatus::kConverged);
     EXPECT_EQ(camera.used.size(), 10U);
     EXPECT_THAT(camera.rejected, IsEmpty());
     EXPECT_LT(Chi2(world, report, c), kMostChi2);

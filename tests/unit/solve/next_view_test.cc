@@ -35,7 +35,7 @@ TEST(FindNextView, WhatItSaysBeforeIsTheWorstSigmaOfTheReport) {
   double worst = 0;
   std::string camera;
   for (const CameraReport& c : report.cameras) {
-    ASSERT_EQ(c.calibration.status, "converged");
+    ASSERT_EQ(c.calibration.status, SolveStatus::kConverged);
     for (const ColouringSigma& at : c.sigma->colouring) {
       if (at.distance_m != 5 || at.worst_px <= worst) continue;
       worst = at.worst_px;

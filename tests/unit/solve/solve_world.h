@@ -153,10 +153,10 @@ class SolveWorld {
     image.width = camera.width();
     image.height = camera.height();
     // Errors are larger than the corners' scatter tells by what is taken for granted of them.
-    image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornersAlike;
+    image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornerSigmaInflation;
     for (const Eigen::Vector3d& corner : rig.target.InnerCorners()) {
       image.corners.push_back(*camera.Project(camera_from_target * corner) +
-                              kCornersAlike * image.corner_sigma_px *
+                              kCornerSigmaInflation * image.corner_sigma_px *
                                   Eigen::Vector2d(Noise(), Noise()));
     }
     const auto corners = rig.target.OutlineCorners();

@@ -137,7 +137,7 @@ export interface View {
 export interface CameraState {
   camera: string;
   calibrated: boolean;
-  status: string; // "converged", or why not
+  status: string; // how the solve ended, in words
   utime: number; // of the calibration; it changes with each new one
   camera_from_lidar: number[] | null; // 4x4 row by row
   rotation_sigma_deg: number | null; // 1 sigma, RMS of the three axes

@@ -103,15 +103,25 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
 
 void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextView>& next_view,
                  Judgement* judgement) {
-  const std::string& status = calibration.status;
-  if (status.rfind("degenerate", 0) == 0) {
-    judgement->Headline("Do not use it: the pose cannot be told from these views.");
-    judgement->Bad("The solve says: " + status);
-    if (next_view) judgement->Say("Next: " + next_view->words);
-  } else if (!calibration.converged) {
-    judgement->Bad("The solve did not converge" + (status.empty() ? "." : ": " + status));
-  } else if (!status.empty() && status != "converged") {
-    judgement->Say("The solve says: " + status);  // e.g. that it kept the first guess
+  const std::string& detail = calibration.detail;
+  switch (calibration.status) {
+    case SolveStatus::kUndetermined:
+    case SolveStatus::kDegenerate:
+      judgement->Headline("Do not use it: the pose cannot be told from these views.");
+      judgement->Bad("The solve says: " + calibration.StatusText());
+      if (next_view) judgement->Say("Next: " + next_view->words);
+      break;
+    case SolveStatus::kNotSolved:
+      judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
+      break;
+    case SolveStatus::kNotConverged:
+      judgement->Bad("The solve did not converge" + (detail.empty() ? "." : ": " + detail));
+      break;
+    case SolveStatus::kFirstGuessKept:
+      judgement->Say("The solve says: " + calibration.StatusText());
+      break;
+    case SolveStatus::kConverged:
+      break;
   }
 }
 

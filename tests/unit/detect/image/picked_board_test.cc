@@ -145,7 +145,7 @@ void ExpectAsExactAsStated(const Figures& f) {
   EXPECT_EQ(f.alone, 0);  // the covers are such that picks are needed
   EXPECT_EQ(f.found, f.trials);
   EXPECT_GT(f.seen, 25 * f.found);
-  // The solver takes sigmas 1.4 times as large (kCornersAlike). 95% band of such a mean.
+  // The solver takes sigmas 1.4 times as large (kCornerSigmaInflation). 95% band of such a mean.
   EXPECT_LT(f.nees, 6 * 1.96 * (1 + 2 * std::sqrt(2.0 / 6 / f.trials)));
   EXPECT_GT(f.nees, 1);
   EXPECT_LT(f.worst_nees, 1.96 * 27.9);  // 1e-4 of chi-square with 6 degrees of freedom lie beyond

@@ -24,8 +24,8 @@ TEST(CalibrationFile, GivesBackEveryBit) {
     EXPECT_EQ(b.camera, a.camera);
     test::ExpectSame(b.camera_from_lidar, a.camera_from_lidar);
     EXPECT_EQ(b.covariance, a.covariance);
-    EXPECT_EQ(b.converged, a.converged);
     EXPECT_EQ(b.status, a.status);
+    EXPECT_EQ(b.detail, a.detail);
   }
   EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
 }

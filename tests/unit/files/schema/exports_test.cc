@@ -102,10 +102,12 @@ TEST_F(Exports, NoCommentAboutTermsThatAreNotThere) {
 }
 
 TEST_F(Exports, ACalibrationThatDidNotConvergeIsMarked) {
-  calibration_.cameras[0].converged = false;
-  calibration_.cameras[0].status = "no\nway";
+  calibration_.cameras[0].status = SolveStatus::kNotConverged;
+  calibration_.cameras[0].detail = "no\nway";
   for (const std::filesystem::path& file : ExportAll(dir_.path(), rig_, calibration_)) {
-    EXPECT_THAT(ReadWholeFile(file), HasSubstr("WARNING: rgb did not converge: no way")) << file;
+    EXPECT_THAT(ReadWholeFile(file),
+                HasSubstr("WARNING: rgb did not converge: not converged: no way"))
+        << file;
   }
 }
 

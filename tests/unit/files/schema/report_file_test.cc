@@ -219,8 +219,8 @@ TEST(ReportFile, HasTheKeysThatTheIssueNames) {
                           "\"camera_from_lidar\": {",
                           "\"quaternion_wxyz\": [",
                           "\"translation_m\": [",
-                          "\"converged\": true",
-                          "\"status\": \"converged\"",
+                          "\"status\": \"CONVERGED\"",
+                          "\"detail\": \"\"",
                           "\"views\": {",
                           "\"used\": [",
                           "\"heldout\": [",
@@ -257,7 +257,7 @@ TEST(ReportFile, WhatIsUnknownIsAbsentAndZeroIsPrinted) {
   camera.edge_rms_px.heldout = std::numeric_limits<double>::quiet_NaN();
   camera.views.clear();
   camera.other_starts.clear();
-  camera.calibration.converged = false;
+  camera.calibration.status = SolveStatus::kNotSolved;
   camera.rejected.clear();
   const std::string json = ReportToJson(report);
   EXPECT_THAT(json, Not(HasSubstr("truth_error")));
@@ -265,7 +265,7 @@ TEST(ReportFile, WhatIsUnknownIsAbsentAndZeroIsPrinted) {
   EXPECT_THAT(json, Not(HasSubstr("covariance")));
   EXPECT_THAT(json, Not(HasSubstr("NaN")));
   EXPECT_THAT(json, HasSubstr("\"distance_transform_px\": {}"));
-  EXPECT_THAT(json, HasSubstr("\"converged\": false"));
+  EXPECT_THAT(json, HasSubstr("\"status\": \"NOT_SOLVED\""));
   EXPECT_THAT(json, HasSubstr("\"rejected\": []"));
   const Report back = ReportFromJson(json);
   EXPECT_FALSE(back.cameras[0].truth_error);

@@ -27,8 +27,7 @@ TEST(SolvePlanes, RecoversThePoseExactlyFromDegreesOff) {
   for (std::size_t c = 0; c < 2; ++c) {
     const Rigid3 start = GuessOff(world.camera_from_lidar[c], 0.05, 0.05, 3);
     const CameraCalibration result = SolvePlanes(Of(world, world.rig.cameras[c].name), start);
-    EXPECT_TRUE(result.converged);
-    EXPECT_EQ(result.status, "converged");
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
     EXPECT_THAT(result.camera_from_lidar, Rigid3Near(world.camera_from_lidar[c], 1e-8, 1e-8));
   }
 }
@@ -78,8 +77,7 @@ TEST(SolvePlanes, ParallelBoardsAreDegenerate) {
     world.AddView(board);
   }
   const CameraCalibration result = SolvePlanes(Of(world, "rgb"), world.camera_from_lidar[0]);
-  EXPECT_FALSE(result.converged);
-  EXPECT_THAT(result.status, StartsWith("degenerate: "));
+  EXPECT_EQ(result.status, SolveStatus::kDegenerate);
   EXPECT_FALSE(result.covariance);
 }
 
@@ -93,7 +91,7 @@ TEST(CalibrateByPlanes, SolvesEachCameraByItself) {
   EXPECT_EQ(report.method, kPlaneMethod);
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
-    EXPECT_TRUE(camera.calibration.converged) << camera.calibration.status;
+    EXPECT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
     const CameraCalibration alone =
         SolvePlanes(Of(world, camera.calibration.camera), world.camera_from_lidar[c]);
     EXPECT_THAT(camera.calibration.camera_from_lidar,

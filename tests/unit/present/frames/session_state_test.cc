@@ -243,14 +243,14 @@ TEST(SessionFrame, TheWorstCameraCounts) {
   json verdict = VerdictOfReport(report);
   EXPECT_EQ(verdict.at("grade"), "caution");
   EXPECT_EQ(verdict.at("headline"), "Take care with rgb; back and thermal are calibrated");
-  report.cameras[2].calibration.converged = false;
+  report.cameras[2].calibration.status = SolveStatus::kNotConverged;
   verdict = VerdictOfReport(report);
   EXPECT_EQ(verdict.at("grade"), "bad");
   EXPECT_EQ(verdict.at("headline"),
             "Do not use the calibration of thermal; take care with rgb; back is calibrated");
   report.cameras[2].distance_transform_px = {};  // a guess
   report.cameras[2].edge_rms_px = {};
-  report.cameras[2].calibration.status = "not calibrated: 2 usable views";
+  report.cameras[2].calibration.status = SolveStatus::kNotSolved;
   verdict = VerdictOfReport(report);
   EXPECT_EQ(verdict.at("grade"), "none");
   EXPECT_THAT(verdict.at("headline").get<std::string>(),

@@ -52,10 +52,10 @@ TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   Report report = test::MakeReport();
   report.method = report.rig_hash = evil;
   CameraReport& camera = report.cameras[0];
-  camera.calibration.camera = camera.calibration.status = evil;
-  camera.calibration.converged = false;
+  camera.calibration.camera = camera.calibration.detail = evil;
+  camera.calibration.status = SolveStatus::kNotConverged;
   camera.used[0] = camera.heldout[0] = camera.rejected[0].view = camera.rejected[0].why = evil;
-  camera.other_starts[0].start = camera.other_starts[0].calibration.status = evil;
+  camera.other_starts[0].start = camera.other_starts[0].calibration.detail = evil;
   camera.nuisance[0].name = camera.nuisance[0].unit = camera.folds[0].heldout[0] = evil;
   report.closure[0].from = report.closure[0].to = evil;
   report.next_view->words = report.next_view->camera = evil;
@@ -77,8 +77,8 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
   };
   EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Consistent: no sign that it is wrong."));
   const std::string failed = page([](CameraReport* camera) {
-    camera->calibration.converged = false;
-    camera->calibration.status = "too few views";
+    camera->calibration.status = SolveStatus::kNotConverged;
+    camera->calibration.detail = "too few views";
   });
   EXPECT_THAT(failed, HasSubstr("Do not use it."));
   EXPECT_THAT(failed, HasSubstr("did not converge: too few views"));

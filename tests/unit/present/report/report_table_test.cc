@@ -17,8 +17,7 @@ Report MakeReport() {
   for (const char* name : {"rgb", "thermal"}) {
     CameraReport camera;
     camera.calibration.camera = name;
-    camera.calibration.converged = true;
-    camera.calibration.status = "converged";
+    camera.calibration.status = SolveStatus::kConverged;
     report.cameras.push_back(camera);
   }
   return report;
@@ -62,13 +61,14 @@ TEST(ReportTable, SaysWhereToHoldTheBoardNext) {
   EXPECT_THAT(ReportTable(report), HasSubstr("next view: Hold it 6 m ahead.\n"));
 }
 
-TEST(ReportTable, SaysWhatTheSolveRemarksEvenWhereItConverged) {
+TEST(ReportTable, SaysHowTheSolveEndedEvenWhereItConverged) {
   Report report = MakeReport();
-  report.cameras[0].calibration.status = "kept the first guess";
-  report.cameras[1].calibration.converged = false;
-  report.cameras[1].calibration.status = "degenerate: parallel boards";
+  report.cameras[0].calibration.status = SolveStatus::kFirstGuessKept;
+  report.cameras[0].calibration.detail = "it fits better";
+  report.cameras[1].calibration.status = SolveStatus::kDegenerate;
+  report.cameras[1].calibration.detail = "parallel boards";
   const std::string table = ReportTable(report);
-  EXPECT_THAT(table, HasSubstr("rgb: kept the first guess\n"));
+  EXPECT_THAT(table, HasSubstr("rgb: converged; the first guess was kept: it fits better\n"));
   EXPECT_THAT(table, HasSubstr("thermal: degenerate: parallel boards\n"));
   EXPECT_THAT(ReportTable(MakeReport()), Not(HasSubstr("rgb: converged")));
 }

@@ -26,9 +26,9 @@ TEST(Verdict, AGoodReportIsConsistentAndSaysWhy) {
 
 TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
   CameraReport camera = Good();
-  camera.calibration.status = "degenerate: all boards are parallel";
-  for (const bool converged : {false, true}) {
-    camera.calibration.converged = converged;
+  camera.calibration.detail = "all boards are parallel";
+  for (const SolveStatus status : {SolveStatus::kDegenerate, SolveStatus::kUndetermined}) {
+    camera.calibration.status = status;
     const Verdict verdict = Judge(camera, test::MakeReport().next_view);
     EXPECT_EQ(verdict.grade, Grade::kBad);
     EXPECT_THAT(verdict.headline, HasSubstr("the pose cannot be told from these views"));
@@ -41,10 +41,10 @@ TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
 
 TEST(Verdict, WhatAConvergedSolveRemarksIsSaidWithoutAlarm) {
   CameraReport camera = Good();
-  camera.calibration.status = "kept the first guess: the solve fits worse";
+  camera.calibration.status = SolveStatus::kFirstGuessKept;
   const Verdict verdict = Judge(camera);
   EXPECT_EQ(verdict.grade, Grade::kGood);
-  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("kept the first guess")));
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("the first guess was kept")));
 }
 
 TEST(Verdict, AColourThatIsNotSureToAPixelFiveMetresAwayIsAWarning) {

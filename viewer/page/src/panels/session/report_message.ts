@@ -1,14 +1,17 @@
 // report.json as the page reads it: calib/files/schema/report.proto. A field that is unknown is absent.
 import type { RigidMotion } from "./poses";
 
+export type SolveStatus =
+  "NOT_SOLVED" | "UNDETERMINED" | "NOT_CONVERGED" | "DEGENERATE" | "FIRST_GUESS_KEPT" | "CONVERGED";
+
 export interface PoseError { rotation_deg?: number; translation_mm?: number }
 export interface TrainHeldout { train?: number; heldout?: number }
 
 export interface CameraReport {
   camera_from_lidar?: RigidMotion;
-  converged?: boolean;
-  status?: string;
-  views?: { used?: string[]; heldout?: string[]; rejected?: { view: string; why: string }[]; remarks?: string[] };
+  status?: SolveStatus;
+  detail?: string; // of the status
+  views?: { used?: string[]; heldout?: string[]; rejected?: { view: string; why: string }[]; warnings?: string[] };
   distance_transform_px?: TrainHeldout;
   edge_rms_px?: TrainHeldout;
   edge_rms_whitened?: TrainHeldout;
@@ -19,7 +22,7 @@ export interface CameraReport {
     view: string; heldout?: boolean; distance_transform_px?: number; edge_rms_px?: number; edge_rms_whitened?: number;
   }[];
   other_starts?: {
-    start: string; converged?: boolean; status?: string; distance_transform_px?: number;
+    start: string; status?: SolveStatus; detail?: string; distance_transform_px?: number;
     from_result?: PoseError; truth_error?: PoseError;
   }[];
   range_offset_m?: { value?: number; sigma?: number };
