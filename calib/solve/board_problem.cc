@@ -36,22 +36,33 @@ Reduced Reduce(const ViewEquations& equations, double damping) {
   return out;
 }
 
-// Adds the priors of what the views share; returns their cost.
-double AddPriors(const BoardProblem& problem, const BoardState& state, Eigen::MatrixXd* h,
-                 Eigen::VectorXd* g) {
-  const auto first = static_cast<Eigen::Index>(6 * problem.cameras.size());
-  const auto means = problem.priors.Means();
+// The priors of what the views share.
+struct SharedPriors {
+  ViewInformation shared;
   double cost = 0;
+};
+
+SharedPriors PriorsAt(const BoardProblem& problem, const BoardState& state) {
+  const auto first = static_cast<Eigen::Index>(6 * problem.cameras.size());
+  const Eigen::Index size = first + kSharedUnknowns;
+  const auto means = problem.priors.Means();
+  SharedPriors out{{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)}, 0};
   for (int k = 0; k < kSharedUnknowns; ++k) {
     const double sigma = problem.priors.Sigma(k);
     const auto i = static_cast<std::size_t>(k);
     const double off = state.shared[i] - means[i];
-    (*h)(first + k, first + k) += 1 / (sigma * sigma);
-    (*g)[first + k] -= off / (sigma * sigma);
-    cost += off * off / (sigma * sigma);
+    out.shared.information(first + k, first + k) += 1 / (sigma * sigma);
+    out.shared.gradient[first + k] -= off / (sigma * sigma);
+    out.cost += off * off / (sigma * sigma);
   }
-  return cost;
+  return out;
 }
+
+// Where a step leads, and its length in sigmas, squared.
+struct Stepped {
+  BoardState state;
+  double size = 0;
+};
 
 // All views' equations at a state, and what follows from them.
 class Step {
@@ -62,17 +73,15 @@ class Step {
       equations_.emplace_back(problem, state_, v);
       cost_ += equations_.back().cost();
     }
-    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(Size(), Size());
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(Size());
-    cost_ += AddPriors(problem, state_, &h, &g);
-    prior_ = {h, g};
+    SharedPriors priors = PriorsAt(problem, state_);
+    cost_ += priors.cost;
+    prior_ = std::move(priors.shared);
   }
 
   double cost() const { return cost_; }
-  const BoardState& state() const { return state_; }
 
-  // The state after the step with this damping; `size` is the step's length in sigmas, squared.
-  BoardState Take(double damping, double* size) const {
+  // The step with this damping.
+  Stepped Take(double damping) const {
     std::vector<Reduced> reduced;
     Eigen::MatrixXd h = prior_.information;
     Eigen::VectorXd g = prior_.gradient;
@@ -83,8 +92,8 @@ class Step {
     }
     h.diagonal() *= 1 + damping;
     const Eigen::VectorXd x = h.ldlt().solve(g);
-    *size = x.dot(h * x);
-    BoardState next = state_;
+    Stepped stepped{state_, x.dot(h * x)};
+    BoardState& next = stepped.state;
     for (std::size_t c = 0; c < next.camera_from_lidar.size(); ++c) {
       next.camera_from_lidar[c] =
           Exp(x.segment<6>(static_cast<Eigen::Index>(6 * c))) * next.camera_from_lidar[c];
@@ -96,25 +105,29 @@ class Step {
     for (std::size_t v = 0; v < reduced.size(); ++v) {
       const Eigen::Matrix<double, kLocal, 1> local =
           reduced[v].local - reduced[v].local_by_shared * x;
-      *size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
+      stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
       next.lidar_from_target[v] = next.lidar_from_target[v] * Exp(local.head<6>());
       for (int side = 0; side < 4; ++side) {
         next.side_shift[v][static_cast<std::size_t>(side)] += local[6 + side];
       }
     }
-    return next;
+    return stepped;
   }
 
-  void Conclude(BoardSolution* solution) const {
+  // All that is known here; whether it has converged is for others to say.
+  BoardSolution Conclude() const {
+    BoardSolution solution;
+    solution.state = state_;
     Eigen::MatrixXd h = prior_.information;
     for (const ViewEquations& e : equations_) {
-      solution->views.push_back(Reduce(e, 0).shared);
+      solution.views.push_back(Reduce(e, 0).shared);
       const Eigen::Matrix<double, kLocal, kLocal> local =
           e.h().topLeftCorner<kLocal, kLocal>().inverse();
-      solution->side_variance.push_back({local(6, 6), local(7, 7), local(8, 8), local(9, 9)});
-      h += solution->views.back().information;
+      solution.side_variance.push_back({local(6, 6), local(7, 7), local(8, 8), local(9, 9)});
+      h += solution.views.back().information;
     }
-    solution->covariance = h.ldlt().solve(Eigen::MatrixXd::Identity(Size(), Size()));
+    solution.covariance = h.ldlt().solve(Eigen::MatrixXd::Identity(Size(), Size()));
+    return solution;
   }
 
  private:
@@ -145,27 +158,28 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) {
   constexpr int kIterations = 100;
   constexpr double kSettled = 1e-4;  // a hundredth of a sigma
-  BoardSolution solution;
   double damping = 0;
+  bool converged = false;
+  int iterations = 0;
   auto here = std::make_unique<Step>(problem, start);
-  for (; solution.iterations < kIterations && !solution.converged; ++solution.iterations) {
-    double size = 0;
-    auto there = std::make_unique<Step>(problem, here->Take(damping, &size));
+  for (; iterations < kIterations && !converged; ++iterations) {
+    const Stepped step = here->Take(damping);
+    auto there = std::make_unique<Step>(problem, step.state);
     if (!(there->cost() <= here->cost() * (1 + 1e-12))) {
       damping = std::max(1e-4, 10 * damping);
       // Where not even a small step helps, this is the minimum as far as rounding tells.
-      solution.converged = std::isfinite(here->cost()) && (damping > 1e4 || size < kSettled);
+      converged = std::isfinite(here->cost()) && (damping > 1e4 || step.size < kSettled);
       if (damping > 1e4) break;
       continue;
     }
     damping = damping < 1e-3 ? 0 : 0.1 * damping;
-    solution.converged = size < kSettled;
+    converged = step.size < kSettled;
     here = std::move(there);
   }
-  solution.state = here->state();
-  here->Conclude(&solution);
+  BoardSolution solution = here->Conclude();
   // What no residual holds leaves no covariance.
-  solution.converged &= solution.covariance.allFinite();
+  solution.converged = converged && solution.covariance.allFinite();
+  solution.iterations = iterations;
   return solution;
 }
 

@@ -25,9 +25,8 @@ std::vector<std::size_t> Others(std::size_t views, std::size_t part, std::size_t
 
 BoardSolution SolvePart(const JointProblem& joint, const BoardState& near,
                         const std::vector<std::size_t>& views) {
-  BoardState start;
-  const BoardProblem part = Part(joint.problem, views, near, &start);
-  return SolveBoards(part, start);
+  const BoardStart part = Part(joint.problem, views, near);
+  return SolveBoards(part.problem, part.start);
 }
 
 std::vector<const CameraView*> ViewsOf(const JointProblem& joint, std::size_t camera,
@@ -50,8 +49,7 @@ struct Judged {
 // view does not decide.
 double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
                 std::size_t camera, const Rigid3& camera_from_lidar) {
-  BoardState state;
-  BoardProblem alone = Part(joint.problem, {view}, joint.start, &state);
+  auto [alone, state] = Part(joint.problem, {view}, joint.start);
   std::vector<BoardSight>& sights = alone.views[0].sights;
   sights.erase(
       std::remove_if(sights.begin(), sights.end(),

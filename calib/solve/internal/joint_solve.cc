@@ -227,9 +227,8 @@ BoardSolution Without(const JointProblem& joint, const BoardState& near, std::si
   for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
     if (v != view) others.push_back(v);
   }
-  BoardState start;
-  const BoardProblem part = Part(joint.problem, others, near, &start);
-  return SolveBoards(part, start);
+  const BoardStart part = Part(joint.problem, others, near);
+  return SolveBoards(part.problem, part.start);
 }
 
 // How the result moves when each view is left out in turn, against how it should: nuisances, robust
@@ -303,14 +302,14 @@ JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCam
   return builder.Finish(range_offset_sigma_m);
 }
 
-BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                  const BoardState& state, BoardState* start) {
-  BoardProblem part{problem.target, problem.cameras, {}, problem.priors};
-  *start = {state.camera_from_lidar, state.shared, {}, {}};
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state) {
+  BoardStart part{{problem.target, problem.cameras, {}, problem.priors},
+                  {state.camera_from_lidar, state.shared, {}, {}}};
   for (const std::size_t v : views) {
-    part.views.push_back(problem.views[v]);
-    start->lidar_from_target.push_back(state.lidar_from_target[v]);
-    start->side_shift.push_back(state.side_shift[v]);
+    part.problem.views.push_back(problem.views[v]);
+    part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
+    part.start.side_shift.push_back(state.side_shift[v]);
   }
   return part;
 }

@@ -24,9 +24,15 @@ struct JointProblem {
 JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
                               double range_offset_sigma_m);
 
-/// The same with some of the views only.
-BoardProblem Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                  const BoardState& state, BoardState* start);
+/// A problem and where its solve starts.
+struct BoardStart {
+  BoardProblem problem;
+  BoardState start;
+};
+
+/// The problem with some of the views only, to be solved from `state`.
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state);
 
 /// A joint solve of which views and sides that contradict the others were left out.
 struct JointResult {

@@ -99,16 +99,12 @@ void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side,
   for (int end = 0; end < 2; ++end) {
     const Eigen::Vector2d& at = side.curve[end == 0 ? 0 : last];
     const Eigen::Vector2d& next = side.curve[end == 0 ? 1 : last - 1];
-    Row6 by_camera;
-    Row6 by_target;
-    double by_outline = 0;
-    if (!CurveEnd(sight, on_board, at, end == 0 ? next - at : at - next, &residual[end], &by_camera,
-                  &by_target, &by_outline)) {
-      return;
-    }
-    j.row(end).segment<6>(c) = by_camera;
-    j.row(end).head<6>() = by_target;
-    j(end, Shared(kOutlineTop + on_board)) = by_outline;
+    const auto there = AtCurveEnd(sight, on_board, at, end == 0 ? next - at : at - next);
+    if (!there) return;
+    residual[end] = there->beside;
+    j.row(end).segment<6>(c) = there->by_camera;
+    j.row(end).head<6>() = there->by_target;
+    j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
   }
   const Eigen::LDLT<Eigen::Matrix2d> ldlt(side.covariance);
   if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return;
@@ -121,9 +117,9 @@ void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side,
 }
 
 // One end: where on the side the curve ends, and how far the projected side lies from there.
-bool ViewEquations::CurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
-                             const Eigen::Vector2d& along, double* residual, Row6* by_camera,
-                             Row6* by_target, double* by_outline) const {
+std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
+    const BoardSight& sight, int side, const Eigen::Vector2d& at,
+    const Eigen::Vector2d& along) const {
   const Camera& camera = problem_.cameras[static_cast<std::size_t>(sight.camera)];
   const Rigid3 camera_from_target =
       state_.camera_from_lidar[static_cast<std::size_t>(sight.camera)] * lidar_from_target_;
@@ -141,23 +137,24 @@ bool ViewEquations::CurveEnd(const BoardSight& sight, int side, const Eigen::Vec
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d p = camera_from_target * Eigen::Vector3d(from + t * (to - from));
     const auto pixel = camera.Project(p);
-    if (!pixel) return false;
+    if (!pixel) return std::nullopt;
     const Eigen::Vector2d by_t = PixelByPoint(camera.lens(), p) * rotation * (to - from);
     const double speed = tangent.dot(by_t);
-    if (std::abs(speed) < 1e-6) return false;
+    if (std::abs(speed) < 1e-6) return std::nullopt;
     t += std::clamp(tangent.dot(at - *pixel) / speed, -1.0, 1.0);
   }
   const Eigen::Vector3d on_target = from + t * (to - from);
   const Eigen::Vector3d p = camera_from_target * on_target;
   const auto pixel = camera.Project(p);
-  if (!pixel) return false;
+  if (!pixel) return std::nullopt;
   const Eigen::Matrix<double, 1, 3> by_point =
       Eigen::RowVector2d(-tangent.y(), tangent.x()) * PixelByPoint(camera.lens(), p);
-  *residual = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
-  *by_camera << -by_point * CrossMatrix(p), by_point;
-  *by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
-  *by_outline = by_point * rotation * outward;
-  return true;
+  CurveEnd out;
+  out.beside = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
+  out.by_camera << -by_point * CrossMatrix(p), by_point;
+  out.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
+  out.by_outline = by_point * rotation * outward;
+  return out;
 }
 
 void ViewEquations::AddCrossings() {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "calib/solve/board_problem.h"
 
@@ -31,9 +32,13 @@ class ViewEquations {
               const Eigen::Matrix<double, 12, 1>& g);
   void AddImageSides(const BoardSight& sight);
   void AddImageSide(const BoardSight& sight, const ImageSide& side, int on_board);
-  bool CurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
-                const Eigen::Vector2d& along, double* residual, Row6* by_camera, Row6* by_target,
-                double* by_outline) const;
+  struct CurveEnd {  // how far beside it the projected side lies [px], and derivatives
+    double beside = 0;
+    Row6 by_camera, by_target;
+    double by_outline = 0;
+  };
+  std::optional<CurveEnd> AtCurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
+                                     const Eigen::Vector2d& along) const;
   void AddCrossings();
   void SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
                        const Eigen::Matrix<double, 9, 1>& g);

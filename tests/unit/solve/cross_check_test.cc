@@ -116,8 +116,7 @@ TEST(MisfitOf, IsSixOnAverageOfTheTruth) {
   wrong.camera_from_lidar[0] = RotationAbout({0, 1, 0}, 0.01) * wrong.camera_from_lidar[0];
   double sum = 0;
   for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    BoardState start;
-    BoardProblem alone = Part(joint.problem, {v}, truth, &start);
+    auto [alone, start] = Part(joint.problem, {v}, truth);
     alone.views[0].sights.resize(1);
     ASSERT_EQ(alone.views[0].sights[0].camera, 0);
     const double misfit = MisfitOf(alone, start, 0, 0);
@@ -125,7 +124,7 @@ TEST(MisfitOf, IsSixOnAverageOfTheTruth) {
     start.camera_from_lidar[0] = wrong.camera_from_lidar[0];
     EXPECT_GT(MisfitOf(alone, start, 0, 0), misfit);
   }
-  // Corners are independent here, and counted as a little alike: less than 6, if anything.
+  // Corners are independent here, and counted as a little correlated: less than 6, if anything.
   EXPECT_GT(sum, 4);
   EXPECT_LT(sum, 6 + 3.3 * std::sqrt(12 / 60.0));
 }
