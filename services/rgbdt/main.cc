@@ -18,14 +18,18 @@ int main(int argc, char** argv) {
   rgbdt::AddCalibrate(&app, &exit_code);
   rgbdt::AddEvaluate(&app, &exit_code);
   rgbdt::AddFuse(&app, &exit_code);
+#ifdef RGBDT_HAS_SIMULATOR
   rgbdt::AddSimulate(&app, &exit_code);
+#endif
   rgbdt::AddReplay(&app, &exit_code);
   rgbdt::AddIntrinsics(&app, &exit_code);
   rgbdt::AddScanner(&app, &exit_code);
   rgbdt::AddMap(&app, &exit_code);
   rgbdt::AddTerrain(&app, &exit_code);
   rgbdt::AddExport(&app, &exit_code);
+#ifdef RGBDT_HAS_DRIVERS
   rgbdt::AddDoctor(&app, &exit_code);
+#endif
   const auto is_it = [&](const CLI::App* candidate) { return candidate->get_name() == verb; };
   if (!verb.empty() && verb[0] != '-' && app.get_subcommands(is_it).empty()) {
     std::fprintf(stderr, "rgbdt: there is no verb \"%s\"; see rgbdt --help\n", verb.c_str());

@@ -58,7 +58,7 @@ function(rgbdt_external_fields externals field separator result)
       math(EXPR index "${index} + 1")
     endforeach()
     if(NOT found)
-      message(FATAL_ERROR "An installed library links '${external}': cmake/dependencies.cmake "
+      message(FATAL_ERROR "An installed library links '${external}': scripts/cmake/dependencies.cmake "
                           "does not say how who links it finds that.")
     endif()
   endforeach()
