@@ -36,8 +36,7 @@ Messages BenchRig::Calibrations(Utime utime) const {
     message.method = "auto";
     message.calibration.camera = rig.cameras[i].name;
     message.calibration.camera_from_lidar = camera_from_lidar[i];
-    message.calibration.converged = true;
-    message.calibration.status = "converged";
+    message.calibration.status = SolveStatus::kConverged;
     messages.push_back(message);
   }
   return messages;

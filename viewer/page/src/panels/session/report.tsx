@@ -3,7 +3,7 @@ import { images } from "../../store";
 import { count, degrees, metres, millimetres, number, px, seconds, sigmas } from "../words";
 import { PoseCard } from "./pose_card";
 import { matrixOf } from "./poses";
-import type { CameraReport, PoseError, ReportMessage, TrainHeldout } from "./report_message";
+import type { CameraReport, PoseError, ReportMessage, TrainHeldout, SolveStatus } from "./report_message";
 import { Table } from "./table";
 
 // Above this by chance once in a thousand times (calib/files/verdict.h).
@@ -35,11 +35,19 @@ function Figures({ camera }: { camera: CameraReport }) {
   return <Table title="How well it fits" head={["", "Views used", "Views kept for the check"]} rows={rows} />;
 }
 
+const statusNames: Record<SolveStatus, string> = {
+  NOT_SOLVED: "not calibrated", UNDETERMINED: "degenerate", NOT_CONVERGED: "not converged", DEGENERATE: "degenerate",
+  FIRST_GUESS_KEPT: "converged; the first guess was kept", CONVERGED: "converged",
+};
+
+const ended = ({ status, detail }: { status?: SolveStatus; detail?: string }) =>
+  statusNames[status ?? "NOT_SOLVED"] + (detail ? `: ${detail}` : "");
+
 function Facts({ camera }: { camera: CameraReport }) {
   const times = camera.seconds ?? {};
   const offset = camera.range_offset_m;
   const rows = [
-    ["Solve", `${camera.converged ? "converged" : "did not converge"}${camera.status && camera.status !== "converged" ? `: ${camera.status}` : ""}`],
+    ["Solve", ended(camera)],
     ["Views", `${count(camera.views?.used?.length ?? 0, "view")} used, ${camera.views?.heldout?.length ?? 0} kept for the check, ${camera.views?.rejected?.length ?? 0} rejected`],
     ["First guess away from the truth", poseError(camera.first_guess_error)],
     ["Result away from the truth", poseError(camera.truth_error)],
@@ -67,7 +75,7 @@ function Sigma({ camera }: { camera: CameraReport }) {
 }
 
 function Views({ camera }: { camera: CameraReport }) {
-  const rejected = camera.views?.rejected ?? [], remarks = camera.views?.remarks ?? [];
+  const rejected = camera.views?.rejected ?? [], warnings = camera.views?.warnings ?? [];
   const rows = (camera.view_quality ?? []).map((view) => [
     view.view, view.heldout ? "kept for the check" : "used", px(view.edge_rms_px), sigmas(view.edge_rms_whitened),
     px(view.distance_transform_px),
@@ -76,7 +84,7 @@ function Views({ camera }: { camera: CameraReport }) {
     <>
       <Table title="Views" head={["View", "", "Edge RMS", "In sigmas", "Distance transform"]} rows={rows} />
       <Table title="Rejected views" head={["View", "Why"]} rows={rejected.map(({ view, why }) => [view, why])} />
-      {remarks.length > 0 && <ul>{remarks.map((remark) => <li key={remark}>{remark}</li>)}</ul>}
+      {warnings.length > 0 && <ul>{warnings.map((warning) => <li key={warning}>{warning}</li>)}</ul>}
     </>
   );
 }
@@ -96,7 +104,7 @@ function Checks({ camera }: { camera: CameraReport }) {
         ])} />
       <Table title="From other starts" head={["Start", "Ended", "Distance transform", "Away from the result"]}
         rows={(camera.other_starts ?? []).map((start) => [
-          start.start, start.converged ? "converged" : start.status ?? "did not converge", px(start.distance_transform_px),
+          start.start, ended(start), px(start.distance_transform_px),
           poseError(start.from_result),
         ])} />
       <Table title="What was solved for besides the pose" head={["Unknown", "Value", "1 sigma"]}
