@@ -37,7 +37,6 @@ Messages BenchRig::Calibrations(Utime utime) const {
     message.calibration.camera = rig.cameras[i].name;
     message.calibration.camera_from_lidar = camera_from_lidar[i];
     message.calibration.status = SolveStatus::kConverged;
-    message.calibration.status = "converged";
     messages.push_back(message);
   }
   return messages;

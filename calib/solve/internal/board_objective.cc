@@ -24,7 +24,7 @@ struct ViewTerms {
                       shared_state.shared, side_shift[static_cast<std::size_t>(crossing.side)]);
   }
 
-  // What the crossing's neighbours tell, too, counts once. By the cloud's own pose: a weight that
+  // Noise that it shares with its neighbours counts once. By the cloud's own pose: a weight that
   // changed with the board's place would be an objective of its own.
   double Weight(const Crossing& crossing) const {
     const CrossingResidual r = Residual(crossing, view.cloud.pose->sensor_from_target);

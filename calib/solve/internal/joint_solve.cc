@@ -257,7 +257,7 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
     }
   }
   if (!(expected > 0) || !std::isfinite(moved)) return 1;
-  // Cameras share the clouds: their moves are alike, and tell but once.
+  // Cameras share the clouds: their moves are correlated, and count but once.
   const double chance =
       std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
   const double factor = moved / expected;

@@ -180,7 +180,7 @@ void ViewEquations::AddCrossings() {
     Sum j;
     j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1;
     const double squared = r.beyond_m * r.beyond_m / (r.sigma_m * r.sigma_m);
-    // What its neighbours tell, too, counts once: in weight, not in what is far off.
+    // Noise that it shares with its neighbours counts once: in weight, not in what is far off.
     const double share = r.sigma_m * r.sigma_m / (crossing.sigma_m * crossing.sigma_m);
     const double weight = RobustWeight(squared) / (crossing.sigma_m * crossing.sigma_m);
     cost_ += share * RobustCost(squared);

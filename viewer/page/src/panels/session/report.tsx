@@ -3,7 +3,7 @@ import { images } from "../../store";
 import { count, degrees, metres, millimetres, number, px, seconds, sigmas } from "../words";
 import { PoseCard } from "./pose_card";
 import { matrixOf } from "./poses";
-import type { CameraReport, PoseError, ReportMessage, TrainHeldout } from "./report_message";
+import type { CameraReport, PoseError, ReportMessage, TrainHeldout, SolveStatus } from "./report_message";
 import { Table } from "./table";
 
 // Above this by chance once in a thousand times (calib/files/verdict.h).
@@ -35,16 +35,19 @@ function Figures({ camera }: { camera: CameraReport }) {
   return <Table title="How well it fits" head={["", "Views used", "Views kept for the check"]} rows={rows} />;
 }
 
-function statusText({ status, detail }: { status?: string; detail?: string }): string {
-  const words = (status ?? "NOT_SOLVED").toLowerCase().replace(/_/g, " ");
-  return detail ? `${words}: ${detail}` : words;
-}
+const statusNames: Record<SolveStatus, string> = {
+  NOT_SOLVED: "not calibrated", UNDETERMINED: "degenerate", NOT_CONVERGED: "not converged", DEGENERATE: "degenerate",
+  FIRST_GUESS_KEPT: "converged; the first guess was kept", CONVERGED: "converged",
+};
+
+const ended = ({ status, detail }: { status?: SolveStatus; detail?: string }) =>
+  statusNames[status ?? "NOT_SOLVED"] + (detail ? `: ${detail}` : "");
 
 function Facts({ camera }: { camera: CameraReport }) {
   const times = camera.seconds ?? {};
   const offset = camera.range_offset_m;
   const rows = [
-    ["Solve", statusText(camera)],
+    ["Solve", ended(camera)],
     ["Views", `${count(camera.views?.used?.length ?? 0, "view")} used, ${camera.views?.heldout?.length ?? 0} kept for the check, ${camera.views?.rejected?.length ?? 0} rejected`],
     ["First guess away from the truth", poseError(camera.first_guess_error)],
     ["Result away from the truth", poseError(camera.truth_error)],
@@ -101,7 +104,7 @@ function Checks({ camera }: { camera: CameraReport }) {
         ])} />
       <Table title="From other starts" head={["Start", "Ended", "Distance transform", "Away from the result"]}
         rows={(camera.other_starts ?? []).map((start) => [
-          start.start, statusText(start), px(start.distance_transform_px),
+          start.start, ended(start), px(start.distance_transform_px),
           poseError(start.from_result),
         ])} />
       <Table title="What was solved for besides the pose" head={["Unknown", "Value", "1 sigma"]}
