@@ -212,6 +212,18 @@ TEST(Layers, NoPublicHeaderIncludesAnInternalOne) {
   EXPECT_GT(headers, 100);
 }
 
+// A newcomer finds in a folder's README what lies in it, in the order in which data flows.
+TEST(Layers, EveryFolderOfMoreThanFiveSourcesHasATableOfContents) {
+  std::map<std::string, int> sources;
+  for (const std::string& path : AllFiles()) {
+    if (IsSource(path)) ++sources[FolderOf(path)];
+  }
+  for (const auto& [folder, count] : sources) {
+    if (count <= 5) continue;
+    EXPECT_TRUE(fs::exists(kRoot / folder / "README.md")) << folder << " has " << count;
+  }
+}
+
 // The folder of a target, by its name: rgbdt_detect_image is calib/detect/image's.
 const std::map<std::string, std::string>& FolderOfTarget() {
   static const std::map<std::string, std::string> folders = [] {
