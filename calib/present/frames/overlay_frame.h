@@ -9,7 +9,7 @@
 #include "calib/model/observation.h"
 #include "calib/model/rig.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 /// What is to be drawn on one image.
 struct Overlay {
@@ -44,4 +44,4 @@ std::string OverlayFrame(const Overlay& overlay, bool ack);
 /// board in the cloud.
 std::string BoardThumbFrame(const Observation& observation, const Cloud& cloud);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -8,6 +8,8 @@
 #include <functional>
 #include <optional>
 
+#include "calib/present/report/verdict.h"
+
 namespace rgbdt {
 namespace {
 
@@ -32,18 +34,14 @@ std::string Sigma(const CameraCalibration& calibration) {
                          worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
-// 1 sigma of a colour 5 m away, in the image's middle and where it is worst.
-std::string ColourSigma(const CameraReport& camera) {
-  if (!camera.sigma) return "-";
-  for (const ColouringSigma& at : camera.sigma->colouring) {
-    if (std::abs(at.distance_m - 5) > 1e-6) continue;
-    return fmt::format("{:.2f} / {:.2f}", at.centre_px, at.worst_px);
-  }
-  return "-";
+// In the image's middle and where it is worst.
+std::string ReprojectionSigma(const CameraReport& camera) {
+  const ColouringSigma* at = JudgedColouring(camera);
+  return at == nullptr ? "-" : fmt::format("{:.2f} / {:.2f}", at->centre_px, at->worst_px);
 }
 
 // What a camera's column has no room for.
-std::string Remarks(const CameraReport& camera) {
+std::string Warnings(const CameraReport& camera) {
   const std::string& name = camera.calibration.camera;
   const std::string& status = camera.calibration.status;
   std::string text;
@@ -98,7 +96,7 @@ std::string ReportTable(const Report& report) {
     row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
   }
   if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
-    row("1 sigma of a colour at 5 m, mid/worst [px]", ColourSigma);
+    row("reprojection at 5 m, 1 sigma, mid/worst [px]", ReprojectionSigma);
   }
   if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
     row("ranges are short by [mm]", [](const CameraReport& c) {
@@ -115,7 +113,7 @@ std::string ReportTable(const Report& report) {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  for (const CameraReport& camera : report.cameras) text += Remarks(camera);
+  for (const CameraReport& camera : report.cameras) text += Warnings(camera);
   if (report.next_view) text += "next view: " + report.next_view->words + "\n";
   return text;
 }

@@ -33,7 +33,7 @@ std::string LineOf(const std::string& table, const std::string& label) {
   return "";
 }
 
-TEST(ReportTable, SaysHowSureAPoseAndAColourAre) {
+TEST(ReportTable, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
   Report report = MakeReport();
   CameraReport& camera = report.cameras[0];
   camera.calibration.covariance = Matrix6d((Vector6d() << 2e-4, 1e-4, 1e-4, 4e-4, 3e-4, 3e-4)
@@ -45,7 +45,7 @@ TEST(ReportTable, SaysHowSureAPoseAndAColourAre) {
   camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}}};
   const std::string table = ReportTable(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
-  EXPECT_THAT(LineOf(table, "1 sigma of a colour at 5 m"), HasSubstr("0.12 / 0.61"));
+  EXPECT_THAT(LineOf(table, "reprojection at 5 m, 1 sigma"), HasSubstr("0.12 / 0.61"));
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
@@ -62,7 +62,7 @@ TEST(ReportTable, SaysWhereToHoldTheBoardNext) {
   EXPECT_THAT(ReportTable(report), HasSubstr("next view: Hold it 6 m ahead.\n"));
 }
 
-TEST(ReportTable, SaysWhatTheSolveRemarksEvenWhereItConverged) {
+TEST(ReportTable, HasTheStatusOfTheSolveEvenWhereItConverged) {
   Report report = MakeReport();
   report.cameras[0].calibration.status = "kept the first guess";
   report.cameras[1].calibration.converged = false;
