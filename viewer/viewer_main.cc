@@ -9,13 +9,13 @@
 #include <random>
 
 #include "calib/files/schema/report_file.h"
-#include "calib/methods/calibrate.h"
+#include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
 #include "calib/model/version.h"
 #include "calib/present/frames/page.h"
-#include "calib/present/frames/session_frames.h"
 #include "calib/present/layout/frame.h"
+#include "calib/present/session/session_frames.h"
 #include "services/bus/bus.h"
 #include "services/drivers/net/network_interfaces.h"
 #include "services/runtime/clock.h"
@@ -77,7 +77,7 @@ ServerOptions OptionsFrom(const Flags& flags) {
   const bool local = options.socket >= 0 ? rgbdt::viewer::IsLoopback(options.socket)
                                          : rgbdt::viewer::IsLoopback(options.address);
   if (!local) options.token = NewToken();
-  options.page = rgbdt::viewer::Page();
+  options.page = rgbdt::ViewerPage();
   options.hello = {{"type", "hello"}, {"version", rgbdt::Version()}};
   return options;
 }
@@ -181,7 +181,7 @@ int ShowBus(const Flags& flags) {
       });
 }
 
-// What the session's report says; with none, what a calibration would say. Nothing is written.
+// The session's report; where it has none, that of a calibration now. Nothing is written.
 rgbdt::Report ReportOf(const rgbdt::Session& session,
                        const std::vector<rgbdt::ViewDetection>& detections) {
   const auto path = session.root / "report.json";
@@ -196,17 +196,17 @@ int ShowSession(const Flags& flags) {
       rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
         std::fprintf(stderr, "%s\n", line.c_str());
       }).views;
-  rgbdt::viewer::SessionFramesOptions what;
+  rgbdt::SessionFramesOptions what;
   what.title = flags.session;
-  what.version = rgbdt::Version();
-  const auto frames =
-      rgbdt::viewer::SessionFrames(session, detections, ReportOf(session, detections), what);
+  const auto reports =
+      rgbdt::CalibrateByViews(session.rig, detections, ReportOf(session, detections));
+  const auto frames = rgbdt::SessionFrames({session, detections, reports}, what);
   const Goodbye goodbye;
   options.hello["source"] = "session";
   options.hello["title"] = flags.session;
   Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
   for (const auto& frame : frames) {
-    if (frame.topic == "hello") continue;  // the server says it
+    if (frame.topic == "hello") continue;  // the server sends its own
     server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }});
   }
   PrintAddresses(server, options);

@@ -9,15 +9,6 @@
 
 namespace rgbdt {
 
-/// All images of one camera in a session.
-struct CameraCorners {
-  std::string camera;
-  int images = 0;
-  std::vector<IntrinsicsView> views;   ///< where the checkerboard was found, in the session's order
-  std::vector<double> contrasts;       ///< between its squares, of each view [DN or counts]
-  std::vector<std::string> not_found;  ///< the other images
-};
-
 struct SessionCorners {
   std::vector<CameraCorners> cameras;   ///< in the order asked for
   std::vector<std::string> unreadable;  ///< one line for each view that could not be read

@@ -23,6 +23,15 @@ struct IntrinsicsView {
   std::vector<Eigen::Vector2d> corners;
 };
 
+/// All images of one camera in a session.
+struct CameraCorners {
+  std::string camera;
+  int images = 0;
+  std::vector<IntrinsicsView> views;   ///< where the checkerboard was found, in the session's order
+  std::vector<double> contrasts;       ///< between its squares, of each view [DN or counts]
+  std::vector<std::string> not_found;  ///< the other images
+};
+
 /// What the intrinsic calibration of one camera is made from.
 struct IntrinsicsInput {
   LensChoice choice = LensChoice::kPinhole5;
@@ -61,7 +70,7 @@ struct ImageCoverage {
   std::vector<std::string> EmptyParts() const;
 };
 
-/// A camera's lens and how sure it is.
+/// A camera's lens and its uncertainty.
 struct IntrinsicsResult {
   Lens lens;
   LensChoice choice = LensChoice::kPinhole5;

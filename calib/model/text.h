@@ -13,4 +13,10 @@ std::string Fixed(double value, int decimals);
 /// A number in as few digits as it takes to read the same bits back.
 std::string Exact(double value);
 
+/// "view2" before "view10": digits compare as numbers.
+bool NaturalLess(const std::string& a, const std::string& b);
+
+/// `text` with every byte that is not UTF-8 replaced: Protobuf, JSON and HTML take nothing else.
+std::string ValidUtf8(const std::string& text);
+
 }  // namespace rgbdt

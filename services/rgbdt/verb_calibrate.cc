@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <memory>
 
-#include "calib/methods/calibrate.h"
+#include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
-#include "calib/present/report/report_table.h"
+#include "calib/present/session/report_files.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
-#include "services/rgbdt/write_report.h"
 
 namespace rgbdt {
 namespace {
@@ -23,8 +23,12 @@ int Run(const Flags& flags) {
   std::fprintf(stderr, "solving ...\n");
   Report report = Calibrate(session.rig, detection.views, flags.options);
   const std::string wrote = WriteIfSolved(out, report);
-  const bool all_read = FinishReport(out, flags.truth, wrote, session, detection, &report);
-  return all_read && AllConverged(report) ? 0 : 1;
+  const auto truth = TruthPath(flags.truth, session.root);
+  if (!truth.empty()) AddTruth(ReadTruth(truth), &report);
+  const auto reports = CalibrateByViews(session.rig, detection.views, report);
+  WriteReportFiles(out, {session, detection.views, reports});
+  PrintReport(report, wrote, detection.unreadable);
+  return detection.unreadable.empty() && AllConverged(report) ? 0 : 1;
 }
 
 }  // namespace

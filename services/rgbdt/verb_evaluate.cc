@@ -1,13 +1,13 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
-#include "calib/methods/calibrate.h"
+#include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
+#include "calib/present/session/report_files.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
-#include "services/rgbdt/write_report.h"
 
 namespace rgbdt {
 namespace {
@@ -67,8 +67,12 @@ int Run(const Flags& flags) {
       DetectSession(session, by_paper ? kPaperMethod : kAutoMethod, PrintProgress);
   Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(session.root / "report.json", &report);
-  const std::string wrote = "wrote to " + out.string() + ":";
-  return FinishReport(out, flags.truth, wrote, session, detection, &report) ? 0 : 1;
+  const auto truth = TruthPath(flags.truth, session.root);
+  if (!truth.empty()) AddTruth(ReadTruth(truth), &report);
+  const auto reports = CalibrateByViews(session.rig, detection.views, report);
+  WriteReportFiles(out, {session, detection.views, reports});
+  PrintReport(report, "wrote to " + out.string() + ":", detection.unreadable);
+  return detection.unreadable.empty() ? 0 : 1;
 }
 
 }  // namespace

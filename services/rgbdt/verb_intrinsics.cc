@@ -90,13 +90,13 @@ int Run(const Flags& flags) {
   for (const CameraCorners& camera : corners.cameras) {
     if (IsSkipped(flags, camera)) continue;
     const CameraSpec& before = session.rig.Camera(camera.camera);
-    const IntrinsicsResult result = SolveCamera(flags, session.rig, camera);
-    std::printf("%s\n", IntrinsicsText(before, camera, result).c_str());
-    good &= result.converged;
+    const CameraIntrinsics& found = solved.emplace_back(
+        CameraIntrinsics{before, camera, SolveCamera(flags, session.rig, camera)});
+    std::printf("%s\n", IntrinsicsText(found).c_str());
+    good &= found.result.converged;
     for (CameraSpec& spec : rig.cameras) {
-      if (spec.name == camera.camera && result.converged) spec.lens = result.lens;
+      if (spec.name == camera.camera && found.result.converged) spec.lens = found.result.lens;
     }
-    solved.push_back({before.name, before.width, before.height, camera.views, result});
   }
   for (const std::string& line : corners.unreadable) std::printf("not read: %s\n", line.c_str());
   if (solved.empty()) throw InputError(flags.dir + " holds no image of any camera of its rig");

@@ -6,10 +6,10 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/report_table.h"
+#include "calib/present/session/report_files.h"
 #include "services/bus/log.h"
 #include "services/replay/replay.h"
 #include "services/rgbdt/verbs.h"
-#include "services/rgbdt/write_report.h"
 
 namespace rgbdt {
 namespace {

@@ -27,6 +27,13 @@ inline std::filesystem::path PathOr(const std::string& given,
   return given.empty() ? otherwise : std::filesystem::path(given);
 }
 
+/// The truth file that the user named, or else the session's own; empty: there is none.
+inline std::filesystem::path TruthPath(const std::string& given,
+                                       const std::filesystem::path& session_root) {
+  const std::filesystem::path beside = session_root / "truth.textproto";
+  return given.empty() && !std::filesystem::exists(beside) ? "" : PathOr(given, beside);
+}
+
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 

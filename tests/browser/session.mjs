@@ -29,7 +29,7 @@ async function takeView(page, number) {
   // The solve that follows is done when another view may be asked for.
   await until(`view ${view} to be solved`, () => byId(page, "request-next_pose").isEnabled());
   const badge = byId(page, `card-${view}`).locator(".badge");
-  require(await badge.innerText() === (number % 3 === 0 ? "kept for the check" : "used"), `view ${view} is ${await badge.innerText()}`);
+  require(await badge.innerText() === (number % 3 === 0 ? "held out" : "used"), `view ${view} is ${await badge.innerText()}`);
 }
 
 async function thumbsShown(page, views) {

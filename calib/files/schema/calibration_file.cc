@@ -6,6 +6,7 @@
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -33,13 +34,13 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
 }
 
 void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) {
-  out->set_camera(text::ValidUtf8(camera.camera));
+  out->set_camera(ValidUtf8(camera.camera));
   text::FromRigid3(camera.camera_from_lidar, out->mutable_camera_from_lidar());
   if (camera.covariance && camera.covariance->allFinite()) {
     text::FromMatrix(*camera.covariance, out->mutable_covariance());
   }
   out->set_status(text::FromStatus(camera.status));
-  out->set_detail(text::ValidUtf8(camera.detail));
+  out->set_detail(ValidUtf8(camera.detail));
 }
 
 }  // namespace
@@ -65,8 +66,8 @@ Calibration ReadCalibration(const std::filesystem::path& path) {
 
 std::string PrintCalibration(const Calibration& calibration) {
   proto::Calibration message;
-  message.set_method(text::ValidUtf8(calibration.method));
-  message.set_rig_hash(text::ValidUtf8(calibration.rig_hash));
+  message.set_method(ValidUtf8(calibration.method));
+  message.set_rig_hash(ValidUtf8(calibration.rig_hash));
   message.set_utime(calibration.utime);
   for (const CameraCalibration& camera : calibration.cameras) {
     FromCamera(camera, message.add_camera());

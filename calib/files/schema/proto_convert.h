@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: the pieces that several schemas share, to and from calib/model.
+// The pieces that several schemas share, to and from calib/model.
 
 #include <google/protobuf/repeated_field.h>
 

@@ -15,6 +15,7 @@
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -22,7 +23,6 @@ namespace {
 using text::FromPoseError;
 using text::Place;
 using text::ToPoseError;
-using text::ValidUtf8;
 
 void FromViews(const CameraReport& camera, proto::CameraReport* out) {
   for (const std::string& view : camera.used) out->mutable_views()->add_used(ValidUtf8(view));

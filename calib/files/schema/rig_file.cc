@@ -10,6 +10,7 @@
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -202,7 +203,7 @@ void FromLens(const Lens& lens, proto::Camera* out) {
 }
 
 void FromCamera(const CameraSpec& spec, proto::Camera* out) {
-  out->set_name(text::ValidUtf8(spec.name));
+  out->set_name(ValidUtf8(spec.name));
   out->set_kind(static_cast<proto::Camera::Kind>(spec.kind));
   out->set_width(spec.width);
   out->set_height(spec.height);
@@ -225,7 +226,7 @@ void FromCamera(const CameraSpec& spec, proto::Camera* out) {
 }
 
 void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
-  out->set_name(text::ValidUtf8(spec.name));
+  out->set_name(ValidUtf8(spec.name));
   out->set_range_sigma_m(spec.range_sigma_m);
   text::FromLidarDevice(spec, out);
   if (!spec.turned_scanner) return;
@@ -280,7 +281,7 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses)
 
 std::string PrintRig(const Rig& rig) {
   proto::Rig message;
-  message.set_name(text::ValidUtf8(rig.name));
+  message.set_name(ValidUtf8(rig.name));
   FromLidar(rig.lidar, message.mutable_lidar());
   for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
   FromTarget(rig.target, message.mutable_target());

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt::text {
 namespace {
@@ -67,27 +68,6 @@ int LineOf(const Place::Tree* tree, const FieldDescriptor* field, int index) {
   return tree->GetLocation(field, field->is_repeated() ? index : -1).line + 1;
 }
 
-// Length of the well-formed UTF-8 character at `at`, or 0.
-std::size_t Utf8Length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xC2 && first <= 0xDF   ? 2
-                             : first >= 0xE0 && first <= 0xEF ? 3
-                             : first >= 0xF0 && first <= 0xF4 ? 4
-                                                              : 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0) != 0x80) return 0;
-  }
-  const unsigned second = byte(at + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool surrogate = first == 0xED && second > 0x9F;
-  const bool too_large = first == 0xF4 && second > 0x8F;
-  return overlong || surrogate || too_large ? 0 : length;
-}
-
 }  // namespace
 
 Place Place::In(const std::string& field, int index) const {
@@ -124,7 +104,7 @@ Place ParseText(const std::string& text, const std::string& file,
   parser.WriteLocationsTo(tree);
   // Deeper than any of the schemas, and far from the end of the stack.
   parser.SetRecursionLimit(50);
-  // Checked first: Protobuf would only complain on stderr.
+  // Checked first: Protobuf would only print to stderr.
   if (ValidUtf8(text) != text) {
     throw InputError(file + ": is not UTF-8 text; expected a text file in Protobuf's text format");
   }
@@ -144,22 +124,6 @@ std::string PrintText(const google::protobuf::Message& message, const std::strin
   std::string body;
   printer.PrintToString(message, &body);
   return out + body;
-}
-
-std::string ValidUtf8(const std::string& text) {
-  std::string out;
-  out.reserve(text.size());
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = Utf8Length(text, i);
-    if (length == 0) {
-      out += "\xEF\xBF\xBD";  // the replacement character
-      ++i;
-    } else {
-      out.append(text, i, length);
-      i += length;
-    }
-  }
-  return out;
 }
 
 }  // namespace rgbdt::text

@@ -1,7 +1,7 @@
 #pragma once
 
-// For calib/files (and, ValidUtf8 alone, the viewer): Protobuf text with error messages that name
-// file, line and key.
+// For the files of this folder and of session/: Protobuf text with error messages that name file,
+// line and key.
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
@@ -48,8 +48,5 @@ Place ParseText(const std::string& text, const std::string& file,
 
 /// The message as text; each line of `comment` goes on top behind a '#'. Same message, same bytes.
 std::string PrintText(const google::protobuf::Message& message, const std::string& comment);
-
-/// `text` with every byte that is not UTF-8 replaced: Protobuf takes nothing else.
-std::string ValidUtf8(const std::string& text);
 
 }  // namespace rgbdt::text

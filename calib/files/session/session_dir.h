@@ -44,7 +44,4 @@ void WriteView(const std::filesystem::path& session_dir, const View& view);
 Truth ReadTruth(const std::filesystem::path& path);
 void WriteTruth(const std::filesystem::path& path, const Truth& truth);
 
-/// "view2" before "view10": digits compare as numbers.
-bool NaturalLess(const std::string& a, const std::string& b);
-
 }  // namespace rgbdt

@@ -3,6 +3,7 @@
 #include "calib/files/schema/session.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/files/session/session_dir.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 
@@ -33,12 +34,12 @@ void WriteTruth(const std::filesystem::path& path, const Truth& truth) {
   proto::Truth message;
   for (const auto& [name, camera_from_lidar] : truth.camera_from_lidar) {
     proto::TruthCamera* camera = message.add_camera();
-    camera->set_camera(text::ValidUtf8(name));
+    camera->set_camera(ValidUtf8(name));
     text::FromRigid3(camera_from_lidar, camera->mutable_camera_from_lidar());
   }
   for (const auto& [name, lidar_from_target] : truth.lidar_from_target) {
     proto::TruthView* view = message.add_view();
-    view->set_view(text::ValidUtf8(name));
+    view->set_view(ValidUtf8(name));
     text::FromRigid3(lidar_from_target, view->mutable_lidar_from_target());
   }
   WriteFileAtomically(

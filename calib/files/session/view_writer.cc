@@ -9,6 +9,7 @@
 #include "calib/files/schema/text_proto.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -48,8 +49,8 @@ void FromRadiometry(const Radiometry& radiometry, proto::ViewImage* out) {
 }
 
 void FromImage(const Image& image, const std::string& file, proto::ViewImage* out) {
-  out->set_camera(text::ValidUtf8(image.camera));
-  out->set_file(text::ValidUtf8(file));
+  out->set_camera(ValidUtf8(image.camera));
+  out->set_file(ValidUtf8(file));
   out->set_utime(image.utime);
   out->set_pixel_format(static_cast<proto::Camera::PixelFormat>(image.format));
   FromRadiometry(image.radiometry, out);

@@ -6,7 +6,7 @@
 #include "calib/present/frames/overlay_frame.h"
 #include "calib/present/layout/frame.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr int kWidth = 240, kHeight = 180, kQuality = 85;
@@ -122,4 +122,4 @@ std::string BoardThumbFrame(const std::string& view, const CloudEdges& board, co
   return frame.Finish();
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -6,7 +6,7 @@
 #include "calib/present/frames/internal/scatter.h"
 #include "calib/present/layout/frame.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 // As protocol.ts lays it out; little-endian, as all machines that this runs on are.
@@ -88,4 +88,4 @@ std::string CloudFrame(const RgbdtCloud& cloud, int part) {
   return frame;
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

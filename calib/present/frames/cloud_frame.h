@@ -4,7 +4,7 @@
 
 #include "calib/model/rgbdt_cloud.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 /// Bytes of one point in a cloud frame, see protocol.ts.
 inline constexpr std::size_t kPointBytes = 32;
@@ -13,4 +13,4 @@ inline constexpr std::size_t kPointBytes = 32;
 /// scatters them evenly: any first part of the records is an even sample. Deterministic.
 std::string CloudFrame(const RgbdtCloud& cloud, int part);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

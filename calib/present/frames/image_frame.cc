@@ -10,7 +10,7 @@
 #include "calib/fuse/radiometry.h"
 #include "calib/present/layout/frame.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr int kThumbWidth = 240;  // [px]
@@ -87,4 +87,4 @@ std::string ThumbFrame(const Image& image, const std::string& view) {
   return frame.Finish();
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -4,7 +4,7 @@
 
 #include "calib/model/image.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 struct ImageFrameOptions {
   int max_width = 1280;  ///< [px] of the JPEG; a wider image is shrunk
@@ -19,4 +19,4 @@ std::string ImageFrame(const Image& image, const std::string& view, bool ack,
 /// A ThumbFrame of a camera's image in a view, 240 px wide.
 std::string ThumbFrame(const Image& image, const std::string& view);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -10,7 +10,7 @@
 #include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -113,4 +113,4 @@ std::string OverlayFrame(const Overlay& overlay, bool ack) {
   return frame.Finish();
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -9,7 +9,7 @@
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 /// What is to be drawn on one image.
 struct Overlay {
@@ -43,4 +43,4 @@ std::string OverlayFrame(const Overlay& overlay, bool ack);
 /// by intensity, what lies round it dimmer, crossings as marks.
 std::string BoardThumbFrame(const std::string& view, const CloudEdges& board, const Cloud& cloud);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

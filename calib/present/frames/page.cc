@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "calib/files/schema/text_proto.h"
+#include "calib/model/text.h"
 #include "calib/present/report/html.h"
 
 // The build names the page's file, where it made one.
@@ -21,7 +21,7 @@ extern "C" const char rgbdt_viewer_page_begin[];
 extern "C" const char rgbdt_viewer_page_end[];
 #endif
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 // Where the page wants its frames: before its own script.
@@ -29,13 +29,12 @@ constexpr std::string_view kPlace = "<!--rgbdt-frames-->";
 
 std::string ScriptOf(const NamedFrame& frame) {
   return "<script type=\"application/x-rgbdt-frames\" data-topic=\"" +
-         html::Escape(text::ValidUtf8(frame.topic)) + "\">" + html::Base64(frame.bytes) +
-         "</script>\n";
+         html::Escape(ValidUtf8(frame.topic)) + "\">" + html::Base64(frame.bytes) + "</script>\n";
 }
 
 }  // namespace
 
-std::string_view Page() {
+std::string_view ViewerPage() {
 #ifdef RGBDT_VIEWER_PAGE
   return {rgbdt_viewer_page_begin,
           static_cast<std::size_t>(rgbdt_viewer_page_end - rgbdt_viewer_page_begin)};
@@ -54,4 +53,4 @@ std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>&
   return out.append(page.substr(place + kPlace.size()));
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -4,14 +4,18 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/present/frames/session_frames.h"
+namespace rgbdt {
 
-namespace rgbdt::viewer {
+/// A frame and what it is about ("session", "thumb/0001/rgb", ...), as a live session has them.
+struct NamedFrame {
+  std::string topic;
+  std::string bytes;
+};
 
-/// The page as one HTML file, as the build made it; empty where it was built without Node.
-std::string_view Page();
+/// The viewer's page as one HTML file, as the build made it; empty where it was built without Node.
+std::string_view ViewerPage();
 
 /// The page with frames in it: one file that opens without a server. `page` must not be empty.
 std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>& frames);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <set>
 
-#include "calib/files/schema/report_file.h"
+#include "calib/present/frames/internal/content_json.h"
 #include "calib/present/layout/frame.h"
-#include "calib/present/report/verdict_words.h"
+#include "calib/present/report/session_verdict.h"
 #include "calib/solve/first_guess.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 using nlohmann::json;
@@ -39,21 +39,21 @@ json NumbersOf(const Vector& vector) {
   return out;
 }
 
-// All that are known of: the rig's or, without one, those that were heard of.
+// All that are known of: the rig's or, without one, those that are named anywhere.
 std::vector<std::string> CameraNames(const SessionState& state, const Rig* rig) {
   std::vector<std::string> names;
   if (rig != nullptr) {
     for (const CameraSpec& camera : rig->cameras) names.push_back(camera.name);
     return names;
   }
-  std::set<std::string> heard;
-  for (const CameraCalibration& camera : state.calibration.cameras) heard.insert(camera.camera);
+  std::set<std::string> named;
+  for (const CameraCalibration& camera : state.calibration.cameras) named.insert(camera.camera);
   for (const ViewState& view : state.views) {
-    for (const auto& image : view.images) heard.insert(image.first);
+    for (const auto& image : view.images) named.insert(image.first);
     if (!view.detection) continue;
-    for (const ImageDetection& image : view.detection->images) heard.insert(image.camera);
+    for (const ImageDetection& image : view.detection->images) named.insert(image.camera);
   }
-  return {heard.begin(), heard.end()};
+  return {named.begin(), named.end()};
 }
 
 const CameraReport* ReportOf(const SessionState& state, const std::string& camera) {
@@ -200,10 +200,6 @@ JudgedCamera JudgedOf(const SessionState& state, const std::string& camera) {
   return judged;
 }
 
-json VerdictJson(const VerdictWords& words) {
-  return {{"grade", words.grade}, {"headline", words.headline}, {"reasons", words.reasons}};
-}
-
 json CameraOf(const SessionState& state, const JudgedCamera& judged) {
   const CameraCalibration* calibration = state.calibration.Find(judged.camera);
   const auto utime = state.calibration_utime.find(judged.camera);
@@ -215,9 +211,7 @@ json CameraOf(const SessionState& state, const JudgedCamera& judged) {
               {"rotation_sigma_deg", nullptr},
               {"centre_sigma_mm", nullptr},
               {"verdict", VerdictJson(VerdictOf(
-                              judged, state.report ? state.report->next_view : std::nullopt))},
-              {"heldout_edge_px", nullptr},
-              {"heldout_edge_sigmas", nullptr}};
+                              judged, state.report ? state.report->next_view : std::nullopt))}};
   if (calibration != nullptr) {
     out["camera_from_lidar"] = MatrixOf(calibration->camera_from_lidar);
     if (const auto sigma = SigmaOf(*calibration)) {
@@ -226,10 +220,6 @@ json CameraOf(const SessionState& state, const JudgedCamera& judged) {
     }
   } else if (judged.report != nullptr && !judged.report->calibration.detail.empty()) {
     out["status"] = judged.report->calibration.StatusText();
-  }
-  if (judged.report != nullptr) {
-    out["heldout_edge_px"] = Optional(judged.report->edge_rms_px.heldout);
-    out["heldout_edge_sigmas"] = Optional(judged.report->edge_rms_whitened.heldout);
   }
   return out;
 }
@@ -247,15 +237,8 @@ json LogOf(const std::vector<SessionEvent>& events) {
 
 json NextViewOf(const std::optional<Report>& report) {
   if (!report || !report->next_view) return nullptr;
-  const NextView& next = *report->next_view;
-  return {{"words", next.words},
-          {"camera", next.camera},
-          {"before_px", FiniteOrNull(next.sigma_before_px)},
-          {"after_px", FiniteOrNull(next.sigma_after_px)}};
-}
-
-json ReportJson(const std::optional<Report>& report) {
-  return report ? json::parse(ReportToJson(*report)) : json(nullptr);
+  const NextViewWords next = WordsOf(*report->next_view);
+  return {{"words", next.words}, {"gain", next.gain}};
 }
 
 }  // namespace
@@ -329,8 +312,9 @@ std::string SessionFrame(const SessionState& state, const Rig* rig) {
                     {"sigma", SigmasOf(state.sigma)},
                     {"cameras", states},
                     {"verdict", VerdictJson(VerdictOfAll(judged, next_view))},
+                    {"heldout", TableJson(HeldoutTable(judged))},
                     {"next_view", NextViewOf(state.report)},
-                    {"report", ReportJson(state.report)}});
+                    {"report", state.report ? ContentJson(ContentOf(*state.report)) : nullptr}});
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

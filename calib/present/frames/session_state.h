@@ -10,9 +10,9 @@
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
-/// How sure the calibration was with so many views.
+/// The uncertainty of the calibration with so many views.
 struct SigmaStep {
   int views = 0;
   std::map<std::string, std::pair<double, double>> cameras;  ///< rotation [deg], centre [mm]
@@ -58,4 +58,4 @@ std::string RigFrame(const Rig& rig);
 /// A SessionFrame. `rig` may be null: none is known yet.
 std::string SessionFrame(const SessionState& state, const Rig* rig);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

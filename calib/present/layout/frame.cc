@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr std::size_t kAlign = 8;
@@ -67,4 +67,4 @@ nlohmann::json FiniteOrNull(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

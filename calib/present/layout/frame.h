@@ -8,7 +8,7 @@
 
 #include "calib/model/rigid3.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 /// Bytes for the page, laid out as viewer/page/src/protocol.ts says: id (0; the bridge puts a
 /// connection's own in its place), header, arrays.
@@ -44,4 +44,4 @@ nlohmann::json MatrixOf(const Rigid3& a_from_b);
 /// JSON of a number: null where it is not finite.
 nlohmann::json FiniteOrNull(double value);
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -34,7 +34,7 @@ struct Scale {
   float low = 0, high = 0;  // [px]
   cv::Mat_<cv::Vec3b> table;
 
-  // 0 to 1. Sigmas are told apart by their ratios.
+  // 0 to 1. What tells sigmas apart is their ratio.
   float Share(float value) const {
     return std::clamp(std::log(value / low) / std::log(high / low), 0.0F, 1.0F);
   }
@@ -147,7 +147,7 @@ void DrawLine(const Field& distance, cv::Mat* map) {
   }
 }
 
-// What the table says as well: two decimals, fewer where they mean nothing.
+// As in the table: two decimals, fewer where they mean nothing.
 std::string Px(double value) {
   if (!std::isfinite(value)) return "-";
   return fmt::format("{:.{}f}", value, value >= 9.95 ? 0 : value >= 0.995 ? 1 : 2);

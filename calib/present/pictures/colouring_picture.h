@@ -7,18 +7,22 @@
 
 namespace rgbdt {
 
-/// How sure a colour is, all over one camera's image: four small maps of the image, for points 2,
-/// 5, 10 and 50 m away, with one scale and lines of equal sigma [px] (calib/solve/colouring.h).
-/// 8-bit BGR, legible on a phone. Empty where the covariance gives no sigma.
+/// The reprojection uncertainty all over one camera's image: four small maps of the image, for
+/// points 2, 5, 10 and 50 m away, with one scale and lines of equal sigma [px]
+/// (calib/solve/colouring.h). 8-bit BGR, legible on a phone. Empty where the covariance gives no
+/// sigma.
 cv::Mat ColouringPicture(const CameraSpec& spec, const Matrix6d& covariance);
 
 /// How to read it, in words.
 inline constexpr const char* kColouringCaption =
-    "How far off a colour may be, 1 sigma in pixels, for points 2, 5, 10 and 50 m away. Each map "
-    "is the camera's image: dark is sure, bright is less so, a line joins places that are equally "
-    "sure, and grey is beyond the lens. An error of the rotation shifts a colour by as many pixels "
-    "at every distance, so on the object it grows with the distance; an error of the translation "
-    "counts close by and fades with the distance. Where the boards stood the two balance best. To "
-    "make a bright place darker, hold the board there, at about that distance.";
+    "Reprojection uncertainty: 1 sigma, in pixels, of where in the image a point's colour is taken "
+    "from, for points 2, 5, 10 and 50 m away. Each map is the camera's image: dark is low, bright "
+    "is high, a line joins places of equal uncertainty, and grey is beyond the lens. An error of "
+    "the "
+    "rotation shifts a colour by as many pixels at every distance, so on the object it grows with "
+    "the distance; an error of the translation counts close by and fades with the distance. Where "
+    "the boards stood the two balance best. To make a bright place darker, hold the board there, "
+    "at "
+    "about that distance.";
 
 }  // namespace rgbdt

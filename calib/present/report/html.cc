@@ -1,7 +1,6 @@
 #include "calib/present/report/html.h"
 
-#include <cmath>
-#include <cstdio>
+#include "calib/model/text.h"
 
 namespace rgbdt::html {
 namespace {
@@ -21,16 +20,39 @@ h3 { font-size: 1.05rem; margin: 1.4rem 0 .3rem; }
 .verdict { border-left: .5rem solid; padding: .6rem .9rem; background: var(--soft); }
 .verdict p { margin: .2rem 0; color: var(--fore); }
 .verdict strong { font-size: 1.2rem; }
-.good { border-color: var(--good); } .good strong { color: var(--good); }
-.caution { border-color: var(--caution); } .caution strong { color: var(--caution); }
-.bad { border-color: var(--bad); } .bad strong { color: var(--bad); }
+.verdict.good { border-color: var(--good); } strong.good, .good strong { color: var(--good); }
+.verdict.caution { border-color: var(--caution); }
+strong.caution, .caution strong { color: var(--caution); }
+.verdict.bad { border-color: var(--bad); } strong.bad, .bad strong { color: var(--bad); }
+td strong { font-weight: inherit; }
 .scroll { overflow-x: auto; max-width: 100%; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .25rem .9rem .25rem 0; border-bottom: 1px solid var(--line);
   vertical-align: top; }
+th { font-weight: 600; } th[scope="row"] { min-width: 6rem; font-weight: inherit; }
 pre { overflow-x: auto; background: var(--soft); padding: .7rem; font-size: .95rem; }
 figure { margin: 1.2rem 0; } img { max-width: 100%; height: auto; display: block; }
 )";
+
+const char* IconOf(Grade mark) {
+  switch (mark) {
+    case Grade::kGood:
+      return "✓ ";
+    case Grade::kCaution:
+      return "! ";
+    case Grade::kBad:
+      return "✗ ";
+    case Grade::kNone:
+      break;
+  }
+  return "";
+}
+
+std::string CellHtml(const Cell& cell) {
+  if (cell.mark == Grade::kNone) return Escape(cell.text);
+  return std::string("<strong class=\"") + NameOf(cell.mark) + "\">" + IconOf(cell.mark) +
+         Escape(cell.text) + "</strong>";
+}
 
 }  // namespace
 
@@ -79,28 +101,36 @@ std::string Base64(const std::string& bytes) {
   return out;
 }
 
-std::string Table(const std::vector<std::string>& head,
-                  const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"scroll\"><table>\n<thead><tr>";
-  for (const std::string& cell : head) out += "<th scope=\"col\">" + cell + "</th>";
+std::string Heading(int level, const std::string& text) {
+  const std::string tag = "h" + std::to_string(level);
+  return "<" + tag + ">" + Escape(text) + "</" + tag + ">\n";
+}
+
+std::string Paragraph(const std::string& text) { return "<p>" + Escape(text) + "</p>\n"; }
+
+std::string VerdictBox(const Verdict& verdict) {
+  std::string out = std::string("<div class=\"verdict ") + NameOf(verdict.grade) +
+                    "\">\n<p><strong>" + Escape(verdict.headline) + "</strong></p>\n";
+  for (const std::string& reason : verdict.reasons) out += Paragraph(reason);
+  return out + "</div>\n";
+}
+
+std::string TableBox(const Table& table) {
+  std::string out = Heading(3, table.title);
+  for (const std::string& note : table.notes) out += Paragraph(note);
+  if (table.rows.empty()) return out;
+  out += "<div class=\"scroll\"><table>\n<thead><tr>";
+  for (const std::string& name : table.head) out += "<th scope=\"col\">" + Escape(name) + "</th>";
   out += "</tr></thead>\n<tbody>\n";
-  for (const std::vector<std::string>& row : rows) {
+  for (const Row& row : table.rows) {
     out += "<tr>";
-    for (const std::string& cell : row) out += "<td>" + cell + "</td>";
+    for (const Cell& cell : row) {
+      out += &cell == &row.front() ? "<th scope=\"row\">" + Escape(cell.text) + "</th>"
+                                   : "<td>" + CellHtml(cell) + "</td>";
+    }
     out += "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
-}
-
-std::string Number(double value, int decimals) {
-  if (!std::isfinite(value)) return "–";
-  char text[400];  // 309 digits at most before the point
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-std::string PoseErrorText(const PoseError& error) {
-  return Number(error.rotation_deg, 3) + "° and " + Number(error.translation_mm, 1) + " mm";
 }
 
 std::string Page(const std::string& title, const std::string& body) {
@@ -108,8 +138,8 @@ std::string Page(const std::string& title, const std::string& body) {
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
          "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
          "style-src 'unsafe-inline'; img-src data:\">\n<title>" +
-         Escape(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + body +
-         "</body>\n</html>\n";
+         Escape(ValidUtf8(title)) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" +
+         ValidUtf8(body) + "</body>\n</html>\n";
 }
 
 }  // namespace rgbdt::html

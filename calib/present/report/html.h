@@ -1,11 +1,11 @@
 #pragma once
 
-// For calib/files and the viewer: small pieces of HTML.
+// Small pieces of HTML. Text goes in as it is and comes out escaped, unless it is called HTML.
 
 #include <string>
-#include <vector>
 
-#include "calib/model/calibration.h"
+#include "calib/present/report/table.h"
+#include "calib/present/report/verdict.h"
 
 namespace rgbdt::html {
 
@@ -14,17 +14,14 @@ std::string Escape(const std::string& text);
 
 std::string Base64(const std::string& bytes);
 
-/// A table in a box that scrolls by itself, so that a phone's page does not. Cells are HTML.
-std::string Table(const std::vector<std::string>& head,
-                  const std::vector<std::vector<std::string>>& rows);
+std::string Heading(int level, const std::string& text);
+std::string Paragraph(const std::string& text);
+std::string VerdictBox(const Verdict& verdict);
 
-/// The number with so many digits behind the point; "–" where it is not finite.
-std::string Number(double value, int decimals);
+/// Title, notes and the table, in a box that scrolls by itself, so that a phone's page does not.
+std::string TableBox(const Table& table);
 
-/// "0.012° and 3.4 mm"
-std::string PoseErrorText(const PoseError& error);
-
-/// The page around `body` (HTML), with its style.
+/// The page around `body` (HTML), with its style; bytes that are no UTF-8 are replaced.
 std::string Page(const std::string& title, const std::string& body);
 
 }  // namespace rgbdt::html

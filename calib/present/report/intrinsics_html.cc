@@ -3,42 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/files/schema/text_proto.h"
+#include "calib/model/text.h"
 #include "calib/present/report/html.h"
+#include "calib/present/report/words.h"
 
 namespace rgbdt {
 namespace {
 
-using html::Escape;
-using html::Number;
-
-using Rows = std::vector<std::vector<std::string>>;
-
-std::string VerdictHtml(const IntrinsicsResult& result) {
-  std::string out = result.converged ? "<div class=\"verdict good\">\n<p><strong>Converged"
-                                     : "<div class=\"verdict bad\">\n<p><strong>Not converged";
-  out += "</strong></p>\n";
-  if (!result.converged) out += "<p>" + Escape(result.status) + "</p>\n";
-  out += "<p>" + std::to_string(result.ViewsUsed()) + " views, " +
-         std::to_string(result.corners_used) + " corners, RMS " + Number(result.rms_px, 3) +
-         " px; " + Number(100 * result.coverage.fraction, 0) + "% of the image held corners.</p>\n";
+Verdict VerdictOf(const IntrinsicsResult& result) {
+  Verdict verdict{Grade::kGood, "Converged", {}};
+  if (!result.converged) verdict = {Grade::kBad, "Not converged", {result.status}};
+  verdict.reasons.push_back(
+      std::to_string(result.ViewsUsed()) + " views, " + std::to_string(result.corners_used) +
+      " corners, RMS " + Number(result.rms_px, 3) + " px; " +
+      Number(100 * result.coverage.fraction, 0) + "% of the image held corners.");
   const auto parts = result.coverage.EmptyParts();
   if (!parts.empty()) {
-    out += "<p>Few corners at the image's ";
-    for (const std::string& part : parts) out += (&part == &parts.front() ? "" : ", ") + part;
-    out += ": the lens is extrapolated there.</p>\n";
+    verdict.reasons.push_back("Few corners at the image's " + Joined(parts) +
+                              ": the lens is extrapolated there.");
   }
-  return out + "</div>\n";
+  return verdict;
 }
 
-std::string ParametersHtml(const IntrinsicsResult& result) {
-  Rows rows;
+Table ParametersTable(const IntrinsicsResult& result) {
+  Table table{"Lens", {}, {"Parameter", "Value", "1 sigma", "Unit"}, {}};
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const int digits = i < 4 ? 3 : 6;
-    rows.push_back({result.names[i], Number(result.values[i], digits),
-                    Number(result.Sigma(static_cast<int>(i)), digits), i < 4 ? "px" : ""});
+    table.rows.push_back({{result.names[i]},
+                          {Number(result.values[i], digits)},
+                          {Number(result.Sigma(static_cast<int>(i)), digits)},
+                          {i < 4 ? "px" : ""}});
   }
-  return html::Table({"parameter", "value", "1 sigma", "unit"}, rows);
+  return table;
 }
 
 std::string Coordinates(const char* x, const char* y, const Eigen::Vector2d& at) {
@@ -48,16 +44,17 @@ std::string Coordinates(const char* x, const char* y, const Eigen::Vector2d& at)
 
 // How much longer residuals are drawn than they are: a typical one a fiftieth of the image's width.
 double Magnification(const CameraIntrinsics& camera) {
-  const double wanted = 0.02 * camera.width / std::max(0.01, camera.result.rms_px);
+  const double wanted = 0.02 * camera.before.width / std::max(0.01, camera.result.rms_px);
   const double decade = std::pow(10, std::floor(std::log10(wanted)));
   return decade * (wanted >= 5 * decade ? 5 : wanted >= 2 * decade ? 2 : 1);
 }
 
 std::string CornersSvg(const CameraIntrinsics& camera) {
   const double scale = Magnification(camera);
-  const double stroke = camera.width / 800.0;
+  const double stroke = camera.before.width / 800.0;
   std::string out = "<figure>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
-                    std::to_string(camera.width) + " " + std::to_string(camera.height) +
+                    std::to_string(camera.before.width) + " " +
+                    std::to_string(camera.before.height) +
                     "\" width=\"100%\" role=\"img\" aria-label=\"corners and residuals\">\n"
                     "<rect width=\"100%\" height=\"100%\" fill=\"none\" stroke=\"currentColor\" "
                     "stroke-width=\"" +
@@ -67,7 +64,7 @@ std::string CornersSvg(const CameraIntrinsics& camera) {
     const IntrinsicsViewFit& view = camera.result.views[v];
     if (!view.rejected.empty()) continue;
     for (std::size_t i = 0; i < view.used.size(); ++i) {
-      const Eigen::Vector2d corner = camera.views[v].corners[i];
+      const Eigen::Vector2d corner = camera.corners.views[v].corners[i];
       const Eigen::Vector2d end = corner + scale * view.residuals_px[i];
       if (view.used[i]) {
         out += "<line" + Coordinates("x1", "y1", corner) + Coordinates("x2", "y2", end) + "/>\n";
@@ -84,26 +81,30 @@ std::string CornersSvg(const CameraIntrinsics& camera) {
          "</figure>\n";
 }
 
-std::string ViewsHtml(const IntrinsicsResult& result) {
-  Rows rows;
+Table ViewsTable(const IntrinsicsResult& result) {
+  Table table{"Views", {}, {"View", "RMS", "Worst corner", "Corners left out", "Why rejected"}, {}};
   for (const IntrinsicsViewFit& view : result.views) {
-    const bool used = view.rejected.empty();
-    rows.push_back({Escape(view.name), used ? Number(view.rms_px, 3) : "–",
-                    used ? Number(view.worst_px, 2) : "–",
-                    used ? std::to_string(view.corners_left_out) : "all", Escape(view.rejected)});
+    if (!view.rejected.empty()) {
+      table.rows.push_back({{view.name}, {"–"}, {"–"}, {"all"}, {view.rejected}});
+      continue;
+    }
+    table.rows.push_back({{view.name},
+                          {WithUnit(view.rms_px, 3, "px")},
+                          {WithUnit(view.worst_px, 2, "px")},
+                          {std::to_string(view.corners_left_out)},
+                          {}});
   }
-  return html::Table({"view", "RMS [px]", "worst corner [px]", "corners left out", "why rejected"},
-                     rows);
+  return table;
 }
 
 std::string CameraHtml(const CameraIntrinsics& camera) {
-  std::string out =
-      "<section>\n<h2>Camera " + Escape(camera.camera) + "</h2>\n" + VerdictHtml(camera.result);
+  std::string out = "<section>\n" + html::Heading(2, "Camera " + camera.before.name) +
+                    html::VerdictBox(VerdictOf(camera.result));
   if (camera.result.converged) {
-    out += "<h3>Lens</h3>\n" + ParametersHtml(camera.result) + "<h3>Corners</h3>\n" +
+    out += html::TableBox(ParametersTable(camera.result)) + html::Heading(3, "Corners") +
            CornersSvg(camera);
   }
-  return out + "<h3>Views</h3>\n" + ViewsHtml(camera.result) + "</section>\n";
+  return out + html::TableBox(ViewsTable(camera.result)) + "</section>\n";
 }
 
 }  // namespace
@@ -111,7 +112,7 @@ std::string CameraHtml(const CameraIntrinsics& camera) {
 std::string IntrinsicsHtml(const std::vector<CameraIntrinsics>& cameras) {
   std::string body = "<h1>Intrinsic calibration of the cameras</h1>\n";
   for (const CameraIntrinsics& camera : cameras) body += CameraHtml(camera);
-  return html::Page("rgbdt intrinsics", text::ValidUtf8(body));
+  return html::Page("rgbdt intrinsics", ValidUtf8(body));
 }
 
 }  // namespace rgbdt

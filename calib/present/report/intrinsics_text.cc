@@ -103,8 +103,8 @@ std::string CoverageText(const ImageCoverage& coverage) {
 
 }  // namespace
 
-std::string IntrinsicsText(const CameraSpec& before, const CameraCorners& corners,
-                           const IntrinsicsResult& result) {
+std::string IntrinsicsText(const CameraIntrinsics& camera) {
+  const auto& [before, corners, result] = camera;
   std::string text = HeadText(before, corners, result);
   if (result.converged) text += ParametersText(before, result);
   return text + ViewsText(before, corners, result) + CoverageText(result.coverage);

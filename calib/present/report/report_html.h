@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/model/calibration.h"
+#include "calib/present/report/report_content.h"
 
 namespace rgbdt {
 
@@ -14,9 +14,8 @@ struct ReportPicture {
   cv::Mat bgr;  ///< 8-bit
 };
 
-/// One page that needs nothing else (no script, no network): for each camera a verdict in plain
-/// words, figures with units, the transform both ways, every view and every other start. Safe
-/// whatever the names in the report are. The same input gives the same bytes.
-std::string ReportHtml(const Report& report, const std::vector<ReportPicture>& pictures);
+/// The report as one page that needs nothing else (no script, no network), for builds without the
+/// viewer's page. Safe whatever the names in the report are. The same input gives the same bytes.
+std::string ReportHtml(const ReportContent& content, const std::vector<ReportPicture>& pictures);
 
 }  // namespace rgbdt

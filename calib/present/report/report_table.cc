@@ -8,6 +8,8 @@
 #include <functional>
 #include <optional>
 
+#include "calib/present/report/verdict.h"
+
 namespace rgbdt {
 namespace {
 
@@ -32,14 +34,10 @@ std::string Sigma(const CameraCalibration& calibration) {
                          worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
-// 1 sigma of a colour 5 m away, in the image's middle and where it is worst.
-std::string ColourSigma(const CameraReport& camera) {
-  if (!camera.sigma) return "-";
-  for (const ColouringSigma& at : camera.sigma->colouring) {
-    if (std::abs(at.distance_m - 5) > 1e-6) continue;
-    return fmt::format("{:.2f} / {:.2f}", at.centre_px, at.worst_px);
-  }
-  return "-";
+// In the image's middle and where it is worst.
+std::string ReprojectionSigma(const CameraReport& camera) {
+  const ColouringSigma* at = JudgedColouring(camera);
+  return at == nullptr ? "-" : fmt::format("{:.2f} / {:.2f}", at->centre_px, at->worst_px);
 }
 
 // What a camera's column has no room for.
@@ -97,7 +95,7 @@ std::string ReportTable(const Report& report) {
     row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
   }
   if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
-    row("1 sigma of a colour at 5 m, mid/worst [px]", ColourSigma);
+    row("reprojection at 5 m, 1 sigma, mid/worst [px]", ReprojectionSigma);
   }
   if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
     row("ranges are short by [mm]", [](const CameraReport& c) {

@@ -32,5 +32,25 @@ TEST(Exact, ReadsBackAsTheSameBits) {
   }
 }
 
+TEST(NaturalLess, ComparesDigitsAsNumbers) {
+  EXPECT_TRUE(NaturalLess("2", "10"));
+  EXPECT_TRUE(NaturalLess("a2b3", "a2b20"));
+  EXPECT_TRUE(NaturalLess("01", "1") != NaturalLess("1", "01"));
+  EXPECT_FALSE(NaturalLess("7", "7"));
+  EXPECT_TRUE(NaturalLess("7", "7a"));
+  EXPECT_TRUE(NaturalLess("99999999999999999999998", "99999999999999999999999"));
+}
+
+TEST(ValidUtf8, ReplacesOnlyWhatIsNone) {
+  const std::string good = "a\u00e9\u20ac\U0001F600";
+  EXPECT_EQ(ValidUtf8(good), good);
+  EXPECT_EQ(ValidUtf8("a\xff"
+                      "b"),
+            "a\uFFFDb");
+  EXPECT_EQ(ValidUtf8("\xC0\xAF"), "\uFFFD\uFFFD");            // overlong
+  EXPECT_EQ(ValidUtf8("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD");  // a surrogate
+  EXPECT_EQ(ValidUtf8("\xE2\x82"), "\uFFFD\uFFFD");            // cut off
+}
+
 }  // namespace
 }  // namespace rgbdt

@@ -1,5 +1,5 @@
-// What the bridge and the page say to each other. The C++ side is viewer/frames (what is said) and
-// viewer/bridge (how it gets here). Frames: LIDAR x forward, y left, z up; camera x right, y down,
+// What the bridge and the page say to each other. The C++ side is calib/present/frames (what the
+// bridge says), viewer/server (how it gets here) and viewer/live (what the page asks for). Frames: LIDAR x forward, y left, z up; camera x right, y down,
 // z forward; metres, kelvin, pixels with centres at integers, microseconds UTC.
 //
 // Bridge -> page: binary frames, little-endian.
@@ -52,7 +52,7 @@ export interface RigFrame {
 export interface ImageFrame {
   type: "image";
   camera: string;
-  view: string; // "" for the newest, live; "sigma" in a finished session: how sure a colour is
+  view: string; // "" for the newest, live; "sigma" in a finished session: the reprojection uncertainty
   utime: number;
   width: number; // of the camera's image [px]; the JPEG may be smaller
   height: number;
@@ -145,14 +145,44 @@ export interface CameraState {
   rotation_sigma_deg: number | null; // 1 sigma, RMS of the three axes
   centre_sigma_mm: number | null;
   verdict: Verdict;
-  heldout_edge_px: number | null;
-  heldout_edge_sigmas: number | null;
 }
 
 export interface Verdict {
   grade: Grade;
   headline: string;
   reasons: string[];
+}
+
+export interface Cell {
+  text: string;
+  mark: Grade; // what it says of the result; "none": nothing
+}
+
+export interface Table {
+  title: string;
+  notes: string[]; // sentences between title and table
+  head: string[]; // the first column names the rows
+  rows: Cell[][];
+}
+
+/// A transform with the sentences that say which way it goes.
+export interface Pose {
+  name: string; // "camera_from_lidar"
+  sentence: string;
+  matrix: number[]; // 4x4 row by row
+}
+
+export interface CameraReport {
+  camera: string;
+  poses: Pose[];
+  tables: Table[];
+}
+
+/// A report's words and tables, as the plain HTML report has them, too (calib/present/report).
+export interface Report {
+  intro: string;
+  cameras: CameraReport[];
+  tables: Table[]; // of all cameras together
 }
 
 /// What a person may ask for.
@@ -174,12 +204,10 @@ export interface SessionFrame {
   sigma: { views: number; cameras: { camera: string; rotation_deg: number; centre_mm: number }[] }[];
   cameras: CameraState[];
   verdict: Verdict; // of all cameras
-  next_view: { words: string; camera: string; before_px: number | null; after_px: number | null } | null;
+  heldout: Table; // how well each camera's calibration fits the held-out views
+  next_view: { words: string; gain: string } | null;
   report: Report | null;
 }
-
-/// report.json, as far as the page reads it; see calib/files/schema/report.proto. int64 are strings.
-export type Report = Record<string, unknown> & { method?: string; cameras?: Record<string, Record<string, unknown>> };
 
 /// Who sees the board just now.
 export interface TargetStatusFrame {

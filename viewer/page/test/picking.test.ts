@@ -23,11 +23,11 @@ test("the point under the finger, not one beside it", () => {
   expect(picked([[10, 0.1, 0], [10, 0, 0], [5, -0.08, 0]], 400, 300)).toBe(1);
 });
 
-test("of points over each other the nearest to the eye", () => {
+test("of points over each other the nearest to the viewpoint", () => {
   expect(picked([[10, 0, 0], [4, 0, 0], [6, 0, 0]], 401, 300)).toBe(1);
 });
 
-test("none within reach, none behind the eye, none that is not drawn", () => {
+test("none within reach, none behind it, none that is not drawn", () => {
   expect(picked([[10, 1, 0]], 400, 300)).toBeNull();
   expect(picked([[-10, 0, 0], [NaN, NaN, NaN]], 400, 300)).toBeNull();
   expect(picked([[10, 1, 0], [10, 0, 0]], 400, 300, 1)).toBeNull();

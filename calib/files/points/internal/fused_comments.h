@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: what a file of a fused cloud says in its comments, as its points have no
+// What a file of a fused cloud says in its comments, as its points have no
 // place for it.
 
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: a PCD file as a table of numbers.
+// A PCD file as a table of numbers.
 
 #include <string>
 #include <string_view>

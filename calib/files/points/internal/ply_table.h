@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: the vertices of a PLY file as a table of numbers.
+// The vertices of a PLY file as a table of numbers.
 
 #include <string>
 #include <string_view>

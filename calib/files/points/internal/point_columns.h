@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: what the fields of a file of points mean (cloud_files.h).
+// What the fields of a file of points mean (cloud_files.h).
 
 #include <Eigen/Core>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: the points of a PCD or PLY file as a table of numbers.
+// The points of a PCD or PLY file as a table of numbers.
 
 #include <cstdint>
 #include <string>

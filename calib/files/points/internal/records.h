@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: tables of binary records, as PCD and PLY hold them.
+// Tables of binary records, as PCD and PLY hold them.
 
 #include <cstring>
 #include <functional>

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calib/files/schema/proto_convert.h"
+#include "calib/model/text.h"
 
 namespace rgbdt::text {
 namespace {

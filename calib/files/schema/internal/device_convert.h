@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: the rig file's devices, to and from calib/model.
+// The rig file's devices, to and from calib/model.
 
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"

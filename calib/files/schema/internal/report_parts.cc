@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "calib/files/schema/proto_convert.h"
+#include "calib/model/text.h"
 
 namespace rgbdt::text {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Inside calib/files only: the pieces of a report, to and from its message. JSON knows no NaN: a
-// number that is not finite is left out, and what is not there is read as NaN.
+// The pieces of a report, to and from its message. JSON knows no NaN: a number
+// that is not finite is left out, and what is not there is read as NaN.
 
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -18,7 +18,7 @@ Estimate ToEstimate(const proto::Estimate& estimate);
 void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);
 
-/// How sure a camera's pose is: edge_rms_whitened, sigma, nuisance, folds and halves.
+/// The uncertainty of a camera's pose: edge_rms_whitened, sigma, nuisance, folds and halves.
 void FromSureness(const CameraReport& camera, proto::CameraReport* out);
 /// Throws InputError where a list of numbers has another length than it should.
 void ToSureness(const proto::CameraReport& message, const Place& place, CameraReport* camera);

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 /// An order of 0 ... count - 1 whose every beginning is spread evenly over all of them: steps of
 /// the golden section of `count`, which no number of beams or rings divides for long.
@@ -44,4 +44,4 @@ class Scatter {
   std::uint64_t count_, step_, place_step_;
 };
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: which colour a point has in a picture, and the legend.
+// Which colour a point has in a picture, and the legend.
 
 #include <opencv2/core/mat.hpp>
 #include <string>

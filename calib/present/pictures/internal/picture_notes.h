@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: what is written on a picture of a cloud.
+// What is written on a picture of a cloud.
 
 #include <opencv2/core/mat.hpp>
 #include <vector>

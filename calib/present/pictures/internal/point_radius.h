@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: how large a point is to be drawn.
+// How large a point is to be drawn.
 
 #include <Eigen/Core>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: from points to pixels.
+// From points to pixels.
 
 #include <limits>
 #include <opencv2/core/mat.hpp>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Inside calib/files only: where a picture of a cloud is taken from.
+// Where a picture of a cloud is taken from.
 
 #include <Eigen/Core>
 #include <vector>

@@ -6,7 +6,7 @@
 
 #include "tests/unit/present/frames/frame_testing.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -176,4 +176,4 @@ TEST(CloudFrame, AnyFirstPartIsAnEvenSample) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads frames as viewer/page/src/protocol.ts lays them out, by nothing of viewer/frames.
+// Reads frames as viewer/page/src/protocol.ts lays them out, by none of its code.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 
 struct ParsedFrame {
   std::uint32_t id = 0;
@@ -63,4 +63,4 @@ inline ParsedFrame Parse(const std::string& bytes) {
   return frame;
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -6,7 +6,7 @@
 #include "tests/unit/matchers.h"
 #include "tests/unit/present/frames/frame_testing.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST(ThumbFrame, IsSmall) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -6,7 +6,7 @@
 #include "tests/unit/present/frames/frame_testing.h"
 #include "tests/unit/solve/board_world.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -176,4 +176,4 @@ TEST(BoardThumbFrame, IsUprightAsSeenFromTheLidar) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -6,7 +6,7 @@
 
 #include "calib/files/atomic_file.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 constexpr char kPage[] = "<html><head><!--rgbdt-frames--><script>go()</script></head></html>";
@@ -43,7 +43,7 @@ std::vector<std::string> FramesIn(const std::string& page) {
 
 TEST(Page, IsTheFileThatTheBuildMade) {
   const std::string file = RGBDT_VIEWER_PAGE;
-  EXPECT_TRUE(Page() == (file.empty() ? "" : ReadWholeFile(file)));
+  EXPECT_TRUE(ViewerPage() == (file.empty() ? "" : ReadWholeFile(file)));
 }
 
 TEST(PageWithFrames, FramesComeBackByteForByteBeforeThePagesScript) {
@@ -71,4 +71,4 @@ TEST(PageWithFrames, WithoutFramesOrAPlace) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -1,10 +1,12 @@
 #include "calib/present/frames/session_state.h"
 
+#include "calib/present/layout/frame.h"
+#include "calib/present/report/report_content.h"
 #include "calib/solve/colouring.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/present/frames/frame_testing.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 using nlohmann::json;
@@ -199,8 +201,6 @@ TEST(SessionFrame, AFinishedOneHasFiguresVerdictsAndTheReport) {
   EXPECT_EQ(rgb.at("utime"), test::kNow);
   EXPECT_EQ(rgb.at("camera_from_lidar").size(), 16U);
   EXPECT_NEAR(rgb.at("camera_from_lidar").at(7).get<double>(), 0.2, 1e-12);
-  EXPECT_EQ(rgb.at("heldout_edge_px"), 0.625);
-  EXPECT_NEAR(rgb.at("heldout_edge_sigmas").get<double>(), 1 / 0.95, 1e-12);
   EXPECT_TRUE(frame.at("cameras").at(1).at("rotation_sigma_deg").is_null());
   const json& views = frame.at("views");
   EXPECT_EQ(views[0].at("cameras").at(0).at("edge_rms_px"), 0.5);
@@ -209,10 +209,56 @@ TEST(SessionFrame, AFinishedOneHasFiguresVerdictsAndTheReport) {
   // Found, but the solver left it out.
   EXPECT_EQ(views[2].at("cameras").at(0).at("state"), "rejected");
   EXPECT_EQ(views[2].at("cameras").at(0).at("why"), "the board is not in view");
-  EXPECT_EQ(frame.at("next_view").at("camera"), "thermal");
-  EXPECT_EQ(frame.at("next_view").at("before_px"), 0.875);
-  EXPECT_EQ(frame.at("report").at("method"), "paper");
+  EXPECT_THAT(frame.at("next_view").at("gain").get<std::string>(),
+              HasSubstr("camera thermal is worst"));
+  EXPECT_THAT(frame.at("report").at("intro").get<std::string>(), HasSubstr("Method: paper."));
   EXPECT_EQ(frame.at("report").at("cameras").size(), 2U);
+}
+
+// The words and tables of the plain HTML page (ReportHtml's tests look at them) reach the page.
+TEST(SessionFrame, HasTheReportsTablesAndPoses) {
+  const json frame = SessionJson(Finished(), nullptr);
+  const ReportContent content = ContentOf(test::MakeReport());
+  const json& report = frame.at("report");
+  EXPECT_EQ(report.at("intro"), content.intro);
+  ASSERT_EQ(report.at("cameras").size(), content.cameras.size());
+  const json& camera = report.at("cameras").at(0);
+  EXPECT_EQ(camera.at("camera"), "rgb");
+  const std::vector<Table>& tables = content.cameras[0].tables;
+  ASSERT_EQ(camera.at("tables").size(), tables.size());
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const json& shown = camera.at("tables").at(i);
+    EXPECT_EQ(shown.at("title"), tables[i].title);
+    EXPECT_EQ(shown.at("notes"), tables[i].notes);
+    EXPECT_EQ(shown.at("head"), tables[i].head);
+    ASSERT_EQ(shown.at("rows").size(), tables[i].rows.size());
+    for (std::size_t r = 0; r < tables[i].rows.size(); ++r) {
+      ASSERT_EQ(shown.at("rows").at(r).size(), tables[i].head.size()) << tables[i].title;
+      EXPECT_EQ(shown.at("rows").at(r).at(1).at("text"), tables[i].rows[r][1].text);
+    }
+  }
+  const Rigid3 pose = test::MakeReport().cameras[0].calibration.camera_from_lidar;
+  EXPECT_EQ(camera.at("poses").at(0).at("name"), "camera_from_lidar");
+  EXPECT_EQ(camera.at("poses").at(0).at("matrix"), MatrixOf(pose));
+  EXPECT_EQ(camera.at("poses").at(1).at("name"), "lidar_from_camera");
+  EXPECT_EQ(camera.at("poses").at(1).at("matrix"), MatrixOf(pose.Inverse()));
+  EXPECT_EQ(report.at("tables").at(0).at("title"), "Camera against camera");
+}
+
+TEST(SessionFrame, HeldOutViewsAreJudgedCameraByCamera) {
+  const Rig rig = test::MakeRig();
+  SessionState state = Finished();
+  state.report->cameras[1].edge_rms_whitened.heldout.reset();
+  const auto judged = [&](double rms) {
+    state.report->cameras[0].edge_rms_whitened.heldout = rms;
+    return SessionJson(state, &rig).at("heldout").at("rows").at(0).at(3);
+  };
+  EXPECT_EQ(judged(1.0), json({{"text", "as expected"}, {"mark", "good"}}));
+  EXPECT_EQ(judged(1.41), json({{"text", "less exact than stated"}, {"mark", "caution"}}));
+  EXPECT_EQ(judged(0.69), json({{"text", "more exact than stated"}, {"mark", "caution"}}));
+  const json thermal = SessionJson(state, &rig).at("heldout").at("rows").at(1);
+  EXPECT_EQ(thermal.at(0).at("text"), "thermal");
+  EXPECT_EQ(thermal.at(3), json({{"text", "not judged yet"}, {"mark", "none"}}));
 }
 
 // A report of cameras that all are good.
@@ -345,4 +391,4 @@ TEST(SigmaOf, IsTheRootMeanSquareOfTheReportsThreeAxes) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -2,7 +2,7 @@
 
 #include "tests/unit/present/frames/frame_testing.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 TEST(Frame, ArraysBeginAtMultiplesOfEightAndComeBack) {
@@ -52,4 +52,4 @@ TEST(Frame, AMatrixIsRowByRow) {
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

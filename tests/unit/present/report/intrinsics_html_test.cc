@@ -9,7 +9,11 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 CameraIntrinsics Solved() {
-  CameraIntrinsics camera{"rgb", 640, 480, {{"0001", {{10, 20}, {30, 40}}}, {"<b>", {{1, 2}}}}, {}};
+  CameraIntrinsics camera;
+  camera.before.name = "rgb";
+  camera.before.width = 640;
+  camera.before.height = 480;
+  camera.corners.views = {{"0001", {{10, 20}, {30, 40}}}, {"<b>", {{1, 2}}}};
   IntrinsicsResult& result = camera.result;
   result.converged = true;
   result.status = "converged";

@@ -9,12 +9,14 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+std::string HtmlOf(const Report& report) { return ReportHtml(ContentOf(report), {}); }
+
 TEST(ReportHtml, HoldsVerdictFiguresTransformsAndViews) {
-  const std::string page = ReportHtml(test::MakeReport(), {});
+  const std::string page = HtmlOf(test::MakeReport());
   for (const char* part :
-       {"<!doctype html>", "Camera rgb", "Camera thermal", "0.62 px", "held out", "rejected",
+       {"<!doctype html>", "Camera rgb", "Camera thermal", "0.62\u202fpx", "held out", "rejected",
         "the board is not in view", "camera_from_lidar", "lidar_from_camera", "point_in_camera",
-        "30 deg about x, 40 deg about z", "no: stopped", "0.100° and 0.3 mm",
+        "30 deg about x, 40 deg about z", "did not converge: stopped", "0.100° and 0.3 mm",
         "prefers-color-scheme", "width=device-width", "Computing time"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
@@ -23,14 +25,16 @@ TEST(ReportHtml, HoldsVerdictFiguresTransformsAndViews) {
   EXPECT_THAT(page, Not(HasSubstr("https:")));
 }
 
-TEST(ReportHtml, SaysHowSureItIs) {
-  const std::string page = ReportHtml(test::MakeReport(), {});
+TEST(ReportHtml, StatesItsUncertainty) {
+  const std::string page = HtmlOf(test::MakeReport());
   for (const char* part :
-       {"How sure it is", "0.0333°", "0.67 mm", "50 m", "0.60 px", "0.97 of their sigmas",
-        "1 means that the data are as exact as stated", "0.62 (1.06 sigmas)", "0001, 0002",
-        "misfit of the first guess", "chi-square 5.2", "beam edge, no return", "mrad",
-        "rgb to thermal", "they agree", "Where to hold the board next",
-        "Hold the board 6 m ahead, at the image&#39;s top left.", "from 0.88 to 0.09 px"}) {
+       {"Uncertainty of the pose (1 sigma)", "0.0333°", "0.67\u202fmm",
+        "Reprojection uncertainty (1 sigma)", "50\u202fm", "0.60\u202fpx", "0.97\u202fsigma",
+        "1 is expected; above 1 the stated sigmas are too small", "1.06\u202fsigma", "0001, 0002",
+        "Misfit of the first guess", "<td>5.2</td>", "beam edge, no return", "mrad",
+        "rgb to thermal", "<strong class=\"good\">✓ no more than the sigmas allow</strong>",
+        "Where to hold the board next", "Hold the board 6 m ahead, at the image&#39;s top left.",
+        "from 0.88 to 0.09 px"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
 }
@@ -40,8 +44,8 @@ TEST(ReportHtml, SaysNothingOfWhatNobodyWorkedOut) {
   report.cameras.erase(report.cameras.begin());
   report.closure.clear();
   report.next_view.reset();
-  const std::string page = ReportHtml(report, {});
-  for (const char* part : {"How sure it is", "sigma", "left out", "halves", "besides the pose",
+  const std::string page = HtmlOf(report);
+  for (const char* part : {"ncertainty", "sigma", "left out", "halves", "besides the pose",
                            "Camera against camera", "Where to hold the board next"}) {
     EXPECT_THAT(page, Not(HasSubstr(part)));
   }
@@ -60,7 +64,7 @@ TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   report.closure[0].from = report.closure[0].to = evil;
   report.next_view->words = report.next_view->camera = evil;
   const std::string page =
-      ReportHtml(report, {{evil, evil, cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}});
+      ReportHtml(ContentOf(report), {{evil, evil, cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}});
   EXPECT_THAT(page, Not(HasSubstr("<b ")));
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, Not(HasSubstr("onload=\"x")));
@@ -73,7 +77,7 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
     report.cameras.pop_back();
     report.cameras[0].other_starts.clear();
     change(&report.cameras[0]);
-    return ReportHtml(report, {});
+    return HtmlOf(report);
   };
   EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Consistent: no sign that it is wrong."));
   const std::string failed = page([](CameraReport* camera) {
@@ -100,7 +104,7 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
 
 TEST(ReportHtml, PicturesAreInThePage) {
   const std::string page = ReportHtml(
-      test::MakeReport(),
+      ContentOf(test::MakeReport()),
       {{"Overlay", "Edges", cv::Mat::zeros(3, 5, CV_8UC3)}, {"None", "Nothing to see", cv::Mat()}});
   EXPECT_THAT(page, HasSubstr("<img alt=\"Overlay\" width=\"5\" height=\"3\" "
                               "src=\"data:image/png;base64,iVBORw0KGgo"));
@@ -108,7 +112,7 @@ TEST(ReportHtml, PicturesAreInThePage) {
 }
 
 TEST(ReportHtml, AnEmptyReportIsAPageToo) {
-  EXPECT_THAT(ReportHtml(Report{}, {}), HasSubstr("No camera could be calibrated."));
+  EXPECT_THAT(HtmlOf(Report{}), HasSubstr("No camera could be calibrated."));
 }
 
 TEST(Html, Base64AsInRfc4648) {

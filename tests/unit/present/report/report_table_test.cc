@@ -32,7 +32,7 @@ std::string LineOf(const std::string& table, const std::string& label) {
   return "";
 }
 
-TEST(ReportTable, SaysHowSureAPoseAndAColourAre) {
+TEST(ReportTable, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
   Report report = MakeReport();
   CameraReport& camera = report.cameras[0];
   camera.calibration.covariance = Matrix6d((Vector6d() << 2e-4, 1e-4, 1e-4, 4e-4, 3e-4, 3e-4)
@@ -44,7 +44,7 @@ TEST(ReportTable, SaysHowSureAPoseAndAColourAre) {
   camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}}};
   const std::string table = ReportTable(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
-  EXPECT_THAT(LineOf(table, "1 sigma of a colour at 5 m"), HasSubstr("0.12 / 0.61"));
+  EXPECT_THAT(LineOf(table, "reprojection at 5 m, 1 sigma"), HasSubstr("0.12 / 0.61"));
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
@@ -61,7 +61,7 @@ TEST(ReportTable, SaysWhereToHoldTheBoardNext) {
   EXPECT_THAT(ReportTable(report), HasSubstr("next view: Hold it 6 m ahead.\n"));
 }
 
-TEST(ReportTable, SaysHowTheSolveEndedEvenWhereItConverged) {
+TEST(ReportTable, HasTheStatusOfTheSolveEvenWhereItConverged) {
   Report report = MakeReport();
   report.cameras[0].calibration.status = SolveStatus::kFirstGuessKept;
   report.cameras[0].calibration.detail = "it fits better";

@@ -1,4 +1,4 @@
-#include "calib/present/report/internal/verdict.h"
+#include "calib/present/report/verdict.h"
 
 #include "tests/unit/files/test_data.h"
 
@@ -9,8 +9,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-using Grade = Verdict::Grade;
-
 CameraReport Good() {
   CameraReport camera = test::MakeReport().cameras[0];
   camera.other_starts.clear();
@@ -20,7 +18,7 @@ CameraReport Good() {
 TEST(Verdict, AGoodReportIsConsistentAndSaysWhy) {
   const Verdict verdict = Judge(Good());
   EXPECT_EQ(verdict.grade, Grade::kGood);
-  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("0.60 px where it is worst")));
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("0.60 px (1 sigma) where it is worst")));
   EXPECT_THAT(verdict.reasons, Contains(HasSubstr("no more than their sigmas allow")));
 }
 
@@ -31,7 +29,7 @@ TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
     camera.calibration.status = status;
     const Verdict verdict = Judge(camera, test::MakeReport().next_view);
     EXPECT_EQ(verdict.grade, Grade::kBad);
-    EXPECT_THAT(verdict.headline, HasSubstr("the pose cannot be told from these views"));
+    EXPECT_THAT(verdict.headline, HasSubstr("do not determine the pose"));
     EXPECT_THAT(verdict.reasons, Contains(HasSubstr("all boards are parallel")));
     EXPECT_THAT(verdict.reasons,
                 Contains("Next: Hold the board 6 m ahead, at the image's top left."));
@@ -39,7 +37,7 @@ TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Next:"))));
 }
 
-TEST(Verdict, WhatAConvergedSolveRemarksIsSaidWithoutAlarm) {
+TEST(Verdict, TheStatusOfAConvergedSolveIsAReasonWithoutAlarm) {
   CameraReport camera = Good();
   camera.calibration.status = SolveStatus::kFirstGuessKept;
   const Verdict verdict = Judge(camera);
@@ -47,7 +45,7 @@ TEST(Verdict, WhatAConvergedSolveRemarksIsSaidWithoutAlarm) {
   EXPECT_THAT(verdict.reasons, Contains(HasSubstr("the first guess was kept")));
 }
 
-TEST(Verdict, AColourThatIsNotSureToAPixelFiveMetresAwayIsAWarning) {
+TEST(Verdict, MoreThanAPixelOfReprojectionUncertaintyAtFiveMetresIsAWarning) {
   CameraReport camera = Good();
   camera.sigma->colouring[0].worst_px = camera.sigma->colouring[3].worst_px = 9;  // 2 and 50 m
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
@@ -56,13 +54,13 @@ TEST(Verdict, AColourThatIsNotSureToAPixelFiveMetresAwayIsAWarning) {
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
 }
 
-TEST(Verdict, HalvesThatDifferTooMuchSayThatTheSigmaIsWrong) {
+TEST(Verdict, HalvesThatDifferTooMuchContradictTheStatedUncertainty) {
   CameraReport camera = Good();
   camera.halves->chi2 = 22.4;
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
   camera.halves->chi2 = 22.6;
   EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
-  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("sigma is not to be believed")));
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("uncertainty cannot be trusted")));
 }
 
 TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
@@ -72,7 +70,7 @@ TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("sigmas allow"))));
 }
 
-TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheSigmaIsWrong) {
+TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheVerdictIsCaution) {
   CameraReport camera = Good();
   const auto grade = [&](double rms) {
     camera.edge_rms_whitened.heldout = rms;

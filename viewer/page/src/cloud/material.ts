@@ -40,10 +40,10 @@ vec3 color(vec3 point) {
 
 void main() {
   vec3 point = uintBitsToFloat(head.xyz);
-  vec4 eye = modelViewMatrix * vec4(point, 1.0);
+  vec4 seen = modelViewMatrix * vec4(point, 1.0);
   bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z);
-  gl_Position = missing ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * eye;
-  gl_PointSize = clamp(size * 5.0 / max(-eye.z, 0.1), max(1.0, 0.6 * size), 3.0 * size);
+  gl_Position = missing ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
+  gl_PointSize = clamp(size * 5.0 / max(-seen.z, 0.1), max(1.0, 0.6 * size), 3.0 * size);
   shade = color(point);
 }`;
 

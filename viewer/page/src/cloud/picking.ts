@@ -8,7 +8,7 @@ export interface Picked { points: Points; index: number }
 const kReach = 12; // from the finger [px]
 const kAsNear = 3; // no farther than the nearest and this [px]: drawn over each other
 
-/// Of the points nearest to (x, y) on the screen [px from its upper left], the nearest to the eye.
+/// Of the points nearest to (x, y) on the screen [px from its upper left], the nearest to the viewpoint.
 /// `clip_from_points`: projection * view.
 export function pick(shown: { points: Points; drawn: number }[], clip_from_points: Matrix4, screen: Screen,
   x: number, y: number): Picked | null {

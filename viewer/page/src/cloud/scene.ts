@@ -1,9 +1,9 @@
-// The cloud on a canvas. It is drawn when there is something new or the eye moves, and only then.
+// The cloud on a canvas. It is drawn when there is something new or the viewpoint moves, and only then.
 import * as THREE from "three";
 import type { Vec3 } from "../protocol";
 import { isSoftware, pointBudget, rendererName } from "./budget";
 import type { Colour } from "./color_maps";
-import { Eye, type ViewName } from "./eye";
+import { Viewpoint, type ViewName } from "./viewpoint";
 import { makeMaterial, setColour } from "./material";
 import { Pace } from "./pace";
 import { pick, type Picked } from "./picking";
@@ -24,7 +24,7 @@ export class CloudScene {
   private readonly material = makeMaterial();
   private readonly objects = new PointObjects(this.material);
   private readonly axes = new THREE.AxesHelper(0.5); // the LIDAR's
-  private readonly eye: Eye;
+  private readonly viewpoint: Viewpoint;
   private readonly pixel = new Uint8Array(4);
   private asked = false;
 
@@ -35,15 +35,15 @@ export class CloudScene {
     this.budget = pointBudget(this.renderer);
     this.gl.setPixelRatio(isSoftware(this.renderer) ? 1 : Math.min(devicePixelRatio, 2));
     this.scene.add(this.objects.group, this.axes);
-    this.eye = new Eye(canvas, () => this.draw());
+    this.viewpoint = new Viewpoint(canvas, () => this.draw());
     canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
   resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
     this.gl.setSize(width, height, false);
-    this.eye.camera.aspect = width / height;
-    this.eye.camera.updateProjectionMatrix();
+    this.viewpoint.camera.aspect = width / height;
+    this.viewpoint.camera.updateProjectionMatrix();
     this.draw();
   }
 
@@ -73,7 +73,7 @@ export class CloudScene {
   }
 
   look(view: ViewName): void {
-    this.eye.look(view, this.material.uniforms.origin.value as THREE.Vector3);
+    this.viewpoint.look(view, this.material.uniforms.origin.value as THREE.Vector3);
     this.draw();
   }
 
@@ -83,7 +83,7 @@ export class CloudScene {
     requestAnimationFrame(() => { this.asked = false; this.drawNow(); });
   }
 
-  /// Pixels of the window, and whether it is in front of the eye.
+  /// Pixels of the window, and whether it is in front of the camera.
   project([x, y, z]: Vec3): { x: number; y: number; inFront: boolean } {
     const at = new THREE.Vector4(x, y, z, 1).applyMatrix4(this.clipFromPoints());
     const box = this.canvas.getBoundingClientRect();
@@ -101,13 +101,13 @@ export class CloudScene {
   }
 
   private clipFromPoints(): THREE.Matrix4 {
-    const { camera } = this.eye;
+    const { camera } = this.viewpoint;
     camera.updateMatrixWorld();
     return new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   }
 
   private drawNow(): void {
-    const { moving, camera } = this.eye;
+    const { moving, camera } = this.viewpoint;
     const start = performance.now();
     this.points = this.objects.thin(moving ? this.pace.share : 1, this.budget);
     this.gl.render(this.scene, camera);

@@ -1,26 +1,23 @@
-// The session: what is to be done now, what came of it, and how sure the result is.
+// The session: what is to be done now, what came of it, and the result's uncertainty.
 import type { CameraState, SessionFrame } from "../protocol";
 import { rig, session, targetStatus } from "../store";
-import { px } from "./words";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
 import { EventLog } from "./session/event_log";
 import { ReportSection, SigmaPictures } from "./session/report";
-import type { ReportMessage } from "./session/report_message";
+import { TableView } from "./session/table";
 import { TargetStatusLine } from "./session/target_status_line";
-import { HeldoutErrors, SigmaCharts } from "./session/sureness";
+import { SigmaCharts } from "./session/uncertainty";
 import { Progress, VerdictCard } from "./session/verdict";
 import { ViewCards } from "./session/view_cards";
 import "./panels.css";
 
 function NextView({ next }: { next: NonNullable<SessionFrame["next_view"]> }) {
-  const gain = next.before_px !== null && next.after_px !== null
-    ? `Where ${next.camera} is worst, 1 sigma of a colour is to go from ${px(next.before_px)} to ${px(next.after_px)}.` : "";
   return (
     <div class="next-view" data-testid="next-view">
       <h3>Where to hold the board next</h3>
       <p class="next-words">{next.words}</p>
-      {gain && <p class="muted">{gain}</p>}
+      <p class="muted">{next.gain}</p>
     </div>
   );
 }
@@ -65,10 +62,10 @@ export function SessionPanel() {
         )}
       </section>
       {!isEmpty(state) && <Now session={state} />}
-      <section class="card" aria-label="How sure it is">
-        <h2>How sure it is</h2>
+      <section class="card" aria-label="Uncertainty">
+        <h2>Uncertainty</h2>
         <SigmaCharts sigma={state.sigma} />
-        <HeldoutErrors cameras={state.cameras} />
+        {state.heldout.rows.length > 0 && <TableView table={state.heldout} />}
       </section>
       <section class="card" aria-label="Coverage">
         <h2>Where the board was held</h2>
@@ -79,7 +76,7 @@ export function SessionPanel() {
         <h2>Views ({state.views.length})</h2>
         <ViewCards session={state} />
       </section>
-      {state.report && <ReportSection report={state.report as ReportMessage} open={state.mode === "finished"} />}
+      {state.report && <ReportSection report={state.report} open={state.mode === "finished"} />}
       <EventLog log={state.log} />
     </div>
   );

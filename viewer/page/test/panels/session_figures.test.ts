@@ -4,7 +4,7 @@ import { summaryOf } from "../../src/panels/image/residuals";
 import { rowsOf as rowsOnStrip, stripOf } from "../../src/panels/session/depth_strip";
 import { logMarks } from "../../src/panels/session/log_scale";
 import { heldoutByDefault, whyNot } from "../../src/panels/session/permission";
-import { inverse, matrixOf } from "../../src/panels/session/poses";
+import { textOf } from "../../src/panels/session/pose_card";
 
 describe("residuals", () => {
   test("are counted by class, and their RMS is over the known ones", () => {
@@ -44,21 +44,10 @@ describe("the strip of distances", () => {
   });
 });
 
-describe("poses", () => {
-  const motion = { quaternion_wxyz: [Math.SQRT1_2, 0, 0, Math.SQRT1_2], translation_m: [1, 2, 3] };
-
-  test("turn by their quaternion: w, x, y, z", () => {
-    const expected = [0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1];
-    matrixOf(motion)!.forEach((value, i) => expect(value).toBeCloseTo(expected[i]!, 12));
-  });
-
-  test("have an inverse", () => {
-    const expected = [0, 1, 0, -2, -1, 0, 0, 1, 0, 0, 1, -3, 0, 0, 0, 1];
-    inverse(matrixOf(motion)!).forEach((value, i) => expect(value).toBeCloseTo(expected[i]!, 12));
-  });
-
-  test("are none where the message is incomplete", () => {
-    expect(matrixOf({ quaternion_wxyz: [1, 0, 0, 0] })).toBeNull();
+describe("a pose on the clipboard", () => {
+  test("is JSON, with all digits", () => {
+    const matrix = [0, -1, 0, 1 / 3, 1, 0, 0, 2, 0, 0, 1, 3, 0, 0, 0, 1];
+    expect(JSON.parse(textOf(matrix)).flat()).toEqual(matrix);
   });
 });
 
@@ -78,7 +67,7 @@ describe("what a person may ask for", () => {
     expect(whyNot("capture", session, "embedded", hello)).not.toBe("");
   });
 
-  test("keeps every third view for the check", () => {
+  test("holds out every third view", () => {
     expect([0, 1, 2, 3, 4, 5].map(heldoutByDefault)).toEqual([false, false, true, false, false, true]);
   });
 });

@@ -1,5 +1,5 @@
 import { kColours, type Colour } from "../../cloud/color_maps";
-import { kViews } from "../../cloud/eye";
+import { kViews } from "../../cloud/viewpoint";
 import { clearMap, sceneNow } from "../../cloud/model";
 import { colour, mode, pointSize, stats, voxel, type Mode } from "../../cloud/settings";
 import { fixed, grouped } from "../../format";

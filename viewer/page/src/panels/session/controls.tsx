@@ -99,7 +99,7 @@ export function Controls({ session }: { session: SessionFrame }) {
       <label class="check">
         <input type="checkbox" data-testid="heldout" checked={heldout.value}
           onChange={(event) => { heldout.value = event.currentTarget.checked; }} />
-        <span>Keep the next view for the check <span class="muted">(the solver never sees it)</span></span>
+        <span>Hold out the next view <span class="muted">(the solver never sees it: it checks the result)</span></span>
       </label>
       {confirming.value && possible("finish") && <Confirm yes={finish} no={() => { confirming.value = false; }} />}
       {reasonsOf(reasons).map((why) => <p key={why} class="muted" data-testid="why-not">{why}</p>)}

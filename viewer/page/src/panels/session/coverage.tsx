@@ -4,7 +4,7 @@ import { metres, short } from "../words";
 import { rowsOf, stripOf } from "./depth_strip";
 
 type Fate = "used" | "heldout" | "rejected";
-const kFateWords: Record<Fate, string> = { used: "used", heldout: "kept for the check", rejected: "rejected or waiting" };
+const kFateWords: Record<Fate, string> = { used: "used", heldout: "held out", rejected: "rejected or waiting" };
 
 function fateOf(view: View, own: ViewCamera): Fate {
   if (own.state !== "accepted") return "rejected";

@@ -25,7 +25,7 @@ export function whyNot(
   return session.busy ? `Busy: ${session.busy}.` : kModeWords[session.mode];
 }
 
-/// Every third view is kept for the check, as long as nobody says otherwise.
+/// Every third view is held out, as long as nobody says otherwise.
 export function heldoutByDefault(views: number): boolean {
   return (views + 1) % 3 === 0;
 }

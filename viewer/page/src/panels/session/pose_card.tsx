@@ -1,13 +1,18 @@
 import { useSignal } from "@preact/signals";
+import type { Pose } from "../../protocol";
 import { copyText } from "./copy";
-import { inverse, rowsOf, textOf } from "./poses";
 
-interface MatrixProps { name: string; sentence: string; matrix: number[]; testid: string }
+const rowsOf = (matrix: number[]): number[][] => [0, 4, 8, 12].map((start) => matrix.slice(start, start + 4));
 
-function Matrix({ name, sentence, matrix, testid }: MatrixProps) {
-  const said = useSignal("");
+/// As JSON, and so as Python and many others read it.
+export function textOf(matrix: number[]): string {
+  return `[${rowsOf(matrix).map((row) => `[${row.join(", ")}]`).join(",\n ")}]`;
+}
+
+function Matrix({ pose: { name, sentence, matrix }, testid }: { pose: Pose; testid: string }) {
+  const told = useSignal("");
   const copy = async (): Promise<void> => {
-    said.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not let this page copy.";
+    told.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not let this page copy.";
   };
   return (
     <div class="matrix" data-testid={testid}>
@@ -22,20 +27,17 @@ function Matrix({ name, sentence, matrix, testid }: MatrixProps) {
       </div>
       <div class="row">
         <button type="button" onClick={() => void copy()} data-testid={`${testid}-copy`}>Copy {name}</button>
-        <span role="status">{said}</span>
+        <span role="status">{told}</span>
       </div>
     </div>
   );
 }
 
 /// Both ways, each with the sentence that says which way it is.
-export function PoseCard({ camera, matrix }: { camera: string; matrix: number[] }) {
+export function PoseCard({ camera, poses }: { camera: string; poses: Pose[] }) {
   return (
     <div class="matrices">
-      <Matrix name="camera_from_lidar" matrix={matrix} testid={`pose-${camera}`}
-        sentence={`A point in the LIDAR's frame becomes one in the frame of ${camera}: point_in_camera = camera_from_lidar · point_in_lidar. Translations in metres.`} />
-      <Matrix name="lidar_from_camera" matrix={inverse(matrix)} testid={`pose-inverse-${camera}`}
-        sentence={`The other way: point_in_lidar = lidar_from_camera · point_in_camera. Its last column is where the centre of ${camera} sits in the LIDAR's frame.`} />
+      {poses.map((pose) => <Matrix key={pose.name} pose={pose} testid={`pose-${camera}-${pose.name}`} />)}
     </div>
   );
 }

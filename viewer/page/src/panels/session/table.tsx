@@ -1,28 +1,28 @@
-import type { ComponentChildren } from "preact";
+import type { Cell, Table } from "../../protocol";
+import { gradeClass, kGradeIcon } from "./verdict";
 
-interface Props {
-  title: string;
-  note?: string;
-  head: string[]; // the first column names the row
-  rows: ComponentChildren[][];
-  testid?: string;
+function Marked({ cell: { text, mark } }: { cell: Cell }) {
+  return mark === "none" ? <>{text}</> : <span class={gradeClass(mark)}>{kGradeIcon[mark]} {text}</span>;
 }
 
-/// Empty where there are no rows. Numbers stand to the right.
-export function Table({ title, note, head, rows, testid }: Props) {
-  if (rows.length === 0) return null;
+/// Without its title where the section has one.
+export function TableView({ table, titled = true }: { table: Table; titled?: boolean }) {
+  const { title, notes, head, rows } = table;
   return (
-    <section class="report-table" data-testid={testid}>
-      <h4>{title}</h4>
-      {note && <p class="muted">{note}</p>}
-      <div class="scroll-x">
-        <table aria-label={title}>
-          <thead><tr>{head.map((name) => <th key={name} scope="col">{name}</th>)}</tr></thead>
-          <tbody>{rows.map((row, i) => (
-            <tr key={i}>{row.map((cell, j) => (j === 0 ? <th key={j} scope="row">{cell}</th> : <td key={j}>{cell}</td>))}</tr>
-          ))}</tbody>
-        </table>
-      </div>
+    <section class="report-table">
+      {titled && <h4>{title}</h4>}
+      {notes.map((note) => <p key={note} class="muted">{note}</p>)}
+      {rows.length > 0 && (
+        <div class="scroll-x">
+          <table aria-label={title}>
+            <thead><tr>{head.map((name, j) => <th key={j} scope="col">{name}</th>)}</tr></thead>
+            <tbody>{rows.map((row, i) => (
+              <tr key={i}>{row.map((cell, j) => (j === 0
+                ? <th key={j} scope="row">{cell.text}</th> : <td key={j}><Marked cell={cell} /></td>))}</tr>
+            ))}</tbody>
+          </table>
+        </div>
+      )}
     </section>
   );
 }

@@ -63,7 +63,7 @@ function ViewCard({ view, wanted }: { view: View; wanted: Set<string> }) {
     <article class="card view" aria-label={`View ${view.name}`} data-testid={`card-${view.name}`}>
       <header class="row">
         <h3>{view.name}</h3>
-        <span class="badge muted">{view.heldout ? "kept for the check" : "used"}</span>
+        <span class="badge muted">{view.heldout ? "held out" : "used"}</span>
       </header>
       <div class="thumbs">
         {view.cameras.map(({ camera }) => <Thumb key={camera} view={view.name} camera={camera} />)}

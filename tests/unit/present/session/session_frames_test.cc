@@ -1,10 +1,11 @@
-#include "calib/present/frames/session_frames.h"
+#include "calib/present/session/session_frames.h"
 
 #include "calib/files/session/session_dir.h"
+#include "calib/model/version.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/present/frames/frame_testing.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
 using nlohmann::json;
@@ -23,11 +24,11 @@ class SessionFramesTest : public ::testing::Test {
     }
     session_ = OpenSession(dir_.path());
     options_.title = "a session";
-    options_.version = "1.2.3";
   }
 
   std::vector<NamedFrame> Frames() const {
-    return SessionFrames(session_, detections_, test::MakeReport(), options_);
+    const std::vector<Report> reports = {test::MakeReport()};
+    return SessionFrames({session_, detections_, reports}, options_);
   }
 
   static ViewDetection Seen(const std::string& view) {
@@ -77,7 +78,7 @@ TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
   const json hello = Header(frames, "hello");
   EXPECT_EQ(hello.at("source"), "session");
   EXPECT_EQ(hello.at("title"), "a session");
-  EXPECT_EQ(hello.at("version"), "1.2.3");
+  EXPECT_EQ(hello.at("version"), Version());
   EXPECT_EQ(hello.at("may_command"), false);
   const json session = Header(frames, "session");
   EXPECT_EQ(session.at("mode"), "finished");
@@ -129,4 +130,4 @@ TEST_F(SessionFramesTest, AViewThatCannotBeReadSaysWhyAndTheCloudIsTheOneBefore)
 }
 
 }  // namespace
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -1,34 +1,30 @@
-#include "calib/present/report/internal/verdict.h"
+#include "calib/present/report/verdict.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "calib/present/report/html.h"
+#include "calib/present/report/words.h"
 
 namespace rgbdt {
 namespace {
 
-using Grade = Verdict::Grade;
-
 constexpr std::size_t kFewViews = 5;
-// Held-out views always fit a little worse; beyond this the solve has learnt its views by heart.
+// Held-out views always fit a little worse; beyond this the solve is overfitted.
 constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
-constexpr double kJudgedAtM = 5, kUnsurePx = 1;
-// Of the held-out crossings' RMS in their sigmas: beyond these the sigmas are not what was stated.
-constexpr double kLeastWhitened = 0.7, kMostWhitened = 1.4;
+constexpr double kUncertainPx = 1;
 
 class Judgement {
  public:
-  void Say(const std::string& sentence) { verdict_.reasons.push_back(sentence); }
+  void AddReason(const std::string& sentence) { verdict_.reasons.push_back(sentence); }
   void Caution(const std::string& sentence) {
     verdict_.grade = std::max(verdict_.grade, Grade::kCaution);
-    Say(sentence);
+    AddReason(sentence);
   }
   void Bad(const std::string& sentence) {
     verdict_.grade = Grade::kBad;
-    Say(sentence);
+    AddReason(sentence);
   }
   /// Nothing else matters beside it.
   void Headline(const std::string& headline) { verdict_.headline = headline; }
@@ -52,20 +48,16 @@ void JudgeFit(const CameraReport& camera, Judgement* judgement) {
   }
   const std::string held =
       "On views that the solver never saw, the board's outline is met within " +
-      html::Number(*rms.heldout, 2) + " px RMS";
+      Number(*rms.heldout, 2) + " px RMS";
   if (!rms.train) {
-    judgement->Say(held + ".");
+    judgement->AddReason(held + ".");
   } else if (*rms.heldout > kWorse * *rms.train + kWorsePx) {
-    judgement->Caution(held + ", clearly worse than the " + html::Number(*rms.train, 2) +
+    judgement->Caution(held + ", clearly worse than the " + Number(*rms.train, 2) +
                        " px on the views used: take more views, at other distances and tilts.");
   } else {
-    judgement->Say(held + ", as well as on the views used (" + html::Number(*rms.train, 2) +
-                   " px).");
+    judgement->AddReason(held + ", as well as on the views used (" + Number(*rms.train, 2) +
+                         " px).");
   }
-}
-
-std::string Count(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 // Another start that ended elsewhere and fits clearly worse is only a bad start.
@@ -87,17 +79,17 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
   }
   if (camera.other_starts.empty()) return;
   const std::string of = " of " + Count(camera.other_starts.size(), "other start");
-  const std::string away = "up to " + html::Number(worst.rotation_deg, 2) + "° and " +
-                           html::Number(worst.translation_mm, 0) + " mm away";
+  const std::string away = "up to " + Number(worst.rotation_deg, 2) + "° and " +
+                           Number(worst.translation_mm, 0) + " mm away";
   if (rivals > 0) {
     judgement->Caution(std::to_string(rivals) + of + " ended elsewhere, " + away +
                        ", and fits about as well: the result depends on the start.");
   } else if (stuck > 0) {
-    judgement->Say(std::to_string(stuck) + of + " ended elsewhere, " + away +
-                   ", and fits worse: the first guess has to be nearer than that.");
+    judgement->AddReason(std::to_string(stuck) + of + " ended elsewhere, " + away +
+                         ", and fits worse: the first guess has to be nearer than that.");
   } else {
-    judgement->Say("From " + Count(camera.other_starts.size(), "other start") +
-                   " it comes to the same result.");
+    judgement->AddReason("From " + Count(camera.other_starts.size(), "other start") +
+                         " it comes to the same result.");
   }
 }
 
@@ -107,9 +99,9 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
   switch (calibration.status) {
     case SolveStatus::kUndetermined:
     case SolveStatus::kDegenerate:
-      judgement->Headline("Do not use it: the pose cannot be told from these views.");
-      judgement->Bad("The solve says: " + calibration.StatusText());
-      if (next_view) judgement->Say("Next: " + next_view->words);
+      judgement->Headline("Do not use it: these views do not determine the pose.");
+      judgement->Bad("Status of the solve: " + calibration.StatusText());
+      if (next_view) judgement->AddReason("Next: " + next_view->words);
       break;
     case SolveStatus::kNotSolved:
       judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
@@ -118,50 +110,68 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
       judgement->Bad("The solve did not converge" + (detail.empty() ? "." : ": " + detail));
       break;
     case SolveStatus::kFirstGuessKept:
-      judgement->Say("The solve says: " + calibration.StatusText());
+      judgement->AddReason("Status of the solve: " + calibration.StatusText());
       break;
     case SolveStatus::kConverged:
       break;
   }
 }
 
-void JudgeColouring(const PoseSigma& sigma, Judgement* judgement) {
-  for (const ColouringSigma& at : sigma.colouring) {
-    if (std::abs(at.distance_m - kJudgedAtM) > 1e-6 || !std::isfinite(at.worst_px)) continue;
-    const std::string far = "1 sigma of where the colour of a point " +
-                            html::Number(kJudgedAtM, 0) + " m away is taken from is " +
-                            html::Number(at.worst_px, 2) + " px where it is worst in the image";
-    if (at.worst_px > kUnsurePx) {
-      judgement->Caution(far + ", more than " + html::Number(kUnsurePx, 0) +
-                         " px: take more views in that part of the image, some about as far away.");
-    } else {
-      judgement->Say(far + ".");
-    }
+void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
+  const std::string uncertain = "The reprojection uncertainty of a point " + Number(kJudgedAtM, 0) +
+                                " m away is " + Number(at.worst_px, 2) +
+                                " px (1 sigma) where it is worst in the image";
+  if (at.worst_px > kUncertainPx) {
+    judgement->Caution(uncertain + ", more than " + Number(kUncertainPx, 0) +
+                       " px: take more views in that part of the image, some about as far away.");
+  } else {
+    judgement->AddReason(uncertain + ".");
   }
 }
 
 void JudgeHalves(const Halves& halves, Judgement* judgement) {
   const std::string differ = "Two halves of the views, each solved by itself, differ by " +
-                             html::PoseErrorText(halves.difference);
+                             PoseErrorText(halves.difference);
   if (halves.chi2 > kUnlikelyChi2) {
     judgement->Caution(differ + ", more than their sigmas allow (chi-square " +
-                       html::Number(halves.chi2, 1) + ", by chance above " +
-                       html::Number(kUnlikelyChi2, 1) +
-                       " once in a thousand times): the stated sigma is not to be believed.");
+                       Number(halves.chi2, 1) + ", by chance above " + Number(kUnlikelyChi2, 1) +
+                       " once in a thousand times): the stated uncertainty cannot be trusted.");
   } else {
-    judgement->Say(differ + (std::isnan(halves.chi2) ? "." : ", no more than their sigmas allow."));
+    judgement->AddReason(differ +
+                         (std::isnan(halves.chi2) ? "." : ", no more than their sigmas allow."));
   }
 }
 
 void JudgeWhitened(const std::optional<double>& rms, Judgement* judgement) {
   if (!rms || (*rms >= kLeastWhitened && *rms <= kMostWhitened)) return;
-  judgement->Caution("On the views held out the beams miss the board's edge by " +
-                     html::Number(*rms, 2) + " of their sigmas (RMS; expected: 1): they are " +
-                     (*rms > 1 ? "less" : "more") +
-                     " exact than stated, and the stated sigma is not to be believed.");
+  judgement->Caution("On the held-out views the beams miss the board's edge by " + Number(*rms, 2) +
+                     " sigmas (RMS; expected: 1): they are " + (*rms > 1 ? "less" : "more") +
+                     " exact than stated, and the stated uncertainty cannot be trusted.");
 }
 
 }  // namespace
+
+const char* NameOf(Grade grade) {
+  switch (grade) {
+    case Grade::kGood:
+      return "good";
+    case Grade::kCaution:
+      return "caution";
+    case Grade::kNone:
+      return "none";
+    case Grade::kBad:
+      break;
+  }
+  return "bad";
+}
+
+const ColouringSigma* JudgedColouring(const CameraReport& camera) {
+  if (!camera.sigma) return nullptr;
+  for (const ColouringSigma& at : camera.sigma->colouring) {
+    if (std::abs(at.distance_m - kJudgedAtM) < 1e-6 && std::isfinite(at.worst_px)) return &at;
+  }
+  return nullptr;
+}
 
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
@@ -169,20 +179,20 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
   JudgeFit(camera, &judgement);
   JudgeWhitened(camera.edge_rms_whitened.heldout, &judgement);
   if (camera.halves) JudgeHalves(*camera.halves, &judgement);
-  if (camera.sigma) JudgeColouring(*camera.sigma, &judgement);
+  if (const auto* at = JudgedColouring(camera)) JudgeColouring(*at, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {
     judgement.Caution("Views used: only " + std::to_string(camera.used.size()) + "; take " +
                       std::to_string(kFewViews) + " or more.");
   }
   if (!camera.rejected.empty()) {
-    judgement.Say("Rejected: " + Count(camera.rejected.size(), "view") +
-                  "; why stands in the table of views.");
+    judgement.AddReason("Rejected: " + Count(camera.rejected.size(), "view") +
+                        "; why stands in the table of views.");
   }
   if (camera.truth_error) {
-    judgement.Say("The truth is known here: the result is " +
-                  html::Number(camera.truth_error->rotation_deg, 3) + "° and " +
-                  html::Number(camera.truth_error->translation_mm, 1) + " mm away from it.");
+    judgement.AddReason("The truth is known here: the result is " +
+                        Number(camera.truth_error->rotation_deg, 3) + "° and " +
+                        Number(camera.truth_error->translation_mm, 1) + " mm away from it.");
   }
   return judgement.Finish();
 }

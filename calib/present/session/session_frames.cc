@@ -1,28 +1,27 @@
-#include "calib/present/frames/session_frames.h"
+#include "calib/present/session/session_frames.h"
 
 #include <algorithm>
 #include <exception>
 #include <iterator>
-#include <set>
 
 #include "calib/fuse/fuse.h"
-#include "calib/methods/calibrate.h"
-#include "calib/model/method.h"
 #include "calib/model/parallel.h"
+#include "calib/model/version.h"
 #include "calib/present/frames/cloud_frame.h"
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
 #include "calib/present/frames/session_state.h"
 #include "calib/present/layout/frame.h"
+#include "calib/present/pictures/colouring_picture.h"
 
-namespace rgbdt::viewer {
+namespace rgbdt {
 namespace {
 
-std::string HelloFrame(const SessionFramesOptions& options) {
+std::string HelloFrame(const std::string& title) {
   return JsonFrame({{"type", "hello"},
                     {"source", "session"},
-                    {"title", options.title},
-                    {"version", options.version},
+                    {"title", title},
+                    {"version", Version()},
                     {"may_command", false},
                     {"why_not", "a finished session"}});
 }
@@ -43,7 +42,6 @@ std::vector<ViewState> ViewsOf(const Session& session,
   return views;
 }
 
-// How sure a result is, with the views that the solver used.
 SigmaStep SigmaStepOf(const Report& report) {
   SigmaStep step;
   for (const CameraReport& camera : report.cameras) {
@@ -55,28 +53,12 @@ SigmaStep SigmaStepOf(const Report& report) {
   return step;
 }
 
-// How sure the calibration was with the first view, the first two, ...: solved again with each, in
-// milliseconds. The last is the report's own.
-std::vector<SigmaStep> SigmaSteps(const Rig& rig, const std::vector<ViewDetection>& detections,
-                                  const Report& report) {
+std::vector<SigmaStep> SigmaSteps(const std::vector<Report>& reports) {
   std::vector<SigmaStep> steps;
-  CalibrateOptions options;
-  options.diagnostics = false;
-  std::set<std::string, decltype(&NaturalLess)> used(&NaturalLess);
-  for (const CameraReport& camera : report.cameras) {
-    used.insert(camera.used.begin(), camera.used.end());
-  }
-  std::vector<ViewDetection> so_far;
-  for (const std::string& view : used) {
-    if (report.method != kAutoMethod || view == *used.rbegin()) break;
-    for (const ViewDetection& detection : detections) {
-      if (detection.view == view) so_far.push_back(detection);
-    }
-    SigmaStep step = SigmaStepOf(Calibrate(rig, so_far, options));
+  for (const Report& report : reports) {
+    SigmaStep step = SigmaStepOf(report);
     if (!step.cameras.empty()) steps.push_back(std::move(step));
   }
-  SigmaStep last = SigmaStepOf(report);
-  if (!last.cameras.empty()) steps.push_back(std::move(last));
   return steps;
 }
 
@@ -199,31 +181,48 @@ void TellFailure(const Rig& rig, const std::string& failure, ViewState* view) {
   detection.cloud.why_not = failure;
 }
 
+// The picture of the reprojection uncertainty, as the image of a view "sigma".
+std::vector<NamedFrame> SigmaFrames(const Rig& rig, const Calibration& calibration) {
+  std::vector<NamedFrame> frames;
+  for (const CameraCalibration& camera : calibration.cameras) {
+    Image image;
+    image.camera = camera.camera;
+    image.format = PixelFormat::kBgr8;
+    if (camera.covariance)
+      image.pixels = ColouringPicture(rig.Camera(camera.camera), *camera.covariance);
+    if (image.pixels.empty()) continue;
+    frames.push_back(
+        {"image/sigma/" + camera.camera, ImageFrame(image, "sigma", false, {1280, 90})});
+  }
+  return frames;
+}
+
 void Append(std::vector<NamedFrame> from, std::vector<NamedFrame>* to) {
   std::move(from.begin(), from.end(), std::back_inserter(*to));
 }
 
 }  // namespace
 
-std::vector<NamedFrame> SessionFrames(const Session& session,
-                                      const std::vector<ViewDetection>& detections,
-                                      const Report& report, const SessionFramesOptions& options) {
-  SessionState state = StateOf(report);
-  state.views = ViewsOf(session, detections);
-  state.sigma = SigmaSteps(session.rig, detections, report);
-  const FrameMaker maker(session, state.calibration, options);
+std::vector<NamedFrame> SessionFrames(const FinishedSession& finished,
+                                      const SessionFramesOptions& options) {
+  const Rig& rig = finished.session.rig;
+  SessionState state = StateOf(finished.report());
+  state.views = ViewsOf(finished.session, finished.detections);
+  state.sigma = SigmaSteps(finished.reports);
+  const FrameMaker maker(finished.session, state.calibration, options);
   std::vector<ViewFrames> made = MakeAll(maker, state.views);
   const std::string cloud = LastCloud(maker, state.views, made);
   for (std::size_t i = 0; i < made.size(); ++i) {
-    if (!made[i].failure.empty()) TellFailure(session.rig, made[i].failure, &state.views[i]);
+    if (!made[i].failure.empty()) TellFailure(rig, made[i].failure, &state.views[i]);
   }
-  std::vector<NamedFrame> frames = {{"hello", HelloFrame(options)},
-                                    {"rig", RigFrame(session.rig)},
-                                    {"session", SessionFrame(state, &session.rig)}};
+  std::vector<NamedFrame> frames = {{"hello", HelloFrame(options.title)},
+                                    {"rig", RigFrame(rig)},
+                                    {"session", SessionFrame(state, &rig)}};
   for (ViewFrames& view : made) Append(std::move(view.thumbs), &frames);
   for (ViewFrames& view : made) Append(std::move(view.images), &frames);
+  Append(SigmaFrames(rig, state.calibration), &frames);
   if (!cloud.empty()) frames.push_back({"sweep/0", cloud});
   return frames;
 }
 
-}  // namespace rgbdt::viewer
+}  // namespace rgbdt

@@ -4,14 +4,14 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../protocol";
 
 export type ViewName = "lidar" | "above" | "behind";
-export const kViews: { id: ViewName; name: string; eye: Vec3; target: Vec3 }[] = [
-  { id: "lidar", name: "From the LIDAR", eye: [-0.05, 0, 0.01], target: [3, 0, 0] },
-  { id: "above", name: "From above", eye: [-0.02, 0, 22], target: [0, 0, 0] },
-  { id: "behind", name: "From behind", eye: [-3.5, 0, 2], target: [3, 0, 0] },
+export const kViews: { id: ViewName; name: string; from: Vec3; target: Vec3 }[] = [
+  { id: "lidar", name: "From the LIDAR", from: [-0.05, 0, 0.01], target: [3, 0, 0] },
+  { id: "above", name: "From above", from: [-0.02, 0, 22], target: [0, 0, 0] },
+  { id: "behind", name: "From behind", from: [-3.5, 0, 2], target: [3, 0, 0] },
 ];
 const kZoomStep = 0.85;
 
-export class Eye {
+export class Viewpoint {
   readonly camera = new THREE.PerspectiveCamera(60, 1, 0.05, 1000);
   readonly controls: OrbitControls;
   moving = false;
@@ -31,8 +31,8 @@ export class Eye {
 
   /// `lidar`: where the LIDAR is in the frame that is shown [m].
   look(view: ViewName, lidar: THREE.Vector3): void {
-    const { eye, target } = kViews.find(({ id }) => id === view)!;
-    this.camera.position.set(...eye).add(lidar);
+    const { from, target } = kViews.find(({ id }) => id === view)!;
+    this.camera.position.set(...from).add(lidar);
     this.controls.target.set(...target).add(lidar);
     this.controls.update();
   }

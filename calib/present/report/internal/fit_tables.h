@@ -1,0 +1,22 @@
+#pragma once
+
+// What a report says of the solve and of how well it fits. A table is empty where the report has
+// nothing to say.
+
+#include "calib/model/calibration.h"
+#include "calib/present/report/table.h"
+
+namespace rgbdt {
+
+Table FitTable(const CameraReport& camera);
+
+/// Every view once, in the session's order: its figures where there are some, else why not.
+Table ViewsTable(const CameraReport& camera);
+
+/// What detection found in each view: each camera's image and the cloud apart.
+Table DetectionTable(const Report& report);
+
+Table StartsTable(const CameraReport& camera);
+Table SolveTable(const CameraReport& camera);
+
+}  // namespace rgbdt

@@ -1,0 +1,88 @@
+#include "calib/present/report/report_content.h"
+
+#include <ctime>
+
+#include "calib/present/report/internal/fit_tables.h"
+#include "calib/present/report/internal/uncertainty_tables.h"
+#include "calib/present/report/words.h"
+
+namespace rgbdt {
+namespace {
+
+std::string TimeText(Utime utime) {
+  const std::time_t seconds = static_cast<std::time_t>(utime / kMicrosecondsPerSecond);
+  std::tm utc{};
+  char text[64] = "";
+  if (gmtime_r(&seconds, &utc) != nullptr) {
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc);
+  }
+  return text;
+}
+
+std::string Intro(const Report& report) {
+  std::string intro = "Method: " + report.method + ". Rig: " + report.rig_hash + ".";
+  if (report.utime != 0) intro += " Newest image: " + TimeText(report.utime) + ".";
+  return intro;
+}
+
+// x, y, z
+std::string Coordinates(const Eigen::Vector3d& point, int decimals) {
+  return "x " + Number(point.x(), decimals) + ", y " + Number(point.y(), decimals) + ", z " +
+         Number(point.z(), decimals) + " m";
+}
+
+std::vector<NamedPose> BothWays(const CameraCalibration& calibration) {
+  const Rigid3& camera_from_lidar = calibration.camera_from_lidar;
+  const Rigid3 lidar_from_camera = camera_from_lidar.Inverse();
+  return {
+      {"camera_from_lidar",
+       "Takes a point of the LIDAR frame (x forward, y left, z up) into the frame of camera " +
+           calibration.camera +
+           " (x right, y down, z forward); metres. point_in_camera = camera_from_lidar · "
+           "point_in_lidar",
+       camera_from_lidar},
+      {"lidar_from_camera",
+       "The inverse: the camera's pose in the LIDAR frame (what ROS wants). The camera's centre "
+       "is at " +
+           Coordinates(lidar_from_camera.translation, 4) +
+           ". point_in_lidar = lidar_from_camera · point_in_camera",
+       lidar_from_camera}};
+}
+
+void AddIfAny(Table table, std::vector<Table>* tables) {
+  if (!table.empty()) tables->push_back(std::move(table));
+}
+
+CameraContent ContentOf(const CameraReport& camera, const std::optional<NextView>& next_view) {
+  CameraContent content{
+      camera.calibration.camera, Judge(camera, next_view), BothWays(camera.calibration), {}};
+  for (auto* make : {FitTable, PoseSigmaTable, ReprojectionTable, ViewsTable, HalvesTable,
+                     FoldsTable, StartsTable, NuisanceTable, SolveTable}) {
+    AddIfAny(make(camera), &content.tables);
+  }
+  return content;
+}
+
+}  // namespace
+
+ReportContent ContentOf(const Report& report) {
+  ReportContent content;
+  content.intro = Intro(report);
+  for (const CameraReport& camera : report.cameras) {
+    content.cameras.push_back(ContentOf(camera, report.next_view));
+  }
+  AddIfAny(DetectionTable(report), &content.tables);
+  AddIfAny(ClosureTable(report), &content.tables);
+  if (report.next_view) content.next_view = WordsOf(*report.next_view);
+  return content;
+}
+
+NextViewWords WordsOf(const NextView& next) {
+  return {next.words,
+          "The board's centre is then at " + Coordinates(next.lidar_from_target.translation, 1) +
+              " in the LIDAR's frame. Expected gain: where camera " + next.camera +
+              " is worst, the reprojection uncertainty (1 sigma) falls from " +
+              Number(next.sigma_before_px, 2) + " to " + Number(next.sigma_after_px, 2) + " px."};
+}
+
+}  // namespace rgbdt

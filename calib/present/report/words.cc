@@ -1,0 +1,39 @@
+#include "calib/present/report/words.h"
+
+#include <cmath>
+
+#include "calib/model/text.h"
+
+namespace rgbdt {
+
+std::string Number(double value, int decimals) {
+  return std::isfinite(value) ? Fixed(value, decimals) : "–";
+}
+
+std::string WithUnit(double value, int decimals, const std::string& unit) {
+  std::string text = Number(value, decimals);
+  if (!std::isfinite(value)) return text;
+  if (text.front() == '-') text.replace(0, 1, "−");
+  const bool joined = unit == "°";
+  return text + (joined ? "" : "\u202f") + unit;  // a narrow space without a line break
+}
+
+std::string WithUnit(const std::optional<double>& value, int decimals, const std::string& unit) {
+  return value ? WithUnit(*value, decimals, unit) : "–";
+}
+
+std::string PoseErrorText(const PoseError& error) {
+  return Number(error.rotation_deg, 3) + "° and " + Number(error.translation_mm, 1) + " mm";
+}
+
+std::string Count(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+}  // namespace rgbdt

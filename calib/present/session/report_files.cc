@@ -1,0 +1,52 @@
+#include "calib/present/session/report_files.h"
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/report_file.h"
+#include "calib/present/pictures/colouring_picture.h"
+#include "calib/present/report/report_html.h"
+#include "calib/present/session/internal/overlay_picture.h"
+
+namespace rgbdt {
+namespace {
+
+std::string PlainPage(const FinishedSession& finished) {
+  std::vector<ReportPicture> pictures;
+  for (const CameraReport& report : finished.report().cameras) {
+    const CameraCalibration& camera = report.calibration;
+    if (auto picture = OverlayPicture(finished, camera)) pictures.push_back(std::move(*picture));
+    if (!camera.covariance) continue;
+    const CameraSpec& spec = finished.session.rig.Camera(camera.camera);
+    const cv::Mat map = ColouringPicture(spec, *camera.covariance);
+    if (map.empty()) continue;
+    pictures.push_back({camera.camera + ": reprojection uncertainty", kColouringCaption, map});
+  }
+  return ReportHtml(ContentOf(finished.report()), pictures);
+}
+
+// The viewer's page with the whole session in it.
+std::string PageOf(const FinishedSession& finished) {
+  SessionFramesOptions options;
+  options.title = finished.session.root.lexically_normal().string();
+  return PageWithFrames(ViewerPage(), SessionFrames(finished, options));
+}
+
+}  // namespace
+
+std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report) {
+  const std::filesystem::path path = dir / "calibration.textproto";
+  const Calibration calibration = report.ToCalibration();
+  if (calibration.cameras.empty()) {
+    return "no camera was solved, so " + path.string() + " was not written; wrote";
+  }
+  WriteCalibration(path, calibration);
+  return "wrote " + path.string() + ",";
+}
+
+void WriteReportFiles(const std::filesystem::path& dir, const FinishedSession& finished) {
+  WriteReport(dir / "report.json", finished.report());
+  WriteFileAtomically(dir / "report.html",
+                      ViewerPage().empty() ? PlainPage(finished) : PageOf(finished));
+}
+
+}  // namespace rgbdt
