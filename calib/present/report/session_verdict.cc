@@ -21,7 +21,7 @@ std::string ViewsToTake(int found) {
 }
 
 bool WasJudged(const CameraReport* report) {
-  return report != nullptr && (report->solved() || report->edge_rms_px.heldout.has_value());
+  return report != nullptr && (report->edge_rms_px.train || report->edge_rms_px.heldout);
 }
 
 // The worst over all cameras [px]; nothing where one has none.

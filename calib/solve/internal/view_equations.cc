@@ -149,12 +149,12 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   if (!pixel) return std::nullopt;
   const Eigen::Matrix<double, 1, 3> by_point =
       Eigen::RowVector2d(-tangent.y(), tangent.x()) * PixelByPoint(camera.lens(), p);
-  CurveEnd out;
-  out.beside = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
-  out.by_camera << -by_point * CrossMatrix(p), by_point;
-  out.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
-  out.by_outline = by_point * rotation * outward;
-  return out;
+  CurveEnd end;
+  end.beside = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
+  end.by_camera << -by_point * CrossMatrix(p), by_point;
+  end.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
+  end.by_outline = by_point * rotation * outward;
+  return end;
 }
 
 void ViewEquations::AddCrossings() {
