@@ -252,8 +252,7 @@ void LiveNode::CountSigma(const CameraCalibration& calibration) {
   if (!sigma) return;
   const auto used =
       std::count_if(state_.views.begin(), state_.views.end(), [&](const ViewState& view) {
-        return !view.heldout && view.detection &&
-               CameraViewOf(calibration.camera, *view.detection).usable();
+        return !view.heldout && IsUsable(view, calibration.camera);
       });
   if (used == 0) return;  // this viewer came after the views
   auto& steps = state_.sigma;

@@ -254,6 +254,10 @@ std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibr
   return std::make_pair(std::sqrt(rotation) * 180 / M_PI, std::sqrt(centre) * 1000);
 }
 
+bool IsUsable(const ViewState& view, const std::string& camera) {
+  return view.detection && CameraViewOf(camera, *view.detection).usable();
+}
+
 std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
                                        const Calibration& calibration) {
   std::optional<CloudEdges> likeliest;

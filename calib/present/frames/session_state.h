@@ -47,6 +47,10 @@ struct SessionState {
 /// 1 sigma of a calibration: rotation, RMS of the three axes [deg], and centre, likewise [mm].
 std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration);
 
+/// Whether a view's detection can be used for this camera: the board was found in its image and in
+/// the cloud.
+bool IsUsable(const ViewState& view, const std::string& camera);
+
 /// The board in a view's cloud: the candidate that a calibrated camera chooses or, without one, the
 /// likeliest. Nothing where there is none.
 std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,

@@ -1,4 +1,5 @@
 #include "calib/methods/calibrate.h"
+#include "calib/methods/paper/by_paper.h"
 
 #include <algorithm>
 

@@ -86,7 +86,7 @@ TEST(CalibrateJointly, ASideWithSomethingAgainstItIsLeftOutByNameAndTheViewIsUse
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     EXPECT_THAT(camera.rejected, IsEmpty());
-    EXPECT_THAT(camera.remarks, ElementsAre(AllOf(HasSubstr("view 0005: the board's right side"),
+    EXPECT_THAT(camera.warnings, ElementsAre(AllOf(HasSubstr("view 0005: the board's right side"),
                                                   HasSubstr("the view is used"))));
     EXPECT_THAT(camera.used, Contains("0005"));
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
@@ -207,8 +207,8 @@ TEST(CalibrateJointly, ASecondBoardIsNotUsedAndIsNamed) {
   const Report report = Calibrate(world.rig, world.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
-    EXPECT_THAT(alone.cameras[c].remarks, IsEmpty());
-    EXPECT_THAT(camera.remarks,
+    EXPECT_THAT(alone.cameras[c].warnings, IsEmpty());
+    EXPECT_THAT(camera.warnings,
                 ElementsAre(AllOf(HasSubstr("8 of 8 clouds"), HasSubstr("a second board"),
                                   HasSubstr("the target at"), HasSubstr("the other at"))));
     EXPECT_THAT(camera.calibration.camera_from_lidar,
