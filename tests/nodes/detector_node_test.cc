@@ -257,7 +257,8 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
 
   // The cloud is looked at where an image shows nothing.
   Messages covered = images;
-  std::get<Image>(covered[0]).pixels.setTo(cv::Scalar(90));
+  cv::Mat& pixels = std::get<Image>(covered[0]).pixels;
+  pixels = cv::Mat(pixels.size(), pixels.type(), cv::Scalar(90));  // not in place: they are shared
   const Messages without_rgb = detect({cloud, {command}, covered, {picks}});
   ASSERT_EQ(without_rgb.size(), 2U);
   const auto& blind = std::get<ViewDetection>(without_rgb[0]);
