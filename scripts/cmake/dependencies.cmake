@@ -27,6 +27,7 @@ rgbdt_external(protobuf::libprotobuf CMAKE "find_dependency(Protobuf)" DEBIAN li
   REQUIRES protobuf)
 rgbdt_external(lzf DEBIAN liblzf-dev REQUIRES liblzf)
 rgbdt_external(embree CMAKE "find_dependency(embree 3)" DEBIAN libembree-dev LIBS "-lembree3")
+rgbdt_external(fmt::fmt CMAKE "find_dependency(fmt)" DEBIAN libfmt-dev REQUIRES fmt)
 rgbdt_external(spdlog::spdlog CMAKE "find_dependency(spdlog)" DEBIAN libspdlog-dev REQUIRES spdlog)
 rgbdt_external(nlohmann_json::nlohmann_json CMAKE "find_dependency(nlohmann_json)"
   DEBIAN nlohmann-json3-dev REQUIRES nlohmann_json)

@@ -168,7 +168,7 @@ CalibrationMessage Calibrated(const std::string& camera, const std::string& rig_
   message.utime = kStart;
   message.rig_hash = rig_hash;
   message.calibration.camera = camera;
-  message.calibration.camera_from_lidar = TinyRig().cameras[0].camera_from_lidar_guess;
+  message.calibration.camera_from_lidar = *TinyRig().cameras[0].camera_from_lidar_guess;
   return message;
 }
 
