@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/scan_assembly/sweep_chunks.h"
+#include "services/bus/bus.h"
 #include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "calib/methods/calibrate.h"
+#include "calib/methods/paper/by_paper.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/options.h"

@@ -250,10 +250,9 @@ void LiveNode::OnCalibration(const CalibrationMessage& message) {
 void LiveNode::CountSigma(const CameraCalibration& calibration) {
   const auto sigma = SigmaOf(calibration);
   if (!sigma) return;
-  const auto used =
-      std::count_if(state_.views.begin(), state_.views.end(), [&](const ViewState& view) {
-        return !view.heldout && IsUsable(view, calibration.camera);
-      });
+  const auto used = std::count_if(
+      state_.views.begin(), state_.views.end(),
+      [&](const ViewState& view) { return !view.heldout && IsUsable(view, calibration.camera); });
   if (used == 0) return;  // this viewer came after the views
   auto& steps = state_.sigma;
   if (steps.empty() || steps.back().views < used) steps.push_back({static_cast<int>(used), {}});

@@ -1,8 +1,8 @@
 #include "calib/methods/calibrate.h"
-#include "calib/methods/paper/by_paper.h"
 
 #include <algorithm>
 
+#include "calib/methods/paper/by_paper.h"
 #include "tests/unit/solve/board_world.h"
 
 namespace rgbdt {

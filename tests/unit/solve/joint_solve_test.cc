@@ -87,7 +87,7 @@ TEST(CalibrateJointly, ASideWithSomethingAgainstItIsLeftOutByNameAndTheViewIsUse
     const CameraReport& camera = report.cameras[c];
     EXPECT_THAT(camera.rejected, IsEmpty());
     EXPECT_THAT(camera.warnings, ElementsAre(AllOf(HasSubstr("view 0005: the board's right side"),
-                                                  HasSubstr("the view is used"))));
+                                                   HasSubstr("the view is used"))));
     EXPECT_THAT(camera.used, Contains("0005"));
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
     EXPECT_LT(Chi2Of(good.cameras[c].calibration.camera_from_lidar,
