@@ -68,7 +68,7 @@ std::function<void()> Visibility(std::int64_t points) {
     std::size_t hidden = 0;
     for (const auto& [block, count] : *blocks) {
       std::uint8_t is_hidden[PixelBlock::kSize];
-      buffer->FindHidden(*buffer, {block.u, block.v, block.inverse_range}, count, is_hidden);
+      buffer->FindOccluded(*buffer, {block.u, block.v, block.inverse_range}, count, is_hidden);
       hidden += static_cast<std::size_t>(std::count(is_hidden, is_hidden + count, 1));
     }
     benchmark::DoNotOptimize(hidden);

@@ -20,6 +20,7 @@
 #include <thread>
 #include <vector>
 
+#include "services/bus/bus.h"
 #include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"

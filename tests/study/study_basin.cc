@@ -68,8 +68,10 @@ Result ByPaper(const PairedSession& session, std::size_t camera, const Rigid3& g
   CalibrateOptions options;
   options.method = kPaperMethod;
   options.smooth_field = smooth_field;
-  const CameraCalibration found =
-      SolvePaper(spec, ViewsOfCamera(session.by_paper, spec.name), guess, options);
+  const std::vector<CameraView> views = ViewsOfCamera(session.by_paper, spec.name);
+  std::vector<const CameraView*> used;
+  for (const CameraView& view : views) used.push_back(&view);
+  const CameraCalibration found = SolvePaper(spec, used, guess, options);
   return ResultOf(found.camera_from_lidar, session.camera_from_lidar[camera], found.converged());
 }
 
@@ -78,7 +80,7 @@ Result ByRefinement(const PairedSession& session, std::size_t camera, const Rigi
   const BoardProblem problem = ProblemOf(session, camera, 1000, guess);
   const BoardSolution found = SolveBoards(problem, StartOf(problem, {guess}));
   return ResultOf(found.state.camera_from_lidar[0], session.camera_from_lidar[camera],
-                  found.converged());
+                  found.converged);
 }
 
 // As `rgbdt calibrate` runs it: all cameras, whatever the rig's guesses are.
