@@ -167,6 +167,7 @@ TEST(SolverNodeViewTest, AViewIsOneMessageAndOneSolveForAllCameras) {
   const SolveWorld world;
   Rig rig = simulate::Simulator(test::TinyOptions()).rig();
   rig.cameras = world.rig.cameras;
+  rig.cameras[1].format = PixelFormat::kMono16;
   rig.target = world.rig.target;
   rig = ParseRig(PrintRig(rig), "test rig");
   SolverNode node;

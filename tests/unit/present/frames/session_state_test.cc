@@ -242,7 +242,13 @@ TEST(SessionFrame, HasTheReportsTablesAndPoses) {
   EXPECT_EQ(camera.at("poses").at(0).at("matrix"), MatrixOf(pose));
   EXPECT_EQ(camera.at("poses").at(1).at("name"), "lidar_from_camera");
   EXPECT_EQ(camera.at("poses").at(1).at("matrix"), MatrixOf(pose.Inverse()));
-  EXPECT_EQ(report.at("tables").at(0).at("title"), "Camera against camera");
+  const json& detected = report.at("tables").at(0);
+  EXPECT_EQ(detected.at("title"), "What was found in each view");
+  EXPECT_EQ(detected.at("head"), json({"View", "Image of rgb", "Image of thermal", "Cloud"}));
+  EXPECT_EQ(detected.at("rows").at(1).at(2).at("text"), "no checkerboard");
+  EXPECT_EQ(detected.at("rows").at(1).at(3).at("text"), "board found");
+  EXPECT_EQ(detected.at("rows").at(2).at(3).at("text"), "no plane");
+  EXPECT_EQ(report.at("tables").at(1).at("title"), "Camera against camera");
 }
 
 TEST(SessionFrame, HeldOutViewsAreJudgedCameraByCamera) {
