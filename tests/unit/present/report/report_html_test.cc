@@ -16,7 +16,7 @@ TEST(ReportHtml, HoldsVerdictFiguresTransformsAndViews) {
   for (const char* part :
        {"<!doctype html>", "Camera rgb", "Camera thermal", "0.62\u202fpx", "held out", "rejected",
         "the board is not in view", "camera_from_lidar", "lidar_from_camera", "point_in_camera",
-        "30 deg about x, 40 deg about z", "did not converge: stopped", "0.100° and 0.3 mm",
+        "30 deg about x, 40 deg about z", "not converged: stopped", "0.100° and 0.3 mm",
         "prefers-color-scheme", "width=device-width", "Computing time"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
@@ -45,7 +45,7 @@ TEST(ReportHtml, SaysNothingOfWhatNobodyWorkedOut) {
   report.closure.clear();
   report.next_view.reset();
   const std::string page = HtmlOf(report);
-  for (const char* part : {"ncertainty", "sigma", "left out", "halves", "besides the pose",
+  for (const char* part : {"ncertainty", "1 sigma", "left out", "halves", "besides the pose",
                            "Camera against camera", "Where to hold the board next"}) {
     EXPECT_THAT(page, Not(HasSubstr(part)));
   }
