@@ -80,7 +80,7 @@ std::optional<BrowserQueue::Outgoing> BrowserQueue::OutgoWhole() {
   const std::size_t header = HeaderBytes(*out.frame);
   const std::size_t record = post->post().record_bytes;
   out.bytes = header + record * thinning_.Wanted((out.frame->size() - header) / record);
-  unacked_[out.id] = {out.bytes, 0};
+  unacked_[out.id] = {out.bytes, std::nullopt};
   unacked_bytes_ += out.bytes;
   return out;
 }
