@@ -278,7 +278,8 @@ TEST_F(SessionNodeTest, TooFewViewsForACalibrationFailWithTheReason) {
   Start(Script(kOneView));
   EverybodyReady();
   Run();
-  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("save"), HasSubstr("camera rgb: not calibrated: 2 usable views")));
+  EXPECT_THAT(node_->failure(),
+              AllOf(HasSubstr("save"), HasSubstr("camera rgb: not calibrated: 2 usable views")));
   EXPECT_TRUE(std::filesystem::exists(dir_ / "session/report.json"));
   EXPECT_FALSE(std::filesystem::exists(dir_ / "session/calibration.textproto"));
 }
