@@ -1,6 +1,7 @@
 #include "calib/methods/calibrate.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
@@ -39,10 +40,12 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   for (const CameraSpec& camera : rig.cameras) cameras.push_back(ViewsOf(camera, detections));
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) CalibrateByPaper(options, &camera);
-  } else if (options.method == kPlaneMethod) {
-    CalibrateByPlanes(rig.target, options, &cameras, &report);
   } else {
-    CalibrateByBoards(rig.target, options, &cameras, &report);
+    AcrossCameras across = options.method == kPlaneMethod
+                               ? CalibrateByPlanes(rig.target, options, &cameras)
+                               : CalibrateByBoards(rig.target, options, &cameras);
+    report.closure = std::move(across.closure);
+    report.next_view = std::move(across.next_view);
   }
   for (CameraViews& camera : cameras) {
     camera.Describe();

@@ -13,9 +13,9 @@
 namespace rgbdt {
 
 /// One camera's image of a board.
-struct BoardSight {
+struct BoardImage {
   int camera = 0;  ///< index into BoardProblem::cameras
-  const ImageEdges* image = nullptr;
+  const ImageEdges* edges = nullptr;
   bool turned = false;  ///< its corners and sides are told from the other end of the board
 };
 
@@ -24,7 +24,7 @@ struct BoardView {
   std::string name;
   CloudEdges cloud;  ///< with pose; its sides are the target's, `turned` undone
   std::array<bool, 4> sides{true, true, true, true};  ///< whose crossings have a say
-  std::vector<BoardSight> sights;
+  std::vector<BoardImage> images;
 };
 
 /// All cameras' images and all clouds of one board.

@@ -128,18 +128,20 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 
 // The mean of what the agreeing views give, weighed by their covariances; the seventh unknown is
 // the range offset. At first any that agreed in the vote; then those near enough to be used.
-void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* guess) {
+FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuessOptions& options) {
+  FirstGuess guess;
+  guess.camera_from_lidar = start;
   double offset = 0;
   Matrix7d information = Matrix7d::Identity();
   for (int round = 0; round < 12; ++round) {
-    Rigid3& pose = *guess->camera_from_lidar;
+    Rigid3& pose = *guess.camera_from_lidar;
     information.setZero();
     Vector7d gradient = Vector7d::Zero();
-    guess->agreeing = 0;
+    guess.agreeing = 0;
     for (const CameraView* view : views) {
       const CandidateChoice choice = Nearest(*view, pose, round < 4 ? kVotingGate : kAcceptGate);
       if (choice.cost >= 1) continue;
-      ++guess->agreeing;
+      ++guess.agreeing;
       const TargetPose& in_lidar =
           *view->candidates[static_cast<std::size_t>(choice.candidate)]->pose;
       const Pair pair{&*view->image->pose, &in_lidar, choice.half_turn};
@@ -169,11 +171,12 @@ void Average(const Views& views, const FirstGuessOptions& options, FirstGuess* g
     if (round > 4 && step.norm() < 1e-10) break;
   }
   const Matrix7d covariance = information.ldlt().solve(Matrix7d::Identity());
-  guess->covariance = covariance.topLeftCorner<6, 6>();
+  guess.covariance = covariance.topLeftCorner<6, 6>();
   if (options.range_offset) {
-    guess->range_offset_m = offset;
-    guess->range_offset_sigma_m = std::sqrt(covariance(6, 6));
+    guess.range_offset_m = offset;
+    guess.range_offset_sigma_m = std::sqrt(covariance(6, 6));
   }
+  return guess;
 }
 
 // Left and right of the images swapped back: the board is then mirrored, too.
@@ -246,8 +249,7 @@ FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
         "and turned otherwise";
     return guess;
   }
-  guess.camera_from_lidar = vote.best.camera_from_lidar;
-  Average(views, options, &guess);
+  guess = AverageFrom(vote.best.camera_from_lidar, views, options);
   guess.status =
       std::to_string(guess.agreeing) + " of " + std::to_string(views.size()) + " views agree";
   return guess;

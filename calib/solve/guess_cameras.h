@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "calib/solve/camera_views.h"
@@ -8,6 +9,12 @@
 #include "calib/solve/options.h"
 
 namespace rgbdt {
+
+/// What a calibration says of several cameras together.
+struct AcrossCameras {
+  std::vector<Closure> closure;
+  std::optional<NextView> next_view;
+};
 
 /// A camera and where the first guess puts it; its usable views know their board.
 struct GuessedCamera {

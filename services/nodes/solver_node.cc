@@ -1,32 +1,11 @@
 #include "services/nodes/solver_node.h"
 
-#include <iomanip>
-#include <sstream>
-
 #include "calib/files/schema/report_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/present/report/summary.h"
 
 namespace rgbdt {
-namespace {
-
-std::string Brief(const Report& report, bool heldout) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(2);
-  for (const CameraReport& camera : report.cameras) {
-    const TrainHeldout& dt = camera.distance_transform_px;
-    const auto& value = heldout ? dt.heldout : dt.train;
-    text << (text.tellp() > 0 ? "; " : "") << camera.calibration.camera << ": ";
-    if (value) {
-      text << *value << (heldout ? " px on held-out views" : " px");
-    } else {
-      text << (heldout ? "no view held out" : camera.calibration.StatusText());
-    }
-  }
-  return text.str();
-}
-
-}  // namespace
 
 SolverNode::SolverNode(CalibrateOptions options) : options_(std::move(options)) {
   options_.Check();
@@ -59,8 +38,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
     report_.reset();
     return {};
   }
-  const bool evaluate = command.verb == SessionVerb::kEvaluate;
-  if (command.verb != SessionVerb::kSolve && !evaluate) return {};
+  if (command.verb != SessionVerb::kSolve && command.verb != SessionVerb::kEvaluate) return {};
   SessionEvent event;
   event.command = command.command;
   event.source = name();
@@ -73,7 +51,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   report_ = Solve(detections_, true);
   Messages out = Calibrations();
   out.push_back(ReportText{0, report_->utime, ReportToJson(*report_)});
-  event.text = Brief(*report_, evaluate);
+  event.text = Summary(*report_).BriefReport();
   out.push_back(std::move(event));
   return out;
 }
@@ -108,7 +86,7 @@ Status SolverNode::GetStatus() const {
   status.text = !rig_      ? "waits for the rig (RIG)"
                 : !report_ ? "waits for views"
                            : "calibrated from " + std::to_string(detections_.size()) +
-                                 " views: " + Brief(*report_, false);
+                                 " views: " + Summary(*report_).BriefReport();
   status.counters = {{"views", static_cast<std::int64_t>(detections_.size())}};
   return status;
 }

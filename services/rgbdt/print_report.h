@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/present/report/report_table.h"
+#include "calib/present/report/summary.h"
 
 namespace rgbdt {
 
@@ -12,7 +12,7 @@ namespace rgbdt {
 /// stderr for each view that could not be read.
 inline void PrintReport(const Report& report, const std::string& wrote,
                         const std::vector<std::string>& unreadable) {
-  std::fputs(ReportTable(report).c_str(), stdout);
+  std::fputs(Summary(report).FullReport().c_str(), stdout);
   std::printf("%s report.json, report.html\n", wrote.c_str());
   for (const std::string& line : unreadable) std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
 }

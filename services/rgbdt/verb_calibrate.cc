@@ -28,7 +28,7 @@ int Run(const Flags& flags) {
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   WriteReportFiles(out, {session, detection.views, reports});
   PrintReport(report, wrote, detection.unreadable);
-  return detection.unreadable.empty() && AllConverged(report) ? 0 : 1;
+  return detection.unreadable.empty() && Summary(report).converged() ? 0 : 1;
 }
 
 }  // namespace

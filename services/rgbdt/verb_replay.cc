@@ -5,7 +5,7 @@
 
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
-#include "calib/present/report/report_table.h"
+#include "calib/present/report/summary.h"
 #include "calib/present/session/report_files.h"
 #include "services/bus/log.h"
 #include "services/replay/replay.h"
@@ -76,10 +76,10 @@ int Run(const Flags& flags) {
   const std::filesystem::path out = flags.out;
   const std::string written = WriteIfSolved(out, *report);
   WriteReport(out / "report.json", *report);
-  std::fputs(ReportTable(*report).c_str(), stdout);
+  std::fputs(Summary(*report).FullReport().c_str(), stdout);
   PrintFused(fuser->GetStatus());
   std::printf("%s report.json\n", written.c_str());
-  return AllConverged(*report) ? 0 : 1;
+  return Summary(*report).converged() ? 0 : 1;
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ BoardView ViewOf(const CameraView& seen, const Rigid3& camera_from_lidar) {
   view.cloud = *seen.candidates[static_cast<std::size_t>(std::max(0, fitting))];
   const Rigid3 lidar_from_target =
       camera_from_lidar.Inverse() * seen.image->pose->sensor_from_target;
-  view.sights.push_back({0, seen.image, HalfTurned(lidar_from_target, *view.cloud.pose)});
+  view.images.push_back({0, seen.image, HalfTurned(lidar_from_target, *view.cloud.pose)});
   return view;
 }
 

@@ -6,7 +6,6 @@
 
 #include "calib/model/stopwatch.h"
 #include "calib/solve/closure.h"
-#include "calib/solve/guess_cameras.h"
 
 namespace rgbdt {
 namespace {
@@ -70,8 +69,8 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
   return result;
 }
 
-void CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
-                       std::vector<CameraViews>* cameras, Report* report) {
+AcrossCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
+                                std::vector<CameraViews>* cameras) {
   const std::vector<GuessedCamera> guessed = GuessCameras(options, cameras);
   for (const GuessedCamera& camera : guessed) {
     const Stopwatch watch;
@@ -82,7 +81,9 @@ void CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
     CheckDegenerate(camera.views);
   }
   JudgeCameras(EdgeModel{target, BoardPriors().Means(), {}}, guessed);
-  if (options.diagnostics) report->closure = CloseLoops(guessed);
+  AcrossCameras out;
+  if (options.diagnostics) out.closure = CloseLoops(guessed);
+  return out;
 }
 
 }  // namespace rgbdt

@@ -6,6 +6,7 @@
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
 #include "calib/solve/camera_views.h"
+#include "calib/solve/guess_cameras.h"
 #include "calib/solve/options.h"
 
 namespace rgbdt {
@@ -13,14 +14,13 @@ namespace rgbdt {
 /// Point-to-plane over board views (Unnikrishnan and Hebert, Fast Extrinsic Calibration of a Laser
 /// Rangefinder to a Camera, 2005): the sum over all points on all boards of their squared distances
 /// from the plane in which the camera sees the board, least squares over camera_from_lidar from a
-/// start nearby. Every point counts the same, where it
-/// was measured; the planes count as exact; edges have no say. The
-/// covariance is the usual one, by the residuals. `used`: usable views of one camera with
-/// image poses and scatters.
+/// start nearby. Every point counts the same, where it was measured; the planes count as exact;
+/// edges have no say. The covariance is the usual one, by the residuals. `used`: usable views of
+/// one camera with image poses and scatters.
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start);
 
-/// "plane": see Calibrate. Fills in the cameras' reports and, of `report`, the closure.
-void CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
-                       std::vector<CameraViews>* cameras, Report* report);
+/// "plane": see Calibrate. Fills in the cameras' reports.
+AcrossCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
+                                std::vector<CameraViews>* cameras);
 
 }  // namespace rgbdt

@@ -68,10 +68,10 @@ double BoardObjective(const BoardProblem& problem, const BoardState& shared_stat
   for (std::size_t v = 0; v < problem.views.size(); ++v) {
     const BoardView& view = problem.views[v];
     const ViewTerms terms{problem, view, shared_state, shared_state.side_shift[v]};
-    for (const BoardSight& sight : view.sights) {
+    for (const BoardImage& image : view.images) {
       Rigid3 lidar_from_target =
-          camera_from_lidar[static_cast<std::size_t>(sight.camera)].Inverse() *
-          sight.image->pose->sensor_from_target;
+          camera_from_lidar[static_cast<std::size_t>(image.camera)].Inverse() *
+          image.edges->pose->sensor_from_target;
       if (HalfTurned(lidar_from_target, *view.cloud.pose)) {
         lidar_from_target = lidar_from_target * kHalfTurn;
       }

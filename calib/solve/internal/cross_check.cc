@@ -50,11 +50,11 @@ struct Judged {
 double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
                 std::size_t camera, const Rigid3& camera_from_lidar) {
   auto [alone, state] = Part(joint.problem, {view}, joint.start);
-  std::vector<BoardSight>& sights = alone.views[0].sights;
-  sights.erase(
-      std::remove_if(sights.begin(), sights.end(),
-                     [&](const BoardSight& s) { return s.camera != static_cast<int>(camera); }),
-      sights.end());
+  std::vector<BoardImage>& images = alone.views[0].images;
+  images.erase(
+      std::remove_if(images.begin(), images.end(),
+                     [&](const BoardImage& s) { return s.camera != static_cast<int>(camera); }),
+      images.end());
   state.camera_from_lidar = fold.state.camera_from_lidar;
   state.camera_from_lidar[camera] = camera_from_lidar;
   state.shared = fold.state.shared;

@@ -39,7 +39,7 @@ class Builder {
     joint_.cameras.push_back(camera);
     joint_.problem.cameras.emplace_back(*camera.views->spec);
     for (CameraView& o : camera.views->all) {
-      if (o.usable() && !o.heldout) AddSight(index, &o);
+      if (o.usable() && !o.heldout) AddImage(index, &o);
     }
   }
 
@@ -56,7 +56,7 @@ class Builder {
   }
 
  private:
-  void AddSight(int camera, CameraView* o) {
+  void AddImage(int camera, CameraView* o) {
     const Rigid3& camera_from_lidar =
         *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;
     const Rigid3 lidar_from_image_target =
@@ -69,7 +69,7 @@ class Builder {
       fresh.cloud = *o->cloud;
       if (HalfTurned(lidar_from_image_target, *fresh.cloud.pose)) TurnCloud(&fresh.cloud);
       fresh.cloud.pose->half_turn_known = o->image->pose->half_turn_known;
-      fresh.sights.push_back({camera, o->image, false});
+      fresh.images.push_back({camera, o->image, false});
       return;
     }
     if ((view->cloud.centre - o->cloud->centre).norm() > 0.01) {
@@ -77,12 +77,12 @@ class Builder {
       return;
     }
     const bool turned = HalfTurned(lidar_from_image_target, *view->cloud.pose);
-    view->sights.push_back({camera, o->image, turned});
+    view->images.push_back({camera, o->image, turned});
     if (!turned || !o->image->pose->half_turn_known || view->cloud.pose->half_turn_known) return;
     // This camera knows which end is up, those before it did not.
     TurnCloud(&view->cloud);
     view->cloud.pose->half_turn_known = true;
-    for (BoardSight& sight : view->sights) sight.turned = !sight.turned;
+    for (BoardImage& image : view->images) image.turned = !image.turned;
   }
 
   JointProblem joint_;
@@ -90,7 +90,7 @@ class Builder {
 
 // How far a view's own estimate of a camera is from that of all the others.
 struct Contradiction {
-  std::size_t view = 0, sight = 0;
+  std::size_t view = 0, image = 0;
   double chi2 = 0;
   double rotation_deg = 0, centre_mm = 0;
 };
@@ -110,8 +110,8 @@ std::vector<Contradiction> Contradictions(const JointProblem& joint,
     const BoardView& view = joint.problem.views[v];
     // The view's cameras only: of others it says nothing.
     std::vector<Index> place;
-    for (const BoardSight& sight : view.sights) {
-      for (Index k = 0; k < 6; ++k) place.push_back(6 * sight.camera + k);
+    for (const BoardImage& image : view.images) {
+      for (Index k = 0; k < 6; ++k) place.push_back(6 * image.camera + k);
     }
     const auto own = Eigen::MatrixXd(
         solution.views[v].information.topLeftCorner(cameras, cameras)(place, place));
@@ -124,13 +124,13 @@ std::vector<Contradiction> Contradictions(const JointProblem& joint,
         own.ldlt().solve(Eigen::MatrixXd::Identity(own.rows(), own.cols()));
     const Eigen::MatrixXd covariance = own_covariance + others_covariance;
     const Eigen::VectorXd off = covariance * gradient;
-    for (std::size_t s = 0; s < view.sights.size(); ++s) {
+    for (std::size_t s = 0; s < view.images.size(); ++s) {
       const auto at = static_cast<Index>(6 * s);
       const Matrix6d block = covariance.block<6, 6>(at, at);
       const Vector6d delta = off.segment<6>(at);
       Contradiction c;
       c.view = v;
-      c.sight = s;
+      c.image = s;
       c.chi2 = delta.dot(block.ldlt().solve(delta));
       c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
       c.centre_mm = delta.tail<3>().norm() * 1000;
@@ -150,19 +150,19 @@ double ScatterOf(const std::vector<Contradiction>& contradictions) {
   return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);
 }
 
-// Sights left of a camera.
-int SightsOf(const BoardProblem& problem, int camera) {
+// Images left of a camera.
+int ImagesOf(const BoardProblem& problem, int camera) {
   int count = 0;
   for (const BoardView& view : problem.views) {
-    for (const BoardSight& sight : view.sights) count += sight.camera == camera ? 1 : 0;
+    for (const BoardImage& image : view.images) count += image.camera == camera ? 1 : 0;
   }
   return count;
 }
 
-void RejectSight(JointProblem* joint, const Contradiction& worst, BoardState* state) {
+void RejectImage(JointProblem* joint, const Contradiction& worst, BoardState* state) {
   BoardView& view = joint->problem.views[worst.view];
-  const int camera = view.sights[worst.sight].camera;
-  const int others = SightsOf(joint->problem, camera) - 1;
+  const int camera = view.images[worst.image].camera;
+  const int others = ImagesOf(joint->problem, camera) - 1;
   for (CameraView& o : joint->cameras[static_cast<std::size_t>(camera)].views->all) {
     if (o.view != view.name) continue;
     o.Reject("contradicts the other " + std::to_string(others) +
@@ -170,8 +170,8 @@ void RejectSight(JointProblem* joint, const Contradiction& worst, BoardState* st
              " deg and " + Fixed(worst.centre_mm, 0) +
              " mm elsewhere; did board or rig move, or does something stand against the board?");
   }
-  view.sights.erase(view.sights.begin() + static_cast<std::ptrdiff_t>(worst.sight));
-  if (!view.sights.empty()) return;
+  view.images.erase(view.images.begin() + static_cast<std::ptrdiff_t>(worst.image));
+  if (!view.images.empty()) return;
   const auto at = static_cast<std::ptrdiff_t>(worst.view);
   joint->problem.views.erase(joint->problem.views.begin() + at);
   state->lidar_from_target.erase(state->lidar_from_target.begin() + at);
@@ -198,8 +198,8 @@ bool DropSide(JointProblem* joint, const BoardState& state) {
   }
   if (worst <= most) return false;
   joint->problem.views[view].sides[side] = false;
-  for (const BoardSight& sight : joint->problem.views[view].sights) {
-    joint->cameras[static_cast<std::size_t>(sight.camera)].views->report.warnings.push_back(
+  for (const BoardImage& image : joint->problem.views[view].images) {
+    joint->cameras[static_cast<std::size_t>(image.camera)].views->report.warnings.push_back(
         "view " + joint->problem.views[view].name + ": the board's " + kSideNames[side] +
         " side in the cloud lies " + Fixed(worst * 1000, 1) +
         " mrad from where the other sides put it; that side is left out, the view is used");
@@ -213,8 +213,8 @@ const Contradiction* WorstToReject(const JointProblem& joint,
   const double limit = kChanceChi2 * ScatterOf(contradictions);
   const Contradiction* worst = nullptr;
   for (const Contradiction& c : contradictions) {
-    const int camera = joint.problem.views[c.view].sights[c.sight].camera;
-    const int left = SightsOf(joint.problem, camera);
+    const int camera = joint.problem.views[c.view].images[c.image].camera;
+    const int left = ImagesOf(joint.problem, camera);
     if (left <= 3 || 3 * (left - 1) < 2 * at_first[static_cast<std::size_t>(camera)]) continue;
     if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
   }
@@ -317,7 +317,7 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
 JointResult SolveJointly(JointProblem* joint) {
   std::vector<int> at_first;
   for (std::size_t c = 0; c < joint->cameras.size(); ++c) {
-    at_first.push_back(SightsOf(joint->problem, static_cast<int>(c)));
+    at_first.push_back(ImagesOf(joint->problem, static_cast<int>(c)));
   }
   JointResult result;
   BoardState state = joint->start;
@@ -327,7 +327,7 @@ JointResult SolveJointly(JointProblem* joint) {
     const auto contradictions = Contradictions(*joint, result.solution);
     const Contradiction* worst = WorstToReject(*joint, contradictions, at_first);
     if (worst != nullptr) {
-      RejectSight(joint, *worst, &state);
+      RejectImage(joint, *worst, &state);
       continue;
     }
     if (DropSide(joint, state)) continue;

@@ -89,8 +89,8 @@ Exactness ExactnessOf(const BoardProblem& problem) {
       widths.push_back(c.half_width_m / range);
       sigmas.push_back(c.sigma_m / range);
     }
-    for (const BoardSight& sight : view.sights) {
-      corners[static_cast<std::size_t>(sight.camera)].push_back(sight.image->corner_sigma_px);
+    for (const BoardImage& image : view.images) {
+      corners[static_cast<std::size_t>(image.camera)].push_back(image.edges->corner_sigma_px);
     }
   }
   Exactness out{Median(points), Median(scatter), Median(crossings),
@@ -172,7 +172,7 @@ std::optional<Eigen::MatrixXd> Expected(const BoardProblem& problem, const Board
   BoardView view;
   view.cloud = ExpectedCloud(problem.target, exactness, lidar_from_target);
   for (std::size_t c = 0; c < images->size(); ++c) {
-    view.sights.push_back({static_cast<int>(c), &(*images)[c], false});
+    view.images.push_back({static_cast<int>(c), &(*images)[c], false});
   }
   const BoardProblem alone{problem.target, problem.cameras, {view}, problem.priors};
   const BoardState there{state.camera_from_lidar, state.shared, {lidar_from_target}, {{}}};

@@ -22,9 +22,9 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
       cameras_(static_cast<int>(problem.cameras.size())),
       h_(Eigen::MatrixXd::Zero(Size(), Size())),
       g_(Eigen::VectorXd::Zero(Size())) {
-  for (const BoardSight& sight : view_.sights) {
-    AddCorners(sight);
-    AddImageSides(sight);
+  for (const BoardImage& image : view_.images) {
+    AddCorners(image);
+    AddImageSides(image);
   }
   AddCrossings();
   AddPlane();
@@ -32,21 +32,21 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
 }
 
 // Corners: 2 rows each over the camera's 6 and the board's 6 unknowns.
-void ViewEquations::AddCorners(const BoardSight& sight) {
-  const Camera& camera = problem_.cameras[static_cast<std::size_t>(sight.camera)];
+void ViewEquations::AddCorners(const BoardImage& image) {
+  const Camera& camera = problem_.cameras[static_cast<std::size_t>(image.camera)];
   const Rigid3 camera_from_target =
-      state_.camera_from_lidar[static_cast<std::size_t>(sight.camera)] * lidar_from_target_;
+      state_.camera_from_lidar[static_cast<std::size_t>(image.camera)] * lidar_from_target_;
   const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
   const auto model = problem_.target.InnerCorners();
-  const auto& seen = sight.image->corners;
+  const auto& seen = image.edges->corners;
   if (seen.size() != model.size()) return;
   const double sigma =
-      kCornerSigmaInflation * std::max(kLeastCornerPx, sight.image->corner_sigma_px);
+      kCornerSigmaInflation * std::max(kLeastCornerPx, image.edges->corner_sigma_px);
   Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
   Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!IsSeen(seen[i])) continue;
-    const Eigen::Vector3d& corner = model[sight.turned ? model.size() - 1 - i : i];
+    const Eigen::Vector3d& corner = model[image.turned ? model.size() - 1 - i : i];
     const Eigen::Vector3d p = camera_from_target * corner;
     const auto pixel = camera.Project(p);
     if (!pixel) {
@@ -65,7 +65,7 @@ void ViewEquations::AddCorners(const BoardSight& sight) {
     h.noalias() += weight * j.transpose() * j;
     g.noalias() -= weight * j.transpose() * residual;
   }
-  Spread(sight.camera, h, g);
+  Spread(image.camera, h, g);
 }
 
 // From (camera, board) to their places among the unknowns.
@@ -80,18 +80,18 @@ void ViewEquations::Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
   g_.head<6>() += g.tail<6>();
 }
 
-void ViewEquations::AddImageSides(const BoardSight& sight) {
+void ViewEquations::AddImageSides(const BoardImage& image) {
   for (int i = 0; i < 4; ++i) {
-    const ImageSide& side = sight.image->sides[static_cast<std::size_t>(i)];
+    const ImageSide& side = image.edges->sides[static_cast<std::size_t>(i)];
     if (side.seen && side.curve.size() >= 2) {
-      AddImageSide(sight, side, sight.turned ? (i + 2) % 4 : i);
+      AddImageSide(image, side, image.turned ? (i + 2) % 4 : i);
     }
   }
 }
 
 // The projected side's distance from the curve at the curve's two ends.
-void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side, int on_board) {
-  const int c = kOwnUnknowns + 6 * sight.camera;
+void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side, int on_board) {
+  const int c = kOwnUnknowns + 6 * image.camera;
   Eigen::Matrix<double, 2, Eigen::Dynamic> j =
       Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, Size());
   Eigen::Vector2d residual;
@@ -99,7 +99,7 @@ void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side,
   for (int end = 0; end < 2; ++end) {
     const Eigen::Vector2d& at = side.curve[end == 0 ? 0 : last];
     const Eigen::Vector2d& next = side.curve[end == 0 ? 1 : last - 1];
-    const auto there = AtCurveEnd(sight, on_board, at, end == 0 ? next - at : at - next);
+    const auto there = AtCurveEnd(image, on_board, at, end == 0 ? next - at : at - next);
     if (!there) return;
     residual[end] = there->beside;
     j.row(end).segment<6>(c) = there->by_camera;
@@ -118,11 +118,11 @@ void ViewEquations::AddImageSide(const BoardSight& sight, const ImageSide& side,
 
 // One end: where on the side the curve ends, and how far the projected side lies from there.
 std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
-    const BoardSight& sight, int side, const Eigen::Vector2d& at,
+    const BoardImage& image, int side, const Eigen::Vector2d& at,
     const Eigen::Vector2d& along) const {
-  const Camera& camera = problem_.cameras[static_cast<std::size_t>(sight.camera)];
+  const Camera& camera = problem_.cameras[static_cast<std::size_t>(image.camera)];
   const Rigid3 camera_from_target =
-      state_.camera_from_lidar[static_cast<std::size_t>(sight.camera)] * lidar_from_target_;
+      state_.camera_from_lidar[static_cast<std::size_t>(image.camera)] * lidar_from_target_;
   const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
   const auto corners = problem_.target.OutlineCorners();
   const auto s = static_cast<std::size_t>(side);

@@ -27,17 +27,17 @@ class ViewEquations {
   int Size() const { return kOwnUnknowns + 6 * cameras_ + kSharedUnknowns; }
   int Shared(int unknown) const { return kOwnUnknowns + 6 * cameras_ + unknown; }
 
-  void AddCorners(const BoardSight& sight);
+  void AddCorners(const BoardImage& image);
   void Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
               const Eigen::Matrix<double, 12, 1>& g);
-  void AddImageSides(const BoardSight& sight);
-  void AddImageSide(const BoardSight& sight, const ImageSide& side, int on_board);
+  void AddImageSides(const BoardImage& image);
+  void AddImageSide(const BoardImage& image, const ImageSide& side, int on_board);
   struct CurveEnd {  // how far beside it the projected side lies [px], and derivatives
     double beside = 0;
     Row6 by_camera, by_target;
     double by_outline = 0;
   };
-  std::optional<CurveEnd> AtCurveEnd(const BoardSight& sight, int side, const Eigen::Vector2d& at,
+  std::optional<CurveEnd> AtCurveEnd(const BoardImage& image, int side, const Eigen::Vector2d& at,
                                      const Eigen::Vector2d& along) const;
   void AddCrossings();
   void SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,

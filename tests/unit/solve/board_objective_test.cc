@@ -63,7 +63,7 @@ class BoardObjectiveTest : public testing::Test {
       BoardView& view = problem_.views.emplace_back();
       view.name = std::to_string(i);
       view.cloud = IdealCloud(truth_.Inverse() * camera_from_target);
-      view.sights.push_back({0, &image, false});
+      view.images.push_back({0, &image, false});
     }
     state_ = StartOf(problem_, {truth_});
   }

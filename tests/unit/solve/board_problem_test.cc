@@ -198,7 +198,7 @@ TEST(SolveBoards, FindsWhatTheRangesAreOffByWhereItMayLook) {
               testing::Not(Rigid3Near(world.camera_from_lidar[0], 2e-3, 4e-3)));
 }
 
-TEST(SolveBoards, ASightToldFromTheOtherEndGivesTheSame) {
+TEST(SolveBoards, AnImageToldFromTheOtherEndGivesTheSame) {
   SolveWorldOptions options;
   options.draw_nuisances = true;
   const SolveWorld world(options);
@@ -207,11 +207,11 @@ TEST(SolveBoards, ASightToldFromTheOtherEndGivesTheSame) {
   const BoardSolution straight = Solve(joint);
   std::list<ImageEdges> turned;
   for (BoardView& view : joint.problem.views) {
-    BoardSight& sight = view.sights.back();
-    turned.push_back(*sight.image);
+    BoardImage& image = view.images.back();
+    turned.push_back(*image.edges);
     TurnImage(&turned.back());
-    sight.image = &turned.back();
-    sight.turned = true;
+    image.edges = &turned.back();
+    image.turned = true;
   }
   const BoardSolution same = Solve(joint);
   for (std::size_t c = 0; c < 2; ++c) {

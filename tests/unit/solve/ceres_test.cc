@@ -291,7 +291,7 @@ class CeresBoards {
     double* shared = state_.shared.data();
     double* sides = state_.side_shift[v].data();
     const Rigid3& pose = state_.lidar_from_target[v];
-    for (const BoardSight& sight : view.sights) AddImage(sight, pose, board);
+    for (const BoardImage& image : view.images) AddImage(image, pose, board);
     for (const Crossing& crossing : view.cloud.crossings) {
       const auto side = static_cast<std::size_t>(crossing.side);
       if (!view.sides[side]) continue;
@@ -314,22 +314,22 @@ class CeresBoards {
         4, {sides});
   }
 
-  void AddImage(const BoardSight& sight, const Rigid3& board_pose, double* board) {
-    const auto c = static_cast<std::size_t>(sight.camera);
+  void AddImage(const BoardImage& image, const Rigid3& board_pose, double* board) {
+    const auto c = static_cast<std::size_t>(image.camera);
     double* camera = cameras_[c].data();
     const Seen seen{problem_.cameras[c].lens(), state_.camera_from_lidar[c], board_pose};
-    const ImageEdges& image = *sight.image;
+    const ImageEdges& edges = *image.edges;
     const auto model = problem_.target.InnerCorners();
     for (std::size_t i = 0; i < model.size(); ++i) {
-      Add(CornerResidual{seen, model[sight.turned ? model.size() - 1 - i : i], image.corners[i],
-                         kCornerSigmaInflation * image.corner_sigma_px},
+      Add(CornerResidual{seen, model[image.turned ? model.size() - 1 - i : i], edges.corners[i],
+                         kCornerSigmaInflation * edges.corner_sigma_px},
           2, {camera, board}, new TailLoss(2));
     }
     const auto corners = problem_.target.OutlineCorners();
     for (std::size_t i = 0; i < 4; ++i) {
-      const ImageSide& side = image.sides[i];
+      const ImageSide& side = edges.sides[i];
       if (!side.seen) continue;
-      const std::size_t s = sight.turned ? (i + 2) % 4 : i;
+      const std::size_t s = image.turned ? (i + 2) % 4 : i;
       const auto& curve = side.curve;
       const auto last = curve.size() - 1;
       const Eigen::LLT<Eigen::Matrix2d> information(Eigen::Matrix2d(side.covariance.inverse()));

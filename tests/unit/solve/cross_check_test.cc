@@ -117,8 +117,8 @@ TEST(MisfitOf, IsSixOnAverageOfTheTruth) {
   double sum = 0;
   for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
     auto [alone, start] = Part(joint.problem, {v}, truth);
-    alone.views[0].sights.resize(1);
-    ASSERT_EQ(alone.views[0].sights[0].camera, 0);
+    alone.views[0].images.resize(1);
+    ASSERT_EQ(alone.views[0].images[0].camera, 0);
     const double misfit = MisfitOf(alone, start, 0, 0);
     sum += misfit / static_cast<double>(joint.problem.views.size());
     start.camera_from_lidar[0] = wrong.camera_from_lidar[0];

@@ -180,8 +180,8 @@ TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
     const BoardView& view = joint.problem.views[v];
     EXPECT_THAT(view.cloud.pose->sensor_from_target,
                 Rigid3Near(world.lidar_from_target[v], 0.1, 0.1));
-    EXPECT_TRUE(view.sights[0].turned);
-    EXPECT_FALSE(view.sights[1].turned);
+    EXPECT_TRUE(view.images[0].turned);
+    EXPECT_FALSE(view.images[1].turned);
     for (const Crossing& crossing : view.cloud.crossings) {
       const CrossingResidual r = ResidualOf(world.rig.target, {}, crossing,
                                             world.lidar_from_target[v], joint.start.shared, 0);
@@ -221,7 +221,7 @@ TEST(MakeJointProblem, ACameraThatTakesAnotherBoardOfTheCloudIsRejected) {
   const SolveSession session(world);
   session.cameras[1].views->all[2].cloud->centre += Eigen::Vector3d(0, 0.5, 0);
   const JointProblem joint = session.Joint();
-  EXPECT_EQ(joint.problem.views[2].sights.size(), 1U);
+  EXPECT_EQ(joint.problem.views[2].images.size(), 1U);
   EXPECT_THAT(session.cameras[1].views->all[2].rejected, HasSubstr("another board of the cloud"));
 }
 

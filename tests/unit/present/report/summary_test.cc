@@ -1,4 +1,4 @@
-#include "calib/present/report/report_table.h"
+#include "calib/present/report/summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,6 +23,8 @@ Report MakeReport() {
   return report;
 }
 
+std::string FullReport(const Report& report) { return Summary(report).FullReport(); }
+
 // The line that begins with `label`; empty where there is none.
 std::string LineOf(const std::string& table, const std::string& label) {
   std::istringstream lines(table);
@@ -32,7 +34,7 @@ std::string LineOf(const std::string& table, const std::string& label) {
   return "";
 }
 
-TEST(ReportTable, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
+TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
   Report report = MakeReport();
   CameraReport& camera = report.cameras[0];
   camera.calibration.covariance = Matrix6d((Vector6d() << 2e-4, 1e-4, 1e-4, 4e-4, 3e-4, 3e-4)
@@ -42,35 +44,54 @@ TEST(ReportTable, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
                                                .matrix()
                                                .asDiagonal());
   camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}}};
-  const std::string table = ReportTable(report);
+  const std::string table = FullReport(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
   EXPECT_THAT(LineOf(table, "reprojection at 5 m, 1 sigma"), HasSubstr("0.12 / 0.61"));
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
 
-TEST(ReportTable, LeavesOutWhatNobodyWorkedOut) {
-  const std::string table = ReportTable(MakeReport());
+TEST(Summary, LeavesOutWhatNobodyWorkedOut) {
+  const std::string table = FullReport(MakeReport());
   EXPECT_THAT(table, Not(HasSubstr("sigma")));
   EXPECT_THAT(table, Not(HasSubstr("next view")));
 }
 
-TEST(ReportTable, SaysWhereToHoldTheBoardNext) {
+TEST(Summary, SaysWhereToHoldTheBoardNext) {
   Report report = MakeReport();
   report.next_view = NextView{"Hold it 6 m ahead.", {}, "rgb", 1, 0.5};
-  EXPECT_THAT(ReportTable(report), HasSubstr("next view: Hold it 6 m ahead.\n"));
+  EXPECT_THAT(FullReport(report), HasSubstr("next view: Hold it 6 m ahead.\n"));
 }
 
-TEST(ReportTable, HasTheStatusOfTheSolveEvenWhereItConverged) {
+TEST(Summary, HasTheStatusOfTheSolveEvenWhereItConverged) {
   Report report = MakeReport();
   report.cameras[0].calibration.status = SolveStatus::kFirstGuessKept;
   report.cameras[0].calibration.detail = "it fits better";
   report.cameras[1].calibration.status = SolveStatus::kDegenerate;
   report.cameras[1].calibration.detail = "parallel boards";
-  const std::string table = ReportTable(report);
+  const std::string table = FullReport(report);
   EXPECT_THAT(table, HasSubstr("rgb: converged; the first guess was kept: it fits better\n"));
   EXPECT_THAT(table, HasSubstr("thermal: degenerate: parallel boards\n"));
-  EXPECT_THAT(ReportTable(MakeReport()), Not(HasSubstr("rgb: converged")));
+  EXPECT_THAT(FullReport(MakeReport()), Not(HasSubstr("rgb: converged")));
+}
+
+TEST(Summary, InALineSaysHowEachCamerasSolveEnded) {
+  Report report = MakeReport();
+  report.cameras[0].distance_transform_px = {0.514, 0.626};
+  report.cameras[1].calibration.status = SolveStatus::kNotSolved;
+  report.cameras[1].calibration.detail = "2 usable views";
+  EXPECT_EQ(Summary(report).BriefReport(),
+            "rgb: converged, 0.51 px, 0.63 px on held-out views; "
+            "thermal: not calibrated: 2 usable views");
+}
+
+TEST(Summary, IsConvergedWhereAllCamerasAre) {
+  Report report = MakeReport();
+  EXPECT_TRUE(Summary(report).converged());
+  report.cameras[1].calibration.status = SolveStatus::kFirstGuessKept;
+  EXPECT_TRUE(Summary(report).converged());
+  report.cameras[1].calibration.status = SolveStatus::kDegenerate;
+  EXPECT_FALSE(Summary(report).converged());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "calib/present/report/report_table.h"
+#include "calib/present/report/summary.h"
 
 #include <fmt/format.h>
 
@@ -58,17 +58,34 @@ std::string Warnings(const CameraReport& camera) {
 
 }  // namespace
 
-std::string ReportTable(const Report& report) {
+bool Summary::converged() const {
+  return std::all_of(report_.cameras.begin(), report_.cameras.end(),
+                     [](const CameraReport& c) { return c.calibration.converged(); });
+}
+
+std::string Summary::BriefReport() const {
+  std::string text;
+  for (const CameraReport& camera : report_.cameras) {
+    const TrainHeldout& distance = camera.distance_transform_px;
+    text += (text.empty() ? "" : "; ") + camera.calibration.camera + ": " +
+            camera.calibration.StatusText();
+    if (distance.train) text += fmt::format(", {:.2f} px", *distance.train);
+    if (distance.heldout) text += fmt::format(", {:.2f} px on held-out views", *distance.heldout);
+  }
+  return text;
+}
+
+std::string Summary::FullReport() const {
   std::string text;
   const auto row = [&](const std::string& label,
                        const std::function<std::string(const CameraReport&)>& cell) {
     text += fmt::format("{:<{}}", label, kLabel);
-    for (const CameraReport& camera : report.cameras) {
+    for (const CameraReport& camera : report_.cameras) {
       text += fmt::format("{:>{}}", cell(camera), kColumn);
     }
     text += "\n";
   };
-  row("method " + report.method, [](const CameraReport& c) { return c.calibration.camera; });
+  row("method " + report_.method, [](const CameraReport& c) { return c.calibration.camera; });
   row("status", [](const CameraReport& c) {
     return std::string(c.calibration.converged() ? "converged" : "NOT CONVERGED");
   });
@@ -84,7 +101,7 @@ std::string ReportTable(const Report& report) {
   row("RMS distance to outline, held out [px]",
       [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
   const auto any = [&](auto has) {
-    return std::any_of(report.cameras.begin(), report.cameras.end(), has);
+    return std::any_of(report_.cameras.begin(), report_.cameras.end(), has);
   };
   if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
     row("first guess against truth",
@@ -112,14 +129,9 @@ std::string ReportTable(const Report& report) {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  for (const CameraReport& camera : report.cameras) text += Warnings(camera);
-  if (report.next_view) text += "next view: " + report.next_view->words + "\n";
+  for (const CameraReport& camera : report_.cameras) text += Warnings(camera);
+  if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
   return text;
-}
-
-bool AllConverged(const Report& report) {
-  return std::all_of(report.cameras.begin(), report.cameras.end(),
-                     [](const CameraReport& c) { return c.calibration.converged(); });
 }
 
 }  // namespace rgbdt

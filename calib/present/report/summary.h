@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "calib/model/calibration.h"
+
+namespace rgbdt {
+
+/// A report for a terminal. The report must outlive it.
+class Summary {
+ public:
+  explicit Summary(const Report& report) : report_(report) {}
+
+  /// Whether every camera has a pose to use.
+  bool converged() const;
+  /// One line: how each camera's solve ended, and its mean distance transform.
+  std::string BriefReport() const;
+  /// A table, units in the first column, cameras side by side; what has no room in it, in lines
+  /// below.
+  std::string FullReport() const;
+
+ private:
+  const Report& report_;
+};
+
+}  // namespace rgbdt
