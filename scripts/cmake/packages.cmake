@@ -10,10 +10,9 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
-set(copyright ${PROJECT_SOURCE_DIR}/LICENSE)
 
-# PART NAME SUMMARY DESCRIPTION, and lists of packages
-function(rgbdt_debian_package part name summary)
+# PART NAME, the description's lines, and the packages needed.
+function(rgbdt_debian_package part name)
   cmake_parse_arguments(with "" "" "DESCRIPTION;DEPENDS" ${ARGN})
   string(TOUPPER ${part} PART)
   list(JOIN with_DEPENDS ", " depends)
@@ -21,24 +20,24 @@ function(rgbdt_debian_package part name summary)
   set(CPACK_COMPONENTS_ALL ${CPACK_COMPONENTS_ALL} ${part} PARENT_SCOPE)
   set(CPACK_DEBIAN_${PART}_PACKAGE_NAME ${name} PARENT_SCOPE)
   set(CPACK_DEBIAN_${PART}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
-  set(CPACK_DEBIAN_${PART}_DESCRIPTION "${summary}\n${description}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${PART}_DESCRIPTION "${description}" PARENT_SCOPE)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${part})
 endfunction()
 
-rgbdt_debian_package(programs rgbdt "LIDAR, colour and thermal cameras: calibration and fused cloud"
-  DESCRIPTION "Finds where colour and thermal cameras sit relative to a LIDAR, says how sure that"
-              "is, and streams the fused RGB-depth-thermal cloud on an LCM bus."
+rgbdt_debian_package(programs rgbdt
+  DESCRIPTION "Finds where colour and thermal cameras sit relative to a LIDAR, says how"
+              "sure that is, and streams the fused RGB-depth-thermal cloud on an LCM bus."
   DEPENDS iproute2)  # lcm-loopback.service
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS liblcm-bin)  # rgbdt replay reads what lcm-logger writes
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA ${debian}/postinst ${debian}/prerm ${debian}/postrm)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-set(description_of_dev "Components calib, messages, bus and runtime, LCM types and Protobuf schemas.")
-set(description_of_methods_dev "Components methods, present and nodes.")
-set(description_of_drivers_dev "Component drivers.")
-set(description_of_simulate_dev "Component simulate.")
+set(description_of_dev "components calib, messages, bus and runtime; LCM types, Protobuf schemas.")
+set(description_of_methods_dev "components methods, present and nodes.")
+set(description_of_drivers_dev "component drivers.")
+set(description_of_simulate_dev "component simulate.")
 get_property(parts GLOBAL PROPERTY rgbdt_parts)
 list(REMOVE_DUPLICATES parts)
 foreach(part ${parts})
@@ -55,7 +54,8 @@ foreach(part ${parts})
     list(APPEND depends "librgbdt-${needed} (= ${PROJECT_VERSION})")
   endforeach()
   string(REPLACE _ - name ${part})
-  rgbdt_debian_package(${part} librgbdt-${name} "rgbdt to link, static: see find_package(rgbdt)"
-    DESCRIPTION ${description_of_${part}} DEPENDS ${depends})
+  rgbdt_debian_package(${part} librgbdt-${name} DEPENDS ${depends}
+    DESCRIPTION "Static libraries and headers, for find_package(rgbdt) and pkg-config:"
+                ${description_of_${part}})
 endforeach()
 include(CPack)
