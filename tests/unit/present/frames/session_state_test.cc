@@ -242,7 +242,8 @@ TEST(SessionFrame, HasTheReportsTablesAndPoses) {
   EXPECT_EQ(camera.at("poses").at(0).at("matrix"), MatrixOf(pose));
   EXPECT_EQ(camera.at("poses").at(1).at("name"), "lidar_from_camera");
   EXPECT_EQ(camera.at("poses").at(1).at("matrix"), MatrixOf(pose.Inverse()));
-  EXPECT_EQ(report.at("tables").at(0).at("title"), "Camera against camera");
+  EXPECT_EQ(report.at("tables").size(), content.tables.size());
+  EXPECT_EQ(report.at("tables").back().at("title"), "Camera against camera");
 }
 
 TEST(SessionFrame, HeldOutViewsAreJudgedCameraByCamera) {

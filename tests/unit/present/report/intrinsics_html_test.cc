@@ -55,7 +55,7 @@ TEST(IntrinsicsHtml, WhatDidNotConvergeHasNoNumbersToUse) {
   const std::string page = IntrinsicsHtml({camera});
   EXPECT_THAT(page, HasSubstr("Not converged"));
   EXPECT_THAT(page, HasSubstr("not enough tilt"));
-  EXPECT_THAT(page, HasSubstr("at the image's top left: the lens"));
+  EXPECT_THAT(page, HasSubstr("at the image&#39;s top left: the lens"));
   EXPECT_THAT(page, Not(HasSubstr("500.125")));
 }
 

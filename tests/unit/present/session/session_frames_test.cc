@@ -74,7 +74,8 @@ TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
                   "thumb/0002/rgb", "thumb/0002/thermal", "thumb/0003/rgb", "thumb/0003/thermal",
                   "thumb/0003/", "image/0001/rgb", "overlay/0001/rgb", "image/0001/thermal",
                   "overlay/0001/thermal", "image/0002/rgb", "image/0002/thermal", "image/0003/rgb",
-                  "overlay/0003/rgb", "image/0003/thermal", "overlay/0003/thermal", "sweep/0"));
+                  "overlay/0003/rgb", "image/0003/thermal", "overlay/0003/thermal",
+                  "image/sigma/rgb", "sweep/0"));
   const json hello = Header(frames, "hello");
   EXPECT_EQ(hello.at("source"), "session");
   EXPECT_EQ(hello.at("title"), "a session");
