@@ -45,13 +45,13 @@ void AddCalibrate(CLI::App* app, int* exit_code) {
   verb->add_option("--out", flags->out, "where to write; default: DIR");
   verb->add_option("--method", flags->options.method, kMethodHelp)->capture_default_str();
   verb->add_flag("--range-offset", flags->options.first_guess.range_offset,
-                 "auto: estimate a constant that all ranges of the LIDAR are off by");
+                 "auto: also estimate a constant offset of the LIDAR's ranges");
   verb->add_flag_callback(
       "--separate", [flags] { flags->options.joint = false; },
-      "auto: each camera by itself, not all in one problem");
+      "auto: solve each camera by itself, not all in one problem");
   verb->add_flag("--smooth-field", flags->options.smooth_field,
-                 "paper: the distance field goes on beyond the images' borders, so that points\n"
-                 "outside lead back; half of them need not lie inside");
+                 "paper: extend the distance field beyond the images' borders, so that points\n"
+                 "outside are drawn back; otherwise half of them must lie inside");
   verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }

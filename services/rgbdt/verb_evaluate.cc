@@ -80,8 +80,8 @@ int Run(const Flags& flags) {
 void AddEvaluate(CLI::App* app, int* exit_code) {
   CLI::App* verb = app->add_subcommand(
       "evaluate",
-      "Judges a calibration on a session's views, used and held out, and against truth where a\n"
-      "simulator left it. Writes report.json and report.html.\n"
+      "Judges a calibration on a session's views, used and held out, and against the truth of a\n"
+      "simulated session. Writes report.json and report.html.\n"
       "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto");
   auto flags = std::make_shared<Flags>();
   verb->add_option("DIR", flags->dir, "session directory")->required();

@@ -123,8 +123,8 @@ void AddIntrinsics(CLI::App* app, int* exit_code) {
                    "pinhole5, pinhole8 or fisheye; default: the rig file's, else pinhole5")
       ->transform(CLI::CheckedTransformer(kChoices));
   verb->add_option("--out", flags->out,
-                   "the rig file to write; default: DIR/rig.intrinsics.textproto, so that nothing "
-                   "that calibrations refer to is replaced unasked");
+                   "the rig file to write; default: DIR/rig.intrinsics.textproto, so that the rig\n"
+                   "file in use is not replaced");
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }
 

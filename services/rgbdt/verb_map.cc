@@ -85,8 +85,9 @@ void AddMap(CLI::App* app, int* exit_code) {
   verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();
   verb->add_option("--out", flags->out, "the map, a PLY file")->capture_default_str();
   verb->add_option("--voxel", flags->options.voxel_m, "edge of a voxel [m]")->capture_default_str();
-  verb->add_option("--max-voxels", flags->options.max_voxels,
-                   "more, and those not seen for the longest go; 80 bytes each")
+  verb->add_option(
+          "--max-voxels", flags->options.max_voxels,
+          "most voxels kept (80 bytes each); then those not seen for the longest are dropped")
       ->capture_default_str();
   verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }

@@ -73,8 +73,9 @@ void AddScanner(CLI::App* app, int* exit_code) {
       "Finds where the turned scanner sits on its motor (lever arm and tilt) from any room at "
       "rest:\n"
       "surfaces seen by both halves of the scan line, half a turn apart, must not be double. One\n"
-      "sweep by 360 degrees is enough, with a scan line that reaches over the vertical. Says what\n"
-      "the sweep does not tell. Writes the rig with the geometry, and scanner.png beside it.\n"
+      "sweep by 360 degrees is enough, with a scan line that reaches over the vertical. Reports\n"
+      "what the sweep cannot determine. Writes the rig with the geometry, and scanner.png beside "
+      "it.\n"
       "Exit code 1: not converged, nothing was written.\n"
       "Example: rgbdt scanner out/room");
   auto flags = std::make_shared<Flags>();

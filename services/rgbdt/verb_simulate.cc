@@ -92,8 +92,8 @@ void AddSimulate(CLI::App* app, int* exit_code) {
       "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night");
   auto flags = std::make_shared<Flags>();
   verb->add_option("DIR", flags->dir, "session directory to write")->required();
-  verb->add_option("--views", flags->views, "how many")->capture_default_str();
-  verb->add_option("--seed", flags->options.seed, "of everything random")->capture_default_str();
+  verb->add_option("--views", flags->views, "number of views")->capture_default_str();
+  verb->add_option("--seed", flags->options.seed, "of all random numbers")->capture_default_str();
   verb->add_option("--scene", flags->options.scene, "outdoor, indoor or night")
       ->transform(CLI::CheckedTransformer(simulate::kSceneNames));
   verb->add_option("--lidar", flags->rings, "turned, vlp16, 32, 64 or 128: scanner or rings")

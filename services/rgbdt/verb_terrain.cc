@@ -71,20 +71,25 @@ int Run(Flags flags) {
 void AddLimits(Flags* flags, CLI::App* verb) {
   TerrainOptions& options = flags->options;
   verb->add_option("--cell", options.cell_m, "edge of a cell [m]")->capture_default_str();
-  verb->add_option("--max-slope", flags->max_slope_deg, "the vehicle climbs [degrees]")
+  verb->add_option("--max-slope", flags->max_slope_deg,
+                   "steepest slope that the vehicle climbs [degrees]")
       ->capture_default_str();
-  verb->add_option("--max-step", options.max_step_m, "and crosses [m]")->capture_default_str();
-  verb->add_option("--max-roughness", options.max_roughness_m, "RMS of the ground [m]")
+  verb->add_option("--max-step", options.max_step_m, "highest step that it crosses [m]")
       ->capture_default_str();
-  verb->add_option("--vehicle-width", options.vehicle_width_m, "passes through no narrower gap [m]")
+  verb->add_option("--max-roughness", options.max_roughness_m,
+                   "highest RMS roughness that it crosses [m]")
       ->capture_default_str();
-  verb->add_option("--vehicle-height", options.vehicle_height_m, "passes under what is higher [m]")
+  verb->add_option("--vehicle-width", options.vehicle_width_m, "narrowest gap that it passes [m]")
       ->capture_default_str();
-  verb->add_option("--site-radius", options.site_radius_m, "of a landing site, at least [m]")
+  verb->add_option("--vehicle-height", options.vehicle_height_m,
+                   "lowest clearance that it passes under [m]")
       ->capture_default_str();
-  verb->add_option("--site-slope", flags->site_max_slope_deg, "of a landing site [degrees]")
+  verb->add_option("--site-radius", options.site_radius_m, "least radius of a landing site [m]")
       ->capture_default_str();
-  verb->add_option("--headroom", options.site_headroom_m, "nothing hangs over a site so high [m]")
+  verb->add_option("--site-slope", flags->site_max_slope_deg,
+                   "steepest slope of a landing site [degrees]")
+      ->capture_default_str();
+  verb->add_option("--headroom", options.site_headroom_m, "free height above a landing site [m]")
       ->capture_default_str();
 }
 

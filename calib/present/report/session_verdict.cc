@@ -145,7 +145,7 @@ Table HeldoutTable(const std::vector<JudgedCamera>& cameras) {
     }
     table.rows.push_back({{camera.camera},
                           {WithUnit(px, 2, "px")},
-                          {WithUnit(sigmas, 2, "sigma")},
+                          {WithUnit(sigmas, 2, "σ")},
                           JudgedSigmas(sigmas)});
   }
   if (table.rows.empty()) table.notes.clear();

@@ -1,6 +1,7 @@
 #include "calib/present/report/internal/fit_tables.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "calib/model/text.h"
 #include "calib/present/report/words.h"
@@ -9,39 +10,34 @@ namespace rgbdt {
 namespace {
 
 constexpr char kNone[] = "–";
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 std::string PoseErrorText(const std::optional<PoseError>& error) {
   return error ? rgbdt::PoseErrorText(*error) : kNone;
 }
 
-struct ViewRow {
+// One view of the table of views; `why`: where it was rejected.
+struct ViewLine {
   std::string view;
-  Row cells;
+  const char* role;
+  std::string why;
 };
 
-ViewRow RowOf(const CameraReport& camera, const std::string& view, const char* role) {
-  const auto found = std::find_if(camera.views.begin(), camera.views.end(),
-                                  [&](const ViewQuality& q) { return q.view == view; });
-  if (found == camera.views.end()) return {view, {{view}, {role}, {kNone}, {kNone}, {kNone}}};
-  return {view,
-          {{view},
-           {role},
-           {WithUnit(found->edge_rms_px, 2, "px")},
-           {WithUnit(found->edge_rms_whitened, 2, "sigma")},
-           {WithUnit(found->distance_transform_px, 2, "px")}}};
+std::vector<ViewLine> LinesOf(const CameraReport& camera) {
+  std::vector<ViewLine> lines;
+  for (const std::string& view : camera.used) lines.push_back({view, "used", ""});
+  for (const std::string& view : camera.heldout) lines.push_back({view, "held out", ""});
+  for (const auto& [view, why] : camera.rejected) lines.push_back({view, "rejected", why});
+  std::stable_sort(lines.begin(), lines.end(), [](const ViewLine& a, const ViewLine& b) {
+    return NaturalLess(a.view, b.view);
+  });
+  return lines;
 }
 
-std::vector<ViewRow> RowsOfViews(const CameraReport& camera) {
-  std::vector<ViewRow> rows;
-  for (const std::string& view : camera.used) rows.push_back(RowOf(camera, view, "used"));
-  for (const std::string& view : camera.heldout) rows.push_back(RowOf(camera, view, "held out"));
-  for (const RejectedView& rejected : camera.rejected) {
-    rows.push_back(RowOf(camera, rejected.view, "rejected"));
-    rows.back().cells.push_back({rejected.why});
-  }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const ViewRow& a, const ViewRow& b) { return NaturalLess(a.view, b.view); });
-  return rows;
+ViewQuality QualityOf(const CameraReport& camera, const std::string& view) {
+  const auto found = std::find_if(camera.views.begin(), camera.views.end(),
+                                  [&](const ViewQuality& q) { return q.view == view; });
+  return found == camera.views.end() ? ViewQuality{view, false, kUnknown, kUnknown, {}} : *found;
 }
 
 }  // namespace
@@ -60,21 +56,27 @@ Table FitTable(const CameraReport& camera) {
   add("RMS distance of the LIDAR's board edge from the outline in the image", camera.edge_rms_px,
       "px");
   add("The same in sigmas (1 is expected; above 1 the stated sigmas are too small)",
-      camera.edge_rms_whitened, "sigma");
+      camera.edge_rms_whitened, "σ");
   add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
       "px");
   return table;
 }
 
 Table ViewsTable(const CameraReport& camera) {
-  Table table{"Views",
-              camera.warnings,
-              {"View", "Role", "Edge RMS", "In sigmas", "Distance transform"},
-              {}};
+  Table table{"Views", camera.warnings, {"View", "Role", "Edge RMS", "Distance transform"}, {}};
+  const bool sigmas =
+      std::any_of(camera.views.begin(), camera.views.end(),
+                  [](const ViewQuality& view) { return view.edge_rms_whitened.has_value(); });
+  if (sigmas) table.head.emplace_back("Edge RMS in sigmas");
   if (!camera.rejected.empty()) table.head.emplace_back("Why rejected");
-  for (ViewRow& row : RowsOfViews(camera)) {
-    row.cells.resize(table.head.size());
-    table.rows.push_back(std::move(row.cells));
+  for (const ViewLine& line : LinesOf(camera)) {
+    const ViewQuality quality = QualityOf(camera, line.view);
+    Row& row = table.rows.emplace_back(Row{{line.view},
+                                           {line.role},
+                                           {WithUnit(quality.edge_rms_px, 2, "px")},
+                                           {WithUnit(quality.distance_transform_px, 2, "px")}});
+    if (sigmas) row.push_back({WithUnit(quality.edge_rms_whitened, 2, "σ")});
+    if (!camera.rejected.empty()) row.push_back({line.why});
   }
   return table;
 }

@@ -88,7 +88,7 @@ Table FoldsTable(const CameraReport& camera) {
       {}};
   for (const Fold& fold : camera.folds) {
     table.rows.push_back({{Joined(fold.heldout)},
-                          {WithUnit(fold.edge_rms_whitened, 2, "sigma")},
+                          {WithUnit(fold.edge_rms_whitened, 2, "σ")},
                           {Number(fold.misfit, 2)},
                           {Number(fold.first_guess_misfit, 2)},
                           {PoseErrorText(fold.from_result)}});

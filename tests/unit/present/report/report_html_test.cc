@@ -29,8 +29,8 @@ TEST(ReportHtml, StatesItsUncertainty) {
   const std::string page = HtmlOf(test::MakeReport());
   for (const char* part :
        {"Uncertainty of the pose (1 sigma)", "0.0333°", "0.67\u202fmm",
-        "Reprojection uncertainty (1 sigma)", "50\u202fm", "0.60\u202fpx", "0.97\u202fsigma",
-        "1 is expected; above 1 the stated sigmas are too small", "1.06\u202fsigma", "0001, 0002",
+        "Reprojection uncertainty (1 sigma)", "50\u202fm", "0.60\u202fpx", "0.97\u202fσ",
+        "1 is expected; above 1 the stated sigmas are too small", "1.06\u202fσ", "0001, 0002",
         "Misfit of the first guess", "<td>5.2</td>", "beam edge, no return", "mrad",
         "rgb to thermal", "<strong class=\"good\">✓ no more than the sigmas allow</strong>",
         "Where to hold the board next", "Hold the board 6 m ahead, at the image&#39;s top left.",
@@ -62,6 +62,8 @@ TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   camera.other_starts[0].start = camera.other_starts[0].calibration.detail = evil;
   camera.nuisance[0].name = camera.nuisance[0].unit = camera.folds[0].heldout[0] = evil;
   report.closure[0].from = report.closure[0].to = evil;
+  report.detections[0].view = report.detections[0].cloud_why_not = evil;
+  report.detections[0].images[0].camera = report.detections[0].images[0].why_not = evil;
   report.next_view->words = report.next_view->camera = evil;
   const std::string page =
       ReportHtml(ContentOf(report), {{evil, evil, cv::Mat(4, 4, CV_8UC3, cv::Scalar(1, 2, 3))}});
