@@ -8,6 +8,7 @@ namespace rgbdt {
 namespace {
 
 constexpr Utime kSecond = kMicrosecondsPerSecond;
+constexpr Utime kLongestGap = 10 * kSecond;
 
 }  // namespace
 
@@ -131,8 +132,11 @@ void SimulatorNode::PlanCapture(const SessionCommand& command) {
 
 Messages SimulatorNode::Advance(Utime now) {
   Messages out;
-  while (!agenda_.empty() && pacer_.WaitFor(agenda_.begin()->first, now) == 0) {
+  while (!agenda_.empty()) {
     const auto next = agenda_.begin();
+    // A capture may be asked for at another clock's time: nobody waits years for it.
+    if (next->first - now_ > kLongestGap) pacer_.Restart();
+    if (pacer_.WaitFor(next->first, now) > 0) break;
     now_ = next->first;
     const Task task = std::move(next->second);
     agenda_.erase(next);

@@ -25,6 +25,9 @@ class Pacer {
     return std::max<Utime>(wait, 0);
   }
 
+  /// The next time asked for is now.
+  void Restart() { start_.reset(); }
+
  private:
   struct Start {
     Utime utime = 0, now = 0;
