@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 
 #include "calib/model/time.h"
 
@@ -18,22 +17,23 @@ class Pacer {
 
   /// How long to wait [us] until `utime` has come; 0: it has. `now` is of any steady clock [us].
   Utime WaitFor(Utime utime, Utime now) {
-    const Utime wait =
-        start_ ? FromSeconds(ToSeconds(utime - start_->utime) / speed_) - (now - start_->now)
-               : -kMaxLate - 1;
-    if (wait < -kMaxLate) start_ = Start{utime, now};
+    Utime wait = FromSeconds(ToSeconds(utime - start_utime_) / speed_) - (now - start_now_);
+    if (!started_ || wait < -kMaxLate) {
+      started_ = true;
+      start_utime_ = utime;
+      start_now_ = now;
+      wait = 0;
+    }
     return std::max<Utime>(wait, 0);
   }
 
   /// The next time asked for is now.
-  void Restart() { start_.reset(); }
+  void Restart() { started_ = false; }
 
  private:
-  struct Start {
-    Utime utime = 0, now = 0;
-  };
   double speed_;
-  std::optional<Start> start_;
+  bool started_ = false;
+  Utime start_utime_ = 0, start_now_ = 0;
 };
 
 }  // namespace rgbdt
