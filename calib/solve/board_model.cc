@@ -63,15 +63,16 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   const Eigen::Vector2d slope = beam.head<2>() / beam.z();
   const Eigen::Vector2d outward = OutwardOf(crossing.side);
   const double sideways = slope.dot(outward) / std::sqrt(1 + slope.squaredNorm());
+  const double upright = std::sqrt(1 - sideways * sideways);
   // A beam that meets the plane at a slant is drawn out on it; a rim that faces the LIDAR is seen
   // beside the front.
-  out.per_rad = range / std::sqrt(1 - sideways * sideways);
+  out.per_rad = range / upright;
   out.per_thickness = std::max(0.0, -slope.dot(outward));
   const auto kind = static_cast<std::size_t>(crossing.kind) - 1;
+  const double shift = shared[kNoReturnShift + kind] + side_shift;
   out.beyond_m = outward.dot(at) - HalfExtent(target, crossing.side) -
                  shared[static_cast<std::size_t>(kOutlineTop + crossing.side)] -
-                 out.per_rad * (shared[kNoReturnShift + kind] + side_shift) -
-                 out.per_thickness * shared[kThickness];
+                 out.per_rad * shift - out.per_thickness * shared[kThickness];
   const double blur = priors.blur_rad * out.per_rad;
   out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
   // The board moves by delta under the beam: a point at (x, y, 0) goes the other way in its axes,
@@ -79,6 +80,18 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   const double across = outward.dot(slope);
   out.by_target << across * at.y(), -across * at.x(), outward.x() * at.y() - outward.y() * at.x(),
       -outward.x(), -outward.y(), across;
+  // The same motion changes the range, the slant and how much of the rim is seen.
+  const Eigen::Vector3d turned = Eigen::Vector3d(outward.x(), outward.y(), 0).cross(beam);
+  Eigen::Matrix<double, 1, 6> by_range, by_sideways, by_depth;  // by_depth: of beam.z
+  by_range << at.y(), -at.x(), 0, 0, 0, 1;
+  by_range /= beam.z();
+  by_sideways << turned.transpose(), 0, 0, 0;
+  by_depth << -beam.y(), beam.x(), 0, 0, 0, 0;
+  out.by_target -=
+      shift / upright * (by_range + range * sideways / (upright * upright) * by_sideways);
+  if (out.per_thickness > 0) {
+    out.by_target += shared[kThickness] / beam.z() * (by_sideways - across * by_depth);
+  }
   return out;
 }
 

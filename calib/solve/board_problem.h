@@ -73,10 +73,8 @@ struct BoardSolution {
 ///
 /// A crossing's distance to the fitted outline in the image is the difference of the second and the
 /// third: both refer to the same side of the same board, whose pose all sensors share. Gauss-Newton
-/// with derivatives that leave out how the pose changes the lever arm of a beam's shift and the
-/// place along a side in the image: the result is within 0.1 sigma of the optimum (ceres_test.cc).
-/// Each view's ten unknowns are eliminated (Schur complement). `start` is near: some degrees and
-/// centimetres.
+/// with exact derivatives (ceres_test.cc), each view's ten unknowns eliminated (Schur complement).
+/// `start` is near: some degrees and centimetres.
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start);
 
 /// Each view's board where its cloud puts it, nothing else known.

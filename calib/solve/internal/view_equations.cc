@@ -147,14 +147,29 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   const Eigen::Vector3d p = camera_from_target * on_target;
   const auto pixel = camera.Project(p);
   if (!pixel) return std::nullopt;
+  const Eigen::RowVector2d normal(-tangent.y(), tangent.x());
+  const Eigen::Matrix<double, 2, 3> pixel_by_point = PixelByPoint(camera.lens(), p);
+  // Where the pixel moves along the curve, t takes that back: along the projected side, which is
+  // not quite parallel to the curve.
+  const Eigen::Vector2d by_t = pixel_by_point * rotation * (to - from);
   const Eigen::Matrix<double, 1, 3> by_point =
-      Eigen::RowVector2d(-tangent.y(), tangent.x()) * PixelByPoint(camera.lens(), p);
+      (normal - normal.dot(by_t) / tangent.dot(by_t) * tangent.transpose()) * pixel_by_point;
   CurveEnd end;
-  end.beside = Eigen::RowVector2d(-tangent.y(), tangent.x()) * (*pixel - at);
+  end.beside = normal * (*pixel - at);
   end.by_camera << -by_point * CrossMatrix(p), by_point;
   end.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
   end.by_outline = by_point * rotation * outward;
   return end;
+}
+
+// From how far off on a crossing counts less. It matters for outliers only, and is by the cloud's
+// own pose there: a weight that changed with the board's place would be an objective of its own.
+double ViewEquations::OwnSigma(const Crossing& crossing, const CrossingResidual& here) const {
+  if (std::abs(here.beyond_m) < 2 * here.sigma_m) return here.sigma_m;
+  const CrossingResidual by_cloud =
+      ResidualOf(problem_.target, problem_.priors, crossing, view_.cloud.pose->sensor_from_target,
+                 state_.shared, 0);
+  return by_cloud.per_rad > 0 ? by_cloud.sigma_m : here.sigma_m;
 }
 
 void ViewEquations::AddCrossings() {
@@ -179,9 +194,10 @@ void ViewEquations::AddCrossings() {
     if (!(r.per_rad > 0)) continue;
     Sum j;
     j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1;
-    const double squared = r.beyond_m * r.beyond_m / (r.sigma_m * r.sigma_m);
+    const double sigma = OwnSigma(crossing, r);
+    const double squared = r.beyond_m * r.beyond_m / (sigma * sigma);
     // Noise that it shares with its neighbours counts once: in weight, not in what is far off.
-    const double share = r.sigma_m * r.sigma_m / (crossing.sigma_m * crossing.sigma_m);
+    const double share = sigma * sigma / (crossing.sigma_m * crossing.sigma_m);
     const double weight = RobustWeight(squared) / (crossing.sigma_m * crossing.sigma_m);
     cost_ += share * RobustCost(squared);
     const auto kind = static_cast<std::size_t>(crossing.kind) - 1;

@@ -39,6 +39,7 @@ class ViewEquations {
   };
   std::optional<CurveEnd> AtCurveEnd(const BoardImage& image, int side, const Eigen::Vector2d& at,
                                      const Eigen::Vector2d& along) const;
+  double OwnSigma(const Crossing& crossing, const CrossingResidual& here) const;
   void AddCrossings();
   void SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
                        const Eigen::Matrix<double, 9, 1>& g);

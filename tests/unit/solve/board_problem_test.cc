@@ -52,16 +52,21 @@ TEST_P(ResidualOfSide, IsTheDistanceBeyondTheSide) {
 }
 
 TEST_P(ResidualOfSide, ByTargetIsItsDerivative) {
-  const Rigid3 board = TiltedBoard(0.5, -0.4);
-  const Crossing crossing = CrossingOn(board, GetParam(), 0.012);
-  const CrossingResidual r = ResidualAt(crossing, board);
-  constexpr double kStep = 1e-6;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d delta = kStep * Vector6d::Unit(i);
-    const double slope = (ResidualAt(crossing, board * Exp(delta)).beyond_m -
-                          ResidualAt(crossing, board * Exp(-delta)).beyond_m) /
-                         (2 * kStep);
-    EXPECT_NEAR(r.by_target[i], slope, 1e-7) << "delta " << i;
+  std::array<double, kSharedUnknowns> shared{};
+  shared[kFarShift] = 2e-3;
+  shared[kThickness] = 0.02;
+  for (const double tilt : {-0.5, 0.5}) {  // the rim hidden, and seen
+    const Rigid3 board = TiltedBoard(tilt, 0.8 * tilt);
+    const Crossing crossing = CrossingOn(board, GetParam(), 0.012);
+    const CrossingResidual r = ResidualAt(crossing, board, shared);
+    constexpr double kStep = 1e-5;
+    for (int i = 0; i < 6; ++i) {
+      const Vector6d delta = kStep * Vector6d::Unit(i);
+      const double slope = (ResidualAt(crossing, board * Exp(delta), shared).beyond_m -
+                            ResidualAt(crossing, board * Exp(-delta), shared).beyond_m) /
+                           (2 * kStep);
+      EXPECT_NEAR(r.by_target[i], slope, 1e-8) << "delta " << i;
+    }
   }
 }
 

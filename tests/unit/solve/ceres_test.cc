@@ -18,11 +18,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The solver's derivatives leave two things out, so that it ends beside the optimum: how the lever
-// arm of a side's shift and the rim's part change with the board's pose, and how far along a side
-// in the image a curve's end lies. Measured: 0.10 sigma of all unknowns together, 2.7%.
-constexpr double kOptimumSigmas = 0.15;
-constexpr double kVarianceRatio = 0.04;
+constexpr double kOptimumSigmas = 1e-6;  // of all unknowns together
+constexpr double kVarianceRatio = 0.01;
 
 // Plain arrays, not Eigen's, of automatic derivatives: they compile in half the time.
 template <typename T>
@@ -295,10 +292,10 @@ class CeresBoards {
     for (const Crossing& crossing : view.cloud.crossings) {
       const auto side = static_cast<std::size_t>(crossing.side);
       if (!view.sides[side]) continue;
-      // From which distance on a crossing counts less is by its own sigma, at this state; its
-      // weight is by the larger one, its neighbours' correlation counted in.
-      const double own = ResidualOf(problem_.target, problem_.priors, crossing, pose, state_.shared,
-                                    state_.side_shift[v][side])
+      // From which distance on a crossing counts less is by its own sigma, as the cloud's own pose
+      // has it; its weight is by the larger one, its neighbours' correlation counted in.
+      const double own = ResidualOf(problem_.target, problem_.priors, crossing,
+                                    view.cloud.pose->sensor_from_target, state_.shared, 0)
                              .sigma_m;
       Add(CrossingDistance{problem_.target, pose, crossing}, 1, {board, shared, sides},
           new TailLoss(std::pow(own / crossing.sigma_m, 2)));
