@@ -45,13 +45,13 @@ std::string Warnings(const CameraReport& camera) {
   const std::string& name = camera.calibration.camera;
   std::string text;
   if (camera.calibration.status != SolveStatus::kConverged) {
-    text += name + ": " + camera.calibration.StatusText() + "\n";
+    text += fmt::format("{}: {}\n", name, camera.calibration.StatusText());
   }
   for (const RejectedView& view : camera.rejected) {
-    text += name + ": view " + view.view + " rejected: " + view.why + "\n";
+    text += fmt::format("{}: view {} rejected: {}\n", name, view.view, view.why);
   }
   for (const std::string& warning : camera.warnings) {
-    text += name + ": " + warning + "\n";
+    text += fmt::format("{}: {}\n", name, warning);
   }
   return text;
 }

@@ -163,8 +163,7 @@ std::vector<ViewFrames> MakeAll(const FrameMaker& maker, const std::vector<ViewS
 std::string LastCloud(const FrameMaker& maker, const std::vector<ViewState>& views,
                       const std::vector<ViewFrames>& made) {
   for (std::size_t i = views.size(); i-- > 0;) {
-    const std::string cloud =
-        i + 1 == views.size() ? made[i].cloud : maker.Make(views[i], true).cloud;
+    std::string cloud = i + 1 == views.size() ? made[i].cloud : maker.Make(views[i], true).cloud;
     if (!cloud.empty()) return cloud;
   }
   return {};
