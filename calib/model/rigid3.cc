@@ -71,6 +71,20 @@ Rigid3 RotationAbout(const Eigen::Vector3d& axis, double angle) {
   return {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())), Eigen::Vector3d::Zero()};
 }
 
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d a = from.normalized();
+  const Eigen::Vector3d b = to.normalized();
+  const double cosine = b.dot(a);
+  if (cosine < -1 + 1e-12) {  // opposite: about any axis across
+    const Eigen::Vector3d axis = a.unitOrthogonal();
+    return Eigen::Quaterniond(0, axis.x(), axis.y(), axis.z());
+  }
+  const Eigen::Vector3d axis = a.cross(b);
+  const double twice_w = std::sqrt((1 + cosine) * 2);
+  const Eigen::Vector3d v = axis * (1 / twice_w);
+  return Eigen::Quaterniond(twice_w * 0.5, v.x(), v.y(), v.z());
+}
+
 double RotationDistance(const Rigid3& a, const Rigid3& b) {
   return RotationVector(a.rotation * b.rotation.conjugate()).norm();
 }

@@ -47,6 +47,9 @@ Eigen::Matrix3d PointCovariance(const Matrix6d& covariance, const Eigen::Vector3
 /// Rotation about one axis by `angle` [rad], no translation.
 Rigid3 RotationAbout(const Eigen::Vector3d& axis, double angle);
 
+/// The shortest rotation that takes direction `from` to direction `to`; lengths do not matter.
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// Angle of the rotation between two poses [rad], 0 to pi.
 double RotationDistance(const Rigid3& a, const Rigid3& b);
 

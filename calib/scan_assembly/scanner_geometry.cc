@@ -1,6 +1,5 @@
 #include "calib/scan_assembly/scanner_geometry.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 #include "calib/scan_assembly/internal/scan_patches.h"
@@ -173,9 +173,9 @@ Matrix7d Solver::Covariance() const {
     information -= FeignedInformation(beams_, patch.joint, sigma_m_);
   }
   const Matrix7d scaled = prior_.asDiagonal() * information * prior_.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix7d> axes(scaled);
-  const Matrix7d told = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0).asDiagonal() *
-                        axes.eigenvectors().transpose();
+  const Eigensystem<7> axes = EigensystemOf(scaled);
+  const Matrix7d told =
+      axes.vectors * axes.values.cwiseMax(0).asDiagonal() * axes.vectors.transpose();
   const Vector7d back = prior_.cwiseInverse();
   const Matrix7d kept = back.asDiagonal() * told * back.asDiagonal();
   return CovarianceOf(kept / (NoiseScale() * MisfitScale()), prior_);

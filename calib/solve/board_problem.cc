@@ -1,35 +1,36 @@
 #include "calib/solve/board_problem.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/solve/internal/view_equations.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr int kLocal = kOwnUnknowns;
+using LocalMatrix = Eigen::Matrix<double, kLocal, kLocal>;
+using LocalVector = Eigen::Matrix<double, kLocal, 1>;
 
 // A view's equations with its own unknowns eliminated, and how to get these back.
 struct Reduced {
   ViewInformation shared;
   Eigen::Matrix<double, kLocal, Eigen::Dynamic> local_by_shared;
-  Eigen::Matrix<double, kLocal, 1> local;
+  LocalVector local;
 };
 
 Reduced Reduce(const ViewEquations& equations, double damping) {
   const auto shared = equations.h().cols() - kLocal;
-  Eigen::Matrix<double, kLocal, kLocal> local = equations.h().topLeftCorner<kLocal, kLocal>();
+  LocalMatrix local = equations.h().topLeftCorner<kLocal, kLocal>();
   local.diagonal() *= 1 + damping;
-  const Eigen::LDLT<Eigen::Matrix<double, kLocal, kLocal>> ldlt(local);
   const Eigen::Matrix<double, kLocal, Eigen::Dynamic> coupling =
       equations.h().topRightCorner(kLocal, shared);
   Reduced out;
-  out.local_by_shared = ldlt.solve(coupling);
-  out.local = ldlt.solve(equations.g().head<kLocal>());
+  out.local_by_shared = SolveSymmetric(local, coupling);
+  out.local = SolveSymmetric(local, LocalVector(equations.g().head<kLocal>()));
   out.shared.information =
       equations.h().bottomRightCorner(shared, shared) - coupling.transpose() * out.local_by_shared;
   out.shared.gradient = equations.g().tail(shared) - coupling.transpose() * out.local;
@@ -91,7 +92,7 @@ class Step {
       g += reduced.back().shared.gradient;
     }
     h.diagonal() *= 1 + damping;
-    const Eigen::VectorXd x = h.ldlt().solve(g);
+    const Eigen::VectorXd x = SolveSymmetric(h, g);
     Stepped stepped{state_, x.dot(h * x)};
     BoardState& next = stepped.state;
     for (std::size_t c = 0; c < next.camera_from_lidar.size(); ++c) {
@@ -103,8 +104,7 @@ class Step {
       next.shared[static_cast<std::size_t>(k)] += x[first + k];
     }
     for (std::size_t v = 0; v < reduced.size(); ++v) {
-      const Eigen::Matrix<double, kLocal, 1> local =
-          reduced[v].local - reduced[v].local_by_shared * x;
+      const LocalVector local = reduced[v].local - reduced[v].local_by_shared * x;
       stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
       next.lidar_from_target[v] = next.lidar_from_target[v] * Exp(local.head<6>());
       for (int side = 0; side < 4; ++side) {
@@ -121,12 +121,12 @@ class Step {
     Eigen::MatrixXd h = prior_.information;
     for (const ViewEquations& e : equations_) {
       solution.views.push_back(Reduce(e, 0).shared);
-      const Eigen::Matrix<double, kLocal, kLocal> local =
-          e.h().topLeftCorner<kLocal, kLocal>().inverse();
+      const LocalMatrix local =
+          InverseOfSymmetric(LocalMatrix(e.h().topLeftCorner<kLocal, kLocal>()));
       solution.side_variance.push_back({local(6, 6), local(7, 7), local(8, 8), local(9, 9)});
       h += solution.views.back().information;
     }
-    solution.covariance = h.ldlt().solve(Eigen::MatrixXd::Identity(Size(), Size()));
+    solution.covariance = InverseOfSymmetric(h);
     return solution;
   }
 
@@ -192,8 +192,9 @@ double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view,
   constexpr int kIterations = 20;
   for (int i = 0; i < kIterations; ++i) {
     const ViewEquations equations(problem, state, view);
-    const Eigen::Matrix<double, kLocal, 1> step =
-        equations.h().topLeftCorner<kLocal, kLocal>().ldlt().solve(equations.g().head<kLocal>());
+    const LocalVector step =
+        SolveSymmetric(LocalMatrix(equations.h().topLeftCorner<kLocal, kLocal>()),
+                       LocalVector(equations.g().head<kLocal>()));
     state.lidar_from_target[view] = state.lidar_from_target[view] * Exp(Vector6d(step.head<6>()));
     for (int side = 0; side < 4; ++side) {
       state.side_shift[view][static_cast<std::size_t>(side)] += step[6 + side];
@@ -204,7 +205,7 @@ double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view,
   const Eigen::Index at = 6 * camera;
   const Matrix6d information = reduced.information.block<6, 6>(at, at);
   const Vector6d gradient = reduced.gradient.segment<6>(at);
-  return gradient.dot(information.ldlt().solve(gradient));
+  return gradient.dot(SolveSymmetric(information, gradient));
 }
 
 }  // namespace rgbdt

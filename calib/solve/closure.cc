@@ -1,6 +1,5 @@
 #include "calib/solve/closure.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +7,8 @@
 #include <set>
 #include <string>
 #include <utility>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -62,14 +63,13 @@ Mean MeanOf(const GuessedCamera& camera) {
     mean.weights.clear();
     for (const CameraView* o : camera.views->Used()) {
       const Alone alone = FromOneView(*o, mean.camera_from_lidar);
-      const Matrix6d weight = alone.Covariance().ldlt().solve(Matrix6d::Identity());
+      const Matrix6d weight = InverseOfSymmetric(Matrix6d(alone.Covariance()));
       information += weight;
       gradient += weight * Log(alone.camera_from_lidar * mean.camera_from_lidar.Inverse());
       mean.weights[o->view] = weight;
     }
-    const auto solver = information.ldlt();
-    for (auto& [view, weight] : mean.weights) weight = Matrix6d(solver.solve(weight));
-    mean.camera_from_lidar = Exp(Vector6d(solver.solve(gradient))) * mean.camera_from_lidar;
+    for (auto& [view, weight] : mean.weights) weight = SolveSymmetric(information, weight);
+    mean.camera_from_lidar = Exp(SolveSymmetric(information, gradient)) * mean.camera_from_lidar;
   }
   return mean;
 }
@@ -98,16 +98,16 @@ Mean StereoOf(const GuessedCamera& a, const GuessedCamera& b, const Rigid3& b_fr
                                   1e-10 * Matrix6d::Identity();
       const Vector6d off = Log(ByImages(*in_a, *in_b, stereo.camera_from_lidar) *
                                stereo.camera_from_lidar.Inverse());
-      const Matrix6d weight = covariance.ldlt().solve(Matrix6d::Identity());
+      const Matrix6d weight = InverseOfSymmetric(covariance);
       const double robust = std::min(1.0, 25 / std::max(1e-12, off.dot(weight * off)));
       information += robust * weight;
       gradient += robust * weight * off;
       stereo.weights[in_a->view] = robust * weight;
     }
     if (stereo.weights.empty()) break;
-    const auto solver = information.ldlt();
-    for (auto& [view, weight] : stereo.weights) weight = Matrix6d(solver.solve(weight));
-    stereo.camera_from_lidar = Exp(Vector6d(solver.solve(gradient))) * stereo.camera_from_lidar;
+    for (auto& [view, weight] : stereo.weights) weight = SolveSymmetric(information, weight);
+    stereo.camera_from_lidar =
+        Exp(SolveSymmetric(information, gradient)) * stereo.camera_from_lidar;
   }
   return stereo;
 }
@@ -153,7 +153,7 @@ std::optional<Closure> CloseLoop(const GuessedCamera& a, const GuessedCamera& b)
   closure.sigma = {std::sqrt(covariance.topLeftCorner<3, 3>().trace()) * 180 / M_PI,
                    std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) * 1000};
   const Vector6d delta = Log(closure.by_images * closure.by_lidar.Inverse());
-  closure.chi2 = delta.dot(covariance.ldlt().solve(delta));
+  closure.chi2 = delta.dot(SolveSymmetric(covariance, delta));
   return closure;
 }
 

@@ -1,10 +1,10 @@
 #include "calib/solve/first_guess.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -156,7 +156,7 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
       j.block<3, 1>(3, 6) = pose.rotation * in_lidar.sensor_from_target.translation.normalized();
       Vector6d residual = delta;
       residual -= j.col(6) * offset;
-      const Matrix6d weight = covariance.ldlt().solve(Matrix6d::Identity());
+      const Matrix6d weight = InverseOfSymmetric(covariance);
       // Beyond what six Gaussian unknowns do in 3 of 10,000 views, a view counts less.
       const double robust = std::min(1.0, 25 / std::max(1e-12, residual.dot(weight * residual)));
       information += robust * j.transpose() * weight * j;
@@ -165,12 +165,12 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
     const double prior = options.range_offset ? options.range_offset_sigma_m : kNoRangeOffsetSigmaM;
     information(6, 6) += 1 / (prior * prior);
     gradient[6] -= offset / (prior * prior);
-    const Vector7d step = information.ldlt().solve(gradient);
+    const Vector7d step = SolveSymmetric(information, gradient);
     pose = Exp(step.head<6>()) * pose;
     offset += step[6];
     if (round > 4 && step.norm() < 1e-10) break;
   }
-  const Matrix7d covariance = information.ldlt().solve(Matrix7d::Identity());
+  const Matrix7d covariance = InverseOfSymmetric(information);
   guess.covariance = covariance.topLeftCorner<6, 6>();
   if (options.range_offset) {
     guess.range_offset_m = offset;

@@ -1,11 +1,12 @@
 #include "calib/camera/internal/intrinsics_start.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "calib/camera/lens.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -30,8 +31,7 @@ Eigen::Matrix3d Homography(const Points& points, const Points& directions) {
         0 * x;
     normal += rows.transpose() * rows;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const Eigen::Matrix<double, 9, 1> h = EigensystemOf(normal).vectors.col(0);
   Eigen::Matrix3d homography;
   homography << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(),
       h.segment<3>(6).transpose();
@@ -144,8 +144,7 @@ std::optional<Rigid3> PoseFromDirections(const Points& points, const Points& dir
   if (in_front < 0) h = -h;
   Eigen::Matrix3d axes;
   axes << h.col(0), h.col(1), h.col(0).cross(h.col(1));
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Matrix3d rotation = NearestOrthogonal(axes);
   if (rotation.determinant() < 0) return std::nullopt;
   if (rotation.col(2).dot(h.col(2)) <= 0) return std::nullopt;  // seen from behind: mirrored
   return Rigid3{Eigen::Quaterniond(rotation), h.col(2)};

@@ -1,6 +1,6 @@
 #include "calib/detect/cloud/board_in_cloud.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>

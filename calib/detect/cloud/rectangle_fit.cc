@@ -1,11 +1,12 @@
 #include "calib/detect/cloud/rectangle_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -292,7 +293,7 @@ class Refiner {
       g[k] -= (x[k] - (k == kThickness ? options_.thickness_m : 0)) / (sigma * sigma);
     }
     *information = h;
-    return h.ldlt().solve(g);
+    return SolveSymmetric(h, g);
   }
 
   FlatRectangle Result(const Parameters& x, const Normal& information, double chi2,
@@ -300,7 +301,7 @@ class Refiner {
     FlatRectangle out;
     out.centre = x.head<2>();
     out.angle_rad = x[2];
-    const Normal covariance = information.ldlt().solve(Normal::Identity());
+    const Normal covariance = InverseOfSymmetric(information);
     const double scale = used > 10 ? std::max(1.0, chi2 / used) : 1.0;
     out.covariance = scale * covariance.topLeftCorner<3, 3>();
     for (int k = 0; k < 3; ++k) {

@@ -12,6 +12,7 @@
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/target_pose.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -179,7 +180,7 @@ Chain FitSide(const Chain& side, const Gradient& g) {
       h += weight * j * j.transpose();
       r += weight * s.offset * j;
     }
-    const Eigen::Vector2d solution = h.ldlt().solve(r);
+    const Eigen::Vector2d solution = SolveSymmetric(h, r);
     a = solution.x();
     b = solution.y();
   }

@@ -1,6 +1,5 @@
 #include "calib/detect/image/target_pose.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 
 #include "calib/camera/pixel_by_point.h"
 #include "calib/detect/image/internal/corner_order.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -26,7 +26,7 @@ std::optional<Eigen::Matrix3d> FacingFromCamera(const Points& directions) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& d : directions) middle += d;
   if (!(middle.norm() > 1e-6)) return std::nullopt;
-  return Eigen::Quaterniond::FromTwoVectors(middle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return RotationBetween(middle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
 std::optional<Points> Directions(const Camera& camera, const Pixels& corners) {
@@ -140,7 +140,7 @@ bool Descend(const Camera& camera, const Points& model, const Pixels& corners,
     const Normal normal = NormalEquations(camera, *pose, model, residuals, weights);
     Matrix6d damped = normal.h;
     damped.diagonal() *= 1 + damping;
-    const Vector6d step = -damped.ldlt().solve(normal.g);
+    const Vector6d step = -SolveSymmetric(damped, normal.g);
     if (!step.allFinite()) return false;
     const Rigid3 next = Exp(step) * *pose;
     const Pixels there = Residuals(camera, next, model, corners);
@@ -293,14 +293,14 @@ std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& targe
   }
   const Pixels residuals = Residuals(camera, fit.pose, seen.model, seen.corners);
   const Normal normal = NormalEquations(camera, fit.pose, seen.model, residuals, fit.weights);
-  const Eigen::LDLT<Matrix6d> ldlt(normal.h);
-  if (ldlt.info() != Eigen::Success || !ldlt.isPositive()) return std::nullopt;
+  const auto inverse = InverseOfPositive(normal.h);
+  if (!inverse) return std::nullopt;
   CornerPose out;
   out.pose.sensor_from_target = fit.pose;
   const std::vector<double> weights = Among(target, seen, fit.weights, 0.0);
   const Eigen::Vector2d none = Eigen::Vector2d::Zero();
   out.inflation = InflationOf(target, Among(target, seen, residuals, none), weights);
-  out.pose.covariance = std::pow(out.inflation * fit.sigma, 2) * ldlt.solve(Matrix6d::Identity());
+  out.pose.covariance = std::pow(out.inflation * fit.sigma, 2) * *inverse;
   if (!out.pose.covariance.allFinite()) return std::nullopt;
   out.pose.covariance = 0.5 * (out.pose.covariance + out.pose.covariance.transpose()).eval();
   out.corner_sigma_px = fit.sigma;

@@ -1,6 +1,5 @@
 #include "calib/methods/paper/cloud_edges.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -9,6 +8,7 @@
 
 #include "calib/methods/paper/internal/pcl_steps.h"
 #include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -107,9 +107,8 @@ Plane FitPlane(const Points& points, const Indices& indices) {
     const Eigen::Vector3d d = points[static_cast<std::size_t>(i)].cast<double>() - mean;
     scatter += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
   Plane plane;
-  plane.normal = solver.eigenvectors().col(0);
+  plane.normal = EigensystemOf(scatter).vectors.col(0);
   plane.offset = plane.normal.dot(mean);
   return plane;
 }

@@ -1,9 +1,8 @@
 #include "calib/methods/plane/by_planes.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/stopwatch.h"
 #include "calib/solve/closure.h"
 
@@ -50,21 +49,21 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
   bool converged = false;
   for (int i = 0; i < kIterations && !converged; ++i) {
     const Sums sums = SumsAt(used, result.camera_from_lidar);
-    const Vector6d step = sums.h.ldlt().solve(sums.g);
+    const Vector6d step = SolveSymmetric(sums.h, sums.g);
     if (!step.allFinite()) break;
     result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
     converged = step.norm() < 1e-10;
   }
   const Sums sums = SumsAt(used, result.camera_from_lidar);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(sums.h);
-  if (!converged || !(eigen.eigenvalues()[0] > 1e-9 * eigen.eigenvalues()[5])) {
+  const Vector6d eigenvalues = EigensystemOf(sums.h).values;
+  if (!converged || !(eigenvalues[0] > 1e-9 * eigenvalues[5])) {
     result.status = SolveStatus::kDegenerate;
     result.detail = "the boards' planes leave the pose loose; tilt the board otherwise";
     return result;
   }
   result.status = SolveStatus::kConverged;
   const double variance = sums.squares / std::max(1.0, sums.points - 6);
-  const Matrix6d inverse = sums.h.ldlt().solve(Matrix6d::Identity());
+  const Matrix6d inverse = InverseOfSymmetric(sums.h);
   result.covariance = 0.5 * variance * (inverse + inverse.transpose());
   return result;
 }

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/present/report/verdict.h"
 
 namespace rgbdt {
@@ -28,7 +28,7 @@ std::string Error(const std::optional<PoseError>& error) {
 std::string Sigma(const CameraCalibration& calibration) {
   if (!calibration.covariance) return "-";
   const auto worst = [](const Eigen::Matrix3d& covariance) {
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
+    return std::sqrt(EigensystemOf(covariance).values[2]);
   };
   return Error(PoseError{worst(calibration.covariance->topLeftCorner<3, 3>()) * 180 / M_PI,
                          worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});

@@ -1,11 +1,12 @@
 #include "calib/scan_assembly/internal/beam_planes.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -40,9 +41,9 @@ Eigen::Matrix3d ScatterOf(const PlacedBeams& all, const BeamList& beams, Eigen::
 // The plane of least distances: only to begin with.
 bool FirstPlane(const PlacedBeams& all, const BeamList& beams, BeamPlane* plane) {
   const Eigen::Matrix3d scatter = ScatterOf(all, beams, &plane->centre);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
-  plane->normal = axes.eigenvectors().col(0);
-  if (axes.eigenvalues()(1) < kLeastWidth * kLeastWidth * axes.eigenvalues()(0)) return false;
+  const Eigensystem<3> axes = EigensystemOf(scatter);
+  plane->normal = axes.vectors.col(0);
+  if (axes.values(1) < kLeastWidth * kLeastWidth * axes.values(0)) return false;
   const Eigen::Vector3d sight = (plane->centre - all.origin(beams[0])).normalized();
   return std::abs(plane->normal.dot(sight)) > kGrazing;
 }
@@ -118,7 +119,7 @@ void RefitPlane(const PlacedBeams& all, double sigma_m, BeamPlane* plane) {
       gradient -= row * misfit;
     }
     if (step == kSteps) break;
-    const Eigen::Vector3d change = information.ldlt().solve(gradient);
+    const Eigen::Vector3d change = SolveSymmetric(information, gradient);
     if (!change.allFinite()) break;
     plane->centre += change.z() * plane->normal;
     plane->normal = (plane->normal + change.x() * axes.u + change.y() * axes.v).normalized();
@@ -177,7 +178,9 @@ struct Sums {
     mixed += row.plane * row.geometry.transpose();
     plane += row.plane * row.plane.transpose();
   }
-  Matrix7d Eliminated() const { return geometry - mixed.transpose() * plane.ldlt().solve(mixed); }
+  Matrix7d Eliminated() const {
+    return geometry - mixed.transpose() * SolveSymmetric(plane, mixed);
+  }
 };
 
 }  // namespace
@@ -197,7 +200,8 @@ void ScanEquations::Add(const PlacedBeams& all, const BeamPlane& plane, double s
     of_plane -= row.plane * (misfit / sigma_m);
   }
   information += weight * sums.Eliminated();
-  gradient += weight * (of_geometry - sums.mixed.transpose() * sums.plane.ldlt().solve(of_plane));
+  gradient +=
+      weight * (of_geometry - sums.mixed.transpose() * SolveSymmetric(sums.plane, of_plane));
 }
 
 Matrix7d FeignedInformation(const PlacedBeams& all, const BeamPlane& plane, double sigma_m) {

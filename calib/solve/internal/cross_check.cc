@@ -1,10 +1,10 @@
 #include "calib/solve/internal/cross_check.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
@@ -159,7 +159,7 @@ void Halve(const JointProblem& joint, const JointResult& result) {
     const Matrix6d covariance = result.variance_factor * (a.covariance.block<6, 6>(at, at) +
                                                           b.covariance.block<6, 6>(at, at));
     const Vector6d delta = Log(pose_a * pose_b.Inverse());
-    Halves halves{ErrorOf(pose_a, pose_b), delta.dot(covariance.ldlt().solve(delta))};
+    Halves halves{ErrorOf(pose_a, pose_b), delta.dot(SolveSymmetric(covariance, delta))};
     joint.cameras[c].views->report.halves = halves;
   }
 }

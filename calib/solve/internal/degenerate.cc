@@ -1,9 +1,10 @@
 #include "calib/solve/internal/degenerate.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -67,20 +68,21 @@ std::string WhyDegenerate(const std::vector<Rigid3>& boards) {
 }
 
 std::string WhyLoose(const Matrix6d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(covariance.topLeftCorner<3, 3>());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> shifts(covariance.bottomRightCorner<3, 3>());
-  const double turn = std::sqrt(std::max(0.0, turns.eigenvalues()[2]));
-  const double shift = std::sqrt(std::max(0.0, shifts.eigenvalues()[2]));
+  const Eigensystem<3> turns = EigensystemOf(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
+  const Eigensystem<3> shifts =
+      EigensystemOf(Eigen::Matrix3d(covariance.bottomRightCorner<3, 3>()));
+  const double turn = std::sqrt(std::max(0.0, turns.values[2]));
+  const double shift = std::sqrt(std::max(0.0, shifts.values[2]));
   if (turn <= kLooseRad && shift <= kLooseM) return "";
   char text[200];
   if (turn / kLooseRad >= shift / kLooseM) {
     std::snprintf(text, sizeof text,
                   "turns about the camera's %s are known to %.1f deg only (1 sigma)",
-                  AxisOf(turns.eigenvectors().col(2)), turn * 180 / M_PI);
+                  AxisOf(turns.vectors.col(2)), turn * 180 / M_PI);
   } else {
     std::snprintf(text, sizeof text,
                   "shifts along the camera's %s are known to %.0f mm only (1 sigma)",
-                  AxisOf(shifts.eigenvectors().col(2)), shift * 1000);
+                  AxisOf(shifts.vectors.col(2)), shift * 1000);
   }
   return std::string(text) + "; add views with the board elsewhere and tilted otherwise";
 }

@@ -1,11 +1,11 @@
 #include "calib/solve/internal/joint_solve.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/rigid3.h"
 
 namespace rgbdt {
@@ -118,11 +118,8 @@ std::vector<Contradiction> Contradictions(const JointProblem& joint,
     const auto gradient = Eigen::VectorXd(solution.views[v].gradient.head(cameras)(place));
     const Eigen::MatrixXd others =
         all - solution.views[v].information.topLeftCorner(cameras, cameras);
-    const Eigen::MatrixXd others_covariance =
-        others.ldlt().solve(Eigen::MatrixXd::Identity(cameras, cameras))(place, place);
-    const Eigen::MatrixXd own_covariance =
-        own.ldlt().solve(Eigen::MatrixXd::Identity(own.rows(), own.cols()));
-    const Eigen::MatrixXd covariance = own_covariance + others_covariance;
+    const Eigen::MatrixXd others_covariance = InverseOfSymmetric(others)(place, place);
+    const Eigen::MatrixXd covariance = InverseOfSymmetric(own) + others_covariance;
     const Eigen::VectorXd off = covariance * gradient;
     for (std::size_t s = 0; s < view.images.size(); ++s) {
       const auto at = static_cast<Index>(6 * s);
@@ -131,7 +128,7 @@ std::vector<Contradiction> Contradictions(const JointProblem& joint,
       Contradiction c;
       c.view = v;
       c.image = s;
-      c.chi2 = delta.dot(block.ldlt().solve(delta));
+      c.chi2 = delta.dot(SolveSymmetric(block, delta));
       c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
       c.centre_mm = delta.tail<3>().norm() * 1000;
       if (std::isfinite(c.chi2)) out.push_back(c);  // not where no other view has this camera
@@ -246,12 +243,12 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
     const BoardSolution without = Without(joint, solution.state, v);
     for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
       const auto at = static_cast<Index>(6 * c);
-      const Eigen::LDLT<Matrix6d> covariance(Matrix6d(solution.covariance.block<6, 6>(at, at)));
-      const Matrix6d more =
-          covariance.solve(Matrix6d(without.covariance.block<6, 6>(at, at))) - Matrix6d::Identity();
+      const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
+      const Matrix6d covariance_without = without.covariance.block<6, 6>(at, at);
+      const Matrix6d more = SolveSymmetric(covariance, covariance_without) - Matrix6d::Identity();
       const Vector6d move =
           Log(without.state.camera_from_lidar[c] * solution.state.camera_from_lidar[c].Inverse());
-      moved += move.dot(covariance.solve(move));
+      moved += move.dot(SolveSymmetric(covariance, move));
       expected += more.trace();
       expected2 += (more * more).trace();
     }

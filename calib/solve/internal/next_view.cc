@@ -1,10 +1,10 @@
 #include "calib/solve/internal/next_view.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/solve/colouring.h"
 
 namespace rgbdt {
@@ -251,8 +251,7 @@ std::optional<NextView> FindNextView(const JointProblem& joint, const JointResul
   const BoardState& state = result.solution.state;
   if (problem.views.empty()) return std::nullopt;
   const Eigen::MatrixXd& covariance = result.solution.covariance;
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols());
-  const Eigen::MatrixXd information = covariance.ldlt().solve(identity);
+  const Eigen::MatrixXd information = InverseOfSymmetric(covariance);
   const Exactness exactness = ExactnessOf(problem);
   const double scale = std::sqrt(result.variance_factor);
   const Worst before = WorstOf(problem, covariance);
@@ -260,7 +259,7 @@ std::optional<NextView> FindNextView(const JointProblem& joint, const JointResul
   for (const Place& place : PlacesToTry(problem)) {
     const auto more = Expected(problem, state, exactness, place.LidarFromTarget());
     if (!more) continue;
-    const Worst after = WorstOf(problem, (information + *more).ldlt().solve(identity));
+    const Worst after = WorstOf(problem, InverseOfSymmetric(Eigen::MatrixXd(information + *more)));
     if (best && scale * after.sigma_px >= best->sigma_after_px) continue;
     best = NextView{place.Words(), place.LidarFromTarget(),
                     joint.cameras[before.camera].views->spec->name, scale * before.sigma_px,

@@ -1,10 +1,10 @@
 #include "calib/solve/internal/view_equations.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/camera/pixel_by_point.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -106,14 +106,13 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
     j.row(end).head<6>() = there->by_target;
     j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
   }
-  const Eigen::LDLT<Eigen::Matrix2d> ldlt(side.covariance);
-  if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return;
-  const Eigen::Matrix2d information = ldlt.solve(Eigen::Matrix2d::Identity());
-  const double squared = residual.dot(information * residual) / 2;
+  const auto information = InverseOfPositive(side.covariance);
+  if (!information) return;
+  const double squared = residual.dot(*information * residual) / 2;
   const double weight = RobustWeight(squared);
   cost_ += 2 * RobustCost(squared);
-  h_ += weight * j.transpose() * information * j;
-  g_ -= weight * j.transpose() * information * residual;
+  h_ += weight * j.transpose() * *information * j;
+  g_ -= weight * j.transpose() * *information * residual;
 }
 
 // One end: where on the side the curve ends, and how far the projected side lies from there.

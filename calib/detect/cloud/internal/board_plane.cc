@@ -1,8 +1,9 @@
 #include "calib/detect/cloud/internal/board_plane.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -106,7 +107,7 @@ Plane BoardPlane::FitAlongRays() const {
   };
   const auto z_of = [&](std::size_t i) { return near_.Signed(points_.points[i]); };
   const RowSums<3> sums(points_.row, noise_, j_of, z_of);
-  const Eigen::Vector3d lean = sums.h.ldlt().solve(sums.g);
+  const Eigen::Vector3d lean = SolveSymmetric(sums.h, sums.g);
   Plane plane;
   plane.normal = (near_.normal - lean.x() * frame_.u - lean.y() * frame_.v).normalized();
   plane.offset = plane.normal.dot(frame_.origin + lean.z() * near_.normal);

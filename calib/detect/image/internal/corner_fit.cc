@@ -1,9 +1,11 @@
 #include "calib/detect/image/internal/corner_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -128,7 +130,7 @@ Solution Solve(const std::vector<Pixel>& pixels, const Unknowns& start, Fixed fi
     Normal damped = s.at.normal;
     damped.diagonal() *= 1 + damping;
     damped.diagonal().array() += 1e-12;
-    const Unknowns step = damped.ldlt().solve(s.at.right);
+    const Unknowns step = SolveSymmetric(damped, s.at.right);
     Unknowns next = s.unknowns + step;
     next[4] = std::clamp(next[4], kLeastBlur, 0.5 * spacing);
     const Equations there = EquationsAt(pixels, next, fixed);
@@ -157,8 +159,10 @@ Unknowns Start(const std::vector<Pixel>& pixels, const Eigen::Matrix2d& steps, d
   Fixed all = fixed;
   all.shape = all.cubic = false;
   const Equations at = EquationsAt(pixels, u, all);
-  u.tail<kLinear>() =
-      at.normal.bottomRightCorner<kLinear, kLinear>().ldlt().solve(at.right.tail<kLinear>());
+  const Eigen::Matrix<double, kLinear, kLinear> normal =
+      at.normal.bottomRightCorner<kLinear, kLinear>();
+  const Eigen::Matrix<double, kLinear, 1> right = at.right.tail<kLinear>();
+  u.tail<kLinear>() = SolveSymmetric(normal, right);
   return u;
 }
 
@@ -197,9 +201,9 @@ std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& p
   const double variance = s.at.squares / spare;
   if (!(variance < fit.contrast * fit.contrast)) return std::nullopt;  // not much of a corner
   fit.residual = std::sqrt(variance) / std::abs(fit.contrast);
-  const Normal inverse = s.at.normal.ldlt().solve(Normal::Identity());
+  const Normal inverse = InverseOfSymmetric(s.at.normal);
   const Eigen::Matrix2d covariance = variance * inverse.topLeftCorner<2, 2>();
-  fit.sigma_px = std::sqrt(std::max(0.0, covariance.eigenvalues().real().maxCoeff()));
+  fit.sigma_px = std::sqrt(std::max(0.0, EigensystemOf(covariance).values[1]));
   return std::isfinite(fit.sigma_px) ? std::optional(fit) : std::nullopt;
 }
 

@@ -1,8 +1,10 @@
 #include "calib/detect/image/internal/grid_model.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <opencv2/calib3d.hpp>
 #include <vector>
+
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -81,7 +83,7 @@ std::optional<GridModel> GridModel::Fit(const CornerGrid& grid, double tolerance
       normal += t * t.transpose();
       right += t * (Eigen::Vector2d(to[i].x, to[i].y) - flat).transpose();
     }
-    model.bend_ = normal.ldlt().solve(right);
+    model.bend_ = SolveSymmetric(normal, right);
     // Outliers leave step by step: the first fit is drawn towards them.
     const double allowed = round == 0 ? 3 * tolerance : round == 1 ? 1.5 * tolerance : tolerance;
     CornerGrid next;

@@ -1,6 +1,5 @@
 #include "calib/detect/image/internal/picked_board.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "calib/detect/image/internal/grid_model.h"
 #include "calib/detect/image/internal/pattern_ends.h"
 #include "calib/detect/image/internal/pick_alignment.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -163,8 +163,7 @@ bool Enough(const Target& target, const Pixels& corners) {
     const Eigen::Vector2d off = points[i].head<2>() - middle;
     if (IsSeen(corners[i])) scatter += off * off.transpose() / count;
   }
-  const double spread = std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()[0]));
+  const double spread = std::sqrt(std::max(0.0, EigensystemOf(scatter).values[0]));
   return spread > kLeastSpread * target.square_m;
 }
 

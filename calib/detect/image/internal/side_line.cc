@@ -1,10 +1,10 @@
 #include "calib/detect/image/internal/side_line.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -120,7 +120,8 @@ Eigen::Matrix2d Information(const std::vector<Sample>& samples) {
 Eigen::Vector2d Solve(const std::vector<Sample>& samples) {
   Eigen::Vector2d r = Eigen::Vector2d::Zero();
   for (const Sample& s : samples) r += s.weight * s.offset * s.base;
-  return (Information(samples) + 1e-9 * Eigen::Matrix2d::Identity()).ldlt().solve(r);
+  const Eigen::Matrix2d h = Information(samples) + 1e-9 * Eigen::Matrix2d::Identity();
+  return SolveSymmetric(h, r);
 }
 
 // H^-1 M H^-1 with H of the robust loss's second derivatives and M the sum of products of
