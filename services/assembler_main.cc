@@ -1,18 +1,16 @@
-#include <CLI/CLI.hpp>
-
-#include "calib/model/version.h"
+#include "services/command_line/command_line.h"
 #include "services/nodes/assembler_node.h"
 #include "services/runtime/process.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  rgbdt::CommandLine line(
+      "rgbdt-assembler",
       "LINE_SCAN and ENCODER to CLOUD: a turned 2D scanner's lines become 3D.\nExample: "
-      "rgbdt-assembler --lcm-url 'udpm://239.255.76.67:7667?ttl=0'",
-      "rgbdt-assembler"};
+      "rgbdt-assembler --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
   std::string url;
-  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
-  app.set_version_flag("--version", rgbdt::Version());
-  CLI11_PARSE(app, argc, argv);
-  rgbdt::AssemblerNode node;
-  return rgbdt::RunOnLcm(node, url);
+  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  return line.Run(argc, argv, [&] {
+    rgbdt::AssemblerNode node;
+    return rgbdt::RunOnLcm(node, url);
+  });
 }

@@ -1,11 +1,10 @@
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
-#include "calib/model/version.h"
+#include "services/command_line/command_line.h"
 #include "services/nodes/session_node.h"
 #include "services/runtime/process.h"
 #include "services/session_terminal.h"
@@ -55,27 +54,20 @@ int Run(const Flags& flags) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  rgbdt::CommandLine line(
+      "rgbdt-session",
       "Runs a calibration session on the bus and writes the session directory: by a script, or,\n"
       "without one, as you ask in the viewer's page (rgbdt-viewer).\n"
       "Example: rgbdt-session scripts/sessions/demo.session.textproto --rig out/rig.textproto "
       "--out out/session\n"
-      "         rgbdt-session --rig out/rig.textproto --out out/session",
-      "rgbdt-session"};
+      "         rgbdt-session --rig out/rig.textproto --out out/session");
   Flags flags;
-  app.add_option("FILE", flags.script, "session.textproto; without it the viewer's page leads");
-  app.add_option("--rig", flags.rig, "rig.textproto; default: the one that the script names");
-  app.add_option("--out", flags.out, "session directory to write")->capture_default_str();
-  app.add_flag("--by-hand", flags.by_hand,
-               "you carry the board: asks for each pose and waits for Enter, or for the button in "
-               "the viewer, however long");
-  app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
-  app.set_version_flag("--version", rgbdt::Version());
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return Run(flags);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "rgbdt-session: %s\n", e.what());
-    return 1;
-  }
+  line.Option("FILE", &flags.script, "session.textproto; without it the viewer's page leads");
+  line.Option("--rig", &flags.rig, "rig.textproto; default: the one that the script names");
+  line.Option("--out", &flags.out, "session directory to write");
+  line.Flag("--by-hand", &flags.by_hand,
+            "you carry the board: asks for each pose and waits for Enter, or for the button in "
+            "the viewer, however long");
+  line.Option("--lcm-url", &flags.url, "the bus; default: LCM_DEFAULT_URL");
+  return line.Run(argc, argv, [&] { return Run(flags); });
 }

@@ -1,7 +1,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -12,11 +11,11 @@
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
-#include "calib/model/version.h"
 #include "calib/present/frames/page.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/session/session_frames.h"
 #include "services/bus/bus.h"
+#include "services/command_line/command_line.h"
 #include "services/drivers/net/network_interfaces.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/process.h"
@@ -227,35 +226,28 @@ void CheckFlags(const Flags& flags, bool run) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  rgbdt::CommandLine line(
+      "rgbdt-viewer",
       "Shows the rig, the session and the fused cloud in a browser, live from the bus or of a\n"
       "finished session. Prints the address to open.\n"
       "Example: rgbdt-viewer\n"
       "         rgbdt-viewer --session out/demo/session\n"
       "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too\n"
-      "         rgbdt-viewer --run COMMAND ARGUMENT...",
-      "rgbdt-viewer"};
+      "         rgbdt-viewer --run COMMAND ARGUMENT...");
   Flags flags;
-  app.add_option("--listen", flags.listen,
-                 "address and port; beyond loopback, commands need the token that the printed\n"
-                 "address has")
-      ->capture_default_str();
-  app.add_option("--lcm-url", flags.url, "the bus; default: LCM_DEFAULT_URL");
-  app.add_option("--session", flags.session, "a session directory, in place of the bus");
+  line.Option("--listen", &flags.listen,
+              "address and port; beyond loopback, commands need the token that the printed\n"
+              "address has");
+  line.Option("--lcm-url", &flags.url, "the bus; default: LCM_DEFAULT_URL");
+  line.Option("--session", &flags.session, "a session directory, in place of the bus");
   bool run = false;
-  app.add_flag("--run", run,
-               "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
-               "into a network namespace and starts rgbdt-viewer there");
-  app.prefix_command();
-  app.set_version_flag("--version", rgbdt::Version());
-  CLI11_PARSE(app, argc, argv);
-  flags.run = app.remaining();
-  try {
+  line.Flag("--run", &run,
+            "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"
+            "into a network namespace and starts rgbdt-viewer there");
+  line.Rest(&flags.run);
+  return line.Run(argc, argv, [&] {
     CheckFlags(flags, run);
     if (!flags.run.empty()) return RunWithSocket(flags);
     return flags.session.empty() ? ShowBus(flags) : ShowSession(flags);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "rgbdt-viewer: %s\n", e.what());
-    return 1;
-  }
+  });
 }

@@ -13,6 +13,7 @@ namespace {
 struct Flags {
   std::string dir, out, truth;
   CalibrateOptions options;
+  bool separate = false;
 };
 
 int Run(const Flags& flags) {
@@ -33,27 +34,29 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddCalibrate(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddCalibrate(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "calibrate",
       "Finds each camera's pose relative to the LIDAR from a session directory.\n"
       "Writes calibration.textproto, report.json and report.html. Exit code 1: a camera did not\n"
       "converge, or a view could not be read.\n"
-      "Example: rgbdt calibrate out/demo/session --out out/again");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
-  verb->add_option("--out", flags->out, "where to write; default: DIR");
-  verb->add_option("--method", flags->options.method, kMethodHelp)->capture_default_str();
-  verb->add_flag("--range-offset", flags->options.first_guess.range_offset,
-                 "auto: also estimate a constant offset of the LIDAR's ranges");
-  verb->add_flag_callback(
-      "--separate", [flags] { flags->options.joint = false; },
-      "auto: solve each camera by itself, not all in one problem");
-  verb->add_flag("--smooth-field", flags->options.smooth_field,
-                 "paper: extend the distance field beyond the images' borders, so that points\n"
-                 "outside are drawn back; otherwise half of them must lie inside");
-  verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt calibrate out/demo/session --out out/again",
+      [flags] {
+        flags->options.joint = !flags->separate;
+        return Run(*flags);
+      });
+  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
+  verb->Option("--out", &flags->out, "where to write; default: DIR");
+  verb->Option("--method", &flags->options.method, kMethodHelp);
+  verb->Flag("--range-offset", &flags->options.first_guess.range_offset,
+             "auto: also estimate a constant offset of the LIDAR's ranges");
+  verb->Flag("--separate", &flags->separate,
+             "auto: solve each camera by itself, not all in one problem");
+  verb->Flag("--smooth-field", &flags->options.smooth_field,
+             "paper: extend the distance field beyond the images' borders, so that points\n"
+             "outside are drawn back; otherwise half of them must lie inside");
+  verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
 }
 
 }  // namespace rgbdt

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -77,17 +76,17 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddDoctor(CLI::App* app, int* exit_code) {
-  CLI::App* verb =
-      app->add_subcommand("doctor",
-                          "Looks for what would go wrong with the live system, on this machine\n"
-                          "and with a rig's devices, and names the command that mends it.\n"
-                          "Exit code 1 where there is a problem.\n"
-                          "Example: rgbdt doctor --rig rig.textproto");
+void AddDoctor(CommandLine* program) {
   auto flags = std::make_shared<Flags>();
-  verb->add_option("--rig", flags->rig, "rig.textproto; default: only the machine is looked at");
-  verb->add_option("--lcm-url", flags->url, "the bus; default: LCM_DEFAULT_URL");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+  CommandLine* verb =
+      program->Verb("doctor",
+                    "Looks for what would go wrong with the live system, on this machine\n"
+                    "and with a rig's devices, and names the command that mends it.\n"
+                    "Exit code 1 where there is a problem.\n"
+                    "Example: rgbdt doctor --rig rig.textproto",
+                    [flags] { return Run(*flags); });
+  verb->Option("--rig", &flags->rig, "rig.textproto; default: only the machine is looked at");
+  verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
 }
 
 }  // namespace rgbdt

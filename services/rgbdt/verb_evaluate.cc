@@ -77,18 +77,18 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddEvaluate(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddEvaluate(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "evaluate",
       "Judges a calibration on a session's views, used and held out, and against the truth of a\n"
       "simulated session. Writes report.json and report.html.\n"
-      "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory")->required();
-  verb->add_option("--calibration", flags->calibration, "default: DIR/calibration.textproto");
-  verb->add_option("--out", flags->out, "where to write; default: DIR");
-  verb->add_option("--truth", flags->truth, "truth.textproto; default: DIR's, where there is one");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto",
+      [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->dir, "session directory");
+  verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
+  verb->Option("--out", &flags->out, "where to write; default: DIR");
+  verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
 }
 
 }  // namespace rgbdt

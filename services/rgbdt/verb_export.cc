@@ -25,17 +25,17 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddExport(CLI::App* app, int* exit_code) {
-  CLI::App* verb =
-      app->add_subcommand("export",
-                          "Writes a calibration for other tools: OpenCV YAML, a ROS static\n"
-                          "transform, Kalibr's camchain. Each file says which way it goes.\n"
-                          "Example: rgbdt export out/demo/session");
+void AddExport(CommandLine* program) {
   auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory")->required();
-  verb->add_option("--calibration", flags->calibration, "default: DIR/calibration.textproto");
-  verb->add_option("--out", flags->out, "where to write; default: DIR/export");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+  CommandLine* verb =
+      program->Verb("export",
+                    "Writes a calibration for other tools: OpenCV YAML, a ROS static\n"
+                    "transform, Kalibr's camchain. Each file says which way it goes.\n"
+                    "Example: rgbdt export out/demo/session",
+                    [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->dir, "session directory");
+  verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
+  verb->Option("--out", &flags->out, "where to write; default: DIR/export");
 }
 
 }  // namespace rgbdt

@@ -61,22 +61,22 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddFuse(CLI::App* app, int* exit_code) {
-  CLI::App* verb =
-      app->add_subcommand("fuse",
-                          "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
-                          "colour, temperature\n"
-                          "[K], which cameras saw it. Writes fused.ply and fused.pcd.\n"
-                          "Example: rgbdt fuse out/demo/session --view 0003 --png");
+void AddFuse(CommandLine* program) {
   auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory")->required();
-  verb->add_option("--view", flags->view, "which view; default: the last");
-  verb->add_option("--calibration", flags->calibration, "default: DIR/calibration.textproto");
-  verb->add_option("--out", flags->out, "where to write; default: DIR");
-  verb->add_flag("--png", flags->png,
-                 "also draw the cloud: fused_rgb.png, fused_thermal.png,\n"
-                 "and both in one, fused.png");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+  CommandLine* verb =
+      program->Verb("fuse",
+                    "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
+                    "colour, temperature\n"
+                    "[K], which cameras saw it. Writes fused.ply and fused.pcd.\n"
+                    "Example: rgbdt fuse out/demo/session --view 0003 --png",
+                    [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->dir, "session directory");
+  verb->Option("--view", &flags->view, "which view; default: the last");
+  verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
+  verb->Option("--out", &flags->out, "where to write; default: DIR");
+  verb->Flag("--png", &flags->png,
+             "also draw the cloud: fused_rgb.png, fused_thermal.png,\n"
+             "and both in one, fused.png");
 }
 
 }  // namespace rgbdt

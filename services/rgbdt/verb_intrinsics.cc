@@ -106,26 +106,24 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddIntrinsics(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddIntrinsics(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "intrinsics",
       "Finds the cameras' lenses from the checkerboard in a session's images; clouds are not\n"
       "needed, and the rig file may lack the lenses. 20 views or more, tilted by 30 to 45 "
       "degrees,\n"
       "in every part of the image. Writes the rig with the lenses, and intrinsics.html beside it.\n"
       "Exit code 1: a camera did not converge, or a view could not be read.\n"
-      "Example: rgbdt intrinsics out/lenses --camera rgb --model pinhole5");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory (rig.textproto, views/)")->required();
-  verb->add_option("--camera", flags->cameras, "only this one; may be given again")
-      ->allow_extra_args(false);
-  verb->add_option("--model", flags->choice,
-                   "pinhole5, pinhole8 or fisheye; default: the rig file's, else pinhole5")
-      ->transform(CLI::CheckedTransformer(kChoices));
-  verb->add_option("--out", flags->out,
-                   "the rig file to write; default: DIR/rig.intrinsics.textproto, so that the rig\n"
-                   "file in use is not replaced");
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt intrinsics out/lenses --camera rgb --model pinhole5",
+      [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
+  verb->Option("--camera", &flags->cameras, "only this one; may be given again");
+  verb->Choice("--model", &flags->choice, kChoices,
+               "pinhole5, pinhole8 or fisheye; default: the rig file's, else pinhole5");
+  verb->Option("--out", &flags->out,
+               "the rig file to write; default: DIR/rig.intrinsics.textproto, so that the rig\n"
+               "file in use is not replaced");
 }
 
 }  // namespace rgbdt

@@ -75,21 +75,19 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddMap(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddMap(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "map",
       "Fused clouds of a log (RGBDT_CLOUD) to a map of voxels, in the pose stream's frame: mean\n"
       "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live.\n"
-      "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();
-  verb->add_option("--out", flags->out, "the map, a PLY file")->capture_default_str();
-  verb->add_option("--voxel", flags->options.voxel_m, "edge of a voxel [m]")->capture_default_str();
-  verb->add_option(
-          "--max-voxels", flags->options.max_voxels,
-          "most voxels kept (80 bytes each); then those not seen for the longest are dropped")
-      ->capture_default_str();
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply",
+      [flags] { return Run(*flags); });
+  verb->Required("LOG", &flags->log, "log written by lcm-logger");
+  verb->Option("--out", &flags->out, "the map, a PLY file");
+  verb->Option("--voxel", &flags->options.voxel_m, "edge of a voxel [m]");
+  verb->Option("--max-voxels", &flags->options.max_voxels,
+               "most voxels kept (80 bytes each); then those not seen for the longest are dropped");
 }
 
 }  // namespace rgbdt

@@ -84,18 +84,18 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddReplay(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddReplay(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "replay",
       "Runs the nodes of the live processes on a log of lcm-logger, in one process, in order, as\n"
       "fast as it goes. The same log gives the same bytes. A log without a session is fused\n"
       "by the CALIBRATION in it.\n"
-      "Example: rgbdt replay out/demo/session.lcm --out out/replay");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("LOG", flags->log, "log written by lcm-logger")->required();
-  verb->add_option("--out", flags->out, "where to write")->capture_default_str();
-  verb->add_option("--method", flags->method, kMethodHelp)->capture_default_str();
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt replay out/demo/session.lcm --out out/replay",
+      [flags] { return Run(*flags); });
+  verb->Required("LOG", &flags->log, "log written by lcm-logger");
+  verb->Option("--out", &flags->out, "where to write");
+  verb->Option("--method", &flags->method, kMethodHelp);
 }
 
 }  // namespace rgbdt

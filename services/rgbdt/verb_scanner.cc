@@ -67,8 +67,9 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddScanner(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddScanner(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "scanner",
       "Finds where the turned scanner sits on its motor (lever arm and tilt) from any room at "
       "rest:\n"
@@ -77,14 +78,12 @@ void AddScanner(CLI::App* app, int* exit_code) {
       "what the sweep cannot determine. Writes the rig with the geometry, and scanner.png beside "
       "it.\n"
       "Exit code 1: not converged, nothing was written.\n"
-      "Example: rgbdt scanner out/room");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->input,
-                   "session directory (rig.textproto, views/ with organised clouds made with it; "
-                   "images are not needed), or a log with RIG, LINE_SCAN and ENCODER")
-      ->required();
-  verb->add_option("--out", flags->out, "the rig file to write")->capture_default_str();
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Example: rgbdt scanner out/room",
+      [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->input,
+                 "session directory (rig.textproto, views/ with organised clouds made with it; "
+                 "images are not needed), or a log with RIG, LINE_SCAN and ENCODER");
+  verb->Option("--out", &flags->out, "the rig file to write");
 }
 
 }  // namespace rgbdt

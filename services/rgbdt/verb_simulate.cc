@@ -85,28 +85,25 @@ int Run(const Flags& flags) {
 
 }  // namespace
 
-void AddSimulate(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddSimulate(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "simulate",
       "Writes a session directory of the synthetic rig, with its truth beside (truth.textproto).\n"
-      "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("DIR", flags->dir, "session directory to write")->required();
-  verb->add_option("--views", flags->views, "number of views")->capture_default_str();
-  verb->add_option("--seed", flags->options.seed, "of all random numbers")->capture_default_str();
-  verb->add_option("--scene", flags->options.scene, "outdoor, indoor or night")
-      ->transform(CLI::CheckedTransformer(simulate::kSceneNames));
-  verb->add_option("--lidar", flags->rings, "turned, vlp16, 32, 64 or 128: scanner or rings")
-      ->transform(CLI::CheckedTransformer(simulate::kLidarRings));
-  verb->add_flag(
-      "--full-turn", flags->full_turn,
-      "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
-  verb->add_flag("--scanner-error", flags->scanner_error,
-                 "the rig file's motor_from_scanner is wrong by 5 mm and 0.5 degrees on each axis, "
-                 "and the clouds are made with it");
-  verb->add_option("--picked", flags->picked, "cameras whose corners a person picks")
-      ->capture_default_str();
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
+      "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night",
+      [flags] { return Run(*flags); });
+  verb->Required("DIR", &flags->dir, "session directory to write");
+  verb->Option("--views", &flags->views, "number of views");
+  verb->Option("--seed", &flags->options.seed, "of all random numbers");
+  verb->Choice("--scene", &flags->options.scene, simulate::kSceneNames, "outdoor, indoor or night");
+  verb->Choice("--lidar", &flags->rings, simulate::kLidarRings,
+               "turned, vlp16, 32, 64 or 128: scanner or rings");
+  verb->Flag("--full-turn", &flags->full_turn,
+             "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
+  verb->Flag("--scanner-error", &flags->scanner_error,
+             "the rig file's motor_from_scanner is wrong by 5 mm and 0.5 degrees on each axis, "
+             "and the clouds are made with it");
+  verb->Option("--picked", &flags->picked, "cameras whose corners a person picks");
 }
 
 }  // namespace rgbdt

@@ -68,46 +68,38 @@ int Run(Flags flags) {
   return 0;
 }
 
-void AddLimits(Flags* flags, CLI::App* verb) {
+void AddLimits(Flags* flags, CommandLine* verb) {
   TerrainOptions& options = flags->options;
-  verb->add_option("--cell", options.cell_m, "edge of a cell [m]")->capture_default_str();
-  verb->add_option("--max-slope", flags->max_slope_deg,
-                   "steepest slope that the vehicle climbs [degrees]")
-      ->capture_default_str();
-  verb->add_option("--max-step", options.max_step_m, "highest step that it crosses [m]")
-      ->capture_default_str();
-  verb->add_option("--max-roughness", options.max_roughness_m,
-                   "highest RMS roughness that it crosses [m]")
-      ->capture_default_str();
-  verb->add_option("--vehicle-width", options.vehicle_width_m, "narrowest gap that it passes [m]")
-      ->capture_default_str();
-  verb->add_option("--vehicle-height", options.vehicle_height_m,
-                   "lowest clearance that it passes under [m]")
-      ->capture_default_str();
-  verb->add_option("--site-radius", options.site_radius_m, "least radius of a landing site [m]")
-      ->capture_default_str();
-  verb->add_option("--site-slope", flags->site_max_slope_deg,
-                   "steepest slope of a landing site [degrees]")
-      ->capture_default_str();
-  verb->add_option("--headroom", options.site_headroom_m, "free height above a landing site [m]")
-      ->capture_default_str();
+  verb->Option("--cell", &options.cell_m, "edge of a cell [m]");
+  verb->Option("--max-slope", &flags->max_slope_deg,
+               "steepest slope that the vehicle climbs [degrees]");
+  verb->Option("--max-step", &options.max_step_m, "highest step that it crosses [m]");
+  verb->Option("--max-roughness", &options.max_roughness_m,
+               "highest RMS roughness that it crosses [m]");
+  verb->Option("--vehicle-width", &options.vehicle_width_m, "narrowest gap that it passes [m]");
+  verb->Option("--vehicle-height", &options.vehicle_height_m,
+               "lowest clearance that it passes under [m]");
+  verb->Option("--site-radius", &options.site_radius_m, "least radius of a landing site [m]");
+  verb->Option("--site-slope", &flags->site_max_slope_deg,
+               "steepest slope of a landing site [degrees]");
+  verb->Option("--headroom", &options.site_headroom_m, "free height above a landing site [m]");
 }
 
 }  // namespace
 
-void AddTerrain(CLI::App* app, int* exit_code) {
-  CLI::App* verb = app->add_subcommand(
+void AddTerrain(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
       "terrain",
       "Where can a vehicle drive, and where land? From a map (rgbdt map) or one fused cloud "
       "(rgbdt\n"
       "fuse), any PLY or PCD with z up: slope, roughness, step and temperature of each cell,\n"
       "landing sites ranked. Writes terrain.json and terrain.png.\n"
-      "Example: rgbdt terrain out/demo/fused.ply --out out/terrain --cell 0.2");
-  auto flags = std::make_shared<Flags>();
-  verb->add_option("INPUT", flags->input, "PLY or PCD file")->required();
-  verb->add_option("--out", flags->out, "where to write")->capture_default_str();
+      "Example: rgbdt terrain out/demo/fused.ply --out out/terrain --cell 0.2",
+      [flags] { return Run(*flags); });
+  verb->Required("INPUT", &flags->input, "PLY or PCD file");
+  verb->Option("--out", &flags->out, "where to write");
   AddLimits(flags.get(), verb);
-  verb->callback([flags, exit_code] { *exit_code = Run(*flags); });
 }
 
 }  // namespace rgbdt

@@ -1,25 +1,25 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 
+#include "services/command_line/command_line.h"
+
 namespace rgbdt {
 
-/// Each verb of the command line adds its options to `app` and, when chosen, runs and sets
-/// `*exit_code`. Bad input is thrown as InputError; main prints it.
-void AddCalibrate(CLI::App* app, int* exit_code);
-void AddEvaluate(CLI::App* app, int* exit_code);
-void AddFuse(CLI::App* app, int* exit_code);
-void AddSimulate(CLI::App* app, int* exit_code);
-void AddReplay(CLI::App* app, int* exit_code);
-void AddIntrinsics(CLI::App* app, int* exit_code);
-void AddScanner(CLI::App* app, int* exit_code);
-void AddMap(CLI::App* app, int* exit_code);
-void AddTerrain(CLI::App* app, int* exit_code);
-void AddExport(CLI::App* app, int* exit_code);
-void AddDoctor(CLI::App* app, int* exit_code);
+/// Each adds a verb to the program. Bad input is thrown as InputError; the command line prints it.
+void AddCalibrate(CommandLine* program);
+void AddEvaluate(CommandLine* program);
+void AddFuse(CommandLine* program);
+void AddSimulate(CommandLine* program);
+void AddReplay(CommandLine* program);
+void AddIntrinsics(CommandLine* program);
+void AddScanner(CommandLine* program);
+void AddMap(CommandLine* program);
+void AddTerrain(CommandLine* program);
+void AddExport(CommandLine* program);
+void AddDoctor(CommandLine* program);
 
 /// What the user gave, or else the default.
 inline std::filesystem::path PathOr(const std::string& given,

@@ -1,9 +1,7 @@
 // The paper's rig as hardware: a scanner that speaks SCIP, a motor that speaks Dynamixel, and the
 // frames that two cameras serve, all of one simulated scene in which the motor really turns the
 // scanner. Plays the person, too, who carries the board about. See --help.
-#include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
@@ -12,6 +10,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/simulate/simulator.h"
+#include "services/command_line/command_line.h"
 #include "services/runtime/process.h"
 #include "tests/hardware/dynamixel_peer.h"
 #include "tests/hardware/scip_peer.h"
@@ -182,33 +181,28 @@ class WorldNode : public Node {
 }  // namespace rgbdt
 
 int main(int argc, char** argv) {
-  CLI::App app{
+  rgbdt::CommandLine line(
+      "rig_world",
       "Hardware that is simulated down to its protocols: SCIP, Dynamixel, and frames for two\n"
       "fake_camera processes, <camera>.raw in --folder. Answers next_pose.\n"
-      "Example: rig_world --folder out/world --rig out/rig.textproto",
-      "rig_world"};
+      "Example: rig_world --folder out/world --rig out/rig.textproto");
   std::string url;
   std::string folder = ".";
   std::string rig_file;
   std::string truth_file;
   std::uint64_t seed = 1;
   rgbdt::simulate::Scene scene = rgbdt::simulate::Scene::kOutdoor;
-  app.add_option("--folder", folder, "where the frames go")->capture_default_str();
-  app.add_option("--rig", rig_file, "write the rig here, once its devices answer")->required();
-  app.add_option("--truth", truth_file, "keep the truth here; no process reads it");
-  app.add_option("--seed", seed, "of everything random")->capture_default_str();
-  app.add_option("--scene", scene, "outdoor, indoor or night")
-      ->transform(CLI::CheckedTransformer(rgbdt::simulate::kSceneNames));
-  app.add_option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  line.Option("--folder", &folder, "where the frames go");
+  line.Required("--rig", &rig_file, "write the rig here, once its devices answer");
+  line.Option("--truth", &truth_file, "keep the truth here; no process reads it");
+  line.Option("--seed", &seed, "of everything random");
+  line.Choice("--scene", &scene, rgbdt::simulate::kSceneNames, "outdoor, indoor or night");
+  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  return line.Run(argc, argv, [&] {
     rgbdt::World world(rgbdt::RigOptions(seed, scene), folder);
     world.ShowFrames(0);  // of the scene without the board
     rgbdt::WriteFileAtomically(rig_file, rgbdt::PrintRig(world.MakeRig()));
     rgbdt::WorldNode node(&world, truth_file);
     return rgbdt::RunOnLcm(node, url);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "rig_world: %s\n", e.what());
-    return 1;
-  }
+  });
 }

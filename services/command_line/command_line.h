@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace rgbdt {
+
+/// The options of a program, or of one of its verbs, with `--help` and `--version`. Behind it is
+/// CLI11, which is compiled here only: its header costs each source that uses it ten seconds.
+///
+/// An option is named "--name", or "NAME" where its value stands for itself. What its variable
+/// holds before is the default, which `--help` shows unless it is empty. Variables outlive Run.
+class CommandLine {
+ public:
+  using Value =
+      std::variant<std::string*, double*, int*, std::uint64_t*, std::vector<std::string>*>;
+
+  CommandLine(const std::string& program, const std::string& description);
+  ~CommandLine();
+
+  /// A vector takes one value each time that its option is given.
+  void Option(const std::string& name, Value value, const std::string& help);
+  void Required(const std::string& name, Value value, const std::string& help);
+  /// From `least` to `most`.
+  void Within(const std::string& name, double* value, double least, double most,
+              const std::string& help);
+  /// Given or not, without a value.
+  void Flag(const std::string& name, bool* value, const std::string& help);
+  /// One of `choices`, by name.
+  template <typename T, typename Variable>
+  void Choice(const std::string& name, Variable* value, const std::map<std::string, T>& choices,
+              const std::string& help) {
+    std::vector<std::string> names;
+    for (const auto& choice : choices) names.push_back(choice.first);
+    ChoiceOf(name, names, help, [=](const std::string& chosen) { *value = choices.at(chosen); });
+  }
+  /// All from the first word on that is no option.
+  void Rest(std::vector<std::string>* words);
+
+  /// What `program NAME ...` does: `run` gives the exit code. Its options are added to what
+  /// returns.
+  CommandLine* Verb(const std::string& name, const std::string& description,
+                    std::function<int()> run);
+
+  /// Reads what the user gave, then calls `run`; returns the exit code. What is wrong with the
+  /// options, or is thrown by `run`, goes to stderr.
+  int Run(int argc, char** argv, const std::function<int()>& run);
+  /// The same for a program of verbs.
+  int Run(int argc, char** argv);
+
+ private:
+  explicit CommandLine(CLI::App* verb);
+  CLI::Option* Add(const std::string& name, Value value, const std::string& help);
+  void ChoiceOf(const std::string& name, const std::vector<std::string>& names,
+                const std::string& help, const std::function<void(const std::string&)>& choose);
+
+  std::unique_ptr<CLI::App> program_;  // none: this is a verb, which its program owns
+  CLI::App* app_;
+  std::vector<std::unique_ptr<CommandLine>> verbs_;
+  std::function<int()> chosen_;
+};
+
+}  // namespace rgbdt
