@@ -15,6 +15,11 @@ CLI::Option* AddValue(CLI::App* app, const std::string& name, std::vector<std::s
   return app->add_option(name, *value, help)->allow_extra_args(false);
 }
 
+CLI::Option* AddValue(CLI::App* app, const std::string& name, std::uint64_t* value,
+                      const std::string& help) {  // CLI11 would take -1 for a large number
+  return app->add_option(name, *value, help)->check(CLI::NonNegativeNumber);
+}
+
 template <typename T>
 CLI::Option* AddValue(CLI::App* app, const std::string& name, T* value, const std::string& help) {
   return app->add_option(name, *value, help);
