@@ -297,7 +297,7 @@ IntrinsicsResult CalibrateIntrinsics(const IntrinsicsInput& input,
   result.coverage = CoverageOf(input, options, bundle);
   const std::string why = WhyNotConverged(result, options, solver);
   result.converged = why.empty();
-  result.status = result.converged ? "converged" : why;
+  result.detail = why;
   return result;
 }
 

@@ -1,23 +1,13 @@
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <Eigen/Core>
 
-#include "calib/camera/lens.h"
+#include "calib/model/rig.h"
 
 namespace rgbdt {
 
 /// Derivative of a point's pixel by the point [px/m], camera axes, through the whole lens; the
 /// point must be one that Camera::Project sees.
-inline Eigen::Matrix<double, 2, 3> PixelByPoint(const Lens& lens, const Eigen::Vector3d& point) {
-  using Jet = ceres::Jet<double, 3>;
-  Jet u;
-  Jet v;
-  ProjectUnchecked(lens, Jet(point.x(), 0), Jet(point.y(), 1), Jet(point.z(), 2), &u, &v);
-  Eigen::Matrix<double, 2, 3> out;
-  out << u.v.transpose(), v.v.transpose();
-  return out;
-}
+Eigen::Matrix<double, 2, 3> PixelByPoint(const Lens& lens, const Eigen::Vector3d& point);
 
 }  // namespace rgbdt

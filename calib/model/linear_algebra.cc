@@ -6,27 +6,47 @@
 
 namespace rgbdt {
 
-template <int N, int M>
-Eigen::Matrix<double, N, M> SolveSymmetric(const Eigen::Matrix<double, N, N>& a,
-                                           const Eigen::Matrix<double, N, M>& b) {
+template <>
+Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.ldlt().solve(b);
 }
 
-template <int N>
-Eigen::Matrix<double, N, N> InverseOfSymmetric(const Eigen::Matrix<double, N, N>& a) {
-  return a.ldlt().solve(Eigen::Matrix<double, N, N>::Identity(a.rows(), a.rows()));
+template <>
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.ldlt().solve(b);
 }
 
-template <int N>
-std::optional<Eigen::Matrix<double, N, N>> InverseOfPositive(const Eigen::Matrix<double, N, N>& a) {
-  const Eigen::LDLT<Eigen::Matrix<double, N, N>> ldlt(a);
+template <>
+Eigen::Vector3d SolveSymmetric(const Eigen::Matrix3d& a, const Eigen::Vector3d& b) {
+  return a.ldlt().solve(b);
+}
+
+template <>
+Vector6d SolveSymmetric(const Matrix6d& a, const Vector6d& b) {
+  return a.ldlt().solve(b);
+}
+
+template <>
+Vector7d SolveSymmetric(const Matrix7d& a, const Vector7d& b) {
+  return a.ldlt().solve(b);
+}
+
+std::optional<Eigen::MatrixXd> InverseOfPositive(const Eigen::MatrixXd& a) {
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(a);
   if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0)) return std::nullopt;
-  return ldlt.solve(Eigen::Matrix<double, N, N>::Identity(a.rows(), a.rows()));
+  return Eigen::MatrixXd(
+      ldlt.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(a.rows(), a.rows()))));
 }
 
-template <int N>
-Eigensystem<N> EigensystemOf(const Eigen::Matrix<double, N, N>& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(symmetric);
+template <>
+Eigensystem<3> EigensystemOf(const Eigen::Matrix3d& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+template <>
+Eigensystem<Eigen::Dynamic> EigensystemOf(const Eigen::MatrixXd& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
@@ -34,46 +54,5 @@ Eigen::Matrix3d NearestOrthogonal(const Eigen::Matrix3d& a) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();
 }
-
-#define RGBDT_SOLVE(N, M)                                                                 \
-  template Eigen::Matrix<double, N, M> SolveSymmetric(const Eigen::Matrix<double, N, N>&, \
-                                                      const Eigen::Matrix<double, N, M>&);
-#define RGBDT_INVERSE(N) \
-  template Eigen::Matrix<double, N, N> InverseOfSymmetric(const Eigen::Matrix<double, N, N>&);
-#define RGBDT_POSITIVE(N)                                                \
-  template std::optional<Eigen::Matrix<double, N, N>> InverseOfPositive( \
-      const Eigen::Matrix<double, N, N>&);
-#define RGBDT_EIGENSYSTEM(N) \
-  template Eigensystem<N> EigensystemOf(const Eigen::Matrix<double, N, N>&);
-
-RGBDT_SOLVE(2, 1)
-RGBDT_SOLVE(3, 1)
-RGBDT_SOLVE(3, 7)
-RGBDT_SOLVE(6, 1)
-RGBDT_SOLVE(6, 6)
-RGBDT_SOLVE(7, 1)
-RGBDT_SOLVE(10, 1)
-RGBDT_SOLVE(10, 2)
-RGBDT_SOLVE(10, Eigen::Dynamic)
-RGBDT_SOLVE(11, 1)
-RGBDT_SOLVE(16, 1)
-RGBDT_SOLVE(Eigen::Dynamic, 1)
-RGBDT_SOLVE(Eigen::Dynamic, Eigen::Dynamic)
-
-RGBDT_INVERSE(6)
-RGBDT_INVERSE(7)
-RGBDT_INVERSE(10)
-RGBDT_INVERSE(11)
-RGBDT_INVERSE(16)
-RGBDT_INVERSE(Eigen::Dynamic)
-
-RGBDT_POSITIVE(2)
-RGBDT_POSITIVE(6)
-
-RGBDT_EIGENSYSTEM(2)
-RGBDT_EIGENSYSTEM(3)
-RGBDT_EIGENSYSTEM(6)
-RGBDT_EIGENSYSTEM(7)
-RGBDT_EIGENSYSTEM(9)
 
 }  // namespace rgbdt

@@ -174,10 +174,10 @@ Matrix7d Solver::Covariance() const {
   }
   const Matrix7d scaled = prior_.asDiagonal() * information * prior_.asDiagonal();
   const Eigensystem<7> axes = EigensystemOf(scaled);
-  const Matrix7d told =
+  const Matrix7d observed =
       axes.vectors * axes.values.cwiseMax(0).asDiagonal() * axes.vectors.transpose();
   const Vector7d back = prior_.cwiseInverse();
-  const Matrix7d kept = back.asDiagonal() * told * back.asDiagonal();
+  const Matrix7d kept = back.asDiagonal() * observed * back.asDiagonal();
   return CovarianceOf(kept / (NoiseScale() * MisfitScale()), prior_);
 }
 
@@ -229,8 +229,8 @@ void Solver::FillSurfaces(ScannerGeometry* result) {
   result->gap_after_m = Rms(result->surfaces, &DoubleSurface::gap_after_m);
 }
 
-std::string StatusOf(const ScannerGeometry& result, bool converged,
-                     const ScannerGeometryOptions& options) {
+std::string WhyNot(const ScannerGeometry& result, bool converged,
+                   const ScannerGeometryOptions& options) {
   const auto patches = static_cast<int>(result.surfaces.size());
   if (patches < options.min_patches) {
     return "not enough surfaces seen by both halves of the scan line: " + std::to_string(patches) +
@@ -241,7 +241,7 @@ std::string StatusOf(const ScannerGeometry& result, bool converged,
   const bool any = std::any_of(result.directions.begin(), result.directions.end(),
                                [](const ScannerDirection& d) { return d.observed; });
   if (!any) return "the surfaces seen by both halves of the scan line tell nothing of the geometry";
-  return converged ? "converged" : "the last steps were no small ones: do not use it";
+  return converged ? "" : "the last steps were no small ones: do not use it";
 }
 
 void Solver::Fill(ScannerGeometry* result) {
@@ -253,8 +253,8 @@ void Solver::Fill(ScannerGeometry* result) {
   change << Log(estimate_ * guess_.Inverse()), 0;
   FillSurfaces(result);
   result->directions = DirectionsOf(result->covariance, change, options_, result->seen_twice);
-  result->status = StatusOf(*result, converged_, options_);
-  result->converged = result->status == "converged";
+  result->detail = WhyNot(*result, converged_, options_);
+  result->converged = result->detail.empty();
   if (result->converged) result->scanner.motor_from_scanner = estimate_;
 }
 
@@ -289,7 +289,7 @@ std::string ScannerGeometry::BriefReport() const {
       "distance between the halves, RMS: %.2f mm before, %.2f mm after\n"
       "change of motor_from_scanner (to its left: about and along the motor's axes), and "
       "sigma:\n",
-      converged ? "converged" : ("NOT CONVERGED: " + status).c_str(), surfaces.size(), beams,
+      converged ? "converged" : ("NOT CONVERGED: " + detail).c_str(), surfaces.size(), beams,
       100 * seen_twice, 1000 * range_sigma_m, 1000 * gap_before_m, 1000 * gap_after_m);
   std::string why;
   for (const ScannerDirection& direction : directions) {

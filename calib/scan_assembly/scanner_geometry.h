@@ -53,7 +53,7 @@ struct ScannerGeometry {
   double gap_before_m = 0, gap_after_m = 0;  ///< RMS over the surfaces
   double range_sigma_m = 0;                  ///< noise of a range, as found
   bool converged = false;
-  std::string status;  ///< "converged", or what is wrong and what to do
+  std::string detail;  ///< where it is not: what is wrong and what to do
 
   /// For a person; several lines.
   std::string BriefReport() const;

@@ -152,12 +152,13 @@ double PhaseOf(const std::vector<Angles>& row, double step) {
 }  // namespace
 
 RangeGrid::RangeGrid(const Cloud& cloud) : cloud_(&cloud) {
-  bool told = cloud.organised && cloud.lines > 1 && cloud.beams > 1;
-  if (told && cloud.directions.size() != cloud.size()) {  // full of hits it needs no directions
-    told = std::all_of(cloud.points.begin(), cloud.points.end(),
-                       [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  bool lines_known = cloud.organised && cloud.lines > 1 && cloud.beams > 1;
+  if (lines_known &&
+      cloud.directions.size() != cloud.size()) {  // full of hits it needs no directions
+    lines_known = std::all_of(cloud.points.begin(), cloud.points.end(),
+                              [](const Eigen::Vector3f& p) { return p.allFinite(); });
   }
-  if (told) {
+  if (lines_known) {
     TakeAsItIs();
   } else {
     Rebuild();

@@ -7,15 +7,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/rigid3.h"
 #include "calib/scan_assembly/turned_beams.h"
 
 namespace rgbdt {
 
-/// (rx, ry, rz [rad], tx, ty, tz [m], zero [rad]): motor_from_scanner = Exp(first six) * estimate,
-/// about and along the motor's axes, and the motor's true angle less the estimated one.
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
+// A change of the geometry is a Vector7d, (rx, ry, rz [rad], tx, ty, tz [m], zero [rad]):
+// motor_from_scanner = Exp(first six) * estimate, about and along the motor's axes, and the motor's
+// true angle less the estimated one.
 
 /// The beams of all sweeps, and where they start and point under the geometry at hand.
 class PlacedBeams {

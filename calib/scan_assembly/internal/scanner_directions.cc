@@ -55,13 +55,14 @@ Vector7d PriorOf(const ScannerGeometryOptions& options) {
 }
 
 Matrix7d CovarianceOf(const Matrix7d& information, const Vector7d& prior) {
-  Matrix7d told = information;
+  Matrix7d observed = information;
   for (int i = 0; i < 7; ++i) {
     if (!IsGauge(i)) continue;
-    told.row(i).setZero();
-    told.col(i).setZero();
+    observed.row(i).setZero();
+    observed.col(i).setZero();
   }
-  const Matrix7d whole = told + Matrix7d(prior.array().square().inverse().matrix().asDiagonal());
+  const Matrix7d whole =
+      observed + Matrix7d(prior.array().square().inverse().matrix().asDiagonal());
   return whole.llt().solve(Matrix7d::Identity());
 }
 

@@ -8,7 +8,10 @@
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
 
+#include <Eigen/Dense>
+
 #include "calib/camera/lens.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/solve/board_problem.h"
 #include "tests/unit/solve/solve_world.h"
 
@@ -300,11 +303,10 @@ class CeresBoards {
       Add(CrossingDistance{problem_.target, pose, crossing}, 1, {board, shared, sides},
           new TailLoss(std::pow(own / crossing.sigma_m, 2)));
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(view.cloud.scatter);
-    const Eigen::Vector4d roots =
-        eigen.eigenvalues().cwiseMax(0).cwiseSqrt() / view.cloud.scatter_sigma_m;
+    const Eigensystem<4> eigen = EigensystemOf(view.cloud.scatter);
+    const Eigen::Vector4d roots = eigen.values.cwiseMax(0).cwiseSqrt() / view.cloud.scatter_sigma_m;
     Add(PlaneResidual{pose, view.cloud.centre,
-                      Eigen::Matrix4d(roots.asDiagonal() * eigen.eigenvectors().transpose())},
+                      Eigen::Matrix4d(roots.asDiagonal() * eigen.vectors.transpose())},
         4, {board, shared});
     Add(PriorResidual{std::vector<double>(4, 0.0),
                       std::vector<double>(4, problem_.priors.side_sigma_rad)},

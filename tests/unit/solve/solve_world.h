@@ -1,16 +1,10 @@
 #pragma once
 
-#include <Eigen/Dense>
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <list>
-#include <string>
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/camera/pixel_by_point.h"
-#include "calib/model/calibration.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/solve/board_world.h"
@@ -33,17 +27,7 @@ struct SolveWorldOptions {
 /// LIDAR: what detection would give of boards at known places. Clouds tell sides from either end.
 class SolveWorld {
  public:
-  explicit SolveWorld(const SolveWorldOptions& options = {})
-      : options_(options), random_(options.seed) {
-    rig.hash = "hash";
-    rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}};
-    rig.cameras = {WorldCamera(), Fisheye()};
-    camera_from_lidar = {WorldTruth(), RotationAbout({-0.4, 0.9, 0.2}, 0.05) * WorldTruth()};
-    camera_from_lidar[1].translation = {-0.11, 0.04, 0.02};
-    shared = options.shared;
-    if (options.draw_nuisances) shared = Drawn(true);
-    while (static_cast<int>(lidar_from_target.size()) < options.views) AddView(AnyBoard());
-  }
+  explicit SolveWorld(const SolveWorldOptions& options = {});
 
   Rig rig;
   std::vector<Rigid3> camera_from_lidar;  ///< the truth, in the rig's order; so are the others
@@ -53,22 +37,7 @@ class SolveWorld {
   std::vector<ViewDetection> detections;  ///< one a view
 
   /// The board held once more.
-  void AddView(const Rigid3& board) {
-    const auto n = lidar_from_target.size();
-    lidar_from_target.push_back(board);
-    side_shift.emplace_back();
-    for (double& shift : side_shift.back()) shift = options_.side_sigma_rad * Normal();
-    ViewDetection detection;
-    detection.view = (n < 9 ? "000" : "00") + std::to_string(n + 1);
-    detection.heldout =
-        options_.heldout_every > 0 && n % static_cast<std::size_t>(options_.heldout_every) == 1;
-    detection.cloud.candidates = {SeeCloud(board, side_shift.back(), n % 2 == 1)};
-    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-      detection.images.push_back({rig.cameras[c].name, static_cast<Utime>(1000 + n),
-                                  SeeImage(c, camera_from_lidar[c] * board), "", 0});
-    }
-    detections.push_back(std::move(detection));
-  }
+  void AddView(const Rigid3& board);
 
   ImageEdges& ImageAt(std::size_t view, std::size_t camera) {
     return *detections[view].images[camera].edges;
@@ -76,310 +45,51 @@ class SolveWorld {
   CloudEdges& CloudAt(std::size_t view) { return detections[view].cloud.candidates.at(0); }
 
   /// The whole board lies in all images, and faces the LIDAR.
-  bool Seen(const Rigid3& board, double margin_px = 5) const {
-    const Eigen::Vector3d away = board.translation.normalized();
-    if (away.dot(board.rotation * Eigen::Vector3d::UnitZ()) < 0.5) return false;
-    for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
-      const Camera camera(rig.cameras[c]);
-      const Eigen::Vector2d margin(margin_px, margin_px);
-      for (const Eigen::Vector3d& corner : rig.target.OutlineCorners()) {
-        const auto pixel = camera.Project(camera_from_lidar[c] * (board * corner));
-        if (!pixel || !camera.Contains(*pixel - margin) || !camera.Contains(*pixel + margin)) {
-          return false;
-        }
-      }
-    }
-    return true;
-  }
+  bool Seen(const Rigid3& board, double margin_px = 5) const;
 
-  double Normal() {
-    // Box and Muller; the standard's distribution differs between libraries.
-    return std::sqrt(-2 * std::log(random_.Uniform(1e-12, 1))) *
-           std::cos(2 * M_PI * random_.Uniform(0, 1));
-  }
+  double Normal();
 
-  Rigid3 AnyBoard() {
-    while (true) {
-      Rigid3 camera_from_target = RotationAbout(random_.Direction(), random_.Uniform(0.2, 0.7)) *
-                                  RotationAbout({0, 0, 1}, random_.Uniform(-0.5, 0.5));
-      const double z = random_.Uniform(1.8, 4);
-      camera_from_target.translation = {random_.Uniform(-0.5, 0.5) * z,
-                                        random_.Uniform(-0.4, 0.4) * z, z};
-      const Rigid3 board = camera_from_lidar[0].Inverse() * camera_from_target;
-      if (Seen(board)) return board;
-    }
-  }
+  Rigid3 AnyBoard();
 
  private:
-  static CameraSpec Fisheye() {
-    CameraSpec spec;
-    spec.name = "thermal";
-    spec.kind = CameraKind::kThermal;
-    spec.width = 480;
-    spec.height = 384;
-    spec.lens = {Lens::Model::kFisheye, 330, 331, 238.7, 190.2, {-0.03, 0.01, -0.004, 0.001}};
-    return spec;
-  }
-
   double Noise() { return options_.noise * Normal(); }
 
-  std::array<double, kSharedUnknowns> Drawn(bool outline) {
-    const BoardPriors priors;
-    auto drawn = priors.Means();
-    for (int k = 0; k < kRangeOffset; ++k) {
-      if (k < kOutlineTop || outline) {
-        drawn[static_cast<std::size_t>(k)] += priors.Sigma(k) * Normal();
-      }
-    }
-    return drawn;
-  }
+  std::array<double, kSharedUnknowns> Drawn(bool outline);
 
   // The image's corners and sides, and the pose that the corners give.
-  ImageEdges SeeImage(std::size_t c, const Rigid3& camera_from_target) {
-    const Camera camera(rig.cameras[c]);
-    ImageEdges image;
-    image.width = camera.width();
-    image.height = camera.height();
-    // Errors are larger than the corners' scatter tells by what is taken for granted of them.
-    image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornerSigmaInflation;
-    for (const Eigen::Vector3d& corner : rig.target.InnerCorners()) {
-      image.corners.push_back(*camera.Project(camera_from_target * corner) +
-                              kCornerSigmaInflation * image.corner_sigma_px *
-                                  Eigen::Vector2d(Noise(), Noise()));
-    }
-    const auto corners = rig.target.OutlineCorners();
-    for (std::size_t s = 0; s < 4; ++s) {
-      const Eigen::Vector3d out = shared[kOutlineTop + s] * Outward(static_cast<int>(s));
-      const auto chain = ProjectSegment(camera, camera_from_target * (corners[s] + out),
-                                        camera_from_target * (corners[(s + 1) % 4] + out), 20);
-      image.outline_corners[s] = chain.front();
-      image.outline.insert(image.outline.end(), chain.begin(), chain.end() - 1);
-      for (const Eigen::Vector2d& p : chain) {
-        image.edge_pixels.emplace_back(std::lround(p.x()), std::lround(p.y()));
-      }
-      image.sides[s] = SeeSide(chain, 0.1);
-    }
-    image.pose = PoseOfCorners(camera, image, camera_from_target);
-    return image;
-  }
+  ImageEdges SeeImage(std::size_t c, const Rigid3& camera_from_target);
 
-  ImageSide SeeSide(const std::vector<Eigen::Vector2d>& chain, double sigma) {
-    const double common = sigma * Noise();
-    const double ends[] = {common + sigma * Noise(), common + sigma * Noise()};
-    ImageSide side{true, "", {}, Eigen::Matrix2d::Constant(sigma * sigma)};
-    side.covariance.diagonal() *= 2;
-    const auto last = chain.size() - 1;
-    for (std::size_t i = 0; i <= last; ++i) {
-      const Eigen::Vector2d along =
-          (i < last ? chain[i + 1] - chain[i] : chain[i] - chain[i - 1]).normalized();
-      const double t = static_cast<double>(i) / static_cast<double>(last);
-      side.curve.push_back(chain[i] + ((1 - t) * ends[0] + t * ends[1]) *
-                                          Eigen::Vector2d(-along.y(), along.x()));
-    }
-    return side;
-  }
-
-  TargetPose PoseOfCorners(const Camera& camera, const ImageEdges& image, Rigid3 pose) const {
-    const auto model = rig.target.InnerCorners();
-    Matrix6d h = Matrix6d::Zero();
-    for (int round = 0; round < 4; ++round) {
-      h.setZero();
-      Vector6d g = Vector6d::Zero();
-      for (std::size_t i = 0; i < model.size(); ++i) {
-        const Eigen::Vector3d p = pose * model[i];
-        Eigen::Matrix<double, 3, 6> by_delta;
-        by_delta << 0, p.z(), -p.y(), 1, 0, 0,  //
-            -p.z(), 0, p.x(), 0, 1, 0,          //
-            p.y(), -p.x(), 0, 0, 0, 1;
-        const Eigen::Matrix<double, 2, 6> j = PixelByPoint(camera.lens(), p) * by_delta;
-        h += j.transpose() * j;
-        g += j.transpose() * (image.corners[i] - *camera.Project(p));
-      }
-      pose = Exp(Vector6d(h.ldlt().solve(g))) * pose;
-    }
-    return {pose, Matrix6d(std::pow(image.corner_sigma_px, 2) * h.inverse()), true};
-  }
-
-  static Eigen::Vector3d Outward(int side) {
-    const Eigen::Vector3d outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
-    return outward[side];
-  }
-
-  CloudEdges SeeCloud(const Rigid3& board, const std::array<double, 4>& shift, bool turned) {
-    CloudEdges cloud;
-    SeePlane(board, &cloud);
-    const auto nuisances = options_.nuisances_by_view ? Drawn(false) : shared;
-    const auto corners = rig.target.OutlineCorners();
-    for (int side = 0; side < 4; ++side) {
-      const auto s = static_cast<std::size_t>(side);
-      const auto kind = static_cast<CrossingKind>(1 + std::lround(random_.Uniform(-0.5, 2.5)));
-      const Eigen::Vector3d along = corners[(s + 1) % 4] - corners[s];
-      const int count =
-          static_cast<int>(along.norm() / (kCrossingRad * board.translation.norm())) + 2;
-      for (int i = 0; i < count; ++i) {
-        cloud.crossings.push_back(SeeCrossing(board, corners[s] + (i + 0.5) / count * along, side,
-                                              kind, nuisances, shift[s]));
-      }
-      for (int i = 0; i < 25; ++i) {
-        cloud.boundary.emplace_back(board * (corners[s] + i / 25.0 * along));
-      }
-    }
-    cloud.pose = PoseOfCloud(cloud, board);
-    if (turned) {
-      cloud.pose->sensor_from_target = cloud.pose->sensor_from_target * kHalfTurn;
-      for (Crossing& crossing : cloud.crossings) crossing.side = (crossing.side + 2) % 4;
-    }
-    return cloud;
-  }
+  ImageSide SeeSide(const std::vector<Eigen::Vector2d>& chain, double sigma);
+  TargetPose PoseOfCorners(const Camera& camera, const ImageEdges& image, Rigid3 pose) const;
+  CloudEdges SeeCloud(const Rigid3& board, const std::array<double, 4>& shift, bool turned);
 
   // Where a scan leaves the board: the side as the beam's width, the rim and the cut shift it,
   // somewhere in the interval between two beams.
   Crossing SeeCrossing(const Rigid3& board, const Eigen::Vector3d& on_side, int side,
                        CrossingKind kind, const std::array<double, kSharedUnknowns>& nuisances,
-                       double own_shift) {
-    const BoardPriors priors;
-    const Eigen::Vector3d outward = Outward(side);
-    const Eigen::Vector3d lidar = board.Inverse().translation;
-    const double range = board.translation.norm();
-    Crossing crossing;
-    crossing.side = side;
-    crossing.kind = kind;
-    crossing.half_width_m = kHalfWidthRad * range * random_.Uniform(0.7, 1.3);
-    const double place = options_.noise * random_.Uniform(-1, 1) * crossing.half_width_m;
-    const double blur = priors.blur_rad * Noise();
-    Eigen::Vector3d at = on_side;
-    for (int i = 0; i < 8; ++i) {
-      const Eigen::Vector3d beam = at - lidar;
-      const double per_rad =
-          beam.norm() / std::sqrt(1 - std::pow(beam.normalized().dot(outward), 2));
-      const double rim = std::max(0.0, -beam.dot(outward) / beam.z());
-      const double angle =
-          nuisances[static_cast<std::size_t>(kNoReturnShift) + static_cast<std::size_t>(kind) - 1] +
-          own_shift + blur;
-      at = on_side + (nuisances[static_cast<std::size_t>(kOutlineTop + side)] + per_rad * angle +
-                      rim * nuisances[kThickness] + place) *
-                         outward;
-      crossing.sigma_m =
-          std::hypot(crossing.half_width_m / std::sqrt(3), priors.blur_rad * per_rad);
-    }
-    crossing.point = board * at;
-    return crossing;
-  }
+                       double own_shift);
 
-  void SeePlane(const Rigid3& board, CloudEdges* cloud) {
-    const double range = board.translation.norm();
-    const Eigen::Vector3d n = board.rotation * Eigen::Vector3d::UnitZ();
-    const double facing = n.dot(board.translation) / range;
-    const double w = rig.target.width_m;
-    const double h = rig.target.height_m;
-    cloud->points = static_cast<int>(w * h * facing / std::pow(kPointRad * range, 2));
-    cloud->centre = board.translation;
-    cloud->normal = -n;
-    cloud->width_m = w;
-    cloud->height_m = h;
-    cloud->spacing_m = kPointRad * range;
-    cloud->scatter_sigma_m = 0.006;
-    for (int i = 0; i < cloud->points; ++i) {
-      const Eigen::Vector3d on = board * Eigen::Vector3d(w * random_.Uniform(-0.5, 0.5),
-                                                         h * random_.Uniform(-0.5, 0.5), 0);
-      const double off = cloud->scatter_sigma_m * Noise();
-      const Eigen::Vector3d beam = on.normalized();
-      const Eigen::Vector3d measured = on - shared[kRangeOffset] * beam;
-      Eigen::Vector4d q(0, 0, 0, 1);
-      q.head<3>() = measured + off * n - cloud->centre;
-      cloud->scatter += q * q.transpose();
-      q.head<3>() = measured + off / beam.dot(n) * beam - cloud->centre;
-      cloud->raw_scatter += q * q.transpose();
-    }
-  }
+  void SeePlane(const Rigid3& board, CloudEdges* cloud);
 
   // From crossings and plane, their shifts unknown.
-  TargetPose PoseOfCloud(const CloudEdges& cloud, Rigid3 pose) const {
-    const BoardPriors priors;
-    constexpr int kUnknowns = 14;  // pose, classes, sides, thickness
-    using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-    using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-    auto guess = priors.Means();
-    std::array<double, 4> sides{};
-    Matrix h;
-    for (int round = 0; round < 6; ++round) {
-      h.setZero();
-      Vector g = Vector::Zero();
-      const auto prior = [&](int k, double value, double sigma) {
-        h(k, k) += 1 / (sigma * sigma);
-        g[k] -= value / (sigma * sigma);
-      };
-      for (int k = 0; k < 3; ++k) {
-        prior(6 + k, guess[static_cast<std::size_t>(k)], priors.class_sigma_rad);
-      }
-      for (int k = 0; k < 4; ++k) {
-        prior(9 + k, sides[static_cast<std::size_t>(k)], priors.side_sigma_rad);
-      }
-      prior(13, guess[kThickness] - priors.thickness_m, priors.thickness_sigma_m);
-      for (const Crossing& crossing : cloud.crossings) {
-        const CrossingResidual r = ResidualOf(rig.target, priors, crossing, pose, guess,
-                                              sides[static_cast<std::size_t>(crossing.side)]);
-        Vector j = Vector::Zero();
-        j.head<6>() = r.by_target.transpose();
-        j[5 + static_cast<int>(crossing.kind)] = -r.per_rad;
-        j[9 + crossing.side] = -r.per_rad;
-        j[13] = -r.per_thickness;
-        h += j * j.transpose() / (r.sigma_m * r.sigma_m);
-        g -= r.beyond_m * j / (r.sigma_m * r.sigma_m);
-      }
-      const Eigen::Matrix3d axes = pose.rotation.toRotationMatrix();
-      Eigen::Vector4d x;
-      x << axes.col(2), axes.col(2).dot(cloud.centre - pose.translation);
-      Eigen::Matrix<double, 4, kUnknowns> j = Eigen::Matrix<double, 4, kUnknowns>::Zero();
-      j.block<3, 1>(0, 0) = -axes.col(1);
-      j.block<3, 1>(0, 1) = axes.col(0);
-      j(3, 0) = -axes.col(1).dot(cloud.centre - pose.translation);
-      j(3, 1) = axes.col(0).dot(cloud.centre - pose.translation);
-      j(3, 5) = -1;
-      const Eigen::Matrix4d information = cloud.scatter / std::pow(cloud.scatter_sigma_m, 2);
-      h += j.transpose() * information * j;
-      g -= j.transpose() * information * x;
-      const Vector step = h.ldlt().solve(g);
-      pose = pose * Exp(Vector6d(step.head<6>()));
-      for (int k = 0; k < 3; ++k) guess[static_cast<std::size_t>(k)] += step[6 + k];
-      for (int k = 0; k < 4; ++k) sides[static_cast<std::size_t>(k)] += step[9 + k];
-      guess[kThickness] += step[13];
-    }
-    const Matrix6d to_lidar = Adjoint(pose);
-    return {pose, to_lidar * Matrix6d(h.inverse().topLeftCorner<6, 6>()) * to_lidar.transpose(),
-            false};
-  }
+  TargetPose PoseOfCloud(const CloudEdges& cloud, Rigid3 pose) const;
 
-  static constexpr double kCrossingRad = 0.010, kHalfWidthRad = 0.0015, kPointRad = 0.010;
   SolveWorldOptions options_;
   Random random_;
 };
 
 /// An image told from the board's other end.
-inline void TurnImage(ImageEdges* image) {
-  std::reverse(image->corners.begin(), image->corners.end());
-  std::rotate(image->sides.begin(), image->sides.begin() + 2, image->sides.end());
-  image->pose->sensor_from_target = image->pose->sensor_from_target * kHalfTurn;
-}
+void TurnImage(ImageEdges* image);
 
 /// What CalibrateByBoards makes before it solves, of cameras whose first guess is given.
 class SolveSession {
  public:
-  SolveSession(const SolveWorld& world, const std::vector<Rigid3>& guesses) : rig_(world.rig) {
-    for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-      views_.push_back(ViewsOf(rig_.cameras[c], world.detections));
-      GuessedCamera camera{&views_.back(), {}};
-      camera.guess.camera_from_lidar = guesses[c];
-      cameras.push_back(camera);
-    }
-  }
+  SolveSession(const SolveWorld& world, const std::vector<Rigid3>& guesses);
   explicit SolveSession(const SolveWorld& world) : SolveSession(world, world.camera_from_lidar) {}
   SolveSession(const SolveSession&) = delete;
   SolveSession& operator=(const SolveSession&) = delete;
 
-  JointProblem Joint(double range_offset_sigma_m = 0) const {
-    return MakeJointProblem(rig_.target, cameras, range_offset_sigma_m);
-  }
+  JointProblem Joint(double range_offset_sigma_m = 0) const;
 
   std::vector<GuessedCamera> cameras;
 
@@ -389,9 +99,6 @@ class SolveSession {
 };
 
 /// Chi-square of a pose's error by a covariance of delta; 6 is to be expected.
-inline double Chi2Of(const Rigid3& truth, const Rigid3& estimate, const Matrix6d& covariance) {
-  const Vector6d delta = Log(truth * estimate.Inverse());
-  return delta.dot(covariance.ldlt().solve(delta));
-}
+double Chi2Of(const Rigid3& truth, const Rigid3& estimate, const Matrix6d& covariance);
 
 }  // namespace rgbdt
