@@ -39,13 +39,14 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   std::vector<CameraViews> cameras;
   for (const CameraSpec& camera : rig.cameras) cameras.push_back(ViewsOf(camera, detections));
   if (options.method == kPaperMethod) {
-    for (CameraViews& camera : cameras) CalibrateByPaper(options, &camera);
+    for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
-    AcrossCameras across = options.method == kPlaneMethod
-                               ? CalibrateByPlanes(rig.target, options, &cameras)
-                               : CalibrateByBoards(rig.target, options, &cameras);
-    report.closure = std::move(across.closure);
-    report.next_view = std::move(across.next_view);
+    CalibratedCameras calibrated = options.method == kPlaneMethod
+                                       ? CalibrateByPlanes(rig.target, options, std::move(cameras))
+                                       : CalibrateByBoards(rig.target, options, std::move(cameras));
+    cameras = std::move(calibrated.cameras);
+    report.closure = std::move(calibrated.closure);
+    report.next_view = std::move(calibrated.next_view);
   }
   for (CameraViews& camera : cameras) {
     camera.Describe();
@@ -76,9 +77,9 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
     }
     views.report.calibration = *found;
     views.Describe();
-    JudgeCamera(camera, views.Usable(), &views.report);
-    JudgeEdges(EdgeModel{rig.target, BoardPriors().Means(), {}}, views.Usable(), &views.report);
-    report.cameras.push_back(std::move(views.report));
+    const EdgeModel edges{rig.target, BoardPriors().Means(), {}};
+    report.cameras.push_back(JudgeEdges(
+        edges, views.Usable(), JudgeCamera(camera, views.Usable(), std::move(views.report))));
   }
   return report;
 }

@@ -53,36 +53,39 @@ std::optional<Nuisance> SideScatter(const JointProblem& joint) {
                   {1000 * sigma, 1000 * sigma / std::sqrt(2 * sides)}};
 }
 
-std::vector<Nuisance> NuisancesOf(const JointProblem& joint, const JointResult& result) {
+std::vector<Nuisance> NuisancesOf(const JointResult& result) {
   std::vector<Nuisance> nuisances;
   for (const NuisanceLine& line : kNuisances) {
     const Estimate estimate = EstimateOf(result, line.unknown);
     // Where the prior's sigma is left, the data say nothing of it.
-    if (estimate.sigma > 0.98 * joint.problem.priors.Sigma(line.unknown)) continue;
+    if (estimate.sigma > 0.98 * result.joint.problem.priors.Sigma(line.unknown)) continue;
     nuisances.push_back({line.name, line.unit, {1000 * estimate.value, 1000 * estimate.sigma}});
   }
-  if (auto scatter = SideScatter(joint)) nuisances.push_back(*scatter);
+  if (auto scatter = SideScatter(result.joint)) nuisances.push_back(*scatter);
   return nuisances;
 }
 
-CameraCalibration CalibrationOf(const JointProblem& joint, const JointResult& result,
-                                std::size_t camera) {
+CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
   const bool converged = result.solution.converged;
-  return {joint.cameras[camera].views->spec->name, result.solution.state.camera_from_lidar[camera],
-          CovarianceOf(result, camera),
+  return {result.joint.cameras[camera].views->spec->name,
+          result.solution.state.camera_from_lidar[camera], CovarianceOf(result, camera),
           converged ? SolveStatus::kConverged : SolveStatus::kNotConverged,
           converged ? "" : "the joint solve did not settle"};
 }
 
 // The joint solve's result into the cameras' reports.
-void FillReports(const CalibrateOptions& options, const JointProblem& joint,
-                 const JointResult& result) {
-  for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-    CameraReport& report = joint.cameras[c].views->report;
-    report.calibration = CalibrationOf(joint, result, c);
-    report.nuisance = NuisancesOf(joint, result);
+void FillReports(const CalibrateOptions& options, const JointResult& result) {
+  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
+    CameraReport& report = result.joint.cameras[c].views->report;
+    report.calibration = CalibrationOf(result, c);
+    report.nuisance = NuisancesOf(result);
     if (options.first_guess.range_offset) report.range_offset = EstimateOf(result, kRangeOffset);
   }
+}
+
+EdgeModel EdgesOf(const JointResult& result) {
+  const BoardProblem& problem = result.joint.problem;
+  return {problem.target, result.solution.state.shared, problem.priors};
 }
 
 // Metres more along each boundary point's beam, where the ranges were found to be off.
@@ -97,45 +100,57 @@ void ShiftRanges(const std::vector<GuessedCamera>& cameras) {
   }
 }
 
+double RangeOffsetPrior(const CalibrateOptions& options) {
+  return options.first_guess.range_offset ? options.first_guess.range_offset_sigma_m : 0;
+}
+
+void MarkDegenerate(const std::vector<GuessedCamera>& cameras) {
+  for (const GuessedCamera& camera : cameras) {
+    camera.views->report.calibration = CheckDegenerate(*camera.views);
+  }
+}
+
 // Cameras that are solved together, from their guesses to their reports; returns where to hold the
 // board next.
 std::optional<NextView> SolveGroup(const Target& target, const CalibrateOptions& options,
                                    const std::vector<GuessedCamera>& cameras) {
   const Stopwatch watch;
-  JointProblem joint = MakeJointProblem(
-      target, cameras,
-      options.first_guess.range_offset ? options.first_guess.range_offset_sigma_m : 0);
-  const JointResult result = SolveJointly(&joint);
-  FillReports(options, joint, result);
+  const JointResult result =
+      SolveJointly(MakeJointProblem(target, cameras, RangeOffsetPrior(options)));
+  FillReports(options, result);
   ShareTime(watch.Seconds(), cameras);
-  std::optional<NextView> next_view;
-  if (options.diagnostics) {
-    CrossValidate(joint, result, options.folds);
-    next_view = FindNextView(joint, result);
-  }
-  for (const GuessedCamera& camera : cameras) CheckDegenerate(camera.views);
+  if (options.diagnostics) CrossValidate(result, options.folds);
+  auto next_view = options.diagnostics ? FindNextView(result) : std::nullopt;
+  MarkDegenerate(cameras);
   ShiftRanges(cameras);
-  JudgeCameras({target, result.solution.state.shared, joint.problem.priors}, cameras);
+  JudgeCameras(EdgesOf(result), cameras);
   return next_view;
+}
+
+// All cameras at once, or each by itself.
+std::vector<std::vector<GuessedCamera>> GroupsOf(const std::vector<GuessedCamera>& cameras,
+                                                 bool joint) {
+  std::vector<std::vector<GuessedCamera>> groups;
+  if (joint && !cameras.empty()) groups.push_back(cameras);
+  if (!joint) {
+    for (const GuessedCamera& camera : cameras) groups.push_back({camera});
+  }
+  return groups;
+}
+
+// Of cameras that are solved apart, the worst one's.
+std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView> b) {
+  return b && (!a || b->sigma_before_px > a->sigma_before_px) ? std::move(b) : std::move(a);
 }
 
 }  // namespace
 
-AcrossCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
-                                std::vector<CameraViews>* cameras) {
-  const std::vector<GuessedCamera> guessed = GuessCameras(options, cameras);
-  std::vector<std::vector<GuessedCamera>> groups;
-  if (options.joint && !guessed.empty()) groups.push_back(guessed);
-  if (!options.joint) {
-    for (const GuessedCamera& camera : guessed) groups.push_back({camera});
-  }
-  AcrossCameras out;
-  for (const std::vector<GuessedCamera>& group : groups) {
-    auto next = SolveGroup(target, options, group);
-    // Of cameras that are solved apart, the worst one's.
-    const bool worse =
-        next && (!out.next_view || next->sigma_before_px > out.next_view->sigma_before_px);
-    if (worse) out.next_view = std::move(next);
+CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
+                                    std::vector<CameraViews> cameras) {
+  CalibratedCameras out{std::move(cameras), {}, {}};
+  const std::vector<GuessedCamera> guessed = GuessCameras(options, &out.cameras);
+  for (const std::vector<GuessedCamera>& group : GroupsOf(guessed, options.joint)) {
+    out.next_view = Worse(std::move(out.next_view), SolveGroup(target, options, group));
   }
   if (options.diagnostics) out.closure = CloseLoops(guessed);
   return out;

@@ -8,8 +8,8 @@
 
 namespace rgbdt {
 
-/// "auto": see Calibrate. Fills in the cameras' reports.
-AcrossCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
-                                std::vector<CameraViews>* cameras);
+/// "auto": see Calibrate.
+CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
+                                    std::vector<CameraViews> cameras);
 
 }  // namespace rgbdt

@@ -27,6 +27,8 @@ struct Sums {
     squared += other.squared;
     points += other.points;
   }
+  double MeanTransform() const { return transform / points; }
+  double Rms() const { return std::sqrt(squared / points); }
 };
 
 Sums Judge(const Camera& camera, const CameraView& view, const Rigid3& camera_from_lidar) {
@@ -45,8 +47,7 @@ Sums Judge(const Camera& camera, const CameraView& view, const Rigid3& camera_fr
 }
 
 ViewQuality QualityOf(const CameraView& view, const Sums& sums) {
-  return {view.view, view.heldout, sums.transform / sums.points,
-          std::sqrt(sums.squared / sums.points), std::nullopt};
+  return {view.view, view.heldout, sums.MeanTransform(), sums.Rms(), std::nullopt};
 }
 
 }  // namespace
@@ -65,25 +66,26 @@ ViewQuality JudgeView(const CameraSpec& camera, const CameraView& view,
   return QualityOf(view, Judge(Camera(camera), view, camera_from_lidar));
 }
 
-void JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& usable,
-                 CameraReport* report) {
+CameraReport JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& usable,
+                         CameraReport report) {
   const Camera camera(spec);
   Sums train;
   Sums heldout;
-  report->views.clear();
+  report.views.clear();
   for (const CameraView* view : usable) {
-    const Sums sums = Judge(camera, *view, report->calibration.camera_from_lidar);
-    report->views.push_back(QualityOf(*view, sums));
+    const Sums sums = Judge(camera, *view, report.calibration.camera_from_lidar);
+    report.views.push_back(QualityOf(*view, sums));
     (view->heldout ? heldout : train).Add(sums);
   }
-  const auto fill = [](const Sums& sums, std::optional<double>* transform,
-                       std::optional<double>* rms) {
-    if (sums.points == 0) return;
-    *transform = sums.transform / sums.points;
-    *rms = std::sqrt(sums.squared / sums.points);
-  };
-  fill(train, &report->distance_transform_px.train, &report->edge_rms_px.train);
-  fill(heldout, &report->distance_transform_px.heldout, &report->edge_rms_px.heldout);
+  if (train.points > 0) {
+    report.distance_transform_px.train = train.MeanTransform();
+    report.edge_rms_px.train = train.Rms();
+  }
+  if (heldout.points > 0) {
+    report.distance_transform_px.heldout = heldout.MeanTransform();
+    report.edge_rms_px.heldout = heldout.Rms();
+  }
+  return report;
 }
 
 EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
@@ -116,26 +118,27 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
   return misfit;
 }
 
-void JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& usable,
-                CameraReport* report) {
+CameraReport JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& usable,
+                        CameraReport report) {
   EdgeMisfit train;
   EdgeMisfit heldout;
   for (const CameraView* view : usable) {
-    const EdgeMisfit one = MisfitOfEdges(model, *view, report->calibration);
+    const EdgeMisfit one = MisfitOfEdges(model, *view, report.calibration);
     if (one.count == 0) continue;
     EdgeMisfit& sum = view->heldout ? heldout : train;
     sum.squared += one.squared;
     sum.count += one.count;
-    for (ViewQuality& quality : report->views) {
+    for (ViewQuality& quality : report.views) {
       if (quality.view == view->view) {
         quality.edge_rms_whitened = std::sqrt(one.squared / one.count);
       }
     }
   }
-  if (train.count > 0) report->edge_rms_whitened.train = std::sqrt(train.squared / train.count);
+  if (train.count > 0) report.edge_rms_whitened.train = std::sqrt(train.squared / train.count);
   if (heldout.count > 0) {
-    report->edge_rms_whitened.heldout = std::sqrt(heldout.squared / heldout.count);
+    report.edge_rms_whitened.heldout = std::sqrt(heldout.squared / heldout.count);
   }
+  return report;
 }
 
 }  // namespace rgbdt

@@ -42,14 +42,15 @@ struct EdgeMisfit {
 EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
                          const CameraCalibration& calibration);
 
-/// Fills in `edge_rms_whitened` of a camera's report and of its views, which JudgeCamera has
-/// filled in before.
-void JudgeEdges(const EdgeModel& model, const std::vector<const CameraView*>& usable,
-                CameraReport* report);
+/// A camera's report with `views`, `distance_transform_px` and `edge_rms_px` by its calibration:
+/// means over all points of the views used, and of those held out.
+[[nodiscard]] CameraReport JudgeCamera(const CameraSpec& camera,
+                                       const std::vector<const CameraView*>& usable,
+                                       CameraReport report);
 
-/// Fills in `views`, `distance_transform_px` and `edge_rms_px` of a camera's report from its
-/// calibration: means over all points of the views used, and of those held out.
-void JudgeCamera(const CameraSpec& camera, const std::vector<const CameraView*>& usable,
-                 CameraReport* report);
+/// A report that JudgeCamera has made, with `edge_rms_whitened` of the camera and of its views.
+[[nodiscard]] CameraReport JudgeEdges(const EdgeModel& model,
+                                      const std::vector<const CameraView*>& usable,
+                                      CameraReport report);
 
 }  // namespace rgbdt

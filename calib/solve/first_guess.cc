@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/model/errors.h"
+#include "calib/model/check.h"
 #include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
@@ -123,9 +123,6 @@ Vote VoteAmong(const Views& views) {
   return vote;
 }
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
-
 // The mean of what the agreeing views give, weighed by their covariances; the seventh unknown is
 // the range offset. At first any that agreed in the vote; then those near enough to be used.
 FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuessOptions& options) {
@@ -215,13 +212,7 @@ std::string WhyNone(const Views& views, const Vote& vote) {
 }  // namespace
 
 void FirstGuessOptions::Check() const {
-  const auto require = [](double value, const char* name) {
-    if (!(value > 0) || !std::isfinite(value)) {
-      throw InputError(std::string("FirstGuessOptions.") + name + " is " + std::to_string(value) +
-                       "; expected a positive number");
-    }
-  };
-  require(range_offset_sigma_m, "range_offset_sigma_m");
+  OptionCheck("first guess").Positive(range_offset_sigma_m, "range_offset_sigma_m");
 }
 
 FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
@@ -232,25 +223,25 @@ FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                [](const CameraView* view) { return HasPoses(*view); });
   FirstGuess guess;
   if (views.size() < 2) {
-    guess.status = std::to_string(views.size()) +
+    guess.detail = std::to_string(views.size()) +
                    " views in which both camera and LIDAR see the board; at least 2 are needed";
     return guess;
   }
   const Vote vote = VoteAmong(views);
   guess.agreeing = vote.best.views;
   if (vote.best.views < 2 || 2 * vote.best.views < static_cast<int>(views.size())) {
-    guess.status = WhyNone(views, vote);
+    guess.detail = WhyNone(views, vote);
     return guess;
   }
   if (vote.other.views >= vote.best.views && vote.other.cost < 4 * vote.best.cost + 0.1) {
     guess.ambiguous = true;
-    guess.status =
+    guess.detail =
         "two poses of the camera fit the views alike; add views with the board elsewhere, tilted "
         "and turned otherwise";
     return guess;
   }
   guess = AverageFrom(vote.best.camera_from_lidar, views, options);
-  guess.status =
+  guess.detail =
       std::to_string(guess.agreeing) + " of " + std::to_string(views.size()) + " views agree";
   return guess;
 }

@@ -55,7 +55,7 @@ struct FirstGuess {
   double range_offset_sigma_m = 0;         ///< 0: not estimated
   int agreeing = 0;                        ///< views that agree on it
   bool ambiguous = false;                  ///< there is none because two fit alike
-  std::string status;                      ///< in words; why there is none
+  std::string detail;                      ///< in words; why there is none
 };
 
 /// Closed form: each pair of a camera's board pose and a candidate's in the cloud, turned or not,

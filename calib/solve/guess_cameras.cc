@@ -1,10 +1,11 @@
 #include "calib/solve/guess_cameras.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
+#include <utility>
 
 #include "calib/model/stopwatch.h"
+#include "calib/model/text.h"
 #include "calib/solve/colouring.h"
 #include "calib/solve/internal/degenerate.h"
 
@@ -27,9 +28,7 @@ bool EnoughViews(const CalibrateOptions& options, CameraViews* camera) {
 }
 
 std::string Place(const Eigen::Vector3d& p) {
-  char text[60];
-  std::snprintf(text, sizeof text, "x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
-  return text;
+  return Format("x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
 }
 
 // Names what else in the clouds looks like the target: a second board, a door, a poster.
@@ -63,7 +62,7 @@ FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
   if (!guess.camera_from_lidar) {
     camera->report.calibration.status =
         guess.ambiguous ? SolveStatus::kUndetermined : SolveStatus::kNotSolved;
-    camera->report.calibration.detail = guess.status;
+    camera->report.calibration.detail = guess.detail;
     return guess;
   }
   for (CameraView& o : camera->all) {
@@ -89,24 +88,26 @@ std::vector<Rigid3> BoardsOf(const CameraViews& camera) {
 
 }  // namespace
 
-void CheckDegenerate(CameraViews* camera) {
-  CameraCalibration& calibration = camera->report.calibration;
-  std::string why = WhyDegenerate(BoardsOf(*camera));
+CameraCalibration CheckDegenerate(const CameraViews& camera) {
+  CameraCalibration calibration = camera.report.calibration;
+  std::string why = WhyDegenerate(BoardsOf(camera));
   if (why.empty() && calibration.covariance) why = WhyLoose(*calibration.covariance);
-  if (why.empty()) return;
+  if (why.empty()) return calibration;
   calibration.status = SolveStatus::kDegenerate;
   calibration.detail = why;
   calibration.covariance.reset();
+  return calibration;
 }
 
 void JudgeCameras(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras) {
   for (const GuessedCamera& camera : cameras) {
-    JudgeCamera(*camera.views->spec, camera.views->Usable(), &camera.views->report);
-    JudgeEdges(edges, camera.views->Usable(), &camera.views->report);
-    const CameraCalibration& calibration = camera.views->report.calibration;
+    const CameraSpec& spec = *camera.views->spec;
+    const Views usable = camera.views->Usable();
+    CameraReport& report = camera.views->report;
+    report = JudgeEdges(edges, usable, JudgeCamera(spec, usable, std::move(report)));
+    const CameraCalibration& calibration = report.calibration;
     if (!calibration.covariance) continue;
-    camera.views->report.sigma =
-        SigmaOf(*camera.views->spec, calibration.camera_from_lidar, *calibration.covariance);
+    report.sigma = SigmaOf(spec, calibration.camera_from_lidar, *calibration.covariance);
   }
 }
 

@@ -10,8 +10,9 @@
 
 namespace rgbdt {
 
-/// What a calibration says of several cameras together.
-struct AcrossCameras {
+/// What a method makes of the cameras' views: each one's report, and what they say together.
+struct CalibratedCameras {
+  std::vector<CameraViews> cameras;
   std::vector<Closure> closure;
   std::optional<NextView> next_view;
 };
@@ -27,9 +28,9 @@ struct GuessedCamera {
 std::vector<GuessedCamera> GuessCameras(const CalibrateOptions& options,
                                         std::vector<CameraViews>* cameras);
 
-/// A pose that the views leave loose is not to be believed, whatever its residuals: its status says
-/// so, and its covariance goes.
-void CheckDegenerate(CameraViews* camera);
+/// A camera's calibration. A pose that the views leave loose is not to be believed, whatever its
+/// residuals: its status says so, and its covariance goes.
+CameraCalibration CheckDegenerate(const CameraViews& camera);
 
 /// Judges the calibrations in the cameras' reports on used and held-out views.
 void JudgeCameras(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras);

@@ -128,10 +128,8 @@ double JointMilliseconds(const Session& session) {
     if (!guess) throw std::runtime_error("no first guess");
     for (CameraView& view : camera.all) view = WithChosenCandidate(std::move(view), *guess);
   }
-  return LeastMilliseconds([&] {
-    JointProblem joint = MakeJointProblem(session.rig().target, cameras, 0);
-    SolveJointly(&joint);
-  });
+  return LeastMilliseconds(
+      [&] { SolveJointly(MakeJointProblem(session.rig().target, cameras, 0)); });
 }
 
 double GuessMilliseconds(const Session& session) {

@@ -79,7 +79,7 @@ Report GuessOnly(const Rig& rig, const std::vector<ViewDetection>& detections) {
     result.calibration.camera = camera.name;
     result.calibration.status =
         guess.camera_from_lidar ? SolveStatus::kConverged : SolveStatus::kNotSolved;
-    result.calibration.detail = guess.status;
+    result.calibration.detail = guess.detail;
     if (!guess.camera_from_lidar) continue;
     result.calibration.camera_from_lidar = *guess.camera_from_lidar;
     result.calibration.covariance = guess.covariance;

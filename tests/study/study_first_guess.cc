@@ -77,7 +77,7 @@ void WriteLine(const Session& session, std::uint64_t seed, int rings, std::ofstr
        << ',' << guessed << ',' << degrees << ',' << millimetres << ',' << chi2 << ','
        << accepted.all << ',' << accepted.wrong << ',' << accepted.wrong_clouds << ','
        << accepted.from_wrong_clouds << ',' << accepted.worst_deg << ',' << accepted.worst_mm
-       << ",\"" << guess.status << "\"\n";
+       << ",\"" << guess.detail << "\"\n";
 }
 
 SessionOptions OptionsOf(const std::string& kind, int session) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "calib/camera/camera.h"
 #include "calib/methods/paper/internal/paper_cost.h"
@@ -45,7 +46,7 @@ StartResult FromWideStart(const CameraSpec& camera, const Views& used, const Rig
       camera, used, TurnedStart(guess, options.wide_roll_rad, options.wide_yaw_rad), options);
   CameraReport judged;
   judged.calibration = result.calibration;
-  JudgeCamera(camera, used, &judged);
+  judged = JudgeCamera(camera, used, std::move(judged));
   result.distance_transform_px = judged.distance_transform_px.train;
   result.from_result =
       ErrorOf(result.calibration.camera_from_lidar, report.calibration.camera_from_lidar);
@@ -108,26 +109,27 @@ CameraCalibration SolvePaper(const CameraSpec& spec, const Views& used, const Ri
   return result;
 }
 
-void CalibrateByPaper(const CalibrateOptions& options, CameraViews* views) {
-  const CameraSpec& camera = *views->spec;
-  CameraReport& report = views->report;
+CameraReport CalibrateByPaper(const CalibrateOptions& options, const CameraViews& views) {
+  const CameraSpec& camera = *views.spec;
+  CameraReport report = views.report;
   const Rigid3 guess = camera.camera_from_lidar_guess.value_or(Rigid3());
   report.first_guess = guess;
   report.calibration.camera_from_lidar = guess;
-  const Views used = views->Used();
+  const Views used = views.Used();
   if (static_cast<int>(used.size()) < options.min_views) {
     report.calibration.detail =
         TooFewViews(used.size(), options) +
         (camera.camera_from_lidar_guess ? "; this is the hand-measured guess" : "");
-    return;
+    return report;
   }
   const Stopwatch watch;
   report.calibration = SolvePaper(camera, used, guess, options);
   report.solve_s = watch.Seconds();
-  JudgeCamera(camera, views->Usable(), &report);
+  report = JudgeCamera(camera, views.Usable(), std::move(report));
   if (options.wide_start) {
     report.other_starts.push_back(FromWideStart(camera, used, guess, report, options));
   }
+  return report;
 }
 
 }  // namespace rgbdt

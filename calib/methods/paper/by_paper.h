@@ -7,7 +7,7 @@ namespace rgbdt {
 
 /// One camera from its hand-measured guess, by the paper's solve; with wide_start a second time
 /// from a start turned away. Without enough views its pose is the guess, and the status says so.
-void CalibrateByPaper(const CalibrateOptions& options, CameraViews* camera);
+CameraReport CalibrateByPaper(const CalibrateOptions& options, const CameraViews& camera);
 
 /// Levenberg-Marquardt over the paper's objective from one start: the rotation first, then all six
 /// parameters. `used` are usable views of one camera.

@@ -7,8 +7,9 @@
 #include <sstream>
 
 #include "calib/methods/paper/internal/pcl_steps.h"
-#include "calib/model/errors.h"
+#include "calib/model/check.h"
 #include "calib/model/linear_algebra.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -69,12 +70,6 @@ Indices PointsNearCorners(const Points& points, const Camera& camera,
   return near;
 }
 
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Median distance to the nearest point on another scan line; without lines, of an even grid with
 // the same eighth neighbour.
 double SpacingAt(const Hits& hits, const PointIndex& index, const Indices& at) {
@@ -95,7 +90,7 @@ double SpacingAt(const Hits& hits, const PointIndex& index, const Indices& at) {
       }
     }
   }
-  return distances.size() < 10 ? 0 : MedianOf(std::move(distances));
+  return distances.size() < 10 ? 0 : Median(std::move(distances));
 }
 
 Plane FitPlane(const Points& points, const Indices& indices) {
@@ -233,22 +228,17 @@ std::string WhyNotTheTarget(const CloudEdges& edges, const Target& target, doubl
 }  // namespace
 
 void CloudEdgesOptions::Check() const {
-  const auto require = [](double value, const char* name) {
-    if (!(value > 0) || !std::isfinite(value)) {
-      throw InputError(std::string("CloudEdgesOptions.") + name + " is " + std::to_string(value) +
-                       "; expected a positive number");
-    }
-  };
-  require(corner_window_px, "corner_window_px");
-  require(ransac_tolerance, "ransac_tolerance");
-  require(grow_radius, "grow_radius");
-  require(normal_radius, "normal_radius");
-  require(grow_angle_rad, "grow_angle_rad");
-  require(mls_radius, "mls_radius");
-  require(boundary_radius, "boundary_radius");
-  require(boundary_angle_rad, "boundary_angle_rad");
-  require(hull_alpha, "hull_alpha");
-  require(size_tolerance, "size_tolerance");
+  const OptionCheck check("cloud edges");
+  check.Positive(corner_window_px, "corner_window_px");
+  check.Positive(ransac_tolerance, "ransac_tolerance");
+  check.Positive(grow_radius, "grow_radius");
+  check.Positive(normal_radius, "normal_radius");
+  check.Positive(grow_angle_rad, "grow_angle_rad");
+  check.Positive(mls_radius, "mls_radius");
+  check.Positive(boundary_radius, "boundary_radius");
+  check.Positive(boundary_angle_rad, "boundary_angle_rad");
+  check.Positive(hull_alpha, "hull_alpha");
+  check.Positive(size_tolerance, "size_tolerance");
 }
 
 CloudEdgesResult DetectCloudEdges(const Cloud& cloud, const Camera& camera,

@@ -1,6 +1,7 @@
 #include "calib/methods/plane/by_planes.h"
 
 #include <cmath>
+#include <utility>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/stopwatch.h"
@@ -68,19 +69,19 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
   return result;
 }
 
-AcrossCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
-                                std::vector<CameraViews>* cameras) {
-  const std::vector<GuessedCamera> guessed = GuessCameras(options, cameras);
+CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
+                                    std::vector<CameraViews> cameras) {
+  CalibratedCameras out{std::move(cameras), {}, {}};
+  const std::vector<GuessedCamera> guessed = GuessCameras(options, &out.cameras);
   for (const GuessedCamera& camera : guessed) {
     const Stopwatch watch;
     CameraReport& report = camera.views->report;
     report.calibration = SolvePlanes(camera.views->Used(), *camera.guess.camera_from_lidar);
     report.calibration.camera = camera.views->spec->name;
     ShareTime(watch.Seconds(), {camera});
-    CheckDegenerate(camera.views);
+    report.calibration = CheckDegenerate(*camera.views);
   }
   JudgeCameras(EdgeModel{target, BoardPriors().Means(), {}}, guessed);
-  AcrossCameras out;
   if (options.diagnostics) out.closure = CloseLoops(guessed);
   return out;
 }

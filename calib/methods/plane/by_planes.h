@@ -19,8 +19,8 @@ namespace rgbdt {
 /// one camera with image poses and scatters.
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start);
 
-/// "plane": see Calibrate. Fills in the cameras' reports.
-AcrossCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
-                                std::vector<CameraViews>* cameras);
+/// "plane": see Calibrate.
+CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
+                                    std::vector<CameraViews> cameras);
 
 }  // namespace rgbdt

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/text.h"
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
@@ -116,18 +116,17 @@ void KeepGuess(const GuessedCamera& camera) {
     refined += fold.misfit / static_cast<double>(report.folds.size());
     guessed += fold.first_guess_misfit / static_cast<double>(report.folds.size());
   }
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "on views left out it fits better than the refined pose (chi-square %.1f against "
-                "%.1f a view)",
-                guessed, refined);
   report.calibration.camera_from_lidar = *camera.guess.camera_from_lidar;
   report.calibration.covariance = camera.guess.covariance;
   report.calibration.status = SolveStatus::kFirstGuessKept;
-  report.calibration.detail = text;
+  report.calibration.detail = Format(
+      "on views left out it fits better than the refined pose (chi-square %.1f against %.1f a "
+      "view)",
+      guessed, refined);
 }
 
-void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::size_t parts) {
+void LeaveOutParts(const JointResult& result, std::size_t parts) {
+  const JointProblem& joint = result.joint;
   std::vector<std::vector<double>> worse(joint.cameras.size());
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t count = joint.problem.views.size();
@@ -148,7 +147,8 @@ void LeaveOutParts(const JointProblem& joint, const JointResult& result, std::si
   }
 }
 
-void Halve(const JointProblem& joint, const JointResult& result) {
+void Halve(const JointResult& result) {
+  const JointProblem& joint = result.joint;
   const std::size_t count = joint.problem.views.size();
   const BoardSolution a = SolvePart(joint, result.solution.state, Others(count, 0, 2, true));
   const BoardSolution b = SolvePart(joint, result.solution.state, Others(count, 1, 2, true));
@@ -170,11 +170,11 @@ void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse
   if (GuessIsBetter(worse)) KeepGuess(camera);
 }
 
-void CrossValidate(const JointProblem& joint, const JointResult& result, int folds) {
-  const std::size_t views = joint.problem.views.size();
+void CrossValidate(const JointResult& result, int folds) {
+  const std::size_t views = result.joint.problem.views.size();
   if (views < 4) return;
-  LeaveOutParts(joint, result, std::min(views, static_cast<std::size_t>(folds)));
-  if (views >= 6) Halve(joint, result);
+  LeaveOutParts(result, std::min(views, static_cast<std::size_t>(folds)));
+  if (views >= 6) Halve(result);
 }
 
 }  // namespace rgbdt

@@ -11,7 +11,7 @@ namespace rgbdt {
 /// halves of the views solved apart. Where the first guess fits what was left out better by
 /// more than chance, it is kept: it becomes the report's calibration, and the status says so.
 /// Nothing with fewer than 4 views.
-void CrossValidate(const JointProblem& joint, const JointResult& result, int folds);
+void CrossValidate(const JointResult& result, int folds);
 
 /// The first guess becomes the report's calibration where it fits views left out better than the
 /// refined pose by more than chance: `worse` is, by view, how much larger the refined misfit is.

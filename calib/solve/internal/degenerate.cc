@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -14,14 +14,12 @@ constexpr double kOnePlaceM = 0.15;    // centres no farther than this from thei
 constexpr double kLooseRad = M_PI / 180;
 constexpr double kLooseM = 0.1;
 
-std::string Text(const char* format, const Eigen::Vector3d& v) {
-  char text[120];
-  std::snprintf(text, sizeof text, format, v.x(), v.y(), v.z());
-  return text;
+std::string Direction(const Eigen::Vector3d& v) {
+  return Format("(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
 }
-
-std::string Direction(const Eigen::Vector3d& v) { return Text("(%.2f, %.2f, %.2f)", v); }
-std::string Place(const Eigen::Vector3d& v) { return Text("x %.1f, y %.1f, z %.1f m", v); }
+std::string Place(const Eigen::Vector3d& v) {
+  return Format("x %.1f, y %.1f, z %.1f m", v.x(), v.y(), v.z());
+}
 
 // The direction in space that most normals lie along.
 Eigen::Vector3d MeanNormal(const std::vector<Rigid3>& boards) {
@@ -74,17 +72,13 @@ std::string WhyLoose(const Matrix6d& covariance) {
   const double turn = std::sqrt(std::max(0.0, turns.values[2]));
   const double shift = std::sqrt(std::max(0.0, shifts.values[2]));
   if (turn <= kLooseRad && shift <= kLooseM) return "";
-  char text[200];
-  if (turn / kLooseRad >= shift / kLooseM) {
-    std::snprintf(text, sizeof text,
-                  "turns about the camera's %s are known to %.1f deg only (1 sigma)",
-                  AxisOf(turns.vectors.col(2)), turn * 180 / M_PI);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "shifts along the camera's %s are known to %.0f mm only (1 sigma)",
-                  AxisOf(shifts.vectors.col(2)), shift * 1000);
-  }
-  return std::string(text) + "; add views with the board elsewhere and tilted otherwise";
+  const std::string loose =
+      turn / kLooseRad >= shift / kLooseM
+          ? Format("turns about the camera's %s are known to %.1f deg only (1 sigma)",
+                   AxisOf(turns.vectors.col(2)), turn * 180 / M_PI)
+          : Format("shifts along the camera's %s are known to %.0f mm only (1 sigma)",
+                   AxisOf(shifts.vectors.col(2)), shift * 1000);
+  return loose + "; add views with the board elsewhere and tilted otherwise";
 }
 
 }  // namespace rgbdt

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <utility>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/rigid3.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -21,12 +21,6 @@ using Index = Eigen::Index;
 void TurnCloud(CloudEdges* cloud) {
   cloud->pose->sensor_from_target = cloud->pose->sensor_from_target * kHalfTurn;
   for (Crossing& crossing : cloud->crossings) crossing.side = (crossing.side + 2) % 4;
-}
-
-std::string Fixed(double value, int decimals) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(decimals) << value;
-  return text.str();
 }
 
 // Builds the problem a camera at a time, in the order of the cameras.
@@ -156,54 +150,6 @@ int ImagesOf(const BoardProblem& problem, int camera) {
   return count;
 }
 
-void RejectImage(JointProblem* joint, const Contradiction& worst, BoardState* state) {
-  BoardView& view = joint->problem.views[worst.view];
-  const int camera = view.images[worst.image].camera;
-  const int others = ImagesOf(joint->problem, camera) - 1;
-  for (CameraView& o : joint->cameras[static_cast<std::size_t>(camera)].views->all) {
-    if (o.view != view.name) continue;
-    o.Reject("contradicts the other " + std::to_string(others) +
-             " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
-             " deg and " + Fixed(worst.centre_mm, 0) +
-             " mm elsewhere; did board or rig move, or does something stand against the board?");
-  }
-  view.images.erase(view.images.begin() + static_cast<std::ptrdiff_t>(worst.image));
-  if (!view.images.empty()) return;
-  const auto at = static_cast<std::ptrdiff_t>(worst.view);
-  joint->problem.views.erase(joint->problem.views.begin() + at);
-  state->lidar_from_target.erase(state->lidar_from_target.begin() + at);
-  state->side_shift.erase(state->side_shift.begin() + at);
-}
-
-// The side whose own shift is the least likely, out. False: none is unlikely enough.
-bool DropSide(JointProblem* joint, const BoardState& state) {
-  const double most = kSideSigmas * joint->problem.priors.side_sigma_rad;
-  double worst = most;
-  std::size_t view = 0;
-  std::size_t side = 0;
-  for (std::size_t v = 0; v < joint->problem.views.size(); ++v) {
-    for (std::size_t s = 0; s < 4; ++s) {
-      // A rectangle needs three.
-      const auto& sides = joint->problem.views[v].sides;
-      if (!sides[s] || std::count(sides.begin(), sides.end(), true) < 4) continue;
-      const double shift = std::abs(state.side_shift[v][s]);
-      if (shift <= worst) continue;
-      worst = shift;
-      view = v;
-      side = s;
-    }
-  }
-  if (worst <= most) return false;
-  joint->problem.views[view].sides[side] = false;
-  for (const BoardImage& image : joint->problem.views[view].images) {
-    joint->cameras[static_cast<std::size_t>(image.camera)].views->report.warnings.push_back(
-        "view " + joint->problem.views[view].name + ": the board's " + kSideNames[side] +
-        " side in the cloud lies " + Fixed(worst * 1000, 1) +
-        " mrad from where the other sides put it; that side is left out, the view is used");
-  }
-  return true;
-}
-
 const Contradiction* WorstToReject(const JointProblem& joint,
                                    const std::vector<Contradiction>& contradictions,
                                    const std::vector<int>& at_first) {
@@ -277,18 +223,106 @@ double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
   return count > 0 ? std::max(BoardPriors().side_sigma_rad, std::sqrt(sum / count)) : 0;
 }
 
-// Solves again until the sides' sigma agrees with the sides.
-void FitSides(JointProblem* joint, BoardState* state, JointResult* result) {
-  constexpr int kRounds = 12;
-  for (int round = 0; round < kRounds; ++round) {
-    const double before = joint->problem.priors.side_sigma_rad;
-    const double now = SideSigma(*joint, result->solution);
-    if (!(std::abs(now - before) > 0.03 * before)) return;
-    joint->problem.priors.side_sigma_rad = now;
-    result->solution = SolveBoards(joint->problem, *state);
-    *state = result->solution.state;
+// Solves, and again without what contradicts the rest.
+class JointSolver {
+ public:
+  explicit JointSolver(JointProblem joint) : state_(joint.start) {
+    result_.joint = std::move(joint);
+    for (std::size_t c = 0; c < Joint().cameras.size(); ++c) {
+      images_at_first_.push_back(ImagesOf(Problem(), static_cast<int>(c)));
+    }
   }
-}
+
+  JointResult Solve() {
+    for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
+      SolveOnce();
+      const auto contradictions = Contradictions(Joint(), result_.solution);
+      const Contradiction* worst = WorstToReject(Joint(), contradictions, images_at_first_);
+      if (worst != nullptr) {
+        RejectImage(*worst);
+        continue;
+      }
+      if (DropSide()) continue;
+      FitSides();
+      result_.variance_factor = VarianceFactor(Joint(), result_.solution);
+      break;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  JointProblem& Joint() { return result_.joint; }
+  BoardProblem& Problem() { return result_.joint.problem; }
+
+  void SolveOnce() {
+    result_.solution = SolveBoards(Problem(), state_);
+    state_ = result_.solution.state;
+  }
+
+  void RejectImage(const Contradiction& worst) {
+    BoardView& view = Problem().views[worst.view];
+    const int camera = view.images[worst.image].camera;
+    const int others = ImagesOf(Problem(), camera) - 1;
+    for (CameraView& o : Joint().cameras[static_cast<std::size_t>(camera)].views->all) {
+      if (o.view != view.name) continue;
+      o.Reject("contradicts the other " + std::to_string(others) +
+               " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
+               " deg and " + Fixed(worst.centre_mm, 0) +
+               " mm elsewhere; did board or rig move, or does something stand against the board?");
+    }
+    view.images.erase(view.images.begin() + static_cast<std::ptrdiff_t>(worst.image));
+    if (!view.images.empty()) return;
+    const auto at = static_cast<std::ptrdiff_t>(worst.view);
+    Problem().views.erase(Problem().views.begin() + at);
+    state_.lidar_from_target.erase(state_.lidar_from_target.begin() + at);
+    state_.side_shift.erase(state_.side_shift.begin() + at);
+  }
+
+  // The side whose own shift is the least likely, out. False: none is unlikely enough.
+  bool DropSide() {
+    const double most = kSideSigmas * Problem().priors.side_sigma_rad;
+    double worst = most;
+    std::size_t view = 0;
+    std::size_t side = 0;
+    for (std::size_t v = 0; v < Problem().views.size(); ++v) {
+      for (std::size_t s = 0; s < 4; ++s) {
+        // A rectangle needs three.
+        const auto& sides = Problem().views[v].sides;
+        if (!sides[s] || std::count(sides.begin(), sides.end(), true) < 4) continue;
+        const double shift = std::abs(state_.side_shift[v][s]);
+        if (shift <= worst) continue;
+        worst = shift;
+        view = v;
+        side = s;
+      }
+    }
+    if (worst <= most) return false;
+    Problem().views[view].sides[side] = false;
+    for (const BoardImage& image : Problem().views[view].images) {
+      Joint().cameras[static_cast<std::size_t>(image.camera)].views->report.warnings.push_back(
+          "view " + Problem().views[view].name + ": the board's " + kSideNames[side] +
+          " side in the cloud lies " + Fixed(worst * 1000, 1) +
+          " mrad from where the other sides put it; that side is left out, the view is used");
+    }
+    return true;
+  }
+
+  // Solves again until the sides' sigma agrees with the sides.
+  void FitSides() {
+    constexpr int kRounds = 12;
+    for (int round = 0; round < kRounds; ++round) {
+      const double before = Problem().priors.side_sigma_rad;
+      const double now = SideSigma(Joint(), result_.solution);
+      if (!(std::abs(now - before) > 0.03 * before)) return;
+      Problem().priors.side_sigma_rad = now;
+      SolveOnce();
+    }
+  }
+
+  JointResult result_;
+  BoardState state_;
+  std::vector<int> images_at_first_;  // of each camera
+};
 
 }  // namespace
 
@@ -311,29 +345,7 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
   return part;
 }
 
-JointResult SolveJointly(JointProblem* joint) {
-  std::vector<int> at_first;
-  for (std::size_t c = 0; c < joint->cameras.size(); ++c) {
-    at_first.push_back(ImagesOf(joint->problem, static_cast<int>(c)));
-  }
-  JointResult result;
-  BoardState state = joint->start;
-  for (std::size_t round = 0; round < 4 * joint->problem.views.size() + 4; ++round) {
-    result.solution = SolveBoards(joint->problem, state);
-    state = result.solution.state;
-    const auto contradictions = Contradictions(*joint, result.solution);
-    const Contradiction* worst = WorstToReject(*joint, contradictions, at_first);
-    if (worst != nullptr) {
-      RejectImage(joint, *worst, &state);
-      continue;
-    }
-    if (DropSide(joint, state)) continue;
-    FitSides(joint, &state, &result);
-    result.variance_factor = VarianceFactor(*joint, result.solution);
-    break;
-  }
-  return result;
-}
+JointResult SolveJointly(JointProblem joint) { return JointSolver(std::move(joint)).Solve(); }
 
 Matrix6d CovarianceOf(const JointResult& result, std::size_t index) {
   const auto at = static_cast<Index>(6 * index);

@@ -36,6 +36,7 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
 
 /// A joint solve of which views and sides that contradict the others were left out.
 struct JointResult {
+  JointProblem joint;  ///< what is left of it
   BoardSolution solution;
   double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
 };
@@ -45,7 +46,7 @@ struct JointResult {
 /// the cameras' views. A view's own estimate of a camera against that of all others: beyond
 /// what chance does once in 20,000 views, it is out. A side's own shift beyond 4 of its sigmas: its
 /// crossings are out, and a warning says so.
-JointResult SolveJointly(JointProblem* joint);
+JointResult SolveJointly(JointProblem joint);
 
 /// Of camera `index` [delta of rigid3.h], the variance factor counted in.
 Matrix6d CovarianceOf(const JointResult& result, std::size_t index);

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/statistics.h"
+#include "calib/model/text.h"
 #include "calib/solve/colouring.h"
 
 namespace rgbdt {
@@ -43,9 +44,7 @@ std::string Degrees(double rad) {
 }
 
 std::string Place::Words() const {
-  char text[80];
-  std::snprintf(text, sizeof text, "hold the board %.1f m from the LIDAR, ", range_m);
-  std::string words = text;
+  std::string words = Format("hold the board %.1f m from the LIDAR, ", range_m);
   words += std::abs(azimuth) < kDegree ? std::string("straight ahead")
                                        : Degrees(azimuth) + (azimuth > 0 ? " left" : " right");
   if (std::abs(elevation) >= kDegree) {
@@ -56,13 +55,6 @@ std::string Place::Words() const {
   words += std::string(", its ") + edges[towards % 4] + " edge turned " + Degrees(tilt) + " away";
   if (std::abs(roll) >= kDegree) words += ", rolled " + Degrees(roll);
   return words;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // How exactly this LIDAR and these cameras see a board, whatever its place.
@@ -246,7 +238,8 @@ Worst WorstOf(const BoardProblem& problem, const Eigen::MatrixXd& covariance) {
 
 }  // namespace
 
-std::optional<NextView> FindNextView(const JointProblem& joint, const JointResult& result) {
+std::optional<NextView> FindNextView(const JointResult& result) {
+  const JointProblem& joint = result.joint;
   const BoardProblem& problem = joint.problem;
   const BoardState& state = result.solution.state;
   if (problem.views.empty()) return std::nullopt;

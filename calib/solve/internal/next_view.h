@@ -12,6 +12,6 @@ namespace rgbdt {
 /// tilted and turned, wholly seen by all cameras and about where the LIDAR has seen boards; what
 /// each would tell is computed like a view's, with crossings, points and corners as exact as those
 /// of the views so far. Nothing where no such pose is seen by all cameras.
-std::optional<NextView> FindNextView(const JointProblem& joint, const JointResult& result);
+std::optional<NextView> FindNextView(const JointResult& result);
 
 }  // namespace rgbdt

@@ -106,13 +106,14 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
     j.row(end).head<6>() = there->by_target;
     j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
   }
-  const auto information = InverseOfPositive(side.covariance);
-  if (!information) return;
-  const double squared = residual.dot(*information * residual) / 2;
+  const auto inverse = InverseOfPositive(side.covariance);
+  if (!inverse) return;
+  const Eigen::Matrix2d information = *inverse;
+  const double squared = residual.dot(information * residual) / 2;
   const double weight = RobustWeight(squared);
   cost_ += 2 * RobustCost(squared);
-  h_ += weight * j.transpose() * *information * j;
-  g_ -= weight * j.transpose() * *information * residual;
+  h_ += weight * j.transpose() * information * j;
+  g_ -= weight * j.transpose() * information * residual;
 }
 
 // One end: where on the side the curve ends, and how far the projected side lies from there.

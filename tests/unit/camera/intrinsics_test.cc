@@ -24,7 +24,7 @@ TEST_P(IntrinsicsOf, TwentyViewsGiveTheFocalLengthsWithinATenthOfAPercent) {
   const CameraSpec& spec = GetParam().spec;
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const IntrinsicsResult result = CalibrateIntrinsics(InputOf(spec, 20, 0.1, seed));
-    EXPECT_TRUE(result.converged) << result.status;
+    EXPECT_TRUE(result.converged) << result.detail;
     EXPECT_EQ(result.ViewsUsed(), 20);
     EXPECT_NEAR(result.lens.fx / spec.lens.fx, 1, 1e-3);
     EXPECT_NEAR(result.lens.fy / spec.lens.fy, 1, 1e-3);
@@ -39,7 +39,7 @@ TEST_P(IntrinsicsOf, TwentyViewsGiveTheFocalLengthsWithinATenthOfAPercent) {
 TEST_P(IntrinsicsOf, PerfectCornersGiveTheLensItself) {
   const CameraSpec& spec = GetParam().spec;
   const IntrinsicsResult result = CalibrateIntrinsics(InputOf(spec, 12, 0, 4));
-  EXPECT_TRUE(result.converged) << result.status;
+  EXPECT_TRUE(result.converged) << result.detail;
   EXPECT_NEAR(result.lens.fx / spec.lens.fx, 1, 1e-5);
   EXPECT_NEAR(result.lens.fy / spec.lens.fy, 1, 1e-5);
   EXPECT_NEAR(result.lens.cx, spec.lens.cx, 0.01);
@@ -68,7 +68,7 @@ void ExpectHonestSigmas(const std::string& name) {
     input.views.clear();
     for (const Rigid3& pose : poses) input.views.push_back(boards.Corners(pose, 0.15));
     const IntrinsicsResult result = CalibrateIntrinsics(input);
-    ASSERT_TRUE(result.converged) << result.status;
+    ASSERT_TRUE(result.converged) << result.detail;
     const auto count = static_cast<Eigen::Index>(result.values.size());
     if (run == 0) {
       values.resize(kRuns, count);
@@ -88,7 +88,7 @@ TEST(Intrinsics, APinholesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("five_
 TEST(Intrinsics, AFisheyesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("acfr_fisheye"); }
 
 void ExpectLens(const IntrinsicsResult& result, const Lens& lens) {
-  EXPECT_TRUE(result.converged) << result.status;
+  EXPECT_TRUE(result.converged) << result.detail;
   EXPECT_NEAR(result.lens.fx / lens.fx, 1, 1e-3);
   EXPECT_NEAR(result.lens.fy / lens.fy, 1, 1e-3);
 }
@@ -171,7 +171,7 @@ TEST(Intrinsics, BoardsParallelToTheImageDetermineNothing) {
       const IntrinsicsResult result = CalibrateIntrinsics(input);
       EXPECT_FALSE(result.converged)
           << name << ", " << sigma << " px: f " << result.lens.fx << " +- " << result.Sigma(0);
-      EXPECT_THAT(result.status, HasSubstr("tilt the board more"));
+      EXPECT_THAT(result.detail, HasSubstr("tilt the board more"));
     }
   }
 }
@@ -181,7 +181,7 @@ TEST(Intrinsics, TooFewViewsAreSaid) {
   for (const int views : {0, 1, 2}) {
     const IntrinsicsResult result = CalibrateIntrinsics(InputOf(spec, views, 0.1, 8));
     EXPECT_FALSE(result.converged);
-    EXPECT_THAT(result.status, HasSubstr(std::to_string(views) + " usable views; expected"));
+    EXPECT_THAT(result.detail, HasSubstr(std::to_string(views) + " usable views; expected"));
   }
 }
 

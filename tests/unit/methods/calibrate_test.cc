@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calib/camera/camera.h"
 #include "calib/methods/paper/by_paper.h"
 #include "tests/unit/solve/board_world.h"
 

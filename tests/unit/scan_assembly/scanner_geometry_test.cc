@@ -163,7 +163,7 @@ TEST(ScannerGeometry, ALineThatLooksAheadOnlyTellsNothing) {
   const ScannerGeometry found = Find(WholeRoom(), sweep, off);
   EXPECT_FALSE(found.converged);
   EXPECT_EQ(found.seen_twice, 0);
-  EXPECT_THAT(found.status, HasSubstr("both halves"));
+  EXPECT_THAT(found.detail, HasSubstr("both halves"));
   for (const ScannerDirection& direction : found.directions) EXPECT_FALSE(direction.observed);
   EXPECT_THAT(found.directions[kTx].why, HasSubstr("over the vertical"));
   const Rigid3 guess = Moved(TiltedScanner(), off).motor_from_scanner;

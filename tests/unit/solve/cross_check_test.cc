@@ -86,10 +86,10 @@ TEST(CrossValidate, HalvesDifferAsTheirCovariancesSay) {
   for (std::uint32_t seed = 0; seed < kSessions; ++seed) {
     const SolveWorld world(Views(10, 300 + seed));
     const SolveSession session(world);
-    const JointProblem joint = session.Joint();
     JointResult result;
-    result.solution = SolveBoards(joint.problem, joint.start);
-    CrossValidate(joint, result, 2);
+    result.joint = session.Joint();
+    result.solution = SolveBoards(result.joint.problem, result.joint.start);
+    CrossValidate(result, 2);
     for (std::size_t c = 0; c < 2; ++c) {
       const auto& halves = session.cameras[c].views->report.halves;
       ASSERT_TRUE(halves);

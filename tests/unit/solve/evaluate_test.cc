@@ -83,7 +83,7 @@ TEST(JudgeCamera, MeansAreOverPointsAndKeepHeldOutViewsApart) {
   const CameraView held = CameraViewOf("rgb", detections[2]);
   CameraReport report;
   report.views.resize(9);  // an earlier judgement is replaced
-  JudgeCamera(PlainCamera(), {&one, &three, &held}, &report);
+  report = JudgeCamera(PlainCamera(), {&one, &three, &held}, report);
   ASSERT_EQ(report.views.size(), 3U);
   EXPECT_TRUE(report.views[2].heldout);
   EXPECT_NEAR(report.distance_transform_px.train.value(), 15.0 / 4, 1e-6);
@@ -95,8 +95,7 @@ TEST(JudgeCamera, MeansAreOverPointsAndKeepHeldOutViewsApart) {
 TEST(JudgeCamera, WhatIsNotToBeHadIsAbsent) {
   const ViewDetection detection = Detection({PointAt(80, 50)});
   const CameraView one = CameraViewOf("rgb", detection);
-  CameraReport report;
-  JudgeCamera(PlainCamera(), {&one}, &report);
+  const CameraReport report = JudgeCamera(PlainCamera(), {&one}, {});
   EXPECT_TRUE(report.distance_transform_px.train);
   EXPECT_FALSE(report.distance_transform_px.heldout);
   EXPECT_FALSE(report.edge_rms_px.heldout);

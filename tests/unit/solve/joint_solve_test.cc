@@ -267,10 +267,8 @@ TEST(SolveJointly, ViewsThatScatterMoreThanTheyStateEnlargeTheCovariance) {
   const SolveWorld noisy(options);
   const SolveSession honest_session(honest);
   const SolveSession noisy_session(noisy);
-  JointProblem a = honest_session.Joint();
-  JointProblem b = noisy_session.Joint();
-  EXPECT_EQ(SolveJointly(&a).variance_factor, 1);
-  const JointResult enlarged = SolveJointly(&b);
+  EXPECT_EQ(SolveJointly(honest_session.Joint()).variance_factor, 1);
+  const JointResult enlarged = SolveJointly(noisy_session.Joint());
   EXPECT_GT(enlarged.variance_factor, 2.5 * 2.5 / 2);
   EXPECT_LT(enlarged.variance_factor, 2.5 * 2.5 * 2);
   EXPECT_NEAR(CovarianceOf(enlarged, 1)(3, 3),

@@ -49,12 +49,11 @@ TEST(FindNextView, WhatItSaysBeforeIsTheWorstSigmaOfTheReport) {
 TEST(FindNextView, OfCamerasThatSeeNothingInCommonThereIsNone) {
   const SolveWorld world;
   const SolveSession session(world);
-  JointProblem joint = session.Joint();
-  JointResult result = SolveJointly(&joint);
-  ASSERT_TRUE(FindNextView(joint, result));
+  JointResult result = SolveJointly(session.Joint());
+  ASSERT_TRUE(FindNextView(result));
   Rigid3& second = result.solution.state.camera_from_lidar[1];
   second = RotationAbout({0, 1, 0}, M_PI) * second;
-  EXPECT_FALSE(FindNextView(joint, result));
+  EXPECT_FALSE(FindNextView(result));
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ CameraIntrinsics Solved() {
   camera.corners.views = {{"0001", {{10, 20}, {30, 40}}}, {"<b>", {{1, 2}}}};
   IntrinsicsResult& result = camera.result;
   result.converged = true;
-  result.status = "converged";
   result.names = {"fx", "fy", "cx", "cy", "k1"};
   result.values = {500.125, 501, 320, 240, -0.25};
   result.covariance = Eigen::MatrixXd::Identity(5, 5) * 0.04;
@@ -49,7 +48,7 @@ TEST(IntrinsicsHtml, ShowsParametersCornersAndEveryView) {
 TEST(IntrinsicsHtml, WhatDidNotConvergeHasNoNumbersToUse) {
   CameraIntrinsics camera = Solved();
   camera.result.converged = false;
-  camera.result.status = "not enough tilt";
+  camera.result.detail = "not enough tilt";
   camera.result.coverage.corners[0] = camera.result.coverage.corners[1] = 0;
   camera.result.coverage.corners[8] = camera.result.coverage.corners[9] = 0;
   const std::string page = IntrinsicsHtml({camera});
