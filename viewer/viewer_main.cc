@@ -11,6 +11,7 @@
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
+#include "calib/model/version.h"
 #include "calib/present/frames/page.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/session/session_frames.h"

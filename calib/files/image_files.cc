@@ -74,15 +74,15 @@ void WritePng(const std::filesystem::path& path, const cv::Mat& pixels) {
   WriteFileAtomically(path, EncodePng(pixels));
 }
 
-PixelFormat FormatOf(PixelFormat told, cv::Mat* decoded) {
+PixelFormat FormatOf(PixelFormat declared, cv::Mat* decoded) {
   if (decoded->type() == CV_8UC4) {
     cv::Mat bgr;
     cv::cvtColor(*decoded, bgr, cv::COLOR_BGRA2BGR);
     *decoded = bgr;
   }
-  if (told != PixelFormat{}) {
-    if (TypeOf(told) == decoded->type()) return told;
-    throw InputError("is a " + Describe(*decoded) + " image, which is not " + NameOf(told));
+  if (declared != PixelFormat{}) {
+    if (TypeOf(declared) == decoded->type()) return declared;
+    throw InputError("is a " + Describe(*decoded) + " image, which is not " + NameOf(declared));
   }
   for (const PixelFormat format : {PixelFormat::kMono8, PixelFormat::kMono16, PixelFormat::kBgr8}) {
     if (TypeOf(format) == decoded->type()) return format;

@@ -21,10 +21,11 @@ std::string EncodeJpeg(const cv::Mat& pixels, int quality);
 /// EncodePng into a file, atomically.
 void WritePng(const std::filesystem::path& path, const cv::Mat& pixels);
 
-/// What `decoded` is: kMono8, kMono16 or kBgr8 by its type, or `told` where that fits the type (a
-/// raw mosaic is a grey image of which only the writer knows the pattern). Turns BGRA into BGR.
-/// Throws InputError where the type is none of these or contradicts `told`; 0 is "not told".
-PixelFormat FormatOf(PixelFormat told, cv::Mat* decoded);
+/// What `decoded` is: kMono8, kMono16 or kBgr8 by its type, or `declared` where that fits the type
+/// (a raw mosaic is a grey image of which only the writer knows the pattern). Turns BGRA into BGR.
+/// Throws InputError where the type is none of these or contradicts `declared`; 0 is "not
+/// declared".
+PixelFormat FormatOf(PixelFormat declared, cv::Mat* decoded);
 
 /// BAYER_RG8 and so on, as the schemas name it.
 std::string NameOf(PixelFormat format);

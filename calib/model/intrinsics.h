@@ -75,7 +75,7 @@ struct IntrinsicsResult {
   Lens lens;
   LensChoice choice = LensChoice::kPinhole5;
   bool converged = false;
-  std::string status;  ///< in words; where not converged: why, and what to do
+  std::string detail;  ///< where it is not: why, and what to do
   double rms_px = 0;   ///< length of the residuals, over all corners used
   int corners_used = 0;
   std::vector<std::string> names;  ///< of what was solved for: fx fy cx cy k1 ...

@@ -10,8 +10,8 @@
 
 namespace rgbdt {
 
-/// What a device's thread has told so far.
-struct Told {
+/// What a device's thread has published so far.
+struct Collected {
   Messages messages;
   std::vector<std::string> warnings;
 
@@ -50,13 +50,13 @@ inline DeviceOutput OutputOf(DeviceNode* node) {
 
 /// Takes the output of a thread or node until `enough` says so; false after `timeout_s`.
 template <typename Source, typename Enough>
-bool Collect(Source* source, Told* told, const Enough& enough, double timeout_s = 30) {
+bool Collect(Source* source, Collected* collected, const Enough& enough, double timeout_s = 30) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
   while (std::chrono::steady_clock::now() < until) {
     DeviceOutput output = OutputOf(source);
-    for (Message& message : output.messages) told->messages.push_back(std::move(message));
-    for (std::string& warning : output.warnings) told->warnings.push_back(std::move(warning));
-    if (enough(*told)) return true;
+    for (Message& message : output.messages) collected->messages.push_back(std::move(message));
+    for (std::string& warning : output.warnings) collected->warnings.push_back(std::move(warning));
+    if (enough(*collected)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return false;

@@ -50,13 +50,14 @@ class PcdFolderTest : public ::testing::Test {
     WritePcd(fs::path(device_.folder) / name, cloud);
   }
 
-  Told PlayAll() {
+  Collected PlayAll() {
     PcdFolder folder(device_);
-    Told told;
+    Collected collected;
     DeviceThread thread([&](DeviceThread& self) { folder.Serve(self); });
-    EXPECT_TRUE(Collect(&thread, &told, [&](const Told&) { return thread.ended(); }));
-    EXPECT_EQ(folder.report().count("sweeps"), static_cast<std::int64_t>(told.Count<CloudChunk>()));
-    return told;
+    EXPECT_TRUE(Collect(&thread, &collected, [&](const Collected&) { return thread.ended(); }));
+    EXPECT_EQ(folder.report().count("sweeps"),
+              static_cast<std::int64_t>(collected.Count<CloudChunk>()));
+    return collected;
   }
 
   PcdFolderDevice device_;
@@ -67,9 +68,9 @@ TEST_F(PcdFolderTest, InOrderWithTheirOwnTimes) {
   Write("a.pcd", 1, kStart);
   Write("c.pcd", 3, kStart + 120'000);
   const auto begin = std::chrono::steady_clock::now();
-  const Told told = PlayAll();
+  const Collected collected = PlayAll();
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(119));
-  const auto chunks = told.All<CloudChunk>();
+  const auto chunks = collected.All<CloudChunk>();
   ASSERT_EQ(chunks.size(), 3u);
   EXPECT_EQ(chunks[0].cloud.sweep_utime, kStart);
   EXPECT_EQ(chunks[1].cloud.sweep_utime, kStart + 50'000);
@@ -98,11 +99,11 @@ TEST_F(PcdFolderTest, BadOnesAreNamedAndPassedOver) {
   Write("3.pcd", 3, kStart - 10);
   Write("4.pcd", 4, kStart + 10'000);
   std::ofstream(fs::path(device_.folder) / "readme.txt") << "not looked at";
-  const Told told = PlayAll();
-  ASSERT_EQ(told.Count<CloudChunk>(), 2u);
-  ASSERT_EQ(told.warnings.size(), 2u);
-  EXPECT_THAT(told.warnings[0], HasSubstr("2.pcd"));
-  EXPECT_THAT(told.warnings[1], HasSubstr("3.pcd: its time"));
+  const Collected collected = PlayAll();
+  ASSERT_EQ(collected.Count<CloudChunk>(), 2u);
+  ASSERT_EQ(collected.warnings.size(), 2u);
+  EXPECT_THAT(collected.warnings[0], HasSubstr("2.pcd"));
+  EXPECT_THAT(collected.warnings[1], HasSubstr("3.pcd: its time"));
 }
 
 TEST_F(PcdFolderTest, WithoutFilesOrFolderSaysSo) {

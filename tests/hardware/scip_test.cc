@@ -185,15 +185,16 @@ struct Rig {
         thread([this](DeviceThread& self) { scanner.Serve(self); }) {}
 
   bool WaitForLines(std::size_t count) {
-    return Collect(&thread, &told, [&](const Told& t) { return t.Count<LineScan>() >= count; });
+    return Collect(&thread, &collected,
+                   [&](const Collected& t) { return t.Count<LineScan>() >= count; });
   }
   bool WaitForProblem(const std::string& part) {
-    return Collect(&thread, &told, [&](const Told& t) { return t.HasWarning(part); });
+    return Collect(&thread, &collected, [&](const Collected& t) { return t.HasWarning(part); });
   }
 
   ScipPeer peer;
   ScipScanner scanner;
-  Told told;
+  Collected collected;
   DeviceThread thread;
 };
 
@@ -202,7 +203,7 @@ TEST(ScipScanner, AStreamAgainstTheTruth) {
   Rig rig(options);
   ASSERT_TRUE(rig.WaitForLines(160));  // 4 s
   std::vector<double> errors_us;
-  for (const LineScan& line : rig.told.All<LineScan>()) {
+  for (const LineScan& line : rig.collected.All<LineScan>()) {
     ASSERT_EQ(line.range.size(), 201u);
     EXPECT_NEAR(line.first_angle_rad, -100 * 2 * M_PI / 1440, 1e-12);
     EXPECT_NEAR(line.angle_step_rad, 2 * M_PI / 1440, 1e-12);
@@ -224,7 +225,7 @@ TEST(ScipScanner, AStreamAgainstTheTruth) {
   const Status status = rig.scanner.report().GetStatus();
   EXPECT_TRUE(status.ready);
   EXPECT_THAT(status.text, HasSubstr("UTM-30LX-EW"));
-  EXPECT_TRUE(rig.told.warnings.empty()) << rig.told.warnings[0];
+  EXPECT_TRUE(rig.collected.warnings.empty()) << rig.collected.warnings[0];
 }
 
 TEST(ScipScanner, TellsBadScansAndGoesOn) {
@@ -235,7 +236,7 @@ TEST(ScipScanner, TellsBadScansAndGoesOn) {
   ASSERT_TRUE(rig.WaitForProblem("wrong checksum"));
   rig.peer.Inject(ScipPeer::Fault::kRubbish);
   ASSERT_TRUE(rig.WaitForProblem("status"));
-  ASSERT_TRUE(rig.WaitForLines(rig.told.Count<LineScan>() + 3));
+  ASSERT_TRUE(rig.WaitForLines(rig.collected.Count<LineScan>() + 3));
   EXPECT_GE(rig.scanner.report().count("bad lines"), 1);
   EXPECT_GE(rig.scanner.report().count("lost lines"), 1);
   EXPECT_EQ(rig.peer.clients(), 1);
@@ -248,9 +249,9 @@ TEST(ScipScanner, ConnectsAgainAndTellsTheGap) {
     ASSERT_TRUE(rig.WaitForLines(3));
     rig.peer.Inject(fault);
     ASSERT_TRUE(rig.WaitForProblem(why));
-    EXPECT_TRUE(rig.told.HasWarning("127.0.0.1:" + std::to_string(rig.peer.port())));
+    EXPECT_TRUE(rig.collected.HasWarning("127.0.0.1:" + std::to_string(rig.peer.port())));
     ASSERT_TRUE(rig.WaitForProblem("is back; no lines for"));
-    ASSERT_TRUE(rig.WaitForLines(rig.told.Count<LineScan>() + 3));
+    ASSERT_TRUE(rig.WaitForLines(rig.collected.Count<LineScan>() + 3));
     EXPECT_EQ(rig.peer.clients(), 2);
     EXPECT_EQ(rig.scanner.report().count("reconnects"), 1);
   }
@@ -262,8 +263,8 @@ TEST(ScipScanner, WithoutIntensitiesAndTimeMode) {
   options.time_mode = false;
   Rig rig(options);
   ASSERT_TRUE(rig.WaitForLines(5));
-  EXPECT_TRUE(rig.told.All<LineScan>()[0].intensity.empty());
-  EXPECT_TRUE(rig.told.HasWarning("does not tell its time"));
+  EXPECT_TRUE(rig.collected.All<LineScan>()[0].intensity.empty());
+  EXPECT_TRUE(rig.collected.HasWarning("does not tell its time"));
   EXPECT_THAT(rig.peer.commands(), ElementsAre("TM2", "QT", "SCIP2.0", "VV", "PP", "TM0",
                                                "ME0100030001000", "MD0100030001000"));
 }
@@ -273,7 +274,7 @@ TEST(ScipScanner, ThatWasLeftInItsTimeMode) {
   options.time_mode_on = true;
   Rig rig(options);
   ASSERT_TRUE(rig.WaitForLines(3));
-  EXPECT_TRUE(rig.told.warnings.empty());
+  EXPECT_TRUE(rig.collected.warnings.empty());
 }
 
 TEST(ScipScanner, NobodyThereSaysWhatToDo) {
@@ -284,9 +285,9 @@ TEST(ScipScanner, NobodyThereSaysWhatToDo) {
   }
   ScipScanner scanner({"127.0.0.1", port});
   DeviceThread thread([&](DeviceThread& self) { scanner.Serve(self); });
-  Told told;
-  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.warnings.empty(); }));
-  EXPECT_THAT(told.warnings[0], HasSubstr("is it switched on"));
+  Collected collected;
+  ASSERT_TRUE(Collect(&thread, &collected, [](const Collected& t) { return !t.warnings.empty(); }));
+  EXPECT_THAT(collected.warnings[0], HasSubstr("is it switched on"));
   EXPECT_FALSE(scanner.report().GetStatus().ready);
 }
 

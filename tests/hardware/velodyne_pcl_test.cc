@@ -88,11 +88,11 @@ Cloud ByDriver(Model model, const std::string& file) {
   device.pcap = file;
   VelodyneSource source(device);
   DeviceThread thread([&](DeviceThread& self) { source.Serve(self); });
-  Told told;
+  Collected collected;
   EXPECT_TRUE(Collect(
-      &thread, &told, [&](const Told&) { return thread.ended(); }, 60));
+      &thread, &collected, [&](const Collected&) { return thread.ended(); }, 60));
   Cloud sweep;
-  for (const CloudChunk& chunk : told.All<CloudChunk>()) {
+  for (const CloudChunk& chunk : collected.All<CloudChunk>()) {
     const Cloud& c = chunk.cloud;
     sweep.points.insert(sweep.points.end(), c.points.begin(), c.points.end());
     sweep.intensity.insert(sweep.intensity.end(), c.intensity.begin(), c.intensity.end());

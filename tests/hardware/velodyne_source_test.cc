@@ -55,11 +55,11 @@ VelodyneDevice Device(const std::string& pcap) {
 }
 
 // All that a recording gives; waits for its end.
-Told PlayAll(VelodyneSource* source) {
-  Told told;
+Collected PlayAll(VelodyneSource* source) {
+  Collected collected;
   DeviceThread thread([&](DeviceThread& self) { source->Serve(self); });
-  EXPECT_TRUE(Collect(&thread, &told, [&](const Told&) { return thread.ended(); }));
-  return told;
+  EXPECT_TRUE(Collect(&thread, &collected, [&](const Collected&) { return thread.ended(); }));
+  return collected;
 }
 
 using VelodyneRecording = Files;
@@ -73,8 +73,8 @@ TEST_F(VelodyneRecording, OfAnyKindIsPlayed) {
       writer.link = link;
       writer.next_generation = next_generation;
       VelodyneSource source(Device(Record(writer, encoder, 160)));
-      const Told told = PlayAll(&source);
-      const auto chunks = told.All<CloudChunk>();
+      const Collected collected = PlayAll(&source);
+      const auto chunks = collected.All<CloudChunk>();
       ASSERT_EQ(chunks.size(), 2u) << static_cast<int>(link) << next_generation;  // halves of one
       EXPECT_FALSE(chunks[0].sweep_end);
       EXPECT_TRUE(chunks[1].sweep_end);
@@ -84,7 +84,7 @@ TEST_F(VelodyneRecording, OfAnyKindIsPlayed) {
       EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kStart), 225 * 110.592, 2);
       EXPECT_EQ(source.report().count("packets"), 160);
       EXPECT_EQ(source.report().count("bad packets"), 0);
-      EXPECT_TRUE(told.warnings.empty());
+      EXPECT_TRUE(collected.warnings.empty());
     }
   }
 }
@@ -122,13 +122,13 @@ TEST_F(VelodyneRecording, DamageInsideIsToldAndTheRestIsPlayed) {
   writer.bytes.resize(writer.bytes.size() - 100);
   writer.Save(Path("damaged.pcap"));
   VelodyneSource source(Device(Path("damaged.pcap")));
-  const Told told = PlayAll(&source);
-  EXPECT_EQ(told.Count<CloudChunk>(), 2u);
+  const Collected collected = PlayAll(&source);
+  EXPECT_EQ(collected.Count<CloudChunk>(), 2u);
   EXPECT_EQ(source.report().count("bad packets"), 3);
   EXPECT_EQ(source.report().count("lost packets"), 3);
-  EXPECT_TRUE(told.HasWarning("has 692 bytes") || told.HasWarning("has 700 bytes"));
-  EXPECT_TRUE(told.HasWarning("cut short; record them whole"));
-  EXPECT_TRUE(told.HasWarning("damaged.pcap: is damaged or cut short"));
+  EXPECT_TRUE(collected.HasWarning("has 692 bytes") || collected.HasWarning("has 700 bytes"));
+  EXPECT_TRUE(collected.HasWarning("cut short; record them whole"));
+  EXPECT_TRUE(collected.HasWarning("damaged.pcap: is damaged or cut short"));
 }
 
 TEST_F(VelodyneRecording, OfAnotherPortSaysSo) {
@@ -144,27 +144,30 @@ TEST_F(VelodyneNode, ASweepCommandIsDoneWithTheFirstWholeOneAfterIt) {
   LidarSpec lidar;
   lidar.device = Device(Record({}, Encoder(), 6 * 75));
   LidarNode node(lidar);
-  Told told;
-  ASSERT_TRUE(Collect(&node, &told, [](const Told& t) { return t.Count<CloudChunk>() >= 1; }));
-  const Utime newest = told.All<CloudChunk>().back().cloud.sweep_utime;
+  Collected collected;
+  ASSERT_TRUE(
+      Collect(&node, &collected, [](const Collected& t) { return t.Count<CloudChunk>() >= 1; }));
+  const Utime newest = collected.All<CloudChunk>().back().cloud.sweep_utime;
   SessionCommand command;
   command.verb = SessionVerb::kSweep;
   command.command = 7;
   EXPECT_TRUE(node.Handle(command).empty());
-  ASSERT_TRUE(Collect(&node, &told, [](const Told& t) { return t.Count<SessionEvent>() == 1; }));
-  const SessionEvent event = told.All<SessionEvent>()[0];
+  ASSERT_TRUE(
+      Collect(&node, &collected, [](const Collected& t) { return t.Count<SessionEvent>() == 1; }));
+  const SessionEvent event = collected.All<SessionEvent>()[0];
   EXPECT_EQ(event.command, 7);
   EXPECT_EQ(event.kind, EventKind::kDone);
   EXPECT_GT(event.sweep_utime, newest + 90'000);  // not the one that had begun
   // Its chunks came before.
-  EXPECT_EQ(told.All<CloudChunk>().back().cloud.sweep_utime, event.sweep_utime);
+  EXPECT_EQ(collected.All<CloudChunk>().back().cloud.sweep_utime, event.sweep_utime);
   EXPECT_TRUE(node.GetStatus().ready);
   // No sweep begins any more.
   command.command = 8;
-  ASSERT_TRUE(Collect(&node, &told, [&](const Told&) { return node.finished(); }));
+  ASSERT_TRUE(Collect(&node, &collected, [&](const Collected&) { return node.finished(); }));
   node.Handle(command);
-  ASSERT_TRUE(Collect(&node, &told, [](const Told& t) { return t.Count<SessionEvent>() == 2; }));
-  EXPECT_EQ(told.All<SessionEvent>()[1].kind, EventKind::kFailed);
+  ASSERT_TRUE(
+      Collect(&node, &collected, [](const Collected& t) { return t.Count<SessionEvent>() == 2; }));
+  EXPECT_EQ(collected.All<SessionEvent>()[1].kind, EventKind::kFailed);
 }
 
 TEST_F(VelodyneNode, WithoutADeviceSaysWhatToAdd) {
@@ -212,18 +215,18 @@ TEST(VelodyneLive, APortIsListenedAt) {
     if (i == 20) sender.Send(std::vector<std::uint8_t>(554));
     if (i == 30) sender.Send({1, 2, 3});
   }
-  Told told;
-  ASSERT_TRUE(Collect(&thread, &told, [&](const Told& t) {
+  Collected collected;
+  ASSERT_TRUE(Collect(&thread, &collected, [&](const Collected& t) {
     return t.Count<CloudChunk>() == 2 && source.report().count("packets") == 160;
   }));
-  const auto chunk = told.All<CloudChunk>()[1];
+  const auto chunk = collected.All<CloudChunk>()[1];
   EXPECT_TRUE(chunk.sweep_end);
   const double late = static_cast<double>(chunk.cloud.sweep_utime - start) - 225 * 110.592;
   RecordProperty("late_us", std::to_string(late));
   EXPECT_GT(late, -10);
   EXPECT_LT(late, 20'000);  // the least delay of 160 packets on a busy machine
   EXPECT_EQ(source.report().count("bad packets"), 1);
-  EXPECT_TRUE(told.HasWarning("has 3 bytes"));
+  EXPECT_TRUE(collected.HasWarning("has 3 bytes"));
 }
 
 TEST(VelodyneLive, APortInUseSaysSo) {
@@ -232,9 +235,9 @@ TEST(VelodyneLive, APortInUseSaysSo) {
   device.port = taken.port();
   VelodyneSource source(device);
   DeviceThread thread([&](DeviceThread& self) { source.Serve(self); });
-  Told told;
-  ASSERT_TRUE(Collect(&thread, &told, [](const Told& t) { return !t.warnings.empty(); }));
-  EXPECT_THAT(told.warnings[0], HasSubstr("is in use"));
+  Collected collected;
+  ASSERT_TRUE(Collect(&thread, &collected, [](const Collected& t) { return !t.warnings.empty(); }));
+  EXPECT_THAT(collected.warnings[0], HasSubstr("is in use"));
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   if (camera.range_offset) {
     text::FromEstimate(*camera.range_offset, out->mutable_range_offset_m());
   }
-  text::FromSureness(camera, out);
+  text::FromUncertainty(camera, out);
   out->mutable_seconds()->set_detect_image(camera.detect_image_s);
   out->mutable_seconds()->set_detect_cloud(camera.detect_cloud_s);
   out->mutable_seconds()->set_solve(camera.solve_s);
@@ -171,7 +171,7 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
     camera.first_guess_error = ToPoseError(message.first_guess_error());
   }
   if (message.has_truth_error()) camera.truth_error = ToPoseError(message.truth_error());
-  text::ToSureness(message, place, &camera);
+  text::ToUncertainty(message, place, &camera);
   camera.detect_image_s = message.seconds().detect_image();
   camera.detect_cloud_s = message.seconds().detect_cloud();
   camera.solve_s = message.seconds().solve();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "calib/model/check.h"
 #include "calib/model/errors.h"
 #include "calib/present/pictures/internal/cloud_colours.h"
 #include "calib/present/pictures/internal/picture_notes.h"
@@ -73,18 +74,13 @@ void CheckCloud(const RgbdtCloud& cloud) {
 }  // namespace
 
 void DrawOptions::Check() const {
-  const auto require = [](bool good, const std::string& field, double value,
-                          const std::string& expected) {
-    if (!good) {
-      throw InputError("picture: " + field + " is " + std::to_string(value) + "; expected " +
-                       expected);
-    }
-  };
-  require(width >= 16 && width <= 8000, "width", width, "16 to 8000 px");
-  require(height >= 16 && height <= 8000, "height", height, "16 to 8000 px");
-  require(field_of_view_deg >= 10 && field_of_view_deg <= 150, "field_of_view_deg",
-          field_of_view_deg, "10 to 150 degrees");
-  require(point_size > 0 && point_size <= 100, "point_size", point_size, "above 0, up to 100");
+  const OptionCheck check("picture");
+  check.Require(width >= 16 && width <= 8000, "width", width, "16 to 8000 px");
+  check.Require(height >= 16 && height <= 8000, "height", height, "16 to 8000 px");
+  check.Require(field_of_view_deg >= 10 && field_of_view_deg <= 150, "field_of_view_deg",
+                field_of_view_deg, "10 to 150 degrees");
+  check.Require(point_size > 0 && point_size <= 100, "point_size", point_size,
+                "above 0, up to 100");
 }
 
 cv::Mat DrawCloud(const RgbdtCloud& cloud, CloudColour colour, const DrawOptions& options) {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <string>
+
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -18,12 +19,6 @@ const cv::Vec3b kAhead(30, 120, 230), kBehind(200, 90, 20);
 
 void Write(const std::string& text, cv::Point at, double size, cv::Mat* picture) {
   cv::putText(*picture, text, at, kFont, size, kInk, 1, cv::LINE_AA);
-}
-
-std::string Format(const char* format, double value) {
-  char text[80];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 /// One sweep under one geometry.

@@ -1,7 +1,8 @@
 #include "calib/present/pictures/terrain_json.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -9,10 +10,7 @@ namespace {
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 std::string Number(double value, int decimals) {
-  if (!std::isfinite(value)) return "null";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return std::isfinite(value) ? Fixed(value, decimals) : "null";
 }
 
 std::string Quoted(const std::string& text) {

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <vector>
+
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -38,12 +39,6 @@ cv::Vec3b Mix(const cv::Vec3b& a, const cv::Vec3b& b, double share) {
 
 cv::Vec3b GreenOf(double slope_rad, const TerrainOptions& options) {
   return Mix(kFlat, kSteep, std::clamp(slope_rad / options.max_slope_rad, 0.0, 1.0));
-}
-
-std::string Format(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 /// The part of the grid that is drawn, and how large.
@@ -107,9 +102,9 @@ void DrawAxes(const View& view, cv::Mat* picture) {
   const cv::Rect frame({kLeft, kTop}, view.size());
   const double step =
       TickStep(std::max(view.high_x() - view.low_x(), view.high_y() - view.low_y()));
-  const char* format = step < 0.1 ? "%.2f" : step < 1 ? "%.1f" : "%.0f";
+  const int decimals = step < 0.1 ? 2 : step < 1 ? 1 : 0;
   const auto label = [&](double value) {  // no "-0"
-    return Format(std::abs(value) < step / 2 ? 0 : value, format);
+    return Fixed(std::abs(value) < step / 2 ? 0 : value, decimals);
   };
   for (double x = std::ceil(view.low_x() / step) * step; x <= view.high_x(); x += step) {
     const cv::Point at = view.Pixel(x, view.low_y());
@@ -186,7 +181,7 @@ void DrawLegend(const View& view, const TerrainOptions& options, cv::Mat* pictur
   };
   entry(GreenOf(0, options), "traversable, level");
   entry(GreenOf(options.max_slope_rad, options),
-        "traversable, " + Format(options.max_slope_rad / kDegree, "%.0f deg"));
+        "traversable, " + Format("%.0f deg", options.max_slope_rad / kDegree));
   entry(Mix(kFlat, kUnknown, 0.6), "between such cells");
   entry(kObstacle, "obstacle");
   entry(kUnknown, "unknown");
@@ -211,7 +206,7 @@ cv::Mat StatePanel(const Terrain& terrain, const TerrainOptions& options, const 
   DrawSites(view, terrain.sites, &picture);
   DrawSensor(view, frame, &picture);
   DrawAxes(view, &picture);
-  Text("terrain, frame " + frame + ", cells of " + Format(grid.cell_m, "%.2g m"), {kLeft, 30},
+  Text("terrain, frame " + frame + ", cells of " + Format("%.2g m", grid.cell_m), {kLeft, 30},
        &picture, 0.6);
   DrawLegend(view, options, &picture);
   return picture;
@@ -250,7 +245,7 @@ void DrawBar(const TemperatureScale& scale, const View& view, cv::Mat* picture) 
   for (int tick = 0; tick <= 4; ++tick) {
     const double kelvin = scale.low + (scale.high - scale.low) * tick / 4;
     const int y = kTop + height - height * tick / 4;
-    Text(Format(kelvin - 273.15, "%.1f"), {left + 26, y + 5}, picture, 0.45);
+    Text(Fixed(kelvin - 273.15, 1), {left + 26, y + 5}, picture, 0.45);
   }
   Text("[C]", {left, kTop - 12}, picture, 0.45);
 }

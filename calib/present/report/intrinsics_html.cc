@@ -12,7 +12,7 @@ namespace {
 
 Verdict VerdictOf(const IntrinsicsResult& result) {
   Verdict verdict{Grade::kGood, "Converged", {}};
-  if (!result.converged) verdict = {Grade::kBad, "Not converged", {result.status}};
+  if (!result.converged) verdict = {Grade::kBad, "Not converged", {result.detail}};
   verdict.reasons.push_back(
       std::to_string(result.ViewsUsed()) + " views, " + std::to_string(result.corners_used) +
       " corners, RMS " + Number(result.rms_px, 3) + " px; " +

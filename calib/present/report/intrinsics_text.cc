@@ -18,7 +18,7 @@ std::string HeadText(const CameraSpec& before, const CameraCorners& corners,
       "camera {}: {}, {}x{} px: {}\n"
       "  board found in {} of {} images, used in {}; {} corners, RMS {:.3f} px\n",
       before.name, NameOf(result.choice), before.width, before.height,
-      result.converged ? "converged" : "NOT CONVERGED: " + result.status, corners.views.size(),
+      result.converged ? "converged" : "NOT CONVERGED: " + result.detail, corners.views.size(),
       corners.images, result.ViewsUsed(), result.corners_used, result.rms_px);
 }
 

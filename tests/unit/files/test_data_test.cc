@@ -78,7 +78,7 @@ CameraReport MakeCameraReport(const std::string& name) {
 }
 
 // What a method with crossings and a covariance tells as well; no two numbers alike.
-void AddSureness(CameraReport* camera) {
+void AddUncertainty(CameraReport* camera) {
   camera->views[1].edge_rms_whitened = 1.0625;
   camera->edge_rms_whitened = {0.96875, 1.0 / 0.95};
   PoseSigma sigma;
@@ -180,7 +180,7 @@ Report MakeReport() {
   Matrix6d covariance;
   for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = 1e-8 / (i + 3);
   report.cameras[0].calibration.covariance = covariance;
-  AddSureness(&report.cameras[0]);
+  AddUncertainty(&report.cameras[0]);
   report.closure = {{"rgb",
                      "thermal",
                      MakePose(0.11, {0.1, 0, 0}),

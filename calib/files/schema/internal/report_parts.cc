@@ -168,7 +168,7 @@ TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure) {
   return out;
 }
 
-void FromSureness(const CameraReport& camera, proto::CameraReport* out) {
+void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
   FromTrainHeldout(camera.edge_rms_whitened, out->mutable_edge_rms_whitened());
   const proto::TrainHeldout& whitened = out->edge_rms_whitened();
   if (!whitened.has_train() && !whitened.has_heldout()) out->clear_edge_rms_whitened();
@@ -178,7 +178,7 @@ void FromSureness(const CameraReport& camera, proto::CameraReport* out) {
   if (camera.halves) FromHalves(*camera.halves, out->mutable_halves());
 }
 
-void ToSureness(const proto::CameraReport& message, const Place& place, CameraReport* camera) {
+void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera) {
   camera->edge_rms_whitened = ToTrainHeldout(message.edge_rms_whitened());
   if (message.has_sigma()) camera->sigma = ToSigma(message.sigma(), place.In("sigma"));
   for (const proto::Nuisance& nuisance : message.nuisance()) {

@@ -19,9 +19,9 @@ void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);
 
 /// The uncertainty of a camera's pose: edge_rms_whitened, sigma, nuisance, folds and halves.
-void FromSureness(const CameraReport& camera, proto::CameraReport* out);
+void FromUncertainty(const CameraReport& camera, proto::CameraReport* out);
 /// Throws InputError where a list of numbers has another length than it should.
-void ToSureness(const proto::CameraReport& message, const Place& place, CameraReport* camera);
+void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera);
 
 /// The report's closure and next view; one whose poses are not finite is left out.
 void FromRigWide(const Report& report, proto::Report* out);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
+
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -87,10 +88,8 @@ double RoundStep(double range) {
 
 // With as many decimals as the step between two of them needs.
 std::string Label(double value, double step) {
-  char text[64];
   const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 6);
-  std::snprintf(text, sizeof text, "%.*f", decimals, std::abs(value) < 1e-9 * step ? 0 : value);
-  return text;
+  return Fixed(std::abs(value) < 1e-9 * step ? 0 : value, decimals);
 }
 
 // OpenCV's fonts have no degree sign: a small circle is one.

@@ -7,18 +7,14 @@
 #include <limits>
 #include <utility>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 // Times the spacing of the beams: half the diagonal of a square and some more; and the most.
 constexpr float kLeast = 0.8f, kMost = 3, kStep = 8;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Angle between neighbouring beams [rad], the median over some of them.
 double BeamSpacing(const std::vector<Eigen::Vector3f>& points) {

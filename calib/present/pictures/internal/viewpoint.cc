@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -40,9 +42,8 @@ std::vector<Eigen::Vector3d> Subject(const RgbdtCloud& cloud) {
 }
 
 double Percentile(std::vector<double> values, double fraction) {
-  const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+  const auto k = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
+  return Nth(std::move(values), k);
 }
 
 Eigen::Vector3d Middle(const std::vector<Eigen::Vector3d>& points) {

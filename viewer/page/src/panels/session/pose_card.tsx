@@ -10,9 +10,9 @@ export function textOf(matrix: number[]): string {
 }
 
 function Matrix({ pose: { name, sentence, matrix }, testid }: { pose: Pose; testid: string }) {
-  const told = useSignal("");
+  const message = useSignal("");
   const copy = async (): Promise<void> => {
-    told.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not let this page copy.";
+    message.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not let this page copy.";
   };
   return (
     <div class="matrix" data-testid={testid}>
@@ -27,7 +27,7 @@ function Matrix({ pose: { name, sentence, matrix }, testid }: { pose: Pose; test
       </div>
       <div class="row">
         <button type="button" onClick={() => void copy()} data-testid={`${testid}-copy`}>Copy {name}</button>
-        <span role="status">{told}</span>
+        <span role="status">{message}</span>
       </div>
     </div>
   );
