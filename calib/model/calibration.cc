@@ -40,8 +40,8 @@ PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth) {
           CentreDistance(estimate, truth) * 1000.0};
 }
 
-void AddTruth(const Truth& truth, Report* report) {
-  for (CameraReport& camera : report->cameras) {
+Report WithTruth(Report report, const Truth& truth) {
+  for (CameraReport& camera : report.cameras) {
     const auto found = truth.camera_from_lidar.find(camera.calibration.camera);
     if (found == truth.camera_from_lidar.end()) continue;
     if (camera.first_guess) {
@@ -52,6 +52,7 @@ void AddTruth(const Truth& truth, Report* report) {
       start.truth_error = ErrorOf(start.calibration.camera_from_lidar, found->second);
     }
   }
+  return report;
 }
 
 }  // namespace rgbdt

@@ -205,7 +205,7 @@ struct Truth {
 /// Error of `estimate` against `truth`, both camera_from_lidar.
 PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth);
 
-/// Fills in what only truth can tell.
-void AddTruth(const Truth& truth, Report* report);
+/// A report with what only truth can tell.
+[[nodiscard]] Report WithTruth(Report report, const Truth& truth);
 
 }  // namespace rgbdt

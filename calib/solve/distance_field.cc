@@ -87,29 +87,35 @@ const DistanceField::Surface& DistanceField::SurfaceAt(int x, int y) const {
 double DistanceField::Value(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d border(std::clamp(pixel.x(), 0.0, transform_.cols - 1.0),
                                std::clamp(pixel.y(), 0.0, transform_.rows - 1.0));
-  if (border == pixel) return Inside(pixel, nullptr);
+  if (border == pixel) return Inside(pixel);
   return beyond_ == FieldBeyond::kSmooth ? Smooth(border, pixel - border) : Nearest(pixel);
 }
 
-double DistanceField::Inside(const Eigen::Vector2d& pixel, Eigen::Vector2d* slope) const {
+double DistanceField::Inside(const Eigen::Vector2d& pixel) const {
   const int column = Round(pixel.x(), transform_.cols);
   const int row = Round(pixel.y(), transform_.rows);
   const Surface& s = SurfaceAt(column, row);
   const double x = pixel.x() - column;
   const double y = pixel.y() - row;
-  if (slope != nullptr) *slope << s[1] + 2 * s[3] * x + s[4] * y, s[2] + s[4] * x + 2 * s[5] * y;
   return s[0] + s[1] * x + s[2] * y + s[3] * x * x + s[4] * x * y + s[5] * y * y;
+}
+
+Eigen::Vector2d DistanceField::Slope(const Eigen::Vector2d& pixel) const {
+  const int column = Round(pixel.x(), transform_.cols);
+  const int row = Round(pixel.y(), transform_.rows);
+  const Surface& s = SurfaceAt(column, row);
+  const double x = pixel.x() - column;
+  const double y = pixel.y() - row;
+  return {s[1] + 2 * s[3] * x + s[4] * y, s[2] + s[4] * x + 2 * s[5] * y};
 }
 
 // The border's value and, fading, its slope; what is added has no slope at the border and one of 1
 // far away.
 double DistanceField::Smooth(const Eigen::Vector2d& border, const Eigen::Vector2d& off) const {
   constexpr double kReachPx = 10;  // within which the one slope becomes the other
-  Eigen::Vector2d slope;
-  const double value = Inside(border, &slope);
   const double distance = off.norm();
-  return value + slope.dot(off) * std::exp(-distance / kReachPx) + std::hypot(distance, kReachPx) -
-         kReachPx;
+  return Inside(border) + Slope(border).dot(off) * std::exp(-distance / kReachPx) +
+         std::hypot(distance, kReachPx) - kReachPx;
 }
 
 double DistanceField::Nearest(const Eigen::Vector2d& pixel) const {

@@ -39,7 +39,8 @@ class DistanceField {
   using Surface = Eigen::Matrix<double, 6, 1>;
   const Surface& SurfaceAt(int x, int y) const;
   Surface Fit(int x, int y) const;
-  double Inside(const Eigen::Vector2d& pixel, Eigen::Vector2d* slope) const;
+  double Inside(const Eigen::Vector2d& pixel) const;
+  Eigen::Vector2d Slope(const Eigen::Vector2d& pixel) const;
   double Smooth(const Eigen::Vector2d& border, const Eigen::Vector2d& off) const;
 
   FieldBeyond beyond_;

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
@@ -25,7 +26,7 @@ int Run(const Flags& flags) {
   Report report = Calibrate(session.rig, detection.views, flags.options);
   const std::string wrote = WriteIfSolved(out, report);
   const auto truth = TruthPath(flags.truth, session.root);
-  if (!truth.empty()) AddTruth(ReadTruth(truth), &report);
+  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   WriteReportFiles(out, {session, detection.views, reports});
   PrintReport(report, wrote, detection.unreadable);

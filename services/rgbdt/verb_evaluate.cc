@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
@@ -68,7 +69,7 @@ int Run(const Flags& flags) {
   Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const auto truth = TruthPath(flags.truth, session.root);
-  if (!truth.empty()) AddTruth(ReadTruth(truth), &report);
+  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   WriteReportFiles(out, {session, detection.views, reports});
   PrintReport(report, "wrote to " + out.string() + ":", detection.unreadable);

@@ -95,13 +95,12 @@ TEST_F(ReplayTest, TheSessionCalibratesBothCameras) {
   EXPECT_EQ(run_->gaps, 0);
   EXPECT_EQ(run_->dropped, 0);
   EXPECT_EQ(run_->calibration, Contents(*dir_ / "session/calibration.textproto"));
-  Report report = ReadReport(*dir_ / "session/report.json");
-  AddTruth(run_->truth, &report);
+  const Report report = WithTruth(ReadReport(*dir_ / "session/report.json"), run_->truth);
   ASSERT_EQ(report.cameras.size(), 2U);
   for (const CameraReport& camera : report.cameras) {
     EXPECT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
     EXPECT_EQ(camera.heldout.size() + camera.used.size() + camera.rejected.size(), 6U);
-    // The paper's method ends within a degree or so (issue 2); how well, the study says.
+    // The paper's method ends within a degree or so; how well, the study says.
     EXPECT_LT(camera.truth_error->rotation_deg, 2) << camera.calibration.camera;
     EXPECT_LT(camera.truth_error->translation_mm, 150) << camera.calibration.camera;
   }

@@ -65,7 +65,7 @@ def bounds_of(how, target):
 
 class Target:
     """What a figure is to reach. Where the bound itself lies too high, 1.5 times the bound is the
-    figure to reach (issue 4)."""
+    figure to reach."""
 
     def __init__(self, target, bound=None):
         self.least, self.most = bounds_of(target[0], target[1:])

@@ -49,7 +49,7 @@ class MemberFinder {
         });
       });
       if (sums.count() < 6) return plane;
-      plane = sums.Fit(nullptr);
+      plane = sums.Fit();
     }
     return plane;
   }

@@ -7,11 +7,10 @@
 
 namespace rgbdt {
 
-Plane PlaneSums::Fit(double* rms) const {
+Plane PlaneSums::Fit() const {
   const Eigen::Vector3d mean = Mean();
-  const Eigen::Matrix3d scatter = squares_ / count_ - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(scatter);
+  solver.computeDirect(Scatter());
   Plane plane;
   plane.normal = solver.eigenvectors().col(0).normalized();
   plane.offset = plane.normal.dot(mean);
@@ -19,10 +18,11 @@ Plane PlaneSums::Fit(double* rms) const {
     plane.normal = -plane.normal;
     plane.offset = -plane.offset;
   }
-  if (rms != nullptr) {
-    *rms = std::sqrt(std::max(0.0, plane.normal.dot(scatter * plane.normal)));
-  }
   return plane;
+}
+
+double PlaneSums::Rms(const Plane& plane) const {
+  return std::sqrt(std::max(0.0, plane.normal.dot(Scatter() * plane.normal)));
 }
 
 namespace {
@@ -106,9 +106,8 @@ class RegionFinder {
       if (hits > 0) ++rows_hit;
     }
     if (sums->count() < 6 || sums->count() * 10 < looked * 8 || rows_hit < 3) return false;
-    double rms = 0;
-    const Plane plane = sums->Fit(&rms);
-    if (rms > 1.6 * options_.sigma_m) return false;
+    const Plane plane = sums->Fit();
+    if (sums->Rms(plane) > 1.6 * options_.sigma_m) return false;
     // A patch seen so flatly that it is all range noise has no direction.
     if (std::abs(plane.offset) < 0.1 * range) return false;
     return std::all_of(

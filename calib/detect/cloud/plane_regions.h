@@ -26,10 +26,17 @@ class PlaneSums {
   }
   int count() const { return count_; }
   Eigen::Vector3d Mean() const { return sum_ / count_; }
-  /// At least three points. `rms`: of the distances to the plane [m]; may be null.
-  Plane Fit(double* rms = nullptr) const;
+  /// The plane of least squares; of at least three points.
+  Plane Fit() const;
+  /// RMS distance of the points from a plane that Fit gave [m].
+  double Rms(const Plane& plane) const;
 
  private:
+  Eigen::Matrix3d Scatter() const {
+    const Eigen::Vector3d mean = Mean();
+    return squares_ / count_ - mean * mean.transpose();
+  }
+
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares_ = Eigen::Matrix3d::Zero();
   int count_ = 0;

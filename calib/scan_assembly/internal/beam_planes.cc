@@ -39,13 +39,14 @@ Eigen::Matrix3d ScatterOf(const PlacedBeams& all, const BeamList& beams, Eigen::
 }
 
 // The plane of least distances: only to begin with.
-bool FirstPlane(const PlacedBeams& all, const BeamList& beams, BeamPlane* plane) {
-  const Eigen::Matrix3d scatter = ScatterOf(all, beams, &plane->centre);
-  const Eigensystem<3> axes = EigensystemOf(scatter);
-  plane->normal = axes.vectors.col(0);
-  if (axes.values(1) < kLeastWidth * kLeastWidth * axes.values(0)) return false;
-  const Eigen::Vector3d sight = (plane->centre - all.origin(beams[0])).normalized();
-  return std::abs(plane->normal.dot(sight)) > kGrazing;
+std::optional<BeamPlane> FirstPlane(const PlacedBeams& all, const BeamList& beams) {
+  BeamPlane plane;
+  const Eigensystem<3> axes = EigensystemOf(ScatterOf(all, beams, &plane.centre));
+  plane.normal = axes.vectors.col(0);
+  if (axes.values(1) < kLeastWidth * kLeastWidth * axes.values(0)) return std::nullopt;
+  const Eigen::Vector3d sight = (plane.centre - all.origin(beams[0])).normalized();
+  if (!(std::abs(plane.normal.dot(sight)) > kGrazing)) return std::nullopt;
+  return plane;
 }
 
 void TakeNear(const PlacedBeams& all, const BeamList& beams, double most_m, BeamPlane* plane) {
@@ -126,16 +127,19 @@ void RefitPlane(const PlacedBeams& all, double sigma_m, BeamPlane* plane) {
   }
 }
 
-bool FitPlane(const PlacedBeams& all, const BeamList& beams, double sigma_m, double slack,
-              BeamPlane* plane) {
-  if (beams.size() < kLeastBeams || !FirstPlane(all, beams, plane)) return false;
+std::optional<BeamPlane> FitPlane(const PlacedBeams& all, const BeamList& beams, double sigma_m,
+                                  double slack) {
+  if (beams.size() < kLeastBeams) return std::nullopt;
+  auto plane = FirstPlane(all, beams);
+  if (!plane) return std::nullopt;
   const double enough = (1 - kMostOutside) * static_cast<double>(beams.size());
   for (const double gate : {3 * kGate, kGate, kGate}) {
-    TakeNear(all, beams, gate * sigma_m, plane);
-    if (static_cast<double>(plane->beams.size()) < enough) return false;
-    RefitPlane(all, sigma_m, plane);
+    TakeNear(all, beams, gate * sigma_m, &*plane);
+    if (static_cast<double>(plane->beams.size()) < enough) return std::nullopt;
+    RefitPlane(all, sigma_m, &*plane);
   }
-  return plane->chi2 < plane->dof() * slack * (1 + 5 * std::sqrt(2 / plane->dof()));
+  if (plane->chi2 < plane->dof() * slack * (1 + 5 * std::sqrt(2 / plane->dof()))) return plane;
+  return std::nullopt;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/model/linear_algebra.h"
@@ -65,10 +66,10 @@ struct BeamPlane {
   double Misfit(const PlacedBeams& all, std::uint32_t beam) const;
 };
 
-/// The plane of nearly all of these beams; false where they do not lie on one. `sigma_m` of a
+/// The plane of nearly all of these beams; nothing where they do not lie on one. `sigma_m` of a
 /// range; `slack`: how much larger than its mean chi2 may be.
-bool FitPlane(const PlacedBeams& all, const BeamList& beams, double sigma_m, double slack,
-              BeamPlane* plane);
+std::optional<BeamPlane> FitPlane(const PlacedBeams& all, const BeamList& beams, double sigma_m,
+                                  double slack);
 
 /// Fits a plane that is near to all of its beams, none left out.
 void RefitPlane(const PlacedBeams& all, double sigma_m, BeamPlane* plane);

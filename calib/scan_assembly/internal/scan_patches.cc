@@ -1,6 +1,5 @@
 #include "calib/scan_assembly/internal/scan_patches.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -109,11 +108,13 @@ class Search {
 
  private:
   std::optional<ScanPatch> PatchOf(const BeamList& before, const BeamList& behind) const {
+    auto plane_before = FitPlane(all_, before, search_.sigma_m, search_.slack);
+    if (!plane_before) return std::nullopt;
+    auto plane_behind = FitPlane(all_, behind, search_.sigma_m, search_.slack);
+    if (!plane_behind) return std::nullopt;
     ScanPatch patch;
-    if (!FitPlane(all_, before, search_.sigma_m, search_.slack, &patch.before) ||
-        !FitPlane(all_, behind, search_.sigma_m, search_.slack, &patch.behind)) {
-      return std::nullopt;
-    }
+    patch.before = std::move(*plane_before);
+    patch.behind = std::move(*plane_behind);
     const double alike = std::abs(patch.before.normal.dot(patch.behind.normal));
     if (alike < std::cos(search_.max_turn_rad)) return std::nullopt;
     JoinPlanes(all_, search_.sigma_m, &patch);
@@ -151,9 +152,8 @@ double RangeNoise(const PlacedBeams& all) {
   std::vector<double> variances;
   ForEachTile({placed.data(), placed.data() + placed.size()}, kLevel, [&](Tile tile) {
     for (const bool behind : {false, true}) {
-      BeamPlane plane;
-      if (FitPlane(all, HalfOf(all, tile, behind), kGenerous, 1, &plane)) {
-        variances.push_back(plane.chi2 / plane.dof() * kGenerous * kGenerous);
+      if (const auto plane = FitPlane(all, HalfOf(all, tile, behind), kGenerous, 1)) {
+        variances.push_back(plane->chi2 / plane->dof() * kGenerous * kGenerous);
       }
     }
   });

@@ -18,25 +18,26 @@ TEST(ErrorOf, IsInDegreesAndMillimetresBetweenCentres) {
   EXPECT_NEAR(error.translation_mm, 50, 1e-10);  // 30 and 40
 }
 
-TEST(AddTruth, FillsEveryErrorThatNeedsTruth) {
+TEST(WithTruth, FillsEveryErrorThatNeedsTruth) {
   Report report;
   report.cameras.resize(2);
-  CameraReport& known = report.cameras[0];
-  known.calibration.camera = "rgb";
-  known.calibration.camera_from_lidar = CameraAt({0.01, 0, 0}, 0);
-  known.first_guess = CameraAt({0.05, 0, 0}, 0);
-  known.other_starts.resize(1);
-  known.other_starts[0].calibration.camera_from_lidar = CameraAt({0.2, 0, 0}, 0);
+  CameraReport& rgb = report.cameras[0];
+  rgb.calibration.camera = "rgb";
+  rgb.calibration.camera_from_lidar = CameraAt({0.01, 0, 0}, 0);
+  rgb.first_guess = CameraAt({0.05, 0, 0}, 0);
+  rgb.other_starts.resize(1);
+  rgb.other_starts[0].calibration.camera_from_lidar = CameraAt({0.2, 0, 0}, 0);
   report.cameras[1].calibration.camera = "thermal";
-  AddTruth({{{"rgb", CameraAt({0, 0, 0}, 0)}}, {}}, &report);
+  const Report judged = WithTruth(report, {{{"rgb", CameraAt({0, 0, 0}, 0)}}, {}});
+  const CameraReport& known = judged.cameras[0];
 
   ASSERT_TRUE(known.truth_error && known.first_guess_error && known.other_starts[0].truth_error);
   EXPECT_NEAR(known.truth_error->translation_mm, 10, 1e-10);
   EXPECT_NEAR(known.first_guess_error->translation_mm, 50, 1e-10);
   EXPECT_NEAR(known.other_starts[0].truth_error->translation_mm, 200, 1e-10);
   // What is unknown is absent, not zero.
-  EXPECT_FALSE(report.cameras[1].truth_error);
-  EXPECT_FALSE(report.cameras[1].first_guess_error);
+  EXPECT_FALSE(judged.cameras[1].truth_error);
+  EXPECT_FALSE(judged.cameras[1].first_guess_error);
 }
 
 TEST(Report, ToCalibrationKeepsTheSolvedCamerasAndWhereItComesFrom) {
