@@ -7,7 +7,6 @@
 namespace rgbdt::simulate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Places in the unit disc: the middle, and rings of 6, 12, ... of which each stands for the same
 /// area. Rings are turned so that no places line up with an upright or level edge.
@@ -18,7 +17,7 @@ std::vector<Eigen::Vector2d> DiscPlaces(int rings) {
     // Radius that halves the ring's area; the ring starts where 1 + 3 ring (ring - 1) shares end.
     const double radius = std::sqrt((1 + 3 * ring * (ring - 1) + 3 * ring) / count);
     for (int i = 0; i < 6 * ring; ++i) {
-      const double angle = 2 * kPi * (i + 0.37 * ring) / (6 * ring);
+      const double angle = 2 * M_PI * (i + 0.37 * ring) / (6 * ring);
       places.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
     }
   }

@@ -9,7 +9,6 @@
 namespace rgbdt::simulate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Attempts in which a far board stays as far as it was drawn.
 constexpr int kFarAttempts = 100;
 
@@ -159,7 +158,7 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
   n.azimuth = inwards * spread(1, -wider * o.max_azimuth_rad, wider * o.max_azimuth_rad);
   n.elevation = inwards * spread(2, wider * o.min_elevation_rad, wider * o.max_elevation_rad) +
                 (1 - inwards) * MiddleElevation(options, n.range);
-  n.tilt_axis = spread(3, 0, 2 * kPi);
+  n.tilt_axis = spread(3, 0, 2 * M_PI);
   n.tilt = spread(4, o.min_tilt, 0.98) * o.max_tilt_rad;
   n.roll = spread(5, -0.98, 0.98) * o.max_roll_rad;
   return n;

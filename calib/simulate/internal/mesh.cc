@@ -5,7 +5,6 @@
 namespace rgbdt::simulate {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Triangles between two rows of vertices, each closed on itself.
 void AddBand(unsigned first_row, unsigned columns, Mesh* mesh) {
@@ -44,9 +43,9 @@ Mesh MakeEllipsoid(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) 
   Mesh mesh;
   for (unsigned row = 0; row <= kRows; ++row) {
     // Short of the poles by a little, so that no triangle is degenerate.
-    const double latitude = kPi * (0.001 + 0.998 * row / kRows) - kPi / 2;
+    const double latitude = M_PI * (0.001 + 0.998 * row / kRows) - M_PI / 2;
     for (unsigned column = 0; column < kColumns; ++column) {
-      const double longitude = 2 * kPi * column / kColumns;
+      const double longitude = 2 * M_PI * column / kColumns;
       const Eigen::Vector3d unit(std::cos(latitude) * std::cos(longitude),
                                  std::cos(latitude) * std::sin(longitude), std::sin(latitude));
       mesh.vertices.push_back(centre + unit.cwiseProduct(radii));
@@ -79,7 +78,7 @@ Mesh MakeRod(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double from
                                    {to, to_radius * 1e-3, 1}}};
   for (const Ring& ring : rings) {
     for (unsigned column = 0; column < kColumns; ++column) {
-      const double angle = 2 * kPi * column / kColumns;
+      const double angle = 2 * M_PI * column / kColumns;
       const Eigen::Vector3d unit = std::cos(angle) * side + std::sin(angle) * other;
       mesh.vertices.push_back(ring.centre + ring.radius * unit);
       mesh.normals.push_back(ring.axial == 0 ? unit : Eigen::Vector3d(ring.axial * axis));
