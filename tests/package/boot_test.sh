@@ -60,9 +60,18 @@ ExecStart=/root/booted.sh
 WantedBy=default.target
 END_OF_UNIT
 chroot "$tree" systemctl enable --quiet boot_test.service rgbdt.target
-timeout 120 systemd-nspawn --quiet --register=no --keep-unit --private-network --directory "$tree" \
-  --boot >/dev/null 2>&1 </dev/null || true
+# Of the tree without what is mounted in it for chroot: systemd brings its own /dev and /proc.
+booted=$(mktemp -d)
+mount --bind "$tree" "$booted"
+timeout 120 systemd-nspawn --quiet --register=no --keep-unit --private-network --machine rgbdt-boot \
+  --directory "$booted" --boot >/dev/null 2>&1 </dev/null || true
+umount "$booted"
+rmdir "$booted"
 chroot "$tree" systemctl disable --quiet boot_test.service rgbdt.target
 rm "$tree/etc/systemd/system/boot_test.service"
+[ -f "$tree/root/boot.log" ] || {
+  echo "FAILED: it did not boot; see: systemd-nspawn --directory TREE --boot"
+  exit 1
+}
 cat "$tree/root/boot.log"
 [ "$(tail -n 1 "$tree/root/boot.log")" = "+ systemctl poweroff" ] && grep -qx passed "$tree/root/boot.log"
