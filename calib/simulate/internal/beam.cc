@@ -7,7 +7,6 @@
 namespace rgbdt::simulate {
 namespace {
 
-
 /// Places in the unit disc: the middle, and rings of 6, 12, ... of which each stands for the same
 /// area. Rings are turned so that no places line up with an upright or level edge.
 std::vector<Eigen::Vector2d> DiscPlaces(int rings) {

@@ -5,7 +5,6 @@
 namespace rgbdt::simulate {
 namespace {
 
-
 /// Triangles between two rows of vertices, each closed on itself.
 void AddBand(unsigned first_row, unsigned columns, Mesh* mesh) {
   for (unsigned column = 0; column < columns; ++column) {
