@@ -47,7 +47,7 @@ Mesh MakeEllipsoid(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) 
       const double longitude = 2 * M_PI * column / kColumns;
       const Eigen::Vector3d unit(std::cos(latitude) * std::cos(longitude),
                                  std::cos(latitude) * std::sin(longitude), std::sin(latitude));
-      mesh.vertices.push_back(centre + unit.cwiseProduct(radii));
+      mesh.vertices.emplace_back(centre + unit.cwiseProduct(radii));
       mesh.normals.push_back(unit.cwiseQuotient(radii).normalized());
     }
   }
@@ -79,7 +79,7 @@ Mesh MakeRod(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double from
     for (unsigned column = 0; column < kColumns; ++column) {
       const double angle = 2 * M_PI * column / kColumns;
       const Eigen::Vector3d unit = std::cos(angle) * side + std::sin(angle) * other;
-      mesh.vertices.push_back(ring.centre + ring.radius * unit);
+      mesh.vertices.emplace_back(ring.centre + ring.radius * unit);
       mesh.normals.push_back(ring.axial == 0 ? unit : Eigen::Vector3d(ring.axial * axis));
     }
   }
