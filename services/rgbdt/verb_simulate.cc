@@ -5,8 +5,8 @@
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/simulator.h"
-#include "services/nodes/simulated_sweep.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulated_sweep.h"
+#include "services/simulator/simulator_node.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {

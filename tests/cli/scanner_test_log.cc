@@ -6,7 +6,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulator_node.h"
 #include "tests/log_writer.h"
 
 namespace rgbdt {

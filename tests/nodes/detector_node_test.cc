@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/nodes/assembler_node.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulator_node.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
 

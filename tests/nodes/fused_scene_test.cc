@@ -8,7 +8,7 @@
 #include "calib/fuse/fuse.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/simulator.h"
-#include "services/nodes/simulated_sweep.h"
+#include "services/simulator/simulated_sweep.h"
 
 namespace rgbdt {
 namespace {

@@ -14,7 +14,7 @@
 #include "services/nodes/detector_node.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/session_node.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulator_node.h"
 #include "services/nodes/solver_node.h"
 #include "services/replay/replay.h"
 #include "services/runtime/node_runner.h"

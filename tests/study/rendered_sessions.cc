@@ -5,8 +5,8 @@
 #include "calib/methods/detect_view.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/simulator.h"
-#include "services/nodes/simulated_sweep.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulated_sweep.h"
+#include "services/simulator/simulator_node.h"
 #include "tests/study/sampled_sessions.h"
 
 namespace rgbdt::study {

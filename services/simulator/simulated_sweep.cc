@@ -1,4 +1,4 @@
-#include "services/nodes/simulated_sweep.h"
+#include "services/simulator/simulated_sweep.h"
 
 #include <utility>
 #include <vector>
@@ -6,7 +6,7 @@
 #include "calib/scan_assembly/encoder_track.h"
 #include "calib/scan_assembly/line_to_cloud.h"
 #include "calib/scan_assembly/sweep_chunks.h"
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulator_node.h"
 
 namespace rgbdt {
 

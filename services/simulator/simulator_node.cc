@@ -1,4 +1,4 @@
-#include "services/nodes/simulator_node.h"
+#include "services/simulator/simulator_node.h"
 
 #include <algorithm>
 
