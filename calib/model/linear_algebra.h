@@ -8,7 +8,7 @@
 namespace rgbdt {
 
 /// Decompositions of small matrices, compiled once: where Eigen's templates stand in a source, each
-/// costs it seconds. Results are, bit by bit, those of Eigen's for the fixed size.
+/// costs it seconds. The sizes that are computed most often have an instance of their own.
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;

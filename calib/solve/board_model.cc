@@ -95,4 +95,13 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   return out;
 }
 
+std::optional<double> SigmaByCloud(const Target& target, const BoardPriors& priors,
+                                   const Crossing& crossing, const CloudEdges& cloud,
+                                   const std::array<double, kSharedUnknowns>& shared) {
+  const CrossingResidual r =
+      ResidualOf(target, priors, crossing, cloud.pose->sensor_from_target, shared, 0);
+  if (!(r.per_rad > 0)) return std::nullopt;
+  return r.sigma_m;
+}
+
 }  // namespace rgbdt

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "calib/model/beam_priors.h"
 #include "calib/model/rig.h"
@@ -55,6 +56,12 @@ struct CrossingResidual {
 CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                             const Crossing& crossing, const Rigid3& lidar_from_target,
                             const std::array<double, kSharedUnknowns>& shared, double side_shift);
+
+/// A crossing's sigma [m] by the cloud's own pose, nothing where its beam misses the board there.
+/// For weights: one that changed with the board's place would be an objective of its own.
+std::optional<double> SigmaByCloud(const Target& target, const BoardPriors& priors,
+                                   const Crossing& crossing, const CloudEdges& cloud,
+                                   const std::array<double, kSharedUnknowns>& shared);
 
 /// Outward normal of a side, target axes. Sides: 0 top (y negative), 1 right, 2 bottom, 3 left.
 Eigen::Vector2d OutwardOf(int side);

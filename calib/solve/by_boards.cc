@@ -106,7 +106,7 @@ double RangeOffsetPrior(const CalibrateOptions& options) {
 
 void MarkDegenerate(const std::vector<GuessedCamera>& cameras) {
   for (const GuessedCamera& camera : cameras) {
-    camera.views->report.calibration = CheckDegenerate(*camera.views);
+    camera.views->report.calibration = WithDegeneracy(*camera.views);
   }
 }
 

@@ -91,21 +91,23 @@ double DistanceField::Value(const Eigen::Vector2d& pixel) const {
   return beyond_ == FieldBeyond::kSmooth ? Smooth(border, pixel - border) : Nearest(pixel);
 }
 
+DistanceField::Place DistanceField::PlaceOf(const Eigen::Vector2d& point) const {
+  const int column = Round(point.x(), transform_.cols);
+  const int row = Round(point.y(), transform_.rows);
+  return {SurfaceAt(column, row), {point.x() - column, point.y() - row}};
+}
+
 double DistanceField::Inside(const Eigen::Vector2d& pixel) const {
-  const int column = Round(pixel.x(), transform_.cols);
-  const int row = Round(pixel.y(), transform_.rows);
-  const Surface& s = SurfaceAt(column, row);
-  const double x = pixel.x() - column;
-  const double y = pixel.y() - row;
+  const auto& [s, offset] = PlaceOf(pixel);
+  const double x = offset.x();
+  const double y = offset.y();
   return s[0] + s[1] * x + s[2] * y + s[3] * x * x + s[4] * x * y + s[5] * y * y;
 }
 
 Eigen::Vector2d DistanceField::Slope(const Eigen::Vector2d& pixel) const {
-  const int column = Round(pixel.x(), transform_.cols);
-  const int row = Round(pixel.y(), transform_.rows);
-  const Surface& s = SurfaceAt(column, row);
-  const double x = pixel.x() - column;
-  const double y = pixel.y() - row;
+  const auto& [s, offset] = PlaceOf(pixel);
+  const double x = offset.x();
+  const double y = offset.y();
   return {s[1] + 2 * s[3] * x + s[4] * y, s[2] + s[4] * x + 2 * s[5] * y};
 }
 

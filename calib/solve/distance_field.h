@@ -37,6 +37,12 @@ class DistanceField {
  private:
   // Coefficients of 1, x, y, x^2, xy, y^2 about the pixel.
   using Surface = Eigen::Matrix<double, 6, 1>;
+  // A pixel's surface, and where a point lies from it.
+  struct Place {
+    const Surface& surface;
+    Eigen::Vector2d offset;
+  };
+  Place PlaceOf(const Eigen::Vector2d& point) const;
   const Surface& SurfaceAt(int x, int y) const;
   Surface Fit(int x, int y) const;
   double Inside(const Eigen::Vector2d& pixel) const;

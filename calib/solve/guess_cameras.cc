@@ -88,7 +88,7 @@ std::vector<Rigid3> BoardsOf(const CameraViews& camera) {
 
 }  // namespace
 
-CameraCalibration CheckDegenerate(const CameraViews& camera) {
+CameraCalibration WithDegeneracy(const CameraViews& camera) {
   CameraCalibration calibration = camera.report.calibration;
   std::string why = WhyDegenerate(BoardsOf(camera));
   if (why.empty() && calibration.covariance) why = WhyLoose(*calibration.covariance);

@@ -28,9 +28,9 @@ struct GuessedCamera {
 std::vector<GuessedCamera> GuessCameras(const CalibrateOptions& options,
                                         std::vector<CameraViews>* cameras);
 
-/// A camera's calibration. A pose that the views leave loose is not to be believed, whatever its
-/// residuals: its status says so, and its covariance goes.
-CameraCalibration CheckDegenerate(const CameraViews& camera);
+/// A camera's calibration with its degeneracy: a pose that the views leave loose is not to be
+/// believed, whatever its residuals: its status says so, and its covariance goes.
+CameraCalibration WithDegeneracy(const CameraViews& camera);
 
 /// Judges the calibrations in the cameras' reports on used and held-out views.
 void JudgeCameras(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras);

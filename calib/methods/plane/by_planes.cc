@@ -79,7 +79,7 @@ CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions
     report.calibration = SolvePlanes(camera.views->Used(), *camera.guess.camera_from_lidar);
     report.calibration.camera = camera.views->spec->name;
     ShareTime(watch.Seconds(), {camera});
-    report.calibration = CheckDegenerate(*camera.views);
+    report.calibration = WithDegeneracy(*camera.views);
   }
   JudgeCameras(EdgeModel{target, BoardPriors().Means(), {}}, guessed);
   if (options.diagnostics) out.closure = CloseLoops(guessed);

@@ -19,17 +19,11 @@ struct ViewTerms {
   const BoardState& shared_state;
   const std::array<double, 4>& side_shift;
 
-  CrossingResidual Residual(const Crossing& crossing, const Rigid3& lidar_from_target) const {
-    return ResidualOf(problem.target, problem.priors, crossing, lidar_from_target,
-                      shared_state.shared, side_shift[static_cast<std::size_t>(crossing.side)]);
-  }
-
-  // Noise that it shares with its neighbours counts once. By the cloud's own pose: a weight that
-  // changed with the board's place would be an objective of its own.
+  // Noise that it shares with its neighbours counts once.
   double Weight(const Crossing& crossing) const {
-    const CrossingResidual r = Residual(crossing, view.cloud.pose->sensor_from_target);
-    if (!(r.per_rad > 0)) return kLeastWeight;
-    return r.sigma_m * r.sigma_m / (crossing.sigma_m * crossing.sigma_m);
+    const auto sigma =
+        SigmaByCloud(problem.target, problem.priors, crossing, view.cloud, shared_state.shared);
+    return sigma ? *sigma * *sigma / (crossing.sigma_m * crossing.sigma_m) : kLeastWeight;
   }
 
   double Crossings(const Rigid3& lidar_from_target) const {
@@ -37,7 +31,9 @@ struct ViewTerms {
     for (const Crossing& crossing : view.cloud.crossings) {
       const auto side = static_cast<std::size_t>(crossing.side);
       if (!view.sides[side] || !(crossing.sigma_m > 0)) continue;
-      const CrossingResidual r = Residual(crossing, lidar_from_target);
+      const CrossingResidual r =
+          ResidualOf(problem.target, problem.priors, crossing, lidar_from_target,
+                     shared_state.shared, side_shift[side]);
       const double squared =
           r.per_rad > 0 ? r.beyond_m * r.beyond_m / (r.sigma_m * r.sigma_m) : kMostSquared;
       cost += Weight(crossing) * BoundedCost(squared);

@@ -162,14 +162,11 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   return end;
 }
 
-// From how far off on a crossing counts less. It matters for outliers only, and is by the cloud's
-// own pose there: a weight that changed with the board's place would be an objective of its own.
+// From how far off on a crossing counts less; matters for outliers only.
 double ViewEquations::OwnSigma(const Crossing& crossing, const CrossingResidual& here) const {
   if (std::abs(here.beyond_m) < 2 * here.sigma_m) return here.sigma_m;
-  const CrossingResidual by_cloud =
-      ResidualOf(problem_.target, problem_.priors, crossing, view_.cloud.pose->sensor_from_target,
-                 state_.shared, 0);
-  return by_cloud.per_rad > 0 ? by_cloud.sigma_m : here.sigma_m;
+  return SigmaByCloud(problem_.target, problem_.priors, crossing, view_.cloud, state_.shared)
+      .value_or(here.sigma_m);
 }
 
 void ViewEquations::AddCrossings() {

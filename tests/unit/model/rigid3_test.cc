@@ -155,6 +155,31 @@ TEST(RotationDistance, IsTheAngleBetweenTwoPoses) {
   }
 }
 
+TEST(RotationBetween, TakesOneDirectionToTheOtherTheShortestWay) {
+  Random random(8);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Eigen::Vector3d from = random.Direction();
+    const Eigen::Vector3d to = random.Direction();
+    const Eigen::Quaterniond rotation = RotationBetween(3 * from, 0.2 * to);
+    EXPECT_THAT(rotation * from, EigenNear(to, 1e-14));
+    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+    EXPECT_NEAR(RotationDistance({rotation, {}}, {}), angle, 1e-7);
+  }
+}
+
+TEST(RotationBetween, OfOneDirectionIsNone) {
+  const Eigen::Vector3d direction(1, 2, -3);
+  EXPECT_NEAR(RotationDistance({RotationBetween(direction, 2 * direction), {}}, {}), 0, 1e-7);
+}
+
+TEST(RotationBetween, OfOppositeDirectionsIsAHalfTurn) {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1, 2, 5)}) {
+    const Eigen::Quaterniond rotation = RotationBetween(direction, -direction);
+    EXPECT_THAT(rotation * direction, EigenNear(-direction, 1e-12));
+    EXPECT_NEAR(rotation.norm(), 1, 1e-15);
+  }
+}
+
 TEST(RotationDistance, QuaternionsOfEitherSignAreOneRotation) {
   Rigid3 a = RotationAbout({1, 2, 3}, 0.7);
   Rigid3 b = a;
