@@ -67,20 +67,21 @@ std::vector<Nuisance> NuisancesOf(const JointResult& result) {
 
 CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
   const bool converged = result.solution.converged;
-  return {result.joint.cameras[camera].views->spec->name,
+  return {result.joint.cameras[camera].views.spec->name,
           result.solution.state.camera_from_lidar[camera], CovarianceOf(result, camera),
           converged ? SolveStatus::kConverged : SolveStatus::kNotConverged,
           converged ? "" : "the joint solve did not settle"};
 }
 
-// The joint solve's result into the cameras' reports.
-void FillReports(const CalibrateOptions& options, const JointResult& result) {
-  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
-    CameraReport& report = result.joint.cameras[c].views->report;
-    report.calibration = CalibrationOf(result, c);
-    report.nuisance = NuisancesOf(result);
-    if (options.first_guess.range_offset) report.range_offset = EstimateOf(result, kRangeOffset);
-  }
+// A camera's report with what the joint solve found, which took `seconds`.
+CameraReport WithSolution(const CalibrateOptions& options, const JointResult& result,
+                          std::size_t camera, double seconds) {
+  CameraReport report = result.joint.cameras[camera].views.report;
+  report.calibration = CalibrationOf(result, camera);
+  report.nuisance = NuisancesOf(result);
+  if (options.first_guess.range_offset) report.range_offset = EstimateOf(result, kRangeOffset);
+  report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
+  return report;
 }
 
 EdgeModel EdgesOf(const JointResult& result) {
@@ -89,51 +90,62 @@ EdgeModel EdgesOf(const JointResult& result) {
 }
 
 // Metres more along each boundary point's beam, where the ranges were found to be off.
-void ShiftRanges(const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    if (!camera.views->report.range_offset) continue;
-    const double offset_m = camera.views->report.range_offset->value;
-    for (CameraView& view : camera.views->all) {
-      if (!view.cloud) continue;
-      for (Eigen::Vector3d& p : view.cloud->boundary) p += offset_m * p.normalized();
-    }
+CameraViews WithRangeOffset(CameraViews camera) {
+  if (!camera.report.range_offset) return camera;
+  const double offset_m = camera.report.range_offset->value;
+  for (CameraView& view : camera.all) {
+    if (!view.cloud) continue;
+    for (Eigen::Vector3d& p : view.cloud->boundary) p += offset_m * p.normalized();
   }
+  return camera;
+}
+
+CameraViews Judged(const EdgeModel& edges, CameraViews camera) {
+  camera.report.calibration = WithDegeneracy(camera);
+  camera = WithRangeOffset(std::move(camera));
+  camera.report = JudgeViews(edges, camera);
+  return camera;
 }
 
 double RangeOffsetPrior(const CalibrateOptions& options) {
   return options.first_guess.range_offset ? options.first_guess.range_offset_sigma_m : 0;
 }
 
-void MarkDegenerate(const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    camera.views->report.calibration = WithDegeneracy(*camera.views);
-  }
-}
+// Cameras that were solved together, and where to hold the board next.
+struct SolvedGroup {
+  std::vector<GuessedCamera> cameras;
+  std::optional<NextView> next_view;
+};
 
-// Cameras that are solved together, from their guesses to their reports; returns where to hold the
-// board next.
-std::optional<NextView> SolveGroup(const Target& target, const CalibrateOptions& options,
-                                   const std::vector<GuessedCamera>& cameras) {
+SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
+                       std::vector<GuessedCamera> cameras) {
   const Stopwatch watch;
-  const JointResult result =
-      SolveJointly(MakeJointProblem(target, cameras, RangeOffsetPrior(options)));
-  FillReports(options, result);
-  ShareTime(watch.Seconds(), cameras);
-  if (options.diagnostics) CrossValidate(result, options.folds);
-  auto next_view = options.diagnostics ? FindNextView(result) : std::nullopt;
-  MarkDegenerate(cameras);
-  ShiftRanges(cameras);
-  JudgeCameras(EdgesOf(result), cameras);
-  return next_view;
+  JointResult result =
+      SolveJointly(MakeJointProblem(target, std::move(cameras), RangeOffsetPrior(options)));
+  const double seconds = watch.Seconds();
+  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
+    result.joint.cameras[c].views.report = WithSolution(options, result, c, seconds);
+  }
+  SolvedGroup solved;
+  if (options.diagnostics) {
+    result = CrossValidate(std::move(result), options.folds);
+    solved.next_view = FindNextView(result);
+  }
+  const EdgeModel edges = EdgesOf(result);
+  solved.cameras = std::move(result.joint.cameras);
+  for (GuessedCamera& camera : solved.cameras)
+    camera.views = Judged(edges, std::move(camera.views));
+  return solved;
 }
 
-// All cameras at once, or each by itself.
-std::vector<std::vector<GuessedCamera>> GroupsOf(const std::vector<GuessedCamera>& cameras,
-                                                 bool joint) {
-  std::vector<std::vector<GuessedCamera>> groups;
-  if (joint && !cameras.empty()) groups.push_back(cameras);
-  if (!joint) {
-    for (const GuessedCamera& camera : cameras) groups.push_back({camera});
+// Which of the cameras, those with a guess, are solved together: all, or each by itself.
+std::vector<std::vector<std::size_t>> GroupsOf(const std::vector<GuessedCamera>& cameras,
+                                               bool joint) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    if (!cameras[c].guess.camera_from_lidar) continue;
+    if (!joint || groups.empty()) groups.emplace_back();
+    groups.back().push_back(c);
   }
   return groups;
 }
@@ -147,12 +159,17 @@ std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView>
 
 CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
-  CalibratedCameras out{std::move(cameras), {}, {}};
-  const std::vector<GuessedCamera> guessed = GuessCameras(options, &out.cameras);
-  for (const std::vector<GuessedCamera>& group : GroupsOf(guessed, options.joint)) {
-    out.next_view = Worse(std::move(out.next_view), SolveGroup(target, options, group));
+  CalibratedCameras out;
+  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
+  for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
+    std::vector<GuessedCamera> together;
+    for (const std::size_t c : group) together.push_back(std::move(guessed[c]));
+    SolvedGroup solved = SolveGroup(target, options, std::move(together));
+    for (std::size_t i = 0; i < group.size(); ++i) guessed[group[i]] = std::move(solved.cameras[i]);
+    out.next_view = Worse(std::move(out.next_view), std::move(solved.next_view));
   }
   if (options.diagnostics) out.closure = CloseLoops(guessed);
+  out.cameras = WithoutGuesses(std::move(guessed));
   return out;
 }
 

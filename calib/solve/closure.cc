@@ -61,7 +61,7 @@ Mean MeanOf(const GuessedCamera& camera) {
     Matrix6d information = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
     mean.weights.clear();
-    for (const CameraView* o : camera.views->Used()) {
+    for (const CameraView* o : camera.views.Used()) {
       const Alone alone = FromOneView(*o, mean.camera_from_lidar);
       const Matrix6d weight = InverseOfSymmetric(Matrix6d(alone.Covariance()));
       information += weight;
@@ -91,8 +91,8 @@ Mean StereoOf(const GuessedCamera& a, const GuessedCamera& b, const Rigid3& b_fr
     Matrix6d information = Matrix6d::Zero();
     Vector6d gradient = Vector6d::Zero();
     stereo.weights.clear();
-    for (const CameraView* in_a : a.views->Used()) {
-      const CameraView* in_b = b.views->Find(in_a->view);
+    for (const CameraView* in_a : a.views.Used()) {
+      const CameraView* in_b = b.views.Find(in_a->view);
       if (in_b == nullptr) continue;
       const Matrix6d covariance = ByImage(*in_b) + b_by_a * ByImage(*in_a) * b_by_a.transpose() +
                                   1e-10 * Matrix6d::Identity();
@@ -124,8 +124,8 @@ Matrix6d CovarianceOfDifference(const GuessedCamera& a, const GuessedCamera& b, 
   for (const auto& [view, weight] : mean_a.weights) views.insert(view);
   for (const auto& [view, weight] : mean_b.weights) views.insert(view);
   for (const std::string& view : views) {
-    const CameraView* in_a = a.views->Find(view);
-    const CameraView* in_b = b.views->Find(view);
+    const CameraView* in_a = a.views.Find(view);
+    const CameraView* in_b = b.views.Find(view);
     const Matrix6d by_stereo = stereo.WeightOf(view);
     const Matrix6d by_a = b_by_a * mean_a.WeightOf(view);  // zero where the camera has not the view
     const Matrix6d by_b = mean_b.WeightOf(view);
@@ -138,11 +138,12 @@ Matrix6d CovarianceOfDifference(const GuessedCamera& a, const GuessedCamera& b, 
 }
 
 std::optional<Closure> CloseLoop(const GuessedCamera& a, const GuessedCamera& b) {
+  if (!a.guess.camera_from_lidar || !b.guess.camera_from_lidar) return std::nullopt;
   const Mean mean_a = MeanOf(a);
   const Mean mean_b = MeanOf(b);
   Closure closure;
-  closure.from = a.views->spec->name;
-  closure.to = b.views->spec->name;
+  closure.from = a.views.spec->name;
+  closure.to = b.views.spec->name;
   closure.by_lidar = mean_b.camera_from_lidar * mean_a.camera_from_lidar.Inverse();
   const Mean stereo = StereoOf(a, b, closure.by_lidar);
   if (stereo.weights.size() < 3) return std::nullopt;

@@ -14,28 +14,33 @@ namespace {
 
 using Views = std::vector<const CameraView*>;
 
-bool EnoughViews(const CalibrateOptions& options, CameraViews* camera) {
-  const Views used = camera->Used();
-  if (static_cast<int>(used.size()) >= options.min_views) return true;
-  CameraCalibration& calibration = camera->report.calibration;
+bool EnoughViews(const CalibrateOptions& options, const CameraViews& camera) {
+  return static_cast<int>(camera.Used().size()) >= options.min_views;
+}
+
+// Of so few views.
+CameraCalibration NotSolved(const CalibrateOptions& options, const CameraViews& camera) {
+  CameraCalibration calibration = camera.report.calibration;
+  const Views used = camera.Used();
   if (used.size() == 1 && used[0]->cloud->pose) {
     calibration.status = SolveStatus::kUndetermined;
     calibration.detail = WhyDegenerate({used[0]->cloud->pose->sensor_from_target});
   } else {
     calibration.detail = TooFewViews(used.size(), options);
   }
-  return false;
+  return calibration;
 }
 
 std::string Place(const Eigen::Vector3d& p) {
   return Format("x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
 }
 
-// Names what else in the clouds looks like the target: a second board, a door, a poster.
-void WarnOfOthers(CameraViews* camera) {
+// Names what else in the clouds looks like the target: a second board, a door, a poster. Empty:
+// nothing does.
+std::string OthersIn(const CameraViews& camera) {
   int views = 0;
   std::string example;
-  for (const CameraView* o : camera->Usable()) {
+  for (const CameraView* o : camera.Usable()) {
     if (o->candidates.size() < 2) continue;
     ++views;
     const auto other = std::find_if(
@@ -45,36 +50,37 @@ void WarnOfOthers(CameraViews* camera) {
     example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
               Place((*other)->centre) + " (LIDAR frame)";
   }
-  if (example.empty()) return;
-  camera->report.warnings.push_back(
-      "something else of the target's size stands in " + std::to_string(views) + " of " +
-      std::to_string(camera->Usable().size()) +
-      " clouds, e.g. a second board; the views together chose the target. " + example +
-      ". If that is wrong, take the other thing away");
+  if (example.empty()) return "";
+  return "something else of the target's size stands in " + std::to_string(views) + " of " +
+         std::to_string(camera.Usable().size()) +
+         " clouds, e.g. a second board; the views together chose the target. " + example +
+         ". If that is wrong, take the other thing away";
 }
 
 // The first guess, from the views used; the views held out have no say, but they choose their board
-// by it, too. Without a pose: the status says why.
-FirstGuess Guess(const CalibrateOptions& options, CameraViews* camera) {
-  FirstGuess guess;
-  if (!EnoughViews(options, camera)) return guess;
-  guess = GuessFromBoards(camera->Used(), options.first_guess);
+// by it, too.
+GuessedCamera Guess(const CalibrateOptions& options, CameraViews views) {
+  CameraReport& report = views.report;
+  if (!EnoughViews(options, views)) {
+    report.calibration = NotSolved(options, views);
+    return {std::move(views), {}};
+  }
+  FirstGuess guess = GuessFromBoards(views.Used(), options.first_guess);
   if (!guess.camera_from_lidar) {
-    camera->report.calibration.status =
+    report.calibration.status =
         guess.ambiguous ? SolveStatus::kUndetermined : SolveStatus::kNotSolved;
-    camera->report.calibration.detail = guess.detail;
-    return guess;
+    report.calibration.detail = guess.detail;
+    return {std::move(views), std::move(guess)};
   }
-  for (CameraView& o : camera->all) {
-    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
+  for (CameraView& o : views.all) o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
+  if (!EnoughViews(options, views)) {
+    report.calibration = NotSolved(options, views);
+    return {std::move(views), {}};
   }
-  if (!EnoughViews(options, camera)) {
-    guess.camera_from_lidar.reset();
-    return guess;
-  }
-  camera->report.first_guess = guess.camera_from_lidar;
-  WarnOfOthers(camera);
-  return guess;
+  report.first_guess = guess.camera_from_lidar;
+  const std::string others = OthersIn(views);
+  if (!others.empty()) report.warnings.push_back(others);
+  return {std::move(views), std::move(guess)};
 }
 
 // Places of the boards that a camera was calibrated from.
@@ -99,34 +105,32 @@ CameraCalibration WithDegeneracy(const CameraViews& camera) {
   return calibration;
 }
 
-void JudgeCameras(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    const CameraSpec& spec = *camera.views->spec;
-    const Views usable = camera.views->Usable();
-    CameraReport& report = camera.views->report;
-    report = JudgeEdges(edges, usable, JudgeCamera(spec, usable, std::move(report)));
-    const CameraCalibration& calibration = report.calibration;
-    if (!calibration.covariance) continue;
-    report.sigma = SigmaOf(spec, calibration.camera_from_lidar, *calibration.covariance);
+CameraReport JudgeViews(const EdgeModel& edges, const CameraViews& camera) {
+  const Views usable = camera.Usable();
+  CameraReport report = JudgeEdges(edges, usable, JudgeCamera(*camera.spec, usable, camera.report));
+  const CameraCalibration& calibration = report.calibration;
+  if (calibration.covariance) {
+    report.sigma = SigmaOf(*camera.spec, calibration.camera_from_lidar, *calibration.covariance);
   }
-}
-
-void ShareTime(double seconds, const std::vector<GuessedCamera>& cameras) {
-  for (const GuessedCamera& camera : cameras) {
-    camera.views->report.solve_s += seconds / static_cast<double>(cameras.size());
-  }
+  return report;
 }
 
 std::vector<GuessedCamera> GuessCameras(const CalibrateOptions& options,
-                                        std::vector<CameraViews>* cameras) {
+                                        std::vector<CameraViews> cameras) {
   std::vector<GuessedCamera> guessed;
-  for (CameraViews& camera : *cameras) {
+  for (CameraViews& camera : cameras) {
     const Stopwatch watch;
-    const FirstGuess guess = Guess(options, &camera);
-    camera.report.solve_s += watch.Seconds();
-    if (guess.camera_from_lidar) guessed.push_back({&camera, guess});
+    guessed.push_back(Guess(options, std::move(camera)));
+    guessed.back().views.report.solve_s += watch.Seconds();
   }
   return guessed;
+}
+
+std::vector<CameraViews> WithoutGuesses(std::vector<GuessedCamera> cameras) {
+  std::vector<CameraViews> views;
+  views.reserve(cameras.size());
+  for (GuessedCamera& camera : cameras) views.push_back(std::move(camera.views));
+  return views;
 }
 
 }  // namespace rgbdt

@@ -17,25 +17,25 @@ struct CalibratedCameras {
   std::optional<NextView> next_view;
 };
 
-/// A camera and where the first guess puts it; its usable views know their board.
+/// A camera and where the first guess puts it. With a pose, its usable views know their board;
+/// without one, no method can go on, and its report says why.
 struct GuessedCamera {
-  CameraViews* views = nullptr;
-  FirstGuess guess;  ///< with a pose
+  CameraViews views;
+  FirstGuess guess;
 };
 
-/// The first guess of each camera, with which a solve begins. A camera without one is left out; its
-/// report says why.
+/// The first guess of each camera, with which a solve begins.
 std::vector<GuessedCamera> GuessCameras(const CalibrateOptions& options,
-                                        std::vector<CameraViews>* cameras);
+                                        std::vector<CameraViews> cameras);
+
+/// Their views and reports, once no guess is needed any more.
+std::vector<CameraViews> WithoutGuesses(std::vector<GuessedCamera> cameras);
 
 /// A camera's calibration with its degeneracy: a pose that the views leave loose is not to be
 /// believed, whatever its residuals: its status says so, and its covariance goes.
 CameraCalibration WithDegeneracy(const CameraViews& camera);
 
-/// Judges the calibrations in the cameras' reports on used and held-out views.
-void JudgeCameras(const EdgeModel& edges, const std::vector<GuessedCamera>& cameras);
-
-/// Adds the solve's computing time to the cameras' reports, in equal parts.
-void ShareTime(double seconds, const std::vector<GuessedCamera>& cameras);
+/// A camera's report with its calibration judged on used and held-out views.
+CameraReport JudgeViews(const EdgeModel& edges, const CameraViews& camera);
 
 }  // namespace rgbdt

@@ -117,16 +117,15 @@ class Session {
 
 // The joint solve from first guesses that are at hand, its set-up included.
 double JointMilliseconds(const Session& session) {
-  std::vector<CameraViews> views;
   std::vector<GuessedCamera> cameras;
-  for (const CameraSpec& camera : session.rig().cameras) {
-    views.push_back(ViewsOf(camera, session.detections()));
-  }
-  for (CameraViews& camera : views) {
-    cameras.push_back({&camera, GuessFromBoards(camera.Used())});
-    const auto& guess = cameras.back().guess.camera_from_lidar;
-    if (!guess) throw std::runtime_error("no first guess");
-    for (CameraView& view : camera.all) view = WithChosenCandidate(std::move(view), *guess);
+  for (const CameraSpec& spec : session.rig().cameras) {
+    auto& [views, guess] =
+        cameras.emplace_back(GuessedCamera{ViewsOf(spec, session.detections()), {}});
+    guess = GuessFromBoards(views.Used());
+    if (!guess.camera_from_lidar) throw std::runtime_error("no first guess");
+    for (CameraView& view : views.all) {
+      view = WithChosenCandidate(std::move(view), *guess.camera_from_lidar);
+    }
   }
   return LeastMilliseconds(
       [&] { SolveJointly(MakeJointProblem(session.rig().target, cameras, 0)); });

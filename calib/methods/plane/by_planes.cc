@@ -71,18 +71,21 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
 
 CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
-  CalibratedCameras out{std::move(cameras), {}, {}};
-  const std::vector<GuessedCamera> guessed = GuessCameras(options, &out.cameras);
-  for (const GuessedCamera& camera : guessed) {
+  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
+  const EdgeModel edges{target, BoardPriors().Means(), {}};
+  for (auto& [views, guess] : guessed) {
+    if (!guess.camera_from_lidar) continue;
     const Stopwatch watch;
-    CameraReport& report = camera.views->report;
-    report.calibration = SolvePlanes(camera.views->Used(), *camera.guess.camera_from_lidar);
-    report.calibration.camera = camera.views->spec->name;
-    ShareTime(watch.Seconds(), {camera});
-    report.calibration = WithDegeneracy(*camera.views);
+    CameraReport& report = views.report;
+    report.calibration = SolvePlanes(views.Used(), *guess.camera_from_lidar);
+    report.calibration.camera = views.spec->name;
+    report.solve_s += watch.Seconds();
+    report.calibration = WithDegeneracy(views);
+    report = JudgeViews(edges, views);
   }
-  JudgeCameras(EdgeModel{target, BoardPriors().Means(), {}}, guessed);
+  CalibratedCameras out;
   if (options.diagnostics) out.closure = CloseLoops(guessed);
+  out.cameras = WithoutGuesses(std::move(guessed));
   return out;
 }
 

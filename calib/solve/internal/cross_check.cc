@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/text.h"
@@ -33,7 +34,7 @@ std::vector<const CameraView*> ViewsOf(const JointProblem& joint, std::size_t ca
                                        const std::vector<std::size_t>& views) {
   std::vector<const CameraView*> out;
   for (const std::size_t v : views) {
-    const CameraView* o = joint.cameras[camera].views->Find(joint.problem.views[v].name);
+    const CameraView* o = joint.cameras[camera].views.Find(joint.problem.views[v].name);
     if (o != nullptr) out.push_back(o);
   }
   return out;
@@ -65,7 +66,7 @@ double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
 
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
                  const std::vector<std::size_t>& left_out, const FirstGuess& guess) {
-  const CameraReport& report = joint.cameras[camera].views->report;
+  const CameraReport& report = joint.cameras[camera].views.report;
   const auto at = static_cast<Index>(6 * camera);
   const CameraCalibration fold_calibration{
       report.calibration.camera, solution.state.camera_from_lidar[camera],
@@ -76,7 +77,7 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
       ErrorOf(fold_calibration.camera_from_lidar, report.calibration.camera_from_lidar);
   EdgeMisfit sum;
   for (const std::size_t view : left_out) {
-    const CameraView* o = joint.cameras[camera].views->Find(joint.problem.views[view].name);
+    const CameraView* o = joint.cameras[camera].views.Find(joint.problem.views[view].name);
     if (o == nullptr) continue;
     judged.fold.heldout.push_back(o->view);
     const EdgeMisfit edge = MisfitOfEdges(edges, *o, fold_calibration);
@@ -108,25 +109,23 @@ bool GuessIsBetter(const std::vector<double>& worse) {
   return sum > 2 * std::sqrt(squares);
 }
 
-void KeepGuess(const GuessedCamera& camera) {
-  CameraReport& report = camera.views->report;
+CameraCalibration KeptGuess(const GuessedCamera& camera) {
+  const CameraReport& report = camera.views.report;
   double refined = 0;
   double guessed = 0;
   for (const Fold& fold : report.folds) {
     refined += fold.misfit / static_cast<double>(report.folds.size());
     guessed += fold.first_guess_misfit / static_cast<double>(report.folds.size());
   }
-  report.calibration.camera_from_lidar = *camera.guess.camera_from_lidar;
-  report.calibration.covariance = camera.guess.covariance;
-  report.calibration.status = SolveStatus::kFirstGuessKept;
-  report.calibration.detail = Format(
-      "on views left out it fits better than the refined pose (chi-square %.1f against %.1f a "
-      "view)",
-      guessed, refined);
+  return {report.calibration.camera, *camera.guess.camera_from_lidar, camera.guess.covariance,
+          SolveStatus::kFirstGuessKept,
+          Format("on views left out it fits better than the refined pose (chi-square %.1f against "
+                 "%.1f a view)",
+                 guessed, refined)};
 }
 
-void LeaveOutParts(const JointResult& result, std::size_t parts) {
-  const JointProblem& joint = result.joint;
+JointResult LeaveOutParts(JointResult result, std::size_t parts) {
+  JointProblem& joint = result.joint;
   std::vector<std::vector<double>> worse(joint.cameras.size());
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t count = joint.problem.views.size();
@@ -139,16 +138,17 @@ void LeaveOutParts(const JointResult& result, std::size_t parts) {
       Judged judged = JudgeFold(joint, solution, c, left_out, guess);
       if (judged.worse.empty()) continue;
       worse[c].insert(worse[c].end(), judged.worse.begin(), judged.worse.end());
-      joint.cameras[c].views->report.folds.push_back(std::move(judged.fold));
+      joint.cameras[c].views.report.folds.push_back(std::move(judged.fold));
     }
   }
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-    KeepTheBetter(joint.cameras[c], worse[c]);
+    joint.cameras[c].views.report.calibration = TheBetter(joint.cameras[c], worse[c]);
   }
+  return result;
 }
 
-void Halve(const JointResult& result) {
-  const JointProblem& joint = result.joint;
+JointResult Halve(JointResult result) {
+  JointProblem& joint = result.joint;
   const std::size_t count = joint.problem.views.size();
   const BoardSolution a = SolvePart(joint, result.solution.state, Others(count, 0, 2, true));
   const BoardSolution b = SolvePart(joint, result.solution.state, Others(count, 1, 2, true));
@@ -160,21 +160,22 @@ void Halve(const JointResult& result) {
                                                           b.covariance.block<6, 6>(at, at));
     const Vector6d delta = Log(pose_a * pose_b.Inverse());
     Halves halves{ErrorOf(pose_a, pose_b), delta.dot(SolveSymmetric(covariance, delta))};
-    joint.cameras[c].views->report.halves = halves;
+    joint.cameras[c].views.report.halves = halves;
   }
+  return result;
 }
 
 }  // namespace
 
-void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse) {
-  if (GuessIsBetter(worse)) KeepGuess(camera);
+CameraCalibration TheBetter(const GuessedCamera& camera, const std::vector<double>& worse) {
+  return GuessIsBetter(worse) ? KeptGuess(camera) : camera.views.report.calibration;
 }
 
-void CrossValidate(const JointResult& result, int folds) {
+JointResult CrossValidate(JointResult result, int folds) {
   const std::size_t views = result.joint.problem.views.size();
-  if (views < 4) return;
-  LeaveOutParts(result, std::min(views, static_cast<std::size_t>(folds)));
-  if (views >= 6) Halve(result);
+  if (views < 4) return result;
+  result = LeaveOutParts(std::move(result), std::min(views, static_cast<std::size_t>(folds)));
+  return views < 6 ? result : Halve(std::move(result));
 }
 
 }  // namespace rgbdt

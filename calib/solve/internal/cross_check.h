@@ -6,15 +6,15 @@
 
 namespace rgbdt {
 
-/// Fills in `folds` and `halves` of the cameras' reports: each part of the views left out once,
-/// solved from the others and judged on it, beside the first guess from the same others; and two
-/// halves of the views solved apart. Where the first guess fits what was left out better by
+/// The result with `folds` and `halves` in its cameras' reports: each part of the views left out
+/// once, solved from the others and judged on it, beside the first guess from the same others; and
+/// two halves of the views solved apart. Where the first guess fits what was left out better by
 /// more than chance, it is kept: it becomes the report's calibration, and the status says so.
 /// Nothing with fewer than 4 views.
-void CrossValidate(const JointResult& result, int folds);
+[[nodiscard]] JointResult CrossValidate(JointResult result, int folds);
 
-/// The first guess becomes the report's calibration where it fits views left out better than the
-/// refined pose by more than chance: `worse` is, by view, how much larger the refined misfit is.
-void KeepTheBetter(const GuessedCamera& camera, const std::vector<double>& worse);
+/// A camera's calibration, or its first guess where that fits views left out better by more than
+/// chance: `worse` is, by view, how much larger the refined misfit is.
+CameraCalibration TheBetter(const GuessedCamera& camera, const std::vector<double>& worse);
 
 }  // namespace rgbdt

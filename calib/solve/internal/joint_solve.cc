@@ -28,11 +28,11 @@ class Builder {
  public:
   explicit Builder(const Target& target) { joint_.problem.target = target; }
 
-  void Add(const GuessedCamera& camera) {
+  void Add(GuessedCamera guessed) {
     const int index = static_cast<int>(joint_.cameras.size());
-    joint_.cameras.push_back(camera);
-    joint_.problem.cameras.emplace_back(*camera.views->spec);
-    for (CameraView& o : camera.views->all) {
+    GuessedCamera& camera = joint_.cameras.emplace_back(std::move(guessed));
+    joint_.problem.cameras.emplace_back(*camera.views.spec);
+    for (CameraView& o : camera.views.all) {
       if (o.usable() && !o.heldout) AddImage(index, &o);
     }
   }
@@ -263,7 +263,7 @@ class JointSolver {
     BoardView& view = Problem().views[worst.view];
     const int camera = view.images[worst.image].camera;
     const int others = ImagesOf(Problem(), camera) - 1;
-    for (CameraView& o : Joint().cameras[static_cast<std::size_t>(camera)].views->all) {
+    for (CameraView& o : Joint().cameras[static_cast<std::size_t>(camera)].views.all) {
       if (o.view != view.name) continue;
       o.Reject("contradicts the other " + std::to_string(others) +
                " views: by itself it would put the camera " + Fixed(worst.rotation_deg, 2) +
@@ -299,7 +299,7 @@ class JointSolver {
     if (worst <= most) return false;
     Problem().views[view].sides[side] = false;
     for (const BoardImage& image : Problem().views[view].images) {
-      Joint().cameras[static_cast<std::size_t>(image.camera)].views->report.warnings.push_back(
+      Joint().cameras[static_cast<std::size_t>(image.camera)].views.report.warnings.push_back(
           "view " + Problem().views[view].name + ": the board's " + kSideNames[side] +
           " side in the cloud lies " + Fixed(worst * 1000, 1) +
           " mrad from where the other sides put it; that side is left out, the view is used");
@@ -326,10 +326,10 @@ class JointSolver {
 
 }  // namespace
 
-JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
+JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
                               double range_offset_sigma_m) {
   Builder builder(target);
-  for (const GuessedCamera& camera : cameras) builder.Add(camera);
+  for (GuessedCamera& camera : cameras) builder.Add(std::move(camera));
   return builder.Finish(range_offset_sigma_m);
 }
 

@@ -17,11 +17,11 @@ struct JointProblem {
   std::vector<GuessedCamera> cameras;  ///< in the order of problem.cameras
 };
 
-/// The boards of all views used, each brought into one set of axes for all cameras: the target's
-/// own, where one of them knows it. A view whose camera takes another board of the cloud
-/// than the cameras before it becomes rejected. `range_offset_sigma_m`: 0 where it is not asked
-/// for.
-JointProblem MakeJointProblem(const Target& target, const std::vector<GuessedCamera>& cameras,
+/// The boards of all views used, of cameras that all have a guess, each brought into one set of
+/// axes for all cameras: the target's own, where one of them knows it. A view whose camera takes
+/// another board of the cloud than the cameras before it becomes rejected. `range_offset_sigma_m`:
+/// 0 where it is not asked for.
+JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
                               double range_offset_sigma_m);
 
 /// A problem and where its solve starts.

@@ -255,7 +255,7 @@ std::optional<NextView> FindNextView(const JointResult& result) {
     const Worst after = WorstOf(problem, InverseOfSymmetric(Eigen::MatrixXd(information + *more)));
     if (best && scale * after.sigma_px >= best->sigma_after_px) continue;
     best = NextView{place.Words(), place.LidarFromTarget(),
-                    joint.cameras[before.camera].views->spec->name, scale * before.sigma_px,
+                    joint.cameras[before.camera].views.spec->name, scale * before.sigma_px,
                     scale * after.sigma_px};
   }
   return best;

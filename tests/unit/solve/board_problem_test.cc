@@ -1,5 +1,7 @@
 #include "calib/solve/board_problem.h"
 
+#include <list>
+
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {

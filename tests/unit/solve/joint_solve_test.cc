@@ -218,11 +218,11 @@ TEST(CalibrateJointly, ASecondBoardIsNotUsedAndIsNamed) {
 
 TEST(MakeJointProblem, ACameraThatTakesAnotherBoardOfTheCloudIsRejected) {
   SolveWorld world(Views(6));
-  const SolveSession session(world);
-  session.cameras[1].views->all[2].cloud->centre += Eigen::Vector3d(0, 0.5, 0);
+  SolveSession session(world);
+  session.cameras[1].views.all[2].cloud->centre += Eigen::Vector3d(0, 0.5, 0);
   const JointProblem joint = session.Joint();
   EXPECT_EQ(joint.problem.views[2].images.size(), 1U);
-  EXPECT_THAT(session.cameras[1].views->all[2].rejected, HasSubstr("another board of the cloud"));
+  EXPECT_THAT(joint.cameras[1].views.all[2].rejected, HasSubstr("another board of the cloud"));
 }
 
 TEST(CalibrateApart, GivesEachCameraWhatItWouldHaveAlone) {

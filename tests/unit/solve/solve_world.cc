@@ -326,10 +326,8 @@ void TurnImage(ImageEdges* image) {
 SolveSession::SolveSession(const SolveWorld& world, const std::vector<Rigid3>& guesses)
     : rig_(world.rig) {
   for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-    views_.push_back(ViewsOf(rig_.cameras[c], world.detections));
-    GuessedCamera camera{&views_.back(), {}};
-    camera.guess.camera_from_lidar = guesses[c];
-    cameras.push_back(camera);
+    cameras.push_back({ViewsOf(rig_.cameras[c], world.detections), {}});
+    cameras.back().guess.camera_from_lidar = guesses[c];
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <list>
 #include <vector>
 
 #include "calib/camera/camera.h"
@@ -94,8 +93,7 @@ class SolveSession {
   std::vector<GuessedCamera> cameras;
 
  private:
-  Rig rig_;
-  std::list<CameraViews> views_;  // that the cameras point to
+  Rig rig_;  // whose cameras `cameras` point to
 };
 
 /// Chi-square of a pose's error by a covariance of delta; 6 is to be expected.
