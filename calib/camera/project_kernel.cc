@@ -112,22 +112,22 @@ inline __attribute__((always_inline)) void Run(const KernelProjection& k,
 }  // namespace
 
 RGBDT_SIMD_DISPATCH
-void ProjectKernel(const KernelProjection& k, const float* points, std::size_t count,
+void ProjectKernel(const KernelProjection& projection, const float* points, std::size_t count,
                    const PixelArrays& out) {
   float* u = out.u;
   float* v = out.v;
   float* w = out.inverse_range;
-  const float* d = k.distortion;
+  const float* d = projection.distortion;
   const bool rational = d[5] != 0 || d[6] != 0 || d[7] != 0;
-  if (k.fisheye) {
-    k.rolls ? Run<Bend::kFisheye, true>(k, points, count, u, v, w)
-            : Run<Bend::kFisheye, false>(k, points, count, u, v, w);
+  if (projection.fisheye) {
+    projection.rolls ? Run<Bend::kFisheye, true>(projection, points, count, u, v, w)
+                     : Run<Bend::kFisheye, false>(projection, points, count, u, v, w);
   } else if (rational) {
-    k.rolls ? Run<Bend::kRational, true>(k, points, count, u, v, w)
-            : Run<Bend::kRational, false>(k, points, count, u, v, w);
+    projection.rolls ? Run<Bend::kRational, true>(projection, points, count, u, v, w)
+                     : Run<Bend::kRational, false>(projection, points, count, u, v, w);
   } else {
-    k.rolls ? Run<Bend::kPolynomial, true>(k, points, count, u, v, w)
-            : Run<Bend::kPolynomial, false>(k, points, count, u, v, w);
+    projection.rolls ? Run<Bend::kPolynomial, true>(projection, points, count, u, v, w)
+                     : Run<Bend::kPolynomial, false>(projection, points, count, u, v, w);
   }
 }
 

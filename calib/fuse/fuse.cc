@@ -27,6 +27,7 @@ FusionCamera CameraOf(const CameraSpec& spec, const Calibration& calibration, co
 RgbdtCloud Fuse(const Cloud& cloud, const std::vector<FusionCamera>& cameras,
                 double range_sigma_m) {
   std::vector<CameraSpec> specs;
+  specs.reserve(cameras.size());
   for (const FusionCamera& camera : cameras) specs.push_back(camera.spec());
   SweepFuser fuser(specs, range_sigma_m);
   for (std::size_t i = 0; i < cameras.size(); ++i) fuser.camera(i) = cameras[i];

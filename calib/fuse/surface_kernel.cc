@@ -153,7 +153,8 @@ void MakePlanes(const CellGrid& grid, const float* surfels, std::size_t first, s
   const CellGrid g = grid;
   const Surfels s(grid, surfels);
   const auto first_column = static_cast<int>(first % g.columns);
-  const float row = static_cast<float>(first / g.columns) - CellGrid::kMargin + 0.5F;
+  const std::size_t first_row = first / g.columns;
+  const float row = static_cast<float>(first_row) - CellGrid::kMargin + 0.5F;
   const auto count = static_cast<int>(end - first);
   RGBDT_INDEPENDENT
   for (int k = 0; k < count; ++k) {
@@ -190,13 +191,13 @@ void FindOccluded(const CellGrid& grid, const float* planes, const float* other_
     const auto row = static_cast<std::int32_t>(p.v[i] * g.per_v + CellGrid::kMargin);
     cells[i] = row * columns + column;
   }
-  FourFloats one[kSurfaceBlock], other[kSurfaceBlock];
+  alignas(16) float a[4 * kSurfaceBlock], b[4 * kSurfaceBlock];
   for (std::size_t i = 0; i < count; ++i) {
-    one[i] = FourAt(planes, cells[i]);
-    other[i] = FourAt(other_planes, cells[i]);
+    const FourFloats one = FourAt(planes, cells[i]);
+    const FourFloats other = FourAt(other_planes, cells[i]);
+    std::memcpy(a + 4 * i, &one, sizeof one);
+    std::memcpy(b + 4 * i, &other, sizeof other);
   }
-  const float* a = &one[0][0];
-  const float* b = &other[0][0];
   std::int32_t is_occluded[kSurfaceBlock];
   for (std::size_t i = 0; i < count; ++i) {
     const float u = p.u[i];

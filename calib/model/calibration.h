@@ -67,7 +67,7 @@ struct PoseError {
   double translation_mm = 0;  ///< between the camera centres, LIDAR frame
 };
 
-/// A figure and how sure it is.
+/// A figure and its uncertainty (1 sigma).
 struct Estimate {
   double value = 0;
   double sigma = 0;

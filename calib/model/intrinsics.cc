@@ -54,7 +54,7 @@ std::vector<std::string> ImageCoverage::EmptyParts() const {
   }
   std::vector<std::string> empty;
   for (int part = 0; part < 9; ++part) {
-    if (2 * held[part] < cells[part]) empty.push_back(kNames[part]);
+    if (2 * held[part] < cells[part]) empty.emplace_back(kNames[part]);
   }
   return empty;
 }

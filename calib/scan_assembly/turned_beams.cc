@@ -23,6 +23,7 @@ double CircularMedian(std::vector<double> angles) {
                angles.end());
   if (angles.empty()) return kNan;
   std::vector<double> about;
+  about.reserve(angles.size());
   for (const double angle : angles) about.push_back(Wrapped(angle - angles.front()));
   return Wrapped(angles.front() + Median(std::move(about)));
 }

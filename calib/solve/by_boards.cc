@@ -163,6 +163,7 @@ CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions
   std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
   for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
     std::vector<GuessedCamera> together;
+    together.reserve(group.size());
     for (const std::size_t c : group) together.push_back(std::move(guessed[c]));
     SolvedGroup solved = SolveGroup(target, options, std::move(together));
     for (std::size_t i = 0; i < group.size(); ++i) guessed[group[i]] = std::move(solved.cameras[i]);

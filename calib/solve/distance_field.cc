@@ -23,8 +23,9 @@ const FitMatrix& Fitter() {
   static const FitMatrix matrix = [] {
     Eigen::Matrix<double, kWindow, 6> design;
     for (int i = 0; i < kWindow; ++i) {
+      const int row = i / kSide;
       const double x = i % kSide + kFrom;
-      const double y = static_cast<double>(i / kSide) + kFrom;
+      const double y = row + kFrom;
       design.row(i) << 1, x, y, x * x, x * y, y * y;
     }
     return FitMatrix(

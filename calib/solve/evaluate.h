@@ -44,7 +44,7 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
 
 /// A camera's report with `views`, `distance_transform_px` and `edge_rms_px` by its calibration:
 /// means over all points of the views used, and of those held out.
-[[nodiscard]] CameraReport JudgeCamera(const CameraSpec& camera,
+[[nodiscard]] CameraReport JudgeCamera(const CameraSpec& spec,
                                        const std::vector<const CameraView*>& usable,
                                        CameraReport report);
 

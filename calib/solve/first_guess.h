@@ -64,7 +64,7 @@ struct FirstGuess {
 /// number of wrong candidates, and up to half of the views wrong. Says so where views agree on two
 /// answers alike (the board always held the same way), and where the images are mirrored.
 /// `views` have an image pose and candidates; others are passed over.
-FirstGuess GuessFromBoards(const std::vector<const CameraView*>& views,
+FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                            const FirstGuessOptions& options = {});
 
 /// The candidate that fits best.

@@ -220,8 +220,10 @@ void TerrainOptions::Check() const {
 
 Eigen::Vector2d TerrainGrid::Centre(std::size_t cell) const {
   const std::size_t n = static_cast<std::size_t>(columns);
-  return origin + cell_m * Eigen::Vector2d(static_cast<double>(cell % n) + 0.5,
-                                           static_cast<double>(cell / n) + 0.5);
+  const std::size_t column = cell % n;
+  const std::size_t row = cell / n;
+  return origin + cell_m * Eigen::Vector2d(static_cast<double>(column) + 0.5,
+                                           static_cast<double>(row) + 0.5);
 }
 
 Terrain FindTerrain(const MapCloud& cloud, const TerrainOptions& options) {

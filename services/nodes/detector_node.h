@@ -40,7 +40,7 @@ class DetectorNode : public Node {
 
  private:
   Messages LookAtNext();
-  void OnRig(const RigText& rig);
+  void OnRig(const RigText& text);
   void OnCommand(const SessionCommand& command);
   Messages OnPicks(const CornerSelection& picks);
   Messages DetectIfComplete();

@@ -387,8 +387,8 @@ std::vector<std::string> SessionNode::Needed() const {
   for (const CameraSpec& camera : rig_.cameras) {
     if (camera.device) needed.push_back("camera-" + camera.name);
   }
-  if (rig_.lidar.device.index() != 0) needed.push_back("lidar");
-  if (rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor) needed.push_back("motor");
+  if (rig_.lidar.device.index() != 0) needed.emplace_back("lidar");
+  if (rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor) needed.emplace_back("motor");
   return needed;
 }
 

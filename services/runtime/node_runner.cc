@@ -27,7 +27,9 @@ void AddCounters(const std::string& what, const std::map<std::string, std::int64
   std::size_t named = 0;
   for (const auto& [channel, count] : by_channel) {
     if (count != 0 && named++ < kMaxChannelsNamed) {
-      status->counters.emplace_back(Printable(what + " " + channel, 100), count);
+      std::string name = what;
+      name.append(" ").append(channel);
+      status->counters.emplace_back(Printable(name, 100), count);
     }
   }
 }

@@ -69,8 +69,8 @@ Cloud AnalyticCloud(const Target& target, const Rigid3& lidar_from_target, int p
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
                                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       const double range = board.Range(direction) + kSigma * noise.Normal(cloud.points.size());
-      cloud.directions.push_back(direction.cast<float>());
-      cloud.points.push_back((range * direction).cast<float>());
+      cloud.directions.emplace_back(direction.cast<float>());
+      cloud.points.emplace_back((range * direction).cast<float>());
     }
   }
   return cloud;

@@ -24,9 +24,9 @@ constexpr int kReadingsPerLine = TurningScanner::kLinePeriod / TurningScanner::k
 
 // The scanner's messages without end, in the order in which they are sent: a sweep's lines are
 // made once and sent again with a new time.
-class Stream {
+class LineStream {
  public:
-  Stream() {
+  LineStream() {
     for (int n = 0; n < TurningScanner::kSweepLines; ++n) lines_.emplace_back(scanner_.Line(n));
   }
 
@@ -57,7 +57,7 @@ class Stream {
 using TakeMessage = std::function<void(const Message&)>;
 
 std::function<void()> ForLines(std::int64_t points, const TakeMessage& take) {
-  const auto stream = std::make_shared<Stream>();
+  const auto stream = std::make_shared<LineStream>();
   take(stream->FirstReading());
   const std::int64_t lines = points / TurningScanner::kBeams;
   return [=] {

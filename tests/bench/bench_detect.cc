@@ -113,7 +113,7 @@ PclCloud::Ptr TakePlane(PclCloud::Ptr* rest) {
   pcl::ExtractIndices<pcl::PointXYZ> extract;
   extract.setInputCloud(*rest);
   extract.setIndices(inliers);
-  const PclCloud::Ptr on_plane(new PclCloud);
+  PclCloud::Ptr on_plane(new PclCloud);
   const PclCloud::Ptr others(new PclCloud);
   extract.filter(*on_plane);
   extract.setNegative(true);

@@ -147,6 +147,7 @@ class Run {
     LcmBus bus("");
     const CameraSpec& camera = rig_.rig.cameras[c];
     std::vector<Image> pictures;
+    pictures.reserve(kPictures);
     for (int k = 0; k < kPictures; ++k) pictures.push_back(PictureOf(camera, kStart, k));
     std::int64_t frame = 0;
     for (Utime t = static_cast<Utime>(c) * 37'000; t <= EndOfData(); t += kFramePeriod) {

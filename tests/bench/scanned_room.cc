@@ -29,7 +29,7 @@ Cloud ScannedRoom(const Field& field, std::int64_t points, Utime utime) {
       const double range = RangeAt(azimuth, elevation);
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
                                       std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      cloud.points.push_back((range * direction).cast<float>());
+      cloud.points.emplace_back((range * direction).cast<float>());
       cloud.utime.push_back(utime + kSweep * line / cloud.lines);
     }
   }

@@ -34,6 +34,19 @@ void WriteSweep(const simulate::Simulator& simulator, test::LogWriter* log) {
 }
 
 }  // namespace
+
+void WriteLog(const char* log_path, const char* rig_path) {
+  simulate::Options options;
+  options.scene = simulate::Scene::kIndoor;
+  options.scanner = simulate::FullTurnScanner();
+  const simulate::Simulator simulator(options);
+  const std::string text = ReadWholeFile(rig_path);
+  test::LogWriter log(log_path);
+  Write(RigText{0, HashOfRigText(text), text}, SimulatorNode::kEpoch, &log);
+  WriteSweep(simulator, &log);
+  log.Close();
+}
+
 }  // namespace rgbdt
 
 int main(int argc, char** argv) {
@@ -41,15 +54,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: scanner_test_log LOG RIG\n");
     return 1;
   }
-  using namespace rgbdt;
-  simulate::Options options;
-  options.scene = simulate::Scene::kIndoor;
-  options.scanner = simulate::FullTurnScanner();
-  const simulate::Simulator simulator(options);
-  const std::string text = ReadWholeFile(argv[2]);
-  test::LogWriter log(argv[1]);
-  Write(RigText{0, HashOfRigText(text), text}, SimulatorNode::kEpoch, &log);
-  WriteSweep(simulator, &log);
-  log.Close();
+  rgbdt::WriteLog(argv[1], argv[2]);
   return 0;
 }

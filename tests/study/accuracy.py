@@ -256,7 +256,7 @@ def draw_honesty(axes, groups):
     axes.plot(places, [chi2_6_below(x) for x in places], "k--", label="as it should be: mean 6.0")
     axes.set(xlabel="squared error in its own sigmas (6 degrees of freedom)", ylabel="share below")
     axes.set(xlim=(0, 25), ylim=(0, 1))
-    axes.set_title("Does it know how sure it is?")
+    axes.set_title("Are the stated sigmas true?")
     axes.legend(fontsize=8)
 
 

@@ -23,6 +23,7 @@ struct Size {
 // Extent of flat points, and of half a spacing beyond the outermost on each side.
 Size Measure(const std::vector<Eigen::Vector2d>& flat, double spacing) {
   std::vector<cv::Point2f> points;
+  points.reserve(flat.size());
   for (const Eigen::Vector2d& p : flat) {
     points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
   }
@@ -139,8 +140,8 @@ std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& 
   std::vector<Eigen::Vector3d> out;
   for (std::size_t side = 0; side < 4; ++side) {
     if (rectangle.side_coverage[side] < 0.3) continue;
-    const Eigen::Vector3d a = corners[side];
-    const Eigen::Vector3d b = corners[(side + 1) % 4];
+    const Eigen::Vector3d& a = corners[side];
+    const Eigen::Vector3d& b = corners[(side + 1) % 4];
     const int pieces = std::max(1, static_cast<int>((b - a).norm() / kSpacing));
     for (int i = 0; i < pieces; ++i) {
       out.push_back(pose * (a + (b - a) * (i + 0.5) / pieces));

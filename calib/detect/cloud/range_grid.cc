@@ -238,7 +238,8 @@ std::optional<int> RangeGrid::Place(const Rows& rows, double step, bool even) {
   wraps_ = high - low > 2 * kPi - 0.1;
   const double first = wraps_ ? -kPi : low - 0.5 * step;
   rows_ = static_cast<int>(rows.size());
-  columns_ = static_cast<int>((wraps_ ? 2 * kPi : high - low) / step + 0.5) + (wraps_ ? 0 : 2);
+  columns_ =
+      static_cast<int>(std::lround((wraps_ ? 2 * kPi : high - low) / step)) + (wraps_ ? 0 : 2);
   // A few stray points between dense ones must not make a grid of nothing but misses.
   if (static_cast<double>(rows_) * columns_ > 20.0 * hits_ + 1e6) return std::nullopt;
   place_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), -1);

@@ -281,7 +281,7 @@ CloudEdgesResult DetectCloudEdges(const Cloud& cloud, const Camera& camera,
     return {std::nullopt, "the segment found in the cloud (" + std::to_string(segment.size()) +
                               " points) has no clear boundary"};
   }
-  for (const Eigen::Vector3f& p : boundary) edges.boundary.push_back(p.cast<double>());
+  for (const Eigen::Vector3f& p : boundary) edges.boundary.emplace_back(p.cast<double>());
   Measure(hits.points, segment, &edges);
   const std::string why = WhyNotTheTarget(edges, target, options.size_tolerance);
   if (!why.empty()) return {std::nullopt, why};

@@ -27,7 +27,7 @@ struct Overlay {
 /// Lays points of the LIDAR frame on a camera's image: x, y [px], distance from the camera [m].
 /// Those that it does not see are left out. At most `most`, in an order of which any first part is
 /// an even sample.
-std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& camera, const Rigid3& camera_from_lidar,
+std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& spec, const Rigid3& camera_from_lidar,
                                         const std::vector<Eigen::Vector3f>& points,
                                         std::size_t most = 20000);
 

@@ -81,7 +81,7 @@ std::string CornersSvg(const CameraIntrinsics& camera) {
          "</figure>\n";
 }
 
-Table ViewsTable(const IntrinsicsResult& result) {
+Table LensViewsTable(const IntrinsicsResult& result) {
   Table table{"Views", {}, {"View", "RMS", "Worst corner", "Corners left out", "Why rejected"}, {}};
   for (const IntrinsicsViewFit& view : result.views) {
     if (!view.rejected.empty()) {
@@ -104,7 +104,7 @@ std::string CameraHtml(const CameraIntrinsics& camera) {
     out += html::TableBox(ParametersTable(camera.result)) + html::Heading(3, "Corners") +
            CornersSvg(camera);
   }
-  return out + html::TableBox(ViewsTable(camera.result)) + "</section>\n";
+  return out + html::TableBox(LensViewsTable(camera.result)) + "</section>\n";
 }
 
 }  // namespace

@@ -120,8 +120,10 @@ double ShareOutside(const BoardOptions& board, const std::vector<CameraRenderer>
   for (const CameraRenderer& camera : cameras) {
     int outside = 0;
     for (int i = 0; i < kSteps * kSteps; ++i) {
-      const Eigen::Vector3d place(((i % kSteps + 0.5) / kSteps - 0.5) * board.width_m,
-                                  ((i / kSteps + 0.5) / kSteps - 0.5) * board.height_m, 0);
+      const int column = i % kSteps;
+      const int row = i / kSteps;
+      const Eigen::Vector3d place(((column + 0.5) / kSteps - 0.5) * board.width_m,
+                                  ((row + 0.5) / kSteps - 0.5) * board.height_m, 0);
       if (!InImage(camera, 0, lidar_from_target * place)) ++outside;
     }
     most = std::max(most, outside);
@@ -206,7 +208,7 @@ Rigid3 BoardPose(const Options& options, const World& empty, const Scanner& scan
   constexpr int kAttempts = 400;
   std::string why;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const Rigid3 pose = MakePose(Draw(options, index, attempt));
+    Rigid3 pose = MakePose(Draw(options, index, attempt));
     why = WhyNotSeen(options, empty, scanner, cameras, pose);
     if (why.empty()) return pose;
   }

@@ -36,28 +36,30 @@ const char* AxisOf(const Eigen::Vector3d& v) {
 
 }  // namespace
 
-std::string WhyDegenerate(const std::vector<Rigid3>& boards) {
-  if (boards.empty()) return "no view";
-  const Eigen::Vector3d normal = MeanNormal(boards);
+std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target) {
+  if (lidar_from_target.empty()) return "no view";
+  const Eigen::Vector3d normal = MeanNormal(lidar_from_target);
   double angle = 0;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Rigid3& board : boards) {
+  for (const Rigid3& board : lidar_from_target) {
     const double along = normal.dot(board.rotation * Eigen::Vector3d::UnitZ());
     angle = std::max(angle, std::acos(std::clamp(along, -1.0, 1.0)));
-    middle += board.translation / static_cast<double>(boards.size());
+    middle += board.translation / static_cast<double>(lidar_from_target.size());
   }
   double apart = 0;
-  for (const Rigid3& board : boards) apart = std::max(apart, (board.translation - middle).norm());
-  if (boards.size() == 1 || angle < kParallelRad) {
-    return (boards.size() == 1 ? std::string("only one view")
-                               : "the board was parallel to itself in all " +
-                                     std::to_string(boards.size()) + " views") +
+  for (const Rigid3& board : lidar_from_target)
+    apart = std::max(apart, (board.translation - middle).norm());
+  if (lidar_from_target.size() == 1 || angle < kParallelRad) {
+    return (lidar_from_target.size() == 1
+                ? std::string("only one view")
+                : "the board was parallel to itself in all " +
+                      std::to_string(lidar_from_target.size()) + " views") +
            "; shifts of the camera across the board's normal " + Direction(normal) +
            " and turns about it (LIDAR frame) are loose. Next: tilt the board by 20 to 40 deg, to "
            "different sides";
   }
   if (apart < kOnePlaceM) {
-    return "the board was at one place in all " + std::to_string(boards.size()) +
+    return "the board was at one place in all " + std::to_string(lidar_from_target.size()) +
            " views; a turn of the camera about that place (" + Place(middle) +
            ", LIDAR frame) and a shift of it look alike. Next: hold the board nearer, farther, and "
            "to both sides";

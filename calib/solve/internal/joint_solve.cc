@@ -136,6 +136,7 @@ std::vector<Contradiction> Contradictions(const JointProblem& joint,
 double ScatterOf(const std::vector<Contradiction>& contradictions) {
   if (contradictions.size() < 3) return 1;
   std::vector<double> chi2;
+  chi2.reserve(contradictions.size());
   for (const Contradiction& c : contradictions) chi2.push_back(c.chi2);
   std::sort(chi2.begin(), chi2.end());
   return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);

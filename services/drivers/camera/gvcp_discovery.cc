@@ -101,6 +101,7 @@ bool WaitUntil(Clock::time_point end, std::vector<pollfd>* descriptors) {
 
 std::vector<FoundGvcpDevice> Listen(const std::vector<Listener>& listeners) {
   std::vector<pollfd> descriptors;
+  descriptors.reserve(listeners.size());
   for (const Listener& listener : listeners) descriptors.push_back({listener.udp.get(), POLLIN, 0});
   std::vector<FoundGvcpDevice> found;
   const Clock::time_point end = Clock::now() + kPatience;

@@ -72,7 +72,7 @@ void Check(const board_crossing_t& wire) {
 
 Crossing FromWire(const board_crossing_t& wire) {
   auto crossing = FieldsFromWire<Crossing>(wire);
-  crossing.side = wire.side;
+  crossing.side = static_cast<unsigned char>(wire.side);  // 0 to 3, as checked
   return crossing;
 }
 

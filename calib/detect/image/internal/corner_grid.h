@@ -34,7 +34,7 @@ class GridFinder {
 
   std::vector<int> Near(const Eigen::Vector2d& place, double radius) const;
   int NeighbourAlong(int from, double angle) const;
-  std::optional<Seed> SeedAt(int saddle) const;
+  std::optional<Seed> SeedAt(int index) const;
   int SaddleAt(const Eigen::Vector2d& place, double radius, const Saddle& like, double sign,
                const std::vector<char>& taken) const;
   Members Grow(const Seed& seed) const;

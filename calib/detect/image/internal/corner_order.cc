@@ -49,7 +49,8 @@ bool RightHanded(const Target& target, const Pixels& corners) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of columns and rows
   double seen = 0;
   const auto at = [&](std::size_t i) {
-    return Eigen::Vector2d(static_cast<double>(i % columns), static_cast<double>(i / columns));
+    const std::size_t row = i / columns;
+    return Eigen::Vector2d(static_cast<double>(i % columns), static_cast<double>(row));
   };
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!IsSeen(corners[i])) continue;

@@ -112,6 +112,7 @@ struct Rated {
 // go on beyond.
 Rated Rate(const Edges& edges, int column, int row, int columns, int rows) {
   std::vector<std::vector<double>> inside;
+  inside.reserve(static_cast<std::size_t>(rows + columns));
   for (int r = 0; r < rows; ++r) {
     inside.push_back(Alternation(edges, column, row + r, false, columns));
   }
@@ -196,6 +197,7 @@ std::vector<PatternMatch> PatternCandidates(const cv::Mat& grey, const GridModel
   std::stable_sort(rated.begin(), rated.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<PatternMatch> candidates;
+  candidates.reserve(rated.size());
   for (const auto& [rating, match] : rated) candidates.push_back(match);
   return candidates;
 }

@@ -7,7 +7,6 @@
 namespace rgbdt::ply {
 namespace {
 
-using records::Field;
 using Words = std::vector<std::string_view>;
 
 struct Type {
