@@ -10,7 +10,6 @@ namespace rgbdt {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr int kGridX = 25, kGridY = 19;  // the image's border is on the grid: the worst is there
 
 // Rounding may leave a variance of nothing below zero. NaN stays NaN.
 double Root(double variance) { return variance < 0 ? 0 : std::sqrt(variance); }
@@ -22,13 +21,9 @@ std::array<double, 3> Sigmas(const Eigen::Matrix3d& covariance, double scale) {
 
 double WorstPx(const Camera& camera, const Matrix6d& covariance, double distance_m) {
   double worst = kNan;
-  for (int y = 0; y < kGridY; ++y) {
-    for (int x = 0; x < kGridX; ++x) {
-      const Eigen::Vector2d pixel(x * (camera.width() - 1.0) / (kGridX - 1),
-                                  y * (camera.height() - 1.0) / (kGridY - 1));
-      const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
-      if (sigma) worst = std::fmax(worst, *sigma);  // of a NaN and a number, the number
-    }
+  for (const Eigen::Vector2d& pixel : ImageGrid(camera)) {
+    const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
+    if (sigma) worst = std::fmax(worst, *sigma);  // of a NaN and a number, the number
   }
   return worst;
 }
@@ -40,6 +35,20 @@ ColouringSigma ColouringAt(const Camera& camera, const Matrix6d& covariance, dou
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera) {
+  constexpr int kColumns = 25;
+  constexpr int kRows = 19;
+  std::vector<Eigen::Vector2d> grid;
+  grid.reserve(kColumns * kRows);
+  for (int y = 0; y < kRows; ++y) {
+    for (int x = 0; x < kColumns; ++x) {
+      grid.emplace_back(x * (camera.width() - 1.0) / (kColumns - 1),
+                        y * (camera.height() - 1.0) / (kRows - 1));
+    }
+  }
+  return grid;
+}
 
 std::optional<double> ColouringSigmaAt(const Camera& camera, const Matrix6d& covariance,
                                        const Eigen::Vector2d& pixel, double distance_m) {

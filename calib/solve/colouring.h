@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "calib/camera/camera.h"
 #include "calib/model/calibration.h"
@@ -10,8 +11,11 @@
 
 namespace rgbdt {
 
-/// Distances [m] from the camera at which PoseSigma says how sure a colour is.
+/// Distances [m] from the camera of the points whose reprojection uncertainty PoseSigma gives.
 inline constexpr double kColouringDistancesM[] = {2, 5, 10, 50};
+
+/// Pixels all over an image, its border among them: what is worst anywhere in it is at one of them.
+std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera);
 
 /// What a pose's covariance (of delta, rigid3.h) means in degrees, millimetres and pixels.
 /// centre_mm is in the LIDAR's axes: the centre lies at -R^T t, so that delta's translation moves

@@ -12,7 +12,7 @@ namespace {
 
 CLI::Option* AddValue(CLI::App* app, const std::string& name, std::vector<std::string>* value,
                       const std::string& help) {
-  return app->add_option(name, *value, help)->allow_extra_args(false);
+  return app->add_option(name, *value, help)->allow_extra_args(name.front() != '-');
 }
 
 CLI::Option* AddValue(CLI::App* app, const std::string& name, std::uint64_t* value,

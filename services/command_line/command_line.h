@@ -28,7 +28,8 @@ class CommandLine {
   CommandLine(const std::string& program, const std::string& description);
   ~CommandLine();
 
-  /// A vector takes one value each time that its option is given.
+  /// A vector takes one value each time that its option is given; one that is named "NAME", all
+  /// values.
   void Option(const std::string& name, Value value, const std::string& help);
   void Required(const std::string& name, Value value, const std::string& help);
   /// From `least` to `most`.
@@ -41,6 +42,7 @@ class CommandLine {
   void Choice(const std::string& name, Variable* value, const std::map<std::string, T>& choices,
               const std::string& help) {
     std::vector<std::string> names;
+    names.reserve(choices.size());
     for (const auto& choice : choices) names.push_back(choice.first);
     ChoiceOf(name, names, help, [=](const std::string& chosen) { *value = choices.at(chosen); });
   }

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic");
   rgbdt::AddCalibrate(&line);
   rgbdt::AddEvaluate(&line);
+  rgbdt::AddCompare(&line);
   rgbdt::AddFuse(&line);
 #ifdef RGBDT_HAS_SIMULATOR
   rgbdt::AddSimulate(&line);

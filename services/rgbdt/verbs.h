@@ -11,6 +11,7 @@ namespace rgbdt {
 /// Each adds a verb to the program. Bad input is thrown as InputError; the command line prints it.
 void AddCalibrate(CommandLine* program);
 void AddEvaluate(CommandLine* program);
+void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
 void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);

@@ -1,8 +1,8 @@
 #include "services/drivers/lidar/internal/pcd_folder.h"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "calib/files/points/cloud_files.h"

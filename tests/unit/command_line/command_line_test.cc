@@ -102,6 +102,17 @@ TEST(CommandLine, RunsTheVerbThatIsNamed) {
   EXPECT_NE(RunWith(&line, {}, nullptr), 0);
 }
 
+TEST(CommandLine, AVectorWithoutDashesTakesAllWords) {
+  CommandLine line("example", "Does nothing.");
+  std::vector<std::string> files;
+  std::string rig;
+  line.Required("FILE", &files, "one or more");
+  line.Option("--rig", &rig, "a rig");
+  EXPECT_EQ(RunWith(&line, {"a", "b", "--rig", "r", "c"}, [] { return 0; }), 0);
+  EXPECT_EQ(files, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(rig, "r");
+}
+
 TEST(CommandLine, KeepsTheWordsOfAnotherCommand) {
   bool run = false;
   std::vector<std::string> rest;

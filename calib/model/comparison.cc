@@ -1,0 +1,13 @@
+#include "calib/model/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rgbdt {
+
+double ChanceOfChi2(double chi2) {
+  const double x = std::max(0.0, chi2) / 2;
+  return std::exp(-x) * (1 + x + x * x / 2);
+}
+
+}  // namespace rgbdt

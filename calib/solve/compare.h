@@ -1,0 +1,13 @@
+#pragma once
+
+#include "calib/model/comparison.h"
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// With delta = Log(b * a^-1), camera axes (rigid3.h), and C_b + Ad(b a^-1) C_a Ad^T its covariance
+/// where the two are independent. `spec`: null where the lens is not known.
+PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
+                       const CameraSpec* spec);
+
+}  // namespace rgbdt

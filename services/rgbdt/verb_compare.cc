@@ -1,0 +1,102 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
+#include "calib/present/report/comparison_text.h"
+#include "calib/solve/compare.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Flags {
+  std::vector<std::string> calibrations;
+  std::string rig;
+};
+
+struct Named {
+  std::string name;
+  Calibration calibration;
+};
+
+Named Read(const std::string& name) {
+  fs::path path = name;
+  if (fs::is_directory(path)) path /= "calibration.textproto";
+  if (!fs::exists(path)) {
+    throw InputError(path.string() +
+                     " is missing; name calibration files, or session directories " +
+                     "that rgbdt calibrate has been run on");
+  }
+  return {name, ReadCalibration(path)};
+}
+
+// The one that the user named, or else what lies beside one of the calibrations.
+std::optional<Rig> RigOf(const Flags& flags) {
+  if (!flags.rig.empty()) return ReadRig(flags.rig);
+  for (const std::string& name : flags.calibrations) {
+    const fs::path folder = fs::is_directory(name) ? fs::path(name) : fs::path(name).parent_path();
+    if (fs::exists(folder / "rig.textproto")) return ReadRig(folder / "rig.textproto");
+  }
+  return std::nullopt;
+}
+
+const CameraSpec* FindSpec(const std::optional<Rig>& rig, const std::string& camera) {
+  if (!rig) return nullptr;
+  for (const CameraSpec& spec : rig->cameras) {
+    if (spec.name == camera) return &spec;
+  }
+  return nullptr;
+}
+
+CalibrationComparison CompareAll(const Named& a, const Named& b, const std::optional<Rig>& rig) {
+  CalibrationComparison out{
+      a.name, b.name, a.calibration.utime, a.calibration.rig_hash == b.calibration.rig_hash, {}};
+  for (const CameraCalibration& camera : a.calibration.cameras) {
+    const CameraCalibration* other = b.calibration.Find(camera.camera);
+    if (other == nullptr) continue;
+    out.cameras.push_back(Compare(camera, *other, FindSpec(rig, camera.camera)));
+  }
+  if (out.cameras.empty())
+    throw InputError(a.name + " and " + b.name + " have no camera in common");
+  return out;
+}
+
+int Run(const Flags& flags) {
+  if (flags.calibrations.size() < 2) throw InputError("name two calibrations, or more");
+  const std::optional<Rig> rig = RigOf(flags);
+  const Named first = Read(flags.calibrations[0]);
+  bool moved = false;
+  for (std::size_t i = 1; i < flags.calibrations.size(); ++i) {
+    const CalibrationComparison comparison = CompareAll(first, Read(flags.calibrations[i]), rig);
+    std::printf("%s", ComparisonText(comparison).c_str());
+    for (const PoseComparison& camera : comparison.cameras) moved = moved || Moved(camera);
+  }
+  if (!rig) std::printf("in pixels: name the rig with --rig FILE\n");
+  return moved ? 1 : 0;
+}
+
+}  // namespace
+
+void AddCompare(CommandLine* program) {
+  auto flags = std::make_shared<Flags>();
+  CommandLine* verb = program->Verb(
+      "compare",
+      "Compares calibrations of one rig with the first one named: in degrees, millimetres and\n"
+      "pixels, against what both state as their uncertainty. Exit code 1: a camera moved by more\n"
+      "than chance does once in a hundred.\n"
+      "Example: rgbdt compare out/monday out/friday",
+      [flags] { return Run(*flags); });
+  verb->Required("CALIBRATION", &flags->calibrations,
+                 "two or more: session directories, or calibration.textproto files");
+  verb->Option("--rig", &flags->rig,
+               "rig.textproto with the lenses; default: what lies beside one of them");
+}
+
+}  // namespace rgbdt
