@@ -56,11 +56,12 @@ double VelodyneEncoder::Elevation(int laser) const {
 }
 
 double VelodyneEncoder::LaserTime_us(int laser) const {
+  const int pair = laser / 2;
   switch (model) {
     case Model::kVlp16:
       return 2.304 * laser;
     case Model::kVlp32c:
-      return 2.304 * (laser / 2);
+      return 2.304 * pair;
     case Model::kHdl32e:
       return 1.152 * laser;
     case Model::kHdl64e:

@@ -48,7 +48,7 @@ struct FusedScene {
           cloud.origins[i / static_cast<std::size_t>(cloud.beams)].cast<double>();
       const Eigen::Vector3d ray = (cloud.points[i].cast<double>() - origin).normalized();
       hits.push_back(world->world().caster().Cast(origin, ray));
-      places.push_back(origin + hits.back().range * ray);
+      places.emplace_back(origin + hits.back().range * ray);
     }
   }
 

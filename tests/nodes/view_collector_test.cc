@@ -10,7 +10,6 @@
 namespace rgbdt {
 namespace {
 
-using test::ErrorOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 

@@ -12,7 +12,6 @@ namespace {
 
 using simulate::CameraOptions;
 using simulate::Options;
-using simulate::Scene;
 
 constexpr Utime kUtime = 1'433'160'013'000'000;
 // The empty scene is what costs in a colour image: several views share it.

@@ -33,7 +33,7 @@ std::optional<PairedSession> MakePairedSession(const PairedOptions& options, std
 
 /// What the detector would make of a board in an image, as above; nothing where the board is not
 /// wholly in it.
-std::optional<ImageEdges> BoardInImage(const CameraSpec& camera, const Target& target,
+std::optional<ImageEdges> BoardInImage(const CameraSpec& spec, const Target& target,
                                        const Rigid3& camera_from_target,
                                        const simulate::Noise& noise);
 

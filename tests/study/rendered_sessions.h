@@ -49,6 +49,6 @@ void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Opti
 
 /// A whole session, rendered and looked at as `rgbdt simulate` and `rgbdt calibrate` do, in memory:
 /// scenes outdoor, indoor and night in turn. Throws InputError where the scene has no room.
-RenderedSession RenderSession(const RenderedOptions& options, std::uint64_t seed);
+RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t seed);
 
 }  // namespace rgbdt::study

@@ -32,7 +32,7 @@ std::vector<Eigen::Vector2d> PlacesInPattern(const std::vector<Eigen::Vector2d>&
   for (const Eigen::Vector2d& corner : corners) box.extend(corner);
   std::vector<Eigen::Vector2d> places;
   for (const Eigen::Vector2d& corner : corners) {
-    places.push_back(2 * (corner - box.center()).cwiseQuotient(box.sizes()));
+    places.emplace_back(2 * (corner - box.center()).cwiseQuotient(box.sizes()));
   }
   return places;
 }
@@ -49,7 +49,7 @@ std::vector<Eigen::Vector2d> NoisyCorners(const std::vector<Eigen::Vector2d>& co
   std::vector<Eigen::Vector2d> sampled;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d own(normal(), normal());
-    sampled.push_back(corners[i] + own + shift + slope * places[i]);
+    sampled.emplace_back(corners[i] + own + shift + slope * places[i]);
   }
   return sampled;
 }
@@ -81,7 +81,7 @@ std::vector<Pixel> BandPixels(const std::array<Chain, 4>& chains) {
       const Pixel middle(static_cast<int>(std::lround(p.x())),
                          static_cast<int>(std::lround(p.y())));
       for (int y = -kBandHalf; y <= kBandHalf; ++y) {
-        for (int x = -kBandHalf; x <= kBandHalf; ++x) pixels.push_back(middle + Pixel(x, y));
+        for (int x = -kBandHalf; x <= kBandHalf; ++x) pixels.emplace_back(middle + Pixel(x, y));
       }
     }
   }
@@ -103,7 +103,7 @@ ImageSide FittedSide(const Chain& chain, double first_px, double last_px) {
     const Eigen::Vector2d along = chain[std::min(i + 1, last)] - chain[i == 0 ? 0 : i - 1];
     const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
     const double t = static_cast<double>(i) / static_cast<double>(last);
-    side.curve.push_back(chain[i] + (first_px + t * (last_px - first_px)) * normal);
+    side.curve.emplace_back(chain[i] + (first_px + t * (last_px - first_px)) * normal);
   }
   return side;
 }

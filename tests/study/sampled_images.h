@@ -20,7 +20,7 @@ double CornerSigma(CameraKind kind);
 CameraSpec SpecOf(const simulate::CameraOptions& camera);
 
 /// The true inner corners [px]; nothing where one of the board's is outside the image.
-std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& camera,
+std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& spec,
                                                         const Target& target,
                                                         const Rigid3& camera_from_target);
 
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& 
 /// SampledCorners: pose, outline, edge pixels along it, and in colour the sides, each
 /// end off by some 0.1 px. What a thermal image does not tell, the half turn and the sides, stays
 /// unknown. Nothing where the board is not wholly in the image.
-std::optional<ImageEdges> SampledEdges(const CameraSpec& camera, const Target& target,
+std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Target& target,
                                        const Rigid3& camera_from_target,
                                        const simulate::Noise& noise);
 

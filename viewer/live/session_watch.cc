@@ -61,11 +61,11 @@ bool SessionWatch::Update(double now_s, SessionState* state) const {
   state->step = static_cast<int>(CounterOf(session, "step"));
   state->steps = static_cast<int>(CounterOf(session, "steps"));
   if (by_request && state->busy.empty() && CounterOf(session, "busy") == 0) {
-    if (Running("simulator", now_s)) state->can.push_back("next_pose");
-    state->can.push_back("capture");
-    if (!state->views.empty()) state->can.push_back("finish");
+    if (Running("simulator", now_s)) state->can.emplace_back("next_pose");
+    state->can.emplace_back("capture");
+    if (!state->views.empty()) state->can.emplace_back("finish");
   }
-  if (CounterOf(session, "waits for pose") != 0) state->can.push_back("pose_is_set");
+  if (CounterOf(session, "waits for pose") != 0) state->can.emplace_back("pose_is_set");
   return all() != before;
 }
 

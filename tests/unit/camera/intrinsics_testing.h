@@ -54,7 +54,7 @@ class BoardViews {
   IntrinsicsView Corners(const Rigid3& camera_from_target, double sigma_px) {
     IntrinsicsView view;
     for (const Eigen::Vector3d& corner : target_.InnerCorners()) {
-      view.corners.push_back(
+      view.corners.emplace_back(
           *camera_.Project(camera_from_target * corner) +
           Eigen::Vector2d(sigma_px * Gauss(&random_), sigma_px * Gauss(&random_)));
     }

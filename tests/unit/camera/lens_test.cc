@@ -44,7 +44,7 @@ class LensModel : public testing::TestWithParam<NamedLens> {
     Random random(7);
     for (int i = 0; i < 300; ++i) {
       const double z = random.Uniform(0.2, 20);
-      points.push_back({random.Uniform(-slope, slope) * z, random.Uniform(-slope, slope) * z, z});
+      points.emplace_back(random.Uniform(-slope, slope) * z, random.Uniform(-slope, slope) * z, z);
     }
     return points;
   }

@@ -77,7 +77,7 @@ TEST_P(BayerPattern, GivesTheColoursBack) {
       // Where a patch meets the next one, or the border, a demosaic has to guess.
       const auto inner = [](int at) { return at % kPatch >= 2 && at % kPatch < kPatch - 2; };
       if (!inner(x) || !inner(y)) continue;
-      const auto colour = wanted.at<cv::Vec3b>(y, x);
+      const auto& colour = wanted.at<cv::Vec3b>(y, x);
       ASSERT_EQ(bgr.at<cv::Vec3b>(y, x), colour) << x << ", " << y;
       const double luma = 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2];
       ASSERT_NEAR(grey.at<float>(y, x), luma, 0.51);  // rounded to DN
@@ -120,8 +120,7 @@ TEST(ToBgr, CompressedPixelsAreAnErrorThatNamesTheCamera) {
 // Values 7000 to 7990, as many of each.
 cv::Mat Ramp() {
   cv::Mat ramp(100, 100, CV_32F);
-  for (int i = 0; i < 10000; ++i)
-    ramp.at<float>(i / 100, i % 100) = static_cast<float>(7000 + i / 100 * 10);
+  for (int row = 0; row < 100; ++row) ramp.row(row).setTo(7000 + 10 * row);
   return ramp;
 }
 

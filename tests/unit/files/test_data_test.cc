@@ -8,6 +8,7 @@ namespace rgbdt::test {
 namespace {
 
 bool SameBits(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): NaN equals itself here, -0 not 0
   return std::memcmp(a.data(), b.data(), 3 * sizeof(float)) == 0;
 }
 

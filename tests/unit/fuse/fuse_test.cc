@@ -37,7 +37,7 @@ cv::Mat CountsPicture() {
 
 constexpr Utime kNow = 10'000'000;
 
-FusionCamera Ready(CameraKind kind, Rigid3 camera_from_lidar = {}) {
+FusionCamera Ready(CameraKind kind, const Rigid3& camera_from_lidar = {}) {
   const CameraSpec spec = SpecOf(kind);
   FusionCamera camera(spec);
   const bool thermal = kind == CameraKind::kThermal;

@@ -16,7 +16,7 @@ std::vector<Eigen::Vector3f> Shell(float range, bool with_gap) {
       const Eigen::Vector3f ray(std::cos(elevation) * std::cos(azimuth),
                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
       if (with_gap && ray.dot(gap) > std::cos(0.1F)) continue;
-      points.push_back(range * ray);
+      points.emplace_back(range * ray);
     }
   }
   return points;

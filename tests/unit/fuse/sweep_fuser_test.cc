@@ -79,14 +79,15 @@ Cloud LineAt(const Drive& drive, Utime sweep, int line, Utime utime, double azim
   cloud.first_line = line;
   cloud.lines = 1;
   cloud.beams = kBeams;
+  const int middle = kBeams / 2;
   for (int beam = 0; beam < kBeams; ++beam) {
-    const double elevation = 0.01 * (beam - kBeams / 2);
+    const double elevation = 0.01 * (beam - middle);
     const Eigen::Vector3d ray(std::cos(azimuth), std::sin(azimuth), std::tan(elevation));
     const Utime t = utime + 100 * beam;
     const Rigid3 map_from_lidar = drive.MapFromLidar(t);
     const Eigen::Vector3d in_map = map_from_lidar.rotation * ray;
     const double range = (5 - map_from_lidar.translation.x()) / in_map.x();
-    cloud.points.push_back((range * ray).cast<float>());
+    cloud.points.emplace_back((range * ray).cast<float>());
     cloud.utime.push_back(t);
   }
   return cloud;
@@ -322,7 +323,7 @@ TEST(SweepFuser, WhatHasGoneHidesNothing) {
     const bool near = pillar && number >= 75 && number < 95;
     for (int beam = 0; beam < cloud.beams; ++beam) {
       const Eigen::Vector3d ray(1, std::tan(azimuth), 0.004 * (beam - 30) / std::cos(azimuth));
-      cloud.points.push_back(((near ? 2 : 5) * ray).cast<float>());
+      cloud.points.emplace_back(((near ? 2 : 5) * ray).cast<float>());
     }
     return cloud;
   };

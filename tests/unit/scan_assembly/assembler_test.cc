@@ -124,7 +124,7 @@ class AssemblerTest : public ::testing::Test {
       try {
         for (CloudChunk& chunk : AddTo(&assembler_, input)) out.push_back(std::move(chunk));
       } catch (const InputError& e) {
-        problems_.push_back(e.what());
+        problems_.emplace_back(e.what());
       }
     }
     return out;

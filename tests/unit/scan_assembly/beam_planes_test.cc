@@ -64,7 +64,7 @@ TEST(ScanEquations, AWholeRoomLeavesThreeDirections) {
   for (const ScanPatch& patch : PatchesOf(beams)) equations.Add(beams, patch.joint, kSigma, 1);
   // A metre and a radian are alike here: the room is a few metres large.
   const Eigen::SelfAdjointEigenSolver<Matrix7d> solver(equations.information);
-  const Vector7d values = solver.eigenvalues();
+  const Vector7d& values = solver.eigenvalues();
   for (int i = 0; i < 3; ++i) EXPECT_LT(values[i], 1e-9 * values[6]);
   EXPECT_GT(values[3], 1e-3 * values[6]);
   for (int i = 0; i < 3; ++i) {

@@ -143,10 +143,11 @@ TEST(JoinChunks, MissingLinesKeepTheirPlaceAndAreKnownToBeLost) {
   ASSERT_EQ(sweep.ring.size(), 15U);
   ASSERT_EQ(sweep.origins.size(), 5U);
   for (std::size_t i = 9; i < 15; ++i) {
-    EXPECT_EQ(sweep.points[i].x(), static_cast<float>(i / 3));
-    EXPECT_EQ(sweep.intensity[i], static_cast<float>(i / 3));
-    EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * (i / 3) + i % 3));
-    EXPECT_EQ(sweep.origins[i / 3].z(), static_cast<float>(i / 3));
+    const std::size_t line = i / 3;
+    EXPECT_EQ(sweep.points[i].x(), static_cast<float>(line));
+    EXPECT_EQ(sweep.intensity[i], static_cast<float>(line));
+    EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * line + i % 3));
+    EXPECT_EQ(sweep.origins[line].z(), static_cast<float>(line));
   }
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(sweep.ring[i], i % 3);
 }

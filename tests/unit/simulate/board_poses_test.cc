@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> Outline(const BoardOptions& board) {
   std::vector<Eigen::Vector3d> places;
   for (std::size_t side = 0; side < 4; ++side) {
     for (int i = 0; i < 10; ++i) {
-      places.push_back(corners[side] + (corners[(side + 1) % 4] - corners[side]) * (i / 10.0));
+      places.emplace_back(corners[side] + (corners[(side + 1) % 4] - corners[side]) * (i / 10.0));
     }
   }
   return places;

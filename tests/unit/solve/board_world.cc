@@ -64,7 +64,7 @@ ViewDetection DetectBoard(const CameraSpec& spec, const Rigid3& camera_from_lida
     }
     constexpr int kPoints = 40;  // 2 to 3 cm apart
     for (int i = 0; i < kPoints; ++i) {
-      cloud.boundary.push_back(from + (to - from) * (static_cast<double>(i) / kPoints));
+      cloud.boundary.emplace_back(from + (to - from) * (static_cast<double>(i) / kPoints));
     }
   }
   for (const auto& [y, x] : pixels) image.edge_pixels.emplace_back(x, y);

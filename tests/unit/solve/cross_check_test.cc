@@ -7,7 +7,6 @@
 namespace rgbdt {
 namespace {
 
-using testing::HasSubstr;
 using testing::SizeIs;
 using testing::UnorderedElementsAreArray;
 

@@ -89,7 +89,7 @@ Rigid3 SolveWorld::AnyBoard() {
     const double z = random_.Uniform(1.8, 4);
     camera_from_target.translation = {random_.Uniform(-0.5, 0.5) * z,
                                       random_.Uniform(-0.4, 0.4) * z, z};
-    const Rigid3 board = camera_from_lidar[0].Inverse() * camera_from_target;
+    Rigid3 board = camera_from_lidar[0].Inverse() * camera_from_target;
     if (Seen(board)) return board;
   }
 }
@@ -114,9 +114,9 @@ ImageEdges SolveWorld::SeeImage(std::size_t c, const Rigid3& camera_from_target)
   // Errors are larger than the corners' scatter tells by what is taken for granted of them.
   image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornerSigmaInflation;
   for (const Eigen::Vector3d& corner : rig.target.InnerCorners()) {
-    image.corners.push_back(*camera.Project(camera_from_target * corner) +
-                            kCornerSigmaInflation * image.corner_sigma_px *
-                                Eigen::Vector2d(Noise(), Noise()));
+    image.corners.emplace_back(*camera.Project(camera_from_target * corner) +
+                               kCornerSigmaInflation * image.corner_sigma_px *
+                                   Eigen::Vector2d(Noise(), Noise()));
   }
   const auto corners = rig.target.OutlineCorners();
   for (std::size_t s = 0; s < 4; ++s) {
@@ -144,8 +144,8 @@ ImageSide SolveWorld::SeeSide(const std::vector<Eigen::Vector2d>& chain, double 
     const Eigen::Vector2d along =
         (i < last ? chain[i + 1] - chain[i] : chain[i] - chain[i - 1]).normalized();
     const double t = static_cast<double>(i) / static_cast<double>(last);
-    side.curve.push_back(chain[i] + ((1 - t) * ends[0] + t * ends[1]) *
-                                        Eigen::Vector2d(-along.y(), along.x()));
+    side.curve.emplace_back(chain[i] + ((1 - t) * ends[0] + t * ends[1]) *
+                                           Eigen::Vector2d(-along.y(), along.x()));
   }
   return side;
 }

@@ -19,8 +19,8 @@ const std::vector<std::string> kGood = {
     R"({"type":"request","request":"pose_is_set","heldout":false})",
     R"({"type":"request","request":"capture","heldout":true})",
     R"({"type":"request","request":"finish","heldout":false})",
-    R"({"type":"pick","camera":"rgb","image_utime":1700000000000000,)"
-    R"("corners":[[0,1.5],[-2,3],[1e3,4],[5,6]]})"};
+    R"({"type":"pick","camera":"rgb","image_utime":1700000000000000,
+        "corners":[[0,1.5],[-2,3],[1e3,4],[5,6]]})"};
 
 TEST(Message, WhatThePageSaysIsTaken) {
   for (const std::string& text : kGood) {

@@ -49,6 +49,7 @@ TEST_F(ServerHttpTest, ServesThePageWithItsHeaders) {
     for (const char* field :
          {"Content-Type: text/html; charset=utf-8", "X-Content-Type-Options: nosniff",
           "Referrer-Policy: no-referrer", "Cache-Control: no-store", "Content-Length: 26",
+          // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one field of many words
           "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline' blob:; "
           "worker-src blob:; style-src 'unsafe-inline'; img-src blob: data:; "
           "connect-src 'self' ws:; font-src data:; base-uri 'none'; form-action 'none'; "

@@ -18,7 +18,6 @@
 namespace rgbdt::viewer {
 namespace {
 
-using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -71,7 +71,7 @@ void Browser::SetOptions() {
   socket_.read_message_max(kMaxMessageText);
 }
 
-void Browser::Start(HttpRequest request) {
+void Browser::Start(const HttpRequest& request) {
   SetOptions();
   StartDeadline(kHelloTime);
   socket_.async_accept(request, [self = shared_from_this()](const beast::error_code& error) {

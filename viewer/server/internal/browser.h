@@ -22,7 +22,7 @@ class Browser : public std::enable_shared_from_this<Browser> {
   ~Browser();
 
   /// Accepts the upgrade.
-  void Start(HttpRequest request);
+  void Start(const HttpRequest& request);
   void Offer(const std::vector<SharedPost>& posts);
 
  private:

@@ -52,7 +52,7 @@ class BrowserQueue {
   bool MaySendHeavy() const;
   std::optional<Outgoing> Outgo(const SharedPost& post);
   std::optional<Outgoing> OutgoWhole();
-  std::size_t CutBytes(const SharedPost& post, const std::string& frame);
+  std::size_t CutBytes(const SharedPost& shared, const std::string& frame);
 
   std::set<std::string> watched_;
   TopicQueue light_, heavy_;

@@ -101,10 +101,10 @@ TEST_F(PaperCostTest, ResidualsAreWhatBruteForceSays) {
     Eigen::MatrixXd design(100, 6);
     Eigen::VectorXd values(100);
     for (int k = 0; k < 100; ++k) {
-      const double a = k % 10 - 5;
-      const double b = static_cast<double>(k / 10) - 5;
+      const int a = k % 10 - 5;
+      const int b = k / 10 - 5;
       design.row(k) << 1, a, b, a * a, a * b, b * b;
-      values[k] = distance_at(x + k % 10 - 5, y + k / 10 - 5);
+      values[k] = distance_at(x + a, y + b);
     }
     const Eigen::VectorXd c = design.colPivHouseholderQr().solve(values);
     const double u = pixel.x() - x;

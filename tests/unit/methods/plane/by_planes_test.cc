@@ -6,8 +6,6 @@
 namespace rgbdt {
 namespace {
 
-using testing::StartsWith;
-
 CameraCalibration SolveCamera(const SolveWorld& world, std::size_t camera, const Rigid3& start) {
   return SolvePlanes(ViewsOf(world.rig.cameras[camera], world.detections).Usable(), start);
 }

@@ -77,7 +77,7 @@ TEST(LayOnImage, PointsComeWhereTheCameraSeesThem) {
   const Rigid3 lidar_from_camera = camera_from_lidar.Inverse();
   std::vector<Eigen::Vector3f> points;
   const auto add = [&](const Eigen::Vector3d& in_camera) {
-    points.push_back((lidar_from_camera * in_camera).cast<float>());
+    points.emplace_back((lidar_from_camera * in_camera).cast<float>());
   };
   add({0.4, -0.3, 2});
   add({0, 0, -2});                        // behind it
@@ -98,8 +98,9 @@ TEST(LayOnImage, IsThinnedEvenly) {
   const Rigid3 lidar_from_camera = WorldTruth().Inverse();
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 40'000; ++i) {
-    const Eigen::Vector3d in_camera(i % 200 * 0.005 - 0.5, i / 200 * 0.004 - 0.4, 2);
-    points.push_back((lidar_from_camera * in_camera).cast<float>());
+    const int row = i / 200;
+    const Eigen::Vector3d in_camera(i % 200 * 0.005 - 0.5, row * 0.004 - 0.4, 2);
+    points.emplace_back((lidar_from_camera * in_camera).cast<float>());
   }
   ASSERT_EQ(LayOnImage(WorldCamera(), WorldTruth(), points, 40'000).size(), 40'000U);
   const auto laid = LayOnImage(WorldCamera(), WorldTruth(), points, 4000);

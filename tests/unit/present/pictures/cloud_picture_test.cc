@@ -68,7 +68,7 @@ TEST(CloudPicture, TheNearerPointHidesTheOther) {
   options.look_at = Eigen::Vector3d(2, 0, 0);
   options.point_size = 20;
   const cv::Mat picture = DrawCloud(cloud, CloudColour::kRgb, options);
-  const cv::Vec3b centre = picture.at<cv::Vec3b>(125, 200);
+  const cv::Vec3b& centre = picture.at<cv::Vec3b>(125, 200);
   EXPECT_GT(centre[2], 200);
   EXPECT_LT(centre[1], 50);
 }
