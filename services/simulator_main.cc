@@ -2,8 +2,8 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "services/command_line/command_line.h"
-#include "services/simulator/simulator_node.h"
 #include "services/runtime/process.h"
+#include "services/simulator/simulator_node.h"
 
 int main(int argc, char** argv) {
   rgbdt::CommandLine line(

@@ -5,9 +5,9 @@
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/simulator.h"
+#include "services/rgbdt/verbs.h"
 #include "services/simulator/simulated_sweep.h"
 #include "services/simulator/simulator_node.h"
-#include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
 namespace {

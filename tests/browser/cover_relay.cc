@@ -35,7 +35,8 @@ class Relay {
  private:
   // The bus keeps what a handler throws; this process is to end with it.
   Bus::Handler Guarded(Bus::Handler handler) {
-    return [this, handler = std::move(handler)](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+    return [this, handler = std::move(handler)](const std::string& channel,
+                                                const std::uint8_t* data, std::size_t size) {
       try {
         handler(channel, data, size);
       } catch (...) {

@@ -12,8 +12,8 @@
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/mapper_node.h"
 #include "services/nodes/session_node.h"
-#include "services/simulator/simulator_node.h"
 #include "services/nodes/solver_node.h"
+#include "services/simulator/simulator_node.h"
 #include "tests/nodes/session_world.h"
 #include "tests/unit/files/test_data.h"
 

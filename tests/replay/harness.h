@@ -14,10 +14,10 @@
 #include "services/nodes/detector_node.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/session_node.h"
-#include "services/simulator/simulator_node.h"
 #include "services/nodes/solver_node.h"
 #include "services/replay/replay.h"
 #include "services/runtime/node_runner.h"
+#include "services/simulator/simulator_node.h"
 
 namespace rgbdt::test {
 

@@ -151,8 +151,7 @@ Place ReadViewFile(const Session& session, const std::string& view, ViewFile* fi
                      " is missing; it names the view's cloud and images, as "
                      "calib/files/README.md shows");
   }
-  Place place =
-      text::ParseText(ReadWholeFile(path), path.string(), &file->message, &file->tree);
+  Place place = text::ParseText(ReadWholeFile(path), path.string(), &file->message, &file->tree);
   if (std::abs(ToSeconds(file->message.sweep_utime())) > 1e11) {
     place.Fail("sweep_utime", "is " + std::to_string(file->message.sweep_utime()) +
                                   "; expected microseconds since 1970");
