@@ -36,9 +36,9 @@ void SweepFuser::Forget() {
   for (CameraState& state : states_) state.now = state.past = std::nullopt;
 }
 
-std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t index,
+std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t camera,
                                                    const Rigid3& camera_from_lidar, Utime utime) {
-  CameraState& state = states_[index];
+  CameraState& state = states_[camera];
   const bool same =
       state.camera.calibrated && state.camera.calibration_utime == utime &&
       state.camera.camera_from_lidar.translation == camera_from_lidar.translation &&

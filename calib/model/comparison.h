@@ -12,19 +12,18 @@ namespace rgbdt {
 /// By how much two poses project the points of one distance apart.
 struct PixelShift {
   double distance_m = 0;
-  double rms_px = 0;  ///< over the image
-  double worst_px = 0;
+  double rms_px = 0;               ///< over the image
   std::optional<double> sigma_px;  ///< 1 sigma of rms_px by both covariances
 };
 
 /// One camera in two calibrations of a rig. Sigmas are of the difference, by both covariances; NaN
-/// where one of them is missing.
+/// where one of the two has none, or has not converged.
 struct PoseComparison {
   std::string camera;
   std::array<Estimate, 3> rotation_deg;  ///< from a to b, about the camera's x, y, z
   std::array<Estimate, 3> centre_mm;     ///< of the camera's centre, along the LIDAR's x, y, z
   PoseError difference;
-  std::optional<double> chi2;      ///< six degrees of freedom; absent: a covariance is missing
+  std::optional<double> chi2;      ///< six degrees of freedom; absent where sigmas are NaN
   std::vector<PixelShift> pixels;  ///< empty: no lens at hand
 };
 

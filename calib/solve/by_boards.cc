@@ -133,8 +133,9 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   }
   const EdgeModel edges = EdgesOf(result);
   solved.cameras = std::move(result.joint.cameras);
-  for (GuessedCamera& camera : solved.cameras)
+  for (GuessedCamera& camera : solved.cameras) {
     camera.views = Judged(edges, std::move(camera.views));
+  }
   return solved;
 }
 

@@ -17,9 +17,15 @@ constexpr double kDistancesM[] = {2, 5, 10};
 
 std::optional<Matrix6d> CovarianceOfDifference(const CameraCalibration& a,
                                                const CameraCalibration& b, const Rigid3& b_from_a) {
-  if (!a.covariance || !b.covariance) return std::nullopt;
+  if (!a.converged() || !b.converged() || !a.covariance || !b.covariance) return std::nullopt;
   const Matrix6d adjoint = Adjoint(b_from_a);
   return Matrix6d(*b.covariance + adjoint * *a.covariance * adjoint.transpose());
+}
+
+// Of the camera's centre, LIDAR axes (colouring.h).
+Eigen::Matrix3d CentreCovariance(const CameraCalibration& calibration) {
+  const Eigen::Matrix3d r = calibration.camera_from_lidar.rotation.toRotationMatrix();
+  return r.transpose() * calibration.covariance->bottomRightCorner<3, 3>() * r;
 }
 
 std::array<Estimate, 3> Estimates(const Eigen::Vector3d& values,
@@ -45,9 +51,7 @@ PixelShift ShiftAt(const Camera& camera, const Rigid3& b_from_a,
     if (!direction) continue;
     const auto moved = camera.Project(b_from_a * Eigen::Vector3d(distance_m * *direction));
     if (!moved) continue;
-    const double squared = (*moved - pixel).squaredNorm();
-    squares += squared;
-    shift.worst_px = std::max(shift.worst_px, std::sqrt(squared));
+    squares += (*moved - pixel).squaredNorm();
     ++count;
     if (!covariance) continue;
     const double sigma = ColouringSigmaAt(camera, *covariance, pixel, distance_m).value_or(kNan);
@@ -64,14 +68,13 @@ PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
                        const CameraSpec* spec) {
   const Rigid3 b_from_a = b.camera_from_lidar * a.camera_from_lidar.Inverse();
   const Vector6d delta = Log(b_from_a);
-  const auto covariance = CovarianceOfDifference(a, b, b_from_a);
-  const Eigen::Matrix3d lidar_from_camera =
-      b.camera_from_lidar.rotation.toRotationMatrix().transpose();
+  auto covariance = CovarianceOfDifference(a, b, b_from_a);
+  const auto information = covariance ? InverseOfPositive(*covariance) : std::nullopt;
+  if (!information) covariance.reset();
   std::optional<Eigen::Matrix3d> of_rotation, of_centre;
   if (covariance) {
     of_rotation = covariance->topLeftCorner<3, 3>();
-    of_centre =
-        lidar_from_camera * covariance->bottomRightCorner<3, 3>() * lidar_from_camera.transpose();
+    of_centre = CentreCovariance(a) + CentreCovariance(b);
   }
   PoseComparison out;
   out.camera = a.camera;
@@ -80,7 +83,7 @@ PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
       b.camera_from_lidar.Inverse().translation - a.camera_from_lidar.Inverse().translation,
       of_centre, 1000);
   out.difference = ErrorOf(b.camera_from_lidar, a.camera_from_lidar);
-  if (covariance) out.chi2 = delta.dot(SolveSymmetric(*covariance, delta));
+  if (information) out.chi2 = delta.dot(*information * delta);
   if (spec == nullptr) return out;
   const Camera camera(*spec);
   for (const double distance_m : kDistancesM) {

@@ -63,7 +63,7 @@ struct FirstGuess {
 /// that agree, weighed by their covariances. Works for any orientation of the camera, with any
 /// number of wrong candidates, and up to half of the views wrong. Says so where views agree on two
 /// answers alike (the board always held the same way), and where the images are mirrored.
-/// `views` have an image pose and candidates; others are passed over.
+/// Of `all`, those without an image pose or candidates are passed over.
 FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                            const FirstGuessOptions& options = {});
 

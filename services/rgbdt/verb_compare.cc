@@ -47,24 +47,21 @@ std::optional<Rig> RigOf(const Flags& flags) {
   return std::nullopt;
 }
 
-const CameraSpec* FindSpec(const std::optional<Rig>& rig, const std::string& camera) {
-  if (!rig) return nullptr;
-  for (const CameraSpec& spec : rig->cameras) {
-    if (spec.name == camera) return &spec;
-  }
-  return nullptr;
-}
-
 CalibrationComparison CompareAll(const Named& a, const Named& b, const std::optional<Rig>& rig) {
-  CalibrationComparison out{
-      a.name, b.name, a.calibration.utime, a.calibration.rig_hash == b.calibration.rig_hash, {}};
+  CalibrationComparison out{a.name,
+                            b.name,
+                            a.calibration.utime,
+                            b.calibration.utime,
+                            a.calibration.rig_hash == b.calibration.rig_hash,
+                            {}};
   for (const CameraCalibration& camera : a.calibration.cameras) {
     const CameraCalibration* other = b.calibration.Find(camera.camera);
     if (other == nullptr) continue;
-    out.cameras.push_back(Compare(camera, *other, FindSpec(rig, camera.camera)));
+    out.cameras.push_back(Compare(camera, *other, rig ? &rig->Camera(camera.camera) : nullptr));
   }
-  if (out.cameras.empty())
+  if (out.cameras.empty()) {
     throw InputError(a.name + " and " + b.name + " have no camera in common");
+  }
   return out;
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Two halves of a session are the same; a mount that was turned in between is not.
+# Two halves of a session are the same; a camera that was moved in between is not.
 # Usage: compare_test.sh BIN_DIR
 set -euo pipefail
 # shellcheck source=tests/cli/common.sh

@@ -38,7 +38,7 @@ void CheckMap(const MapCloud& map, const std::filesystem::path& path) {
 
 std::vector<Column> Columns(const MapCloud& map) {
   std::vector<Column> columns;
-  columns.reserve(8);
+  columns.reserve(3 + 3 + 3);  // place, colour, and the rest one by one
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back(MakeColumn<float>(
         std::string(1, "xyz"[axis]), [&map, axis](std::size_t i) { return map.points[i][axis]; }));

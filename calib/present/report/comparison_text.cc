@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
-#include <utility>
+
+#include "calib/present/report/words.h"
 
 namespace rgbdt {
 namespace {
@@ -14,14 +14,6 @@ namespace {
 constexpr double kChance = 0.01;
 constexpr double kTellingSigmas = 3;  // from which a single axis is named
 constexpr std::size_t kMostAxes = 2;  // in a sentence
-
-std::string Day(Utime utime) {
-  const auto seconds = static_cast<std::time_t>(utime / kMicrosecondsPerSecond);
-  std::tm day{};
-  if (utime <= 0 || gmtime_r(&seconds, &day) == nullptr) return "";
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02} UTC", day.tm_year + 1900, day.tm_mon + 1,
-                     day.tm_mday, day.tm_hour, day.tm_min);
-}
 
 struct Axis {
   Estimate estimate;
@@ -50,7 +42,7 @@ std::string Words(const PoseComparison& camera, const CalibrationComparison& all
   if (!camera.chi2) {
     return fmt::format(
         "{:.3f} deg and {:.1f} mm apart; whether that is more than chance cannot be told, as not "
-        "both calibrations have a covariance",
+        "both calibrations have converged with an uncertainty",
         camera.difference.rotation_deg, camera.difference.translation_mm);
   }
   const double chance = ChanceOfChi2(*camera.chi2);
@@ -63,10 +55,10 @@ std::string Words(const PoseComparison& camera, const CalibrationComparison& all
         fmt::format("{}{:+.{}f} +- {:.{}f} {} {}", moved.empty() ? "" : ", ", axis.estimate.value,
                     axis.decimals, axis.estimate.sigma, axis.decimals, axis.unit, axis.name);
   }
-  const std::string since = Day(all.utime_a);
+  const bool later = all.utime_a > 0 && all.utime_a < all.utime_b;
   return fmt::format(
       "the mount moved by {}{} (chi-square {:.1f} of 6, by chance {})", moved,
-      since.empty() ? "" : " since " + since, *camera.chi2,
+      later ? " since " + TimeText(all.utime_a) : "", *camera.chi2,
       chance < 1e-6 ? "less than once in a million" : fmt::format("once in {:.0f}", 1 / chance));
 }
 

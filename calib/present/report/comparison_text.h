@@ -8,11 +8,11 @@
 
 namespace rgbdt {
 
-/// Two calibrations of a rig against each other, a the earlier one.
+/// Two calibrations of a rig: b against a, whichever is the later one.
 struct CalibrationComparison {
-  std::string a, b;      ///< as the user named them
-  Utime utime_a = 0;     ///< 0: not known
-  bool same_rig = true;  ///< the rig files are the same, lenses and all
+  std::string a, b;                ///< as the user named them
+  Utime utime_a = 0, utime_b = 0;  ///< 0: not known
+  bool same_rig = true;            ///< the rig files are the same, lenses and all
   std::vector<PoseComparison> cameras;
 };
 

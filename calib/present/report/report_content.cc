@@ -9,16 +9,6 @@
 namespace rgbdt {
 namespace {
 
-std::string TimeText(Utime utime) {
-  const std::time_t seconds = static_cast<std::time_t>(utime / kMicrosecondsPerSecond);
-  std::tm utc{};
-  char text[64] = "";
-  if (gmtime_r(&seconds, &utc) != nullptr) {
-    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc);
-  }
-  return text;
-}
-
 std::string Intro(const Report& report) {
   std::string intro = "Method: " + report.method + ". Rig: " + report.rig_hash + ".";
   if (report.utime != 0) intro += " Newest image: " + TimeText(report.utime) + ".";

@@ -1,6 +1,7 @@
 #include "calib/present/report/words.h"
 
 #include <cmath>
+#include <ctime>
 
 #include "calib/model/text.h"
 
@@ -20,6 +21,16 @@ std::string WithUnit(double value, int decimals, const std::string& unit) {
 
 std::string WithUnit(const std::optional<double>& value, int decimals, const std::string& unit) {
   return value ? WithUnit(*value, decimals, unit) : "–";
+}
+
+std::string TimeText(Utime utime) {
+  const std::time_t seconds = static_cast<std::time_t>(utime / kMicrosecondsPerSecond);
+  std::tm utc{};
+  char text[64] = "";
+  if (gmtime_r(&seconds, &utc) != nullptr) {
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &utc);
+  }
+  return text;
 }
 
 std::string PoseErrorText(const PoseError& error) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/model/time.h"
 
 namespace rgbdt {
 
@@ -16,6 +17,9 @@ std::string Number(double value, int decimals);
 /// The same with its unit, which a line break does not part from it; "–" where there is none.
 std::string WithUnit(double value, int decimals, const std::string& unit);
 std::string WithUnit(const std::optional<double>& value, int decimals, const std::string& unit);
+
+/// "2015-06-01 12:01:53 UTC"
+std::string TimeText(Utime utime);
 
 /// "0.012° and 3.4 mm"
 std::string PoseErrorText(const PoseError& error);

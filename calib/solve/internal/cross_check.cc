@@ -175,7 +175,8 @@ JointResult CrossValidate(JointResult result, int folds) {
   const std::size_t views = result.joint.problem.views.size();
   if (views < 4) return result;
   result = LeaveOutParts(std::move(result), std::min(views, static_cast<std::size_t>(folds)));
-  return views < 6 ? result : Halve(std::move(result));
+  if (views >= 6) result = Halve(std::move(result));
+  return result;
 }
 
 }  // namespace rgbdt

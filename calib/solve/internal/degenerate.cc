@@ -47,8 +47,9 @@ std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target) {
     middle += board.translation / static_cast<double>(lidar_from_target.size());
   }
   double apart = 0;
-  for (const Rigid3& board : lidar_from_target)
+  for (const Rigid3& board : lidar_from_target) {
     apart = std::max(apart, (board.translation - middle).norm());
+  }
   if (lidar_from_target.size() == 1 || angle < kParallelRad) {
     return (lidar_from_target.size() == 1
                 ? std::string("only one view")

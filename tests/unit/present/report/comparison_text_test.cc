@@ -16,6 +16,7 @@ CalibrationComparison Turned(double deg, double chi2) {
   comparison.a = "monday";
   comparison.b = "friday";
   comparison.utime_a = 1'700'000'000'000'000;
+  comparison.utime_b = comparison.utime_a + 1;
   PoseComparison& camera = comparison.cameras.emplace_back();
   camera.camera = "rgb";
   for (Estimate& axis : camera.rotation_deg) axis.sigma = 0.08;
@@ -23,7 +24,7 @@ CalibrationComparison Turned(double deg, double chi2) {
   camera.rotation_deg[1].value = deg;
   camera.difference = {deg, 0};
   camera.chi2 = chi2;
-  camera.pixels = {{2, 3.4, 4.5, 0.6}, {5, 3.3, 4.4, 0.5}};
+  camera.pixels = {{2, 3.4, 0.6}, {5, 3.3, 0.5}};
   return comparison;
 }
 
@@ -38,8 +39,15 @@ TEST(ComparisonText, WithinWhatBothCanTellItIsTheSame) {
 
 TEST(ComparisonText, BeyondItTheMountMovedAboutAnAxisSinceADay) {
   const std::string text = ComparisonText(Turned(0.42, 27.6));
-  EXPECT_THAT(text, HasSubstr("the mount moved by +0.420 +- 0.080 deg about the camera's y since "
-                              "2023-11-14 22:13 UTC (chi-square 27.6 of 6, by chance once in 8"));
+  EXPECT_THAT(text,
+              HasSubstr("the mount moved by +0.420 +- 0.080 deg about the camera's y since "
+                        "2023-11-14 22:13:20 UTC (chi-square 27.6 of 6, by chance once in 8"));
+}
+
+TEST(ComparisonText, SinceAnEarlierDayOnly) {
+  CalibrationComparison comparison = Turned(0.42, 27.6);
+  comparison.utime_b = comparison.utime_a - 1;
+  EXPECT_THAT(ComparisonText(comparison), Not(HasSubstr("since")));
 }
 
 TEST(ComparisonText, NamesEachAxisThatIsClear) {
