@@ -11,13 +11,13 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct CalibrateFlags {
   std::string dir, out, truth;
   CalibrateOptions options;
   bool separate = false;
 };
 
-int Run(const Flags& flags) {
+int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
@@ -36,7 +36,7 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddCalibrate(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<CalibrateFlags>();
   CommandLine* verb = program->Verb(
       "calibrate",
       "Finds each camera's pose relative to the LIDAR from a session directory.\n"
@@ -45,7 +45,7 @@ void AddCalibrate(CommandLine* program) {
       "Example: rgbdt calibrate out/demo/session --out out/again",
       [flags] {
         flags->options.joint = !flags->separate;
-        return Run(*flags);
+        return RunCalibrate(*flags);
       });
   verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
   verb->Option("--out", &flags->out, "where to write; default: DIR");

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Flags {
+struct CompareFlags {
   std::vector<std::string> calibrations;
   std::string rig;
 };
@@ -26,7 +26,7 @@ struct Named {
   Calibration calibration;
 };
 
-Named Read(const std::string& name) {
+Named ReadNamed(const std::string& name) {
   fs::path path = name;
   if (fs::is_directory(path)) path /= "calibration.textproto";
   if (!fs::exists(path)) {
@@ -38,7 +38,7 @@ Named Read(const std::string& name) {
 }
 
 // The one that the user named, or else what lies beside one of the calibrations.
-std::optional<Rig> RigOf(const Flags& flags) {
+std::optional<Rig> RigOf(const CompareFlags& flags) {
   if (!flags.rig.empty()) return ReadRig(flags.rig);
   for (const std::string& name : flags.calibrations) {
     const fs::path folder = fs::is_directory(name) ? fs::path(name) : fs::path(name).parent_path();
@@ -65,13 +65,14 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
   return out;
 }
 
-int Run(const Flags& flags) {
+int RunCompare(const CompareFlags& flags) {
   if (flags.calibrations.size() < 2) throw InputError("name two calibrations, or more");
   const std::optional<Rig> rig = RigOf(flags);
-  const Named first = Read(flags.calibrations[0]);
+  const Named first = ReadNamed(flags.calibrations[0]);
   bool moved = false;
   for (std::size_t i = 1; i < flags.calibrations.size(); ++i) {
-    const CalibrationComparison comparison = CompareAll(first, Read(flags.calibrations[i]), rig);
+    const CalibrationComparison comparison =
+        CompareAll(first, ReadNamed(flags.calibrations[i]), rig);
     std::printf("%s", ComparisonText(comparison).c_str());
     for (const PoseComparison& camera : comparison.cameras) moved = moved || Moved(camera);
   }
@@ -82,14 +83,14 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddCompare(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<CompareFlags>();
   CommandLine* verb = program->Verb(
       "compare",
       "Compares calibrations of one rig with the first one named: in degrees, millimetres and\n"
       "pixels, against what both state as their uncertainty. Exit code 1: a camera moved by more\n"
       "than chance does once in a hundred.\n"
       "Example: rgbdt compare out/monday out/friday",
-      [flags] { return Run(*flags); });
+      [flags] { return RunCompare(*flags); });
   verb->Required("CALIBRATION", &flags->calibrations,
                  "two or more: session directories, or calibration.textproto files");
   verb->Option("--rig", &flags->rig,

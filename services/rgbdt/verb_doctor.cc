@@ -10,7 +10,7 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct DoctorFlags {
   std::string rig, url;
 };
 
@@ -65,7 +65,7 @@ Findings CheckRig(const SystemRoots& roots, const std::string& file,
   }
 }
 
-int Run(const Flags& flags) {
+int RunDoctor(const DoctorFlags& flags) {
   const SystemRoots roots;
   const std::vector<NetworkInterface> interfaces = ListInterfaces();
   Findings findings = CheckMachine(roots, flags.url, interfaces);
@@ -77,14 +77,14 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddDoctor(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<DoctorFlags>();
   CommandLine* verb =
       program->Verb("doctor",
                     "Looks for what would go wrong with the live system, on this machine\n"
                     "and with a rig's devices, and names the command that mends it.\n"
                     "Exit code 1 where there is a problem.\n"
                     "Example: rgbdt doctor --rig rig.textproto",
-                    [flags] { return Run(*flags); });
+                    [flags] { return RunDoctor(*flags); });
   verb->Option("--rig", &flags->rig, "rig.textproto; default: only the machine is looked at");
   verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
 }

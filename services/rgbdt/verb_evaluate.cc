@@ -13,7 +13,7 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct EvaluateFlags {
   std::string dir, calibration, out, truth;
 };
 
@@ -57,7 +57,7 @@ void KeepFromSolve(const std::filesystem::path& path, Report* report) {
   report->next_view = before.next_view;
 }
 
-int Run(const Flags& flags) {
+int RunEvaluate(const EvaluateFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const Calibration calibration =
@@ -79,13 +79,13 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddEvaluate(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<EvaluateFlags>();
   CommandLine* verb = program->Verb(
       "evaluate",
       "Judges a calibration on a session's views, used and held out, and against the truth of a\n"
       "simulated session. Writes report.json and report.html.\n"
       "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto",
-      [flags] { return Run(*flags); });
+      [flags] { return RunEvaluate(*flags); });
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");

@@ -9,11 +9,11 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct ExportFlags {
   std::string dir, calibration, out;
 };
 
-int Run(const Flags& flags) {
+int RunExport(const ExportFlags& flags) {
   const std::filesystem::path dir = flags.dir;
   const Rig rig = ReadRig(dir / "rig.textproto");
   const Calibration calibration =
@@ -26,13 +26,13 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddExport(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ExportFlags>();
   CommandLine* verb =
       program->Verb("export",
                     "Writes a calibration for other tools: OpenCV YAML, a ROS static\n"
                     "transform, Kalibr's camchain. Each file says which way it goes.\n"
                     "Example: rgbdt export out/demo/session",
-                    [flags] { return Run(*flags); });
+                    [flags] { return RunExport(*flags); });
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR/export");

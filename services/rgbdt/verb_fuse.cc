@@ -15,7 +15,7 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct FuseFlags {
   std::string dir, calibration, out, view;
   bool png = false;
 };
@@ -35,7 +35,7 @@ void DrawPictures(const RgbdtCloud& fused, const std::string& title,
   std::printf(", fused_thermal.png, fused.png");
 }
 
-int Run(const Flags& flags) {
+int RunFuse(const FuseFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const Calibration calibration =
@@ -62,14 +62,14 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddFuse(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FuseFlags>();
   CommandLine* verb =
       program->Verb("fuse",
                     "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
                     "colour, temperature\n"
                     "[K], which cameras saw it. Writes fused.ply and fused.pcd.\n"
                     "Example: rgbdt fuse out/demo/session --view 0003 --png",
-                    [flags] { return Run(*flags); });
+                    [flags] { return RunFuse(*flags); });
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--view", &flags->view, "which view; default: the last");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");

@@ -22,14 +22,14 @@ const std::map<std::string, LensChoice> kChoices = {{"pinhole5", LensChoice::kPi
                                                     {"pinhole8", LensChoice::kPinhole8},
                                                     {"fisheye", LensChoice::kFisheye}};
 
-struct Flags {
+struct IntrinsicsFlags {
   std::string dir, out;
   std::vector<std::string> cameras;
   std::optional<LensChoice> choice;
 };
 
 // What was asked for, or else what the rig file's lens is.
-LensChoice ChoiceFor(const Flags& flags, const Lens& lens) {
+LensChoice ChoiceFor(const IntrinsicsFlags& flags, const Lens& lens) {
   if (flags.choice) return *flags.choice;
   if (lens.model == Lens::Model::kFisheye) return LensChoice::kFisheye;
   const bool rational = std::any_of(lens.distortion.begin() + 5, lens.distortion.end(),
@@ -37,7 +37,7 @@ LensChoice ChoiceFor(const Flags& flags, const Lens& lens) {
   return rational ? LensChoice::kPinhole8 : LensChoice::kPinhole5;
 }
 
-std::vector<std::string> CamerasFor(const Flags& flags, const Rig& rig) {
+std::vector<std::string> CamerasFor(const IntrinsicsFlags& flags, const Rig& rig) {
   for (const std::string& name : flags.cameras) rig.Camera(name);
   if (!flags.cameras.empty()) return flags.cameras;
   std::vector<std::string> all;
@@ -45,21 +45,22 @@ std::vector<std::string> CamerasFor(const Flags& flags, const Rig& rig) {
   return all;
 }
 
-IntrinsicsResult SolveCamera(const Flags& flags, const Rig& rig, const CameraCorners& corners) {
+IntrinsicsResult SolveCamera(const IntrinsicsFlags& flags, const Rig& rig,
+                             const CameraCorners& corners) {
   const CameraSpec& camera = rig.Camera(corners.camera);
   return CalibrateIntrinsics(
       {ChoiceFor(flags, camera.lens), camera.width, camera.height, rig.target, corners.views});
 }
 
 // A camera without a single image is left as it is, unless it was asked for by name.
-bool IsSkipped(const Flags& flags, const CameraCorners& corners) {
+bool IsSkipped(const IntrinsicsFlags& flags, const CameraCorners& corners) {
   if (corners.images > 0 || !flags.cameras.empty()) return false;
   std::printf("camera %s: the session has no image of it; left as it is\n", corners.camera.c_str());
   return true;
 }
 
-void Write(const Flags& flags, const Session& session, const Rig& rig,
-           const std::vector<CameraIntrinsics>& solved) {
+void WriteIntrinsics(const IntrinsicsFlags& flags, const Session& session, const Rig& rig,
+                     const std::vector<CameraIntrinsics>& solved) {
   const fs::path out = PathOr(flags.out, session.root / "rig.intrinsics.textproto");
   const fs::path page = out.parent_path() / "intrinsics.html";
   WriteFileAtomically(page, IntrinsicsHtml(solved));
@@ -80,7 +81,7 @@ void Write(const Flags& flags, const Session& session, const Rig& rig,
   }
 }
 
-int Run(const Flags& flags) {
+int RunIntrinsics(const IntrinsicsFlags& flags) {
   const Session session = OpenSession(flags.dir, LensNeed::kMayBeUnknown);
   const SessionCorners corners =
       FindSessionCorners(session, CamerasFor(flags, session.rig), PrintProgress);
@@ -100,14 +101,14 @@ int Run(const Flags& flags) {
   }
   for (const std::string& line : corners.unreadable) std::printf("not read: %s\n", line.c_str());
   if (solved.empty()) throw InputError(flags.dir + " holds no image of any camera of its rig");
-  Write(flags, session, rig, solved);
+  WriteIntrinsics(flags, session, rig, solved);
   return good ? 0 : 1;
 }
 
 }  // namespace
 
 void AddIntrinsics(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<IntrinsicsFlags>();
   CommandLine* verb = program->Verb(
       "intrinsics",
       "Finds the cameras' lenses from the checkerboard in a session's images; clouds are not\n"
@@ -116,7 +117,7 @@ void AddIntrinsics(CommandLine* program) {
       "in every part of the image. Writes the rig with the lenses, and intrinsics.html beside it.\n"
       "Exit code 1: a camera did not converge, or a view could not be read.\n"
       "Example: rgbdt intrinsics out/lenses --camera rgb --model pinhole5",
-      [flags] { return Run(*flags); });
+      [flags] { return RunIntrinsics(*flags); });
   verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
   verb->Option("--camera", &flags->cameras, "only this one; may be given again");
   verb->Choice("--model", &flags->choice, kChoices,

@@ -11,21 +11,21 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct MapFlags {
   std::string log, out = "map.ply";
   VoxelMapOptions options;
 };
 
 /// What a log gave.
-struct Read {
+struct LogRead {
   std::int64_t events = 0, clouds = 0, dropped = 0;
   std::string last_problem;
 };
 
 // As a process does: what cannot be used is dropped and counted, not the end.
-Read ReadLog(const std::string& path, MapperNode* node) {
+LogRead ReadLog(const std::string& path, MapperNode* node) {
   LogReader log(path);
-  Read read;
+  LogRead read;
   while (const auto event = log.Next()) {
     ++read.events;
     if (event->channel != "RGBDT_CLOUD") continue;
@@ -44,10 +44,10 @@ Read ReadLog(const std::string& path, MapperNode* node) {
   return read;
 }
 
-int Run(const Flags& flags) {
+int RunMap(const MapFlags& flags) {
   flags.options.Check();
   MapperNode node(flags.options);
-  const Read read = ReadLog(flags.log, &node);
+  const LogRead read = ReadLog(flags.log, &node);
   if (read.dropped > 0) {
     std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", flags.log.c_str(),
                  static_cast<long long>(read.dropped), read.last_problem.c_str());
@@ -76,13 +76,13 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddMap(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<MapFlags>();
   CommandLine* verb = program->Verb(
       "map",
       "Fused clouds of a log (RGBDT_CLOUD) to a map of voxels, in the pose stream's frame: mean\n"
       "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live.\n"
       "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply",
-      [flags] { return Run(*flags); });
+      [flags] { return RunMap(*flags); });
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "the map, a PLY file");
   verb->Option("--voxel", &flags->options.voxel_m, "edge of a voxel [m]");

@@ -14,7 +14,7 @@
 namespace rgbdt {
 namespace {
 
-struct Flags {
+struct ReplayFlags {
   std::string log;
   std::string out = "out/replay";
   std::string method = kAutoMethod;
@@ -58,7 +58,7 @@ std::int64_t ReplayLog(const std::string& path, Replay* replay) {
   return events;
 }
 
-int Run(const Flags& flags) {
+int RunReplay(const ReplayFlags& flags) {
   Replay replay(flags.method);
   const std::int64_t events = ReplayLog(flags.log, &replay);
   const auto [assembler, detector, solver, fuser] = replay.runners();
@@ -85,14 +85,14 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddReplay(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ReplayFlags>();
   CommandLine* verb = program->Verb(
       "replay",
       "Runs the nodes of the live processes on a log of lcm-logger, in one process, in order, as\n"
       "fast as it goes. The same log gives the same bytes. A log without a session is fused\n"
       "by the CALIBRATION in it.\n"
       "Example: rgbdt replay out/demo/session.lcm --out out/replay",
-      [flags] { return Run(*flags); });
+      [flags] { return RunReplay(*flags); });
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");
   verb->Option("--method", &flags->method, kMethodHelp);

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Flags {
+struct ScannerFlags {
   std::string input, out = "out/scanner/rig.textproto";
 };
 
@@ -32,7 +32,8 @@ void PrintTransform(const TurnedScanner& before, const TurnedScanner& after) {
   print("after", after);
 }
 
-void Write(const Flags& flags, const ScannerSweeps& input, const ScannerGeometry& found) {
+void WriteScanner(const ScannerFlags& flags, const ScannerSweeps& input,
+                  const ScannerGeometry& found) {
   Rig rig = input.rig;
   rig.lidar.turned_scanner = found.scanner;
   const fs::path out = flags.out, picture = out.parent_path() / "scanner.png";
@@ -45,7 +46,7 @@ void Write(const Flags& flags, const ScannerSweeps& input, const ScannerGeometry
       out.c_str(), picture.c_str());
 }
 
-int Run(const Flags& flags) {
+int RunScanner(const ScannerFlags& flags) {
   const ScannerSweeps input = ReadScannerSweeps(flags.input);
   for (const std::string& problem : input.problems) {
     std::fprintf(stderr, "not used: %s\n", problem.c_str());
@@ -61,14 +62,14 @@ int Run(const Flags& flags) {
     return 1;
   }
   PrintTransform(before, found.scanner);
-  Write(flags, input, found);
+  WriteScanner(flags, input, found);
   return 0;
 }
 
 }  // namespace
 
 void AddScanner(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ScannerFlags>();
   CommandLine* verb = program->Verb(
       "scanner",
       "Finds where the turned scanner sits on its motor (lever arm and tilt) from any room at "
@@ -79,7 +80,7 @@ void AddScanner(CommandLine* program) {
       "it.\n"
       "Exit code 1: not converged, nothing was written.\n"
       "Example: rgbdt scanner out/room",
-      [flags] { return Run(*flags); });
+      [flags] { return RunScanner(*flags); });
   verb->Required("DIR", &flags->input,
                  "session directory (rig.textproto, views/ with organised clouds made with it; "
                  "images are not needed), or a log with RIG, LINE_SCAN and ENCODER");

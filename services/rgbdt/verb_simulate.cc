@@ -14,7 +14,7 @@ namespace {
 
 using simulate::Simulator;
 
-struct Flags {
+struct SimulateFlags {
   std::string dir;
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
@@ -24,7 +24,7 @@ struct Flags {
 };
 
 // Of the turned scanner: how far it turns, and how wrong the rig file is about where it sits.
-void SetScanner(const Flags& flags, simulate::Options* options) {
+void SetScanner(const SimulateFlags& flags, simulate::Options* options) {
   if ((flags.full_turn || flags.scanner_error) && flags.rings != 0) {
     throw InputError(
         "--full-turn and --scanner-error are of the turned scanner; leave --lidar out");
@@ -46,7 +46,7 @@ Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Ut
   return TakeSweep(simulator, begin);
 }
 
-int Run(const Flags& flags) {
+int RunSimulate(const SimulateFlags& flags) {
   if (flags.views < 1 || flags.views > 9999) {
     throw InputError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
@@ -86,12 +86,12 @@ int Run(const Flags& flags) {
 }  // namespace
 
 void AddSimulate(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SimulateFlags>();
   CommandLine* verb = program->Verb(
       "simulate",
       "Writes a session directory of the synthetic rig, with its truth beside (truth.textproto).\n"
       "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night",
-      [flags] { return Run(*flags); });
+      [flags] { return RunSimulate(*flags); });
   verb->Required("DIR", &flags->dir, "session directory to write");
   verb->Option("--views", &flags->views, "number of views");
   verb->Option("--seed", &flags->options.seed, "of all random numbers");

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-struct Flags {
+struct TerrainFlags {
   std::string input, out = "out/terrain";
   TerrainOptions options;
   double max_slope_deg = 20, site_max_slope_deg = 15;
@@ -52,7 +52,7 @@ void PrintCells(const TerrainGrid& grid, const std::string& frame) {
       count(CellState::kObstacle));
 }
 
-int Run(Flags flags) {
+int RunTerrain(TerrainFlags flags) {
   flags.options.max_slope_rad = flags.max_slope_deg * kDegree;
   flags.options.site_max_slope_rad = flags.site_max_slope_deg * kDegree;
   flags.options.Check();
@@ -68,7 +68,7 @@ int Run(Flags flags) {
   return 0;
 }
 
-void AddLimits(Flags* flags, CommandLine* verb) {
+void AddLimits(TerrainFlags* flags, CommandLine* verb) {
   TerrainOptions& options = flags->options;
   verb->Option("--cell", &options.cell_m, "edge of a cell [m]");
   verb->Option("--max-slope", &flags->max_slope_deg,
@@ -88,7 +88,7 @@ void AddLimits(Flags* flags, CommandLine* verb) {
 }  // namespace
 
 void AddTerrain(CommandLine* program) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<TerrainFlags>();
   CommandLine* verb = program->Verb(
       "terrain",
       "Where can a vehicle drive, and where land? From a map (rgbdt map) or one fused cloud "
@@ -96,7 +96,7 @@ void AddTerrain(CommandLine* program) {
       "fuse), any PLY or PCD with z up: slope, roughness, step and temperature of each cell,\n"
       "landing sites ranked. Writes terrain.json and terrain.png.\n"
       "Example: rgbdt terrain out/demo/fused.ply --out out/terrain --cell 0.2",
-      [flags] { return Run(*flags); });
+      [flags] { return RunTerrain(*flags); });
   verb->Required("INPUT", &flags->input, "PLY or PCD file");
   verb->Option("--out", &flags->out, "where to write");
   AddLimits(flags.get(), verb);

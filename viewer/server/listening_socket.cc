@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "calib/model/errors.h"
+#include "viewer/server/internal/acceptor.h"
 #include "viewer/server/server.h"
 
 namespace rgbdt::viewer {

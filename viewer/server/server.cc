@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "calib/model/errors.h"
+#include "viewer/server/internal/acceptor.h"
 #include "viewer/server/internal/http_connection.h"
 #include "viewer/server/internal/hub.h"
 #include "viewer/server/internal/message.h"

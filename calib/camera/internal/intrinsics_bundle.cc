@@ -1,10 +1,16 @@
 #include "calib/camera/internal/intrinsics_bundle.h"
 
-#include <ceres/ceres.h>
+#include <ceres/cost_function.h>
+#include <ceres/jet.h>
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
+#include <ceres/problem.h>
 #include <ceres/rotation.h>
+#include <ceres/solver.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numeric>
 
@@ -21,46 +27,51 @@ Lens::Model ModelOf(LensChoice choice) {
 
 // predicted - measured [px] of one corner:
 //   r = project(lens; R(pose) * point + t(pose)) - pixel.
-template <int kParameters>
-struct CornerError {
-  Lens::Model model;
-  Eigen::Vector3d point;
-  Eigen::Vector2d pixel;
+// All choices of a lens by the derivatives of the largest: what one lacks is zero.
+class CornerError : public ceres::CostFunction {
+ public:
+  CornerError(LensChoice choice, int parameters, const Eigen::Vector3d& point,
+              const Eigen::Vector2d& pixel)
+      : model_(ModelOf(choice)), parameters_(parameters), point_(point), pixel_(pixel) {
+    set_num_residuals(2);
+    mutable_parameter_block_sizes()->assign({parameters, kPose});
+  }
 
-  template <typename T>
-  bool operator()(const T* lens, const T* pose, T* residual) const {
-    T k[8] = {T(0), T(0), T(0), T(0), T(0), T(0), T(0), T(0)};
-    std::copy(lens + 4, lens + kParameters, k);
-    const T in_target[3] = {T(point.x()), T(point.y()), T(point.z())};
-    T p[3];
-    ceres::AngleAxisRotatePoint(pose, in_target, p);
+  bool Evaluate(const double* const* blocks, double* residual, double** jacobians) const override {
+    using Jet = ceres::Jet<double, kLens + kPose>;
+    std::array<Jet, kLens> lens;
+    std::array<Jet, kPose> pose;
+    for (int i = 0; i < parameters_; ++i) lens[i] = Jet(blocks[0][i], i);
+    for (int i = 0; i < kPose; ++i) pose[i] = Jet(blocks[1][i], kLens + i);
+    const std::array<Jet, 3> in_target = {Jet(point_.x()), Jet(point_.y()), Jet(point_.z())};
+    std::array<Jet, 3> p;
+    ceres::AngleAxisRotatePoint(pose.data(), in_target.data(), p.data());
     for (int i = 0; i < 3; ++i) p[i] += pose[3 + i];
-    if (model == Lens::Model::kPinhole && !(p[2] > T(1e-6))) return false;
-    ProjectUnchecked(model, lens, lens + 2, k, p[0], p[1], p[2], &residual[0], &residual[1]);
-    residual[0] -= pixel.x();
-    residual[1] -= pixel.y();
+    if (model_ == Lens::Model::kPinhole && !(p[2].a > 1e-6)) return false;
+    std::array<Jet, 2> pixel;
+    const Jet* const f = lens.data();
+    ProjectUnchecked(model_, f, f + 2, f + 4, p[0], p[1], p[2], &pixel[0], &pixel[1]);
+    for (int row = 0; row < 2; ++row) {
+      residual[row] = pixel[row].a - pixel_[row];
+      if (jacobians == nullptr) continue;
+      const double* const by = pixel[row].v.data();
+      if (jacobians[0]) std::copy_n(by, parameters_, jacobians[0] + row * parameters_);
+      if (jacobians[1]) std::copy_n(by + kLens, kPose, jacobians[1] + row * kPose);
+    }
     return true;
   }
 
-  static std::unique_ptr<ceres::CostFunction> Create(Lens::Model model,
-                                                     const Eigen::Vector3d& point,
-                                                     const Eigen::Vector2d& pixel) {
-    return std::make_unique<ceres::AutoDiffCostFunction<CornerError, 2, kParameters, 6>>(
-        new CornerError{model, point, pixel});
-  }
+ private:
+  static constexpr int kLens = 12, kPose = 6;
+  Lens::Model model_;
+  int parameters_;
+  Eigen::Vector3d point_;
+  Eigen::Vector2d pixel_;
 };
 
-std::unique_ptr<ceres::CostFunction> MakeError(LensChoice choice, const Eigen::Vector3d& point,
-                                               const Eigen::Vector2d& pixel) {
-  switch (choice) {
-    case LensChoice::kPinhole8:
-      return CornerError<12>::Create(ModelOf(choice), point, pixel);
-    case LensChoice::kFisheye:
-      return CornerError<8>::Create(ModelOf(choice), point, pixel);
-    case LensChoice::kPinhole5:
-      break;
-  }
-  return CornerError<9>::Create(ModelOf(choice), point, pixel);
+CornerError ErrorOf(const Bundle& bundle, const BundleView& view, std::size_t corner) {
+  return {bundle.choice, static_cast<int>(bundle.lens.size()), bundle.points[corner],
+          view.pixels[corner]};
 }
 
 void Hold(int from, std::vector<double>* lens, ceres::Problem* problem) {
@@ -76,8 +87,8 @@ void AddView(const Bundle& bundle, double loss_scale, double* lens, BundleView* 
   for (std::size_t i = 0; i < view->pixels.size(); ++i) {
     if (!view->used[i]) continue;
     ceres::LossFunction* loss = loss_scale > 0 ? new ceres::CauchyLoss(loss_scale) : nullptr;
-    problem->AddResidualBlock(MakeError(bundle.choice, bundle.points[i], view->pixels[i]).release(),
-                              loss, lens, view->pose.data());
+    problem->AddResidualBlock(new CornerError(ErrorOf(bundle, *view, i)), loss, lens,
+                              view->pose.data());
   }
 }
 
@@ -105,13 +116,13 @@ Eigen::MatrixXd ReducedJacobian(const Bundle& bundle, const BundleView& view, do
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < view.used.size(); ++i) {
     if (!view.used[i]) continue;
-    const auto error = MakeError(bundle.choice, bundle.points[i], view.pixels[i]);
+    const CornerError error = ErrorOf(bundle, view, i);
     const double* blocks[2] = {bundle.lens.data(), view.pose.data()};
     Eigen::Vector2d residual(0, 0);
     RowMajor lens_block = RowMajor::Zero(2, parameters);
     RowMajor pose_block = RowMajor::Zero(2, 6);
     double* jacobians[2] = {lens_block.data(), pose_block.data()};
-    error->Evaluate(blocks, residual.data(), jacobians);
+    error.Evaluate(blocks, residual.data(), jacobians);
     by_lens.middleRows<2>(row) = lens_block;
     by_pose.middleRows<2>(row) = pose_block;
     *squares += residual.squaredNorm();
@@ -199,8 +210,8 @@ std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& v
   const double* blocks[2] = {bundle.lens.data(), view.pose.data()};
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
     Eigen::Vector2d residual(0, 0);
-    const auto error = MakeError(bundle.choice, bundle.points[i], view.pixels[i]);
-    if (!error->Evaluate(blocks, residual.data(), nullptr)) residual.setConstant(-kBehind);
+    const CornerError error = ErrorOf(bundle, view, i);
+    if (!error.Evaluate(blocks, residual.data(), nullptr)) residual.setConstant(-kBehind);
     residuals.emplace_back(-residual);
   }
   return residuals;

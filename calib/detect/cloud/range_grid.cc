@@ -9,8 +9,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 using Angles = RangeGrid::Angles;
 
 std::vector<Angles> AnglesOf(const Cloud& cloud) {
@@ -53,11 +51,11 @@ Rows ByRing(const Cloud& cloud, const std::vector<Angles>& angles) {
 // The elevations that the points keep to; nothing where they keep to none, as those of a turned
 // scanner do not.
 std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
-  constexpr double kBin = 0.02 * kPi / 180;
+  constexpr double kBin = 0.02 * M_PI / 180;
   const auto bin_of = [&](const Angles& a) {
-    return static_cast<std::size_t>((a.elevation + kPi / 2) / kBin);
+    return static_cast<std::size_t>((a.elevation + M_PI / 2) / kBin);
   };
-  std::vector<int> counts(static_cast<std::size_t>(kPi / kBin) + 2, 0);
+  std::vector<int> counts(static_cast<std::size_t>(M_PI / kBin) + 2, 0);
   for (const Angles& a : angles) ++counts[bin_of(a)];
   // Runs of occupied bins; a stray point or two is no ring.
   const int least = std::max<int>(2, static_cast<int>(angles.size() / 20000));
@@ -86,12 +84,12 @@ std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
 // Width of even cells a little wider than the points are apart, so that few of them stay empty by
 // chance.
 double CellStep(const std::vector<Angles>& angles) {
-  constexpr double kCoarse = kPi / 180;
+  constexpr double kCoarse = M_PI / 180;
   std::vector<char> seen(360 * 181, 0);
   double solid = 0;
   for (const Angles& a : angles) {
-    const int column = std::clamp(static_cast<int>((a.azimuth + kPi) / kCoarse), 0, 359);
-    const int row = std::clamp(static_cast<int>((a.elevation + kPi / 2) / kCoarse), 0, 180);
+    const int column = std::clamp(static_cast<int>((a.azimuth + M_PI) / kCoarse), 0, 359);
+    const int row = std::clamp(static_cast<int>((a.elevation + M_PI / 2) / kCoarse), 0, 180);
     char& cell = seen[static_cast<std::size_t>(row * 360 + column)];
     if (cell == 0) solid += kCoarse * kCoarse;
     cell = 1;
@@ -100,9 +98,9 @@ double CellStep(const std::vector<Angles>& angles) {
 }
 
 Rows ByCells(const std::vector<Angles>& angles, double step) {
-  Rows rows(static_cast<std::size_t>(kPi / step) + 2);
+  Rows rows(static_cast<std::size_t>(M_PI / step) + 2);
   for (const Angles& a : angles) {
-    rows[static_cast<std::size_t>((a.elevation + kPi / 2) / step)].push_back(a);
+    rows[static_cast<std::size_t>((a.elevation + M_PI / 2) / step)].push_back(a);
   }
   while (!rows.empty() && rows.back().empty()) rows.pop_back();
   const auto used =
@@ -142,11 +140,11 @@ double PhaseOf(const std::vector<Angles>& row, double step) {
   double c = 0;
   double s = 0;
   for (const Angles& a : row) {
-    const double turn = 2 * kPi * (a.azimuth + kPi) / step;
+    const double turn = 2 * M_PI * (a.azimuth + M_PI) / step;
     c += std::cos(turn);
     s += std::sin(turn);
   }
-  return std::atan2(s, c) / (2 * kPi) * step;
+  return std::atan2(s, c) / (2 * M_PI) * step;
 }
 
 }  // namespace
@@ -235,11 +233,11 @@ std::optional<int> RangeGrid::Place(const Rows& rows, double step, bool even) {
       high = std::max(high, a.azimuth);
     }
   }
-  wraps_ = high - low > 2 * kPi - 0.1;
-  const double first = wraps_ ? -kPi : low - 0.5 * step;
+  wraps_ = high - low > 2 * M_PI - 0.1;
+  const double first = wraps_ ? -M_PI : low - 0.5 * step;
   rows_ = static_cast<int>(rows.size());
   columns_ =
-      static_cast<int>(std::lround((wraps_ ? 2 * kPi : high - low) / step)) + (wraps_ ? 0 : 2);
+      static_cast<int>(std::lround((wraps_ ? 2 * M_PI : high - low) / step)) + (wraps_ ? 0 : 2);
   // A few stray points between dense ones must not make a grid of nothing but misses.
   if (static_cast<double>(rows_) * columns_ > 20.0 * hits_ + 1e6) return std::nullopt;
   place_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), -1);
@@ -254,7 +252,7 @@ std::optional<int> RangeGrid::Place(const Rows& rows, double step, bool even) {
     if (r > 0) elevations.push_back(row_elevation_.back() - row_elevation_.end()[-2]);
     const double phase = even ? 0.5 * step : PhaseOf(row, step);
     // Column 0 lies within half a step of `first`.
-    row_azimuth_.push_back(first + std::remainder(-kPi + phase - first, step));
+    row_azimuth_.push_back(first + std::remainder(-M_PI + phase - first, step));
     for (const Angles& a : row) {
       const int column = static_cast<int>(std::lround((a.azimuth - row_azimuth_.back()) / step));
       if (!Contains(r, column)) continue;

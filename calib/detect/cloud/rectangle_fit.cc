@@ -11,7 +11,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBin = 0.01;  // of the votes [m]
 
 // Axes of a rectangle at an angle.
@@ -133,12 +132,12 @@ std::vector<FlatRectangle> VoteForRectangles(const std::vector<FlatCrossing>& cr
   double most = 0;
   double angle = 0;
   for (int i = 0; i < kAngles; ++i) {
-    const Axes axes(i * kPi / kAngles);
+    const Axes axes(i * M_PI / kAngles);
     const auto x = BestAlong(crossings, axes.x, width_m, height_m);
     const auto y = BestAlong(crossings, axes.y, height_m, width_m);
     if (x[0].metres + y[0].metres <= most) continue;
     most = x[0].metres + y[0].metres;
-    angle = i * kPi / kAngles;
+    angle = i * M_PI / kAngles;
   }
   const Axes axes(angle);
   std::vector<FlatRectangle> rectangles;

@@ -17,7 +17,7 @@ constexpr double kLooseM = 0.1;
 std::string Direction(const Eigen::Vector3d& v) {
   return Format("(%.2f, %.2f, %.2f)", v.x(), v.y(), v.z());
 }
-std::string Place(const Eigen::Vector3d& v) {
+std::string PlaceText(const Eigen::Vector3d& v) {
   return Format("x %.1f, y %.1f, z %.1f m", v.x(), v.y(), v.z());
 }
 
@@ -61,7 +61,7 @@ std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target) {
   }
   if (apart < kOnePlaceM) {
     return "the board was at one place in all " + std::to_string(lidar_from_target.size()) +
-           " views; a turn of the camera about that place (" + Place(middle) +
+           " views; a turn of the camera about that place (" + PlaceText(middle) +
            ", LIDAR frame) and a shift of it look alike. Next: hold the board nearer, farther, and "
            "to both sides";
   }

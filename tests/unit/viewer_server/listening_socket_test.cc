@@ -13,6 +13,7 @@
 #include "calib/model/errors.h"
 #include "services/drivers/net/descriptor.h"
 #include "test_browser.h"
+#include "viewer/server/internal/acceptor.h"
 
 namespace rgbdt::viewer {
 namespace {

@@ -5,7 +5,7 @@
 #include <boost/asio/ip/host_name.hpp>
 #include <string>
 
-#include "viewer/server/net.h"
+#include "viewer/server/internal/net.h"
 
 namespace rgbdt::viewer {
 namespace {

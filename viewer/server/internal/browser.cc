@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "viewer/server/internal/acceptor.h"
 #include "viewer/server/internal/frame_layout.h"
 #include "viewer/server/internal/message.h"
 #include "viewer/server/internal/steady_seconds.h"
@@ -63,9 +64,6 @@ void Browser::SetOptions() {
   times.idle_timeout = kIdleTime;
   times.keep_alive_pings = true;
   socket_.set_option(times);
-  websocket::permessage_deflate deflate;
-  deflate.server_enable = false;
-  socket_.set_option(deflate);
   socket_.auto_fragment(false);
   socket_.binary(true);
   socket_.read_message_max(kMaxMessageText);

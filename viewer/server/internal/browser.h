@@ -10,7 +10,7 @@
 
 #include "viewer/server/internal/browser_queue.h"
 #include "viewer/server/internal/hub.h"
-#include "viewer/server/net.h"
+#include "viewer/server/internal/net.h"
 
 namespace rgbdt::viewer {
 
@@ -44,7 +44,8 @@ class Browser : public std::enable_shared_from_this<Browser> {
   void StartDeadline(std::chrono::seconds time);
   void End();
 
-  beast::websocket::stream<beast::tcp_stream> socket_;
+  static constexpr bool kMayCompress = false;  // points and JPEG gain nothing by it
+  beast::websocket::stream<beast::tcp_stream, kMayCompress> socket_;
   Hub* hub_;
   std::uint64_t line_ = 0;      // of the roster
   net::steady_timer deadline_;  // of its hello, then of its close

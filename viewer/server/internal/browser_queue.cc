@@ -13,8 +13,8 @@ constexpr std::size_t kMostUnacked = 4;
 constexpr std::size_t kEnoughUnackedBytes = 4 * 1024 * 1024;
 // A browser draws all that came since its last frame at once, however many: lines of a scanner.
 constexpr std::size_t kFewUnackedBytes = 1024 * 1024;
-constexpr std::size_t kMostClouds = 8;
-constexpr std::size_t kMostOthers = 256;
+constexpr std::size_t kMostWaitingClouds = 8;
+constexpr std::size_t kMostWaitingOthers = 256;
 constexpr std::size_t kMostKept = 4096;
 
 bool IsCloud(const Post& post) { return post.heavy && post.record_bytes > 0; }
@@ -50,10 +50,10 @@ void BrowserQueue::Replay(SharedPost post) {
 }
 
 void BrowserQueue::DropBeyond(TopicQueue* queue) {
-  const std::size_t clouds = queue->DropOldest(IsCloud, kMostClouds);
+  const std::size_t clouds = queue->DropOldest(IsCloud, kMostWaitingClouds);
   if (clouds > 0) thinning_.Dropped();
   const std::size_t others =
-      queue->DropOldest(IsPassing, kMostOthers) + queue->DropOldest(IsKept, kMostKept);
+      queue->DropOldest(IsPassing, kMostWaitingOthers) + queue->DropOldest(IsKept, kMostKept);
   thinned_ += static_cast<std::int64_t>(clouds + others);
 }
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "viewer/server/internal/net.h"
 #include "viewer/server/internal/origin.h"
-#include "viewer/server/net.h"
 
 namespace rgbdt::viewer {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "viewer/server/internal/hub.h"
-#include "viewer/server/net.h"
+#include "viewer/server/internal/net.h"
 
 namespace rgbdt::viewer {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "viewer/server/net.h"
+#include "viewer/server/internal/net.h"
 
 namespace rgbdt::viewer {
 namespace {
