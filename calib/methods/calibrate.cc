@@ -32,6 +32,10 @@ std::vector<DetectedView> SummariesOf(const std::vector<ViewDetection>& detectio
 Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
                  const CalibrateOptions& options) {
   options.Check();
+  CalibrateOptions with_rig = options;
+  if (!(options.first_guess.range_offset_sigma_m > 0)) {
+    with_rig.first_guess.range_offset_sigma_m = rig.lidar.range_offset_sigma_m;
+  }
   Report report;
   report.method = options.method;
   report.rig_hash = rig.hash;
@@ -41,9 +45,10 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
-    CalibratedCameras calibrated = options.method == kPlaneMethod
-                                       ? CalibrateByPlanes(rig.target, options, std::move(cameras))
-                                       : CalibrateByBoards(rig.target, options, std::move(cameras));
+    CalibratedCameras calibrated =
+        options.method == kPlaneMethod
+            ? CalibrateByPlanes(rig.target, with_rig, std::move(cameras))
+            : CalibrateByBoards(rig.target, with_rig, std::move(cameras));
     cameras = std::move(calibrated.cameras);
     report.closure = std::move(calibrated.closure);
     report.next_view = std::move(calibrated.next_view);

@@ -37,8 +37,12 @@ inline constexpr double kBoardThicknessM = 0.010, kBoardThicknessSigmaM = 0.010;
 /// Each side's place against the printed pattern, as a board is cut [m].
 inline constexpr double kOutlineSigmaM = 0.001;
 
-/// True range less measured range [m], where it is to be estimated; beyond what any LIDAR is off.
+/// True range less measured range [m], where nothing is known of it; beyond what any LIDAR is off.
 inline constexpr double kRangeOffsetSigmaM = 0.1;
+
+/// The same of a LIDAR that is as its data sheet says: 20 to 30 mm is what most call their
+/// accuracy.
+inline constexpr double kUsualRangeOffsetSigmaM = 0.02;
 
 /// The same where it is taken for zero: small enough to pin it, large enough to be inverted.
 inline constexpr double kNoRangeOffsetSigmaM = 1e-9;

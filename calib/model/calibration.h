@@ -115,6 +115,7 @@ struct Fold {
   double misfit = 0;              ///< of the views left out: chi-square for each
   double first_guess_misfit = 0;  ///< the same for the first guess from the same views
   PoseError from_result;          ///< against the reported calibration
+  double expected_misfit = 6;     ///< of `misfit`, by the noise of views and of the fold's pose
 };
 
 /// Two halves of the views, each solved apart.
@@ -147,7 +148,9 @@ struct CameraReport {
   std::vector<Nuisance> nuisance;
   std::vector<Fold> folds;
   std::optional<Halves> halves;
-  std::optional<Estimate> range_offset;  ///< [m] true range minus measured; absent: not asked for
+  /// [m] true range minus measured; absent: taken for exact.
+  std::optional<Estimate> range_offset;
+  double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views

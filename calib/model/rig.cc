@@ -127,6 +127,9 @@ void Rig::Check(LensNeed lenses) const {
     CheckPose(lidar.turned_scanner->motor_from_scanner, "lidar.turned_scanner.motor_from_scanner");
   }
   RequirePositive(lidar.range_sigma_m, "lidar.range_sigma_m");
+  Require(lidar.range_offset_sigma_m >= 0 && std::isfinite(lidar.range_offset_sigma_m),
+          "lidar.range_offset_sigma_m", std::to_string(lidar.range_offset_sigma_m),
+          "a number not less than zero");
   CheckTarget(target);
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib/model/beam_priors.h"
 #include "calib/model/devices.h"
 #include "calib/model/image.h"
 #include "calib/model/rigid3.h"
@@ -64,6 +65,8 @@ struct LidarSpec {
   std::string name;
   std::optional<TurnedScanner> turned_scanner;  ///< absent: the sensor gives 3D clouds itself
   double range_sigma_m = 0.01;
+  /// How well a constant that all ranges may be off by is known (1 sigma, about zero); 0: exactly.
+  double range_offset_sigma_m = kUsualRangeOffsetSigmaM;
   /// For rgbdt-lidar; std::monostate: none.
   std::variant<std::monostate, HokuyoDevice, VelodyneDevice, PcdFolderDevice> device;
 };

@@ -95,6 +95,35 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   return out;
 }
 
+PlaneResidual ResidualOf(const CloudEdges& cloud, const Rigid3& lidar_from_target,
+                         double range_offset_m) {
+  const Eigen::Matrix3d rotation = lidar_from_target.rotation.toRotationMatrix();
+  const Eigen::Vector3d n = rotation.col(2);
+  const double range = cloud.centre.norm();
+  const Eigen::Vector3d along = cloud.centre / range;
+  const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - along * along.transpose()) / range;
+  const Eigen::Matrix3d spread = cloud.scatter.topLeftCorner<3, 3>() / cloud.scatter(3, 3);
+  const Eigen::Vector3d mean_beam =
+      along + (along * (1.5 * along.dot(spread * along) - 0.5 * spread.trace()) - spread * along) /
+                  (range * range);
+  const Eigen::Vector3d lean = across * n - n.dot(across * n) * n;
+  const Eigen::Vector3d from_target =
+      cloud.centre + range_offset_m * mean_beam - lidar_from_target.translation;
+  PlaneResidual out;
+  out.x << n + range_offset_m * lean, n.dot(from_target);
+  out.by.setZero();
+  const auto turn = [&](int column, const Eigen::Vector3d& by_n) {
+    const Eigen::Vector3d lean_by_n =
+        across * by_n - n.dot(across * n) * by_n - 2 * n.dot(across * by_n) * n;
+    out.by.col(column) << by_n + range_offset_m * lean_by_n, by_n.dot(from_target);
+  };
+  turn(0, -rotation.col(1));
+  turn(1, rotation.col(0));
+  out.by(3, 2) = -1;
+  out.by.col(3) << lean, n.dot(mean_beam);
+  return out;
+}
+
 std::optional<double> SigmaByCloud(const Target& target, const BoardPriors& priors,
                                    const Crossing& crossing, const CloudEdges& cloud,
                                    const std::array<double, kSharedUnknowns>& shared) {

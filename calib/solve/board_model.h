@@ -57,6 +57,21 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                             const Crossing& crossing, const Rigid3& lidar_from_target,
                             const std::array<double, kSharedUnknowns>& shared, double side_shift);
 
+/// The points on the board against its plane: x' CloudEdges::scatter x is the sum of their squared
+/// distances from it. With n the board's normal, x = (n + b lean, n . (centre + b beam - t)). A
+/// range offset b lies along each point's own beam, not the centre's: across the board that leans
+/// the plane, and its mean is shorter. `beam` is the mean of the points' unit beams, to the second
+/// order in the board's size; `lean`, to the first, how a beam's part along n changes across the
+/// board. It has no part along n: there the scatter is noise, which would draw b towards the LIDAR.
+struct PlaneResidual {
+  Eigen::Vector4d x;
+  /// d x / d: the delta of lidar_from_target * Exp(delta) about the target's x, about its y, along
+  /// its z; the range offset.
+  Eigen::Matrix4d by;
+};
+PlaneResidual ResidualOf(const CloudEdges& cloud, const Rigid3& lidar_from_target,
+                         double range_offset_m);
+
 /// A crossing's sigma [m] by the cloud's own pose, nothing where its beam misses the board there.
 /// For weights: one that changed with the board's place would be an objective of its own.
 std::optional<double> SigmaByCloud(const Target& target, const BoardPriors& priors,

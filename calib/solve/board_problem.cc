@@ -188,7 +188,7 @@ ViewInformation InformationOf(const BoardProblem& problem, const BoardState& sta
   return Reduce(ViewEquations(problem, state, view), 0).shared;
 }
 
-double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera) {
+Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera) {
   constexpr int kIterations = 20;
   for (int i = 0; i < kIterations; ++i) {
     const ViewEquations equations(problem, state, view);
@@ -205,7 +205,7 @@ double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view,
   const Eigen::Index at = 6 * camera;
   const Matrix6d information = reduced.information.block<6, 6>(at, at);
   const Vector6d gradient = reduced.gradient.segment<6>(at);
-  return gradient.dot(SolveSymmetric(information, gradient));
+  return {gradient.dot(SolveSymmetric(information, gradient)), information};
 }
 
 }  // namespace rgbdt

@@ -84,9 +84,13 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
                               std::size_t view);
 
-/// How badly a pose of a camera fits a view that had no say in it: the chi-square of the step that
-/// the view by itself would make it, the shared unknowns kept, the view's own ones at their best.
-/// Six on average where all is as stated.
-double MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera);
+/// How badly a pose of a camera fits a view that had no say in it.
+struct Misfit {
+  /// Chi-square of the step that the view by itself would make the pose, the shared unknowns kept,
+  /// the view's own ones at their best. Six on average of the truth.
+  double chi2 = 0;
+  Matrix6d information;  ///< of the view, of the pose: by its trace with a covariance chi2 grows
+};
+Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera);
 
 }  // namespace rgbdt

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calib/model/stopwatch.h"
+#include "calib/model/text.h"
 #include "calib/solve/closure.h"
 #include "calib/solve/colouring.h"
 #include "calib/solve/evaluate.h"
@@ -73,13 +74,28 @@ CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
           converged ? "" : "the joint solve did not settle"};
 }
 
+std::string RangesAreOff(const Estimate& offset, double known_m) {
+  return Format(
+      "the LIDAR's ranges are %.1f +- %.1f mm too %s; the rig file has them exact to %.1f "
+      "mm (lidar.range_offset_sigma_m). The views decided. Check the ranges against a tape "
+      "measure, and raise that number",
+      1000 * std::abs(offset.value), 1000 * offset.sigma, offset.value > 0 ? "short" : "long",
+      1000 * known_m);
+}
+
 // A camera's report with what the joint solve found, which took `seconds`.
-CameraReport WithSolution(const CalibrateOptions& options, const JointResult& result,
-                          std::size_t camera, double seconds) {
+CameraReport WithSolution(const JointResult& result, std::size_t camera, double seconds) {
   CameraReport report = result.joint.cameras[camera].views.report;
   report.calibration = CalibrationOf(result, camera);
   report.nuisance = NuisancesOf(result);
-  if (options.first_guess.range_offset) report.range_offset = EstimateOf(result, kRangeOffset);
+  report.variance_factor = result.variance_factor;
+  if (result.joint.problem.priors.range_offset_sigma_m > kNoRangeOffsetSigmaM) {
+    report.range_offset = EstimateOf(result, kRangeOffset);
+  }
+  if (result.refuted_range_offset_sigma_m) {
+    report.warnings.push_back(
+        RangesAreOff(*report.range_offset, *result.refuted_range_offset_sigma_m));
+  }
   report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
   return report;
 }
@@ -107,10 +123,6 @@ CameraViews Judged(const EdgeModel& edges, CameraViews camera) {
   return camera;
 }
 
-double RangeOffsetPrior(const CalibrateOptions& options) {
-  return options.first_guess.range_offset ? options.first_guess.range_offset_sigma_m : 0;
-}
-
 // Cameras that were solved together, and where to hold the board next.
 struct SolvedGroup {
   std::vector<GuessedCamera> cameras;
@@ -120,11 +132,11 @@ struct SolvedGroup {
 SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
                        std::vector<GuessedCamera> cameras) {
   const Stopwatch watch;
-  JointResult result =
-      SolveJointly(MakeJointProblem(target, std::move(cameras), RangeOffsetPrior(options)));
+  JointResult result = SolveJointly(
+      MakeJointProblem(target, std::move(cameras), options.first_guess.range_offset_sigma_m));
   const double seconds = watch.Seconds();
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
-    result.joint.cameras[c].views.report = WithSolution(options, result, c, seconds);
+    result.joint.cameras[c].views.report = WithSolution(result, c, seconds);
   }
   SolvedGroup solved;
   if (options.diagnostics) {

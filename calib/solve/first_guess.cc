@@ -35,10 +35,17 @@ struct Pair {
   }
 };
 
-CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from_lidar,
-                      const PoseGate& gate) {
+// A LIDAR, and how its ranges lie.
+struct Mount {
+  Rigid3 camera_from_lidar;
+  double range_offset_m = 0;
+};
+
+CandidateChoice Judge(const Pair& pair, int candidate, const Mount& mount, const PoseGate& gate) {
   const Rigid3 seen = pair.CameraFromTarget();
-  const Rigid3 meant = camera_from_lidar * pair.in_lidar->sensor_from_target;
+  Rigid3 board = pair.in_lidar->sensor_from_target;
+  board.translation += mount.range_offset_m * board.translation.normalized();
+  const Rigid3 meant = mount.camera_from_lidar * board;
   const Spread a = SpreadOf(*pair.in_camera);
   const Spread b = SpreadOf(*pair.in_lidar);
   const double angle = std::clamp(4 * std::hypot(a.angle, b.angle), gate.least_rad, gate.most_rad);
@@ -50,14 +57,13 @@ CandidateChoice Judge(const Pair& pair, int candidate, const Rigid3& camera_from
 }
 
 // The best pairing of a view, whether it fits or not.
-CandidateChoice Nearest(const CameraView& view, const Rigid3& camera_from_lidar,
-                        const PoseGate& gate) {
+CandidateChoice Nearest(const CameraView& view, const Mount& mount, const PoseGate& gate) {
   CandidateChoice best;
   best.cost = 1e300;
   for (std::size_t k = 0; k < view.candidates.size(); ++k) {
     for (const bool half_turn : {false, true}) {
       const Pair pair{&*view.image->pose, &*view.candidates[k]->pose, half_turn};
-      const CandidateChoice choice = Judge(pair, static_cast<int>(k), camera_from_lidar, gate);
+      const CandidateChoice choice = Judge(pair, static_cast<int>(k), mount, gate);
       if (choice.cost < best.cost) best = choice;
     }
   }
@@ -86,7 +92,7 @@ struct Agreement {
 Agreement AgreementOn(const Views& views, const Rigid3& camera_from_lidar) {
   Agreement agreement{camera_from_lidar, 0, 0};
   for (const CameraView* view : views) {
-    const double cost = Nearest(*view, camera_from_lidar, kVotingGate).cost;
+    const double cost = Nearest(*view, {camera_from_lidar}, kVotingGate).cost;
     if (cost >= 1) continue;
     ++agreement.views;
     agreement.cost += cost * cost;
@@ -136,7 +142,8 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
     Vector7d gradient = Vector7d::Zero();
     guess.agreeing = 0;
     for (const CameraView* view : views) {
-      const CandidateChoice choice = Nearest(*view, pose, round < 4 ? kVotingGate : kAcceptGate);
+      const CandidateChoice choice =
+          Nearest(*view, {pose, offset}, round < 4 ? kVotingGate : kAcceptGate);
       if (choice.cost >= 1) continue;
       ++guess.agreeing;
       const TargetPose& in_lidar =
@@ -159,7 +166,7 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
       information += robust * j.transpose() * weight * j;
       gradient += robust * j.transpose() * weight * residual;
     }
-    const double prior = options.range_offset ? options.range_offset_sigma_m : kNoRangeOffsetSigmaM;
+    const double prior = std::max(options.range_offset_sigma_m, kNoRangeOffsetSigmaM);
     information(6, 6) += 1 / (prior * prior);
     gradient[6] -= offset / (prior * prior);
     const Vector7d step = SolveSymmetric(information, gradient);
@@ -169,7 +176,7 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
   }
   const Matrix7d covariance = InverseOfSymmetric(information);
   guess.covariance = covariance.topLeftCorner<6, 6>();
-  if (options.range_offset) {
+  if (options.range_offset_sigma_m > 0) {
     guess.range_offset_m = offset;
     guess.range_offset_sigma_m = std::sqrt(covariance(6, 6));
   }
@@ -212,7 +219,7 @@ std::string WhyNone(const Views& views, const Vote& vote) {
 }  // namespace
 
 void FirstGuessOptions::Check() const {
-  OptionCheck("first guess").Positive(range_offset_sigma_m, "range_offset_sigma_m");
+  OptionCheck("first guess").NotNegative(range_offset_sigma_m, "range_offset_sigma_m");
 }
 
 FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
@@ -252,17 +259,17 @@ bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other) {
 }
 
 CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
-                                const PoseGate& gate) {
+                                const PoseGate& gate, double range_offset_m) {
   if (!HasPoses(view)) return {};
-  CandidateChoice choice = Nearest(view, camera_from_lidar, gate);
+  CandidateChoice choice = Nearest(view, {camera_from_lidar, range_offset_m}, gate);
   if (choice.cost >= 1) choice.candidate = -1;
   return choice;
 }
 
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
-                               const PoseGate& gate) {
+                               const PoseGate& gate, double range_offset_m) {
   if (!view.usable() || !HasPoses(view)) return view;
-  const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate);
+  const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate, range_offset_m);
   if (choice.candidate >= 0) {
     view.cloud = *view.candidates[static_cast<std::size_t>(choice.candidate)];
     return view;

@@ -24,8 +24,8 @@ inline constexpr PoseGate kAcceptGate{0.02, 0.075, 0.04, 0.09};
 inline constexpr PoseGate kJudgeGate{0.2, 0.4, 0.5, 1.0};
 
 struct FirstGuessOptions {
-  bool range_offset = false;  ///< estimate a constant that the LIDAR's ranges are off by
-  double range_offset_sigma_m = kRangeOffsetSigmaM;  ///< its prior, about zero
+  /// How well a constant that the LIDAR's ranges may be off by is known, about zero; 0: exactly.
+  double range_offset_sigma_m = 0;
 
   /// Throws InputError naming the field and its value.
   void Check() const;
@@ -51,8 +51,8 @@ struct CandidateChoice {
 struct FirstGuess {
   std::optional<Rigid3> camera_from_lidar;
   Matrix6d covariance = Matrix6d::Zero();  ///< of delta (rigid3.h), camera axes
-  double range_offset_m = 0;               ///< true range minus measured; 0: not estimated
-  double range_offset_sigma_m = 0;         ///< 0: not estimated
+  double range_offset_m = 0;               ///< true range minus measured
+  double range_offset_sigma_m = 0;         ///< 0: taken for exact, not estimated
   int agreeing = 0;                        ///< views that agree on it
   bool ambiguous = false;                  ///< there is none because two fit alike
   std::string detail;                      ///< in words; why there is none
@@ -67,13 +67,13 @@ struct FirstGuess {
 FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                            const FirstGuessOptions& options = {});
 
-/// The candidate that fits best.
+/// The candidate that fits best, the ranges off by so much (true minus measured).
 CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
-                                const PoseGate& gate = kAcceptGate);
+                                const PoseGate& gate = kAcceptGate, double range_offset_m = 0);
 
 /// The view with its `cloud` the candidate that fits; or rejected, with how far off the nearest one
 /// lies. Without poses (the paper's method) it stays as it is.
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
-                               const PoseGate& gate = kAcceptGate);
+                               const PoseGate& gate = kAcceptGate, double range_offset_m = 0);
 
 }  // namespace rgbdt

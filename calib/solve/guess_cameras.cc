@@ -72,7 +72,10 @@ GuessedCamera Guess(const CalibrateOptions& options, CameraViews views) {
     report.calibration.detail = guess.detail;
     return {std::move(views), std::move(guess)};
   }
-  for (CameraView& o : views.all) o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar);
+  for (CameraView& o : views.all) {
+    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, kAcceptGate,
+                            guess.range_offset_m);
+  }
   if (!EnoughViews(options, views)) {
     report.calibration = NotSolved(options, views);
     return {std::move(views), {}};

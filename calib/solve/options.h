@@ -9,7 +9,7 @@ namespace rgbdt {
 
 struct CalibrateOptions {
   std::string method = kAutoMethod;
-  FirstGuessOptions first_guess;  ///< "auto", "plane"
+  FirstGuessOptions first_guess;  ///< "auto", "plane"; a range offset of 0: the rig's
   bool joint = true;              ///< "auto": all cameras together; false: each by itself
   /// "auto", "plane": folds, halves, closure and the next view are worked out, too: for a report.
   bool diagnostics = true;

@@ -4,6 +4,7 @@
 
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
+#include "calib/model/beam_priors.h"
 #include "calib/present/session/report_files.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
@@ -15,6 +16,7 @@ struct CalibrateFlags {
   std::string dir, out, truth;
   CalibrateOptions options;
   bool separate = false;
+  bool range_offset = false;
 };
 
 int RunCalibrate(const CalibrateFlags& flags) {
@@ -45,13 +47,16 @@ void AddCalibrate(CommandLine* program) {
       "Example: rgbdt calibrate out/demo/session --out out/again",
       [flags] {
         flags->options.joint = !flags->separate;
+        if (flags->range_offset)
+          flags->options.first_guess.range_offset_sigma_m = kRangeOffsetSigmaM;
         return RunCalibrate(*flags);
       });
   verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
   verb->Option("--out", &flags->out, "where to write; default: DIR");
   verb->Option("--method", &flags->options.method, kMethodHelp);
-  verb->Flag("--range-offset", &flags->options.first_guess.range_offset,
-             "auto: also estimate a constant offset of the LIDAR's ranges");
+  verb->Flag("--range-offset", &flags->range_offset,
+             "auto: take the LIDAR's ranges to be off by any constant, whatever the rig file\n"
+             "says of them (lidar.range_offset_sigma_m)");
   verb->Flag("--separate", &flags->separate,
              "auto: solve each camera by itself, not all in one problem");
   verb->Flag("--smooth-field", &flags->options.smooth_field,

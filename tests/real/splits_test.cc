@@ -78,7 +78,9 @@ TEST(Acfr, TheResultLiesByThePublishedMean) {
   auto detected = DetectReal(kAutoMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
   for (ViewDetection& view : detected->views) view.heldout = false;
-  const Report report = Calibrate(detected->session.rig, detected->views);
+  Rig& rig = detected->session.rig;
+  rig.lidar.range_offset_sigma_m = 0;  // as the published mean was made
+  const Report report = Calibrate(rig, detected->views);
   const CameraCalibration& calibration = report.cameras.at(0).calibration;
   const PoseError error = ErrorOf(calibration.camera_from_lidar, PublishedCameraFromLidar());
   std::printf("%s: %.2f deg, %.1f mm from the published mean\n", calibration.StatusText().c_str(),
@@ -86,6 +88,21 @@ TEST(Acfr, TheResultLiesByThePublishedMean) {
   ASSERT_TRUE(calibration.converged()) << calibration.StatusText();
   EXPECT_LE(error.rotation_deg, 1.0);
   EXPECT_LE(error.translation_mm, 40);
+}
+
+TEST(Acfr, ARangeOffsetThatIsEstimatedMovesTheResultWithinItsSigma) {
+  auto detected = DetectReal(kAutoMethod);
+  if (!detected) GTEST_SKIP() << kAbsent;
+  Rig& rig = detected->session.rig;
+  const CameraReport open = Calibrate(rig, detected->views).cameras.at(0);
+  rig.lidar.range_offset_sigma_m = 0;
+  const CameraReport exact = Calibrate(rig, detected->views).cameras.at(0);
+  ASSERT_TRUE(open.range_offset && open.calibration.covariance);
+  EXPECT_FALSE(exact.range_offset);
+  EXPECT_LT(std::abs(open.range_offset->value), 3 * std::hypot(open.range_offset->sigma, 0.02));
+  const Vector6d delta =
+      Log(open.calibration.camera_from_lidar * exact.calibration.camera_from_lidar.Inverse());
+  EXPECT_LT(delta.dot(open.calibration.covariance->ldlt().solve(delta)), 12.592);
 }
 
 }  // namespace

@@ -38,6 +38,9 @@ ONCE = {
     "basin_30_40_success": (">=", 1.0),
     "no_guess_success": (">=", 1.0),
     "solve_ms": ("<=", 100),
+    "range_offset_mm_median": ("<=", 1.5),
+    "range_offset_nees": ("in", 0.7, 1.4),
+    "offset_nees_mean": ("in", 5, 8),
     "random_nees_mean": ("in", 5, 8),
     "random_coverage95": ("in", 0.90, 0.98),
 }
@@ -154,6 +157,18 @@ def time_figures(rows):
             yield figure(name, median(by_seed.values()), "ms")
 
 
+def offset_figures(parts):
+    """Ranges off by a constant: how exactly it is found, and what the poses make of it."""
+    for part, prefix in (("offset-dense", ""), ("offset-16", "beams16_")):
+        rows = pick(parts[part], method="auto", camera="rgb")  # the cameras share it
+        if not rows:
+            continue
+        yield figure(f"{prefix}range_offset_mm_median", median(map(abs, column(rows, "range_offset_error_mm"))), "mm")
+        yield figure(f"{prefix}range_offset_nees", mean(column(rows, "range_offset_chi2")))
+        yield from honesty_figures(parts[part], f"{prefix}offset_")
+        yield figure(f"{prefix}offset_rms_over_bound", over_bound(parts[part], parts[part]))
+
+
 def basin_figures(rows):
     """Success from first guesses far off (columns: method, start, success), of another program."""
     for name, start in (("basin_30_40_success", "30_40"), ("no_guess_success", "no_guess")):
@@ -187,6 +202,7 @@ def all_figures(parts):
     if parts["random"]:
         out += honesty_figures(parts["random"], "random_")
         out += honesty_figures(parts["random"], "random_plane_", "plane")
+    out += offset_figures(parts)
     out += time_figures(parts["times"])
     out += basin_figures(parts["basin"])
     return out
@@ -319,7 +335,7 @@ def notes(parts, figures):
 def main():
     out = pathlib.Path(sys.argv[1])
     names = ["sampled-dense", "rendered-dense", "sampled-32", "rendered-32", "sampled-16"]
-    names += ["rendered-16", "random", "times", "basin"]
+    names += ["rendered-16", "offset-dense", "offset-16", "random", "times", "basin"]
     parts = {name: trials.read(out / "parts", name) for name in names}
     for name in ("sampled-dense", "times"):
         if not parts[name]:

@@ -21,7 +21,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Numbers of the unknowns. Each view has its own ten after what all views share.
-constexpr Index kClasses = 3, kThickness = kClasses, kCameras = kThickness + 1;
+constexpr Index kClasses = 3, kThickness = kClasses, kRangeOffset = kThickness + 1;
+constexpr Index kCameras = kRangeOffset + 1;
+constexpr double kExactM = 1e-9;        // sigma of what is known
 constexpr Index kSides = 6, kOwn = 10;  // of a view: pose, then sides
 
 /// Where a row or column of beams leaves the board.
@@ -170,6 +172,7 @@ class Bound {
     const BeamModel& model = session.model;
     AddPrior(0, kClasses, model.class_sigma_rad, &information_);
     AddPrior(kThickness, 1, model.thickness_sigma_m, &information_);
+    AddPrior(kRangeOffset, 1, std::max(kExactM, model.range_offset_sigma_m), &information_);
     for (const SampledView& view : session.views) {
       if (!view.heldout) AddView(view);
     }
@@ -252,7 +255,9 @@ class Bound {
 
   void AddRanges(const SampledView& view, MatrixXd* information) const {
     const std::vector<std::size_t> inner = Inner(view);
-    const MatrixXd j = ByDelta(view.lidar_from_target, [&](const Rigid3& pose) {
+    MatrixXd j = MatrixXd::Zero(static_cast<Index>(inner.size()), shared_ + kOwn);
+    j.col(kRangeOffset).setConstant(-1);
+    j.middleCols<6>(shared_) = ByDelta(view.lidar_from_target, [&](const Rigid3& pose) {
       VectorXd ranges(static_cast<Index>(inner.size()));
       for (std::size_t i = 0; i < inner.size(); ++i) {
         ranges[static_cast<Index>(i)] = MeetPlane(pose, view.beams.directions[inner[i]]).range_m;
@@ -260,7 +265,7 @@ class Bound {
       return ranges;
     });
     const double sigma = session_.model.range_sigma_m;
-    information->block<6, 6>(shared_, shared_) += j.transpose() * j / (sigma * sigma);
+    *information += j.transpose() * j / (sigma * sigma);
   }
 
   void AddCrossings(const SampledView& view, MatrixXd* information) const {

@@ -143,7 +143,7 @@ class CloudSampler {
   double Range(const Eigen::Vector3d& direction, bool* on) {
     const PlanePlace beam = MeetPlane(lidar_from_target_, direction);
     const double blur = model_.blur_rad * noise_.Normal(next_++);
-    const double ranging = model_.range_sigma_m * noise_.Normal(next_++);
+    const double ranging = model_.range_sigma_m * noise_.Normal(next_++) - model_.range_offset_m;
     const double depth = noise_.Uniform(next_++);
     *on = false;
     if (!beam.ahead) return std::numeric_limits<double>::quiet_NaN();
@@ -158,8 +158,9 @@ class CloudSampler {
     *on = farthest <= 0;
     if (*on) return beam.range_m + ranging;
     // Uneven, so that what lies behind makes no plane of its own.
-    if (kind == CrossingKind::kFar) return beam.range_m + 1.5 + 2.5 * depth;
-    if (kind == CrossingKind::kMerged) return beam.range_m + 0.2 + 0.25 * depth;
+    const double measured = beam.range_m - model_.range_offset_m;
+    if (kind == CrossingKind::kFar) return measured + 1.5 + 2.5 * depth;
+    if (kind == CrossingKind::kMerged) return measured + 0.2 + 0.25 * depth;
     return std::numeric_limits<double>::quiet_NaN();
   }
 

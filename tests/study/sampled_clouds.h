@@ -17,6 +17,9 @@ namespace rgbdt::study {
 /// by itself, not taken from the estimator (BeamEdgeOptions), which is to be judged by it.
 struct BeamModel {
   double range_sigma_m = 0.010;
+  double range_offset_m = 0;  ///< true range minus measured, of all
+  /// What is known of it beforehand, about zero; 0: exact. For the bound and the rig.
+  double range_offset_sigma_m = 0;
   double class_sigma_rad = 0.6e-3;  ///< each class of crossing's shift, drawn once a session
   double side_sigma_rad = 0.3e-3;   ///< each side's own shift, drawn for every view
   double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside

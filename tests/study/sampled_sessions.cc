@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/model/beam_priors.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/board_poses.h"
 #include "calib/simulate/internal/rig_defaults.h"
@@ -26,8 +27,13 @@ simulate::Options OptionsOf(const SampledOptions& sampled, std::uint64_t seed) {
   return options;
 }
 
-BeamModel ModelOf(const simulate::Options& options) {
+BeamModel ModelOf(const SampledOptions& sampled, const simulate::Options& options) {
   BeamModel model;
+  if (sampled.range_offset_m > 0) {
+    const Noise noise(options.seed, 0, "sampled range offset");
+    model.range_offset_m = sampled.range_offset_m * (2 * noise.Uniform(0) - 1);
+    model.range_offset_sigma_m = kUsualRangeOffsetSigmaM;
+  }
   model.range_sigma_m =
       options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
   model.thickness_m = options.board.thickness_m;
@@ -42,7 +48,7 @@ class SessionSampler {
         scene_(std::make_shared<simulate::SceneModel>(MakeScene(options_))),
         empty_(scene_, std::nullopt, options_),
         scanner_(options_.scanner, seed) {
-    session_.model = ModelOf(options_);
+    session_.model = ModelOf(sampled_, options_);
     shifts_ = DrawClassShifts(session_.model, Noise(seed, 0, "sampled classes"));
     std::vector<Rigid3> mounts;
     for (const simulate::CameraOptions& camera : options_.cameras) {
@@ -51,6 +57,7 @@ class SessionSampler {
       renderers_.emplace_back(camera, mounts.back(), options_.supersampling, 1);
     }
     session_.rig = MakeRig(options_, scanner_, *scene_, mounts);
+    session_.rig.lidar.range_offset_sigma_m = session_.model.range_offset_sigma_m;
   }
 
   SampledSession Run() {

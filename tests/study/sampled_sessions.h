@@ -15,6 +15,9 @@ namespace rgbdt::study {
 struct SampledOptions {
   int rings = 0;  ///< of the LIDAR; 0: the turned scanner
   int views = 8, heldout = 4;
+  /// All ranges are off by a constant, drawn evenly from -this to this; 0: they are exact, and the
+  /// rig says so.
+  double range_offset_m = 0;
 };
 
 /// What the noise model drew in one view.

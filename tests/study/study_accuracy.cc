@@ -1,7 +1,9 @@
 // How far calibrations are off, and whether they know it.
-//   study_accuracy sampled|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]
+//   study_accuracy sampled|offset|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
+//   [METHOD...]
 // SENSOR: dense (the turned scanner), 128, 64, 32 or 16. sampled: sessions drawn from the noise
-// model (sampled_sessions.h), beside its Gaussian bound (bound.h). rendered: sessions of the
+// model (sampled_sessions.h), beside its Gaussian bound (bound.h). offset: the same with ranges off
+// by a constant of up to 30 mm, which the rig does not rule out. rendered: sessions of the
 // simulator. random: the same with physics that are drawn, too (rendered_sessions.h).
 // METHOD: auto, separate (each camera by itself), plane, first_guess or paper; all but the last, if
 // none is given. A line of CSV for each session, method and camera.
@@ -16,6 +18,7 @@
 
 #include "calib/methods/calibrate.h"
 #include "calib/model/errors.h"
+#include "calib/present/report/verdict.h"
 #include "calib/simulate/lidar_options.h"
 #include "tests/study/bound.h"
 #include "tests/study/cloud_scenes.h"
@@ -28,6 +31,7 @@ namespace {
 
 // chi-square of six degrees of freedom: 95% lie below.
 constexpr double kInside95 = 12.592;
+constexpr double kMostOffsetM = 0.03;
 
 using Bounds = std::map<std::string, CameraBound>;
 
@@ -39,6 +43,7 @@ struct Trial {
   Truth truth;
   std::vector<ViewDetection> detections;
   Bounds bounds, plane_bounds;  ///< empty: rendered
+  double range_offset_m = 0;    ///< the truth
 };
 
 struct Question {
@@ -49,17 +54,22 @@ struct Question {
 };
 
 std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
-  if (question.how == "sampled") {
-    auto made = SampleSession({question.rings, question.views, question.heldout}, seed);
+  if (question.how == "sampled" || question.how == "offset") {
+    const double offset_m = question.how == "offset" ? kMostOffsetM : 0;
+    auto made = SampleSession({question.rings, question.views, question.heldout, offset_m}, seed);
     if (!made) return std::nullopt;
-    return Trial{made->rig, made->truth, made->detections, BoundOf(*made),
-                 BoundOf(*made, BoundData::kPlanes)};
+    return Trial{made->rig,
+                 made->truth,
+                 made->detections,
+                 BoundOf(*made),
+                 BoundOf(*made, BoundData::kPlanes),
+                 made->model.range_offset_m};
   }
   const bool random = question.how == "random";
   try {
     RenderedSession made =
         RenderSession({question.rings, question.views, question.heldout, random}, seed);
-    return Trial{made.rig, made.truth, std::move(made.detections), {}, {}};
+    return Trial{made.rig, made.truth, std::move(made.detections), {}, {}, 0};
   } catch (const InputError& error) {
     std::printf("seed %llu left out: %s\n", static_cast<unsigned long long>(seed), error.what());
     return std::nullopt;
@@ -131,11 +141,12 @@ class Table {
  public:
   Table(const Question& question, const std::string& path)
       : question_(question), path_(path), csv_(path) {
-    csv_ << "how,sensor,seed,views,method,camera,converged,used,rotation_deg,centre_mm,chi2,"
-            "inside95,sigma_rotation_deg,sigma_centre_mm,bound_rotation_deg,bound_centre_mm,"
-            "bound_rotation_deg_median,bound_centre_mm_median,plane_bound_rotation_deg,"
-            "plane_bound_centre_mm,edge_rms_whitened,dt_px,dt_truth_px,board_chi2_per_6,solve_ms,"
-            "calibrate_ms,status\n";
+    csv_
+        << "how,sensor,seed,views,method,camera,converged,used,rotation_deg,centre_mm,chi2,"
+           "inside95,sigma_rotation_deg,sigma_centre_mm,bound_rotation_deg,bound_centre_mm,"
+           "bound_rotation_deg_median,bound_centre_mm_median,plane_bound_rotation_deg,"
+           "plane_bound_centre_mm,edge_rms_whitened,dt_px,dt_truth_px,board_chi2_per_6,solve_ms,"
+           "calibrate_ms,range_offset_mm,range_offset_error_mm,range_offset_chi2,doubtful,status\n";
   }
 
   void Add(const Trial& trial, std::uint64_t seed) {
@@ -156,8 +167,9 @@ class Table {
         Write(camera.distance_transform_px.heldout);
         Write(truth.cameras[i].distance_transform_px.heldout);
         Write(board_chi2);
-        csv_ << ',' << 1e3 * camera.solve_s << ',' << 1e3 * seconds << ",\""
-             << camera.calibration.StatusText() << "\"\n";
+        csv_ << ',' << 1e3 * camera.solve_s << ',' << 1e3 * seconds;
+        WriteOffset(camera, trial);
+        csv_ << ",\"" << camera.calibration.StatusText() << "\"\n";
       }
     }
   }
@@ -190,6 +202,20 @@ class Table {
     for (const auto& value : {chi2, inside, sigma_deg, sigma_mm}) Write(value);
   }
 
+  // And whether the report itself says that the result is not to be trusted.
+  void WriteOffset(const CameraReport& camera, const Trial& trial) {
+    std::optional<double> error_mm, chi2;
+    if (camera.range_offset) {
+      const double error_m = camera.range_offset->value - trial.range_offset_m;
+      error_mm = 1e3 * error_m;
+      chi2 = std::pow(error_m / camera.range_offset->sigma, 2);
+    }
+    Write(1e3 * trial.range_offset_m);
+    Write(error_mm);
+    Write(chi2);
+    csv_ << ',' << (Judge(camera).grade != Grade::kGood);
+  }
+
   void WriteBounds(const std::string& camera, const Trial& trial) {
     if (trial.bounds.empty()) {
       csv_ << ",,,,,,";
@@ -217,8 +243,9 @@ int RingsOf(const std::string& sensor) {
 }
 
 void Run(Question question, int sessions, std::uint64_t seed, const std::string& path) {
-  if (question.how != "sampled" && question.how != "rendered" && question.how != "random") {
-    throw std::runtime_error("expected sampled, rendered or random, not " + question.how);
+  if (question.how != "sampled" && question.how != "offset" && question.how != "rendered" &&
+      question.how != "random") {
+    throw std::runtime_error("expected sampled, offset, rendered or random, not " + question.how);
   }
   question.rings = RingsOf(question.sensor);
   Table table(question, path);
@@ -251,6 +278,7 @@ int main(int argc, char** argv) {
   };
   return rgbdt::study::StudyMain(
       {"study_accuracy",
-       "sampled|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7, 1000, run},
+       "sampled|offset|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7, 1000,
+       run},
       argc, argv);
 }

@@ -137,6 +137,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   if (camera.range_offset) {
     text::FromEstimate(*camera.range_offset, out->mutable_range_offset_m());
   }
+  if (camera.variance_factor != 1) out->set_variance_factor(camera.variance_factor);
   text::FromUncertainty(camera, out);
   out->mutable_seconds()->set_detect_image(camera.detect_image_s);
   out->mutable_seconds()->set_detect_cloud(camera.detect_cloud_s);
@@ -167,6 +168,7 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   if (message.has_range_offset_m()) {
     camera.range_offset = text::ToEstimate(message.range_offset_m());
   }
+  if (message.has_variance_factor()) camera.variance_factor = message.variance_factor();
   if (message.has_first_guess_error()) {
     camera.first_guess_error = ToPoseError(message.first_guess_error());
   }

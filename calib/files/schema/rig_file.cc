@@ -127,6 +127,7 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
   spec.name = lidar.name();
   if (spec.name.empty()) place.Fail("name", "is missing; expected a name such as \"lidar\"");
   if (lidar.range_sigma_m() != 0) spec.range_sigma_m = lidar.range_sigma_m();
+  if (lidar.has_range_offset_sigma_m()) spec.range_offset_sigma_m = lidar.range_offset_sigma_m();
   if (lidar.has_hokuyo()) {
     spec.device = text::ToDevice(lidar.hokuyo(), place.In("hokuyo"));
   } else if (lidar.has_velodyne()) {
@@ -228,6 +229,7 @@ void FromCamera(const CameraSpec& spec, proto::Camera* out) {
 void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   out->set_name(ValidUtf8(spec.name));
   out->set_range_sigma_m(spec.range_sigma_m);
+  out->set_range_offset_sigma_m(spec.range_offset_sigma_m);
   text::FromLidarDevice(spec, out);
   if (!spec.turned_scanner) return;
   proto::TurnedScanner* scanner = out->mutable_turned_scanner();

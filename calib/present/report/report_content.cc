@@ -1,7 +1,9 @@
 #include "calib/present/report/report_content.h"
 
+#include <array>
 #include <ctime>
 
+#include "calib/model/method.h"
 #include "calib/present/report/internal/fit_tables.h"
 #include "calib/present/report/internal/uncertainty_tables.h"
 #include "calib/present/report/words.h"
@@ -43,12 +45,17 @@ void AddIfAny(Table table, std::vector<Table>* tables) {
   if (!table.empty()) tables->push_back(std::move(table));
 }
 
-CameraContent ContentOf(const CameraReport& camera, const std::optional<NextView>& next_view) {
+// What says most of a calibration first.
+CameraContent ContentOf(const CameraReport& camera, const Report& report) {
+  const FitFigure figure =
+      report.method == kPaperMethod ? FitFigure::kDistanceTransform : FitFigure::kSigmas;
   CameraContent content{
-      camera.calibration.camera, Judge(camera, next_view), BothWays(camera.calibration), {}};
-  for (auto* make : {FitTable, PoseSigmaTable, ReprojectionTable, ViewsTable, HalvesTable,
-                     FoldsTable, StartsTable, NuisanceTable, SolveTable}) {
-    AddIfAny(make(camera), &content.tables);
+      camera.calibration.camera, Judge(camera, report.next_view), BothWays(camera.calibration), {}};
+  for (Table& table :
+       std::array{ReprojectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
+                  PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
+                  StartsTable(camera), NuisanceTable(camera), SolveTable(camera)}) {
+    AddIfAny(std::move(table), &content.tables);
   }
   return content;
 }
@@ -59,7 +66,7 @@ ReportContent ContentOf(const Report& report) {
   ReportContent content;
   content.intro = Intro(report);
   for (const CameraReport& camera : report.cameras) {
-    content.cameras.push_back(ContentOf(camera, report.next_view));
+    content.cameras.push_back(ContentOf(camera, report));
   }
   AddIfAny(DetectionTable(report), &content.tables);
   AddIfAny(ClosureTable(report), &content.tables);

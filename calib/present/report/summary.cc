@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/method.h"
 #include "calib/present/report/verdict.h"
 
 namespace rgbdt {
@@ -40,6 +41,14 @@ std::string ReprojectionSigma(const CameraReport& camera) {
   return at == nullptr ? "-" : fmt::format("{:.2f} / {:.2f}", at->centre_px, at->worst_px);
 }
 
+// The verdict where it is not good: its headline and what speaks most against the result.
+std::string Alarm(const CameraReport& camera, const std::optional<NextView>& next_view) {
+  const Verdict verdict = Judge(camera, next_view);
+  if (verdict.grade == Grade::kGood || verdict.reasons.empty()) return "";
+  return fmt::format("{}: {} {}\n", camera.calibration.camera, verdict.headline,
+                     verdict.reasons.front());
+}
+
 // What a camera's column has no room for.
 std::string Warnings(const CameraReport& camera) {
   const std::string& name = camera.calibration.camera;
@@ -66,11 +75,15 @@ bool Summary::converged() const {
 std::string Summary::BriefReport() const {
   std::string text;
   for (const CameraReport& camera : report_.cameras) {
-    const TrainHeldout& distance = camera.distance_transform_px;
     text += (text.empty() ? "" : "; ") + camera.calibration.camera + ": " +
             camera.calibration.StatusText();
-    if (distance.train) text += fmt::format(", {:.2f} px", *distance.train);
-    if (distance.heldout) text += fmt::format(", {:.2f} px on held-out views", *distance.heldout);
+    if (report_.method == kPaperMethod) {
+      const TrainHeldout& distance = camera.distance_transform_px;
+      if (distance.train) text += fmt::format(", {:.2f} px", *distance.train);
+      if (distance.heldout) text += fmt::format(", {:.2f} px on held-out views", *distance.heldout);
+    } else if (const ColouringSigma* at = JudgedColouring(camera)) {
+      text += fmt::format(", {:.2f} px at {:.0f} m (1 sigma)", at->worst_px, at->distance_m);
+    }
   }
   return text;
 }
@@ -92,27 +105,38 @@ std::string Summary::FullReport() const {
   row("views used / held out / rejected", [](const CameraReport& c) {
     return fmt::format("{} / {} / {}", c.used.size(), c.heldout.size(), c.rejected.size());
   });
-  row("distance transform, views used [px]",
-      [](const CameraReport& c) { return Number(c.distance_transform_px.train, 2); });
-  row("distance transform, held out [px]",
-      [](const CameraReport& c) { return Number(c.distance_transform_px.heldout, 2); });
-  row("RMS distance to outline, views used [px]",
-      [](const CameraReport& c) { return Number(c.edge_rms_px.train, 2); });
-  row("RMS distance to outline, held out [px]",
-      [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
   const auto any = [&](auto has) {
     return std::any_of(report_.cameras.begin(), report_.cameras.end(), has);
   };
-  if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
-    row("first guess against truth",
-        [](const CameraReport& c) { return Error(c.first_guess_error); });
-    row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
-  }
   if (any([](const CameraReport& c) { return c.calibration.covariance.has_value(); })) {
     row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
   }
   if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
     row("reprojection at 5 m, 1 sigma, mid/worst [px]", ReprojectionSigma);
+  }
+  if (any([](const CameraReport& c) { return c.edge_rms_whitened.heldout.has_value(); })) {
+    row("board's edge, held out, in sigmas (1: as stated)",
+        [](const CameraReport& c) { return Number(c.edge_rms_whitened.heldout, 2); });
+  }
+  if (any([](const CameraReport& c) { return c.halves.has_value(); })) {
+    row("halves of the views differ by", [](const CameraReport& c) {
+      return c.halves ? Error(c.halves->difference) : std::string("-");
+    });
+  }
+  if (report_.method == kPaperMethod) {
+    row("distance transform, views used [px]",
+        [](const CameraReport& c) { return Number(c.distance_transform_px.train, 2); });
+    row("distance transform, held out [px]",
+        [](const CameraReport& c) { return Number(c.distance_transform_px.heldout, 2); });
+  }
+  row("RMS distance to outline, views used [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.train, 2); });
+  row("RMS distance to outline, held out [px]",
+      [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
+  if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
+    row("first guess against truth",
+        [](const CameraReport& c) { return Error(c.first_guess_error); });
+    row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
   }
   if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
     row("ranges are short by [mm]", [](const CameraReport& c) {
@@ -129,6 +153,7 @@ std::string Summary::FullReport() const {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
+  for (const CameraReport& camera : report_.cameras) text += Alarm(camera, report_.next_view);
   for (const CameraReport& camera : report_.cameras) text += Warnings(camera);
   if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
   return text;

@@ -13,7 +13,8 @@ class Summary {
 
   /// Whether every camera has a pose to use.
   bool converged() const;
-  /// One line: how each camera's solve ended, and its mean distance transform.
+  /// One line: how each camera's solve ended, and its reprojection uncertainty; of the paper's
+  /// method the mean distance transform.
   std::string BriefReport() const;
   /// A table, units in the first column, cameras side by side; what has no room in it, in lines
   /// below.

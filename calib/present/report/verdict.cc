@@ -14,21 +14,30 @@ constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
+// Of the views' scatter over what is stated: below, the enlarged sigma makes good for it.
+constexpr double kMostVarianceFactor = 2.5;
+// Of views left out, over what is expected: by chance the mean over eight views stays below this.
+constexpr double kMostMisfit = 2;
+constexpr char kWhyViewsDisagree[] =
+    "Check the lens (rgbdt intrinsics), the board's size in the rig file, and that board and rig "
+    "stood still.";
 
+// What speaks against the result comes first, in the order in which it was said.
 class Judgement {
  public:
-  void AddReason(const std::string& sentence) { verdict_.reasons.push_back(sentence); }
+  void AddReason(const std::string& sentence) { others_.push_back(sentence); }
   void Caution(const std::string& sentence) {
     verdict_.grade = std::max(verdict_.grade, Grade::kCaution);
-    AddReason(sentence);
+    verdict_.reasons.push_back(sentence);
   }
   void Bad(const std::string& sentence) {
     verdict_.grade = Grade::kBad;
-    AddReason(sentence);
+    verdict_.reasons.push_back(sentence);
   }
   /// Nothing else matters beside it.
   void Headline(const std::string& headline) { verdict_.headline = headline; }
   Verdict Finish() {
+    verdict_.reasons.insert(verdict_.reasons.end(), others_.begin(), others_.end());
     if (!verdict_.headline.empty()) return verdict_;
     verdict_.headline = verdict_.grade == Grade::kGood ? "Consistent: no sign that it is wrong."
                         : verdict_.grade == Grade::kCaution ? "Take care before using it."
@@ -38,7 +47,31 @@ class Judgement {
 
  private:
   Verdict verdict_;
+  std::vector<std::string> others_;  // reasons that are no alarm
 };
+
+// Whether the views fit together at all: before any figure that takes them to.
+void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
+  double misfit = 0;
+  double expected = 0;
+  for (const Fold& fold : camera.folds) {
+    misfit += fold.misfit / static_cast<double>(camera.folds.size());
+    expected += fold.expected_misfit / static_cast<double>(camera.folds.size());
+  }
+  if (misfit > kMostMisfit * expected) {
+    judgement->Caution(
+        "The views contradict each other: what the others say misses a view by a "
+        "chi-square of " +
+        Number(misfit, 0) + " where " + Number(expected, 0) +
+        " is expected (50 is the most that is counted). " + kWhyViewsDisagree);
+  }
+  if (camera.variance_factor > kMostVarianceFactor) {
+    judgement->Caution("The views scatter " + Number(std::sqrt(camera.variance_factor), 1) +
+                       " times as much as their own sigmas say; the stated sigma was enlarged by "
+                       "as much, but what moves all of them alike is not in it. " +
+                       kWhyViewsDisagree);
+  }
+}
 
 void JudgeFit(const CameraReport& camera, Judgement* judgement) {
   const TrainHeldout& rms = camera.edge_rms_px;
@@ -101,7 +134,7 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
     case SolveStatus::kDegenerate:
       judgement->Headline("Do not use it: these views do not determine the pose.");
       judgement->Bad("Status of the solve: " + calibration.StatusText());
-      if (next_view) judgement->AddReason("Next: " + next_view->words);
+      if (next_view) judgement->Bad("Next: " + next_view->words);
       break;
     case SolveStatus::kNotSolved:
       judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
@@ -176,6 +209,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera) {
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
   JudgeStatus(camera.calibration, next_view, &judgement);
+  JudgeAgreement(camera, &judgement);
   JudgeFit(camera, &judgement);
   JudgeWhitened(camera.edge_rms_whitened.heldout, &judgement);
   if (camera.halves) JudgeHalves(*camera.halves, &judgement);

@@ -17,7 +17,8 @@ const char* NameOf(Grade grade);
 struct Verdict {
   Grade grade = Grade::kGood;
   std::string headline;
-  std::vector<std::string> reasons;  ///< sentences; the figures are in them
+  /// Sentences; the figures are in them. What speaks against the result comes first.
+  std::vector<std::string> reasons;
 };
 
 /// Of a difference of two poses (6 degrees of freedom): by chance above it once in a thousand
@@ -34,7 +35,8 @@ inline constexpr double kJudgedAtM = 5;
 const ColouringSigma* JudgedColouring(const CameraReport& camera);
 
 /// Judges by what the report itself holds, and gives the rule with the figure. Bad: not converged,
-/// or views that do not determine the pose. Caution: nothing was held out; held-out views fit
+/// or views that do not determine the pose. Caution: views contradict each other, or scatter far
+/// more than they state; nothing was held out; held-out views fit
 /// clearly worse than the views used; few views were used; another start ended elsewhere and fits
 /// about as well; the reprojection uncertainty 5 m away is more than a pixel; halves or held-out
 /// views contradict the stated uncertainty. `next_view` is the report's.

@@ -41,16 +41,12 @@ struct ViewTerms {
     return cost;
   }
 
-  // x = (n, n . (centre + offset - t)), n the board's normal: x' scatter x is the sum of squares.
   double Plane(const Rigid3& lidar_from_target) const {
     const CloudEdges& cloud = view.cloud;
     const double points = cloud.scatter(3, 3);
     if (!(cloud.scatter_sigma_m > 0) || !(points > 0)) return 0;
-    const Eigen::Vector3d n = lidar_from_target.rotation * Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d offset = shared_state.shared[kRangeOffset] * cloud.centre.normalized() -
-                                   lidar_from_target.translation;
-    Eigen::Vector4d x;
-    x << n, n.dot(cloud.centre + offset);
+    const Eigen::Vector4d x =
+        ResidualOf(cloud, lidar_from_target, shared_state.shared[kRangeOffset]).x;
     const double sigma2 = cloud.scatter_sigma_m * cloud.scatter_sigma_m;
     return points * BoundedCost(x.dot(cloud.scatter * x) / (points * sigma2));
   }

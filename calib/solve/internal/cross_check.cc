@@ -48,7 +48,7 @@ struct Judged {
 
 // A view left out against a camera's pose, by that camera's image alone; bounded, so that one wrong
 // view does not decide.
-double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
+Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
                 std::size_t camera, const Rigid3& camera_from_lidar) {
   auto [alone, state] = Part(joint.problem, {view}, joint.start);
   std::vector<BoardImage>& images = alone.views[0].images;
@@ -61,7 +61,9 @@ double MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
   state.shared = fold.state.shared;
   state.lidar_from_target[0] = alone.views[0].cloud.pose->sensor_from_target;
   state.side_shift[0] = {};
-  return std::min(kMostMisfit, MisfitOf(alone, state, 0, static_cast<int>(camera)));
+  Misfit misfit = MisfitOf(alone, state, 0, static_cast<int>(camera));
+  misfit.chi2 = std::min(kMostMisfit, misfit.chi2);
+  return misfit;
 }
 
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
@@ -73,6 +75,7 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
       Matrix6d(solution.covariance.block<6, 6>(at, at)), SolveStatus::kConverged, ""};
   const EdgeModel edges{joint.problem.target, solution.state.shared, joint.problem.priors};
   Judged judged;
+  judged.fold.expected_misfit = 0;
   judged.fold.from_result =
       ErrorOf(fold_calibration.camera_from_lidar, report.calibration.camera_from_lidar);
   EdgeMisfit sum;
@@ -83,15 +86,17 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
     const EdgeMisfit edge = MisfitOfEdges(edges, *o, fold_calibration);
     sum.squared += edge.squared;
     sum.count += edge.count;
-    const double refined =
+    const Misfit refined =
         MisfitOf(joint, solution, view, camera, fold_calibration.camera_from_lidar);
-    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar);
-    judged.fold.misfit += refined;
+    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar).chi2;
+    judged.fold.misfit += refined.chi2;
+    judged.fold.expected_misfit += 6 + (refined.information * *fold_calibration.covariance).trace();
     judged.fold.first_guess_misfit += guessed;
-    judged.worse.push_back(refined - guessed);
+    judged.worse.push_back(refined.chi2 - guessed);
   }
   const auto judges = static_cast<double>(std::max<std::size_t>(1, judged.fold.heldout.size()));
   judged.fold.misfit /= judges;
+  judged.fold.expected_misfit /= judges;
   judged.fold.first_guess_misfit /= judges;
   judged.fold.edge_rms_whitened = sum.count > 0 ? std::sqrt(sum.squared / sum.count) : 0;
   return judged;

@@ -231,29 +231,14 @@ void ViewEquations::SpreadCrossings(int side, int kind, const Eigen::Matrix<doub
   }
 }
 
-// x = (n, n . (centre + offset - t)), n the board's normal: x' scatter x is the sum of squares.
 void ViewEquations::AddPlane() {
   const double sigma = view_.cloud.scatter_sigma_m;
-  if (!(sigma > 0)) return;
-  const Eigen::Matrix3d rotation = lidar_from_target_.rotation.toRotationMatrix();
-  const Eigen::Vector3d n = rotation.col(2);
-  const Eigen::Vector3d along = view_.cloud.centre.normalized();
-  const Eigen::Vector3d from_target =
-      view_.cloud.centre + state_.shared[kRangeOffset] * along - lidar_from_target_.translation;
-  Eigen::Vector4d x;
-  x << n, n.dot(from_target);
-  // Columns: rotation about the target's x and y, shift along its z, the range offset.
-  Eigen::Matrix4d j = Eigen::Matrix4d::Zero();
-  j.block<3, 1>(0, 0) = -rotation.col(1);
-  j.block<3, 1>(0, 1) = rotation.col(0);
-  j(3, 0) = -rotation.col(1).dot(from_target);
-  j(3, 1) = rotation.col(0).dot(from_target);
-  j(3, 2) = -1;
-  j(3, 3) = n.dot(along);
+  if (!(sigma > 0) || !(view_.cloud.scatter(3, 3) > 0)) return;
+  const PlaneResidual r = ResidualOf(view_.cloud, lidar_from_target_, state_.shared[kRangeOffset]);
   const Eigen::Matrix4d information = view_.cloud.scatter / (sigma * sigma);
-  const Eigen::Matrix4d h = j.transpose() * information * j;
-  const Eigen::Vector4d g = -j.transpose() * information * x;
-  cost_ += x.dot(information * x);
+  const Eigen::Matrix4d h = r.by.transpose() * information * r.by;
+  const Eigen::Vector4d g = -r.by.transpose() * information * r.x;
+  cost_ += r.x.dot(information * r.x);
   const std::array<int, 4> place{0, 1, 5, Shared(kRangeOffset)};
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < 4; ++b) {

@@ -170,9 +170,9 @@ struct CrossingDistance {  // of board, shared, the view's sides
   }
 };
 
-struct PlaneResidual {  // of board, shared
+struct PlaneDistances {  // of board, shared
   Rigid3 lidar_from_target;
-  Eigen::Vector3d centre;
+  Eigen::Vector3d centre, mean_beam;
   Eigen::Matrix4d root;  // root' root = scatter / sigma^2
 
   template <typename T>
@@ -180,9 +180,16 @@ struct PlaneResidual {  // of board, shared
     const Point<T> origin = Placed<T>(lidar_from_target, Moved<T>(block[0], Point<T>{}));
     const Point<T> tip = Placed<T>(lidar_from_target, Moved<T>(block[0], Constant<T>({0, 0, 1})));
     const Eigen::Vector3d along = centre.normalized();
-    T x[4] = {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2], T(0)};
+    const T& offset = block[1][kRangeOffset];
+    const Point<T> n = {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
+    // A beam at q off the centre is along + (q - along (along . q)) / range; times n, less its part
+    // along n.
+    const T facing = Dot<T>(n, along);
+    T x[4] = {T(0), T(0), T(0), T(0)};
     for (int k = 0; k < 3; ++k) {
-      x[3] += x[k] * (centre[k] + block[1][kRangeOffset] * along[k] - origin[k]);
+      const T across = n[k] - facing * along[k];
+      x[k] = n[k] + offset / centre.norm() * (across - (1.0 - facing * facing) * n[k]);
+      x[3] += n[k] * (centre[k] + offset * mean_beam[k] - origin[k]);
     }
     for (int row = 0; row < 4; ++row) {
       residual[row] = T(0);
@@ -191,6 +198,23 @@ struct PlaneResidual {  // of board, shared
     return true;
   }
 };
+
+// Of points spread about a centre: the second derivative of p / |p|.
+Eigen::Vector3d MeanBeam(const Eigen::Vector3d& centre, const Eigen::Matrix4d& scatter) {
+  Eigen::Vector3d mean = centre.normalized();
+  constexpr double kStep = 1e-3;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      const Eigen::Vector3d da = kStep * Eigen::Vector3d::Unit(a);
+      const Eigen::Vector3d db = kStep * Eigen::Vector3d::Unit(b);
+      const Eigen::Vector3d curved =
+          (centre + da + db).normalized() - (centre + da - db).normalized() -
+          (centre - da + db).normalized() + (centre - da - db).normalized();
+      mean += 0.5 * scatter(a, b) / scatter(3, 3) * curved / (4 * kStep * kStep);
+    }
+  }
+  return mean;
+}
 
 struct PriorResidual {  // of one block
   std::vector<double> mean, sigma;
@@ -295,8 +319,8 @@ class CeresBoards {
     }
     const Eigensystem<4> eigen = EigensystemOf(view.cloud.scatter);
     const Eigen::Vector4d roots = eigen.values.cwiseMax(0).cwiseSqrt() / view.cloud.scatter_sigma_m;
-    Add(PlaneResidual{pose, view.cloud.centre,
-                      Eigen::Matrix4d(roots.asDiagonal() * eigen.vectors.transpose())},
+    Add(PlaneDistances{pose, view.cloud.centre, MeanBeam(view.cloud.centre, view.cloud.scatter),
+                       Eigen::Matrix4d(roots.asDiagonal() * eigen.vectors.transpose())},
         4, {board, shared});
     Add(PriorResidual{std::vector<double>(4, 0.0),
                       std::vector<double>(4, problem_.priors.side_sigma_rad)},

@@ -68,6 +68,8 @@ TEST(TheBetter, IsTheFirstGuessWhereItFitsBetterBeyondChance) {
 
 TEST(CrossValidate, OfSessionsFromTheModelTheRefinedPoseIsKept) {
   int guesses_kept = 0;
+  double misfit = 0;
+  double expected = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     SolveWorldOptions options = Views(10, 9000 + seed);
     options.draw_nuisances = true;
@@ -75,8 +77,14 @@ TEST(CrossValidate, OfSessionsFromTheModelTheRefinedPoseIsKept) {
     const SolveWorld world(options);
     for (const CameraReport& camera : Calibrate(world.rig, world.detections).cameras) {
       guesses_kept += camera.calibration.status != SolveStatus::kConverged ? 1 : 0;
+      for (const Fold& fold : camera.folds) {
+        misfit += fold.misfit;
+        expected += fold.expected_misfit;
+      }
     }
   }
+  EXPECT_LT(misfit, 1.2 * expected);
+  EXPECT_GT(misfit, 0.6 * expected);
   EXPECT_LE(guesses_kept, 2);  // of 40
 }
 
@@ -119,10 +127,10 @@ TEST(MisfitOf, IsSixOnAverageOfTheTruth) {
     auto [alone, start] = Part(joint.problem, {v}, truth);
     alone.views[0].images.resize(1);
     ASSERT_EQ(alone.views[0].images[0].camera, 0);
-    const double misfit = MisfitOf(alone, start, 0, 0);
+    const double misfit = MisfitOf(alone, start, 0, 0).chi2;
     sum += misfit / static_cast<double>(joint.problem.views.size());
     start.camera_from_lidar[0] = wrong.camera_from_lidar[0];
-    EXPECT_GT(MisfitOf(alone, start, 0, 0), misfit);
+    EXPECT_GT(MisfitOf(alone, start, 0, 0).chi2, misfit);
   }
   // Corners are independent here, and counted as a little correlated: less than 6, if anything.
   EXPECT_GT(sum, 4);

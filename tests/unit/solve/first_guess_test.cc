@@ -212,7 +212,7 @@ TEST(FirstGuess, FindsWhatTheRangesAreOffBy) {
     seen.translation += 0.03 * seen.translation.normalized();  // measured 30 mm too long
   }
   FirstGuessOptions options;
-  options.range_offset = true;
+  options.range_offset_sigma_m = kRangeOffsetSigmaM;
   const FirstGuess guess = Guess(session, options);
   ASSERT_TRUE(guess.camera_from_lidar);
   EXPECT_GT(guess.range_offset_sigma_m, 0);

@@ -275,5 +275,58 @@ TEST(SolveJointly, ViewsThatScatterMoreThanTheyStateEnlargeTheCovariance) {
               enlarged.variance_factor * enlarged.solution.covariance(9, 9), 1e-12);
 }
 
+// Measured 20 mm too long.
+SolveWorldOptions LongRanges() {
+  SolveWorldOptions options = Views(12);
+  options.shared[kRangeOffset] = -0.02;
+  return options;
+}
+
+TEST(CalibrateJointly, ARangeOffsetThatTheRigAllowsForIsFoundWithinItsSigma) {
+  const SolveWorld world(LongRanges());
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    ASSERT_TRUE(camera.range_offset);
+    EXPECT_LT(camera.range_offset->sigma, 0.005);
+    EXPECT_NEAR(camera.range_offset->value, -0.02, 3.5 * camera.range_offset->sigma);
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    EXPECT_THAT(camera.rejected, IsEmpty());
+    EXPECT_THAT(camera.warnings, IsEmpty());
+  }
+}
+
+TEST(CalibrateJointly, ARangeOffsetThatTheRigRulesOutIsFoundAllTheSameAndSaid) {
+  SolveWorld world(LongRanges());
+  world.rig.lidar.range_offset_sigma_m = 0;
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    ASSERT_TRUE(camera.range_offset);
+    EXPECT_NEAR(camera.range_offset->value, -0.02, 3.5 * camera.range_offset->sigma);
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    EXPECT_THAT(camera.warnings,
+                Contains(AllOf(HasSubstr("mm too long"), HasSubstr("lidar.range_offset_sigma_m"))));
+  }
+}
+
+TEST(CalibrateJointly, ExactRangesStayExactWhateverOneViewSays) {
+  SolveWorld world(Views(12));
+  world.rig.lidar.range_offset_sigma_m = 0;
+  // By 60 mm along its beam, between the sweep and the images.
+  const Eigen::Vector3d move = 0.06 * world.lidar_from_target[4].translation.normalized();
+  CloudEdges& cloud = world.CloudAt(4);
+  cloud.pose->sensor_from_target.translation += move;
+  cloud.centre += move;
+  for (Crossing& crossing : cloud.crossings) crossing.point += move;
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    EXPECT_FALSE(camera.range_offset);
+    EXPECT_EQ(camera.rejected.size(), 1U);
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt

@@ -64,6 +64,7 @@ void FromFold(const Fold& fold, proto::Fold* out) {
   for (const std::string& view : fold.heldout) out->add_heldout(ValidUtf8(view));
   SetFinite(fold.edge_rms_whitened, &proto::Fold::set_edge_rms_whitened, out);
   SetFinite(fold.misfit, &proto::Fold::set_misfit, out);
+  SetFinite(fold.expected_misfit, &proto::Fold::set_expected_misfit, out);
   SetFinite(fold.first_guess_misfit, &proto::Fold::set_first_guess_misfit, out);
   FromPoseError(fold.from_result, out->mutable_from_result());
 }
@@ -73,6 +74,7 @@ Fold ToFold(const proto::Fold& message) {
   fold.heldout.assign(message.heldout().begin(), message.heldout().end());
   fold.edge_rms_whitened = OrNan(message.has_edge_rms_whitened(), message.edge_rms_whitened());
   fold.misfit = OrNan(message.has_misfit(), message.misfit());
+  if (message.has_expected_misfit()) fold.expected_misfit = message.expected_misfit();
   fold.first_guess_misfit = OrNan(message.has_first_guess_misfit(), message.first_guess_misfit());
   fold.from_result = ToPoseError(message.from_result());
   return fold;

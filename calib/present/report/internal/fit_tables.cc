@@ -42,28 +42,32 @@ ViewQuality QualityOf(const CameraReport& camera, const std::string& view) {
 
 }  // namespace
 
-Table FitTable(const CameraReport& camera) {
+Table FitTable(const CameraReport& camera, FitFigure figure) {
   Table table{"How well it fits",
               {},
               {"", "Views used (" + std::to_string(camera.used.size()) + ")",
                "Views held out (" + std::to_string(camera.heldout.size()) + ")"},
               {}};
-  const auto add = [&](const char* name, const TrainHeldout& figure, const char* unit) {
-    if (!figure.train && !figure.heldout) return;
+  const auto add = [&](const char* name, const TrainHeldout& value, const char* unit) {
+    if (!value.train && !value.heldout) return;
     table.rows.push_back(
-        {{name}, {WithUnit(figure.train, 2, unit)}, {WithUnit(figure.heldout, 2, unit)}});
+        {{name}, {WithUnit(value.train, 2, unit)}, {WithUnit(value.heldout, 2, unit)}});
   };
   add("RMS distance of the LIDAR's board edge from the outline in the image", camera.edge_rms_px,
       "px");
   add("The same in sigmas (1 is expected; above 1 the stated sigmas are too small)",
       camera.edge_rms_whitened, "σ");
-  add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
-      "px");
+  if (figure == FitFigure::kDistanceTransform) {
+    add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
+        "px");
+  }
   return table;
 }
 
-Table ViewsTable(const CameraReport& camera) {
-  Table table{"Views", camera.warnings, {"View", "Role", "Edge RMS", "Distance transform"}, {}};
+Table ViewsTable(const CameraReport& camera, FitFigure figure) {
+  const bool transform = figure == FitFigure::kDistanceTransform;
+  Table table{"Views", camera.warnings, {"View", "Role", "Edge RMS"}, {}};
+  if (transform) table.head.emplace_back("Distance transform");
   const bool sigmas =
       std::any_of(camera.views.begin(), camera.views.end(),
                   [](const ViewQuality& view) { return view.edge_rms_whitened.has_value(); });
@@ -71,10 +75,9 @@ Table ViewsTable(const CameraReport& camera) {
   if (!camera.rejected.empty()) table.head.emplace_back("Why rejected");
   for (const ViewLine& line : LinesOf(camera)) {
     const ViewQuality quality = QualityOf(camera, line.view);
-    Row& row = table.rows.emplace_back(Row{{line.view},
-                                           {line.role},
-                                           {WithUnit(quality.edge_rms_px, 2, "px")},
-                                           {WithUnit(quality.distance_transform_px, 2, "px")}});
+    Row& row = table.rows.emplace_back(
+        Row{{line.view}, {line.role}, {WithUnit(quality.edge_rms_px, 2, "px")}});
+    if (transform) row.push_back({WithUnit(quality.distance_transform_px, 2, "px")});
     if (sigmas) row.push_back({WithUnit(quality.edge_rms_whitened, 2, "σ")});
     if (!camera.rejected.empty()) row.push_back({line.why});
   }

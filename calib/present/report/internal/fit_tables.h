@@ -8,10 +8,14 @@
 
 namespace rgbdt {
 
-Table FitTable(const CameraReport& camera);
+/// What a method's fit is told in: the paper's in the distance transform, which for others is a
+/// number that says nothing of their quality.
+enum class FitFigure { kSigmas, kDistanceTransform };
+
+Table FitTable(const CameraReport& camera, FitFigure figure);
 
 /// Every view once, in the session's order: its figures where there are some, else why not.
-Table ViewsTable(const CameraReport& camera);
+Table ViewsTable(const CameraReport& camera, FitFigure figure);
 
 /// What detection found in each view: each camera's image and the cloud apart.
 Table DetectionTable(const Report& report);

@@ -45,10 +45,12 @@ TEST(ReportFile, GivesBackEveryFigure) {
 }
 
 TEST(ReportFile, GivesBackHowSureItIs) {
-  const Report report = test::MakeReport();
+  Report report = test::MakeReport();
+  report.cameras[0].variance_factor = 2.25;
   const Report back = ReportFromJson(ReportToJson(report));
   const CameraReport& a = report.cameras[0];
   const CameraReport& b = back.cameras[0];
+  EXPECT_EQ(b.variance_factor, a.variance_factor);
   EXPECT_EQ(b.edge_rms_whitened.train, a.edge_rms_whitened.train);
   EXPECT_EQ(b.edge_rms_whitened.heldout, a.edge_rms_whitened.heldout);
   EXPECT_FALSE(b.views[0].edge_rms_whitened);
@@ -70,6 +72,7 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   EXPECT_EQ(b.folds[1].edge_rms_whitened, 0.91);
   EXPECT_EQ(b.folds[1].misfit, 1.0 / 9);
   EXPECT_EQ(b.folds[1].first_guess_misfit, 0.93);
+  EXPECT_EQ(b.folds[1].expected_misfit, a.folds[1].expected_misfit);
   EXPECT_EQ(b.folds[1].from_result.rotation_deg, 0.005);
   EXPECT_EQ(b.folds[1].from_result.translation_mm, 0.105);
   ASSERT_TRUE(b.halves);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "calib/files/atomic_file.h"
+#include "calib/model/beam_priors.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -45,6 +46,7 @@ TEST(RigFile, GivesBackEveryFieldBitForBit) {
   EXPECT_EQ(back.name, rig.name);
   EXPECT_EQ(back.lidar.name, rig.lidar.name);
   EXPECT_EQ(back.lidar.range_sigma_m, rig.lidar.range_sigma_m);
+  EXPECT_EQ(back.lidar.range_offset_sigma_m, rig.lidar.range_offset_sigma_m);
   ASSERT_TRUE(back.lidar.turned_scanner);
   test::ExpectSame(back.lidar.turned_scanner->motor_from_scanner,
                    rig.lidar.turned_scanner->motor_from_scanner);
@@ -104,10 +106,21 @@ TEST(RigFile, RollPitchYawTurnsTheLidarsAxesIntoTheCameras) {
 TEST(RigFile, DefaultsAreFilledIn) {
   const Rig rig = ParseRig(kRig, "");
   EXPECT_EQ(rig.lidar.range_sigma_m, 0.01);
+  EXPECT_EQ(rig.lidar.range_offset_sigma_m, kUsualRangeOffsetSigmaM);
   EXPECT_FALSE(rig.lidar.turned_scanner);
   EXPECT_EQ(rig.cameras[0].radiometry.emissivity, 1);
   EXPECT_EQ(rig.cameras[0].lens.distortion[3], 0.4);
   EXPECT_EQ(rig.cameras[0].lens.distortion[4], 0);
+}
+
+TEST(RigFile, ExactRangesMayBeStated) {
+  const std::string exact = "lidar { name: \"lidar\" range_offset_sigma_m: 0 }";
+  std::string text(kRig);
+  const std::string plain = "lidar { name: \"lidar\" }";
+  text.replace(text.find(plain), plain.size(), exact);
+  EXPECT_EQ(ParseRig(text, "").lidar.range_offset_sigma_m, 0);
+  EXPECT_THAT(ErrorOfRig(plain, "lidar { name: \"lidar\" range_offset_sigma_m: -1 }"),
+              HasSubstr("lidar.range_offset_sigma_m"));
 }
 
 TEST(RigFile, AnUnknownKeyIsNamedWithFileLineAndColumn) {

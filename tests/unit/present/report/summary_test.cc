@@ -44,6 +44,10 @@ TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
                                                .matrix()
                                                .asDiagonal());
   camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}}};
+  for (CameraReport& good : report.cameras) {
+    good.edge_rms_px = {0.5, 0.5};
+    good.used.resize(8);
+  }
   const std::string table = FullReport(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
   EXPECT_THAT(LineOf(table, "reprojection at 5 m, 1 sigma"), HasSubstr("0.12 / 0.61"));
@@ -77,6 +81,16 @@ TEST(Summary, HasTheStatusOfTheSolveEvenWhereItConverged) {
 
 TEST(Summary, InALineSaysHowEachCamerasSolveEnded) {
   Report report = MakeReport();
+  report.cameras[0].sigma = PoseSigma{{}, {}, {{5, 0.12, 0.61}}};
+  report.cameras[0].distance_transform_px = {8.6, 21.9};  // nothing of this method's
+  EXPECT_EQ(Summary(report).BriefReport(),
+            "rgb: converged, 0.61 px at 5 m (1 sigma); thermal: converged");
+  EXPECT_THAT(FullReport(report), Not(HasSubstr("distance transform")));
+}
+
+TEST(Summary, OfThePapersMethodInALineHasTheDistanceTransform) {
+  Report report = MakeReport();
+  report.method = "paper";
   report.cameras[0].distance_transform_px = {0.514, 0.626};
   report.cameras[1].calibration.status = SolveStatus::kNotSolved;
   report.cameras[1].calibration.detail = "2 usable views";
@@ -92,6 +106,13 @@ TEST(Summary, IsConvergedWhereAllCamerasAre) {
   EXPECT_TRUE(Summary(report).converged());
   report.cameras[1].calibration.status = SolveStatus::kDegenerate;
   EXPECT_FALSE(Summary(report).converged());
+}
+
+TEST(Summary, SaysWhatSpeaksAgainstTheResult) {
+  Report report = MakeReport();
+  report.cameras[1].variance_factor = 9;
+  EXPECT_THAT(FullReport(report),
+              HasSubstr("thermal: Take care before using it. The views scatter 3.0 times"));
 }
 
 }  // namespace

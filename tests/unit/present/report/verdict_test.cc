@@ -87,5 +87,28 @@ TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheVerdictIsCaution) {
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
 }
 
+TEST(Verdict, ViewsThatContradictEachOtherAreTheFirstSentence) {
+  CameraReport camera = Good();
+  ASSERT_FALSE(camera.folds.empty());
+  for (Fold& fold : camera.folds) fold.misfit = 11;
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.halves->chi2 = 100;  // an alarm, too, but one that follows from it
+  for (Fold& fold : camera.folds) fold.misfit = 50;
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kCaution);
+  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("chi-square of 50 where 6 is expected"));
+  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("rgbdt intrinsics"));
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Two halves"));
+}
+
+TEST(Verdict, ViewsThatScatterFarMoreThanStatedAreAnAlarm) {
+  CameraReport camera = Good();
+  camera.variance_factor = 2.4;
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.variance_factor = 9;
+  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("scatter 3.0 times as much"));
+}
+
 }  // namespace
 }  // namespace rgbdt
