@@ -37,26 +37,15 @@ Reduced Reduce(const ViewEquations& equations, double damping) {
   return out;
 }
 
-// The priors of what the views share.
-struct SharedPriors {
-  ViewInformation shared;
+double PriorCost(const BoardPriors& priors, const BoardState& state) {
+  const auto means = priors.Means();
   double cost = 0;
-};
-
-SharedPriors PriorsAt(const BoardProblem& problem, const BoardState& state) {
-  const auto first = static_cast<Eigen::Index>(6 * problem.cameras.size());
-  const Eigen::Index size = first + kSharedUnknowns;
-  const auto means = problem.priors.Means();
-  SharedPriors out{{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)}, 0};
   for (int k = 0; k < kSharedUnknowns; ++k) {
-    const double sigma = problem.priors.Sigma(k);
     const auto i = static_cast<std::size_t>(k);
     const double off = state.shared[i] - means[i];
-    out.shared.information(first + k, first + k) += 1 / (sigma * sigma);
-    out.shared.gradient[first + k] -= off / (sigma * sigma);
-    out.cost += off * off / (sigma * sigma);
+    cost += off * off / (priors.Sigma(k) * priors.Sigma(k));
   }
-  return out;
+  return cost;
 }
 
 // Where a step leads, and its length in sigmas, squared.
@@ -74,9 +63,8 @@ class Step {
       equations_.emplace_back(problem, state_, v);
       cost_ += equations_.back().cost();
     }
-    SharedPriors priors = PriorsAt(problem, state_);
-    cost_ += priors.cost;
-    prior_ = std::move(priors.shared);
+    cost_ += PriorCost(problem.priors, state_);
+    prior_ = PriorInformation(problem.priors, state_);
   }
 
   double cost() const { return cost_; }
@@ -181,6 +169,20 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) 
   solution.converged = converged && solution.covariance.allFinite();
   solution.iterations = iterations;
   return solution;
+}
+
+ViewInformation PriorInformation(const BoardPriors& priors, const BoardState& state) {
+  const auto first = static_cast<Eigen::Index>(6 * state.camera_from_lidar.size());
+  const Eigen::Index size = first + kSharedUnknowns;
+  const auto means = priors.Means();
+  ViewInformation out{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+  for (int k = 0; k < kSharedUnknowns; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const double sigma = priors.Sigma(k);
+    out.information(first + k, first + k) = 1 / (sigma * sigma);
+    out.gradient[first + k] = -(state.shared[i] - means[i]) / (sigma * sigma);
+  }
+  return out;
 }
 
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,

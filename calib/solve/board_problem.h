@@ -80,6 +80,9 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start);
 /// Each view's board where its cloud puts it, nothing else known.
 BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar);
 
+/// What the priors tell of the shared unknowns at a state.
+ViewInformation PriorInformation(const BoardPriors& priors, const BoardState& state);
+
 /// What a view would tell of the shared unknowns at this state; its residuals do not matter.
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
                               std::size_t view);

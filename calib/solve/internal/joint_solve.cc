@@ -231,28 +231,17 @@ double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
 // The range offset as the views have it, as if nothing had been known of it: one step from the
 // solution.
 Estimate FreeRangeOffset(const JointProblem& joint, const BoardSolution& solution) {
-  const auto first = static_cast<Index>(6 * joint.cameras.size());
   BoardPriors priors = joint.problem.priors;
   priors.range_offset_sigma_m = kRangeOffsetSigmaM;
-  const auto means = priors.Means();
-  const auto& shared = solution.state.shared;
-  Eigen::MatrixXd information =
-      Eigen::MatrixXd::Zero(first + kSharedUnknowns, first + kSharedUnknowns);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(first + kSharedUnknowns);
-  for (int k = 0; k < kSharedUnknowns; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double weight = 1 / (priors.Sigma(k) * priors.Sigma(k));
-    information(first + k, first + k) = weight;
-    gradient[first + k] = weight * (means[i] - shared[i]);
-  }
+  ViewInformation all = PriorInformation(priors, solution.state);
   for (const ViewInformation& view : solution.views) {
-    information += view.information;
-    gradient += view.gradient;
+    all.information += view.information;
+    all.gradient += view.gradient;
   }
-  const Eigen::MatrixXd covariance = InverseOfSymmetric(information);
-  const Eigen::VectorXd step = covariance * gradient;
-  const Index at = first + kRangeOffset;
-  return {shared[kRangeOffset] + step[at], std::sqrt(covariance(at, at))};
+  const Eigen::MatrixXd covariance = InverseOfSymmetric(all.information);
+  const Eigen::VectorXd step = covariance * all.gradient;
+  const Index at = covariance.rows() - kSharedUnknowns + kRangeOffset;
+  return {solution.state.shared[kRangeOffset] + step[at], std::sqrt(covariance(at, at))};
 }
 
 // Solves, and again without what contradicts the rest.
@@ -384,12 +373,14 @@ JointResult SolveJointly(JointProblem joint) {
     const Estimate free = FreeRangeOffset(result.joint, result.solution);
     return std::abs(free.value) > sigmas * std::hypot(free.sigma, known);
   };
+  if (known >= kRangeOffsetSigmaM) return JointSolver(std::move(joint)).Solve();
   JointProblem open = joint;
   open.problem.priors.range_offset_sigma_m = kRangeOffsetSigmaM;
   JointResult held = JointSolver(std::move(joint)).Solve();
-  if (known >= kRangeOffsetSigmaM || !refuted(held, 4)) return held;
+  if (!refuted(held, 4)) return held;
   JointResult found = JointSolver(std::move(open)).Solve();
-  if (!refuted(found, 3)) return held;  // without what then contradicts the rest there is none
+  // Views that contradict the rest then may have made it up.
+  if (!refuted(found, 3)) return held;
   found.refuted_range_offset_sigma_m = known;
   return found;
 }
