@@ -293,7 +293,7 @@ IntrinsicsResult CalibrateIntrinsics(const IntrinsicsInput& input,
   result.names = ParameterNames(input.choice);
   result.values = bundle.lens;
   FillViews(input, bundle, selection, &result);
-  if (ActiveViews(bundle) > 0) result.covariance = LensCovariance(bundle);
+  if (ActiveViews(bundle) > 0) result.covariance = CovarianceOfLens(bundle);
   result.coverage = CoverageOf(input, options, bundle);
   const std::string why = WhyNotConverged(result, options, solver);
   result.converged = why.empty();

@@ -7,9 +7,9 @@
 
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/detect/image/checkerboard.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {

@@ -11,11 +11,7 @@ FusionCamera CameraOf(const CameraSpec& spec, const Calibration& calibration, co
   FusionCamera camera(spec);
   camera.ServeAllTimes();
   const CameraCalibration* found = calibration.Find(spec.name);
-  if (found != nullptr) {
-    camera.camera_from_lidar = found->camera_from_lidar;
-    camera.calibration_utime = calibration.utime;
-    camera.calibrated = true;
-  }
+  if (found != nullptr) camera.SetCalibration(*found, calibration.utime);
   const auto image = std::find_if(view.images.begin(), view.images.end(),
                                   [&](const Image& i) { return i.camera == spec.name; });
   if (image != view.images.end()) camera.AddImage(Prepare(spec, *image));

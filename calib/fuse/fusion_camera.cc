@@ -15,7 +15,23 @@ PreparedImage Prepare(const CameraSpec& camera, const Image& image) {
 }
 
 FusionCamera::FusionCamera(const CameraSpec& spec)
-    : spec_(spec), camera_(spec), readout_(FromSeconds(spec.readout_s)) {}
+    : spec_(spec), given_(spec.lens), camera_(spec), readout_(FromSeconds(spec.readout_s)) {}
+
+bool FusionCamera::Has(const CameraCalibration& calibration, Utime utime) const {
+  const Rigid3& pose = calibration.camera_from_lidar;
+  return calibrated && calibration_utime == utime &&
+         camera_from_lidar.translation == pose.translation &&
+         camera_from_lidar.rotation.coeffs() == pose.rotation.coeffs() &&
+         spec_.lens == (calibration.lens ? calibration.lens->lens : given_);
+}
+
+void FusionCamera::SetCalibration(const CameraCalibration& calibration, Utime utime) {
+  calibrated = true;
+  camera_from_lidar = calibration.camera_from_lidar;
+  calibration_utime = utime;
+  spec_.lens = calibration.lens ? calibration.lens->lens : given_;
+  camera_ = Camera(spec_);
+}
 
 void FusionCamera::AddImage(PreparedImage image) {
   const auto later = std::find_if(images_.begin(), images_.end(), [&](const PreparedImage& other) {

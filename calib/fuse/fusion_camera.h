@@ -6,6 +6,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/fuse/temperature_table.h"
+#include "calib/model/calibration.h"
 #include "calib/model/image.h"
 #include "calib/model/rig.h"
 
@@ -53,6 +54,11 @@ class FusionCamera {
   void ForgetBefore(Utime utime);
   void ForgetImages() { images_.clear(); }
 
+  /// Where it sits from now on, and the lens that belongs to that.
+  void SetCalibration(const CameraCalibration& calibration, Utime utime);
+  /// Whether it is set to this already.
+  bool Has(const CameraCalibration& calibration, Utime utime) const;
+
   const CameraSpec& spec() const { return spec_; }
   const Camera& camera() const { return camera_; }
 
@@ -62,6 +68,7 @@ class FusionCamera {
 
  private:
   CameraSpec spec_;
+  Lens given_;  // by the rig
   Camera camera_;
   Utime readout_ = 0;
   bool all_times_ = false;

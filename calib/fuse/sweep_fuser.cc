@@ -37,17 +37,13 @@ void SweepFuser::Forget() {
 }
 
 std::vector<RgbdtCloud> SweepFuser::SetCalibration(std::size_t camera,
-                                                   const Rigid3& camera_from_lidar, Utime utime) {
+                                                   const CameraCalibration& calibration,
+                                                   Utime utime) {
   CameraState& state = states_[camera];
-  const bool same =
-      state.camera.calibrated && state.camera.calibration_utime == utime &&
-      state.camera.camera_from_lidar.translation == camera_from_lidar.translation &&
-      state.camera.camera_from_lidar.rotation.coeffs() == camera_from_lidar.rotation.coeffs();
-  if (same) return {};
+  if (state.camera.Has(calibration, utime)) return {};
   std::vector<RgbdtCloud> parts = Parts();
-  state.camera.calibrated = true;
-  state.camera.camera_from_lidar = camera_from_lidar;
-  state.camera.calibration_utime = utime;
+  state.camera.SetCalibration(calibration, utime);
+  state.view = ViewBounds(state.camera.camera());
   state.spacing = PointSpacing(state.camera.camera());
   state.now = state.past = std::nullopt;  // made again by the next chunk, from the points kept
   return parts;

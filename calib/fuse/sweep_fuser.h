@@ -59,7 +59,7 @@ class SweepFuser {
 
   /// From the next chunk on. What the sweep has so far is tested for occlusion and given back as if
   /// it ended here: no message mixes two calibrations.
-  std::vector<RgbdtCloud> SetCalibration(std::size_t camera, const Rigid3& camera_from_lidar,
+  std::vector<RgbdtCloud> SetCalibration(std::size_t camera, const CameraCalibration& calibration,
                                          Utime utime);
 
   /// A chunk of a sweep, coloured at once; in the order of its points, misses left out.

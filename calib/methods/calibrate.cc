@@ -81,6 +81,7 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
       views.report.first_guess = camera.camera_from_lidar_guess;
     }
     views.report.calibration = *found;
+    if (found->lens) views = PosedAgain(std::move(views), found->lens->lens, rig.target);
     views.Describe();
     const EdgeModel edges{rig.target, BoardPriors().Means(), {}};
     report.cameras.push_back(JudgeEdges(

@@ -27,6 +27,19 @@ std::string CameraCalibration::StatusText() const {
   return detail.empty() ? NameOf(status) : std::string(NameOf(status)) + ": " + detail;
 }
 
+PoseAndLensCovariance CameraCalibration::PoseAndLens() const {
+  PoseAndLensCovariance out = WithExactLens(*covariance);
+  if (!lens) return out;
+  out.bottomRows<kLensNumbers>() = lens->covariance;
+  out.topRightCorner<6, kLensNumbers>() = lens->covariance.leftCols<6>().transpose();
+  return out;
+}
+
+CameraSpec CameraCalibration::WithSolvedLens(CameraSpec spec) const {
+  if (lens) spec.lens = lens->lens;
+  return spec;
+}
+
 Calibration Report::ToCalibration() const {
   Calibration calibration{method, rig_hash, utime, {}};
   for (const CameraReport& camera : cameras) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
 #include "calib/model/time.h"
 
@@ -21,6 +22,13 @@ enum class SolveStatus {
   kConverged = 5,
 };
 
+/// The lens that a camera was solved with, and that belongs to its pose.
+struct SolvedLens {
+  Lens lens;
+  /// Of its numbers (lens.h) with delta (the first six columns) and with each other.
+  Eigen::Matrix<double, kLensNumbers, kPoseAndLens> covariance;
+};
+
 /// Where one camera sits: point_in_camera = camera_from_lidar * point_in_lidar.
 struct CameraCalibration {
   std::string camera;
@@ -28,7 +36,13 @@ struct CameraCalibration {
   std::optional<Matrix6d> covariance;  ///< of delta (rigid3.h), camera axes; absent: not estimated
   SolveStatus status = SolveStatus::kNotSolved;
   std::string detail;  ///< in words: why, and what to do; empty where there is nothing to say
+  /// Absent: the rig file's, which was taken for exact.
+  std::optional<SolvedLens> lens{};
 
+  /// Of pose and lens together; needs `covariance`.
+  PoseAndLensCovariance PoseAndLens() const;
+  /// The camera with the lens that belongs to the pose.
+  CameraSpec WithSolvedLens(CameraSpec spec) const;
   /// Whether the pose is more than the rig's guess, be it good or not.
   bool solved() const {
     return status != SolveStatus::kNotSolved && status != SolveStatus::kUndetermined;
@@ -52,6 +66,11 @@ struct Calibration {
       if (c.camera == camera) return &c;
     }
     return nullptr;
+  }
+  /// A camera with the lens that belongs to its pose; without a pose as it is.
+  CameraSpec WithSolvedLens(const CameraSpec& spec) const {
+    const CameraCalibration* found = Find(spec.name);
+    return found == nullptr ? spec : found->WithSolvedLens(spec);
   }
 };
 
@@ -81,7 +100,7 @@ struct RejectedView {
 /// An unknown of the solve besides the poses.
 struct Nuisance {
   std::string name;  ///< e.g. "beam edge, no return"
-  std::string unit;  ///< "mrad" or "mm"
+  std::string unit;  ///< "mrad", "mm" or "px"
   Estimate estimate;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -68,6 +69,27 @@ int IntrinsicsResult::ViewsUsed() const {
   return static_cast<int>(
       std::count_if(views.begin(), views.end(),
                     [](const IntrinsicsViewFit& view) { return view.rejected.empty(); }));
+}
+
+LensUncertainty UncertaintyOf(const IntrinsicsResult& result,
+                              const std::vector<IntrinsicsView>& views) {
+  LensUncertainty out;
+  const Eigen::MatrixXd& all = result.covariance;
+  const Eigen::Index numbers = std::min<Eigen::Index>(all.rows(), kLensNumbers);
+  const Eigen::Index rest = all.rows() - numbers;
+  if (numbers > 0) {
+    Eigen::MatrixXd own = all.topLeftCorner(numbers, numbers);
+    if (rest > 0) {
+      own -= all.topRightCorner(numbers, rest) *
+             SolveSymmetric(Eigen::MatrixXd(all.bottomRightCorner(rest, rest)),
+                            Eigen::MatrixXd(all.bottomLeftCorner(rest, numbers)));
+    }
+    out.covariance.topLeftCorner(numbers, numbers) = 0.5 * (own + own.transpose());
+  }
+  for (std::size_t v = 0; v < views.size() && v < result.views.size(); ++v) {
+    if (result.views[v].rejected.empty()) out.made_from.push_back(MiddleOf(views[v].corners));
+  }
+  return out;
 }
 
 }  // namespace rgbdt

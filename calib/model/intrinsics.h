@@ -90,4 +90,10 @@ struct IntrinsicsResult {
   int ViewsUsed() const;
 };
 
+/// What a rig file states of the lens, made from those of `views` (the input's) that were used; the
+/// result must have a covariance. k4, k5 and k6 of the rational model are taken as known there, so
+/// the others' covariance is that given them.
+LensUncertainty UncertaintyOf(const IntrinsicsResult& result,
+                              const std::vector<IntrinsicsView>& views);
+
 }  // namespace rgbdt

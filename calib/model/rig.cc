@@ -5,6 +5,7 @@
 #include <set>
 
 #include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
 namespace {
@@ -42,6 +43,22 @@ void CheckLens(const Lens& lens, const std::string& field) {
   }
 }
 
+// Some combination of the numbers has it, beyond rounding; each in its own sigma.
+bool HasNegativeVariance(const LensCovariance& c) {
+  LensNumbers scale = c.diagonal().cwiseSqrt();
+  for (double& s : scale) s = s > 0 ? 1 / s : 0;
+  const LensCovariance correlation = scale.asDiagonal() * c * scale.asDiagonal();
+  return EigensystemOf(correlation).values[0] < -1e-6;
+}
+
+void CheckLensUncertainty(const LensUncertainty& uncertainty, const std::string& field) {
+  const LensCovariance& c = uncertainty.covariance;
+  const bool good = c.allFinite() && (c.diagonal().array() >= 0).all() &&
+                    c.isApprox(c.transpose(), 1e-6) && !HasNegativeVariance(c);
+  Require(good, field + "lens_uncertainty", "no covariance",
+          "finite sigmas, 0 or more, or a symmetric, positive semidefinite covariance");
+}
+
 void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
   CheckName(camera.name, "camera.name");
   const std::string field = "camera \"" + camera.name + "\": ";
@@ -50,6 +67,7 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
   Require(camera.height > 0 && camera.height <= 20000, field + "height",
           std::to_string(camera.height), "1 to 20000 px");
   if (lenses == LensNeed::kKnown || camera.lens.known()) CheckLens(camera.lens, field);
+  if (camera.lens_uncertainty) CheckLensUncertainty(*camera.lens_uncertainty, field);
   Require(camera.readout_s >= 0 && camera.readout_s <= 60, field + "readout_s",
           std::to_string(camera.readout_s), "0 to 60 seconds");
   Require(camera.rolling_s >= 0 && camera.rolling_s <= 1, field + "rolling_s",
@@ -131,6 +149,10 @@ void Rig::Check(LensNeed lenses) const {
           "lidar.range_offset_sigma_m", std::to_string(lidar.range_offset_sigma_m),
           "a number not less than zero");
   CheckTarget(target);
+}
+
+LensUncertainty CameraSpec::LensUncertaintyOrUsual() const {
+  return lens_uncertainty ? *lens_uncertainty : UsualLensUncertainty(lens, width, height);
 }
 
 const CameraSpec& Rig::Camera(const std::string& camera_name) const {

@@ -10,25 +10,12 @@
 #include "calib/model/beam_priors.h"
 #include "calib/model/devices.h"
 #include "calib/model/image.h"
+#include "calib/model/lens.h"
 #include "calib/model/rigid3.h"
 
 namespace rgbdt {
 
 enum class CameraKind { kColor = 1, kThermal = 2 };
-
-/// Lens parameters, OpenCV's order and meaning. Pixel centres at integer coordinates.
-struct Lens {
-  enum class Model {
-    kPinhole,  ///< distortion k1 k2 p1 p2 k3 [k4 k5 k6]; unused ones 0
-    kFisheye,  ///< equidistant, distortion k1 k2 k3 k4
-  };
-  Model model = Model::kPinhole;
-  double fx = 0, fy = 0, cx = 0, cy = 0;  ///< [px]
-  std::array<double, 8> distortion{};
-
-  /// False: nobody has found it yet; the numbers say nothing, the model is what is wanted.
-  bool known() const { return fx != 0 || fy != 0; }
-};
 
 /// Whether a rig is of use without its lenses.
 enum class LensNeed {
@@ -42,14 +29,18 @@ struct CameraSpec {
   int width = 0, height = 0;  ///< [px]
   PixelFormat format = PixelFormat::kBgr8;
   Lens lens;
-  Radiometry radiometry;  ///< thermal; used where an image brings none
-  double readout_s = 0;   ///< D: read-out and transfer time; an image serves points from utime + D
+  std::optional<LensUncertainty> lens_uncertainty;  ///< absent: as is usual of published lenses
+  Radiometry radiometry;                            ///< thermal; used where an image brings none
+  double readout_s = 0;  ///< D: read-out and transfer time; an image serves points from utime + D
   /// Rolling read-out: from the first row's exposure to the last one's; the image's utime is that
   /// of the middle row. 0: all rows at once.
   double rolling_s = 0;
   double netd_k = 0;  ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
   std::optional<Rigid3> camera_from_lidar_guess;  ///< measured by hand
   std::optional<CameraDevice> device;             ///< for rgbdt-camera
+
+  /// What the rig file states, or else UsualLensUncertainty.
+  LensUncertainty LensUncertaintyOrUsual() const;
 };
 
 /// A 2D scanner on a motor. LIDAR frame: the motor's base, motor axis z, at encoder zero x forward.

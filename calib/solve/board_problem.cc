@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
@@ -10,6 +11,8 @@
 
 namespace rgbdt {
 namespace {
+
+constexpr double kExactLensSigma = 1e-6;  // [px], and of the distortion
 
 constexpr int kLocal = kOwnUnknowns;
 using LocalMatrix = Eigen::Matrix<double, kLocal, kLocal>;
@@ -37,9 +40,29 @@ Reduced Reduce(const ViewEquations& equations, double damping) {
   return out;
 }
 
-double PriorCost(const BoardPriors& priors, const BoardState& state) {
+// Of a lens's numbers; those that are exact are held to next to nothing.
+LensCovariance InformationOfLens(LensCovariance prior) {
+  for (Eigen::Index i = 0; i < kLensNumbers; ++i) {
+    if (!(prior(i, i) > 0)) prior(i, i) = kExactLensSigma * kExactLensSigma;
+  }
+  // In units of the sigmas: pixels and coefficients differ by orders of magnitude.
+  const LensNumbers scale = prior.diagonal().cwiseSqrt().cwiseInverse();
+  const LensCovariance correlation = scale.asDiagonal() * prior * scale.asDiagonal();
+  return scale.asDiagonal() * InverseOfSymmetric(correlation) * scale.asDiagonal();
+}
+
+LensNumbers OffGivenLens(const BoardProblem& problem, const BoardState& state, std::size_t camera) {
+  return NumbersOf(state.lenses[camera]) - NumbersOf(problem.cameras[camera].lens());
+}
+
+double PriorCost(const BoardProblem& problem, const BoardState& state) {
+  const BoardPriors& priors = problem.priors;
   const auto means = priors.Means();
   double cost = 0;
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    const LensNumbers off = OffGivenLens(problem, state, c);
+    cost += off.dot(InformationOfLens(problem.lens_priors[c]) * off);
+  }
   for (int k = 0; k < kSharedUnknowns; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const double off = state.shared[i] - means[i];
@@ -63,8 +86,8 @@ class Step {
       equations_.emplace_back(problem, state_, v);
       cost_ += equations_.back().cost();
     }
-    cost_ += PriorCost(problem.priors, state_);
-    prior_ = PriorInformation(problem.priors, state_);
+    cost_ += PriorCost(problem, state_);
+    prior_ = PriorInformation(problem, state_);
   }
 
   double cost() const { return cost_; }
@@ -83,13 +106,15 @@ class Step {
     const Eigen::VectorXd x = SolveSymmetric(h, g);
     Stepped stepped{state_, x.dot(h * x)};
     BoardState& next = stepped.state;
+    const SharedPlaces places(problem_.cameras.size());
     for (std::size_t c = 0; c < next.camera_from_lidar.size(); ++c) {
       next.camera_from_lidar[c] =
-          Exp(x.segment<6>(static_cast<Eigen::Index>(6 * c))) * next.camera_from_lidar[c];
+          Exp(x.segment<6>(SharedPlaces::Pose(c))) * next.camera_from_lidar[c];
+      next.lenses[c] = WithNumbers(
+          next.lenses[c], NumbersOf(next.lenses[c]) + x.segment<kLensNumbers>(places.Lens(c)));
     }
-    const auto first = static_cast<Eigen::Index>(6 * next.camera_from_lidar.size());
     for (int k = 0; k < kSharedUnknowns; ++k) {
-      next.shared[static_cast<std::size_t>(k)] += x[first + k];
+      next.shared[static_cast<std::size_t>(k)] += x[places.Of(k)];
     }
     for (std::size_t v = 0; v < reduced.size(); ++v) {
       const LocalVector local = reduced[v].local - reduced[v].local_by_shared * x;
@@ -119,10 +144,6 @@ class Step {
   }
 
  private:
-  Eigen::Index Size() const {
-    return static_cast<Eigen::Index>(6 * problem_.cameras.size()) + kSharedUnknowns;
-  }
-
   const BoardProblem& problem_;
   BoardState state_;
   std::vector<ViewEquations> equations_;
@@ -135,6 +156,7 @@ class Step {
 BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar) {
   BoardState state;
   state.camera_from_lidar = camera_from_lidar;
+  for (const Camera& camera : problem.cameras) state.lenses.push_back(camera.lens());
   state.shared = problem.priors.Means();
   for (const BoardView& view : problem.views) {
     state.lidar_from_target.push_back(view.cloud.pose->sensor_from_target);
@@ -171,18 +193,36 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) 
   return solution;
 }
 
-ViewInformation PriorInformation(const BoardPriors& priors, const BoardState& state) {
-  const auto first = static_cast<Eigen::Index>(6 * state.camera_from_lidar.size());
-  const Eigen::Index size = first + kSharedUnknowns;
-  const auto means = priors.Means();
+ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& state) {
+  const SharedPlaces places(problem.cameras.size());
+  const Eigen::Index size = places.Count();
+  const auto means = problem.priors.Means();
   ViewInformation out{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
   for (int k = 0; k < kSharedUnknowns; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const double sigma = priors.Sigma(k);
-    out.information(first + k, first + k) = 1 / (sigma * sigma);
-    out.gradient[first + k] = -(state.shared[i] - means[i]) / (sigma * sigma);
+    const double sigma = problem.priors.Sigma(k);
+    out.information(places.Of(k), places.Of(k)) = 1 / (sigma * sigma);
+    out.gradient[places.Of(k)] = -(state.shared[i] - means[i]) / (sigma * sigma);
+  }
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    const Eigen::Index at = places.Lens(c);
+    const LensCovariance information = InformationOfLens(problem.lens_priors[c]);
+    out.information.block<kLensNumbers, kLensNumbers>(at, at) = information;
+    out.gradient.segment<kLensNumbers>(at) = -information * OffGivenLens(problem, state, c);
   }
   return out;
+}
+
+std::array<Eigen::Index, kPoseAndLens> SharedPlaces::PoseAndLens(std::size_t camera) const {
+  std::array<Eigen::Index, kPoseAndLens> out{};
+  std::iota(out.begin(), out.begin() + 6, Pose(camera));
+  std::iota(out.begin() + 6, out.end(), Lens(camera));
+  return out;
+}
+
+PoseAndLensCovariance BoardSolution::PoseAndLens(std::size_t camera) const {
+  const auto places = SharedPlaces(state.lenses.size()).PoseAndLens(camera);
+  return covariance(places, places);
 }
 
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
@@ -204,10 +244,19 @@ Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view,
     if (step.head<6>().norm() < 1e-8) break;
   }
   const ViewInformation reduced = Reduce(ViewEquations(problem, state, view), 0).shared;
-  const Eigen::Index at = 6 * camera;
+  const auto c = static_cast<std::size_t>(camera);
+  const Eigen::Index at = SharedPlaces::Pose(c);
   const Matrix6d information = reduced.information.block<6, 6>(at, at);
   const Vector6d gradient = reduced.gradient.segment<6>(at);
-  return {gradient.dot(SolveSymmetric(information, gradient)), information};
+  const auto places = SharedPlaces(problem.cameras.size()).PoseAndLens(c);
+  return {gradient.dot(SolveSymmetric(information, gradient)), information,
+          reduced.information.middleRows<6>(at)(Eigen::all, places)};
+}
+
+double Misfit::Expected(const PoseAndLensCovariance& covariance) const {
+  const Matrix6d gradient =
+      gradient_by_calibration * covariance * gradient_by_calibration.transpose();
+  return 6 + SolveSymmetric(information, gradient).trace();
 }
 
 }  // namespace rgbdt

@@ -30,7 +30,8 @@ struct BoardView {
 /// All cameras' images and all clouds of one board.
 struct BoardProblem {
   Target target;
-  std::vector<Camera> cameras;
+  std::vector<Camera> cameras;              ///< with their given lenses
+  std::vector<LensCovariance> lens_priors;  ///< by camera, about the given lens; zero: exact
   std::vector<BoardView> views;
   BoardPriors priors;
 };
@@ -38,9 +39,29 @@ struct BoardProblem {
 /// Values of all unknowns.
 struct BoardState {
   std::vector<Rigid3> camera_from_lidar;
+  std::vector<Lens> lenses;                       ///< by camera
   std::array<double, kSharedUnknowns> shared{};   ///< [rad] shifts, [m] the others
   std::vector<Rigid3> lidar_from_target;          ///< by view
   std::vector<std::array<double, 4>> side_shift;  ///< by view and side [rad]
+};
+
+/// Places of the unknowns that all views share: each camera's pose (delta, rigid3.h),
+/// SharedUnknown, each camera's lens (NumbersOf).
+class SharedPlaces {
+ public:
+  explicit SharedPlaces(std::size_t cameras) : cameras_(static_cast<Eigen::Index>(cameras)) {}
+
+  static Eigen::Index Pose(std::size_t camera) { return static_cast<Eigen::Index>(6 * camera); }
+  Eigen::Index Of(int shared_unknown) const { return 6 * cameras_ + shared_unknown; }
+  Eigen::Index Lens(std::size_t camera) const {
+    return Of(kSharedUnknowns) + kLensNumbers * static_cast<Eigen::Index>(camera);
+  }
+  Eigen::Index Count() const { return Of(kSharedUnknowns) + kLensNumbers * cameras_; }
+  /// Of a camera's pose and its lens.
+  std::array<Eigen::Index, kPoseAndLens> PoseAndLens(std::size_t camera) const;
+
+ private:
+  Eigen::Index cameras_;
 };
 
 /// What one view says of the shared unknowns, its own ones eliminated: the cost is
@@ -52,11 +73,13 @@ struct ViewInformation {
 
 struct BoardSolution {
   BoardState state;
-  Eigen::MatrixXd covariance;                        ///< of the shared unknowns, cameras first
+  Eigen::MatrixXd covariance;                        ///< of the shared unknowns (SharedPlaces)
   std::vector<ViewInformation> views;                ///< at the solution
   std::vector<std::array<double, 4>> side_variance;  ///< by view and side, of its shift [rad^2]
   bool converged = false;
   int iterations = 0;
+
+  PoseAndLensCovariance PoseAndLens(std::size_t camera) const;
 };
 
 /// Least squares over all cameras, boards and nuisances together, robust. Residuals, each whitened:
@@ -69,7 +92,7 @@ struct BoardSolution {
 ///    the beam's width (class and side), the board's rim and the board's cut do;
 ///  - points on the board: their distances from its plane, all of a view in one quadratic form
 ///    (CloudEdges::scatter);
-///  - the priors.
+///  - the priors, of each lens, too: its numbers are unknowns like the others.
 ///
 /// A crossing's distance to the fitted outline in the image is the difference of the second and the
 /// third: both refer to the same side of the same board, whose pose all sensors share. Gauss-Newton
@@ -77,11 +100,11 @@ struct BoardSolution {
 /// `start` is near: some degrees and centimetres.
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start);
 
-/// Each view's board where its cloud puts it, nothing else known.
+/// Each view's board where its cloud puts it, the given lenses, nothing else known.
 BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar);
 
 /// What the priors tell of the shared unknowns at a state.
-ViewInformation PriorInformation(const BoardPriors& priors, const BoardState& state);
+ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& state);
 
 /// What a view would tell of the shared unknowns at this state; its residuals do not matter.
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
@@ -89,10 +112,14 @@ ViewInformation InformationOf(const BoardProblem& problem, const BoardState& sta
 
 /// How badly a pose of a camera fits a view that had no say in it.
 struct Misfit {
-  /// Chi-square of the step that the view by itself would make the pose, the shared unknowns kept,
-  /// the view's own ones at their best. Six on average of the truth.
+  /// Chi-square of the step that the view by itself would make the pose, the lens and the shared
+  /// unknowns kept, the view's own ones at their best. Six on average of the truth.
   double chi2 = 0;
-  Matrix6d information;  ///< of the view, of the pose: by its trace with a covariance chi2 grows
+  Matrix6d information;  ///< of the view, of the pose
+  Eigen::Matrix<double, 6, kPoseAndLens> gradient_by_calibration;
+
+  /// The chi2 to be expected where pose and lens have this covariance.
+  double Expected(const PoseAndLensCovariance& covariance) const;
 };
 Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera);
 

@@ -35,7 +35,7 @@ constexpr NuisanceLine kNuisances[] = {
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
-  const auto at = result.solution.covariance.rows() - kSharedUnknowns + unknown;
+  const auto at = SharedPlaces(result.joint.cameras.size()).Of(unknown);
   return {result.solution.state.shared[static_cast<std::size_t>(unknown)],
           std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)))};
 }
@@ -54,7 +54,22 @@ std::optional<Nuisance> SideScatter(const JointProblem& joint) {
                   {1000 * sigma, 1000 * sigma / std::sqrt(2 * sides)}};
 }
 
-std::vector<Nuisance> NuisancesOf(const JointResult& result) {
+// The lens's focal lengths and centre, as found less as given.
+std::vector<Nuisance> LensLines(const JointResult& result, std::size_t camera) {
+  constexpr const char* kLines[] = {"lens: focal length fx, found less given", "lens: fy",
+                                    "lens: centre cx", "lens: cy"};
+  if (result.joint.problem.lens_priors[camera].isZero(0)) return {};
+  const PoseAndLensCovariance covariance = CovarianceOf(result, camera);
+  const LensNumbers off = NumbersOf(result.solution.state.lenses[camera]) -
+                          NumbersOf(result.joint.problem.cameras[camera].lens());
+  std::vector<Nuisance> lines;
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    lines.push_back({kLines[i], "px", {off[i], std::sqrt(covariance(6 + i, 6 + i))}});
+  }
+  return lines;
+}
+
+std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera) {
   std::vector<Nuisance> nuisances;
   for (const NuisanceLine& line : kNuisances) {
     const Estimate estimate = EstimateOf(result, line.unknown);
@@ -63,15 +78,23 @@ std::vector<Nuisance> NuisancesOf(const JointResult& result) {
     nuisances.push_back({line.name, line.unit, {1000 * estimate.value, 1000 * estimate.sigma}});
   }
   if (auto scatter = SideScatter(result.joint)) nuisances.push_back(*scatter);
+  for (Nuisance& line : LensLines(result, camera)) nuisances.push_back(std::move(line));
   return nuisances;
 }
 
 CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
   const bool converged = result.solution.converged;
-  return {result.joint.cameras[camera].views.spec->name,
-          result.solution.state.camera_from_lidar[camera], CovarianceOf(result, camera),
-          converged ? SolveStatus::kConverged : SolveStatus::kNotConverged,
-          converged ? "" : "the joint solve did not settle"};
+  const PoseAndLensCovariance covariance = CovarianceOf(result, camera);
+  CameraCalibration calibration{result.joint.cameras[camera].views.spec->name,
+                                result.solution.state.camera_from_lidar[camera],
+                                Matrix6d(covariance.topLeftCorner<6, 6>()),
+                                converged ? SolveStatus::kConverged : SolveStatus::kNotConverged,
+                                converged ? "" : "the joint solve did not settle"};
+  if (!result.joint.problem.lens_priors[camera].isZero(0)) {
+    calibration.lens =
+        SolvedLens{result.solution.state.lenses[camera], covariance.bottomRows<kLensNumbers>()};
+  }
+  return calibration;
 }
 
 std::string RangesAreOff(const Estimate& offset, double known_m) {
@@ -83,11 +106,21 @@ std::string RangesAreOff(const Estimate& offset, double known_m) {
       1000 * known_m);
 }
 
+std::string LensIsOff(const CameraSpec& spec, const LensOff& off) {
+  return Format(
+      "the lens in the rig file contradicts these views (chi-square %.0f where %d is expected): "
+      "they put the focal length %+.2f%%, the centre %+.1f, %+.1f px off. The lens found here is "
+      "used and stands in the calibration. Find the lens with 20 views or more all over the image "
+      "(rgbdt intrinsics) and put it into the rig file",
+      off.chi2, off.freedom, 50 * (off.off[0] / spec.lens.fx + off.off[1] / spec.lens.fy),
+      off.off[2], off.off[3]);
+}
+
 // A camera's report with what the joint solve found, which took `seconds`.
 CameraReport WithSolution(const JointResult& result, std::size_t camera, double seconds) {
   CameraReport report = result.joint.cameras[camera].views.report;
   report.calibration = CalibrationOf(result, camera);
-  report.nuisance = NuisancesOf(result);
+  report.nuisance = NuisancesOf(result, camera);
   report.variance_factor = result.variance_factor;
   if (result.joint.problem.priors.range_offset_sigma_m > kNoRangeOffsetSigmaM) {
     report.range_offset = EstimateOf(result, kRangeOffset);
@@ -95,6 +128,10 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
   if (result.refuted_range_offset_sigma_m) {
     report.warnings.push_back(
         RangesAreOff(*report.range_offset, *result.refuted_range_offset_sigma_m));
+  }
+  if (result.lenses_off[camera].contradicts()) {
+    report.warnings.push_back(
+        LensIsOff(*result.joint.cameras[camera].views.spec, result.lenses_off[camera]));
   }
   report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
   return report;
@@ -173,7 +210,9 @@ std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView>
 CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
   CalibratedCameras out;
-  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
+  CalibrateOptions pairing = options;
+  pairing.first_guess.accept = kVotingGate;  // what contradicts the rest is found by the solve
+  std::vector<GuessedCamera> guessed = GuessCameras(pairing, std::move(cameras));
   for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
     std::vector<GuessedCamera> together;
     together.reserve(group.size());

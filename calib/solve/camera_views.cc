@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+
+#include "calib/camera/camera.h"
+#include "calib/camera/target_pose.h"
 
 namespace rgbdt {
 namespace {
@@ -122,6 +126,25 @@ CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& 
     RejectEmpty(camera, &views.all.back());
   }
   return views;
+}
+
+CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target) {
+  CameraSpec spec = *camera.spec;
+  spec.lens = lens;
+  const Camera by_lens(spec);
+  for (CameraView& view : camera.all) {
+    if (!view.usable() || !view.image->pose) continue;
+    const auto found = PoseFromCorners(by_lens, target, view.image->corners);
+    if (!found) continue;
+    auto edges = std::make_shared<ImageEdges>(*view.image);
+    const bool half_turn_known = edges->pose->half_turn_known;
+    edges->pose = found->pose;
+    edges->pose->half_turn_known = half_turn_known;
+    edges->corner_sigma_px = found->inflation * found->corner_sigma_px;
+    view.image = edges.get();
+    camera.posed_again.push_back(std::move(edges));
+  }
+  return camera;
 }
 
 }  // namespace rgbdt

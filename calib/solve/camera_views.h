@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct CameraView {
   std::string view;
   bool heldout = false;
   Utime image_utime = 0;
-  const ImageEdges* image = nullptr;          ///< the detection's; null: none found
+  const ImageEdges* image = nullptr;          ///< null: none found
   std::vector<const CloudEdges*> candidates;  ///< the detection's, of this camera
   std::optional<CloudEdges> cloud;            ///< the candidate taken; at first the likeliest
   std::string rejected;                       ///< why it takes no part; empty: it does
@@ -35,6 +36,8 @@ CameraView CameraViewOf(const std::string& camera, const ViewDetection& detectio
 struct CameraViews {
   const CameraSpec* spec = nullptr;
   std::vector<CameraView> all;
+  /// Images of `all` that are not the detection's any more (PosedAgain).
+  std::vector<std::shared_ptr<const ImageEdges>> posed_again;
   CameraReport report;
 
   std::vector<const CameraView*> Usable() const;
@@ -48,5 +51,9 @@ struct CameraViews {
 
 /// `detections` must outlive the result. A view without an image of this camera is no view of it.
 CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections);
+
+/// The same views with the target's pose in each image, and how exact its corners are, by another
+/// lens than the one that they were detected with.
+CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target);
 
 }  // namespace rgbdt

@@ -19,7 +19,7 @@ std::array<double, 3> Sigmas(const Eigen::Matrix3d& covariance, double scale) {
           scale * Root(covariance(2, 2))};
 }
 
-double WorstPx(const Camera& camera, const Matrix6d& covariance, double distance_m) {
+double WorstPx(const Camera& camera, const PoseAndLensCovariance& covariance, double distance_m) {
   double worst = kNan;
   for (const Eigen::Vector2d& pixel : ImageGrid(camera)) {
     const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
@@ -28,7 +28,8 @@ double WorstPx(const Camera& camera, const Matrix6d& covariance, double distance
   return worst;
 }
 
-ColouringSigma ColouringAt(const Camera& camera, const Matrix6d& covariance, double distance_m) {
+ColouringSigma ColouringAt(const Camera& camera, const PoseAndLensCovariance& covariance,
+                           double distance_m) {
   const Eigen::Vector2d middle(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
   return {distance_m, ColouringSigmaAt(camera, covariance, middle, distance_m).value_or(kNan),
           WorstPx(camera, covariance, distance_m)};
@@ -50,22 +51,26 @@ std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera) {
   return grid;
 }
 
-std::optional<double> ColouringSigmaAt(const Camera& camera, const Matrix6d& covariance,
+std::optional<double> ColouringSigmaAt(const Camera& camera,
+                                       const PoseAndLensCovariance& covariance,
                                        const Eigen::Vector2d& pixel, double distance_m) {
   const auto direction = camera.Unproject(pixel);
   if (!direction) return std::nullopt;
   const Eigen::Vector3d point = distance_m * *direction;
-  const Eigen::Matrix<double, 2, 3> j = PixelByPoint(camera.lens(), point);
-  return Root((j * PointCovariance(covariance, point) * j.transpose()).trace());
+  const PixelDerivatives by = PixelByPointAndLens(camera.lens(), point);
+  const Eigen::Matrix<double, 2, 3> by_point = by.leftCols<3>();
+  Eigen::Matrix<double, 2, kPoseAndLens> j;
+  j << -by_point * CrossMatrix(point), by_point, by.rightCols<kLensNumbers>();
+  return Root((j * covariance * j.transpose()).trace());
 }
 
-PoseSigma SigmaOf(const CameraSpec& spec, const Rigid3& camera_from_lidar,
-                  const Matrix6d& covariance) {
-  const Camera camera(spec);
-  const Eigen::Matrix3d r = camera_from_lidar.rotation.toRotationMatrix();
+PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration) {
+  const Camera camera(calibration.WithSolvedLens(spec));
+  const PoseAndLensCovariance covariance = calibration.PoseAndLens();
+  const Eigen::Matrix3d r = calibration.camera_from_lidar.rotation.toRotationMatrix();
   PoseSigma sigma;
   sigma.rotation_deg = Sigmas(covariance.topLeftCorner<3, 3>(), 180 / M_PI);
-  sigma.centre_mm = Sigmas(r.transpose() * covariance.bottomRightCorner<3, 3>() * r, 1000);
+  sigma.centre_mm = Sigmas(r.transpose() * covariance.block<3, 3>(3, 3) * r, 1000);
   for (const double distance_m : kColouringDistancesM) {
     sigma.colouring.push_back(ColouringAt(camera, covariance, distance_m));
   }

@@ -17,18 +17,19 @@ inline constexpr double kColouringDistancesM[] = {2, 5, 10, 50};
 /// Pixels all over an image, its border among them: what is worst anywhere in it is at one of them.
 std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera);
 
-/// What a pose's covariance (of delta, rigid3.h) means in degrees, millimetres and pixels.
+/// What a calibration's covariance means in degrees, millimetres and pixels; it must have one.
 /// centre_mm is in the LIDAR's axes: the centre lies at -R^T t, so that delta's translation moves
 /// it by -R^T (tx, ty, tz) to first order, and its rotation not at all. A number that is not to be
 /// had is NaN: centre_px where the lens model ends before the image's middle.
-PoseSigma SigmaOf(const CameraSpec& spec, const Rigid3& camera_from_lidar,
-                  const Matrix6d& covariance);
+PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration);
 
-/// 1 sigma [px] of where the colour of a point is taken from, the point being where `pixel` looks,
-/// `distance_m` from the camera. It is the RMS length of the displacement, the root of the trace of
-/// the pixel's covariance: never less than the sigma along any one direction in the image, at most
-/// 1.41 times the largest of them. Nothing where no direction maps to the pixel.
-std::optional<double> ColouringSigmaAt(const Camera& camera, const Matrix6d& covariance,
+/// 1 sigma [px], of pose and lens, of where the colour of a point is taken from, the point being
+/// where `pixel` looks, `distance_m` from the camera. It is the RMS length of the displacement, the
+/// root of the trace of the pixel's covariance: never less than the sigma along any one direction
+/// in the image, at most 1.41 times the largest of them. Nothing where no direction maps to the
+/// pixel.
+std::optional<double> ColouringSigmaAt(const Camera& camera,
+                                       const PoseAndLensCovariance& covariance,
                                        const Eigen::Vector2d& pixel, double distance_m);
 
 }  // namespace rgbdt

@@ -38,27 +38,36 @@ std::array<Estimate, 3> Estimates(const Eigen::Vector3d& values,
   return out;
 }
 
-// A point that looks at `pixel` by pose a, seen by pose b, lies at b_from_a * point.
-PixelShift ShiftAt(const Camera& camera, const Rigid3& b_from_a,
-                   const std::optional<Matrix6d>& covariance, double distance_m) {
+// Both with their lenses; the covariance of each where the two can be compared.
+struct Pair {
+  Camera a, b;
+  Rigid3 b_from_a;
+  std::optional<PoseAndLensCovariance> of_a, of_b;
+};
+
+// A point that a sees at `pixel`, seen by b. Where there are covariances, the sum of both.
+PixelShift ShiftAt(const Pair& pair, double distance_m) {
   PixelShift shift;
   shift.distance_m = distance_m;
   double squares = 0;
   double variances = 0;
   int count = 0;
-  for (const Eigen::Vector2d& pixel : ImageGrid(camera)) {
-    const auto direction = camera.Unproject(pixel);
+  for (const Eigen::Vector2d& pixel : ImageGrid(pair.a)) {
+    const auto direction = pair.a.Unproject(pixel);
     if (!direction) continue;
-    const auto moved = camera.Project(b_from_a * Eigen::Vector3d(distance_m * *direction));
+    const auto moved = pair.b.Project(pair.b_from_a * Eigen::Vector3d(distance_m * *direction));
     if (!moved) continue;
+    if (pair.of_a && pair.of_b) {
+      const auto a = ColouringSigmaAt(pair.a, *pair.of_a, pixel, distance_m);
+      const auto b = ColouringSigmaAt(pair.b, *pair.of_b, pixel, distance_m);
+      if (!a || !b) continue;
+      variances += *a * *a + *b * *b;
+    }
     squares += (*moved - pixel).squaredNorm();
     ++count;
-    if (!covariance) continue;
-    const double sigma = ColouringSigmaAt(camera, *covariance, pixel, distance_m).value_or(kNan);
-    variances += sigma * sigma;
   }
   shift.rms_px = count > 0 ? std::sqrt(squares / count) : kNan;
-  if (covariance && count > 0) shift.sigma_px = std::sqrt(variances / count);
+  if (pair.of_a && pair.of_b && count > 0) shift.sigma_px = std::sqrt(variances / count);
   return shift;
 }
 
@@ -85,10 +94,12 @@ PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
   out.difference = ErrorOf(b.camera_from_lidar, a.camera_from_lidar);
   if (information) out.chi2 = delta.dot(*information * delta);
   if (spec == nullptr) return out;
-  const Camera camera(*spec);
-  for (const double distance_m : kDistancesM) {
-    out.pixels.push_back(ShiftAt(camera, b_from_a, covariance, distance_m));
+  Pair pair{Camera(a.WithSolvedLens(*spec)), Camera(b.WithSolvedLens(*spec)), b_from_a, {}, {}};
+  if (covariance) {
+    pair.of_a = a.PoseAndLens();
+    pair.of_b = b.PoseAndLens();
   }
+  for (const double distance_m : kDistancesM) out.pixels.push_back(ShiftAt(pair, distance_m));
   return out;
 }
 

@@ -68,7 +68,7 @@ ViewQuality JudgeView(const CameraSpec& camera, const CameraView& view,
 
 CameraReport JudgeCamera(const CameraSpec& spec, const std::vector<const CameraView*>& usable,
                          CameraReport report) {
-  const Camera camera(spec);
+  const Camera camera(report.calibration.WithSolvedLens(spec));
   Sums train;
   Sums heldout;
   report.views.clear();

@@ -143,7 +143,7 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
     guess.agreeing = 0;
     for (const CameraView* view : views) {
       const CandidateChoice choice =
-          Nearest(*view, {pose, offset}, round < 4 ? kVotingGate : kAcceptGate);
+          Nearest(*view, {pose, offset}, round < 4 ? kVotingGate : options.accept);
       if (choice.cost >= 1) continue;
       ++guess.agreeing;
       const TargetPose& in_lidar =

@@ -16,9 +16,10 @@ struct PoseGate {
   double least_m = 0, most_m = 0;      ///< centre
 };
 
-/// A view counts as agreeing with what another view alone says.
+/// A view counts as agreeing with what another view alone says; its board is then paired with the
+/// cloud's, and the joint solve says whether it contradicts the others.
 inline constexpr PoseGate kVotingGate{0.06, 0.24, 0.12, 0.48};
-/// A view is used.
+/// A view is used by methods that do not look for contradictions themselves.
 inline constexpr PoseGate kAcceptGate{0.02, 0.075, 0.04, 0.09};
 /// A view may judge a calibration that may be wrong itself.
 inline constexpr PoseGate kJudgeGate{0.2, 0.4, 0.5, 1.0};
@@ -26,6 +27,7 @@ inline constexpr PoseGate kJudgeGate{0.2, 0.4, 0.5, 1.0};
 struct FirstGuessOptions {
   /// How well a constant that the LIDAR's ranges may be off by is known, about zero; 0: exactly.
   double range_offset_sigma_m = 0;
+  PoseGate accept = kAcceptGate;  ///< how far off the guess a view may lie and still be used
 
   /// Throws InputError naming the field and its value.
   void Check() const;

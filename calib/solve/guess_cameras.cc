@@ -73,7 +73,7 @@ GuessedCamera Guess(const CalibrateOptions& options, CameraViews views) {
     return {std::move(views), std::move(guess)};
   }
   for (CameraView& o : views.all) {
-    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, kAcceptGate,
+    o = WithChosenCandidate(std::move(o), *guess.camera_from_lidar, options.first_guess.accept,
                             guess.range_offset_m);
   }
   if (!EnoughViews(options, views)) {
@@ -112,9 +112,7 @@ CameraReport JudgeViews(const EdgeModel& edges, const CameraViews& camera) {
   const Views usable = camera.Usable();
   CameraReport report = JudgeEdges(edges, usable, JudgeCamera(*camera.spec, usable, camera.report));
   const CameraCalibration& calibration = report.calibration;
-  if (calibration.covariance) {
-    report.sigma = SigmaOf(*camera.spec, calibration.camera_from_lidar, *calibration.covariance);
-  }
+  if (calibration.covariance) report.sigma = SigmaOf(*camera.spec, calibration);
   return report;
 }
 

@@ -5,6 +5,39 @@
 namespace rgbdt {
 
 template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, solved_lens_t>& wire,
+            StructOf<Copy, SolvedLens>& solved) {
+  copy(wire.model, solved.lens.model);
+  copy(wire.fx, solved.lens.fx);
+  copy(wire.fy, solved.lens.fy);
+  copy(wire.cx, solved.lens.cx);
+  copy(wire.cy, solved.lens.cy);
+  copy(wire.distortion, solved.lens.distortion);
+  copy(wire.covariance, solved.covariance);
+}
+
+solved_lens_t ToWire(const SolvedLens& lens) { return FieldsToWire<solved_lens_t>(lens); }
+
+void Check(const solved_lens_t& wire) {
+  CheckRange("lens.model", wire.model, solved_lens_t::PINHOLE, solved_lens_t::FISHEYE);
+  const double centre[] = {wire.cx, wire.cy};
+  for (const double focal : {wire.fx, wire.fy}) {
+    CheckFinite("lens focal length", focal);
+    if (!(focal > 0)) Fail("lens focal length", focal, "more than 0");
+  }
+  CheckFinite("lens centre", centre, 2);
+  CheckFinite("lens.distortion", wire.distortion, 8);
+  CheckFinite("lens.covariance", wire.covariance[0], std::size_t{kLensNumbers} * kPoseAndLens);
+  double own[kLensNumbers][kLensNumbers];
+  for (int row = 0; row < kLensNumbers; ++row) {
+    std::copy(wire.covariance[row] + 6, wire.covariance[row] + kPoseAndLens, own[row]);
+  }
+  CheckCovariance("lens.covariance", own[0], kLensNumbers);
+}
+
+SolvedLens FromWire(const solved_lens_t& wire) { return FieldsFromWire<SolvedLens>(wire); }
+
+template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
             StructOf<Copy, CalibrationMessage>& message) {
   auto& calibration = message.calibration;
@@ -17,6 +50,7 @@ void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
   copy(wire.detail, calibration.detail);
   copy.Pose(wire.quaternion_wxyz, wire.translation_m, calibration.camera_from_lidar);
   copy.Optional(wire.has_covariance, wire.covariance, calibration.covariance);
+  copy.Optional(wire.has_lens, wire.lens, calibration.lens);
 }
 
 calibration_t ToWire(const CalibrationMessage& message) {
@@ -33,6 +67,7 @@ void Check(const calibration_t& wire) {
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);
   if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);
+  if (wire.has_lens != 0) Check(wire.lens);
 }
 
 CalibrationMessage FromWire(const calibration_t& wire) {

@@ -86,8 +86,8 @@ Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
     throw InputError("calibration was made with rig " + message.rig_hash + ", this is rig " +
                      rig_->hash);
   }
-  return MessagesOf(fuser_->SetCalibration(IndexOf(message.calibration.camera),
-                                           message.calibration.camera_from_lidar, message.utime));
+  return MessagesOf(fuser_->SetCalibration(IndexOf(message.calibration.camera), message.calibration,
+                                           message.utime));
 }
 
 Messages FuserNode::OnChunk(const CloudChunk& chunk) {

@@ -96,7 +96,12 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
     std::printf("%s\n", IntrinsicsText(found).c_str());
     good &= found.result.converged;
     for (CameraSpec& spec : rig.cameras) {
-      if (spec.name == camera.camera && found.result.converged) spec.lens = found.result.lens;
+      if (spec.name != camera.camera || !found.result.converged) continue;
+      spec.lens = found.result.lens;
+      spec.lens_uncertainty.reset();
+      if (found.result.covariance.size() > 0) {
+        spec.lens_uncertainty = UncertaintyOf(found.result, camera.views);
+      }
     }
   }
   for (const std::string& line : corners.unreadable) std::printf("not read: %s\n", line.c_str());

@@ -82,7 +82,10 @@ std::function<void()> Ours(const Field& field, std::int64_t points, int cameras)
   const auto fuser = std::make_shared<SweepFuser>(scene.specs, 0.01);
   for (std::size_t c = 0; c < scene.specs.size(); ++c) {
     fuser->camera(c).AddImage(Prepare(scene.specs[c], scene.images[c]));
-    fuser->SetCalibration(c, scene.camera_from_lidar[c], kStart);
+    fuser->SetCalibration(c,
+                          {scene.specs[c].name, scene.camera_from_lidar[c], std::nullopt,
+                           SolveStatus::kConverged, ""},
+                          kStart);
   }
   RequireSeen(fuser->FuseChunk(*cloud), field, cameras);
   return [=] {

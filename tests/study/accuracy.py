@@ -41,6 +41,10 @@ ONCE = {
     "range_offset_mm_median": ("<=", 1.5),
     "range_offset_nees": ("in", 0.7, 1.4),
     "offset_nees_mean": ("in", 5, 8),
+    "lens_rgb_deg_median": ("<=", 0.03),
+    "lens_rgb_mm_median": ("<=", 2.5),
+    "lens_nees_mean": ("in", 5, 8),
+    "lens_rms_over_bound": ("<=", 1.3),
     "random_nees_mean": ("in", 5, 8),
     "random_coverage95": ("in", 0.90, 0.98),
 }
@@ -169,6 +173,18 @@ def offset_figures(parts):
         yield figure(f"{prefix}offset_rms_over_bound", over_bound(parts[part], parts[part]))
 
 
+def lens_figures(rows):
+    """Lenses off by what the rig file says of them."""
+    rgb = pick(rows, method="auto", camera="rgb")
+    if not rgb:
+        return
+    for name, key, unit in (("deg", "rotation_deg", "deg"), ("mm", "centre_mm", "mm")):
+        yield figure(f"lens_rgb_{name}_median", median(column(rgb, key)), unit)
+        yield figure(f"lens_rgb_{name}_median_bound", median(column(rgb, f"bound_{key}_median")), unit)
+    yield from honesty_figures(rows, "lens_")
+    yield figure("lens_rms_over_bound", over_bound(rows, rows))
+
+
 def basin_figures(rows):
     """Success from first guesses far off (columns: method, start, success), of another program."""
     for name, start in (("basin_30_40_success", "30_40"), ("no_guess_success", "no_guess")):
@@ -203,6 +219,7 @@ def all_figures(parts):
         out += honesty_figures(parts["random"], "random_")
         out += honesty_figures(parts["random"], "random_plane_", "plane")
     out += offset_figures(parts)
+    out += lens_figures(parts["lens-dense"])
     out += time_figures(parts["times"])
     out += basin_figures(parts["basin"])
     return out
@@ -335,7 +352,7 @@ def notes(parts, figures):
 def main():
     out = pathlib.Path(sys.argv[1])
     names = ["sampled-dense", "rendered-dense", "sampled-32", "rendered-32", "sampled-16"]
-    names += ["rendered-16", "offset-dense", "offset-16", "random", "times", "basin"]
+    names += ["rendered-16", "offset-dense", "offset-16", "lens-dense", "random", "times", "basin"]
     parts = {name: trials.read(out / "parts", name) for name in names}
     for name in ("sampled-dense", "times"):
         if not parts[name]:

@@ -148,6 +148,23 @@ VectorXd ProjectedCorners(const Camera& camera, const Target& target,
   return pixels;
 }
 
+/// Derivatives of the corners' pixels by the lens's numbers.
+MatrixXd ByLens(const CameraSpec& spec, const Target& target, const Rigid3& camera_from_target) {
+  MatrixXd by(2 * Index{target.corners_x()} * target.corners_y(), kLensNumbers);
+  const auto at = [&](Index number, double step) {
+    CameraSpec changed = spec;
+    LensNumbers numbers = NumbersOf(spec.lens);
+    numbers[number] += step;
+    changed.lens = WithNumbers(spec.lens, numbers);
+    return ProjectedCorners(Camera(changed), target, camera_from_target);
+  };
+  for (Index i = 0; i < kLensNumbers; ++i) {
+    const double step = i < 4 ? 1e-3 : 1e-6;
+    by.col(i) = (at(i, step) - at(i, -step)) / (2 * step);
+  }
+  return by;
+}
+
 /// Of the length of a vector of zero mean: from so many draws.
 double MedianLength(const Eigen::Matrix3d& covariance) {
   constexpr std::size_t kDraws = 2001;
@@ -167,12 +184,19 @@ class Bound {
   Bound(const SampledSession& session, BoundData data)
       : session_(session),
         data_(data),
-        shared_(kCameras + 6 * static_cast<Index>(session.rig.cameras.size())),
+        shared_(kCameras + kPoseAndLens * static_cast<Index>(session.rig.cameras.size())),
         information_(MatrixXd::Zero(shared_, shared_)) {
     const BeamModel& model = session.model;
     AddPrior(0, kClasses, model.class_sigma_rad, &information_);
     AddPrior(kThickness, 1, model.thickness_sigma_m, &information_);
     AddPrior(kRangeOffset, 1, std::max(kExactM, model.range_offset_sigma_m), &information_);
+    for (std::size_t i = 0; i < session.rig.cameras.size(); ++i) {
+      const LensUncertainty lens = session.rig.cameras[i].LensUncertaintyOrUsual();
+      for (Index k = 0; k < kLensNumbers; ++k) {
+        const double sigma = std::max(kExactM, std::sqrt(lens.covariance(k, k)));
+        AddPrior(CameraAt(i) + 6 + k, 1, sigma, &information_);
+      }
+    }
     for (const SampledView& view : session.views) {
       if (!view.heldout) AddView(view);
     }
@@ -197,7 +221,10 @@ class Bound {
   }
 
  private:
-  static Index CameraAt(std::size_t camera) { return kCameras + 6 * static_cast<Index>(camera); }
+  // Of its pose; its lens follows.
+  static Index CameraAt(std::size_t camera) {
+    return kCameras + kPoseAndLens * static_cast<Index>(camera);
+  }
 
   static void AddPrior(Index first, Index count, double sigma, MatrixXd* information) {
     information->diagonal().segment(first, count).array() += 1 / (sigma * sigma);
@@ -219,7 +246,7 @@ class Bound {
   }
 
   void AddCorners(const SampledView& view, std::size_t index, MatrixXd* information) const {
-    const CameraSpec& spec = session_.rig.cameras[index];
+    const CameraSpec& spec = session_.true_cameras[index];
     const Camera camera(spec);
     const Target& target = session_.rig.target;
     const Rigid3& lidar_from_target = view.lidar_from_target;
@@ -231,6 +258,8 @@ class Bound {
     j.middleCols<6>(shared_) = ByDelta(lidar_from_target, [&](const Rigid3& pose) {
       return ProjectedCorners(camera, target, camera_from_lidar * pose);
     });
+    j.middleCols<kLensNumbers>(CameraAt(index) + 6) =
+        ByLens(spec, target, camera_from_lidar * lidar_from_target);
     const auto corners = TrueCorners(spec, target, camera_from_lidar * lidar_from_target);
     *information +=
         j.transpose() * CornerCovariance(corners.value(), CornerSigma(spec.kind)).ldlt().solve(j);

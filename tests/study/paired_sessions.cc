@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "calib/camera/camera.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/cloud/board_in_cloud.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/methods/paper/cloud_edges.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"

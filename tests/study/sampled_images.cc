@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "calib/camera/camera.h"
-#include "calib/detect/image/target_pose.h"
+#include "calib/camera/target_pose.h"
 
 namespace rgbdt::study {
 namespace {
@@ -182,8 +182,8 @@ std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& 
   return sampled;
 }
 
-std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Target& target,
-                                       const Rigid3& camera_from_target,
+std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given,
+                                       const Target& target, const Rigid3& camera_from_target,
                                        const simulate::Noise& noise) {
   const auto truth = TrueCorners(spec, target, camera_from_target);
   if (!truth) return std::nullopt;
@@ -197,7 +197,9 @@ std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Target& tar
   // By their own squares' shades only colours tell the target's top from its bottom.
   const bool turned = !color && noise.Uniform(next) < 0.5;
   if (turned) std::reverse(edges.corners.begin(), edges.corners.end());
-  const auto pose = PoseFromCorners(Camera(spec), target, edges.corners);
+  CameraSpec with_given = spec;
+  with_given.lens = given;
+  const auto pose = PoseFromCorners(Camera(with_given), target, edges.corners);
   if (!pose) return std::nullopt;
   edges.pose = pose->pose;
   edges.pose->half_turn_known = color;

@@ -1,5 +1,6 @@
 #include "tests/study/sampled_sessions.h"
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -40,6 +41,19 @@ BeamModel ModelOf(const SampledOptions& sampled, const simulate::Options& option
   return model;
 }
 
+// The lens as a rig file might have it.
+CameraSpec WithLensOff(CameraSpec camera, std::uint64_t seed) {
+  const Noise noise(seed, 0, "lens of " + camera.name);
+  camera.lens_uncertainty = LensOff(camera.lens);
+  LensNumbers numbers = NumbersOf(camera.lens);
+  for (Eigen::Index i = 0; i < numbers.size(); ++i) {
+    numbers[i] += std::sqrt(camera.lens_uncertainty->covariance(i, i)) *
+                  noise.Normal(static_cast<std::uint64_t>(i));
+  }
+  camera.lens = WithNumbers(camera.lens, numbers);
+  return camera;
+}
+
 class SessionSampler {
  public:
   SessionSampler(const SampledOptions& sampled, std::uint64_t seed)
@@ -58,6 +72,10 @@ class SessionSampler {
     }
     session_.rig = MakeRig(options_, scanner_, *scene_, mounts);
     session_.rig.lidar.range_offset_sigma_m = session_.model.range_offset_sigma_m;
+    session_.true_cameras = session_.rig.cameras;
+    if (sampled.lenses_off) {
+      for (CameraSpec& camera : session_.rig.cameras) camera = WithLensOff(camera, seed);
+    }
   }
 
   SampledSession Run() {
@@ -91,21 +109,23 @@ class SessionSampler {
     detection.heldout = view.heldout;
     detection.sweep_utime = kUtime + pose;
     detection.cloud.candidates = std::move(boards.candidates);
-    for (const CameraSpec& camera : session_.rig.cameras) {
-      detection.images.push_back(LookAtImage(camera, view, pose));
+    for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
+      detection.images.push_back(
+          LookAtImage(session_.true_cameras[c], session_.rig.cameras[c].lens, view, pose));
     }
     session_.detections.push_back(std::move(detection));
     session_.truth.lidar_from_target[view.name] = view.lidar_from_target;
     session_.views.push_back(std::move(view));
   }
 
-  ImageDetection LookAtImage(const CameraSpec& camera, const SampledView& view, int pose) const {
+  ImageDetection LookAtImage(const CameraSpec& camera, const Lens& given, const SampledView& view,
+                             int pose) const {
     ImageDetection detection;
     detection.camera = camera.name;
     detection.utime = kUtime + pose;
     const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
     detection.edges = SampledEdges(
-        camera, session_.rig.target,
+        camera, given, session_.rig.target,
         session_.truth.camera_from_lidar.at(camera.name) * view.lidar_from_target, noise);
     if (!detection.edges) detection.why_not = "no pose from the corners";
     return detection;
@@ -122,6 +142,14 @@ class SessionSampler {
 };
 
 }  // namespace
+
+LensUncertainty LensOff(const Lens& lens) {
+  LensNumbers sigma;
+  sigma << 0.004 * lens.fx, 0.004 * lens.fy, 6, 6, 0.02, 0, 0, 0, 0;
+  LensUncertainty off;
+  off.covariance.diagonal() = sigma.cwiseAbs2();
+  return off;
+}
 
 std::string ViewName(int index) {
   char name[16];

@@ -18,7 +18,13 @@ struct SampledOptions {
   /// All ranges are off by a constant, drawn evenly from -this to this; 0: they are exact, and the
   /// rig says so.
   double range_offset_m = 0;
+  /// The rig's lenses are off by what it says of them (LensOff); false: exact, and it says so.
+  bool lenses_off = false;
 };
+
+/// By what a lens of the rig is off (1 sigma): 0.4% of fx and of fy, 6 px in the centre, 0.02 in
+/// k1.
+LensUncertainty LensOff(const Lens& lens);
 
 /// What the noise model drew in one view.
 struct SampledView {
@@ -31,6 +37,7 @@ struct SampledView {
 
 struct SampledSession {
   Rig rig;
+  std::vector<CameraSpec> true_cameras;  ///< the rig's with their true lenses
   BeamModel model;
   Truth truth;
   std::vector<SampledView> views;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "calib/camera/target_pose.h"
 #include "calib/detect/cloud/board_in_cloud.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/noise.h"

@@ -1,17 +1,19 @@
 // How far calibrations are off, and whether they know it.
-//   study_accuracy sampled|offset|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
+//   study_accuracy sampled|offset|lens|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
 //   [METHOD...]
 // SENSOR: dense (the turned scanner), 128, 64, 32 or 16. sampled: sessions drawn from the noise
 // model (sampled_sessions.h), beside its Gaussian bound (bound.h). offset: the same with ranges off
-// by a constant of up to 30 mm, which the rig does not rule out. rendered: sessions of the
-// simulator. random: the same with physics that are drawn, too (rendered_sessions.h).
-// METHOD: auto, separate (each camera by itself), plane, first_guess or paper; all but the last, if
-// none is given. A line of CSV for each session, method and camera.
+// by a constant of up to 30 mm, which the rig does not rule out. lens: the same with lenses that
+// are off by what the rig says of them. rendered: sessions of the simulator. random: the same with
+// physics that are drawn, too (rendered_sessions.h). METHOD: auto, separate (each camera by
+// itself), plane, first_guess or paper; all but the last, if none is given. A line of CSV for each
+// session, method and camera.
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -54,9 +56,10 @@ struct Question {
 };
 
 std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
-  if (question.how == "sampled" || question.how == "offset") {
+  if (question.how == "sampled" || question.how == "offset" || question.how == "lens") {
     const double offset_m = question.how == "offset" ? kMostOffsetM : 0;
-    auto made = SampleSession({question.rings, question.views, question.heldout, offset_m}, seed);
+    auto made = SampleSession(
+        {question.rings, question.views, question.heldout, offset_m, question.how == "lens"}, seed);
     if (!made) return std::nullopt;
     return Trial{made->rig,
                  made->truth,
@@ -243,9 +246,10 @@ int RingsOf(const std::string& sensor) {
 }
 
 void Run(Question question, int sessions, std::uint64_t seed, const std::string& path) {
-  if (question.how != "sampled" && question.how != "offset" && question.how != "rendered" &&
-      question.how != "random") {
-    throw std::runtime_error("expected sampled, offset, rendered or random, not " + question.how);
+  const std::set<std::string> ways = {"sampled", "offset", "lens", "rendered", "random"};
+  if (ways.count(question.how) == 0) {
+    throw std::runtime_error("expected sampled, offset, lens, rendered or random, not " +
+                             question.how);
   }
   question.rings = RingsOf(question.sensor);
   Table table(question, path);
@@ -278,7 +282,7 @@ int main(int argc, char** argv) {
   };
   return rgbdt::study::StudyMain(
       {"study_accuracy",
-       "sampled|offset|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7, 1000,
-       run},
+       "sampled|offset|lens|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7,
+       1000, run},
       argc, argv);
 }

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "calib/camera/pixels.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/image/checkerboard.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/simulate/simulator.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"

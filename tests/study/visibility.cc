@@ -118,7 +118,8 @@ SweepFuser FuserOf(const simulate::Simulator& simulator) {
   SweepFuser fuser(rig.cameras, rig.lidar.range_sigma_m);
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     const CameraSpec& spec = rig.cameras[c];
-    fuser.SetCalibration(c, simulator.truth().camera_from_lidar.at(spec.name), 1);
+    const Rigid3& pose = simulator.truth().camera_from_lidar.at(spec.name);
+    fuser.SetCalibration(c, {spec.name, pose, std::nullopt, SolveStatus::kConverged, ""}, 1);
     fuser.camera(c).AddImage({1, AnyPicture(spec), spec.radiometry});
     fuser.camera(c).ServeAllTimes();
   }

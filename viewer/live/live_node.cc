@@ -232,7 +232,9 @@ void LiveNode::OnCalibration(const CalibrationMessage& message) {
   });
   const bool repeated = same != all.end() &&
                         RotationDistance(same->camera_from_lidar, camera.camera_from_lidar) == 0 &&
-                        CentreDistance(same->camera_from_lidar, camera.camera_from_lidar) == 0;
+                        CentreDistance(same->camera_from_lidar, camera.camera_from_lidar) == 0 &&
+                        same->lens.has_value() == camera.lens.has_value() &&
+                        (!camera.lens || same->lens->lens == camera.lens->lens);
   if (repeated && state_.calibration_utime[camera.camera] == message.utime) return;
   state_.calibration.method = message.method;
   state_.calibration.rig_hash = message.rig_hash;
@@ -288,7 +290,7 @@ void LiveNode::OnFused(const RgbdtCloud& cloud) {
 // The newest target status' corners and the newest sweep, laid on a camera's image.
 void LiveNode::PostLiveOverlay(const std::string& camera) {
   if (!rig_) return;
-  const CameraSpec& spec = rig_->Camera(camera);
+  const CameraSpec spec = state_.calibration.WithSolvedLens(rig_->Camera(camera));
   const CameraCalibration* calibration = state_.calibration.Find(camera);
   Overlay overlay;
   overlay.camera = camera;
@@ -405,7 +407,8 @@ std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {
     const CameraCalibration* calibration = state_.calibration.Find(camera.name);
     std::optional<Rigid3> camera_from_lidar;
     if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
-    for (Post& post : PicturePosts(view, camera, detection, camera_from_lidar)) {
+    const CameraSpec with_lens = state_.calibration.WithSolvedLens(camera);
+    for (Post& post : PicturePosts(view, with_lens, detection, camera_from_lidar)) {
       posts.push_back(std::move(post));
     }
   }

@@ -217,7 +217,7 @@ std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& v
   return residuals;
 }
 
-Eigen::MatrixXd LensCovariance(const Bundle& bundle) {
+Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle) {
   std::vector<Eigen::MatrixXd> parts;
   double squares = 0;
   Eigen::Index rows = 0;

@@ -49,6 +49,6 @@ std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& v
 
 /// Covariance of the lens' parameters, the poses eliminated, scaled with the residuals' variance.
 /// Empty where the corners do not determine every parameter.
-Eigen::MatrixXd LensCovariance(const Bundle& bundle);
+Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle);
 
 }  // namespace rgbdt

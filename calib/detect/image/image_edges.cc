@@ -5,13 +5,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/camera/pixels.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/internal/board_sides.h"
 #include "calib/detect/image/internal/clipped.h"
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/picked_board.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/model/linear_algebra.h"
 
 namespace rgbdt {

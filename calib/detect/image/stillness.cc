@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "calib/camera/pixels.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/internal/picked_board.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/schema/internal/lens_convert.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -17,8 +18,9 @@ constexpr char kComment[] =
     "Where each camera sits, as camera_from_lidar:\n"
     "  point_in_camera = R(quaternion_wxyz) * point_in_lidar + translation_m\n"
     "LIDAR: x forward, y left, z up. Camera: x right, y down, z forward (OpenCV). Metres.\n"
-    "A point at z > 0 then goes through the rig's lens to its pixel. The camera's position in the\n"
-    "LIDAR frame is -R^T * translation_m. `rgbdt export` writes other tools' files.";
+    "A point at z > 0 then goes through the lens to its pixel: the one given here, or else the\n"
+    "rig's. The camera's position in the LIDAR frame is -R^T * translation_m. `rgbdt export`\n"
+    "writes other tools' files.";
 
 CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& place) {
   if (camera.camera().empty()) place.Fail("camera", "is missing; expected the camera's name");
@@ -28,6 +30,7 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
   if (camera.has_covariance()) {
     out.covariance = text::ToMatrix(camera.covariance(), place.In("covariance"));
   }
+  if (camera.has_lens()) out.lens = text::ToSolvedLens(camera.lens(), place.In("lens"));
   out.status = text::ToStatus(camera.status(), place);
   out.detail = camera.detail();
   return out;
@@ -39,6 +42,7 @@ void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) 
   if (camera.covariance && camera.covariance->allFinite()) {
     text::FromMatrix(*camera.covariance, out->mutable_covariance());
   }
+  if (camera.lens) text::FromSolvedLens(*camera.lens, out->mutable_lens());
   out->set_status(text::FromStatus(camera.status));
   out->set_detail(ValidUtf8(camera.detail));
 }

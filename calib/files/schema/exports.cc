@@ -15,14 +15,14 @@ constexpr char kFrames[] =
 
 // A camera's spec beside its calibration.
 struct Exported {
-  const CameraSpec& spec;
+  CameraSpec spec;  // with the lens that belongs to the pose
   const CameraCalibration& calibration;
 };
 
 std::vector<Exported> Match(const Rig& rig, const Calibration& calibration) {
   std::vector<Exported> cameras;
   for (const CameraCalibration& camera : calibration.cameras) {
-    cameras.push_back({rig.Camera(camera.camera), camera});
+    cameras.push_back({camera.WithSolvedLens(rig.Camera(camera.camera)), camera});
   }
   if (cameras.empty()) throw InputError("the calibration holds no camera: nothing to export");
   return cameras;

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/schema/internal/lens_convert.h"
 #include "calib/files/schema/internal/report_parts.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
@@ -125,6 +126,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   if (calibration.covariance && calibration.covariance->allFinite()) {
     text::FromMatrix(*calibration.covariance, out->mutable_covariance());
   }
+  if (calibration.lens) text::FromSolvedLens(*calibration.lens, out->mutable_lens());
   if (camera.first_guess) text::FromRigid3(*camera.first_guess, out->mutable_first_guess());
   FromViews(camera, out);
   text::FromTrainHeldout(camera.distance_transform_px, out->mutable_distance_transform_px());
@@ -154,6 +156,9 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   camera.calibration.detail = message.detail();
   if (message.has_covariance()) {
     camera.calibration.covariance = text::ToMatrix(message.covariance(), place.In("covariance"));
+  }
+  if (message.has_lens()) {
+    camera.calibration.lens = text::ToSolvedLens(message.lens(), place.In("lens"));
   }
   if (message.has_first_guess()) {
     camera.first_guess = text::ToRigid3(message.first_guess(), place.In("first_guess"));

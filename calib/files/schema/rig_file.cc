@@ -6,6 +6,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/device_convert.h"
+#include "calib/files/schema/internal/lens_convert.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -18,38 +19,6 @@ namespace {
 using text::Place;
 
 constexpr double kDegreesPerRadian = 180.0 / M_PI;
-
-template <typename ProtoLens>
-Lens ToLens(const ProtoLens& proto, Lens::Model model, std::initializer_list<int> counts,
-            const Place& place) {
-  Lens lens;
-  lens.model = model;
-  lens.fx = proto.fx();
-  lens.fy = proto.fy();
-  lens.cx = proto.cx();
-  lens.cy = proto.cy();
-  const int count = proto.distortion_size();
-  if (std::find(counts.begin(), counts.end(), count) == counts.end()) {
-    std::string expected;
-    for (const int n : counts) expected += (expected.empty() ? "" : ", ") + std::to_string(n);
-    place.Fail("distortion",
-               "has " + std::to_string(count) + " numbers; expected one of " + expected);
-  }
-  std::copy(proto.distortion().begin(), proto.distortion().end(), lens.distortion.begin());
-  return lens;
-}
-
-Lens ToLens(const proto::Camera& camera, const Place& place) {
-  switch (camera.lens_case()) {
-    case proto::Camera::kPinhole:
-      return ToLens(camera.pinhole(), Lens::Model::kPinhole, {0, 4, 5, 8}, place.In("pinhole"));
-    case proto::Camera::kFisheye:
-      return ToLens(camera.fisheye(), Lens::Model::kFisheye, {0, 4}, place.In("fisheye"));
-    case proto::Camera::LENS_NOT_SET:
-      break;
-  }
-  return {};
-}
 
 void CheckLensIsKnown(const CameraSpec& camera, const Place& place) {
   if (camera.lens.known()) return;
@@ -105,7 +74,11 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed le
   spec.width = camera.width();
   spec.height = camera.height();
   spec.format = static_cast<PixelFormat>(camera.pixel_format());
-  spec.lens = ToLens(camera, place);
+  spec.lens = text::ToLens(camera, place);
+  if (camera.has_lens_uncertainty()) {
+    spec.lens_uncertainty =
+        text::ToLensUncertainty(camera.lens_uncertainty(), spec, place.In("lens_uncertainty"));
+  }
   if (lenses == LensNeed::kKnown) CheckLensIsKnown(spec, place);
   spec.radiometry = ToRadiometry(camera, place);
   text::RequireFinite(camera.readout_s(), place, "readout_s");
@@ -179,37 +152,16 @@ double TicksPerDegree(double ticks_per_rad) {
   return rounded * kDegreesPerRadian == ticks_per_rad ? rounded : exact;
 }
 
-template <typename ProtoLens>
-void FromLens(const Lens& lens, int least, ProtoLens* out) {
-  out->set_fx(lens.fx);
-  out->set_fy(lens.fy);
-  out->set_cx(lens.cx);
-  out->set_cy(lens.cy);
-  int count = least;
-  if (lens.model == Lens::Model::kPinhole) {
-    if (lens.distortion[4] != 0) count = 5;
-    if (lens.distortion[5] != 0 || lens.distortion[6] != 0 || lens.distortion[7] != 0) count = 8;
-  }
-  for (int i = 0; i < count; ++i) out->add_distortion(lens.distortion[static_cast<size_t>(i)]);
-}
-
-// A lens that is not known stays so, and keeps its model where that is not the usual one.
-void FromLens(const Lens& lens, proto::Camera* out) {
-  if (lens.model == Lens::Model::kFisheye) {
-    proto::Fisheye* const fisheye = out->mutable_fisheye();
-    if (lens.known()) FromLens(lens, 4, fisheye);
-  } else if (lens.known()) {
-    FromLens(lens, 4, out->mutable_pinhole());
-  }
-}
-
 void FromCamera(const CameraSpec& spec, proto::Camera* out) {
   out->set_name(ValidUtf8(spec.name));
   out->set_kind(static_cast<proto::Camera::Kind>(spec.kind));
   out->set_width(spec.width);
   out->set_height(spec.height);
   out->set_pixel_format(static_cast<proto::Camera::PixelFormat>(spec.format));
-  FromLens(spec.lens, out);
+  text::FromLens(spec.lens, out);
+  if (spec.lens_uncertainty) {
+    text::FromLensUncertainty(spec, out->mutable_lens_uncertainty());
+  }
   if (spec.radiometry.kind == Radiometry::Kind::kLinear) {
     text::FromLinear(spec.radiometry, out->mutable_linear());
   } else if (spec.radiometry.kind == Radiometry::Kind::kPlanck) {

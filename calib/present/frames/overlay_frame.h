@@ -32,7 +32,8 @@ std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& spec, const Rigid3& ca
                                         std::size_t most = 20000);
 
 /// A view's overlay: what detection found in the image and, with a calibration, the board's edge in
-/// the cloud and the cloud itself, both laid on the image. `cloud` may be null.
+/// the cloud and the cloud itself, both laid on the image. `camera`: with the lens
+/// that belongs to the pose. `cloud` may be null.
 Overlay ViewOverlay(const CameraSpec& camera, const ViewDetection& detection, const Cloud* cloud,
                     const std::optional<Rigid3>& camera_from_lidar);
 

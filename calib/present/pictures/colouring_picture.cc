@@ -48,14 +48,14 @@ cv::Size MapSize(const CameraSpec& camera) {
   return {kMapWidth, std::clamp(static_cast<int>(std::lround(height)), 60, 2 * kMapWidth)};
 }
 
-float SigmaAt(const Camera& camera, const Matrix6d& covariance, const Eigen::Vector2d& pixel,
-              double distance_m) {
+float SigmaAt(const Camera& camera, const PoseAndLensCovariance& covariance,
+              const Eigen::Vector2d& pixel, double distance_m) {
   const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
   if (!sigma || !std::isfinite(*sigma)) return kNan;
   return std::max(kLeastPx, static_cast<float>(*sigma));
 }
 
-Field SigmaField(const Camera& camera, const Matrix6d& covariance, double distance_m,
+Field SigmaField(const Camera& camera, const PoseAndLensCovariance& covariance, double distance_m,
                  cv::Size map) {
   Field coarse(map.height / kCell, map.width / kCell);
   for (int y = 0; y < coarse.rows; ++y) {
@@ -272,9 +272,11 @@ cv::Mat Arrange(const std::vector<ColouringSigma>& sigmas, const std::vector<Fie
 
 }  // namespace
 
-cv::Mat ColouringPicture(const CameraSpec& spec, const Matrix6d& covariance) {
-  const Camera camera(spec);
-  const std::vector<ColouringSigma> sigmas = SigmaOf(spec, Rigid3(), covariance).colouring;
+cv::Mat ColouringPicture(const CameraSpec& spec, const CameraCalibration& calibration) {
+  if (!calibration.covariance) return {};
+  const Camera camera(calibration.WithSolvedLens(spec));
+  const PoseAndLensCovariance covariance = calibration.PoseAndLens();
+  const std::vector<ColouringSigma> sigmas = SigmaOf(spec, calibration).colouring;
   std::vector<Field> fields;
   fields.reserve(sigmas.size());
   for (const ColouringSigma& sigma : sigmas) {

@@ -2,16 +2,16 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include "calib/model/calibration.h"
 #include "calib/model/rig.h"
-#include "calib/model/rigid3.h"
 
 namespace rgbdt {
 
 /// The reprojection uncertainty all over one camera's image: four small maps of the image, for
 /// points 2, 5, 10 and 50 m away, with one scale and lines of equal sigma [px]
-/// (calib/solve/colouring.h). 8-bit BGR, legible on a phone. Empty where the covariance gives no
-/// sigma.
-cv::Mat ColouringPicture(const CameraSpec& spec, const Matrix6d& covariance);
+/// (calib/solve/colouring.h). 8-bit BGR, legible on a phone. Empty where the calibration has no
+/// covariance, or that gives no sigma.
+cv::Mat ColouringPicture(const CameraSpec& spec, const CameraCalibration& calibration);
 
 /// How to read it, in words.
 inline constexpr const char* kColouringCaption =

@@ -15,9 +15,7 @@ std::string PlainPage(const FinishedSession& finished) {
   for (const CameraReport& report : finished.report().cameras) {
     const CameraCalibration& camera = report.calibration;
     if (auto picture = OverlayPicture(finished, camera)) pictures.push_back(std::move(*picture));
-    if (!camera.covariance) continue;
-    const CameraSpec& spec = finished.session.rig.Camera(camera.camera);
-    const cv::Mat map = ColouringPicture(spec, *camera.covariance);
+    const cv::Mat map = ColouringPicture(finished.session.rig.Camera(camera.camera), camera);
     if (map.empty()) continue;
     pictures.push_back({camera.camera + ": reprojection uncertainty", kColouringCaption, map});
   }

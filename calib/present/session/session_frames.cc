@@ -135,7 +135,7 @@ class FrameMaker {
     if (!state.detection) return;
     const CameraCalibration* found = calibration_.Find(camera.name);
     Overlay overlay =
-        ViewOverlay(camera, *state.detection, &view.cloud,
+        ViewOverlay(calibration_.WithSolvedLens(camera), *state.detection, &view.cloud,
                     found == nullptr ? std::nullopt : std::make_optional(found->camera_from_lidar));
     overlay.utime = image->utime;
     if (overlay.cloud.size() > options_.overlay_points) {
@@ -187,8 +187,7 @@ std::vector<NamedFrame> SigmaFrames(const Rig& rig, const Calibration& calibrati
     Image image;
     image.camera = camera.camera;
     image.format = PixelFormat::kBgr8;
-    if (camera.covariance)
-      image.pixels = ColouringPicture(rig.Camera(camera.camera), *camera.covariance);
+    image.pixels = ColouringPicture(rig.Camera(camera.camera), camera);
     if (image.pixels.empty()) continue;
     frames.push_back(
         {"image/sigma/" + camera.camera, ImageFrame(image, "sigma", false, {1280, 90})});

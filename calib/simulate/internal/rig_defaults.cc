@@ -80,6 +80,7 @@ Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& sc
     camera.width = from.width;
     camera.height = from.height;
     camera.lens = from.lens;
+    camera.lens_uncertainty = LensUncertainty{};  // it is the very one
     camera.readout_s = from.readout_s;
     camera.format = PixelFormat::kBayerRg8;
     if (from.kind == CameraKind::kThermal) {

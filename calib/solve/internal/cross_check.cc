@@ -49,7 +49,7 @@ struct Judged {
 // A view left out against a camera's pose, by that camera's image alone; bounded, so that one wrong
 // view does not decide.
 Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
-                std::size_t camera, const Rigid3& camera_from_lidar) {
+                std::size_t camera, const Rigid3& camera_from_lidar, const Lens& lens) {
   auto [alone, state] = Part(joint.problem, {view}, joint.start);
   std::vector<BoardImage>& images = alone.views[0].images;
   images.erase(
@@ -58,6 +58,7 @@ Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
       images.end());
   state.camera_from_lidar = fold.state.camera_from_lidar;
   state.camera_from_lidar[camera] = camera_from_lidar;
+  state.lenses[camera] = lens;
   state.shared = fold.state.shared;
   state.lidar_from_target[0] = alone.views[0].cloud.pose->sensor_from_target;
   state.side_shift[0] = {};
@@ -69,10 +70,10 @@ Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
                  const std::vector<std::size_t>& left_out, const FirstGuess& guess) {
   const CameraReport& report = joint.cameras[camera].views.report;
-  const auto at = static_cast<Index>(6 * camera);
+  const PoseAndLensCovariance covariance = solution.PoseAndLens(camera);
   const CameraCalibration fold_calibration{
       report.calibration.camera, solution.state.camera_from_lidar[camera],
-      Matrix6d(solution.covariance.block<6, 6>(at, at)), SolveStatus::kConverged, ""};
+      Matrix6d(covariance.topLeftCorner<6, 6>()), SolveStatus::kConverged, ""};
   const EdgeModel edges{joint.problem.target, solution.state.shared, joint.problem.priors};
   Judged judged;
   judged.fold.expected_misfit = 0;
@@ -87,10 +88,13 @@ Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::
     sum.squared += edge.squared;
     sum.count += edge.count;
     const Misfit refined =
-        MisfitOf(joint, solution, view, camera, fold_calibration.camera_from_lidar);
-    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar).chi2;
+        MisfitOf(joint, solution, view, camera, fold_calibration.camera_from_lidar,
+                 solution.state.lenses[camera]);
+    const double guessed = MisfitOf(joint, solution, view, camera, *guess.camera_from_lidar,
+                                    joint.problem.cameras[camera].lens())
+                               .chi2;
     judged.fold.misfit += refined.chi2;
-    judged.fold.expected_misfit += 6 + (refined.information * *fold_calibration.covariance).trace();
+    judged.fold.expected_misfit += refined.Expected(covariance);
     judged.fold.first_guess_misfit += guessed;
     judged.worse.push_back(refined.chi2 - guessed);
   }

@@ -18,70 +18,6 @@ const char* const kSideNames[] = {"top", "right", "bottom", "left"};
 
 using Index = Eigen::Index;
 
-void TurnCloud(CloudEdges* cloud) {
-  cloud->pose->sensor_from_target = cloud->pose->sensor_from_target * kHalfTurn;
-  for (Crossing& crossing : cloud->crossings) crossing.side = (crossing.side + 2) % 4;
-}
-
-// Builds the problem a camera at a time, in the order of the cameras.
-class Builder {
- public:
-  explicit Builder(const Target& target) { joint_.problem.target = target; }
-
-  void Add(GuessedCamera guessed) {
-    const int index = static_cast<int>(joint_.cameras.size());
-    GuessedCamera& camera = joint_.cameras.emplace_back(std::move(guessed));
-    joint_.problem.cameras.emplace_back(*camera.views.spec);
-    for (CameraView& o : camera.views.all) {
-      if (o.usable() && !o.heldout) AddImage(index, &o);
-    }
-  }
-
-  JointProblem Finish(double range_offset_sigma_m) {
-    if (range_offset_sigma_m > 0) {
-      joint_.problem.priors.range_offset_sigma_m = range_offset_sigma_m;
-    }
-    std::vector<Rigid3> poses;
-    for (const GuessedCamera& c : joint_.cameras) poses.push_back(*c.guess.camera_from_lidar);
-    joint_.start = StartOf(joint_.problem, poses);
-    joint_.start.shared[kRangeOffset] =
-        range_offset_sigma_m > 0 ? joint_.cameras.front().guess.range_offset_m : 0;
-    return std::move(joint_);
-  }
-
- private:
-  void AddImage(int camera, CameraView* o) {
-    const Rigid3& camera_from_lidar =
-        *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;
-    const Rigid3 lidar_from_image_target =
-        camera_from_lidar.Inverse() * o->image->pose->sensor_from_target;
-    auto view = std::find_if(joint_.problem.views.begin(), joint_.problem.views.end(),
-                             [&](const BoardView& v) { return v.name == o->view; });
-    if (view == joint_.problem.views.end()) {
-      BoardView& fresh = joint_.problem.views.emplace_back();
-      fresh.name = o->view;
-      fresh.cloud = *o->cloud;
-      if (HalfTurned(lidar_from_image_target, *fresh.cloud.pose)) TurnCloud(&fresh.cloud);
-      fresh.cloud.pose->half_turn_known = o->image->pose->half_turn_known;
-      fresh.images.push_back({camera, o->image, false});
-      return;
-    }
-    if ((view->cloud.centre - o->cloud->centre).norm() > 0.01) {
-      o->Reject("takes another board of the cloud than the cameras before it");
-      return;
-    }
-    const bool turned = HalfTurned(lidar_from_image_target, *view->cloud.pose);
-    view->images.push_back({camera, o->image, turned});
-    if (!turned || !o->image->pose->half_turn_known || view->cloud.pose->half_turn_known) return;
-    // This camera knows which end is up, those before it did not.
-    TurnCloud(&view->cloud);
-    view->cloud.pose->half_turn_known = true;
-    for (BoardImage& image : view->images) image.turned = !image.turned;
-  }
-
-  JointProblem joint_;
-};
-
 // How far a view's own estimate of a camera is from that of all the others.
 struct Contradiction {
   std::size_t view = 0, image = 0;
@@ -231,17 +167,18 @@ double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
 // The range offset as the views have it, as if nothing had been known of it: one step from the
 // solution.
 Estimate FreeRangeOffset(const JointProblem& joint, const BoardSolution& solution) {
-  BoardPriors priors = joint.problem.priors;
-  priors.range_offset_sigma_m = kRangeOffsetSigmaM;
-  ViewInformation all = PriorInformation(priors, solution.state);
+  const Index at = SharedPlaces(joint.cameras.size()).Of(kRangeOffset);
+  const double offset = solution.state.shared[kRangeOffset];
+  ViewInformation all = PriorInformation(joint.problem, solution.state);
+  all.information(at, at) = 1 / (kRangeOffsetSigmaM * kRangeOffsetSigmaM);
+  all.gradient[at] = -offset * all.information(at, at);
   for (const ViewInformation& view : solution.views) {
     all.information += view.information;
     all.gradient += view.gradient;
   }
   const Eigen::MatrixXd covariance = InverseOfSymmetric(all.information);
   const Eigen::VectorXd step = covariance * all.gradient;
-  const Index at = covariance.rows() - kSharedUnknowns + kRangeOffset;
-  return {solution.state.shared[kRangeOffset] + step[at], std::sqrt(covariance(at, at))};
+  return {offset + step[at], std::sqrt(covariance(at, at))};
 }
 
 // Solves, and again without what contradicts the rest.
@@ -255,6 +192,8 @@ class JointSolver {
   }
 
   JointResult Solve() {
+    SolveOnce();
+    PoseImagesAgain();
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Joint(), result_.solution);
@@ -278,6 +217,25 @@ class JointSolver {
   void SolveOnce() {
     result_.solution = SolveBoards(Problem(), state_);
     state_ = result_.solution.state;
+  }
+
+  // With the lenses that a first solve finds: a wrong lens makes corners seem worse than they are.
+  void PoseImagesAgain() {
+    const auto& priors = Problem().lens_priors;
+    if (std::all_of(priors.begin(), priors.end(), [](const auto& p) { return p.isZero(0); })) {
+      return;
+    }
+    for (std::size_t c = 0; c < Joint().cameras.size(); ++c) {
+      if (priors[c].isZero(0)) continue;
+      CameraViews& views = Joint().cameras[c].views;
+      views = PosedAgain(std::move(views), state_.lenses[c], Problem().target);
+    }
+    for (BoardView& view : Problem().views) {
+      for (BoardImage& image : view.images) {
+        const CameraViews& views = Joint().cameras[static_cast<std::size_t>(image.camera)].views;
+        image.edges = views.Find(view.name)->image;
+      }
+    }
   }
 
   void RejectImage(const Contradiction& worst) {
@@ -345,28 +303,22 @@ class JointSolver {
   std::vector<int> images_at_first_;  // of each camera
 };
 
-}  // namespace
-
-JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
-                              double range_offset_sigma_m) {
-  Builder builder(target);
-  for (GuessedCamera& camera : cameras) builder.Add(std::move(camera));
-  return builder.Finish(range_offset_sigma_m);
-}
-
-BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                const BoardState& state) {
-  BoardStart part{{problem.target, problem.cameras, {}, problem.priors},
-                  {state.camera_from_lidar, state.shared, {}, {}}};
-  for (const std::size_t v : views) {
-    part.problem.views.push_back(problem.views[v]);
-    part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
-    part.start.side_shift.push_back(state.side_shift[v]);
+std::vector<LensOff> LensesOff(const JointResult& result) {
+  const SharedPlaces places(result.joint.cameras.size());
+  std::vector<LensOff> off;
+  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
+    const Index at = places.Lens(c);
+    off.push_back(
+        AgainstPrior(NumbersOf(result.solution.state.lenses[c]) -
+                         NumbersOf(result.joint.problem.cameras[c].lens()),
+                     result.joint.problem.lens_priors[c],
+                     result.solution.covariance.block<kLensNumbers, kLensNumbers>(at, at)));
   }
-  return part;
+  return off;
 }
 
-JointResult SolveJointly(JointProblem joint) {
+// With the range offset free where the views refute what is known of it.
+JointResult SolveWithOffset(JointProblem joint) {
   const double known = joint.problem.priors.range_offset_sigma_m;
   // NaN, where the views say nothing, refutes nothing.
   const auto refuted = [&](const JointResult& result, double sigmas) {
@@ -385,10 +337,28 @@ JointResult SolveJointly(JointProblem joint) {
   return found;
 }
 
-Matrix6d CovarianceOf(const JointResult& result, std::size_t index) {
-  const auto at = static_cast<Index>(6 * index);
-  const Matrix6d covariance =
-      result.variance_factor * result.solution.covariance.block<6, 6>(at, at);
+}  // namespace
+
+JointResult SolveJointly(JointProblem joint) {
+  JointProblem wider = joint;
+  JointResult result = SolveWithOffset(std::move(joint));
+  result.lenses_off = LensesOff(result);
+  bool contradicted = false;
+  for (std::size_t c = 0; c < wider.cameras.size(); ++c) {
+    const LensOff& off = result.lenses_off[c];
+    if (!off.contradicts()) continue;
+    wider.problem.lens_priors[c] *= off.chi2 / off.freedom;
+    contradicted = true;
+  }
+  if (!contradicted) return result;
+  JointResult again = SolveWithOffset(std::move(wider));
+  again.lenses_off = std::move(result.lenses_off);
+  return again;
+}
+
+PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
+  const PoseAndLensCovariance covariance =
+      result.variance_factor * result.solution.PoseAndLens(index);
   return 0.5 * (covariance + covariance.transpose());
 }
 

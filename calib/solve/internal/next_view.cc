@@ -166,8 +166,10 @@ std::optional<Eigen::MatrixXd> Expected(const BoardProblem& problem, const Board
   for (std::size_t c = 0; c < images->size(); ++c) {
     view.images.push_back({static_cast<int>(c), &(*images)[c], false});
   }
-  const BoardProblem alone{problem.target, problem.cameras, {view}, problem.priors};
-  const BoardState there{state.camera_from_lidar, state.shared, {lidar_from_target}, {{}}};
+  const BoardProblem alone{
+      problem.target, problem.cameras, problem.lens_priors, {view}, problem.priors};
+  const BoardState there{
+      state.camera_from_lidar, state.lenses, state.shared, {lidar_from_target}, {{}}};
   return InformationOf(alone, there, 0).information;
 }
 
@@ -223,8 +225,8 @@ Worst WorstOf(const BoardProblem& problem, const Eigen::MatrixXd& covariance) {
   Worst worst;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     const Camera& camera = problem.cameras[c];
-    const Matrix6d own =
-        covariance.block<6, 6>(static_cast<Index>(6 * c), static_cast<Index>(6 * c));
+    const auto places = SharedPlaces(problem.cameras.size()).PoseAndLens(c);
+    const PoseAndLensCovariance own = covariance(places, places);
     for (const double x : {0.0, 0.5, 1.0}) {
       for (const double y : {0.0, 0.5, 1.0}) {
         const Eigen::Vector2d pixel(x * (camera.width() - 1), y * (camera.height() - 1));
@@ -236,13 +238,22 @@ Worst WorstOf(const BoardProblem& problem, const Eigen::MatrixXd& covariance) {
   return worst;
 }
 
+BoardProblem WithLenses(BoardProblem problem, const JointResult& result) {
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    CameraSpec spec = *result.joint.cameras[c].views.spec;
+    spec.lens = result.solution.state.lenses[c];
+    problem.cameras[c] = Camera(spec);
+  }
+  return problem;
+}
+
 }  // namespace
 
 std::optional<NextView> FindNextView(const JointResult& result) {
   const JointProblem& joint = result.joint;
-  const BoardProblem& problem = joint.problem;
   const BoardState& state = result.solution.state;
-  if (problem.views.empty()) return std::nullopt;
+  if (joint.problem.views.empty()) return std::nullopt;
+  const BoardProblem problem = WithLenses(joint.problem, result);
   const Eigen::MatrixXd& covariance = result.solution.covariance;
   const Eigen::MatrixXd information = InverseOfSymmetric(covariance);
   const Exactness exactness = ExactnessOf(problem);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "calib/camera/lens.h"
 #include "calib/camera/pixel_by_point.h"
 #include "calib/model/linear_algebra.h"
 
@@ -19,7 +21,7 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
       state_(state),
       lidar_from_target_(state.lidar_from_target[view]),
       side_shift_(state.side_shift[view]),
-      cameras_(static_cast<int>(problem.cameras.size())),
+      places_(problem.cameras.size()),
       h_(Eigen::MatrixXd::Zero(Size(), Size())),
       g_(Eigen::VectorXd::Zero(Size())) {
   for (const BoardImage& image : view_.images) {
@@ -31,9 +33,16 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
   AddSidePriors();
 }
 
-// Corners: 2 rows each over the camera's 6 and the board's 6 unknowns.
+std::optional<Eigen::Vector2d> ViewEquations::Project(int camera,
+                                                      const Eigen::Vector3d& point) const {
+  auto pixel = problem_.cameras[static_cast<std::size_t>(camera)].Project(point);
+  if (!pixel) return pixel;
+  ProjectUnchecked(LensOf(camera), point.x(), point.y(), point.z(), &pixel->x(), &pixel->y());
+  return pixel;
+}
+
+// Corners: 2 rows each over the board's pose, the camera's and the lens.
 void ViewEquations::AddCorners(const BoardImage& image) {
-  const Camera& camera = problem_.cameras[static_cast<std::size_t>(image.camera)];
   const Rigid3 camera_from_target =
       state_.camera_from_lidar[static_cast<std::size_t>(image.camera)] * lidar_from_target_;
   const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
@@ -42,21 +51,22 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   if (seen.size() != model.size()) return;
   const double sigma =
       kCornerSigmaInflation * std::max(kLeastCornerPx, image.edges->corner_sigma_px);
-  Eigen::Matrix<double, 12, 12> h = Eigen::Matrix<double, 12, 12>::Zero();
-  Eigen::Matrix<double, 12, 1> g = Eigen::Matrix<double, 12, 1>::Zero();
+  ImageMatrix h = ImageMatrix::Zero();
+  ImageVector g = ImageVector::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!IsSeen(seen[i])) continue;
     const Eigen::Vector3d& corner = model[image.turned ? model.size() - 1 - i : i];
     const Eigen::Vector3d p = camera_from_target * corner;
-    const auto pixel = camera.Project(p);
+    const auto pixel = Project(image.camera, p);
     if (!pixel) {
       cost_ += RobustCost(1e6);
       continue;
     }
-    const Eigen::Matrix<double, 2, 3> by_point = PixelByPoint(camera.lens(), p) / sigma;
-    Eigen::Matrix<double, 2, 12> j;
-    j << -by_point * CrossMatrix(p), by_point, -by_point * rotation * CrossMatrix(corner),
-        by_point * rotation;
+    const PixelDerivatives by = PixelByPointAndLens(LensOf(image.camera), p) / sigma;
+    const Eigen::Matrix<double, 2, 3> by_point = by.leftCols<3>();
+    Eigen::Matrix<double, 2, kImageUnknowns> j;
+    j << -by_point * rotation * CrossMatrix(corner), by_point * rotation,
+        -by_point * CrossMatrix(p), by_point, by.rightCols<kLensNumbers>();
     const Eigen::Vector2d residual = (*pixel - seen[i]) / sigma;
     // Both coordinates together: two degrees of freedom.
     const double squared = residual.squaredNorm() / 2;
@@ -68,16 +78,15 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   Spread(image.camera, h, g);
 }
 
-// From (camera, board) to their places among the unknowns.
-void ViewEquations::Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
-                           const Eigen::Matrix<double, 12, 1>& g) {
-  const int c = kOwnUnknowns + 6 * camera;
-  h_.block<6, 6>(c, c) += h.topLeftCorner<6, 6>();
-  h_.block<6, 6>(0, 0) += h.bottomRightCorner<6, 6>();
-  h_.block<6, 6>(0, c) += h.bottomLeftCorner<6, 6>();
-  h_.block<6, 6>(c, 0) += h.topRightCorner<6, 6>();
-  g_.segment<6>(c) += g.head<6>();
-  g_.head<6>() += g.tail<6>();
+// From (board, camera, lens) to their places among the unknowns.
+void ViewEquations::Spread(int camera, const ImageMatrix& h, const ImageVector& g) {
+  std::array<Eigen::Index, kImageUnknowns> place{};
+  std::iota(place.begin(), place.begin() + 6, 0);
+  const auto shared = places_.PoseAndLens(static_cast<std::size_t>(camera));
+  std::transform(shared.begin(), shared.end(), place.begin() + 6,
+                 [](Eigen::Index at) { return kOwnUnknowns + at; });
+  h_(place, place) += h;
+  g_(place) += g;
 }
 
 void ViewEquations::AddImageSides(const BoardImage& image) {
@@ -91,7 +100,7 @@ void ViewEquations::AddImageSides(const BoardImage& image) {
 
 // The projected side's distance from the curve at the curve's two ends.
 void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side, int on_board) {
-  const int c = kOwnUnknowns + 6 * image.camera;
+  const auto camera = static_cast<std::size_t>(image.camera);
   Eigen::Matrix<double, 2, Eigen::Dynamic> j =
       Eigen::Matrix<double, 2, Eigen::Dynamic>::Zero(2, Size());
   Eigen::Vector2d residual;
@@ -102,8 +111,9 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
     const auto there = AtCurveEnd(image, on_board, at, end == 0 ? next - at : at - next);
     if (!there) return;
     residual[end] = there->beside;
-    j.row(end).segment<6>(c) = there->by_camera;
     j.row(end).head<6>() = there->by_target;
+    j.row(end).segment<6>(kOwnUnknowns + SharedPlaces::Pose(camera)) = there->by_camera;
+    j.row(end).segment<kLensNumbers>(kOwnUnknowns + places_.Lens(camera)) = there->by_lens;
     j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
   }
   const auto inverse = InverseOfPositive(side.covariance);
@@ -120,7 +130,7 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
 std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
     const BoardImage& image, int side, const Eigen::Vector2d& at,
     const Eigen::Vector2d& along) const {
-  const Camera& camera = problem_.cameras[static_cast<std::size_t>(image.camera)];
+  const Lens& lens = LensOf(image.camera);
   const Rigid3 camera_from_target =
       state_.camera_from_lidar[static_cast<std::size_t>(image.camera)] * lidar_from_target_;
   const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
@@ -136,28 +146,30 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   double t = 0.5;  // along the side; Newton's steps put it beside the curve's end
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d p = camera_from_target * Eigen::Vector3d(from + t * (to - from));
-    const auto pixel = camera.Project(p);
+    const auto pixel = Project(image.camera, p);
     if (!pixel) return std::nullopt;
-    const Eigen::Vector2d by_t = PixelByPoint(camera.lens(), p) * rotation * (to - from);
+    const Eigen::Vector2d by_t = PixelByPoint(lens, p) * rotation * (to - from);
     const double speed = tangent.dot(by_t);
     if (std::abs(speed) < 1e-6) return std::nullopt;
     t += std::clamp(tangent.dot(at - *pixel) / speed, -1.0, 1.0);
   }
   const Eigen::Vector3d on_target = from + t * (to - from);
   const Eigen::Vector3d p = camera_from_target * on_target;
-  const auto pixel = camera.Project(p);
+  const auto pixel = Project(image.camera, p);
   if (!pixel) return std::nullopt;
   const Eigen::RowVector2d normal(-tangent.y(), tangent.x());
-  const Eigen::Matrix<double, 2, 3> pixel_by_point = PixelByPoint(camera.lens(), p);
+  const PixelDerivatives by = PixelByPointAndLens(lens, p);
   // Where the pixel moves along the curve, t takes that back: along the projected side, which is
   // not quite parallel to the curve.
-  const Eigen::Vector2d by_t = pixel_by_point * rotation * (to - from);
-  const Eigen::Matrix<double, 1, 3> by_point =
-      (normal - normal.dot(by_t) / tangent.dot(by_t) * tangent.transpose()) * pixel_by_point;
+  const Eigen::Vector2d by_t = by.leftCols<3>() * rotation * (to - from);
+  const Eigen::RowVector2d across =
+      normal - normal.dot(by_t) / tangent.dot(by_t) * tangent.transpose();
+  const Eigen::Matrix<double, 1, 3> by_point = across * by.leftCols<3>();
   CurveEnd end;
   end.beside = normal * (*pixel - at);
   end.by_camera << -by_point * CrossMatrix(p), by_point;
   end.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
+  end.by_lens = across * by.rightCols<kLensNumbers>();
   end.by_outline = by_point * rotation * outward;
   return end;
 }
@@ -214,16 +226,16 @@ void ViewEquations::SpreadCrossings(int side, int kind, const Eigen::Matrix<doub
                                     const Eigen::Matrix<double, 9, 1>& g) {
   if (h(8, 8) == 0) return;
   // Places of the ten derivatives: the class's shift stands for the side's, too.
-  const std::array<int, 10> place{0,
-                                  1,
-                                  2,
-                                  3,
-                                  4,
-                                  5,
-                                  Shared(kNoReturnShift + kind),
-                                  Shared(kThickness),
-                                  Shared(kOutlineTop + side),
-                                  6 + side};
+  const std::array<Eigen::Index, 10> place{0,
+                                           1,
+                                           2,
+                                           3,
+                                           4,
+                                           5,
+                                           Shared(kNoReturnShift + kind),
+                                           Shared(kThickness),
+                                           Shared(kOutlineTop + side),
+                                           6 + side};
   const std::array<int, 10> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 6};
   for (std::size_t a = 0; a < 10; ++a) {
     for (std::size_t b = 0; b < 10; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
@@ -239,7 +251,7 @@ void ViewEquations::AddPlane() {
   const Eigen::Matrix4d h = r.by.transpose() * information * r.by;
   const Eigen::Vector4d g = -r.by.transpose() * information * r.x;
   cost_ += r.x.dot(information * r.x);
-  const std::array<int, 4> place{0, 1, 5, Shared(kRangeOffset)};
+  const std::array<Eigen::Index, 4> place{0, 1, 5, Shared(kRangeOffset)};
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < 4; ++b) {
       h_(place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)]) += h(a, b);

@@ -11,8 +11,8 @@ namespace rgbdt {
 inline constexpr int kOwnUnknowns = 10;  ///< of a view: its board's pose, its four sides' shifts
 
 /// One view's normal equations about a state: h x = g, x the step. Its own unknowns come first
-/// (board's pose: right delta, lidar_from_target * Exp(delta); then sides' shifts [rad]), then each
-/// camera's six, then SharedUnknown. Problem and state must outlive it.
+/// (board's pose: right delta, lidar_from_target * Exp(delta); then sides' shifts [rad]), then the
+/// shared ones (SharedPlaces). Problem and state must outlive it.
 class ViewEquations {
  public:
   ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view);
@@ -23,18 +23,25 @@ class ViewEquations {
 
  private:
   using Row6 = Eigen::Matrix<double, 1, 6>;
+  // What an image's residuals depend on: the board's pose, the camera's, its lens.
+  static constexpr int kImageUnknowns = 6 + kPoseAndLens;
+  using ImageMatrix = Eigen::Matrix<double, kImageUnknowns, kImageUnknowns>;
+  using ImageVector = Eigen::Matrix<double, kImageUnknowns, 1>;
 
-  int Size() const { return kOwnUnknowns + 6 * cameras_ + kSharedUnknowns; }
-  int Shared(int unknown) const { return kOwnUnknowns + 6 * cameras_ + unknown; }
+  Eigen::Index Size() const { return kOwnUnknowns + places_.Count(); }
+  Eigen::Index Shared(int unknown) const { return kOwnUnknowns + places_.Of(unknown); }
+  // Where the given lens sees a point, the pixel is by the lens of this state.
+  std::optional<Eigen::Vector2d> Project(int camera, const Eigen::Vector3d& point) const;
+  const Lens& LensOf(int camera) const { return state_.lenses[static_cast<std::size_t>(camera)]; }
 
   void AddCorners(const BoardImage& image);
-  void Spread(int camera, const Eigen::Matrix<double, 12, 12>& h,
-              const Eigen::Matrix<double, 12, 1>& g);
+  void Spread(int camera, const ImageMatrix& h, const ImageVector& g);
   void AddImageSides(const BoardImage& image);
   void AddImageSide(const BoardImage& image, const ImageSide& side, int on_board);
   struct CurveEnd {  // how far beside it the projected side lies [px], and derivatives
     double beside = 0;
     Row6 by_camera, by_target;
+    Eigen::Matrix<double, 1, kLensNumbers> by_lens;
     double by_outline = 0;
   };
   std::optional<CurveEnd> AtCurveEnd(const BoardImage& image, int side, const Eigen::Vector2d& at,
@@ -51,7 +58,7 @@ class ViewEquations {
   const BoardState& state_;
   const Rigid3& lidar_from_target_;
   const std::array<double, 4>& side_shift_;
-  int cameras_;
+  SharedPlaces places_;
   Eigen::MatrixXd h_;
   Eigen::VectorXd g_;
   double cost_ = 0;

@@ -65,6 +65,9 @@ void Check(const view_detection_t& wire);
 ViewDetection FromWire(const view_detection_t& wire);
 
 // codec_calibration.cc
+solved_lens_t ToWire(const SolvedLens& lens);
+void Check(const solved_lens_t& wire);
+SolvedLens FromWire(const solved_lens_t& wire);
 calibration_t ToWire(const CalibrationMessage& message);
 void Check(const calibration_t& wire);
 CalibrationMessage FromWire(const calibration_t& wire);

@@ -46,10 +46,10 @@ class CopyToWire {
     static_assert(N == M);
     Eigen::Map<Eigen::Matrix<double, M, 1>>{wire} = value;
   }
-  template <int N>
-  void operator()(double (&wire)[N][N], const Eigen::Matrix<double, N, N>& value) const {
+  template <int N, int M>
+  void operator()(double (&wire)[N][M], const Eigen::Matrix<double, N, M>& value) const {
     for (int row = 0; row < N; ++row) {
-      for (int column = 0; column < N; ++column) wire[row][column] = value(row, column);
+      for (int column = 0; column < M; ++column) wire[row][column] = value(row, column);
     }
   }
   template <typename W, typename S, std::size_t N>
@@ -102,10 +102,10 @@ class CopyFromWire {
     static_assert(N == M);
     value = Eigen::Map<const Eigen::Matrix<double, M, 1>>{wire};
   }
-  template <int N>
-  void operator()(const double (&wire)[N][N], Eigen::Matrix<double, N, N>& value) const {
+  template <int N, int M>
+  void operator()(const double (&wire)[N][M], Eigen::Matrix<double, N, M>& value) const {
     for (int row = 0; row < N; ++row) {
-      for (int column = 0; column < N; ++column) value(row, column) = wire[row][column];
+      for (int column = 0; column < M; ++column) value(row, column) = wire[row][column];
     }
   }
   template <typename W, typename S, std::size_t N>

@@ -4,6 +4,7 @@
 
 #include <opencv2/calib3d.hpp>
 
+#include "calib/camera/pixel_by_point.h"
 #include "tests/unit/camera/lenses.h"
 #include "tests/unit/matchers.h"
 
@@ -127,6 +128,28 @@ TEST(FisheyeLens, SeesBesideAndBehind) {
   const Lens lens{Lens::Model::kFisheye, 100, 100, 0, 0, {}};
   EXPECT_THAT(Projected(lens, {2, 0, 0}), EigenNear(Eigen::Vector2d(100 * M_PI / 2, 0), 1e-10));
   EXPECT_THAT(Projected(lens, {0, 1, -1}), EigenNear(Eigen::Vector2d(0, 100 * 0.75 * M_PI), 1e-10));
+}
+
+TEST_P(LensModel, DerivativesByPointAndLensAreThoseOfTheProjection) {
+  const Eigen::Vector3d point(0.4, -0.3, 1.2);
+  const PixelDerivatives by = PixelByPointAndLens(lens(), point);
+  EXPECT_LT((by.leftCols<3>() - PixelByPoint(lens(), point)).norm(), 1e-9);
+  const LensNumbers numbers = NumbersOf(lens());
+  for (Eigen::Index i = 0; i < kLensNumbers; ++i) {
+    const double step = i < 4 ? 1e-2 : 1e-5;
+    const auto at = [&](double off) {
+      LensNumbers moved = numbers;
+      moved[i] += off;
+      return Projected(WithNumbers(lens(), moved), point);
+    };
+    const Eigen::Vector2d expected = (at(step) - at(-step)) / (2 * step);
+    const bool unused = lens().model == Lens::Model::kFisheye && i == 8;
+    if (unused) {
+      EXPECT_EQ(by.col(3 + i).norm(), 0);
+    } else {
+      EXPECT_LT((by.col(3 + i) - expected).norm(), 1e-5 * (1 + expected.norm())) << i;
+    }
+  }
 }
 
 }  // namespace

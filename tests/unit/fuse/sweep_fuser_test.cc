@@ -37,6 +37,10 @@ Rigid3 CameraFromLidar() {
   return pose;
 }
 
+CameraCalibration At(const Rigid3& camera_from_lidar) {
+  return {"rgb", camera_from_lidar, std::nullopt, SolveStatus::kConverged, ""};
+}
+
 // A rig that slides 1 m/s to the left and turns to it, too, or stands.
 struct Drive {
   bool moves = true;
@@ -101,7 +105,7 @@ struct Session {
 
 Session Drove(const Drive& drive, const CameraSpec& spec, bool with_poses) {
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), kNow - kSecond);
+  fuser.SetCalibration(0, At(CameraFromLidar()), kNow - kSecond);
   Session session;
   if (with_poses) fuser.AddPose(PoseAt(drive, kNow - 200'000));
   for (Utime t = -180'000; t <= kSecond; t += 20'000) {
@@ -138,6 +142,26 @@ Worst WorstOf(const Drive& drive, const std::vector<RgbdtCloud>& clouds) {
     }
   }
   return worst;
+}
+
+// Twice the focal length: what is left of the middle is seen twice as far left of it.
+TEST(FusionCamera, HasTheLensThatBelongsToItsPose) {
+  FusionCamera camera(SpecOf(0));
+  CameraCalibration found = At(CameraFromLidar());
+  EXPECT_FALSE(camera.Has(found, 1));
+  camera.SetCalibration(found, 1);
+  EXPECT_TRUE(camera.Has(found, 1));
+  const Eigen::Vector3d left(-0.1, 0, 1);
+  const double by_rig = camera.camera().Project(left)->x() - 159.5;
+  found.lens.emplace().lens = SpecOf(0).lens;
+  found.lens->lens.fx *= 2;
+  EXPECT_FALSE(camera.Has(found, 1));
+  camera.SetCalibration(found, 1);
+  EXPECT_TRUE(camera.Has(found, 1));
+  EXPECT_NEAR(camera.camera().Project(left)->x() - 159.5, 2 * by_rig, 1e-9);
+  found.lens.reset();
+  camera.SetCalibration(found, 1);
+  EXPECT_EQ(camera.spec().lens, SpecOf(0).lens);
 }
 
 TEST(SweepFuser, ARigThatStandsNeedsNoPoses) {
@@ -177,7 +201,7 @@ TEST(SweepFuser, ARollingCameraTakenForAGlobalOneIsWrong) {
   const Drive drive;
   const CameraSpec rolls = SpecOf(0.1);
   SweepFuser fuser({SpecOf(0)}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   for (Utime t = -100'000; t <= 100'000; t += 20'000) fuser.AddPose(PoseAt(drive, kNow + t));
   fuser.camera(0).AddImage(Photograph(drive, rolls, kNow - 30'000));
   EXPECT_GT(WorstOf(drive, {fuser.FuseChunk(LineAt(drive, kNow, 0, kNow, 0.1))}).colour, 2.5);
@@ -187,7 +211,7 @@ TEST(SweepFuser, WhereThePosesDoNotTellNothingIsColoured) {
   const Drive drive;
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   fuser.AddPose(PoseAt(drive, kNow - kSecond));
   fuser.AddPose(PoseAt(drive, kNow - kSecond + 20'000));  // and then no more
   fuser.camera(0).AddImage(Photograph(drive, spec, kNow - 100'000));
@@ -204,7 +228,7 @@ TEST(SweepFuser, PosesThatBeginWithinASweepServeFromThenOn) {
   const Drive drive;
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   fuser.camera(0).AddImage(Photograph(drive, spec, kNow - 50'000));
   EXPECT_FALSE(fuser.FuseChunk(LineAt(drive, kNow, 0, kNow, 0)).map_from_lidar);
   for (Utime t = -100'000; t <= 100'000; t += 20'000) fuser.AddPose(PoseAt(drive, kNow + t));
@@ -221,7 +245,7 @@ TEST(SweepFuser, AfterAJumpTheStreamGoesOn) {
   const Drive drive;
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   for (Utime t = -100'000; t <= 0; t += 20'000) fuser.AddPose(PoseAt(drive, kNow + t));
   fuser.camera(0).AddImage(Photograph(drive, spec, kNow - 50'000));
   fuser.FuseChunk(LineAt(drive, kNow, 0, kNow, 0));
@@ -246,13 +270,14 @@ TEST(SweepFuser, NoMessageMixesCalibrations) {
   const Drive still{false};
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
   for (int line = 0; line < 3; ++line) {
     fuser.FuseChunk(LineAt(still, kNow, line, kNow + line * 20'000, 0.01 * line));
   }
-  EXPECT_THAT(fuser.SetCalibration(0, CameraFromLidar(), 1), SizeIs(0)) << "the same once more";
-  const auto parts = fuser.SetCalibration(0, Exp(Vector6d::Constant(0.01)) * CameraFromLidar(), 2);
+  EXPECT_THAT(fuser.SetCalibration(0, At(CameraFromLidar()), 1), SizeIs(0)) << "the same once more";
+  const auto parts =
+      fuser.SetCalibration(0, At(Exp(Vector6d::Constant(0.01)) * CameraFromLidar()), 2);
   ASSERT_THAT(parts, SizeIs(1));
   EXPECT_THAT(parts[0].calibration_utime, ElementsAre(1));
   EXPECT_EQ(parts[0].size(), 120U);
@@ -274,7 +299,7 @@ TEST(SweepFuser, TheSweepsEndKnowsWhatCameLater) {
   // The camera stands to the left, so that the rod, to the left, hides the wall to the right of it.
   Rigid3 beside = CameraFromLidar();
   beside.translation.x() += 0.5;
-  fuser.SetCalibration(0, beside, 1);
+  fuser.SetCalibration(0, At(beside), 1);
   fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
   std::vector<RgbdtCloud> chunks;
   const auto line = [&](int number, bool rod) {
@@ -331,7 +356,7 @@ TEST(SweepFuser, WhatHasGoneHidesNothing) {
     SweepFuser fuser({spec}, 0.005);
     Rigid3 beside = CameraFromLidar();
     beside.translation.x() += 0.5;
-    fuser.SetCalibration(0, beside, 1);
+    fuser.SetCalibration(0, At(beside), 1);
     fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
     fuser.camera(0).ServeAllTimes();
     for (int number = 0; number < kLines; ++number) fuser.FuseChunk(line(kNow, number, true));
@@ -353,7 +378,7 @@ TEST(SweepFuser, BadPointsAreLeftOutAndHarmNothing) {
   const Drive still{false};
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
   Cloud line = LineAt(still, kNow, 0, kNow, 0);
   line.points[3].x() = std::nanf("");
@@ -371,7 +396,7 @@ TEST(SweepFuser, ACloudFromTheFutureIsNotColouredAndCounted) {
   const Drive still{false};
   const CameraSpec spec = SpecOf(0);
   SweepFuser fuser({spec}, 0.005);
-  fuser.SetCalibration(0, CameraFromLidar(), 1);
+  fuser.SetCalibration(0, At(CameraFromLidar()), 1);
   fuser.camera(0).AddImage(Photograph(still, spec, kNow - 100'000));
   const Utime future = kNow + 3600 * kSecond;
   EXPECT_THAT(fuser.FuseChunk(LineAt(still, future, 0, future, 0)).valid, Each(0U));

@@ -29,7 +29,7 @@ Fingerprint Of(std::uint64_t frozen) {
 // changes; what it lacks goes into a new type (lcmtypes/README.md).
 const Fingerprint kFingerprints[] = {
     Of<board_crossing_t>(0x5e8f49c77d39f5f6U),
-    Of<calibration_t>(0xd1ee416ce96ef457U),
+    Of<calibration_t>(0x6a7b596f34f7731eU),
     Of<cloud_board_t>(0xc632f59328d6d147U),
     Of<cloud_t>(0x125e8ff78f44efb8U),
     Of<corner_selection_t>(0x02f689fdcac537a0U),
@@ -46,6 +46,7 @@ const Fingerprint kFingerprints[] = {
     Of<session_command_t>(0x259249a63234a765U),
     Of<session_event_t>(0x20babb8a4ce9fbb5U),
     Of<session_request_t>(0xa4aca4bce278bf57U),
+    Of<solved_lens_t>(0x2166f083e957d365U),
     Of<status_t>(0xcc7326579c48e529U),
     Of<target_pose_t>(0x9d6616d77af99f13U),
     Of<target_status_t>(0x283a34272dbe5254U),

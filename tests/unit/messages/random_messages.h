@@ -233,6 +233,15 @@ class RandomMessages {
     return cloud;
   }
 
+  SolvedLens AnyLens() {
+    SolvedLens solved;
+    solved.lens = {Lens::Model::kFisheye, 400, 401, Number(), Number(), {}};
+    for (double& k : solved.lens.distortion) k = Number();
+    for (Eigen::Index i = 0; i < 6; ++i) solved.covariance.col(i).setConstant(Number());
+    solved.covariance.rightCols<kLensNumbers>() = Covariance<kLensNumbers>();
+    return solved;
+  }
+
   CalibrationMessage Calibrated() {
     CalibrationMessage message;
     message.seq = Seq();
@@ -244,6 +253,7 @@ class RandomMessages {
     message.calibration.status = static_cast<SolveStatus>(Int(0, 5));
     message.calibration.detail = Text();
     if (Coin()) message.calibration.covariance = Covariance<6>();
+    if (Coin()) message.calibration.lens = AnyLens();
     return message;
   }
 

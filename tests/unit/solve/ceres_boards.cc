@@ -7,6 +7,7 @@
 #include <ceres/solver.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -77,20 +78,25 @@ class TailLoss : public ceres::LossFunction {
 
 // A camera that sees the board, both about where they are now.
 struct Seen {
-  Lens lens;
+  Lens lens;  // of it the model, k4, k5 and k6; the other numbers are unknowns
   Rigid3 camera_from_lidar, lidar_from_target;
 
   template <typename T>
-  Pixel<T> operator()(const T* camera, const T* board, const Point<T>& on_target) const {
+  Pixel<T> operator()(const T* camera, const T* numbers, const T* board,
+                      const Point<T>& on_target) const {
     const Point<T> in_lidar = Placed<T>(lidar_from_target, Moved<T>(board, on_target));
     const Point<T> p = Moved<T>(camera, Placed<T>(camera_from_lidar, in_lidar));
+    std::array<T, 12> all;
+    std::copy(numbers, numbers + kLensNumbers, all.begin());
+    for (std::size_t i = 5; i < 8; ++i) all[4 + i] = T(lens.distortion[i]);
     Pixel<T> pixel;
-    ProjectUnchecked(lens, p[0], p[1], p[2], &pixel[0], &pixel[1]);
+    ProjectUnchecked(lens.model, all.data(), &all[2], &all[4], p[0], p[1], p[2], &pixel[0],
+                     &pixel[1]);
     return pixel;
   }
 };
 
-struct CornerResidual {  // of camera, board
+struct CornerResidual {  // of camera, lens, board
   Seen seen;
   Eigen::Vector3d corner;
   Eigen::Vector2d at;
@@ -98,14 +104,14 @@ struct CornerResidual {  // of camera, board
 
   template <typename T>
   bool operator()(T const* const* block, T* residual) const {
-    const Pixel<T> pixel = seen(block[0], block[1], Constant<T>(corner));
+    const Pixel<T> pixel = seen(block[0], block[1], block[2], Constant<T>(corner));
     residual[0] = (pixel[0] - at.x()) / sigma;
     residual[1] = (pixel[1] - at.y()) / sigma;
     return true;
   }
 };
 
-struct ImageSideResidual {  // of camera, board, shared
+struct ImageSideResidual {  // of camera, lens, board, shared
   Seen seen;
   int side;
   Eigen::Vector3d from, to;         // the side's corners
@@ -115,11 +121,11 @@ struct ImageSideResidual {  // of camera, board, shared
   template <typename T>
   bool operator()(T const* const* block, T* residual) const {
     const Eigen::Vector3d out = OutwardsOf(side);
-    const T& shift = block[2][kOutlineTop + side];
+    const T& shift = block[3][kOutlineTop + side];
     const auto pixel_at = [&](const T& t) {
       Point<T> p;
       for (int k = 0; k < 3; ++k) p[k] = from[k] + t * (to - from)[k] + shift * out[k];
-      return seen(block[0], block[1], p);
+      return seen(block[0], block[1], block[2], p);
     };
     T off[2];
     for (int end = 0; end < 2; ++end) {
@@ -228,6 +234,21 @@ struct PriorResidual {  // of one block
   }
 };
 
+struct LensPriorResidual {
+  LensNumbers given;
+  LensCovariance root;  // root' root: its information
+
+  template <typename T>
+  bool operator()(T const* const* block, T* residual) const {
+    for (int row = 0; row < kLensNumbers; ++row) {
+      residual[row] = T(0);
+      for (int k = 0; k < kLensNumbers; ++k)
+        residual[row] += root(row, k) * (block[0][k] - given[k]);
+    }
+    return true;
+  }
+};
+
 class CeresBoards {
  public:
   CeresBoards(const BoardProblem& problem, const BoardState& state)
@@ -241,6 +262,17 @@ class CeresBoards {
     PriorResidual prior{{means.begin(), means.end()}, {}};
     for (int k = 0; k < kSharedUnknowns; ++k) prior.sigma.push_back(problem.priors.Sigma(k));
     Add(prior, kSharedUnknowns, {state_.shared.data()});
+    for (const Lens& lens : state_.lenses) lenses_.push_back(NumbersOf(lens));
+    for (std::size_t c = 0; c < lenses_.size(); ++c) {
+      AddBlock(lenses_[c].data(), kLensNumbers);
+      LensCovariance covariance = problem.lens_priors[c];
+      for (double& variance : covariance.diagonal()) {
+        if (variance == 0) variance = 1e-12;  // as the solver holds what is exact
+      }
+      const Eigen::LLT<LensCovariance> information(LensCovariance(covariance.inverse()));
+      Add(LensPriorResidual{NumbersOf(problem.cameras[c].lens()), information.matrixU()},
+          kLensNumbers, {lenses_[c].data()});
+    }
     for (std::size_t v = 0; v < boards_.size(); ++v) {
       AddBlock(boards_[v].data(), 6);
       AddBlock(state_.side_shift[v].data(), 4);
@@ -263,6 +295,7 @@ class CeresBoards {
     BoardState found = state_;
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       found.camera_from_lidar[c] = MotionOf(cameras_[c]) * state_.camera_from_lidar[c];
+      found.lenses[c] = WithNumbers(found.lenses[c], lenses_[c]);
     }
     for (std::size_t v = 0; v < boards_.size(); ++v) {
       found.lidar_from_target[v] = state_.lidar_from_target[v] * MotionOf(boards_[v]);
@@ -330,13 +363,14 @@ class CeresBoards {
   void AddImage(const BoardImage& image, const Rigid3& board_pose, double* board) {
     const auto c = static_cast<std::size_t>(image.camera);
     double* camera = cameras_[c].data();
-    const Seen seen{problem_.cameras[c].lens(), state_.camera_from_lidar[c], board_pose};
+    double* lens = lenses_[c].data();
+    const Seen seen{state_.lenses[c], state_.camera_from_lidar[c], board_pose};
     const ImageEdges& edges = *image.edges;
     const auto model = problem_.target.InnerCorners();
     for (std::size_t i = 0; i < model.size(); ++i) {
       Add(CornerResidual{seen, model[image.turned ? model.size() - 1 - i : i], edges.corners[i],
                          kCornerSigmaInflation * edges.corner_sigma_px},
-          2, {camera, board}, new TailLoss(2));
+          2, {camera, lens, board}, new TailLoss(2));
     }
     const auto corners = problem_.target.OutlineCorners();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -354,13 +388,14 @@ class CeresBoards {
                             {(curve[1] - curve[0]).normalized(),
                              (curve[last] - curve[last - 1]).normalized()},
                             information.matrixU()},
-          2, {camera, board, state_.shared.data()}, new TailLoss(2));
+          2, {camera, lens, board, state_.shared.data()}, new TailLoss(2));
     }
   }
 
   const BoardProblem& problem_;
   BoardState state_;
   std::vector<Vector6d> cameras_, boards_;
+  std::vector<LensNumbers> lenses_;
   std::vector<double*> blocks_;
   ceres::Problem ceres_;
 };
@@ -368,7 +403,9 @@ class CeresBoards {
 }  // namespace
 
 BoardState SolveByCeres(const BoardProblem& problem, const BoardState& start) {
-  return CeresBoards(problem, CeresBoards(problem, start).Solve()).Solve();
+  BoardState state = start;
+  for (int round = 0; round < 3; ++round) state = CeresBoards(problem, state).Solve();
+  return state;
 }
 
 Eigen::MatrixXd JacobianByCeres(const BoardProblem& problem, const BoardState& state) {

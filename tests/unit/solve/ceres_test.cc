@@ -25,6 +25,10 @@ VectorXd Between(const BoardState& from, const BoardState& to) {
     add(Log(to.camera_from_lidar[c] * from.camera_from_lidar[c].Inverse()));
   }
   for (std::size_t k = 0; k < from.shared.size(); ++k) out.push_back(to.shared[k] - from.shared[k]);
+  for (std::size_t c = 0; c < from.lenses.size(); ++c) {
+    const LensNumbers change = NumbersOf(to.lenses[c]) - NumbersOf(from.lenses[c]);
+    out.insert(out.end(), change.begin(), change.end());
+  }
   for (std::size_t v = 0; v < from.lidar_from_target.size(); ++v) {
     add(Log(from.lidar_from_target[v].Inverse() * to.lidar_from_target[v]));
     for (std::size_t s = 0; s < 4; ++s) out.push_back(to.side_shift[v][s] - from.side_shift[v][s]);
@@ -34,34 +38,36 @@ VectorXd Between(const BoardState& from, const BoardState& to) {
 
 // Units of the shared unknowns in which a sigma of 1 is loose: a degree, 0.1 m (degenerate.h), and
 // of the nuisances more than the prior's sigma, which none has.
-VectorXd LooseUnits(Eigen::Index unknowns, const BoardPriors& priors) {
-  VectorXd units(unknowns);
-  for (Eigen::Index i = 0; i < unknowns; ++i) {
-    const auto nuisance = static_cast<int>(i - (unknowns - kSharedUnknowns));
-    units[i] = nuisance >= 0 ? 1.1 * priors.Sigma(nuisance) : i % 6 < 3 ? M_PI / 180 : 0.1;
+VectorXd LooseUnits(const BoardProblem& problem) {
+  const std::size_t cameras = problem.cameras.size();
+  const SharedPlaces places(cameras);
+  VectorXd units(places.Count());
+  for (std::size_t c = 0; c < cameras; ++c) {
+    units.segment<3>(SharedPlaces::Pose(c)).setConstant(M_PI / 180);
+    units.segment<3>(SharedPlaces::Pose(c) + 3).setConstant(0.1);
+    units.segment<kLensNumbers>(places.Lens(c)) =
+        1.1 * problem.lens_priors[c].diagonal().cwiseMax(1e-12).cwiseSqrt();
   }
+  for (int k = 0; k < kSharedUnknowns; ++k) units[places.Of(k)] = 1.1 * problem.priors.Sigma(k);
   return units;
 }
 
 // What is known of the shared unknowns, all else eliminated: by the solver's Schur blocks,
-MatrixXd InformationBy(const BoardSolution& solution, const BoardPriors& priors) {
-  const Eigen::Index unknowns = solution.covariance.rows();
-  MatrixXd sum = MatrixXd::Zero(unknowns, unknowns);
+MatrixXd InformationBy(const BoardSolution& solution, const BoardProblem& problem) {
+  MatrixXd sum = PriorInformation(problem, solution.state).information;
   for (const ViewInformation& view : solution.views) sum += view.information;
-  for (int k = 0; k < kSharedUnknowns; ++k) {
-    const Eigen::Index at = unknowns - kSharedUnknowns + k;
-    sum(at, at) += 1 / std::pow(priors.Sigma(k), 2);
-  }
-  const VectorXd units = LooseUnits(unknowns, priors);
+  const VectorXd units = LooseUnits(problem);
   return units.asDiagonal() * sum * units.asDiagonal();
 }
 
 // and by Ceres' Jacobian.
-MatrixXd InformationBy(const MatrixXd& jacobian, Eigen::Index unknowns, const BoardPriors& priors) {
+MatrixXd InformationBy(const MatrixXd& jacobian, const BoardProblem& problem) {
+  const VectorXd units = LooseUnits(problem);
+  const Eigen::Index unknowns = units.size();
   const MatrixXd own = jacobian.rightCols(jacobian.cols() - unknowns);
   MatrixXd rest = jacobian.leftCols(unknowns);
   rest -= own * own.colPivHouseholderQr().solve(rest);
-  rest *= LooseUnits(unknowns, priors).asDiagonal();
+  rest *= units.asDiagonal();
   return rest.transpose() * rest;
 }
 
@@ -96,6 +102,7 @@ struct SolveProblem {
   bool edges = true;
   bool outliers = false;
   double range_offset_sigma_m = 0;
+  bool lens = false;  // unknown
 };
 
 void PrintTo(const SolveProblem& problem, std::ostream* out) { *out << problem.name; }
@@ -124,6 +131,7 @@ SolveWorld WorldOf(const SolveProblem& problem) {
   options.noise = problem.edges || problem.views == 1 ? 1 : 0;
   options.draw_nuisances = true;
   options.side_sigma_rad = BoardPriors().side_sigma_rad;
+  if (problem.lens) options.lens_uncertainty.reset();
   SolveWorld world(options);
   const Rigid3 first = world.AnyBoard();
   while (static_cast<int>(world.lidar_from_target.size()) < problem.views) {
@@ -161,6 +169,9 @@ INSTANTIATE_TEST_SUITE_P(
     Problems, SolveBoardsAndCeres,
     testing::Values(SolveProblem{"TenViews", 10}, SolveProblem{"FourViews", 4},
                     SolveProblem{"RangeOffset", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1},
+                    SolveProblem{"Lens", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1, true},
+                    SolveProblem{"LensOfOneView", 1, 4, SolveProblem::kAnyPlace, true, false, 0,
+                                 true},
                     SolveProblem{"Outliers", 5, 0, SolveProblem::kAnyPlace, true, true},
                     SolveProblem{"OutliersOfMany", 12, 0, SolveProblem::kAnyPlace, true, true},
                     SolveProblem{"Parallel", 6, 0, SolveProblem::kParallel},
@@ -180,10 +191,8 @@ TEST_P(SolveBoardsAndCeres, FindTheSame) {
   // All unknowns' distance in sigmas; loose directions count for nothing.
   EXPECT_LT((jacobian * Between(ours.state, theirs)).norm(), kOptimumSigmas);
 
-  const BoardPriors& priors = joint.problem.priors;
-  const Eigen::Index unknowns = ours.covariance.cols();
-  const MatrixXd by_us = InformationBy(ours, priors);
-  const MatrixXd by_ceres = InformationBy(jacobian, unknowns, priors);
+  const MatrixXd by_us = InformationBy(ours, joint.problem);
+  const MatrixXd by_ceres = InformationBy(jacobian, joint.problem);
   const Directions directions(by_ceres);
   EXPECT_EQ(directions.loose.cols(), GetParam().loose);
   EXPECT_LT(Directions(by_us).Apart(directions), 1e-6);
@@ -191,7 +200,7 @@ TEST_P(SolveBoardsAndCeres, FindTheSame) {
   EXPECT_LT(WorstRatio(held.transpose() * by_us * held, held.transpose() * by_ceres * held),
             kVarianceRatio);
   if (GetParam().loose > 0) return;  // no covariance
-  const VectorXd per_unit = LooseUnits(unknowns, priors).cwiseInverse();
+  const VectorXd per_unit = LooseUnits(joint.problem).cwiseInverse();
   const MatrixXd covariance = per_unit.asDiagonal() * ours.covariance * per_unit.asDiagonal();
   EXPECT_LT(WorstRatio(covariance, by_ceres.inverse()), kVarianceRatio);
 }

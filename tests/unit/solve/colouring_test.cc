@@ -32,13 +32,32 @@ Matrix6d Covariance() {
   return root * root.transpose();
 }
 
-/// Draws of delta with a covariance; the same on every machine.
+// The same with a lens that is known to some pixels; its centre and the camera's turns take each
+// other's place.
+PoseAndLensCovariance WithLens() {
+  PoseAndLensCovariance root = WithExactLens(Covariance().llt().matrixL());
+  root.diagonal().tail<kLensNumbers>() << 2, 1.5, 1, 2, 3e-3, 2e-3, 1e-4, 2e-4, 1e-3;
+  root(8, 1) = 0.3;
+  root(9, 0) = -0.2;
+  return root * root.transpose();
+}
+
+CameraCalibration CalibrationWith(const Matrix6d& covariance) {
+  return {"rgb", WorldTruth(), covariance, SolveStatus::kConverged, ""};
+}
+
+/// Draws of delta and of the lens's numbers with a covariance; the same on every machine.
 class Deltas {
  public:
-  explicit Deltas(const Matrix6d& covariance) : root_(covariance.llt().matrixL()) {}
+  using Vector = Eigen::Matrix<double, kPoseAndLens, 1>;
 
-  Vector6d Draw() {
-    Vector6d standard;
+  explicit Deltas(PoseAndLensCovariance covariance) {
+    covariance.diagonal().array() += 1e-24;  // where the lens is exact
+    root_ = covariance.llt().matrixL();
+  }
+
+  Vector Draw() {
+    Vector standard;
     for (double& value : standard) value = Normal();
     return root_ * standard;
   }
@@ -50,33 +69,41 @@ class Deltas {
            std::cos(random_.Uniform(0, 2 * M_PI));
   }
 
-  Matrix6d root_;
+  PoseAndLensCovariance root_;
   Random random_{5};
 };
 
-// The same by drawing poses: each moves the point that the pixel shows.
-double DrawnSigma(const Camera& camera, const Matrix6d& covariance, const Eigen::Vector2d& pixel,
-                  double distance_m) {
-  const Eigen::Vector3d point = distance_m * camera.Unproject(pixel).value();
+// The same by drawing poses and lenses: each moves the point that the pixel shows.
+double DrawnSigma(const CameraSpec& spec, const PoseAndLensCovariance& covariance,
+                  const Eigen::Vector2d& pixel, double distance_m) {
+  const Eigen::Vector3d point = distance_m * Camera(spec).Unproject(pixel).value();
   Deltas deltas(covariance);
   double sum = 0;
   for (int i = 0; i < kDraws; ++i) {
-    sum += (camera.Project(Exp(deltas.Draw()) * point).value() - pixel).squaredNorm();
+    const Deltas::Vector drawn = deltas.Draw();
+    CameraSpec other = spec;
+    other.lens = WithNumbers(spec.lens, NumbersOf(spec.lens) + drawn.tail<kLensNumbers>());
+    const Eigen::Vector3d moved = Exp(drawn.head<6>()) * point;
+    Eigen::Vector2d seen;
+    ProjectUnchecked(other.lens, moved.x(), moved.y(), moved.z(), &seen.x(), &seen.y());
+    sum += (seen - pixel).squaredNorm();
   }
   return std::sqrt(sum / kDraws);
 }
 
-TEST(ColouringSigma, IsTheScatterOfDrawnPosesThroughTheWholeLens) {
+TEST(ColouringSigma, IsTheScatterOfDrawnPosesAndLenses) {
   for (const CameraSpec& spec : {WorldCamera(), Fisheye()}) {
     const Camera camera(spec);
     for (const double distance_m : {2.0, 10.0}) {
       for (const Eigen::Vector2d& share :
            {Eigen::Vector2d(0.5, 0.5), Eigen::Vector2d(0, 0), Eigen::Vector2d(0.95, 0.3)}) {
         const Eigen::Vector2d pixel(share.x() * (spec.width - 1), share.y() * (spec.height - 1));
-        const double drawn = DrawnSigma(camera, Covariance(), pixel, distance_m);
-        EXPECT_NEAR(ColouringSigmaAt(camera, Covariance(), pixel, distance_m).value(), drawn,
-                    kShare * drawn)
-            << "pixel " << pixel.transpose() << ", " << distance_m << " m, " << spec.width << " px";
+        for (const auto& covariance : {WithExactLens(Covariance()), WithLens()}) {
+          const double drawn = DrawnSigma(spec, covariance, pixel, distance_m);
+          EXPECT_NEAR(ColouringSigmaAt(camera, covariance, pixel, distance_m).value(), drawn,
+                      kShare * drawn)
+              << "pixel " << pixel.transpose() << ", " << distance_m << " m, " << spec.width;
+        }
       }
     }
   }
@@ -89,7 +116,8 @@ TEST(ColouringSigma, ARotationIsTheSameAtEveryDistanceAndATranslationShrinks) {
   const auto middle = [&](int axis, double sigma, double distance_m) {
     Matrix6d covariance = Matrix6d::Zero();
     covariance(axis, axis) = sigma * sigma;
-    return ColouringSigmaAt(Camera(spec), covariance, {319.5, 239.5}, distance_m).value();
+    return ColouringSigmaAt(Camera(spec), WithExactLens(covariance), {319.5, 239.5}, distance_m)
+        .value();
   };
   EXPECT_NEAR(middle(1, 1e-3, 5), 0.5, 1e-9);
   EXPECT_NEAR(middle(1, 1e-3, 10), 0.5, 1e-9);
@@ -101,8 +129,8 @@ TEST(ColouringSigma, ARotationIsTheSameAtEveryDistanceAndATranslationShrinks) {
 TEST(ColouringSigma, IsAbsentWhereNoDirectionMapsToThePixel) {
   CameraSpec spec = Fisheye();
   spec.width = 6000;  // from its middle on the image lies beyond the lens
-  EXPECT_FALSE(ColouringSigmaAt(Camera(spec), Covariance(), {5999, 300}, 5));
-  const PoseSigma sigma = SigmaOf(spec, WorldTruth(), Covariance());
+  EXPECT_FALSE(ColouringSigmaAt(Camera(spec), WithExactLens(Covariance()), {5999, 300}, 5));
+  const PoseSigma sigma = SigmaOf(spec, CalibrationWith(Covariance()));
   EXPECT_TRUE(std::isnan(sigma.colouring[1].centre_px));
   EXPECT_TRUE(std::isfinite(sigma.colouring[1].worst_px));
 }
@@ -110,17 +138,17 @@ TEST(ColouringSigma, IsAbsentWhereNoDirectionMapsToThePixel) {
 TEST(PoseSigma, RotationAndCentreAreThoseOfDrawnPoses) {
   const Rigid3 estimate = WorldTruth();
   const Eigen::Vector3d centre = estimate.Inverse().translation;
-  Deltas deltas(Covariance());
+  Deltas deltas(WithExactLens(Covariance()));
   Eigen::Array3d turned = Eigen::Array3d::Zero();
   Eigen::Array3d moved = Eigen::Array3d::Zero();
   for (int i = 0; i < kDraws; ++i) {
-    const Rigid3 drawn = Exp(deltas.Draw()) * estimate;
+    const Rigid3 drawn = Exp(deltas.Draw().head<6>()) * estimate;
     turned += Log(drawn * estimate.Inverse()).head<3>().array().square();
     moved += (drawn.Inverse().translation - centre).array().square();
   }
   const Eigen::Array3d degrees = (turned / kDraws).sqrt() * 180 / M_PI;
   const Eigen::Array3d millimetres = (moved / kDraws).sqrt() * 1000;
-  const PoseSigma sigma = SigmaOf(WorldCamera(), estimate, Covariance());
+  const PoseSigma sigma = SigmaOf(WorldCamera(), CalibrationWith(Covariance()));
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = static_cast<std::size_t>(axis);
     EXPECT_NEAR(sigma.rotation_deg[at], degrees[axis], kShare * degrees[axis]) << axis;
@@ -130,7 +158,7 @@ TEST(PoseSigma, RotationAndCentreAreThoseOfDrawnPoses) {
 
 TEST(PoseSigma, TheWorstIsNoBetterThanTheMiddleAndEachCorner) {
   const CameraSpec spec = WorldCamera();
-  const PoseSigma sigma = SigmaOf(spec, WorldTruth(), Covariance());
+  const PoseSigma sigma = SigmaOf(spec, CalibrationWith(Covariance()));
   ASSERT_EQ(sigma.colouring.size(), std::size(kColouringDistancesM));
   for (std::size_t i = 0; i < sigma.colouring.size(); ++i) {
     const ColouringSigma& at = sigma.colouring[i];
@@ -139,14 +167,15 @@ TEST(PoseSigma, TheWorstIsNoBetterThanTheMiddleAndEachCorner) {
     for (const Eigen::Vector2d& corner :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(639, 0), Eigen::Vector2d(639, 479)}) {
       EXPECT_GE(at.worst_px,
-                ColouringSigmaAt(Camera(spec), Covariance(), corner, at.distance_m).value());
+                ColouringSigmaAt(Camera(spec), WithExactLens(Covariance()), corner, at.distance_m)
+                    .value());
     }
   }
 }
 
 TEST(PoseSigma, WhatIsUnknownIsNotZero) {
-  const PoseSigma sigma = SigmaOf(WorldCamera(), WorldTruth(),
-                                  Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  const PoseSigma sigma = SigmaOf(
+      WorldCamera(), CalibrationWith(Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN())));
   EXPECT_TRUE(std::isnan(sigma.rotation_deg[0]));
   EXPECT_TRUE(std::isnan(sigma.centre_mm[2]));
   EXPECT_TRUE(std::isnan(sigma.colouring[0].centre_px));

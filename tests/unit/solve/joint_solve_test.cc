@@ -1,5 +1,6 @@
 #include "calib/solve/internal/joint_solve.h"
 
+#include "calib/camera/target_pose.h"
 #include "calib/methods/calibrate.h"
 #include "tests/unit/solve/solve_world.h"
 
@@ -307,6 +308,87 @@ TEST(CalibrateJointly, ARangeOffsetThatTheRigRulesOutIsFoundAllTheSameAndSaid) {
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
     EXPECT_THAT(camera.warnings,
                 Contains(AllOf(HasSubstr("mm too long"), HasSubstr("lidar.range_offset_sigma_m"))));
+  }
+}
+
+// The rig's lenses are off by so much; boards were detected with them.
+SolveWorld LensesOff(double focal_share, double centre_px) {
+  SolveWorld world(Views(12));
+  for (std::size_t c = 0; c < 2; ++c) {
+    CameraSpec& camera = world.rig.cameras[c];
+    camera.lens_uncertainty.reset();
+    camera.lens.fx *= 1 + focal_share;
+    camera.lens.fy *= 1 + focal_share;
+    camera.lens.cx += centre_px;
+    camera.lens.cy -= centre_px;
+    for (std::size_t v = 0; v < world.detections.size(); ++v) {
+      ImageEdges& image = world.ImageAt(v, c);
+      const auto found = PoseFromCorners(Camera(camera), world.rig.target, image.corners);
+      image.pose->sensor_from_target = found->pose.sensor_from_target;
+      image.pose->covariance = found->pose.covariance;
+    }
+  }
+  return world;
+}
+
+LensNumbers LensError(const SolveWorld& world, const CameraCalibration& found, std::size_t camera) {
+  return NumbersOf(found.lens->lens) - NumbersOf(world.TrueLens(camera));
+}
+
+TEST(CalibrateJointly, ALensThatIsOffAsIsUsualIsFoundWithThePose) {
+  const SolveWorld world(LensesOff(0.004, 3));
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    const CameraCalibration& found = camera.calibration;
+    ASSERT_TRUE(found.converged()) << found.StatusText();
+    ASSERT_TRUE(found.lens);
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    const LensNumbers error = LensError(world, found, c);
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      const double sigma = std::sqrt(found.lens->covariance(i, 6 + i));
+      EXPECT_LT(std::abs(error[i]), 4 * sigma) << i;
+    }
+    EXPECT_LT(std::abs(error[0]), 0.5 * 0.004 * world.TrueLens(c).fx);
+    EXPECT_THAT(camera.warnings, IsEmpty());
+    EXPECT_THAT(camera.rejected, IsEmpty());
+  }
+}
+
+TEST(CalibrateJointly, ALensThatTheViewsContradictIsSaidAndFoundAllTheSame) {
+  const SolveWorld world(LensesOff(0.05, 0));
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    ASSERT_TRUE(camera.calibration.lens);
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    EXPECT_THAT(camera.warnings, Contains(AllOf(HasSubstr("the lens in the rig file contradicts"),
+                                                HasSubstr("rgbdt intrinsics"))));
+  }
+}
+
+// What is stated of a lens made from these very images is theirs again: as if nothing were stated.
+TEST(CalibrateJointly, ALensMadeFromTheSameImagesIsNotCountedTwice) {
+  SolveWorld world(LensesOff(0, 0));
+  const Report usual = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    LensUncertainty stated = world.rig.cameras[c].LensUncertaintyOrUsual();
+    stated.covariance *= 1e-4;
+    world.rig.cameras[c].lens_uncertainty = stated;
+  }
+  const Report other_images = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t v = 0; v < world.detections.size(); ++v) {
+      world.rig.cameras[c].lens_uncertainty->made_from.push_back(
+          MiddleOf(world.ImageAt(v, c).corners));
+    }
+  }
+  const Report same_images = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Matrix6d wide = *usual.cameras[c].calibration.covariance;
+    const Matrix6d same = *same_images.cameras[c].calibration.covariance;
+    EXPECT_LT((same - wide).norm(), 1e-6 * wide.norm());
+    EXPECT_LT(other_images.cameras[c].calibration.covariance->trace(), 0.5 * wide.trace());
   }
 }
 

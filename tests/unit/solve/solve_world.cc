@@ -36,6 +36,10 @@ SolveWorld::SolveWorld(const SolveWorldOptions& options)
   rig.hash = "hash";
   rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}};
   rig.cameras = {WorldCamera(), Fisheye()};
+  for (CameraSpec& camera : rig.cameras) {
+    camera.lens_uncertainty = options.lens_uncertainty;
+    true_lenses_.push_back(camera.lens);
+  }
   camera_from_lidar = {WorldTruth(), RotationAbout({-0.4, 0.9, 0.2}, 0.05) * WorldTruth()};
   camera_from_lidar[1].translation = {-0.11, 0.04, 0.02};
   shared = options.shared;

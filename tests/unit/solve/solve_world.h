@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "calib/camera/camera.h"
@@ -19,6 +20,8 @@ struct SolveWorldOptions {
   bool draw_nuisances = false;     ///< classes, thickness, outline: from their priors
   bool nuisances_by_view = false;  ///< drawn anew for each view, and the outline as it should be
   double side_sigma_rad = 0;       ///< each side's own shift
+  /// What the rig says of its lenses, which are the very ones; absent: nothing.
+  std::optional<LensUncertainty> lens_uncertainty = LensUncertainty{};
   std::array<double, kSharedUnknowns> shared = BoardPriors().Means();  ///< if not drawn
 };
 
@@ -34,6 +37,9 @@ class SolveWorld {
   std::vector<Rigid3> lidar_from_target;
   std::vector<std::array<double, 4>> side_shift;
   std::vector<ViewDetection> detections;  ///< one a view
+
+  /// What a camera sees through, whatever the rig says.
+  const Lens& TrueLens(std::size_t camera) const { return true_lenses_[camera]; }
 
   /// The board held once more.
   void AddView(const Rigid3& board);
@@ -51,6 +57,7 @@ class SolveWorld {
   Rigid3 AnyBoard();
 
  private:
+  std::vector<Lens> true_lenses_;
   double Noise() { return options_.noise * Normal(); }
 
   std::array<double, kSharedUnknowns> Drawn(bool outline);

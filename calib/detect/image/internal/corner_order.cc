@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/camera/target_pose.h"
 #include "calib/model/view_detection.h"
 
 namespace rgbdt {
@@ -43,28 +44,6 @@ double Brightness(const cv::Mat& grey, const std::array<Eigen::Vector2d, 4>& squ
 }
 
 }  // namespace
-
-bool RightHanded(const Target& target, const Pixels& corners) {
-  const auto columns = static_cast<std::size_t>(target.corners_x());
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of columns and rows
-  double seen = 0;
-  const auto at = [&](std::size_t i) {
-    const std::size_t row = i / columns;
-    return Eigen::Vector2d(static_cast<double>(i % columns), static_cast<double>(row));
-  };
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (!IsSeen(corners[i])) continue;
-    middle += at(i);
-    seen += 1;
-  }
-  middle /= seen;
-  // Of the affine map that fits best, times what is positive.
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (IsSeen(corners[i])) sum += corners[i] * (at(i) - middle).transpose();
-  }
-  return sum.determinant() > 0;
-}
 
 std::optional<bool> TopLeftIsDark(const cv::Mat& grey, const Target& target,
                                   const Pixels& corners) {

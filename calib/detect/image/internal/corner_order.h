@@ -11,10 +11,6 @@ namespace rgbdt {
 
 // Corners may be NaN where they were not seen; what is said follows from the others.
 
-/// Whether inner corners [px], row by row, go right-handed (columns to the right, then rows down),
-/// as on a board whose printed side faces the camera.
-bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corners);
-
 /// Whether the corners begin beside a dark square: the one between the first corner and the
 /// pattern's outer corner next to it. From the brightness of all squares between the corners
 /// against their neighbours, so uneven light does not matter. Nothing where fewer than four fifths

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calib/camera/camera.h"
-#include "calib/detect/image/target_pose.h"
+#include "calib/camera/target_pose.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {

@@ -24,7 +24,7 @@ cv::Mat LayOnImage(const Session& session, const CameraView& shown,
   const View view = ReadView(session, shown.view);
   const auto image = std::find_if(view.images.begin(), view.images.end(),
                                   [&](const Image& i) { return i.camera == found.camera; });
-  const Camera camera(session.rig.Camera(found.camera));
+  const Camera camera(found.WithSolvedLens(session.rig.Camera(found.camera)));
   cv::Mat picture = ToBgr(*image).clone();
   const double size = std::max(1.0, picture.cols / 640.0);
   for (const Eigen::Vector3d& point : shown.cloud->boundary) {

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "calib/camera/pixels.h"
+#include "calib/camera/target_pose.h"
 #include "calib/detect/image/image_edges.h"
 #include "calib/detect/image/internal/board_sides.h"
 #include "calib/detect/image/internal/clipped.h"
-#include "calib/detect/image/target_pose.h"
 #include "calib/simulate/simulator.h"
 #include "tests/unit/matchers.h"
 

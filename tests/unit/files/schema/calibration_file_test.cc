@@ -1,5 +1,7 @@
 #include "calib/files/schema/calibration_file.h"
 
+#include <cmath>
+
 #include "calib/files/atomic_file.h"
 #include "tests/unit/files/test_data.h"
 
@@ -11,7 +13,10 @@ using ::testing::StartsWith;
 
 TEST(CalibrationFile, GivesBackEveryBit) {
   const test::TempDir dir;
-  const Calibration calibration = test::MakeReport().ToCalibration();
+  Calibration calibration = test::MakeReport().ToCalibration();
+  SolvedLens& lens = calibration.cameras[1].lens.emplace();
+  lens.lens = {Lens::Model::kFisheye, 500.1, 501.2, 320.3, 240.4, {0.1, -0.2, 0.3, -0.4}};
+  for (int i = 0; i < lens.covariance.size(); ++i) lens.covariance(i / 15, i % 15) = std::sin(i);
   WriteCalibration(dir / "calibration.textproto", calibration);
   const Calibration back = ReadCalibration(dir / "calibration.textproto");
   EXPECT_EQ(back.method, calibration.method);
@@ -26,7 +31,10 @@ TEST(CalibrationFile, GivesBackEveryBit) {
     EXPECT_EQ(b.covariance, a.covariance);
     EXPECT_EQ(b.status, a.status);
     EXPECT_EQ(b.detail, a.detail);
+    ASSERT_EQ(b.lens.has_value(), a.lens.has_value());
   }
+  EXPECT_EQ(back.cameras[1].lens->lens, lens.lens);
+  EXPECT_EQ(back.cameras[1].lens->covariance, lens.covariance);
   EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
 }
 

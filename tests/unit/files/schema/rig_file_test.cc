@@ -40,6 +40,60 @@ std::string ErrorOfRig(const std::string& from, const std::string& to) {
   return test::ErrorOf([&] { ParseRig(With(kRig, from, to), "rig.textproto"); });
 }
 
+TEST(RigFile, ALensMayStateHowWellItIsKnown) {
+  const auto with = [](const std::string& uncertainty) {
+    return With(kRig, "  camera_from_lidar_guess", uncertainty + "\n  camera_from_lidar_guess");
+  };
+  const auto parse = [&](const std::string& uncertainty) {
+    return ParseRig(with(uncertainty), "rig.textproto").cameras.at(0);
+  };
+  EXPECT_FALSE(parse("").lens_uncertainty);
+  EXPECT_TRUE(parse("lens_uncertainty { exact: true }").lens_uncertainty->exact());
+  const LensCovariance four =
+      parse("lens_uncertainty { sigma: [2, 2, 3, 4] }").lens_uncertainty->covariance;
+  EXPECT_EQ(four(3, 3), 16);
+  EXPECT_GT(four(4, 4), 0) << "the distortion as is usual";
+  EXPECT_EQ(four(0, 1), 0);
+  const LensCovariance nine = parse("lens_uncertainty { sigma: [2, 2, 3, 4, 0.1, 0, 0, 0, 0] }")
+                                  .lens_uncertainty->covariance;
+  EXPECT_EQ(nine(4, 4), 0.1 * 0.1);
+  EXPECT_EQ(nine(5, 5), 0);
+  const auto error = [&](const std::string& uncertainty) {
+    return test::ErrorOf([&] { parse(uncertainty); });
+  };
+  EXPECT_THAT(error("lens_uncertainty { sigma: [2, 2, 3] }"),
+              AllOf(HasSubstr("lens_uncertainty.sigma has 3 numbers"), HasSubstr("fx fy cx cy")));
+  EXPECT_THAT(error("lens_uncertainty { sigma: [2, 2, 3, -1] }"), HasSubstr("below 0"));
+  EXPECT_THAT(error("lens_uncertainty { }"), HasSubstr("one of them"));
+  EXPECT_THAT(error("lens_uncertainty { exact: true sigma: [1, 1, 1, 1] }"), HasSubstr("one of"));
+  EXPECT_THAT(error("lens_uncertainty { covariance: [1, 2] }"), HasSubstr("covariance has 2"));
+  EXPECT_THAT(error("lens_uncertainty { sigma: [1, 1, 1, 1] made_from: [1, 2, 3] }"),
+              HasSubstr("made_from has 3"));
+}
+
+TEST(RigFile, GivesBackHowWellALensIsKnown) {
+  Rig rig = test::MakeRig();
+  for (CameraSpec& camera : rig.cameras) {
+    LensUncertainty& stated = camera.lens_uncertainty.emplace();
+    const auto count = static_cast<Eigen::Index>(NamesOfNumbers(camera.lens.model).size());
+    stated.covariance.topLeftCorner(count, count).setConstant(0.01);
+    stated.covariance.diagonal().head(count).array() += 0.25;
+    stated.made_from = {{1.5, 2.5}, {100.25, 7}};
+  }
+  const Rig back = ParseRig(PrintRig(rig), "printed");
+  for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
+    ASSERT_TRUE(back.cameras[c].lens_uncertainty);
+    EXPECT_EQ(back.cameras[c].lens_uncertainty->covariance,
+              rig.cameras[c].lens_uncertainty->covariance);
+    EXPECT_EQ(back.cameras[c].lens_uncertainty->made_from,
+              rig.cameras[c].lens_uncertainty->made_from);
+  }
+  rig.cameras[0].lens_uncertainty = LensUncertainty();
+  EXPECT_TRUE(ParseRig(PrintRig(rig), "printed").cameras[0].lens_uncertainty->exact());
+  rig.cameras[0].lens_uncertainty->covariance(0, 0) = -1;
+  EXPECT_THAT(test::ErrorOf([&] { rig.Check(); }), HasSubstr("lens_uncertainty"));
+}
+
 TEST(RigFile, GivesBackEveryFieldBitForBit) {
   const Rig rig = test::MakeRig();
   const Rig back = ParseRig(PrintRig(rig), "printed");

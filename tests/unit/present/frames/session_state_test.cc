@@ -383,8 +383,7 @@ TEST(SigmaOf, IsTheRootMeanSquareOfTheReportsThreeAxes) {
   calibration.camera_from_lidar = test::MakePose(0.8, {0.1, 0.2, 0.3});
   EXPECT_FALSE(SigmaOf(calibration));
   calibration.covariance = root * root.transpose();
-  const PoseSigma axes = rgbdt::SigmaOf(test::MakeRig().cameras[0], calibration.camera_from_lidar,
-                                        *calibration.covariance);
+  const PoseSigma axes = rgbdt::SigmaOf(test::MakeRig().cameras[0], calibration);
   const auto rms = [](const std::array<double, 3>& v) {
     return std::sqrt((v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3);
   };

@@ -24,6 +24,10 @@ Matrix6d Covariance() {
   return sigma.array().square().matrix().asDiagonal();
 }
 
+CameraCalibration Calibrated(const Matrix6d& covariance = Covariance()) {
+  return {"rgb", Rigid3(), covariance, SolveStatus::kConverged, ""};
+}
+
 // The four maps' middles, in their order: 2, 5, 10, 50 m. The layout is two by two above a bar.
 cv::Mat MapOf(const cv::Mat& picture, int index) {
   const int half = picture.cols / 2;
@@ -39,7 +43,7 @@ double Brightness(const cv::Mat& map) {
 
 TEST(ColouringPicture, IsTheBrighterTheLessSure) {
   const cv::Mat picture =
-      ColouringPicture(Spec(Lens::Model::kPinhole, 1000, 1000, 800), Covariance());
+      ColouringPicture(Spec(Lens::Model::kPinhole, 1000, 1000, 800), Calibrated());
   ASSERT_EQ(picture.type(), CV_8UC3);
   // A translation of 1 mm fades: 0.5 px at 2 m, 0.02 px at 50 m, beside the rotation's 0.28.
   EXPECT_GT(Brightness(MapOf(picture, 0)), Brightness(MapOf(picture, 1)) + 20);
@@ -49,7 +53,7 @@ TEST(ColouringPicture, IsTheBrighterTheLessSure) {
 TEST(ColouringPicture, BeyondTheLensIsGrey) {
   // Half of the image's width is 4 radians: what is past 3.14 looks nowhere.
   const cv::Mat picture =
-      ColouringPicture(Spec(Lens::Model::kFisheye, 100, 800, 400), Covariance());
+      ColouringPicture(Spec(Lens::Model::kFisheye, 100, 800, 400), Calibrated());
   const cv::Mat map = MapOf(picture, 0);
   EXPECT_EQ(map.at<cv::Vec3b>(map.rows / 2, 30), cv::Vec3b::all(200));
   EXPECT_NE(map.at<cv::Vec3b>(map.rows / 2 + 40, map.cols / 2), cv::Vec3b::all(200));
@@ -59,7 +63,8 @@ TEST(ColouringPicture, AnyShapeOfImageAndAnySizeOfSigmaCanBeDrawn) {
   for (const double scale : {0.0, 1e-12, 1.0, 1e12}) {
     for (const cv::Size& size : {cv::Size(640, 480), cv::Size(2000, 40), cv::Size(100, 3000)}) {
       const CameraSpec spec = Spec(Lens::Model::kPinhole, 500, size.width, size.height);
-      EXPECT_FALSE(ColouringPicture(spec, scale * Covariance()).empty()) << size << " " << scale;
+      EXPECT_FALSE(ColouringPicture(spec, Calibrated(scale * Covariance())).empty())
+          << size << " " << scale;
     }
   }
 }
@@ -67,13 +72,14 @@ TEST(ColouringPicture, AnyShapeOfImageAndAnySizeOfSigmaCanBeDrawn) {
 TEST(ColouringPicture, IsEmptyWithoutASigma) {
   const CameraSpec spec = Spec(Lens::Model::kPinhole, 500, 640, 480);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_TRUE(ColouringPicture(spec, Matrix6d::Constant(nan)).empty());
+  EXPECT_TRUE(ColouringPicture(spec, Calibrated(Matrix6d::Constant(nan))).empty());
+  EXPECT_TRUE(ColouringPicture(spec, CameraCalibration()).empty());
 }
 
 TEST(ColouringPicture, TheSameInputGivesTheSameBytes) {
   const CameraSpec spec = Spec(Lens::Model::kPinhole, 500, 640, 480);
-  const cv::Mat a = ColouringPicture(spec, Covariance());
-  const cv::Mat b = ColouringPicture(spec, Covariance());
+  const cv::Mat a = ColouringPicture(spec, Calibrated());
+  const cv::Mat b = ColouringPicture(spec, Calibrated());
   EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0);
 }
 

@@ -1,4 +1,4 @@
-#include "calib/detect/image/target_pose.h"
+#include "calib/camera/target_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -26,6 +26,10 @@ struct CornerPose {
   double second_pose_chi2 = 0;
 };
 
+/// Whether inner corners [px], row by row, go right-handed (columns to the right, then rows down),
+/// as on a board whose printed side faces the camera. Corners may be NaN where they were not seen.
+bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corners);
+
 /// Least squares of the reprojection error in pixels of the distorted image, through the whole lens
 /// model, from both of the planar pose's solutions (Collins and Bartoli 2014, IPPE); the better one
 /// is kept. Robust: Cauchy weights with the residuals' own scale, then corners beyond 4 sigma are

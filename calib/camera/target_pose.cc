@@ -1,4 +1,4 @@
-#include "calib/detect/image/target_pose.h"
+#include "calib/camera/target_pose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <opencv2/calib3d.hpp>
 
 #include "calib/camera/pixel_by_point.h"
-#include "calib/detect/image/internal/corner_order.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 
@@ -309,6 +308,28 @@ std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& targe
 }
 
 }  // namespace
+
+bool RightHanded(const Target& target, const Pixels& corners) {
+  const auto columns = static_cast<std::size_t>(target.corners_x());
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  // of columns and rows
+  double seen = 0;
+  const auto at = [&](std::size_t i) {
+    const std::size_t row = i / columns;
+    return Eigen::Vector2d(static_cast<double>(i % columns), static_cast<double>(row));
+  };
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!IsSeen(corners[i])) continue;
+    middle += at(i);
+    seen += 1;
+  }
+  middle /= seen;
+  // Of the affine map that fits best, times what is positive.
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (IsSeen(corners[i])) sum += corners[i] * (at(i) - middle).transpose();
+  }
+  return sum.determinant() > 0;
+}
 
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
                                           const std::vector<Eigen::Vector2d>& corners,

@@ -1,0 +1,123 @@
+#include "calib/solve/internal/joint_problem.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib/model/linear_algebra.h"
+#include "calib/solve/first_guess.h"
+
+namespace rgbdt {
+namespace {
+
+void TurnCloud(CloudEdges* cloud) {
+  cloud->pose->sensor_from_target = cloud->pose->sensor_from_target * kHalfTurn;
+  for (Crossing& crossing : cloud->crossings) crossing.side = (crossing.side + 2) % 4;
+}
+
+// What is known of a lens besides these views. Where it was made from some of their images, these
+// tell it again: of the share s of its images that come again, the square of 1 - s is left of its
+// information. With 1 - s the images that come again would still be in its mean: the variance would
+// come out up to a fifth too small; with the square it is a twelfth.
+LensCovariance LensPrior(const CameraViews& camera) {
+  // Two detections of one image differ by hundredths of a pixel, two images by more than this.
+  constexpr double kSamePx = 0.25;
+  const LensUncertainty stated = camera.spec->LensUncertaintyOrUsual();
+  const std::vector<const CameraView*> used = camera.Used();
+  const auto shared = std::count_if(used.begin(), used.end(), [&](const CameraView* view) {
+    const Eigen::Vector2d middle = MiddleOf(view->image->corners);
+    return std::any_of(stated.made_from.begin(), stated.made_from.end(),
+                       [&](const auto& other) { return (other - middle).norm() < kSamePx; });
+  });
+  if (shared == 0 || stated.exact()) return stated.covariance;
+  const double left =
+      1 - std::min(1.0, static_cast<double>(shared) / static_cast<double>(stated.made_from.size()));
+  const CameraSpec& spec = *camera.spec;
+  const LensCovariance usual = UsualLensUncertainty(spec.lens, spec.width, spec.height).covariance;
+  // (left^2 stated^-1 + usual^-1)^-1, also where the stated one is singular.
+  const LensCovariance both = stated.covariance + left * left * usual;
+  const LensCovariance left_of_it = usual * SolveSymmetric(both, stated.covariance);
+  return 0.5 * (left_of_it + left_of_it.transpose());
+}
+
+// Builds the problem a camera at a time, in the order of the cameras.
+class Builder {
+ public:
+  explicit Builder(const Target& target) { joint_.problem.target = target; }
+
+  void Add(GuessedCamera guessed) {
+    const int index = static_cast<int>(joint_.cameras.size());
+    GuessedCamera& camera = joint_.cameras.emplace_back(std::move(guessed));
+    joint_.problem.cameras.emplace_back(*camera.views.spec);
+    joint_.problem.lens_priors.push_back(LensPrior(camera.views));
+    for (CameraView& o : camera.views.all) {
+      if (o.usable() && !o.heldout) AddImage(index, &o);
+    }
+  }
+
+  JointProblem Finish(double range_offset_sigma_m) {
+    if (range_offset_sigma_m > 0) {
+      joint_.problem.priors.range_offset_sigma_m = range_offset_sigma_m;
+    }
+    std::vector<Rigid3> poses;
+    for (const GuessedCamera& c : joint_.cameras) poses.push_back(*c.guess.camera_from_lidar);
+    joint_.start = StartOf(joint_.problem, poses);
+    joint_.start.shared[kRangeOffset] =
+        range_offset_sigma_m > 0 ? joint_.cameras.front().guess.range_offset_m : 0;
+    return std::move(joint_);
+  }
+
+ private:
+  void AddImage(int camera, CameraView* o) {
+    const Rigid3& camera_from_lidar =
+        *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;
+    const Rigid3 lidar_from_image_target =
+        camera_from_lidar.Inverse() * o->image->pose->sensor_from_target;
+    auto view = std::find_if(joint_.problem.views.begin(), joint_.problem.views.end(),
+                             [&](const BoardView& v) { return v.name == o->view; });
+    if (view == joint_.problem.views.end()) {
+      BoardView& fresh = joint_.problem.views.emplace_back();
+      fresh.name = o->view;
+      fresh.cloud = *o->cloud;
+      if (HalfTurned(lidar_from_image_target, *fresh.cloud.pose)) TurnCloud(&fresh.cloud);
+      fresh.cloud.pose->half_turn_known = o->image->pose->half_turn_known;
+      fresh.images.push_back({camera, o->image, false});
+      return;
+    }
+    if ((view->cloud.centre - o->cloud->centre).norm() > 0.01) {
+      o->Reject("takes another board of the cloud than the cameras before it");
+      return;
+    }
+    const bool turned = HalfTurned(lidar_from_image_target, *view->cloud.pose);
+    view->images.push_back({camera, o->image, turned});
+    if (!turned || !o->image->pose->half_turn_known || view->cloud.pose->half_turn_known) return;
+    // This camera knows which end is up, those before it did not.
+    TurnCloud(&view->cloud);
+    view->cloud.pose->half_turn_known = true;
+    for (BoardImage& image : view->images) image.turned = !image.turned;
+  }
+
+  JointProblem joint_;
+};
+
+}  // namespace
+
+JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
+                              double range_offset_sigma_m) {
+  Builder builder(target);
+  for (GuessedCamera& camera : cameras) builder.Add(std::move(camera));
+  return builder.Finish(range_offset_sigma_m);
+}
+
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state) {
+  BoardStart part{{problem.target, problem.cameras, problem.lens_priors, {}, problem.priors},
+                  {state.camera_from_lidar, state.lenses, state.shared, {}, {}}};
+  for (const std::size_t v : views) {
+    part.problem.views.push_back(problem.views[v]);
+    part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
+    part.start.side_shift.push_back(state.side_shift[v]);
+  }
+  return part;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "calib/solve/board_problem.h"
+#include "calib/solve/camera_views.h"
+#include "calib/solve/guess_cameras.h"
+
+namespace rgbdt {
+
+/// Cameras that are solved together.
+struct JointProblem {
+  BoardProblem problem;
+  BoardState start;
+  std::vector<GuessedCamera> cameras;  ///< in the order of problem.cameras
+};
+
+/// The boards of all views used, of cameras that all have a guess, each brought into one set of
+/// axes for all cameras: the target's own, where one of them knows it. A view whose camera takes
+/// another board of the cloud than the cameras before it becomes rejected. `range_offset_sigma_m`:
+/// how well a constant that ranges may be off by is known; 0: exactly.
+JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
+                              double range_offset_sigma_m);
+
+/// A problem and where its solve starts.
+struct BoardStart {
+  BoardProblem problem;
+  BoardState start;
+};
+
+/// The problem with some of the views only, to be solved from `state`.
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state);
+
+}  // namespace rgbdt
