@@ -48,6 +48,8 @@ Bundle MakeBundle(const IntrinsicsInput& input, const IntrinsicsStart& start) {
   bundle.choice = input.choice;
   bundle.lens = ParametersOf(start.lens, input.choice);
   bundle.points = input.target.InnerCorners();
+  // Of width and height, each known to print_sigma.
+  bundle.print_aspect_sigma = std::sqrt(2.0) * input.target.print_sigma;
   const auto [least, greatest] = FocalRange(input.choice, input.width, input.height);
   bundle.least_focal = 0.2 * least;
   bundle.greatest_focal = 5 * greatest;
@@ -293,7 +295,13 @@ IntrinsicsResult CalibrateIntrinsics(const IntrinsicsInput& input,
   result.names = ParameterNames(input.choice);
   result.values = bundle.lens;
   FillViews(input, bundle, selection, &result);
-  if (ActiveViews(bundle) > 0) result.covariance = CovarianceOfLens(bundle);
+  const auto count = static_cast<Eigen::Index>(bundle.lens.size());
+  const Eigen::MatrixXd covariance =
+      ActiveViews(bundle) > 0 ? CovarianceOfLens(bundle) : Eigen::MatrixXd();
+  if (covariance.size() > 0) result.covariance = covariance.topLeftCorner(count, count);
+  if (covariance.rows() > count) {
+    result.print_aspect = {bundle.print_aspect, std::sqrt(covariance(count, count))};
+  }
   result.coverage = CoverageOf(input, options, bundle);
   const std::string why = WhyNotConverged(result, options, solver);
   result.converged = why.empty();

@@ -8,6 +8,7 @@
 
 #include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
+#include "calib/model/statistics.h"
 #include "calib/model/time.h"
 
 namespace rgbdt {
@@ -84,12 +85,6 @@ struct TrainHeldout {
 struct PoseError {
   double rotation_deg = 0;
   double translation_mm = 0;  ///< between the camera centres, LIDAR frame
-};
-
-/// A figure and its uncertainty (1 sigma).
-struct Estimate {
-  double value = 0;
-  double sigma = 0;
 };
 
 struct RejectedView {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 
@@ -82,6 +84,8 @@ struct IntrinsicsResult {
   std::vector<double> values;      ///< in that order
   /// In that order, scaled with the variance of the residuals; empty where it is not known.
   Eigen::MatrixXd covariance;
+  /// The squares' height over their width, less one, as the views have it; absent: taken for zero.
+  std::optional<Estimate> print_aspect;
   std::vector<IntrinsicsViewFit> views;
   ImageCoverage coverage;
 

@@ -95,6 +95,8 @@ void CheckTarget(const Target& target) {
     Require(std::isfinite(offset), "target.pattern_offset_m", std::to_string(offset),
             "finite numbers");
   }
+  Require(target.print_sigma >= 0 && target.print_sigma < 0.1, "target.print_sigma",
+          std::to_string(target.print_sigma), "0 (exact) to 0.1");
   const double half_x =
       0.5 * target.squares_x * target.square_m + std::abs(target.pattern_offset_m.x());
   const double half_y =
@@ -109,12 +111,14 @@ void CheckTarget(const Target& target) {
 }  // namespace
 
 std::vector<Eigen::Vector3d> Target::InnerCorners() const {
+  const Eigen::Vector2d square = square_m * print_scale;
   std::vector<Eigen::Vector3d> corners;
   corners.reserve(static_cast<std::size_t>(corners_x() * corners_y()));
   for (int row = 0; row < corners_y(); ++row) {
     for (int column = 0; column < corners_x(); ++column) {
-      corners.emplace_back(pattern_offset_m.x() + (column - 0.5 * (corners_x() - 1)) * square_m,
-                           pattern_offset_m.y() + (row - 0.5 * (corners_y() - 1)) * square_m, 0.0);
+      corners.emplace_back(pattern_offset_m.x() + (column - 0.5 * (corners_x() - 1)) * square.x(),
+                           pattern_offset_m.y() + (row - 0.5 * (corners_y() - 1)) * square.y(),
+                           0.0);
     }
   }
   return corners;

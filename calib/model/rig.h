@@ -70,6 +70,10 @@ struct Target {
   double square_m = 0;                     ///< side of a square
   double width_m = 0, height_m = 0;        ///< of the whole board, border included
   Eigen::Vector2d pattern_offset_m{0, 0};  ///< pattern's centre minus board's centre
+  /// 1 sigma of print_scale, of each: how exactly the pattern has the size that its squares say.
+  double print_sigma = 0;
+  /// The pattern's width and height over what square_m makes them, as a solve found them.
+  Eigen::Vector2d print_scale{1, 1};
 
   int corners_x() const { return squares_x - 1; }
   int corners_y() const { return squares_y - 1; }

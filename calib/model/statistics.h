@@ -7,6 +7,12 @@
 
 namespace rgbdt {
 
+/// A figure and its uncertainty (1 sigma).
+struct Estimate {
+  double value = 0;
+  double sigma = 0;
+};
+
 /// What stands at place k, from 0, when the values are sorted. No value may be NaN.
 template <typename T>
 T Nth(std::vector<T> values, std::size_t k) {

@@ -24,7 +24,14 @@ double BoardPriors::Sigma(int unknown) const {
   if (unknown <= kMergedShift) return class_sigma_rad;
   if (unknown == kThickness) return thickness_sigma_m;
   if (unknown == kRangeOffset) return range_offset_sigma_m;
+  if (unknown == kPrintWidth || unknown == kPrintHeight) return print_sigma;
   return outline_sigma_m;
+}
+
+Target PrintedAs(const Target& target, const std::array<double, kSharedUnknowns>& shared) {
+  Target printed = target;
+  printed.print_scale = {1 + shared[kPrintWidth], 1 + shared[kPrintHeight]};
+  return printed;
 }
 
 Eigen::Vector2d OutwardOf(int side) {

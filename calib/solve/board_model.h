@@ -22,6 +22,8 @@ enum SharedUnknown {
   kOutlineBottom,
   kOutlineLeft,
   kRangeOffset,
+  kPrintWidth,  ///< the pattern's width over what its squares make it, less one
+  kPrintHeight,
   kSharedUnknowns
 };
 
@@ -32,8 +34,11 @@ struct BoardPriors {
   double side_sigma_rad = kSideShiftSigmaRad;          ///< further shift of each side in each view
   double blur_rad = kCrossingBlurRad;  ///< how exactly one beam tells inside from outside
   double thickness_m = kBoardThicknessM, thickness_sigma_m = kBoardThicknessSigmaM;
-  double outline_sigma_m = kOutlineSigmaM;             ///< each side's place against the pattern
+  double outline_sigma_m = kOutlineSigmaM;  ///< each side's place against the pattern
+  /// Further displacement of each side's ends in each image, on the board.
+  double image_side_sigma_m = 0;
   double range_offset_sigma_m = kNoRangeOffsetSigmaM;  ///< true range minus measured
+  double print_sigma = kNoPrintSigma;                  ///< Target::print_sigma
 
   std::array<double, kSharedUnknowns> Means() const;
   double Sigma(int unknown) const;
@@ -44,6 +49,9 @@ struct BoardPriors {
 /// has it (scripts/study detection, corners; those from thermal ones are not). Sigmas of corners
 /// are enlarged by this factor.
 inline constexpr double kCornerSigmaInflation = 1.4;
+
+/// The target with its pattern as large as the shared unknowns have it.
+Target PrintedAs(const Target& target, const std::array<double, kSharedUnknowns>& shared);
 
 /// A crossing against its side. All on the board, metres and radians.
 struct CrossingResidual {

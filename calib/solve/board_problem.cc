@@ -230,6 +230,11 @@ ViewInformation InformationOf(const BoardProblem& problem, const BoardState& sta
   return Reduce(ViewEquations(problem, state, view), 0).shared;
 }
 
+std::vector<ImageSideEnd> ImageSideEnds(const BoardProblem& problem, const BoardState& state,
+                                        std::size_t view) {
+  return ViewEquations(problem, state, view).image_side_ends();
+}
+
 Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera) {
   constexpr int kIterations = 20;
   for (int i = 0; i < kIterations; ++i) {

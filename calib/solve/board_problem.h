@@ -40,7 +40,7 @@ struct BoardProblem {
 struct BoardState {
   std::vector<Rigid3> camera_from_lidar;
   std::vector<Lens> lenses;                       ///< by camera
-  std::array<double, kSharedUnknowns> shared{};   ///< [rad] shifts, [m] the others
+  std::array<double, kSharedUnknowns> shared{};   ///< [rad] shifts, 1 print, [m] the others
   std::vector<Rigid3> lidar_from_target;          ///< by view
   std::vector<std::array<double, 4>> side_shift;  ///< by view and side [rad]
 };
@@ -109,6 +109,14 @@ ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& 
 /// What a view would tell of the shared unknowns at this state; its residuals do not matter.
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,
                               std::size_t view);
+
+/// An end of a side of the board in one image: how far beside it the side lies where the state puts
+/// it, and what its own fit says of that (1 sigma); in metres on the board.
+struct ImageSideEnd {
+  double beside_m = 0, sigma_m = 0;
+};
+std::vector<ImageSideEnd> ImageSideEnds(const BoardProblem& problem, const BoardState& state,
+                                        std::size_t view);
 
 /// How badly a pose of a camera fits a view that had no say in it.
 struct Misfit {

@@ -31,7 +31,9 @@ constexpr NuisanceLine kNuisances[] = {
     {kOutlineRight, "board's right side, beyond its pattern", "mm"},
     {kOutlineBottom, "board's bottom side, beyond its pattern", "mm"},
     {kOutlineLeft, "board's left side, beyond its pattern", "mm"},
-    {kRangeOffset, "range offset", "mm"}};
+    {kRangeOffset, "range offset", "mm"},
+    {kPrintWidth, "pattern's width, found less given", "mm/m"},
+    {kPrintHeight, "pattern's height, found less given", "mm/m"}};
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {

@@ -45,6 +45,8 @@ ONCE = {
     "lens_rgb_mm_median": ("<=", 2.5),
     "lens_nees_mean": ("in", 5, 8),
     "lens_rms_over_bound": ("<=", 1.3),
+    "print_nees_mean": ("in", 5, 8),
+    "print_rms_over_bound": ("<=", 1.3),
     "random_nees_mean": ("in", 5, 8),
     "random_coverage95": ("in", 0.90, 0.98),
 }
@@ -173,16 +175,16 @@ def offset_figures(parts):
         yield figure(f"{prefix}offset_rms_over_bound", over_bound(parts[part], parts[part]))
 
 
-def lens_figures(rows):
-    """Lenses off by what the rig file says of them."""
+def lens_figures(rows, prefix):
+    """Lenses, or lenses and the pattern's print, off by what the rig file says of them."""
     rgb = pick(rows, method="auto", camera="rgb")
     if not rgb:
         return
     for name, key, unit in (("deg", "rotation_deg", "deg"), ("mm", "centre_mm", "mm")):
-        yield figure(f"lens_rgb_{name}_median", median(column(rgb, key)), unit)
-        yield figure(f"lens_rgb_{name}_median_bound", median(column(rgb, f"bound_{key}_median")), unit)
-    yield from honesty_figures(rows, "lens_")
-    yield figure("lens_rms_over_bound", over_bound(rows, rows))
+        yield figure(f"{prefix}rgb_{name}_median", median(column(rgb, key)), unit)
+        yield figure(f"{prefix}rgb_{name}_median_bound", median(column(rgb, f"bound_{key}_median")), unit)
+    yield from honesty_figures(rows, prefix)
+    yield figure(f"{prefix}rms_over_bound", over_bound(rows, rows))
 
 
 def basin_figures(rows):
@@ -219,7 +221,8 @@ def all_figures(parts):
         out += honesty_figures(parts["random"], "random_")
         out += honesty_figures(parts["random"], "random_plane_", "plane")
     out += offset_figures(parts)
-    out += lens_figures(parts["lens-dense"])
+    out += lens_figures(parts["lens-dense"], "lens_")
+    out += lens_figures(parts["print-dense"], "print_")
     out += time_figures(parts["times"])
     out += basin_figures(parts["basin"])
     return out

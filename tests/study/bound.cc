@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 // Numbers of the unknowns. Each view has its own ten after what all views share.
 constexpr Index kClasses = 3, kThickness = kClasses, kRangeOffset = kThickness + 1;
-constexpr Index kCameras = kRangeOffset + 1;
+constexpr Index kPrint = kRangeOffset + 1, kCameras = kPrint + 2;
 constexpr double kExactM = 1e-9;        // sigma of what is known
 constexpr Index kSides = 6, kOwn = 10;  // of a view: pose, then sides
 
@@ -165,6 +165,16 @@ MatrixXd ByLens(const CameraSpec& spec, const Target& target, const Rigid3& came
   return by;
 }
 
+/// The same by the pattern's width or height.
+VectorXd ByPrint(const Camera& camera, Target target, const Rigid3& camera_from_target,
+                 Index axis) {
+  constexpr double kStep = 1e-6;
+  target.print_scale[axis] += kStep;
+  const VectorXd more = ProjectedCorners(camera, target, camera_from_target);
+  target.print_scale[axis] -= 2 * kStep;
+  return (more - ProjectedCorners(camera, target, camera_from_target)) / (2 * kStep);
+}
+
 /// Of the length of a vector of zero mean: from so many draws.
 double MedianLength(const Eigen::Matrix3d& covariance) {
   constexpr std::size_t kDraws = 2001;
@@ -190,6 +200,7 @@ class Bound {
     AddPrior(0, kClasses, model.class_sigma_rad, &information_);
     AddPrior(kThickness, 1, model.thickness_sigma_m, &information_);
     AddPrior(kRangeOffset, 1, std::max(kExactM, model.range_offset_sigma_m), &information_);
+    AddPrior(kPrint, 2, std::max(kExactM, session.rig.target.print_sigma), &information_);
     for (std::size_t i = 0; i < session.rig.cameras.size(); ++i) {
       const LensUncertainty lens = session.rig.cameras[i].LensUncertaintyOrUsual();
       for (Index k = 0; k < kLensNumbers; ++k) {
@@ -248,7 +259,7 @@ class Bound {
   void AddCorners(const SampledView& view, std::size_t index, MatrixXd* information) const {
     const CameraSpec& spec = session_.true_cameras[index];
     const Camera camera(spec);
-    const Target& target = session_.rig.target;
+    const Target& target = session_.true_target;
     const Rigid3& lidar_from_target = view.lidar_from_target;
     const Rigid3& camera_from_lidar = session_.truth.camera_from_lidar.at(spec.name);
     MatrixXd j = MatrixXd::Zero(2 * Index{target.corners_x()} * target.corners_y(), shared_ + kOwn);
@@ -260,6 +271,9 @@ class Bound {
     });
     j.middleCols<kLensNumbers>(CameraAt(index) + 6) =
         ByLens(spec, target, camera_from_lidar * lidar_from_target);
+    for (Index axis = 0; axis < 2; ++axis) {
+      j.col(kPrint + axis) = ByPrint(camera, target, camera_from_lidar * lidar_from_target, axis);
+    }
     const auto corners = TrueCorners(spec, target, camera_from_lidar * lidar_from_target);
     *information +=
         j.transpose() * CornerCovariance(corners.value(), CornerSigma(spec.kind)).ldlt().solve(j);

@@ -199,7 +199,9 @@ std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given
   if (turned) std::reverse(edges.corners.begin(), edges.corners.end());
   CameraSpec with_given = spec;
   with_given.lens = given;
-  const auto pose = PoseFromCorners(Camera(with_given), target, edges.corners);
+  Target as_squares_say = target;
+  as_squares_say.print_scale = {1, 1};
+  const auto pose = PoseFromCorners(Camera(with_given), as_squares_say, edges.corners);
   if (!pose) return std::nullopt;
   edges.pose = pose->pose;
   edges.pose->half_turn_known = color;

@@ -32,10 +32,11 @@ Eigen::MatrixXd CornerCovariance(const std::vector<Eigen::Vector2d>& corners, do
 std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& corners,
                                             double sigma_px, const simulate::Noise& noise);
 
-/// All that a detector would make of the board in one image, which thinks that the lens is `given`,
-/// its corners with the noise of SampledCorners: pose, outline, edge pixels along it, and in colour
-/// the sides, each end off by some 0.1 px. What a thermal image does not tell, the half turn and
-/// the sides, stays unknown. Nothing where the board is not wholly in the image.
+/// All that a detector would make of the board in one image, which thinks that the lens is `given`
+/// and the pattern as large as its squares say, its corners with the noise of SampledCorners: pose,
+/// outline, edge pixels along it, and in colour the sides, each end off by some 0.1 px. What a
+/// thermal image does not tell, the half turn and the sides, stays unknown. Nothing where the board
+/// is not wholly in the image.
 std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given,
                                        const Target& target, const Rigid3& camera_from_target,
                                        const simulate::Noise& noise);

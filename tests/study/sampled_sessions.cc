@@ -73,6 +73,11 @@ class SessionSampler {
     session_.rig = MakeRig(options_, scanner_, *scene_, mounts);
     session_.rig.lidar.range_offset_sigma_m = session_.model.range_offset_sigma_m;
     session_.true_cameras = session_.rig.cameras;
+    session_.rig.target.print_sigma = sampled.print_sigma;
+    session_.true_target = session_.rig.target;
+    const Noise print(seed, 0, "print");
+    session_.true_target.print_scale +=
+        sampled.print_sigma * Eigen::Vector2d(print.Normal(0), print.Normal(1));
     if (sampled.lenses_off) {
       for (CameraSpec& camera : session_.rig.cameras) camera = WithLensOff(camera, seed);
     }
@@ -125,7 +130,7 @@ class SessionSampler {
     detection.utime = kUtime + pose;
     const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
     detection.edges = SampledEdges(
-        camera, given, session_.rig.target,
+        camera, given, session_.true_target,
         session_.truth.camera_from_lidar.at(camera.name) * view.lidar_from_target, noise);
     if (!detection.edges) detection.why_not = "no pose from the corners";
     return detection;

@@ -20,6 +20,9 @@ struct SampledOptions {
   double range_offset_m = 0;
   /// The rig's lenses are off by what it says of them (LensOff); false: exact, and it says so.
   bool lenses_off = false;
+  /// The printed pattern's width and height are each off by this, relative (1 sigma), and the rig
+  /// says so; 0: exact.
+  double print_sigma = 0;
 };
 
 /// By what a lens of the rig is off (1 sigma): 0.4% of fx and of fy, 6 px in the centre, 0.02 in
@@ -38,6 +41,7 @@ struct SampledView {
 struct SampledSession {
   Rig rig;
   std::vector<CameraSpec> true_cameras;  ///< the rig's with their true lenses
+  Target true_target;                    ///< the rig's as it was printed
   BeamModel model;
   Truth truth;
   std::vector<SampledView> views;

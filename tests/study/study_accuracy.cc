@@ -1,10 +1,11 @@
 // How far calibrations are off, and whether they know it.
-//   study_accuracy sampled|offset|lens|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
+//   study_accuracy sampled|offset|lens|print|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
 //   [METHOD...]
 // SENSOR: dense (the turned scanner), 128, 64, 32 or 16. sampled: sessions drawn from the noise
 // model (sampled_sessions.h), beside its Gaussian bound (bound.h). offset: the same with ranges off
 // by a constant of up to 30 mm, which the rig does not rule out. lens: the same with lenses that
-// are off by what the rig says of them. rendered: sessions of the simulator. random: the same with
+// are off by what the rig says of them. print: the same, and the pattern's print as far off as is
+// usual. rendered: sessions of the simulator. random: the same with
 // physics that are drawn, too (rendered_sessions.h). METHOD: auto, separate (each camera by
 // itself), plane, first_guess or paper; all but the last, if none is given. A line of CSV for each
 // session, method and camera.
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "calib/methods/calibrate.h"
+#include "calib/model/beam_priors.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/verdict.h"
 #include "calib/simulate/lidar_options.h"
@@ -49,17 +51,19 @@ struct Trial {
 };
 
 struct Question {
-  std::string how;  ///< "sampled", "rendered" or "random"
+  std::string how;  ///< the first argument
   std::string sensor;
   int rings = 0, views = 8, heldout = 4;
   std::vector<std::string> methods = kUsualMethods;
 };
 
 std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
-  if (question.how == "sampled" || question.how == "offset" || question.how == "lens") {
-    const double offset_m = question.how == "offset" ? kMostOffsetM : 0;
-    auto made = SampleSession(
-        {question.rings, question.views, question.heldout, offset_m, question.how == "lens"}, seed);
+  if (question.how != "rendered" && question.how != "random") {
+    SampledOptions options{question.rings, question.views, question.heldout};
+    if (question.how == "offset") options.range_offset_m = kMostOffsetM;
+    options.lenses_off = question.how == "lens" || question.how == "print";
+    if (question.how == "print") options.print_sigma = kUsualPrintSigma;
+    auto made = SampleSession(options, seed);
     if (!made) return std::nullopt;
     return Trial{made->rig,
                  made->truth,
@@ -246,9 +250,9 @@ int RingsOf(const std::string& sensor) {
 }
 
 void Run(Question question, int sessions, std::uint64_t seed, const std::string& path) {
-  const std::set<std::string> ways = {"sampled", "offset", "lens", "rendered", "random"};
+  const std::set<std::string> ways = {"sampled", "offset", "lens", "print", "rendered", "random"};
   if (ways.count(question.how) == 0) {
-    throw std::runtime_error("expected sampled, offset, lens, rendered or random, not " +
+    throw std::runtime_error("expected sampled, offset, lens, print, rendered or random, not " +
                              question.how);
   }
   question.rings = RingsOf(question.sensor);
@@ -280,9 +284,9 @@ int main(int argc, char** argv) {
     if (arguments.size() > 7) question.methods.assign(arguments.begin() + 7, arguments.end());
     rgbdt::study::Run(question, std::stoi(arguments[4]), std::stoull(arguments[5]), arguments[6]);
   };
-  return rgbdt::study::StudyMain(
-      {"study_accuracy",
-       "sampled|offset|lens|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV [METHOD...]", 7,
-       1000, run},
-      argc, argv);
+  return rgbdt::study::StudyMain({"study_accuracy",
+                                  "sampled|offset|lens|print|rendered|random SENSOR VIEWS HELDOUT "
+                                  "SESSIONS SEED CSV [METHOD...]",
+                                  7, 1000, run},
+                                 argc, argv);
 }

@@ -6,11 +6,13 @@
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
+#include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <numeric>
 
@@ -26,7 +28,7 @@ Lens::Model ModelOf(LensChoice choice) {
 }
 
 // predicted - measured [px] of one corner:
-//   r = project(lens; R(pose) * point + t(pose)) - pixel.
+//   r = project(lens; R(pose) * stretched(aspect; point) + t(pose)) - pixel.
 // All choices of a lens by the derivatives of the largest: what one lacks is zero.
 class CornerError : public ceres::CostFunction {
  public:
@@ -34,16 +36,19 @@ class CornerError : public ceres::CostFunction {
               const Eigen::Vector2d& pixel)
       : model_(ModelOf(choice)), parameters_(parameters), point_(point), pixel_(pixel) {
     set_num_residuals(2);
-    mutable_parameter_block_sizes()->assign({parameters, kPose});
+    mutable_parameter_block_sizes()->assign({parameters, kPose, 1});
   }
 
   bool Evaluate(const double* const* blocks, double* residual, double** jacobians) const override {
-    using Jet = ceres::Jet<double, kLens + kPose>;
+    using Jet = ceres::Jet<double, kLens + kPose + 1>;
     std::array<Jet, kLens> lens;
     std::array<Jet, kPose> pose;
     for (int i = 0; i < parameters_; ++i) lens[i] = Jet(blocks[0][i], i);
     for (int i = 0; i < kPose; ++i) pose[i] = Jet(blocks[1][i], kLens + i);
-    const std::array<Jet, 3> in_target = {Jet(point_.x()), Jet(point_.y()), Jet(point_.z())};
+    // Half of it each way, about the origin: what else it moves is the pose's.
+    const Jet half = Jet(blocks[2][0], kLens + kPose) / 2.0;
+    const std::array<Jet, 3> in_target = {point_.x() * (1.0 - half), point_.y() * (1.0 + half),
+                                          Jet(point_.z())};
     std::array<Jet, 3> p;
     ceres::AngleAxisRotatePoint(pose.data(), in_target.data(), p.data());
     for (int i = 0; i < 3; ++i) p[i] += pose[3 + i];
@@ -57,6 +62,7 @@ class CornerError : public ceres::CostFunction {
       const double* const by = pixel[row].v.data();
       if (jacobians[0]) std::copy_n(by, parameters_, jacobians[0] + row * parameters_);
       if (jacobians[1]) std::copy_n(by + kLens, kPose, jacobians[1] + row * kPose);
+      if (jacobians[2]) jacobians[2][row] = by[kLens + kPose];
     }
     return true;
   }
@@ -67,6 +73,22 @@ class CornerError : public ceres::CostFunction {
   int parameters_;
   Eigen::Vector3d point_;
   Eigen::Vector2d pixel_;
+};
+
+// What is known of the print's aspect, as strong as the corners where these scatter as most do.
+class AspectPrior : public ceres::SizedCostFunction<1, 1> {
+ public:
+  explicit AspectPrior(double sigma) : weight_(kUsualCornerPx / sigma) {}
+
+  bool Evaluate(const double* const* blocks, double* residual, double** jacobians) const override {
+    residual[0] = weight_ * blocks[0][0];
+    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = weight_;
+    return true;
+  }
+
+ private:
+  static constexpr double kUsualCornerPx = 0.1;
+  double weight_;
 };
 
 CornerError ErrorOf(const Bundle& bundle, const BundleView& view, std::size_t corner) {
@@ -82,13 +104,19 @@ void Hold(int from, std::vector<double>* lens, ceres::Problem* problem) {
   problem->SetManifold(lens->data(), new ceres::SubsetManifold(all, held));
 }
 
-void AddView(const Bundle& bundle, double loss_scale, double* lens, BundleView* view,
+// The blocks that all views share.
+struct SharedBlocks {
+  double* lens;
+  double* aspect;
+};
+
+void AddView(const Bundle& bundle, double loss_scale, const SharedBlocks& shared, BundleView* view,
              ceres::Problem* problem) {
   for (std::size_t i = 0; i < view->pixels.size(); ++i) {
     if (!view->used[i]) continue;
     ceres::LossFunction* loss = loss_scale > 0 ? new ceres::CauchyLoss(loss_scale) : nullptr;
-    problem->AddResidualBlock(new CornerError(ErrorOf(bundle, *view, i)), loss, lens,
-                              view->pose.data());
+    problem->AddResidualBlock(new CornerError(ErrorOf(bundle, *view, i)), loss, shared.lens,
+                              view->pose.data(), shared.aspect);
   }
 }
 
@@ -105,32 +133,34 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
   return solver;
 }
 
-// One view's derivatives by the lens, with whatever a change of its pose can undo projected out:
-// rows of what is left (QR: no squaring of the condition number). Also sums the residuals' squares.
+// One view's derivatives by the lens and the print's aspect, with whatever a change of its pose can
+// undo projected out: rows of what is left (QR: no squaring of the condition number). Also sums the
+// residuals' squares.
 Eigen::MatrixXd ReducedJacobian(const Bundle& bundle, const BundleView& view, double* squares) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto used = std::count(view.used.begin(), view.used.end(), true);
   const auto parameters = static_cast<Eigen::Index>(bundle.lens.size());
-  Eigen::MatrixXd by_lens(2 * used, parameters);
+  Eigen::MatrixXd by_shared(2 * used, parameters + 1);
   Eigen::MatrixXd by_pose(2 * used, 6);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < view.used.size(); ++i) {
     if (!view.used[i]) continue;
     const CornerError error = ErrorOf(bundle, view, i);
-    const double* blocks[2] = {bundle.lens.data(), view.pose.data()};
+    const double* blocks[3] = {bundle.lens.data(), view.pose.data(), &bundle.print_aspect};
     Eigen::Vector2d residual(0, 0);
+    Eigen::Vector2d aspect_block(0, 0);
     RowMajor lens_block = RowMajor::Zero(2, parameters);
     RowMajor pose_block = RowMajor::Zero(2, 6);
-    double* jacobians[2] = {lens_block.data(), pose_block.data()};
+    double* jacobians[3] = {lens_block.data(), pose_block.data(), aspect_block.data()};
     error.Evaluate(blocks, residual.data(), jacobians);
-    by_lens.middleRows<2>(row) = lens_block;
+    by_shared.middleRows<2>(row) << lens_block, aspect_block;
     by_pose.middleRows<2>(row) = pose_block;
     *squares += residual.squaredNorm();
     row += 2;
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(by_pose);
-  by_lens.applyOnTheLeft(qr.householderQ().adjoint());
-  return by_lens.bottomRows(2 * used - 6);
+  by_shared.applyOnTheLeft(qr.householderQ().adjoint());
+  return by_shared.bottomRows(2 * used - 6);
 }
 
 }  // namespace
@@ -169,12 +199,19 @@ bool Solve(const BundleSolve& options, Bundle* bundle, std::string* why) {
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   double* const lens = bundle->lens.data();
+  double* const aspect = &bundle->print_aspect;
   for (BundleView& view : bundle->views) {
     if (!view.active) continue;
-    AddView(*bundle, options.loss_scale, lens, &view, &problem);
+    AddView(*bundle, options.loss_scale, {lens, aspect}, &view, &problem);
     ordering->AddElementToGroup(view.pose.data(), 0);
   }
   ordering->AddElementToGroup(lens, 1);
+  ordering->AddElementToGroup(aspect, 1);
+  if (bundle->print_aspect_sigma > 0) {
+    problem.AddResidualBlock(new AspectPrior(bundle->print_aspect_sigma), nullptr, aspect);
+  } else {
+    problem.SetParameterBlockConstant(aspect);
+  }
   Hold(options.parameters, &bundle->lens, &problem);
   for (int i = 0; i < 2; ++i) {  // views that determine no focal length would let it run off
     problem.SetParameterLowerBound(lens, i, bundle->least_focal);
@@ -196,9 +233,11 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view) {
     if (residual.x() == kBehind) return;  // Ceres could not even begin
   }
   std::vector<double> lens = bundle.lens;
+  double aspect = bundle.print_aspect;
   ceres::Problem problem;
-  AddView(bundle, loss_scale, lens.data(), view, &problem);
+  AddView(bundle, loss_scale, {lens.data(), &aspect}, view, &problem);
   problem.SetParameterBlockConstant(lens.data());
+  problem.SetParameterBlockConstant(&aspect);
   ceres::Solver::Options solver = SolverOptions(100);
   solver.linear_solver_type = ceres::DENSE_QR;
   ceres::Solver::Summary summary;
@@ -207,7 +246,7 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view) {
 
 std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& view) {
   std::vector<Eigen::Vector2d> residuals;
-  const double* blocks[2] = {bundle.lens.data(), view.pose.data()};
+  const double* blocks[3] = {bundle.lens.data(), view.pose.data(), &bundle.print_aspect};
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
     Eigen::Vector2d residual(0, 0);
     const CornerError error = ErrorOf(bundle, view, i);
@@ -226,14 +265,17 @@ Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle) {
     parts.push_back(ReducedJacobian(bundle, view, &squares));
     rows += parts.back().rows();
   }
-  const auto parameters = static_cast<Eigen::Index>(bundle.lens.size());
+  const bool aspect = bundle.print_aspect_sigma > 0;
+  const auto parameters = static_cast<Eigen::Index>(bundle.lens.size()) + (aspect ? 1 : 0);
   if (rows <= parameters) return {};
-  Eigen::MatrixXd jacobian(rows, parameters);
+  const double variance = squares / static_cast<double>(rows - parameters);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows + (aspect ? 1 : 0), parameters);
   Eigen::Index row = 0;
   for (const Eigen::MatrixXd& part : parts) {
-    jacobian.middleRows(row, part.rows()) = part;
+    jacobian.middleRows(row, part.rows()) = part.leftCols(parameters);
     row += part.rows();
   }
+  if (aspect) jacobian(rows, parameters - 1) = std::sqrt(variance) / bundle.print_aspect_sigma;
   if (!jacobian.allFinite()) return {};
   // Columns of length one: pixels and coefficients of r^8 have nothing to do with each other.
   const Eigen::VectorXd length = jacobian.colwise().norm().transpose();
@@ -246,7 +288,6 @@ Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle) {
                                    .template triangularView<Eigen::Upper>()
                                    .solve(Eigen::MatrixXd::Identity(parameters, parameters));
   const Eigen::MatrixXd rooted = length.cwiseInverse().asDiagonal() * (qr.colsPermutation() * root);
-  const double variance = squares / static_cast<double>(rows - parameters);
   return variance * rooted * rooted.transpose();
 }
 

@@ -28,6 +28,9 @@ struct Bundle {
   std::vector<double> lens;                    ///< ParametersOf
   double least_focal = 0, greatest_focal = 0;  ///< bounds of fx and fy [px]
   std::vector<Eigen::Vector3d> points;         ///< the target's corners, target frame [m]
+  /// The pattern's height over its width, over what its squares make it, less one; its prior sigma
+  /// (0: it is zero). Its size as a whole is the views' distances', and none of the lens's.
+  double print_aspect = 0, print_aspect_sigma = 0;
   std::vector<BundleView> views;
 };
 
@@ -37,8 +40,8 @@ struct BundleSolve {
   int max_iterations = 150;
 };
 
-/// Levenberg-Marquardt with exact derivatives over the lens and every active view's pose. False
-/// where it stopped before its end; `why` then says so.
+/// Levenberg-Marquardt with exact derivatives over the lens, the print's aspect and every active
+/// view's pose. False where it stopped before its end; `why` then says so.
 bool Solve(const BundleSolve& options, Bundle* bundle, std::string* why);
 
 /// The same for one view's pose alone, active or not, from all of its corners with Cauchy's loss.
@@ -47,8 +50,9 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view);
 /// Measured - predicted [px] of each corner of a view, active or not.
 std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& view);
 
-/// Covariance of the lens' parameters, the poses eliminated, scaled with the residuals' variance.
-/// Empty where the corners do not determine every parameter.
+/// Covariance of the lens' parameters and, where it is not known, the print's aspect; the poses
+/// eliminated, scaled with the residuals' variance. Empty where the corners do not determine every
+/// parameter.
 Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle);
 
 }  // namespace rgbdt

@@ -136,6 +136,7 @@ Target ToTarget(const proto::Target& target, const Place& place) {
   spec.square_m = target.square_m();
   spec.width_m = target.width_m();
   spec.height_m = target.height_m();
+  spec.print_sigma = target.has_print_sigma() ? target.print_sigma() : kUsualPrintSigma;
   if (target.pattern_offset_m_size() > 0) {
     text::RequireNumbers(target.pattern_offset_m(), 2, place, "pattern_offset_m");
     spec.pattern_offset_m = {target.pattern_offset_m(0), target.pattern_offset_m(1)};
@@ -199,6 +200,7 @@ void FromTarget(const Target& spec, proto::Target* out) {
   out->set_square_m(spec.square_m);
   out->set_width_m(spec.width_m);
   out->set_height_m(spec.height_m);
+  out->set_print_sigma(spec.print_sigma);
   if (spec.pattern_offset_m.isZero(0)) return;
   out->add_pattern_offset_m(spec.pattern_offset_m.x());
   out->add_pattern_offset_m(spec.pattern_offset_m.y());

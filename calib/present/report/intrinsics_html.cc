@@ -34,6 +34,12 @@ Table ParametersTable(const IntrinsicsResult& result) {
                           {Number(result.Sigma(static_cast<int>(i)), digits)},
                           {i < 4 ? "px" : ""}});
   }
+  if (result.print_aspect) {
+    table.rows.push_back({{"printed squares' height over their width"},
+                          {Number(100 * result.print_aspect->value, 2)},
+                          {Number(100 * result.print_aspect->sigma, 2)},
+                          {"%"}});
+  }
   return table;
 }
 

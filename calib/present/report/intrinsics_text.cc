@@ -42,6 +42,10 @@ std::string ParametersText(const CameraSpec& before, const IntrinsicsResult& res
     }
     text += "\n";
   }
+  if (result.print_aspect) {
+    text += fmt::format("  the printed squares' height over their width: {:+.2f} +- {:.2f}%\n",
+                        100 * result.print_aspect->value, 100 * result.print_aspect->sigma);
+  }
   return text;
 }
 

@@ -42,7 +42,10 @@ LensCovariance LensPrior(const CameraViews& camera) {
 // Builds the problem a camera at a time, in the order of the cameras.
 class Builder {
  public:
-  explicit Builder(const Target& target) { joint_.problem.target = target; }
+  explicit Builder(const Target& target) {
+    joint_.problem.target = target;
+    joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
+  }
 
   void Add(GuessedCamera guessed) {
     const int index = static_cast<int>(joint_.cameras.size());

@@ -6,6 +6,7 @@
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/rigid3.h"
+#include "calib/model/statistics.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -181,6 +182,25 @@ Estimate FreeRangeOffset(const JointProblem& joint, const BoardSolution& solutio
   return {offset + step[at], std::sqrt(covariance(at, at))};
 }
 
+// How far the board's sides in the images lie from where the rest puts them, beyond what their own
+// fits say: boards are not quite straight, and show their rims. Robust, as what contradicts the
+// rest is still among them; nothing where chance may make as much.
+double ImageSideSigma(const BoardProblem& problem, const BoardState& state) {
+  std::vector<double> off;
+  std::vector<double> sigma;
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    for (const ImageSideEnd& end : ImageSideEnds(problem, state, v)) {
+      off.push_back(std::abs(end.beside_m));
+      sigma.push_back(end.sigma_m);
+    }
+  }
+  if (off.size() < 16) return 0;
+  const double scatter = Median(std::move(off)) / 0.6745;
+  const double stated = Median(std::move(sigma));
+  return scatter * scatter > 2 * stated * stated ? std::sqrt(scatter * scatter - stated * stated)
+                                                 : 0;
+}
+
 // Solves, and again without what contradicts the rest.
 class JointSolver {
  public:
@@ -194,6 +214,7 @@ class JointSolver {
   JointResult Solve() {
     SolveOnce();
     PoseImagesAgain();
+    FitImageSides();
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Joint(), result_.solution);
@@ -219,22 +240,34 @@ class JointSolver {
     state_ = result_.solution.state;
   }
 
-  // With the lenses that a first solve finds: a wrong lens makes corners seem worse than they are.
+  // With the lenses and the print that a first solve finds: where these are wrong, corners seem
+  // worse than they are.
   void PoseImagesAgain() {
     const auto& priors = Problem().lens_priors;
-    if (std::all_of(priors.begin(), priors.end(), [](const auto& p) { return p.isZero(0); })) {
-      return;
-    }
+    const bool printed = Problem().target.print_sigma == 0;
+    const Target target = PrintedAs(Problem().target, state_.shared);
     for (std::size_t c = 0; c < Joint().cameras.size(); ++c) {
-      if (priors[c].isZero(0)) continue;
+      if (priors[c].isZero(0) && printed) continue;
       CameraViews& views = Joint().cameras[c].views;
-      views = PosedAgain(std::move(views), state_.lenses[c], Problem().target);
+      views = PosedAgain(std::move(views), state_.lenses[c], target);
     }
     for (BoardView& view : Problem().views) {
       for (BoardImage& image : view.images) {
         const CameraViews& views = Joint().cameras[static_cast<std::size_t>(image.camera)].views;
         image.edges = views.Find(view.name)->image;
       }
+    }
+  }
+
+  // Solves again until the sigma of sides in images agrees with them.
+  void FitImageSides() {
+    constexpr int kRounds = 6;
+    for (int round = 0; round < kRounds; ++round) {
+      double& sigma = Problem().priors.image_side_sigma_m;
+      const double now = ImageSideSigma(Problem(), state_);
+      if (!(std::abs(now - sigma) > 0.05 * sigma)) return;
+      sigma = now;
+      SolveOnce();
     }
   }
 

@@ -13,6 +13,13 @@ namespace {
 
 constexpr double kLeastCornerPx = 0.01;
 
+// At the board, as it was detected: weights that moved with the board would be an objective of
+// their own.
+double PixelsPerMetre(const BoardProblem& problem, const BoardImage& image) {
+  const Lens& lens = problem.cameras[static_cast<std::size_t>(image.camera)].lens();
+  return lens.fx / image.edges->pose->sensor_from_target.translation.norm();
+}
+
 }  // namespace
 
 ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view)
@@ -41,16 +48,20 @@ std::optional<Eigen::Vector2d> ViewEquations::Project(int camera,
   return pixel;
 }
 
-// Corners: 2 rows each over the board's pose, the camera's and the lens.
+// Corners: 2 rows each over the board's pose, the camera's, the lens and the print.
 void ViewEquations::AddCorners(const BoardImage& image) {
   const Rigid3 camera_from_target =
       state_.camera_from_lidar[static_cast<std::size_t>(image.camera)] * lidar_from_target_;
   const Eigen::Matrix3d rotation = camera_from_target.rotation.toRotationMatrix();
-  const auto model = problem_.target.InnerCorners();
+  const Target printed = PrintedAs(problem_.target, state_.shared);
+  const auto model = printed.InnerCorners();
   const auto& seen = image.edges->corners;
   if (seen.size() != model.size()) return;
   const double sigma =
       kCornerSigmaInflation * std::max(kLeastCornerPx, image.edges->corner_sigma_px);
+  const auto by_print = [&](const Eigen::Vector3d& corner) -> Eigen::Vector2d {
+    return (corner.head<2>() - printed.pattern_offset_m).cwiseQuotient(printed.print_scale);
+  };
   ImageMatrix h = ImageMatrix::Zero();
   ImageVector g = ImageVector::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {
@@ -66,7 +77,8 @@ void ViewEquations::AddCorners(const BoardImage& image) {
     const Eigen::Matrix<double, 2, 3> by_point = by.leftCols<3>();
     Eigen::Matrix<double, 2, kImageUnknowns> j;
     j << -by_point * rotation * CrossMatrix(corner), by_point * rotation,
-        -by_point * CrossMatrix(p), by_point, by.rightCols<kLensNumbers>();
+        -by_point * CrossMatrix(p), by_point, by.rightCols<kLensNumbers>(),
+        by_point * rotation.leftCols<2>() * by_print(corner).asDiagonal();
     const Eigen::Vector2d residual = (*pixel - seen[i]) / sigma;
     // Both coordinates together: two degrees of freedom.
     const double squared = residual.squaredNorm() / 2;
@@ -78,13 +90,15 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   Spread(image.camera, h, g);
 }
 
-// From (board, camera, lens) to their places among the unknowns.
+// From (board, camera, lens, print) to their places among the unknowns.
 void ViewEquations::Spread(int camera, const ImageMatrix& h, const ImageVector& g) {
   std::array<Eigen::Index, kImageUnknowns> place{};
   std::iota(place.begin(), place.begin() + 6, 0);
   const auto shared = places_.PoseAndLens(static_cast<std::size_t>(camera));
   std::transform(shared.begin(), shared.end(), place.begin() + 6,
                  [](Eigen::Index at) { return kOwnUnknowns + at; });
+  place[6 + kPoseAndLens] = Shared(kPrintWidth);
+  place[7 + kPoseAndLens] = Shared(kPrintHeight);
   h_(place, place) += h;
   g_(place) += g;
 }
@@ -116,7 +130,14 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
     j.row(end).segment<kLensNumbers>(kOwnUnknowns + places_.Lens(camera)) = there->by_lens;
     j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
   }
-  const auto inverse = InverseOfPositive(side.covariance);
+  const double px_per_m = PixelsPerMetre(problem_, image);
+  for (int end = 0; end < 2; ++end) {
+    image_side_ends_.push_back(
+        {residual[end] / px_per_m, std::sqrt(side.covariance(end, end)) / px_per_m});
+  }
+  Eigen::Matrix2d covariance = side.covariance;
+  covariance.diagonal().array() += std::pow(px_per_m * problem_.priors.image_side_sigma_m, 2);
+  const auto inverse = InverseOfPositive(covariance);
   if (!inverse) return;
   const Eigen::Matrix2d information = *inverse;
   const double squared = residual.dot(information * residual) / 2;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "calib/solve/board_problem.h"
 
@@ -20,11 +21,12 @@ class ViewEquations {
   double cost() const { return cost_; }  ///< robust, whitened, squared
   const Eigen::MatrixXd& h() const { return h_; }
   const Eigen::VectorXd& g() const { return g_; }
+  const std::vector<ImageSideEnd>& image_side_ends() const { return image_side_ends_; }
 
  private:
   using Row6 = Eigen::Matrix<double, 1, 6>;
-  // What an image's residuals depend on: the board's pose, the camera's, its lens.
-  static constexpr int kImageUnknowns = 6 + kPoseAndLens;
+  // What an image's corners depend on: the board's pose, the camera's, its lens, the print.
+  static constexpr int kImageUnknowns = 6 + kPoseAndLens + 2;
   using ImageMatrix = Eigen::Matrix<double, kImageUnknowns, kImageUnknowns>;
   using ImageVector = Eigen::Matrix<double, kImageUnknowns, 1>;
 
@@ -62,6 +64,7 @@ class ViewEquations {
   Eigen::MatrixXd h_;
   Eigen::VectorXd g_;
   double cost_ = 0;
+  std::vector<ImageSideEnd> image_side_ends_;
 };
 
 }  // namespace rgbdt

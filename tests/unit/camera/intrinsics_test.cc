@@ -87,6 +87,39 @@ void ExpectHonestSigmas(const std::string& name) {
 TEST(Intrinsics, APinholesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("five_coefficients"); }
 TEST(Intrinsics, AFisheyesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("acfr_fisheye"); }
 
+// Paper that the printer stretched, boards turned one way and the other: a lens that had to explain
+// it would be off by many sigmas.
+TEST(Intrinsics, AStretchedPrintIsToldFromTheLens) {
+  for (const char* name : {"five_coefficients", "acfr_fisheye"}) {
+    const CameraSpec& spec = SpecNamed(name);
+    IntrinsicsInput input = InputOf(spec, 0, 0, 1);
+    Target stretched = input.target;
+    stretched.print_scale = {1, 0.996};
+    BoardViews boards(spec, stretched, 3);
+    for (int i = 0; i < 20; ++i) {
+      input.views.push_back(boards.Corners(boards.Pose(0.35, 0.85), 0.07));
+    }
+    const auto worst = [&](const IntrinsicsResult& result) {
+      const LensNumbers truth = NumbersOf(spec.lens);
+      double sigmas = 0;
+      for (int i = 0; i < 4; ++i) {
+        const double off = result.values[static_cast<std::size_t>(i)] - truth[i];
+        sigmas = std::max(sigmas, std::abs(off) / result.Sigma(i));
+      }
+      return sigmas;
+    };
+    const IntrinsicsResult exact = CalibrateIntrinsics(input);
+    EXPECT_FALSE(exact.print_aspect);
+    EXPECT_GT(worst(exact), 4) << name;
+    input.target.print_sigma = kUsualPrintSigma;
+    const IntrinsicsResult result = CalibrateIntrinsics(input);
+    ASSERT_TRUE(result.print_aspect);
+    EXPECT_NEAR(result.print_aspect->value, -0.004, 4 * result.print_aspect->sigma);
+    EXPECT_LT(result.print_aspect->sigma, 0.0005);
+    EXPECT_LT(worst(result), 4) << name;
+  }
+}
+
 void ExpectLens(const IntrinsicsResult& result, const Lens& lens) {
   EXPECT_TRUE(result.converged) << result.detail;
   EXPECT_NEAR(result.lens.fx / lens.fx, 1, 1e-3);

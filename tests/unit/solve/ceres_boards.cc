@@ -96,15 +96,20 @@ struct Seen {
   }
 };
 
-struct CornerResidual {  // of camera, lens, board
+struct CornerResidual {  // of camera, lens, board, shared
   Seen seen;
+  Eigen::Vector2d pattern;  // its centre on the board
   Eigen::Vector3d corner;
   Eigen::Vector2d at;
   double sigma;
 
   template <typename T>
   bool operator()(T const* const* block, T* residual) const {
-    const Pixel<T> pixel = seen(block[0], block[1], block[2], Constant<T>(corner));
+    Point<T> printed = Constant<T>(corner);
+    for (int k = 0; k < 2; ++k) {
+      printed[k] += (corner[k] - pattern[k]) * block[3][kPrintWidth + k];
+    }
+    const Pixel<T> pixel = seen(block[0], block[1], block[2], printed);
     residual[0] = (pixel[0] - at.x()) / sigma;
     residual[1] = (pixel[1] - at.y()) / sigma;
     return true;
@@ -368,9 +373,10 @@ class CeresBoards {
     const ImageEdges& edges = *image.edges;
     const auto model = problem_.target.InnerCorners();
     for (std::size_t i = 0; i < model.size(); ++i) {
-      Add(CornerResidual{seen, model[image.turned ? model.size() - 1 - i : i], edges.corners[i],
+      Add(CornerResidual{seen, problem_.target.pattern_offset_m,
+                         model[image.turned ? model.size() - 1 - i : i], edges.corners[i],
                          kCornerSigmaInflation * edges.corner_sigma_px},
-          2, {camera, lens, board}, new TailLoss(2));
+          2, {camera, lens, board, state_.shared.data()}, new TailLoss(2));
     }
     const auto corners = problem_.target.OutlineCorners();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -379,7 +385,13 @@ class CeresBoards {
       const std::size_t s = image.turned ? (i + 2) % 4 : i;
       const auto& curve = side.curve;
       const auto last = curve.size() - 1;
-      const Eigen::LLT<Eigen::Matrix2d> information(Eigen::Matrix2d(side.covariance.inverse()));
+      const double px_per_m =
+          problem_.cameras[c].lens().fx / edges.pose->sensor_from_target.translation.norm();
+      Eigen::Matrix2d covariance = side.covariance;
+      for (double& variance : covariance.diagonal()) {
+        variance += std::pow(px_per_m * problem_.priors.image_side_sigma_m, 2);
+      }
+      const Eigen::LLT<Eigen::Matrix2d> information(Eigen::Matrix2d(covariance.inverse()));
       Add(ImageSideResidual{seen,
                             static_cast<int>(s),
                             corners[s],

@@ -102,7 +102,8 @@ struct SolveProblem {
   bool edges = true;
   bool outliers = false;
   double range_offset_sigma_m = 0;
-  bool lens = false;  // unknown
+  bool lens = false;  // unknown, and the print's size
+  bool sides_bent = false;
 };
 
 void PrintTo(const SolveProblem& problem, std::ostream* out) { *out << problem.name; }
@@ -131,7 +132,10 @@ SolveWorld WorldOf(const SolveProblem& problem) {
   options.noise = problem.edges || problem.views == 1 ? 1 : 0;
   options.draw_nuisances = true;
   options.side_sigma_rad = BoardPriors().side_sigma_rad;
-  if (problem.lens) options.lens_uncertainty.reset();
+  if (problem.lens) {
+    options.lens_uncertainty.reset();
+    options.print_sigma = kUsualPrintSigma;
+  }
   SolveWorld world(options);
   const Rigid3 first = world.AnyBoard();
   while (static_cast<int>(world.lidar_from_target.size()) < problem.views) {
@@ -167,24 +171,25 @@ BoardSolution SolveToTheEnd(const BoardProblem& problem, const BoardState& start
 class SolveBoardsAndCeres : public testing::TestWithParam<SolveProblem> {};
 INSTANTIATE_TEST_SUITE_P(
     Problems, SolveBoardsAndCeres,
-    testing::Values(SolveProblem{"TenViews", 10}, SolveProblem{"FourViews", 4},
-                    SolveProblem{"RangeOffset", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1},
-                    SolveProblem{"Lens", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1, true},
-                    SolveProblem{"LensOfOneView", 1, 4, SolveProblem::kAnyPlace, true, false, 0,
-                                 true},
-                    SolveProblem{"Outliers", 5, 0, SolveProblem::kAnyPlace, true, true},
-                    SolveProblem{"OutliersOfMany", 12, 0, SolveProblem::kAnyPlace, true, true},
-                    SolveProblem{"Parallel", 6, 0, SolveProblem::kParallel},
-                    SolveProblem{"OnePlace", 7, 0, SolveProblem::kOnePlace},
-                    SolveProblem{"OneView", 1},
-                    SolveProblem{"ParallelWithoutEdges", 9, 3, SolveProblem::kParallel, false},
-                    SolveProblem{"OneViewWithoutEdges", 1, 3, SolveProblem::kAnyPlace, false}),
+    testing::Values(
+        SolveProblem{"TenViews", 10}, SolveProblem{"FourViews", 4},
+        SolveProblem{"RangeOffset", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1},
+        SolveProblem{"Lens", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1, true},
+        SolveProblem{"LensOfOneView", 1, 5, SolveProblem::kAnyPlace, true, false, 0, true},
+        SolveProblem{"BentSides", 6, 0, SolveProblem::kAnyPlace, true, false, 0, false, true},
+        SolveProblem{"Outliers", 5, 0, SolveProblem::kAnyPlace, true, true},
+        SolveProblem{"OutliersOfMany", 12, 0, SolveProblem::kAnyPlace, true, true},
+        SolveProblem{"Parallel", 6, 0, SolveProblem::kParallel},
+        SolveProblem{"OnePlace", 7, 0, SolveProblem::kOnePlace}, SolveProblem{"OneView", 1},
+        SolveProblem{"ParallelWithoutEdges", 9, 3, SolveProblem::kParallel, false},
+        SolveProblem{"OneViewWithoutEdges", 1, 3, SolveProblem::kAnyPlace, false}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST_P(SolveBoardsAndCeres, FindTheSame) {
   const SolveWorld world = WorldOf(GetParam());
   const SolveSession session(world);
-  const JointProblem joint = session.Joint(GetParam().range_offset_sigma_m);
+  JointProblem joint = session.Joint(GetParam().range_offset_sigma_m);
+  if (GetParam().sides_bent) joint.problem.priors.image_side_sigma_m = 0.0005;
   const BoardSolution ours = SolveToTheEnd(joint.problem, StartOff(joint));
   const BoardState theirs = SolveByCeres(joint.problem, StartOff(joint));
   const MatrixXd jacobian = JacobianByCeres(joint.problem, ours.state);

@@ -367,6 +367,49 @@ TEST(CalibrateJointly, ALensThatTheViewsContradictIsSaidAndFoundAllTheSame) {
   }
 }
 
+// A board's sides are not straight to a tenth of a pixel, and show their rims.
+TEST(CalibrateJointly, SidesInImagesThatAreOffCountLess) {
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    SolveWorldOptions options = Views(10);
+    options.seed = seed;
+    SolveWorld world(options);
+    for (std::size_t v = 0; v < world.detections.size(); ++v) {
+      for (ImageSide& side : world.ImageAt(v, 0).sides) {
+        const Eigen::Vector2d along = (side.curve.back() - side.curve.front()).normalized();
+        const double off_px = world.Normal();
+        for (Eigen::Vector2d& p : side.curve) p += off_px * Eigen::Vector2d(-along.y(), along.x());
+      }
+    }
+    const Report report = Calibrate(world.rig, world.detections, Brief());
+    EXPECT_LT(Chi2(world, report, 0), kMostChi2) << seed;
+    EXPECT_EQ(report.cameras[0].variance_factor, 1) << seed;
+    EXPECT_THAT(report.cameras[0].rejected, IsEmpty()) << seed;
+  }
+}
+
+// Squares that are not square lean every board in the images.
+TEST(CalibrateJointly, APatternThatThePrinterStretchedIsFoundWithThePose) {
+  SolveWorldOptions options = Views(12);
+  options.print_sigma = kUsualPrintSigma;
+  options.shared[kPrintWidth] = 0.001;
+  options.shared[kPrintHeight] = -0.004;
+  SolveWorld world(options);
+  const Report found = Calibrate(world.rig, world.detections, Brief());
+  world.rig.target.print_sigma = 0;
+  const Report exact = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_LT(Chi2(world, found, c), kMostChi2);
+    EXPECT_GT(Chi2(world, exact, c), kMostChi2);
+    const auto& lines = found.cameras[c].nuisance;
+    const auto height = std::find_if(lines.begin(), lines.end(), [](const Nuisance& line) {
+      return line.name == "pattern's height, found less given";
+    });
+    ASSERT_NE(height, lines.end());
+    EXPECT_NEAR(height->estimate.value, -4, 4 * height->estimate.sigma);
+    EXPECT_LT(height->estimate.sigma, 2);
+  }
+}
+
 // What is stated of a lens made from these very images is theirs again: as if nothing were stated.
 TEST(CalibrateJointly, ALensMadeFromTheSameImagesIsNotCountedTwice) {
   SolveWorld world(LensesOff(0, 0));

@@ -34,7 +34,7 @@ Eigen::Vector3d Outward(int side) {
 SolveWorld::SolveWorld(const SolveWorldOptions& options)
     : options_(options), random_(options.seed) {
   rig.hash = "hash";
-  rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}};
+  rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}, options.print_sigma};
   rig.cameras = {WorldCamera(), Fisheye()};
   for (CameraSpec& camera : rig.cameras) {
     camera.lens_uncertainty = options.lens_uncertainty;
@@ -106,6 +106,10 @@ std::array<double, kSharedUnknowns> SolveWorld::Drawn(bool outline) {
       drawn[static_cast<std::size_t>(k)] += priors.Sigma(k) * Normal();
     }
   }
+  for (const int k : {kPrintWidth, kPrintHeight}) {
+    if (options_.print_sigma == 0) continue;
+    drawn[static_cast<std::size_t>(k)] = options_.print_sigma * Normal();
+  }
   return drawn;
 }
 
@@ -117,7 +121,7 @@ ImageEdges SolveWorld::SeeImage(std::size_t c, const Rigid3& camera_from_target)
   image.height = camera.height();
   // Errors are larger than the corners' scatter tells by what is taken for granted of them.
   image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornerSigmaInflation;
-  for (const Eigen::Vector3d& corner : rig.target.InnerCorners()) {
+  for (const Eigen::Vector3d& corner : PrintedAs(rig.target, shared).InnerCorners()) {
     image.corners.emplace_back(*camera.Project(camera_from_target * corner) +
                                kCornerSigmaInflation * image.corner_sigma_px *
                                    Eigen::Vector2d(Noise(), Noise()));

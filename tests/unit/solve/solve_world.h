@@ -22,6 +22,7 @@ struct SolveWorldOptions {
   double side_sigma_rad = 0;       ///< each side's own shift
   /// What the rig says of its lenses, which are the very ones; absent: nothing.
   std::optional<LensUncertainty> lens_uncertainty = LensUncertainty{};
+  double print_sigma = 0;                                              ///< Target::print_sigma
   std::array<double, kSharedUnknowns> shared = BoardPriors().Means();  ///< if not drawn
 };
 
