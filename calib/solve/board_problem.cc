@@ -12,6 +12,7 @@
 namespace rgbdt {
 namespace {
 
+constexpr double kSettled = 1e-4;         // of a step: a hundredth of a sigma, squared
 constexpr double kExactLensSigma = 1e-6;  // [px], and of the distortion
 
 constexpr int kLocal = kOwnUnknowns;
@@ -21,8 +22,7 @@ using LocalVector = Eigen::Matrix<double, kLocal, 1>;
 // A view's equations with its own unknowns eliminated, and how to get these back.
 struct Reduced {
   ViewInformation shared;
-  Eigen::Matrix<double, kLocal, Eigen::Dynamic> local_by_shared;
-  LocalVector local;
+  OwnUnknowns own;
 };
 
 Reduced Reduce(const ViewEquations& equations, double damping) {
@@ -32,11 +32,11 @@ Reduced Reduce(const ViewEquations& equations, double damping) {
   const Eigen::Matrix<double, kLocal, Eigen::Dynamic> coupling =
       equations.h().topRightCorner(kLocal, shared);
   Reduced out;
-  out.local_by_shared = SolveSymmetric(local, coupling);
-  out.local = SolveSymmetric(local, LocalVector(equations.g().head<kLocal>()));
+  out.own.by_shared = SolveSymmetric(local, coupling);
+  out.own.step = SolveSymmetric(local, LocalVector(equations.g().head<kLocal>()));
   out.shared.information =
-      equations.h().bottomRightCorner(shared, shared) - coupling.transpose() * out.local_by_shared;
-  out.shared.gradient = equations.g().tail(shared) - coupling.transpose() * out.local;
+      equations.h().bottomRightCorner(shared, shared) - coupling.transpose() * out.own.by_shared;
+  out.shared.gradient = equations.g().tail(shared) - coupling.transpose() * out.own.step;
   return out;
 }
 
@@ -77,6 +77,30 @@ struct Stepped {
   double size = 0;
 };
 
+// The shared unknowns changed by x, the others as they are.
+BoardState MovedBy(BoardState state, const Eigen::VectorXd& x) {
+  const SharedPlaces places(state.lenses.size());
+  for (std::size_t c = 0; c < state.camera_from_lidar.size(); ++c) {
+    state.camera_from_lidar[c] =
+        Exp(x.segment<6>(SharedPlaces::Pose(c))) * state.camera_from_lidar[c];
+    state.lenses[c] = WithNumbers(
+        state.lenses[c], NumbersOf(state.lenses[c]) + x.segment<kLensNumbers>(places.Lens(c)));
+  }
+  for (int k = 0; k < kSharedUnknowns; ++k) {
+    state.shared[static_cast<std::size_t>(k)] += x[places.Of(k)];
+  }
+  return state;
+}
+
+// A view's own unknowns, changed.
+void MoveView(const LocalVector& local, Rigid3* lidar_from_target,
+              std::array<double, 4>* side_shift) {
+  *lidar_from_target = *lidar_from_target * Exp(Vector6d(local.head<6>()));
+  for (int side = 0; side < 4; ++side) {
+    (*side_shift)[static_cast<std::size_t>(side)] += local[6 + side];
+  }
+}
+
 // All views' equations at a state, and what follows from them.
 class Step {
  public:
@@ -104,25 +128,11 @@ class Step {
     }
     h.diagonal() *= 1 + damping;
     const Eigen::VectorXd x = SolveSymmetric(h, g);
-    Stepped stepped{state_, x.dot(h * x)};
-    BoardState& next = stepped.state;
-    const SharedPlaces places(problem_.cameras.size());
-    for (std::size_t c = 0; c < next.camera_from_lidar.size(); ++c) {
-      next.camera_from_lidar[c] =
-          Exp(x.segment<6>(SharedPlaces::Pose(c))) * next.camera_from_lidar[c];
-      next.lenses[c] = WithNumbers(
-          next.lenses[c], NumbersOf(next.lenses[c]) + x.segment<kLensNumbers>(places.Lens(c)));
-    }
-    for (int k = 0; k < kSharedUnknowns; ++k) {
-      next.shared[static_cast<std::size_t>(k)] += x[places.Of(k)];
-    }
+    Stepped stepped{MovedBy(state_, x), x.dot(h * x)};
     for (std::size_t v = 0; v < reduced.size(); ++v) {
-      const LocalVector local = reduced[v].local - reduced[v].local_by_shared * x;
+      const LocalVector local = reduced[v].own.step - reduced[v].own.by_shared * x;
       stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
-      next.lidar_from_target[v] = next.lidar_from_target[v] * Exp(local.head<6>());
-      for (int side = 0; side < 4; ++side) {
-        next.side_shift[v][static_cast<std::size_t>(side)] += local[6 + side];
-      }
+      MoveView(local, &stepped.state.lidar_from_target[v], &stepped.state.side_shift[v]);
     }
     return stepped;
   }
@@ -133,7 +143,9 @@ class Step {
     solution.state = state_;
     Eigen::MatrixXd h = prior_.information;
     for (const ViewEquations& e : equations_) {
-      solution.views.push_back(Reduce(e, 0).shared);
+      Reduced reduced = Reduce(e, 0);
+      solution.views.push_back(std::move(reduced.shared));
+      solution.own.push_back(std::move(reduced.own));
       const LocalMatrix local =
           InverseOfSymmetric(LocalMatrix(e.h().topLeftCorner<kLocal, kLocal>()));
       solution.side_variance.push_back({local(6, 6), local(7, 7), local(8, 8), local(9, 9)});
@@ -165,9 +177,49 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
   return state;
 }
 
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state) {
+  BoardStart part{{problem.target, problem.cameras, problem.lens_priors, {}, problem.priors},
+                  {state.camera_from_lidar, state.lenses, state.shared, {}, {}}};
+  for (const std::size_t v : views) {
+    part.problem.views.push_back(problem.views[v]);
+    part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
+    part.start.side_shift.push_back(state.side_shift[v]);
+  }
+  return part;
+}
+
+BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
+                        const std::vector<std::size_t>& views) {
+  constexpr double kNextSettled = 1e-3;  // a thirtieth of a sigma, all unknowns together
+  ViewInformation sum = PriorInformation(problem, all.state);
+  for (const std::size_t v : views) {
+    sum.information += all.views[v].information;
+    sum.gradient += all.views[v].gradient;
+  }
+  const Eigen::VectorXd x = SolveSymmetric(sum.information, sum.gradient);
+  const BoardStart some = Part(problem, views, all.state);
+  BoardState there = MovedBy(some.start, x);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const OwnUnknowns& own = all.own[views[i]];
+    MoveView(own.step - own.by_shared * x, &there.lidar_from_target[i], &there.side_shift[i]);
+  }
+  const Step step(some.problem, there);
+  Stepped last = step.Take(0);
+  // Steps shrink by at least this rate: what the next one would be.
+  const double next = last.size * last.size / x.dot(sum.information * x);
+  if (!(next < kNextSettled) && !(last.size < kSettled)) {
+    return SolveBoards(some.problem, some.start);
+  }
+  BoardSolution solution = step.Conclude();
+  solution.state = std::move(last.state);
+  solution.converged = solution.covariance.allFinite();
+  solution.iterations = 2;
+  return solution;
+}
+
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) {
   constexpr int kIterations = 100;
-  constexpr double kSettled = 1e-4;  // a hundredth of a sigma
   double damping = 0;
   bool converged = false;
   int iterations = 0;

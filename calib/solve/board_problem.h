@@ -71,10 +71,18 @@ struct ViewInformation {
   Eigen::VectorXd gradient;
 };
 
+/// How a view's own unknowns (its board's pose, right delta; its sides' shifts) follow the shared
+/// ones: where those change by x, they change by `step` - `by_shared` x.
+struct OwnUnknowns {
+  Eigen::VectorXd step;
+  Eigen::MatrixXd by_shared;
+};
+
 struct BoardSolution {
   BoardState state;
   Eigen::MatrixXd covariance;                        ///< of the shared unknowns (SharedPlaces)
   std::vector<ViewInformation> views;                ///< at the solution
+  std::vector<OwnUnknowns> own;                      ///< by view, at the solution
   std::vector<std::array<double, 4>> side_variance;  ///< by view and side, of its shift [rad^2]
   bool converged = false;
   int iterations = 0;
@@ -99,6 +107,23 @@ struct BoardSolution {
 /// with exact derivatives (ceres_test.cc), each view's ten unknowns eliminated (Schur complement).
 /// `start` is near: some degrees and centimetres.
 BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start);
+
+/// A problem and where its solve starts.
+struct BoardStart {
+  BoardProblem problem;
+  BoardState start;
+};
+
+/// The problem with some of the views only, to be solved from `state`.
+BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
+                const BoardState& state);
+
+/// The solution from some of the views, near the one from all of them. The normal equations of
+/// these views at the solution of all are at hand: their step is taken, and one more from where it
+/// leads. Where steps do not shrink quickly, as wrong corners or sides gain or lose their say, the
+/// views are solved by SolveBoards. `views` and `own` are those of the views taken.
+BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
+                        const std::vector<std::size_t>& views);
 
 /// Each view's board where its cloud puts it, the given lenses, nothing else known.
 BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar);

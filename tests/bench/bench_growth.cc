@@ -1,11 +1,13 @@
 // How the cost of solving and of detecting grows, on one core.
 //   bench_growth solve MOST SEED CSV
 //   bench_growth detection MOST SEED CSV
-// solve: Calibrate by `auto`, diagnostics off, the simulator's two default cameras, 2 views and
-// more up to MOST. detection: FindBoards in clouds of 10,000 points and more up to MOST, as the
-// LIDAR saw them and bare (hits in one row, nothing known but their places). Clouds are analytic
-// (analytic_cloud.h), corners sampled. A line of CSV for each size: the least processor time of
-// several runs, which other processes disturb least.
+// solve: the simulator's two default cameras, 2 views and more up to MOST, of one session drawn
+// from the noise model with ranges and lenses off (sampled_sessions.h): Calibrate by `auto`,
+// diagnostics off; and first guess, joint solve and all that checks it, images not judged.
+// detection: FindBoards in clouds of 10,000 points and more up to MOST, as the LIDAR saw them and
+// bare (hits in one row, nothing known but their places). Clouds are analytic (analytic_cloud.h),
+// corners sampled. A line of CSV for each size: the least processor time of several runs, which
+// other processes disturb least.
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -13,21 +15,24 @@
 #include <functional>
 #include <iostream>
 #include <opencv2/core/utility.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/methods/calibrate.h"
 #include "calib/simulate/internal/board.h"
-#include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/spinning.h"
+#include "calib/solve/closure.h"
+#include "calib/solve/internal/cross_check.h"
 #include "calib/solve/internal/joint_solve.h"
+#include "calib/solve/internal/next_view.h"
 #include "tests/bench/analytic_cloud.h"
 #include "tests/simulated_variants.h"
 #include "tests/study/cloud_scenes.h"
-#include "tests/study/paired_sessions.h"
-#include "tests/study/sampled_images.h"
+#include "tests/study/sampled_sessions.h"
 
 namespace rgbdt::bench {
 namespace {
@@ -67,68 +72,75 @@ std::vector<int> Sizes(int first, int most) {
   return sizes;
 }
 
-// A session whose views are looked at as they come.
+// As many views as are asked for first of one session.
 class Session {
  public:
-  explicit Session(std::uint64_t seed) : seed_(seed) {
-    for (const auto& camera : {simulate::DefaultColorCamera(), simulate::DefaultThermalCamera()}) {
-      rig_.cameras.push_back(study::SpecOf(camera));
-      camera_from_lidar_.push_back(simulate::DrawCameraFromLidar(camera, seed));
+  Session(int most, std::uint64_t seed) {
+    study::SampledOptions options;
+    options.views = most;
+    options.heldout = 0;
+    options.range_offset_m = 0.03;
+    options.lenses_off = true;
+    std::optional<study::SampledSession> sampled;
+    for (std::uint64_t next = seed; !sampled && next < seed + 50; ++next) {
+      sampled = study::SampleSession(options, next);
     }
-    rig_.target = simulate::MakeTarget({});
+    if (!sampled) throw std::runtime_error("no session has room for the board");
+    all_ = std::move(*sampled);
   }
 
   void GrowTo(int views) {
-    for (; views_ < views; ++next_) {
-      if (AddView(DrawBoard(seed_, next_))) ++views_;
-    }
+    detections_.assign(all_.detections.begin(), all_.detections.begin() + views);
   }
 
-  const Rig& rig() const { return rig_; }
+  const Rig& rig() const { return all_.rig; }
   const std::vector<ViewDetection>& detections() const { return detections_; }
-  const std::vector<Rigid3>& camera_from_lidar() const { return camera_from_lidar_; }
+  const Truth& truth() const { return all_.truth; }
 
  private:
-  bool AddView(const Rigid3& lidar_from_target) {
-    ViewDetection seen;
-    seen.view = std::to_string(100'000 + next_);
-    for (std::size_t c = 0; c < rig_.cameras.size(); ++c) {
-      const std::string& camera = rig_.cameras[c].name;
-      auto image = study::BoardInImage(rig_.cameras[c], rig_.target,
-                                       camera_from_lidar_[c] * lidar_from_target,
-                                       simulate::Noise(seed_, next_, camera));
-      if (!image) return false;
-      seen.images.push_back({camera, 0, std::move(image), "", 0});
-    }
-    const Cloud cloud = AnalyticCloud(rig_.target, lidar_from_target, kCloudPoints,
-                                      seed_ + static_cast<std::uint64_t>(next_));
-    seen.cloud.candidates = FindBoards(cloud, rig_.target).candidates;
-    if (seen.cloud.candidates.empty()) return false;
-    detections_.push_back(std::move(seen));
-    return true;
-  }
-
-  std::uint64_t seed_;
-  Rig rig_;
-  std::vector<Rigid3> camera_from_lidar_;
+  study::SampledSession all_;
   std::vector<ViewDetection> detections_;
-  int views_ = 0, next_ = 0;
 };
 
-// The joint solve from first guesses that are at hand, its set-up included.
-double JointMilliseconds(const Session& session) {
-  std::vector<GuessedCamera> cameras;
-  for (const CameraSpec& spec : session.rig().cameras) {
-    auto& [views, guess] =
-        cameras.emplace_back(GuessedCamera{ViewsOf(spec, session.detections()), {}});
-    guess = GuessFromBoards(views.Used());
-    if (!guess.camera_from_lidar) throw std::runtime_error("no first guess");
-    for (CameraView& view : views.all) {
-      view = WithChosenCandidate(std::move(view), *guess.camera_from_lidar);
-    }
+// First guesses, and their boards chosen.
+std::vector<GuessedCamera> Guessed(const Session& session) {
+  CalibrateOptions options;
+  options.min_views = 2;
+  options.first_guess.accept = kVotingGate;  // as CalibrateByBoards does
+  options.first_guess.range_offset_sigma_m = session.rig().lidar.range_offset_sigma_m;
+  std::vector<CameraViews> views;
+  for (const CameraSpec& camera : session.rig().cameras) {
+    views.push_back(ViewsOf(camera, session.detections()));
   }
-  return LeastMilliseconds(
-      [&] { SolveJointly(MakeJointProblem(session.rig().target, cameras, 0)); });
+  std::vector<GuessedCamera> cameras = GuessCameras(options, std::move(views));
+  for (const GuessedCamera& camera : cameras) {
+    if (!camera.guess.camera_from_lidar) throw std::runtime_error("no first guess");
+  }
+  return cameras;
+}
+
+JointResult SolvedJointly(const Session& session, const std::vector<GuessedCamera>& cameras) {
+  return SolveJointly(
+      MakeJointProblem(session.rig().target, cameras, session.rig().lidar.range_offset_sigma_m));
+}
+
+// The joint solve from first guesses that are at hand, its set-up included; and with all that
+// checks it.
+struct JointTimes {
+  double solve_ms = 0, checked_ms = 0;
+};
+
+JointTimes JointMilliseconds(const Session& session) {
+  const std::vector<GuessedCamera> cameras = Guessed(session);
+  const CalibrateOptions options;
+  JointTimes times;
+  times.solve_ms = LeastMilliseconds([&] { SolvedJointly(session, cameras); });
+  times.checked_ms = LeastMilliseconds([&] {
+    const JointResult result = CrossValidate(SolvedJointly(session, cameras), options.folds);
+    FindNextView(result);
+    CloseLoops(cameras);
+  });
+  return times;
 }
 
 double GuessMilliseconds(const Session& session) {
@@ -145,10 +157,10 @@ double GuessMilliseconds(const Session& session) {
 void WriteOutcome(const Session& session, const Report& report, std::ofstream* csv) {
   PoseError worst;
   std::size_t left_out = 0;  // views, and sides of views: each costs a round
-  for (std::size_t c = 0; c < report.cameras.size(); ++c) {
-    const CameraReport& camera = report.cameras[c];
+  for (const CameraReport& camera : report.cameras) {
     const PoseError error =
-        ErrorOf(camera.calibration.camera_from_lidar, session.camera_from_lidar()[c]);
+        ErrorOf(camera.calibration.camera_from_lidar,
+                session.truth().camera_from_lidar.at(camera.calibration.camera));
     worst.rotation_deg = std::max(worst.rotation_deg, error.rotation_deg);
     worst.translation_mm = std::max(worst.translation_mm, error.translation_mm);
     left_out += camera.rejected.size();
@@ -157,8 +169,8 @@ void WriteOutcome(const Session& session, const Report& report, std::ofstream* c
 }
 
 void BenchSolve(int most, std::uint64_t seed, std::ofstream* csv) {
-  *csv << "views,calibrate_ms,joint_ms,guess_ms,left_out,worst_deg,worst_mm\n";
-  Session session(seed);
+  *csv << "views,calibrate_ms,joint_ms,checked_ms,guess_ms,left_out,worst_deg,worst_mm\n";
+  Session session(most, seed);
   CalibrateOptions options;
   options.diagnostics = false;
   options.min_views = 2;
@@ -168,7 +180,8 @@ void BenchSolve(int most, std::uint64_t seed, std::ofstream* csv) {
     Report report;
     const double all = LeastMilliseconds(
         [&] { report = Calibrate(session.rig(), session.detections(), options); });
-    *csv << views << ',' << all << ',' << JointMilliseconds(session) << ','
+    const JointTimes joint = JointMilliseconds(session);
+    *csv << views << ',' << all << ',' << joint.solve_ms << ',' << joint.checked_ms << ','
          << GuessMilliseconds(session);
     WriteOutcome(session, report, csv);
     std::printf("growth: solved %d views\n", views);

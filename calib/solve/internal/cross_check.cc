@@ -24,12 +24,6 @@ std::vector<std::size_t> Others(std::size_t views, std::size_t part, std::size_t
   return out;
 }
 
-BoardSolution SolvePart(const JointProblem& joint, const BoardState& near,
-                        const std::vector<std::size_t>& views) {
-  const BoardStart part = Part(joint.problem, views, near);
-  return SolveBoards(part.problem, part.start);
-}
-
 std::vector<const CameraView*> ViewsOf(const JointProblem& joint, std::size_t camera,
                                        const std::vector<std::size_t>& views) {
   std::vector<const CameraView*> out;
@@ -139,7 +133,7 @@ JointResult LeaveOutParts(JointResult result, std::size_t parts) {
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t count = joint.problem.views.size();
     const auto kept = Others(count, part, parts, false);
-    const BoardSolution solution = SolvePart(joint, result.solution.state, kept);
+    const BoardSolution solution = SolveSome(joint.problem, result.solution, kept);
     for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
       const auto left_out = Others(count, part, parts, true);
       const FirstGuess guess = GuessFromBoards(ViewsOf(joint, c, kept));
@@ -159,8 +153,8 @@ JointResult LeaveOutParts(JointResult result, std::size_t parts) {
 JointResult Halve(JointResult result) {
   JointProblem& joint = result.joint;
   const std::size_t count = joint.problem.views.size();
-  const BoardSolution a = SolvePart(joint, result.solution.state, Others(count, 0, 2, true));
-  const BoardSolution b = SolvePart(joint, result.solution.state, Others(count, 1, 2, true));
+  const BoardSolution a = SolveSome(joint.problem, result.solution, Others(count, 0, 2, true));
+  const BoardSolution b = SolveSome(joint.problem, result.solution, Others(count, 1, 2, true));
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
     const Rigid3& pose_a = a.state.camera_from_lidar[c];
     const Rigid3& pose_b = b.state.camera_from_lidar[c];

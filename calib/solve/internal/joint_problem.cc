@@ -111,16 +111,4 @@ JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> c
   return builder.Finish(range_offset_sigma_m);
 }
 
-BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                const BoardState& state) {
-  BoardStart part{{problem.target, problem.cameras, problem.lens_priors, {}, problem.priors},
-                  {state.camera_from_lidar, state.lenses, state.shared, {}, {}}};
-  for (const std::size_t v : views) {
-    part.problem.views.push_back(problem.views[v]);
-    part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
-    part.start.side_shift.push_back(state.side_shift[v]);
-  }
-  return part;
-}
-
 }  // namespace rgbdt

@@ -22,14 +22,4 @@ struct JointProblem {
 JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
                               double range_offset_sigma_m);
 
-/// A problem and where its solve starts.
-struct BoardStart {
-  BoardProblem problem;
-  BoardState start;
-};
-
-/// The problem with some of the views only, to be solved from `state`.
-BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
-                const BoardState& state);
-
 }  // namespace rgbdt

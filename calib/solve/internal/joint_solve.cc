@@ -103,14 +103,13 @@ const Contradiction* WorstToReject(const JointProblem& joint,
 }
 
 // The result without every `parts`-th view from `part` on.
-BoardSolution Without(const JointProblem& joint, const BoardState& near, std::size_t part,
+BoardSolution Without(const JointProblem& joint, const BoardSolution& all, std::size_t part,
                       std::size_t parts) {
   std::vector<std::size_t> others;
   for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
     if (v % parts != part) others.push_back(v);
   }
-  const BoardStart start = Part(joint.problem, others, near);
-  return SolveBoards(start.problem, start.start);
+  return SolveSome(joint.problem, all, others);
 }
 
 // How the result moves when each view is left out in turn, against how it should: nuisances, robust
@@ -128,7 +127,7 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
   double expected = 0;
   double expected2 = 0;
   for (std::size_t part = 0; part < parts; ++part) {
-    const BoardSolution without = Without(joint, solution.state, part, parts);
+    const BoardSolution without = Without(joint, solution, part, parts);
     for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
       const auto at = static_cast<Index>(6 * c);
       const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
