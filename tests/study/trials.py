@@ -17,7 +17,7 @@ METHOD_COLOURS = {
     "first_guess": "tab:purple",
 }
 # Columns; all others are numbers, and what is not to be had is empty.
-TEXT = {"camera", "how", "judged", "method", "scene", "sensor", "start", "status"}
+TEXT = {"camera", "case", "how", "judged", "method", "scene", "sensor", "start", "status", "view"}
 
 
 def read(parts, *prefixes):

@@ -1,0 +1,149 @@
+"""Table, CSV, picture and summary.json of `scripts/study real`: how recorded sessions agree with
+themselves, as there is no truth."""
+
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+import trials  # noqa: E402
+from trials import column, figure, mean, median, pick
+
+UNLIKELY = 22.5  # chi-square of six: beyond it once in a thousand times
+CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens", "in_order": "in_order"}
+DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
+SINGLE = ("used", "sigma_deg", "sigma_mm", "variance_factor", "edge_plane_deg", "edge_plane_mm",
+          "edge_plane_chi2", "lens_deg", "lens_mm", "lens_chi2")
+
+
+class Rig:
+    """What study_real wrote of one session."""
+
+    def __init__(self, parts, name):
+        self.name = name
+        self.splits = pick(trials.read(parts, f"real-{name}"), part=f"real-{name}")
+        self.rings = pick(trials.read(parts, f"rings-{name}"), part=f"rings-{name}")
+        with open(parts / f"facts-{name}.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.facts = {row["fact"]: (float(row["value"]), row["unit"]) for row in rows}
+
+    def fact(self, name):
+        return self.facts.get(name, (None, ""))[0]
+
+    def solved(self, case):
+        return [r for r in pick(self.splits, case=case) if r["chi2"] is not None]
+
+    def silent_failures(self):
+        """Results farther apart than chance does, of which none said that it may be wrong."""
+        count = sum(r["chi2"] > UNLIKELY and not r["doubtful"]
+                    for case in CASES for r in self.solved(case) if case != "random_exact_lens")
+        apart = [self.fact(f"{what}_chi2") for what in ("edge_plane", "lens")]
+        return count + (not self.fact("doubtful")) * sum(c is not None and c > UNLIKELY for c in apart)
+
+
+def figures_of_rig(rig):
+    for case, name in CASES.items():
+        own = rig.solved(case)
+        if not own:
+            continue
+        for key, unit in DIFFERENCES:
+            yield figure(f"{rig.name}_{name}_{unit}", median(column(own, key)), unit)
+        if case == "in_order":
+            yield figure(f"{rig.name}_{name}_chi2", own[0]["chi2"])
+        else:
+            yield figure(f"{rig.name}_{name}_coverage95", mean(column(own, "inside95")))
+            yield figure(f"{rig.name}_{name}_solved", len(own) / len(pick(rig.splits, case=case)))
+    for name in SINGLE:
+        if name in rig.facts:
+            yield figure(f"{rig.name}_{name}", *rig.facts[name])
+
+
+def figures_of(rigs):
+    for rig in rigs:
+        yield from figures_of_rig(rig)
+    yield figure("silent_failures", sum(rig.silent_failures() for rig in rigs))
+
+
+def targets_of(rigs):
+    targets = {"silent_failures": ("<=", 0)}
+    for rig in rigs:
+        targets[f"{rig.name}_halves_coverage95"] = ("in", 0.85, 0.99)
+        targets[f"{rig.name}_edge_plane_chi2"] = ("<=", UNLIKELY)
+        targets[f"{rig.name}_lens_chi2"] = ("<=", UNLIKELY)
+    return targets
+
+
+def line_of(rig, case):
+    own = rig.solved(case)
+    line = [rig.name, CASES[case].replace("_", " "), f"{len(own)}"]
+    for key, _ in DIFFERENCES:
+        line += [median(column(own, key)), median(column(own, f"sigma_{key}"))] if own else ["-", "-"]
+    return line + ([median(column(own, "chi2")), mean(column(own, "inside95"))] if own else ["-", "-"])
+
+
+def table(rigs):
+    text = "Medians of differences, each beside the sigma stated of it\n"
+    head = ("rig", "what", "pairs", "deg", "sigma", "mm", "sigma", "chi2 of 6", "inside 95%")
+    lines = [line_of(rig, case) for rig in rigs for case in CASES]
+    for rig in rigs:
+        for what, label in (("edge_plane", "edges, planes"), ("lens", "given, own lens")):
+            values = [rig.fact(f"{what}_{key}") for key in ("deg", "mm", "chi2")]
+            if None not in values:
+                lines.append([rig.name, label, "1", values[0], "-", values[1], "-", values[2], "-"])
+    text += trials.grid(head, lines)
+    for rig in rigs:
+        text += (f"\n{rig.name}: {rig.fact('found'):.0f} of {rig.fact('recorded'):.0f} views found, "
+                 f"{rig.fact('used'):.0f} used; estimated along:\n")
+        for name, (value, unit) in rig.facts.items():
+            if f"{name}, sigma" in rig.facts:
+                text += f"  {name:<45}{value:>9.3g} +- {rig.fact(f'{name}, sigma'):<8.3g} {unit}\n"
+    return text + "\n"
+
+
+def draw_differences(axes, rig, key, unit):
+    for case, colour in (("random", "tab:green"), ("random_exact_lens", "tab:gray")):
+        own = rig.solved(case)
+        axes.scatter(column(own, f"sigma_{key}"), column(own, key), s=10, c=colour, alpha=0.6,
+                     label=CASES[case].replace("_", " "))
+    most = max(axes.get_xlim()[1], axes.get_ylim()[1])
+    axes.plot([0, most], [0, most], c="k", lw=0.8, label="one sigma")
+    axes.set(xlim=(0, most), ylim=(0, most), xlabel=f"stated sigma [{unit}]",
+             ylabel=f"difference [{unit}]", title=f"{rig.name}: {key.split('_')[0]}")
+    axes.legend(fontsize=8)
+
+
+def draw_rings(axes, rig):
+    enough = [r for r in rig.rings if r["points"] >= 5]
+    axes.scatter(column(enough, "ring"), column(enough, "mean_mm"), s=10, c="tab:blue", alpha=0.6)
+    axes.axhline(0, c="k", lw=0.8)
+    axes.set(xlabel="ring", ylabel="behind the plane, along the beam [mm]",
+             title=f"{rig.name}: mean of a ring's points in a view")
+
+
+def draw(rigs, path):
+    plot, axes = plt.subplots(len(rigs), 3, figsize=(15, 4.5 * len(rigs)), squeeze=False)
+    for row, rig in zip(axes, rigs):
+        for axis, (key, unit) in zip(row, DIFFERENCES):
+            draw_differences(axis, rig, key, unit)
+        draw_rings(row[2], rig)
+    plot.tight_layout()
+    plot.savefig(path, dpi=120)
+
+
+def main():
+    out = pathlib.Path(sys.argv[1])
+    parts = out / "parts"
+    rigs = [Rig(parts, path.stem[len("facts-"):]) for path in sorted(parts.glob("facts-*.csv"))]
+    if not rigs:
+        sys.exit(f"study: no session in {parts}")
+    draw(rigs, out / "real.png")
+    figures = list(figures_of(rigs))
+    rows = [row for rig in rigs for row in rig.splits]
+    trials.write(out, "real", rows, figures, table(rigs) + trials.table(figures, targets_of(rigs)))
+
+
+main()

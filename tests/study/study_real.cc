@@ -1,0 +1,344 @@
+// How a recorded session agrees with itself: there is no truth.
+//   study_real SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV
+// SESSION: a session directory of one camera; each view is detected once, held out or not.
+// SPLITS_CSV: random halves of the views, solved apart, a line each, with the lens as the rig file
+// has it and with it taken for exact; and the first half of the recording against the last
+// ("in_order"), as two sessions. FACTS_CSV: name, value, unit. Edges alone against planes alone:
+// the same solve without the boards' points, and without crossings and sides in the images; both
+// have the corners, whose noise they share. The given lens against the session's own: found from
+// the same images as `rgbdt intrinsics` does. RINGS_CSV: how far each ring's points on a board lie
+// behind its plane, along their beams.
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "calib/camera/intrinsics.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/methods/calibrate.h"
+#include "calib/methods/detect_view.h"
+#include "calib/model/linear_algebra.h"
+#include "calib/present/report/verdict.h"
+#include "calib/solve/guess_cameras.h"
+#include "calib/solve/internal/joint_solve.h"
+#include "tests/study/study_main.h"
+
+namespace rgbdt::study {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kInside95 = 12.592;    // chi-square of six degrees of freedom: 95% lie below
+constexpr double kBoardMarginM = 0.05;  // of the board's border, whose points are no plane's
+constexpr double kMostOffPlaneM = 0.1;
+
+using Detections = std::vector<ViewDetection>;
+
+/// What was recorded, and what detection makes of it.
+struct Recorded {
+  Rig rig;
+  std::vector<Cloud> clouds;  ///< one a view
+  Detections views;
+};
+
+Recorded Record(const std::string& dir) {
+  const Session session = OpenSession(dir);
+  Recorded out{session.rig, {}, {}};
+  if (out.rig.cameras.size() != 1) throw std::runtime_error(dir + ": expected one camera");
+  for (const std::string& name : session.views) {
+    View view = ReadView(session, name);
+    out.views.push_back(DetectView(out.rig, view, kAutoMethod));
+    out.views.back().heldout = false;
+    out.clouds.push_back(std::move(view.cloud));
+  }
+  return out;
+}
+
+bool IsFound(const ViewDetection& view) {
+  return view.images.at(0).usable() && !view.cloud.candidates.empty();
+}
+
+CameraReport Solve(const Rig& rig, const Detections& views) {
+  CalibrateOptions options;
+  options.diagnostics = false;
+  return Calibrate(rig, views, options).cameras.at(0);
+}
+
+/// A pose and the covariance of its delta.
+struct Pose {
+  Rigid3 camera_from_lidar;
+  Matrix6d covariance;
+};
+
+std::optional<Pose> PoseOf(const CameraReport& report) {
+  const CameraCalibration& found = report.calibration;
+  if (!found.covariance) return std::nullopt;
+  return Pose{found.camera_from_lidar, *found.covariance};
+}
+
+double Chi2(const Pose& a, const Rigid3& b, const Matrix6d& covariance) {
+  const Vector6d delta = Log(a.camera_from_lidar * b.Inverse());
+  return delta.dot(SolveSymmetric(covariance, delta));
+}
+
+std::vector<GuessedCamera> Guessed(const Rig& rig, const Detections& views) {
+  CalibrateOptions options;
+  options.first_guess.accept = kVotingGate;  // as CalibrateByBoards does
+  options.first_guess.range_offset_sigma_m = rig.lidar.range_offset_sigma_m;
+  return GuessCameras(options, {ViewsOf(rig.cameras.at(0), views)});
+}
+
+/// As Solve, with its covariance however loose the views leave the pose; nothing where it failed.
+std::optional<Pose> SolveLoose(const Rig& rig, const Detections& views) {
+  std::vector<GuessedCamera> cameras = Guessed(rig, views);
+  if (!cameras.at(0).guess.camera_from_lidar) return std::nullopt;
+  const JointResult result = SolveJointly(
+      MakeJointProblem(rig.target, std::move(cameras), rig.lidar.range_offset_sigma_m));
+  if (!result.solution.converged) return std::nullopt;
+  return Pose{result.solution.state.camera_from_lidar[0],
+              Matrix6d(CovarianceOf(result, 0).topLeftCorner<6, 6>())};
+}
+
+Detections WithoutEdges(Detections views) {
+  for (ViewDetection& view : views) {
+    for (CloudEdges& board : view.cloud.candidates) board.crossings.clear();
+    for (ImageDetection& image : view.images) {
+      if (image.edges) image.edges->sides = {};
+    }
+  }
+  return views;
+}
+
+Detections WithoutPlanes(Detections views) {
+  for (ViewDetection& view : views) {
+    for (CloudEdges& board : view.cloud.candidates) board.scatter_sigma_m = 0;  // not known
+  }
+  return views;
+}
+
+/// The rig with the lens that the session's own images give; nothing where that failed.
+std::optional<Rig> WithOwnLens(Rig rig, const Detections& views) {
+  CameraSpec& camera = rig.cameras.at(0);
+  IntrinsicsInput images{
+      camera.lens.model == Lens::Model::kFisheye ? LensChoice::kFisheye : LensChoice::kPinhole5,
+      camera.width,
+      camera.height,
+      rig.target,
+      {}};
+  for (const ViewDetection& view : views) {
+    if (!view.images.at(0).usable()) continue;
+    images.views.push_back({view.view, view.images.at(0).edges->corners});
+  }
+  const IntrinsicsResult own = CalibrateIntrinsics(images);
+  if (!own.converged) return std::nullopt;
+  camera.lens = own.lens;
+  camera.lens_uncertainty = UncertaintyOf(own, images.views);
+  return rig;
+}
+
+/// Random halves, and the recording's own.
+class Splits {
+ public:
+  Splits(const std::string& path, const Detections& views) : csv_(path), views_(views) {
+    csv_ << "case,split,rotation_deg,translation_mm,chi2,inside95,sigma_rotation_deg,"
+            "sigma_translation_mm,doubtful\n";
+  }
+
+  void Random(const std::string& name, const Rig& rig, int count, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<std::size_t> order = InOrder();
+    for (int i = 0; i < count; ++i) {
+      // Not std::shuffle, whose result is the library's own.
+      for (std::size_t k = order.size(); k > 1; --k) std::swap(order[k - 1], order[random() % k]);
+      Add(name, rig, i, order);
+    }
+  }
+
+  void Recorded(const Rig& rig) { Add("in_order", rig, 0, InOrder()); }
+
+  bool Close() { return static_cast<bool>(csv_.flush()); }
+
+ private:
+  std::vector<std::size_t> InOrder() const {
+    std::vector<std::size_t> order(views_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    return order;
+  }
+
+  void Add(const std::string& name, const Rig& rig, int split,
+           const std::vector<std::size_t>& order) {
+    Detections halves[2];
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      halves[2 * k < order.size() ? 0 : 1].push_back(views_[order[k]]);
+    }
+    const CameraReport a = Solve(rig, halves[0]);
+    const CameraReport b = Solve(rig, halves[1]);
+    const auto pose_a = PoseOf(a);
+    const auto pose_b = PoseOf(b);
+    csv_ << name << ',' << split;
+    if (pose_a && pose_b) {
+      const PoseError apart = ErrorOf(pose_a->camera_from_lidar, pose_b->camera_from_lidar);
+      const Matrix6d covariance = pose_a->covariance + pose_b->covariance;
+      const double chi2 = Chi2(*pose_a, pose_b->camera_from_lidar, covariance);
+      csv_ << ',' << apart.rotation_deg << ',' << apart.translation_mm << ',' << chi2 << ','
+           << (chi2 <= kInside95) << ','
+           << std::sqrt(covariance.topLeftCorner<3, 3>().trace()) / kDegree << ','
+           << 1e3 * std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+    } else {
+      csv_ << ",,,,,,";
+    }
+    csv_ << ',' << (Judge(a).grade != Grade::kGood || Judge(b).grade != Grade::kGood) << '\n';
+  }
+
+  std::ofstream csv_;
+  const Detections& views_;
+};
+
+/// Single figures: name, value, unit.
+class Facts {
+ public:
+  explicit Facts(const std::string& path) : csv_(path) { csv_ << "fact,value,unit\n"; }
+
+  void Add(const std::string& name, double value, const std::string& unit = "1") {
+    csv_ << '"' << name << "\"," << value << ',' << unit << '\n';
+  }
+
+  // How far two results lie apart.
+  void AddApart(const std::string& name, const Pose& a, const Pose& b, const Matrix6d& covariance) {
+    const PoseError apart = ErrorOf(a.camera_from_lidar, b.camera_from_lidar);
+    Add(name + "_deg", apart.rotation_deg, "deg");
+    Add(name + "_mm", apart.translation_mm, "mm");
+    Add(name + "_chi2", Chi2(a, b.camera_from_lidar, covariance));
+  }
+
+  void AddEstimate(const std::string& name, const std::string& unit, double scale,
+                   const Estimate& estimate) {
+    Add(name, scale * estimate.value, unit);
+    Add(name + ", sigma", scale * estimate.sigma, unit);
+  }
+
+  bool Close() { return static_cast<bool>(csv_.flush()); }
+
+ private:
+  std::ofstream csv_;
+};
+
+void AddWhole(const Recorded& recorded, const CameraReport& whole, Facts* facts) {
+  facts->Add("found", static_cast<double>(recorded.views.size()));
+  facts->Add("used", static_cast<double>(whole.used.size()));
+  facts->Add("converged", whole.calibration.converged() ? 1 : 0);
+  facts->Add("doubtful", Judge(whole).grade != Grade::kGood ? 1 : 0);
+  facts->Add("variance_factor", whole.variance_factor);
+  if (const auto pose = PoseOf(whole)) {
+    const Vector6d sigma = pose->covariance.diagonal().cwiseSqrt();
+    facts->Add("sigma_deg", sigma.head<3>().maxCoeff() / kDegree, "deg");
+    facts->Add("sigma_mm", 1e3 * sigma.tail<3>().maxCoeff(), "mm");
+  }
+  for (const Nuisance& n : whole.nuisance) facts->AddEstimate(n.name, n.unit, 1, n.estimate);
+}
+
+void AddComparisons(const Recorded& recorded, const CameraReport& whole, Facts* facts) {
+  const auto edges = SolveLoose(recorded.rig, WithoutPlanes(recorded.views));
+  const auto planes = SolveLoose(recorded.rig, WithoutEdges(recorded.views));
+  if (edges && planes) {
+    facts->AddApart("edge_plane", *edges, *planes,
+                    Matrix6d(edges->covariance + planes->covariance));
+  }
+  const auto rig = WithOwnLens(recorded.rig, recorded.views);
+  const auto given = PoseOf(whole);
+  const auto own = rig ? PoseOf(Solve(*rig, recorded.views)) : std::nullopt;
+  // All but the lens is common to both: the difference is judged by one covariance, not by the sum.
+  if (given && own) facts->AddApart("lens", *given, *own, own->covariance);
+}
+
+/// Distances behind the plane along the beam [m], of one ring.
+struct Ring {
+  int points = 0;
+  double sum = 0, squares = 0;
+};
+
+std::map<int, Ring> RingsOnBoard(const Cloud& cloud, const Rigid3& lidar_from_target,
+                                 const Target& target) {
+  std::map<int, Ring> rings;
+  if (cloud.ring.size() != cloud.size()) return rings;
+  const Rigid3 target_from_lidar = lidar_from_target.Inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.IsHit(i)) continue;
+    const Eigen::Vector3d point = cloud.points[i].cast<double>();
+    const Eigen::Vector3d on_target = target_from_lidar * point;
+    if (std::abs(on_target.x()) > target.width_m / 2 - kBoardMarginM ||
+        std::abs(on_target.y()) > target.height_m / 2 - kBoardMarginM ||
+        std::abs(on_target.z()) > kMostOffPlaneM) {
+      continue;
+    }
+    const Eigen::Vector3d beam = target_from_lidar.rotation * point.normalized();
+    const double behind = on_target.z() / beam.z();
+    Ring& ring = rings[cloud.ring[i]];
+    ++ring.points;
+    ring.sum += behind;
+    ring.squares += behind * behind;
+  }
+  return rings;
+}
+
+// Of the boards that the views chose.
+bool WriteRings(const Recorded& recorded, const std::string& path) {
+  std::ofstream csv(path);
+  csv << "view,ring,points,mean_mm,rms_mm\n";
+  const std::vector<GuessedCamera> cameras = Guessed(recorded.rig, recorded.views);
+  for (std::size_t v = 0; v < recorded.views.size(); ++v) {
+    const CameraView* view = cameras.at(0).views.Find(recorded.views[v].view);
+    if (view == nullptr || !view->cloud->pose) continue;
+    for (const auto& [number, ring] : RingsOnBoard(
+             recorded.clouds[v], view->cloud->pose->sensor_from_target, recorded.rig.target)) {
+      csv << view->view << ',' << number << ',' << ring.points << ','
+          << 1e3 * ring.sum / ring.points << ',' << 1e3 * std::sqrt(ring.squares / ring.points)
+          << '\n';
+    }
+  }
+  return static_cast<bool>(csv.flush());
+}
+
+// Only what was found; all views are counted.
+Recorded FoundOf(Recorded recorded, Facts* facts) {
+  facts->Add("recorded", static_cast<double>(recorded.views.size()));
+  Recorded found{recorded.rig, {}, {}};
+  for (std::size_t v = 0; v < recorded.views.size(); ++v) {
+    if (!IsFound(recorded.views[v])) continue;
+    found.views.push_back(std::move(recorded.views[v]));
+    found.clouds.push_back(std::move(recorded.clouds[v]));
+  }
+  return found;
+}
+
+void Run(const std::vector<std::string>& arguments) {
+  Facts facts(arguments[4]);
+  const Recorded recorded = FoundOf(Record(arguments[0]), &facts);
+  const CameraReport whole = Solve(recorded.rig, recorded.views);
+  AddWhole(recorded, whole, &facts);
+  AddComparisons(recorded, whole, &facts);
+  const int count = std::stoi(arguments[1]);
+  const std::uint64_t seed = std::stoull(arguments[2]);
+  Rig exact = recorded.rig;
+  exact.cameras.at(0).lens_uncertainty = LensUncertainty{};
+  Splits splits(arguments[3], recorded.views);
+  splits.Random("random", recorded.rig, count, seed);
+  splits.Random("random_exact_lens", exact, count, seed);
+  splits.Recorded(recorded.rig);
+  if (!splits.Close() || !facts.Close() || !WriteRings(recorded, arguments[5])) {
+    throw std::runtime_error("cannot write " + arguments[3]);
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt::study
+
+int main(int argc, char** argv) {
+  return rgbdt::study::StudyMain(
+      {"study_real", "SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV", 6, 6, rgbdt::study::Run},
+      argc, argv);
+}
