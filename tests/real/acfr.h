@@ -30,9 +30,10 @@ struct Detected {
 };
 
 /// Nothing where the data is absent.
-inline std::optional<Detected> DetectReal(const std::string& method) {
+inline std::optional<Detected> DetectReal(const std::string& method,
+                                          const std::string& folder = "acfr_vlp16") {
   const char* real = std::getenv("RGBDT_REAL_DATA");
-  const fs::path source = fs::path(real == nullptr ? "" : real) / "acfr_vlp16";
+  const fs::path source = fs::path(real == nullptr ? "" : real) / folder;
   if (real == nullptr || !fs::exists(source)) return std::nullopt;
   const fs::path dir = fs::path(::testing::TempDir()) /
                        ("rgbdt_acfr_" + method + "_" +

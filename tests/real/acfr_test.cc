@@ -28,6 +28,16 @@ TEST(Acfr, TheBoardsFindThemselves) {
   EXPECT_LT(error.translation_mm, 80);
 }
 
+// One stands before a roller door whose slats go up and down like the squares.
+TEST(Acfr, EveryBoardBeforeTheRollerDoorIsFound) {
+  const auto detected = DetectReal(kAutoMethod, "acfr_os64");
+  if (!detected) GTEST_SKIP() << "RGBDT_REAL_DATA is not set, or has no acfr_os64";
+  EXPECT_EQ(detected->views.size(), 11U);
+  for (const ViewDetection& view : detected->views) {
+    EXPECT_TRUE(view.images.at(0).edges) << view.view << ": " << view.images.at(0).why_not;
+  }
+}
+
 TEST(Acfr, ThePapersMethodRunsOnRealViewsAndReportsTruthfully) {
   const auto detected = DetectReal(kPaperMethod);
   if (!detected) GTEST_SKIP() << kAbsent;

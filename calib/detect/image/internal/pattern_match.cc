@@ -87,6 +87,15 @@ std::vector<double> Alternation(const Edges& edges, int column, int row, bool do
   return steps;
 }
 
+// From the squares of a row (`down`) or column to the next below or to the right.
+std::vector<double> Across(const Edges& edges, int column, int row, bool down, int squares) {
+  std::vector<double> steps;
+  for (int k = 0; k < squares; ++k) {
+    steps.push_back(edges.At(column + (down ? k : 0), row + (down ? 0 : k), down));
+  }
+  return steps;
+}
+
 double ShareBetween(const std::vector<double>& values, double low, double high) {
   const auto inside =
       std::count_if(values.begin(), values.end(), [&](double v) { return v >= low && v <= high; });
@@ -101,6 +110,17 @@ bool AnyMissing(const std::vector<double>& values) {
 // along the board.
 bool Alternates(const std::vector<double>& steps) {
   return Median(steps) > 0.3 && ShareBetween(steps, 0.15, 5) > 0.6;
+}
+
+// Whether steps along the row or column beyond an end, and those across to it, are a
+// checkerboard's. Stricter than within: what lies beside a board may happen to go up and down, as a
+// roller door does, but half of the outermost squares look like the border beyond them.
+bool GoesOn(std::vector<double> along, std::vector<double> across, double typical) {
+  if (AnyMissing(along) || AnyMissing(across)) return false;
+  for (double& v : along) v /= typical;
+  for (double& v : across) v /= typical;
+  return Median(along) > 0.4 && ShareBetween(along, 0.3, 3) > 0.7 &&
+         ShareBetween(across, 0.3, 3) > 0.7;
 }
 
 struct Rated {
@@ -135,16 +155,15 @@ Rated Rate(const Edges& edges, int column, int row, int columns, int rows) {
     rated.weakest = std::min(rated.weakest, relative);
   }
   rated.fit = PatternFit::kYes;
-  for (auto line : {Alternation(edges, column, row - 1, false, columns),
-                    Alternation(edges, column, row + rows, false, columns),
-                    Alternation(edges, column - 1, row, true, rows),
-                    Alternation(edges, column + columns, row, true, rows)}) {
-    for (double& v : line) v /= typical;
-    // Stricter: what lies beside a board may happen to go up and down.
-    const bool goes_on =
-        !AnyMissing(line) && Median(line) > 0.4 && ShareBetween(line, 0.3, 3) > 0.7;
-    if (goes_on) rated.fit = PatternFit::kGoesOn;
-  }
+  const bool goes_on = GoesOn(Alternation(edges, column, row - 1, false, columns),
+                              Across(edges, column, row - 1, true, columns), typical) ||
+                       GoesOn(Alternation(edges, column, row + rows, false, columns),
+                              Across(edges, column, row + rows - 1, true, columns), typical) ||
+                       GoesOn(Alternation(edges, column - 1, row, true, rows),
+                              Across(edges, column - 1, row, false, rows), typical) ||
+                       GoesOn(Alternation(edges, column + columns, row, true, rows),
+                              Across(edges, column + columns - 1, row, false, rows), typical);
+  if (goes_on) rated.fit = PatternFit::kGoesOn;
   return rated;
 }
 

@@ -147,6 +147,35 @@ TEST(Checkerboard, APatternOfAnotherSizeIsRefused) {
   }
 }
 
+// As the slats of a roller door may.
+TEST(Checkerboard, WhatAlternatesBeyondItsBorderIsNoPartOfIt) {
+  PaintedCheckerboard painted;
+  painted.noise = 1;
+  PaintedCheckerboard behind = painted;
+  behind.squares_x += 2;
+  behind.squares_y += 2;
+  behind.contrast = 0.6 * painted.contrast;
+  cv::Mat image = behind.Paint();
+  const auto quadrangle = [&](double border) {
+    std::vector<cv::Point> points;
+    const double right = painted.squares_x + border;
+    const double bottom = painted.squares_y + border;
+    for (const auto& [x, y] :
+         {std::pair{-border, -border}, {right, -border}, {right, bottom}, {-border, bottom}}) {
+      const Eigen::Vector2d p = painted.Pixel(x, y);
+      points.emplace_back(cvRound(p.x()), cvRound(p.y()));
+    }
+    return points;
+  };
+  cv::fillConvexPoly(image, quadrangle(0.25), cv::Scalar(100 + painted.contrast));
+  cv::Mat pattern = cv::Mat::zeros(image.size(), CV_8U);
+  cv::fillConvexPoly(pattern, quadrangle(0), cv::Scalar(255));
+  painted.Paint().copyTo(image, pattern);
+  const CheckerboardResult result = FindCheckerboard(image, painted.target());
+  ASSERT_TRUE(result.board.has_value()) << result.why;
+  EXPECT_LT(Compare(result.board->corners, painted.Corners()).worst, 0.3);
+}
+
 TEST(Checkerboard, ABoardPartlyOutsideTheImageIsNotFound) {
   for (const double share : {0.15, 0.3}) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
