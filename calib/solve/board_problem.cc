@@ -207,14 +207,14 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
   const Step step(some.problem, there);
   Stepped last = step.Take(0);
   // Steps shrink by at least this rate: what the next one would be.
-  const double next = last.size * last.size / x.dot(sum.information * x);
+  const double first = x.dot(sum.information * x);
+  const double next = last.size * last.size / first;
   if (!(next < kNextSettled) && !(last.size < kSettled)) {
-    return SolveBoards(some.problem, some.start);
+    return SolveBoards(some.problem, last.size < first ? last.state : some.start);
   }
   BoardSolution solution = step.Conclude();
   solution.state = std::move(last.state);
   solution.converged = solution.covariance.allFinite();
-  solution.iterations = 2;
   return solution;
 }
 

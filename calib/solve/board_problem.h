@@ -120,8 +120,8 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
 
 /// The solution from some of the views, near the one from all of them. The normal equations of
 /// these views at the solution of all are at hand: their step is taken, and one more from where it
-/// leads. Where steps do not shrink quickly, as wrong corners or sides gain or lose their say, the
-/// views are solved by SolveBoards. `views` and `own` are those of the views taken.
+/// leads. Where steps do not shrink quickly, as wrong corners or sides gain or lose their say,
+/// SolveBoards goes on; else `iterations` is 0. `views` and `own` are those of the views taken.
 BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
                         const std::vector<std::size_t>& views);
 
