@@ -60,25 +60,9 @@ std::vector<Rigid3> FromOpenCv(const cv::Mat& model, const std::vector<cv::Point
   return poses;
 }
 
-// Both solutions of the planar pose, from where the corners' rays cut a plane before the camera.
 std::vector<Rigid3> FirstPoses(const Camera& camera, const Points& model, const Pixels& corners) {
   const auto directions = Directions(camera, corners);
-  if (!directions) return {};
-  const auto facing_from_camera = FacingFromCamera(*directions);
-  if (!facing_from_camera) return {};
-  std::vector<cv::Point2d> seen;
-  cv::Mat points(static_cast<int>(model.size()), 1, CV_64FC3);
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const Eigen::Vector3d d = *facing_from_camera * (*directions)[i];
-    if (d.z() < 0.05) return {};
-    seen.emplace_back(d.x() / d.z(), d.y() / d.z());
-    points.at<cv::Vec3d>(static_cast<int>(i)) = {model[i].x(), model[i].y(), model[i].z()};
-  }
-  Rigid3 camera_from_facing;
-  camera_from_facing.rotation = Eigen::Quaterniond(facing_from_camera->transpose());
-  std::vector<Rigid3> poses = FromOpenCv(points, seen);
-  for (Rigid3& pose : poses) pose = camera_from_facing * pose;
-  return poses;
+  return directions ? PlanarPoses(model, *directions) : std::vector<Rigid3>();
 }
 
 // One pose's residuals (projected - seen) [px]; empty where a corner cannot be seen.
@@ -308,6 +292,25 @@ std::optional<CornerPose> ToCornerPose(const Camera& camera, const Target& targe
 }
 
 }  // namespace
+
+// From where the points' rays cut a plane before the camera.
+std::vector<Rigid3> PlanarPoses(const Points& model, const Points& directions) {
+  const auto facing_from_camera = FacingFromCamera(directions);
+  if (!facing_from_camera) return {};
+  std::vector<cv::Point2d> seen;
+  cv::Mat points(static_cast<int>(model.size()), 1, CV_64FC3);
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Eigen::Vector3d d = *facing_from_camera * directions[i];
+    if (d.z() < 0.05) return {};
+    seen.emplace_back(d.x() / d.z(), d.y() / d.z());
+    points.at<cv::Vec3d>(static_cast<int>(i)) = {model[i].x(), model[i].y(), model[i].z()};
+  }
+  Rigid3 camera_from_facing;
+  camera_from_facing.rotation = Eigen::Quaterniond(facing_from_camera->transpose());
+  std::vector<Rigid3> poses = FromOpenCv(points, seen);
+  for (Rigid3& pose : poses) pose = camera_from_facing * pose;
+  return poses;
+}
 
 bool RightHanded(const Target& target, const Pixels& corners) {
   const auto columns = static_cast<std::size_t>(target.corners_x());

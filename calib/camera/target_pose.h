@@ -26,6 +26,11 @@ struct CornerPose {
   double second_pose_chi2 = 0;
 };
 
+/// Both camera_from_board of a flat board whose points (z = 0 [m], four or more) are seen in these
+/// directions, any length, camera axes (Collins and Bartoli 2014, IPPE); none where they cannot be.
+std::vector<Rigid3> PlanarPoses(const std::vector<Eigen::Vector3d>& model,
+                                const std::vector<Eigen::Vector3d>& directions);
+
 /// Whether inner corners [px], row by row, go right-handed (columns to the right, then rows down),
 /// as on a board whose printed side faces the camera. Corners may be NaN where they were not seen.
 bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corners);

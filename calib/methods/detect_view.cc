@@ -8,6 +8,8 @@
 #include "calib/detect/image/image_edges.h"
 #include "calib/detect/image/stillness.h"
 #include "calib/methods/paper/cloud_edges.h"
+#include "calib/model/errors.h"
+#include "calib/model/pattern.h"
 #include "calib/model/stopwatch.h"
 
 namespace rgbdt {
@@ -43,7 +45,8 @@ std::string WhyMoved(const CameraSpec& spec, const Target& target, const View& v
     CheckImage(spec, other);
     others.push_back({ToGrey(other), ToSeconds(other.utime - view.cloud.sweep_utime)});
   }
-  if (others.empty() || !edges.pose) return "";  // picks alone are too inexact
+  if (others.empty() || !edges.pose || edges.corners.empty())
+    return "";  // picks alone are too inexact
   return WhyNotStill(Camera(spec), target, ToGrey(image), edges.corners, others);
 }
 
@@ -53,7 +56,7 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
   const Camera camera(spec);
   ImageEdgesResult found =
       DetectImageEdges(image, camera, target, by_paper ? picks : nullptr, spec.kind);
-  if (found.edges || by_paper || picks == nullptr) return found;
+  if (found.edges || by_paper || picks == nullptr || !HasPattern(target)) return found;
   return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
 }
 
@@ -135,6 +138,9 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
 
 ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
   RequireMethod(method);
+  if (!HasPattern(rig.target) && method == kPaperMethod) {
+    throw InputError("method \"paper\" needs a checkerboard; the rig's target is plain");
+  }
   const bool by_paper = method == kPaperMethod;
   ViewDetection detection;
   detection.view = view.name;

@@ -6,6 +6,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/linear_algebra.h"
+#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -84,13 +85,14 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
 }
 
 void CheckTarget(const Target& target) {
+  RequirePositive(target.width_m, "target.width_m");
+  RequirePositive(target.height_m, "target.height_m");
+  if (!HasPattern(target)) return;
   Require(target.squares_x >= 3 && target.squares_x <= 100, "target.squares_x",
           std::to_string(target.squares_x), "3 to 100");
   Require(target.squares_y >= 3 && target.squares_y <= 100, "target.squares_y",
           std::to_string(target.squares_y), "3 to 100");
   RequirePositive(target.square_m, "target.square_m");
-  RequirePositive(target.width_m, "target.width_m");
-  RequirePositive(target.height_m, "target.height_m");
   for (const double offset : {target.pattern_offset_m.x(), target.pattern_offset_m.y()}) {
     Require(std::isfinite(offset), "target.pattern_offset_m", std::to_string(offset),
             "finite numbers");

@@ -17,7 +17,9 @@ struct CameraView {
   std::string view;
   bool heldout = false;
   Utime image_utime = 0;
-  const ImageEdges* image = nullptr;          ///< null: none found
+  const ImageEdges* image = nullptr;  ///< null: none found
+  std::shared_ptr<const ImageEdges>
+      turned_image;                           ///< holds `image` where it is not the detection's
   std::vector<const CloudEdges*> candidates;  ///< the detection's, of this camera
   std::optional<CloudEdges> cloud;            ///< the candidate taken; at first the likeliest
   std::string rejected;                       ///< why it takes no part; empty: it does

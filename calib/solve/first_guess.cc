@@ -25,15 +25,21 @@ Spread SpreadOf(const TargetPose& pose) {
 struct Pair {
   const TargetPose* in_camera;
   const TargetPose* in_lidar;
-  bool half_turn;
+  int quarter_turns;
 
   Rigid3 CameraFromTarget() const {
-    return half_turn ? in_camera->sensor_from_target * kHalfTurn : in_camera->sensor_from_target;
+    return quarter_turns == 0 ? in_camera->sensor_from_target
+                              : in_camera->sensor_from_target * QuarterTurns(quarter_turns);
   }
   Rigid3 CameraFromLidar() const {
     return CameraFromTarget() * in_lidar->sensor_from_target.Inverse();
   }
 };
+
+// In which a view's board may be paired with a candidate. One with a pattern knows its width.
+std::vector<int> TurnsOf(const CameraView& view) {
+  return view.image->corners.empty() ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{0, 2};
+}
 
 // A LIDAR, and how its ranges lie.
 struct Mount {
@@ -50,7 +56,7 @@ CandidateChoice Judge(const Pair& pair, int candidate, const Mount& mount, const
   const Spread b = SpreadOf(*pair.in_lidar);
   const double angle = std::clamp(4 * std::hypot(a.angle, b.angle), gate.least_rad, gate.most_rad);
   const double distance = std::clamp(4 * std::hypot(a.centre, b.centre), gate.least_m, gate.most_m);
-  CandidateChoice choice{candidate, pair.half_turn, RotationDistance(seen, meant),
+  CandidateChoice choice{candidate, pair.quarter_turns, RotationDistance(seen, meant),
                          (seen.translation - meant.translation).norm(), 0};
   choice.cost = std::max(choice.rotation_rad / angle, choice.distance_m / distance);
   return choice;
@@ -61,8 +67,8 @@ CandidateChoice Nearest(const CameraView& view, const Mount& mount, const PoseGa
   CandidateChoice best;
   best.cost = 1e300;
   for (std::size_t k = 0; k < view.candidates.size(); ++k) {
-    for (const bool half_turn : {false, true}) {
-      const Pair pair{&*view.image->pose, &*view.candidates[k]->pose, half_turn};
+    for (const int quarter_turns : TurnsOf(view)) {
+      const Pair pair{&*view.image->pose, &*view.candidates[k]->pose, quarter_turns};
       const CandidateChoice choice = Judge(pair, static_cast<int>(k), mount, gate);
       if (choice.cost < best.cost) best = choice;
     }
@@ -112,8 +118,8 @@ Vote VoteAmong(const Views& views) {
   for (std::size_t v = 0; v < views.size(); v += (views.size() + kProposing - 1) / kProposing) {
     const CameraView* view = views[v];
     for (const CloudEdges* candidate : view->candidates) {
-      for (const bool half_turn : {false, true}) {
-        const Pair pair{&*view->image->pose, &*candidate->pose, half_turn};
+      for (const int quarter_turns : TurnsOf(*view)) {
+        const Pair pair{&*view->image->pose, &*candidate->pose, quarter_turns};
         all.push_back(AgreementOn(views, pair.CameraFromLidar()));
       }
     }
@@ -148,7 +154,7 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
       ++guess.agreeing;
       const TargetPose& in_lidar =
           *view->candidates[static_cast<std::size_t>(choice.candidate)]->pose;
-      const Pair pair{&*view->image->pose, &in_lidar, choice.half_turn};
+      const Pair pair{&*view->image->pose, &in_lidar, choice.quarter_turns};
       const Matrix6d adjoint = Adjoint(pose);
       Matrix6d covariance =
           pair.in_camera->covariance + adjoint * in_lidar.covariance * adjoint.transpose();
@@ -216,6 +222,18 @@ std::string WhyNone(const Views& views, const Vote& vote) {
          " of " + of + "); do images and clouds belong together?";
 }
 
+// By a quarter, so that image and cloud differ by half a turn at most. What was the right side is
+// the top one then.
+void TurnImage(CameraView* view) {
+  auto turned = std::make_shared<ImageEdges>(*view->image);
+  turned->pose->sensor_from_target = turned->pose->sensor_from_target * QuarterTurns(1);
+  std::rotate(turned->sides.begin(), turned->sides.begin() + 1, turned->sides.end());
+  std::rotate(turned->outline_corners.begin(), turned->outline_corners.begin() + 1,
+              turned->outline_corners.end());
+  view->image = turned.get();
+  view->turned_image = std::move(turned);
+}
+
 }  // namespace
 
 void FirstGuessOptions::Check() const {
@@ -253,6 +271,12 @@ FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
   return guess;
 }
 
+Rigid3 QuarterTurns(int count) {
+  Rigid3 turn;
+  for (int i = 0; i < count; ++i) turn = turn * Rigid3{{M_SQRT1_2, 0, 0, M_SQRT1_2}, {0, 0, 0}};
+  return count == 2 ? kHalfTurn : turn;
+}
+
 bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other) {
   return RotationDistance(lidar_from_target * kHalfTurn, other.sensor_from_target) <
          RotationDistance(lidar_from_target, other.sensor_from_target);
@@ -272,6 +296,7 @@ CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
   const CandidateChoice choice = ChooseCandidate(view, camera_from_lidar, gate, range_offset_m);
   if (choice.candidate >= 0) {
     view.cloud = *view.candidates[static_cast<std::size_t>(choice.candidate)];
+    if (choice.quarter_turns % 2 == 1) TurnImage(&view);
     return view;
   }
   view.cloud.reset();

@@ -36,13 +36,16 @@ struct FirstGuessOptions {
 /// Half a turn about a target's z: how a board's pose may be told otherwise.
 inline const Rigid3 kHalfTurn{Eigen::Quaterniond(0, 0, 0, 1), {0, 0, 0}};
 
+/// Of a board without a pattern, whose quarter turns may look alike: a rectangle's never fit.
+Rigid3 QuarterTurns(int count);
+
 /// Whether a board's pose, both in one frame, is nearer to `other` once turned by half a turn.
 bool HalfTurned(const Rigid3& lidar_from_target, const TargetPose& other);
 
 /// Which of a view's candidates is the board, if the camera sits where it is said to.
 struct CandidateChoice {
-  int candidate = -1;      ///< index into CameraView::candidates; -1: none fits
-  bool half_turn = false;  ///< the candidate's target axes are turned by half a turn
+  int candidate = -1;     ///< index into CameraView::candidates; -1: none fits
+  int quarter_turns = 0;  ///< of the candidate's target axes; odd only of a board without a pattern
   double rotation_rad =
       0;                  ///< between the board's two poses: the nearest candidate's, if none fits
   double distance_m = 0;  ///< between its two centres
@@ -60,12 +63,13 @@ struct FirstGuess {
   std::string detail;                      ///< in words; why there is none
 };
 
-/// Closed form: each pair of a camera's board pose and a candidate's in the cloud, turned or not,
-/// gives camera_from_lidar; the one that most views agree with is taken and becomes the mean of all
-/// that agree, weighed by their covariances. Works for any orientation of the camera, with any
-/// number of wrong candidates, and up to half of the views wrong. Says so where views agree on two
-/// answers alike (the board always held the same way), and where the images are mirrored.
-/// Of `all`, those without an image pose or candidates are passed over.
+/// Closed form: each pair of a camera's board pose and a candidate's in the cloud, turned by half a
+/// turn or not (without a pattern: by quarters), gives camera_from_lidar; the one that most views
+/// agree with is taken and becomes the mean of all that agree, weighed by their covariances. Works
+/// for any orientation of the camera, with any number of wrong candidates, and up to half of the
+/// views wrong. Says so where views agree on two answers alike (the board always held the same
+/// way), and where the images are mirrored. Of `all`, those without an image pose or candidates are
+/// passed over.
 FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
                            const FirstGuessOptions& options = {});
 
@@ -73,7 +77,8 @@ FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
 CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate = kAcceptGate, double range_offset_m = 0);
 
-/// The view with its `cloud` the candidate that fits; or rejected, with how far off the nearest one
+/// The view with its `cloud` the candidate that fits, its image turned by a quarter where that is
+/// how the two fit; or rejected, with how far off the nearest one
 /// lies. Without poses (the paper's method) it stays as it is.
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,
                                const PoseGate& gate = kAcceptGate, double range_offset_m = 0);

@@ -12,6 +12,7 @@
 #include "calib/detect/cloud/range_grid.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -265,6 +266,21 @@ class Likeness {
   Size size_;
 };
 
+// Rectangles of the target's size; of a plain one also as it looks where it glares
+// (kPlainClassShiftSigmaRad).
+std::vector<FlatRectangle> Vote(const PlaneMembers& members, const Target& target, double range_m) {
+  constexpr double kSwellRad = 0.004;
+  constexpr int kPlainSizes = 3;
+  std::vector<FlatRectangle> voted;
+  for (int i = 0; i < (HasPattern(target) ? 1 : kPlainSizes); ++i) {
+    const double swell = 2 * i * kSwellRad * range_m;
+    const auto more =
+        VoteForRectangles(members.crossings, target.width_m + swell, target.height_m + swell);
+    voted.insert(voted.end(), more.begin(), more.end());
+  }
+  return voted;
+}
+
 // Looks at all the beams of a region; and where that shows a board, once more about its centre, so
 // that what touches it has no say in where its plane lies.
 std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, const Target& target,
@@ -275,8 +291,7 @@ std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, con
   const MemberOptions whole{options.range_sigma_m, sums.Mean(), 1.2 * diagonal, 1.2 * diagonal};
   const PlaneMembers members = FindMembers(grid, region, whole);
   std::vector<Candidate> found;
-  for (const FlatRectangle& voted :
-       VoteForRectangles(members.crossings, target.width_m, target.height_m)) {
+  for (const FlatRectangle& voted : Vote(members, target, whole.middle.norm())) {
     const auto board = FitBoard(members, voted, target, options);
     if (!board) continue;
     region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
@@ -351,6 +366,9 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
   constexpr double kMostSigma = 0.045;
   BoardInCloudOptions noisier = options;
+  if (!HasPattern(target)) {
+    noisier.edge.class_sigma_rad = std::max(noisier.edge.class_sigma_rad, kPlainClassShiftSigmaRad);
+  }
   const BoardsInCloud as_stated = FindAtNoise(grid, target, noisier);
   BoardsInCloud boards = as_stated;
   while (boards.candidates.empty() && 2 * noisier.range_sigma_m <= kMostSigma) {

@@ -12,7 +12,9 @@
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/picked_board.h"
+#include "calib/detect/image/plain_board.h"
 #include "calib/model/linear_algebra.h"
+#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -193,7 +195,8 @@ Chain FitSide(const Chain& side, const Gradient& g) {
 struct Located {
   Directions outline;
   Chain inner;
-  std::optional<CornerPose> pose;  // not by the paper, from picks
+  std::optional<CornerPose> pose;   // not by the paper, from picks
+  std::optional<PlainBoard> plain;  // of a target without a pattern
   std::string why;
 };
 
@@ -219,11 +222,21 @@ Located FromPicks(const Camera& camera, const Target& target, const Corners& pic
 }
 
 // The outline as a pose has it.
-void PlaceOutline(const Target& target, Located* located) {
+void PlaceOutline(const Target& target, const Rigid3& camera_from_target, Located* located) {
   const auto corners = target.OutlineCorners();
-  for (std::size_t i = 0; i < 4; ++i) {
-    located->outline[i] = located->pose->pose.sensor_from_target * corners[i];
+  for (std::size_t i = 0; i < 4; ++i) located->outline[i] = camera_from_target * corners[i];
+}
+
+Located FromPlainBoard(const Image& image, const cv::Mat& grey, const Camera& camera,
+                       const Target& target) {
+  Located located;
+  PlainBoardResult found = FindPlainBoard(grey, Clipped(image), camera, target);
+  located.why = std::move(found.why);
+  located.plain = std::move(found.board);
+  if (located.plain) {
+    PlaceOutline(target, located.plain->pose.sensor_from_target, &located);
   }
+  return located;
 }
 
 Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
@@ -242,7 +255,7 @@ Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target
     return located;
   }
   located.pose->pose.half_turn_known = known;
-  PlaceOutline(target, &located);
+  PlaceOutline(target, located.pose->pose.sensor_from_target, &located);
   return located;
 }
 
@@ -257,7 +270,7 @@ Located FromPickedBoard(const cv::Mat& grey, const Camera& camera, const Target&
   if (!found.board) return located;
   located.inner = std::move(found.board->corners);
   located.pose = std::move(found.board->pose);
-  PlaceOutline(target, &located);
+  PlaceOutline(target, located.pose->pose.sensor_from_target, &located);
   return located;
 }
 
@@ -292,6 +305,11 @@ ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& 
     return {std::nullopt, "no edge of the board stands out in the image; more contrast is needed"};
   }
   if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
+  if (located.plain) {
+    edges.pose = located.plain->pose;
+    edges.corner_sigma_px = located.plain->side_sigma_px;
+    edges.sides = located.plain->sides;
+  }
   return {edges, ""};
 }
 
@@ -305,6 +323,9 @@ ImageEdgesResult Picked(ImageEdgesResult result) {
 ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
                                   const CornerSelection* picks, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
+  if (!HasPattern(target)) {
+    return EdgesOf(image, grey, camera, target, FromPlainBoard(image, grey, camera, target));
+  }
   if (picks == nullptr) {
     return EdgesOf(image, grey, camera, target, FromCheckerboard(grey, camera, target, kind));
   }

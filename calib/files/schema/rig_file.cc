@@ -11,6 +11,7 @@
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/errors.h"
+#include "calib/model/pattern.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -131,6 +132,19 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
 
 Target ToTarget(const proto::Target& target, const Place& place) {
   Target spec;
+  if (target.has_plain()) {
+    if (target.squares_x() != 0 || target.squares_y() != 0 || target.square_m() != 0 ||
+        target.width_m() != 0 || target.height_m() != 0 || target.pattern_offset_m_size() > 0 ||
+        target.has_print_sigma()) {
+      place.Fail("plain", "stands beside a checkerboard's fields; expected one of the two");
+    }
+    spec.width_m = target.plain().width_m();
+    spec.height_m = target.plain().height_m();
+    return spec;
+  }
+  if (target.squares_x() == 0) {
+    place.Fail("squares_x", "is 0; expected 3 to 100, or plain { width_m: ... height_m: ... }");
+  }
   spec.squares_x = target.squares_x();
   spec.squares_y = target.squares_y();
   spec.square_m = target.square_m();
@@ -195,6 +209,11 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
 }
 
 void FromTarget(const Target& spec, proto::Target* out) {
+  if (!HasPattern(spec)) {
+    out->mutable_plain()->set_width_m(spec.width_m);
+    out->mutable_plain()->set_height_m(spec.height_m);
+    return;
+  }
   out->set_squares_x(spec.squares_x);
   out->set_squares_y(spec.squares_y);
   out->set_square_m(spec.square_m);

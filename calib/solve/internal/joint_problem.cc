@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/pattern.h"
 #include "calib/solve/first_guess.h"
 
 namespace rgbdt {
@@ -45,6 +46,7 @@ class Builder {
   explicit Builder(const Target& target) {
     joint_.problem.target = target;
     joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
+    if (!HasPattern(target)) joint_.problem.priors.class_sigma_rad = kPlainClassShiftSigmaRad;
   }
 
   void Add(GuessedCamera guessed) {

@@ -128,6 +128,19 @@ CloudEdges ExpectedCloud(const Target& target, const Exactness& exactness,
   return cloud;
 }
 
+// A board without a pattern shows its sides.
+void AddSides(const Camera& camera, const Rigid3& camera_from_target, const Target& target,
+              ImageEdges* image) {
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < 4; ++i) {
+    ImageSide& side = image->sides[i];
+    side.curve = ProjectSegment(camera, camera_from_target * corners[i],
+                                camera_from_target * corners[(i + 1) % 4], 8);
+    side.seen = side.curve.size() > 2;
+    side.covariance = std::pow(image->corner_sigma_px, 2) * Eigen::Matrix2d::Identity();
+  }
+}
+
 // What each camera would see; nothing where one does not see the whole board.
 std::optional<std::vector<ImageEdges>> ExpectedImages(const BoardProblem& problem,
                                                       const BoardState& state,
@@ -151,6 +164,7 @@ std::optional<std::vector<ImageEdges>> ExpectedImages(const BoardProblem& proble
       if (!pixel) return std::nullopt;
       images[c].corners.push_back(*pixel);
     }
+    if (images[c].corners.empty()) AddSides(camera, camera_from_target, problem.target, &images[c]);
   }
   return images;
 }

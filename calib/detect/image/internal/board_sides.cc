@@ -9,6 +9,7 @@
 #include "calib/detect/image/internal/side_line.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -58,6 +59,30 @@ Prediction SideOnTarget(const Target& target, std::size_t side) {
       p.inwards.cwiseAbs().head<2>().dot(half) - p.inwards.head<2>().dot(target.pattern_offset_m);
   p.border_m = p.inwards.head<2>().dot(-p.from.head<2>()) - pattern;
   return p;
+}
+
+// The longest part of a side that lies in the image, clear of its border; none: unchanged.
+void KeepInside(const Camera& camera, const Rigid3& camera_from_target, Prediction* p) {
+  constexpr int kFine = 1000;
+  constexpr double kBorderPx = 4;
+  const Eigen::Vector2d margin(kBorderPx, kBorderPx);
+  int best_first = 0;
+  int best = 0;
+  int first = 0;
+  for (int i = 0; i <= kFine; ++i) {
+    const Eigen::Vector3d at = p->from + i * (p->to - p->from) / kFine;
+    const auto pixel = camera.Project(camera_from_target * at);
+    if (!pixel || !camera.Contains(*pixel - margin) || !camera.Contains(*pixel + margin)) {
+      first = i + 1;
+    } else if (i - first > best) {
+      best_first = first;
+      best = i - first;
+    }
+  }
+  if (best == 0) return;
+  const Eigen::Vector3d step = (p->to - p->from) / kFine;
+  p->from += best_first * step;
+  p->to = p->from + best * step;
 }
 
 // Evenly in the image, though not on the board.
@@ -185,6 +210,7 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
                   const TargetPose& pose, std::size_t index, const BoardSidesOptions& options) {
   ImageSide side;
   Prediction p = SideOnTarget(target, index);
+  if (!HasPattern(target)) KeepInside(camera, pose.sensor_from_target, &p);
   if (!FillCurve(camera, pose.sensor_from_target, &p)) {
     side.why = "this side lies outside the image";
     return side;

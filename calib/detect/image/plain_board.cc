@@ -1,0 +1,185 @@
+#include "calib/detect/image/plain_board.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "calib/camera/outline_pose.h"
+#include "calib/camera/target_pose.h"
+#include "calib/detect/image/internal/board_sides.h"
+#include "calib/detect/image/internal/grey_image.h"
+#include "calib/detect/image/internal/quadrangles.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+using Sides = std::array<ImageSide, 4>;
+
+constexpr double kRoughPlaceM = 0.01;  // a rough outline is off by its shadows, too
+constexpr double kMostRoughChi2 = 40;  // of two degrees of freedom
+constexpr double kMostChi2 = 30;       // above: not the target's size
+constexpr double kLeastSecondChi2 = 15;
+constexpr double kMostTilt = 1.15;  // [rad] between the board's normal and the line of sight
+// Plain boards are sawn, not printed: by how much each end of a side is off its place.
+constexpr double kSawnM = 0.0015;
+constexpr int kRounds = 3;
+
+Sides RoughSides(const Quadrangle& quadrangle, std::size_t first, double sigma_px) {
+  Sides sides;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& seen = quadrangle.seen[(i + first) % 4];
+    sides[i].seen = true;
+    sides[i].curve = {seen[0], seen[1]};
+    sides[i].covariance = sigma_px * sigma_px * Eigen::Matrix2d::Identity();
+  }
+  return sides;
+}
+
+bool SeenFromInFront(const Rigid3& camera_from_target) {
+  const Eigen::Vector3d normal = camera_from_target.rotation * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d& centre = camera_from_target.translation;
+  return normal.dot(centre.normalized()) > std::cos(kMostTilt);
+}
+
+// Both ways in which the board may lean, by the sides, the likelier first.
+std::vector<OutlinePose> PosesOf(const Camera& camera, const Target& target, const Sides& sides,
+                                 const std::vector<Rigid3>& starts, double place_m) {
+  std::vector<OutlinePose> poses;
+  for (const Rigid3& start : starts) {
+    const auto pose = PoseFromSides(camera, target, sides, start, place_m);
+    if (pose && SeenFromInFront(pose->pose.sensor_from_target)) poses.push_back(*pose);
+  }
+  std::stable_sort(poses.begin(), poses.end(),
+                   [](const OutlinePose& a, const OutlinePose& b) { return a.chi2 < b.chi2; });
+  return poses;
+}
+
+// A quadrangle's poses, its corners told from any of the four that the outline cannot tell apart.
+std::vector<Rigid3> RoughPoses(const Camera& camera, const Target& target,
+                               const Quadrangle& quadrangle, double sigma_px) {
+  const auto outline = target.OutlineCorners();
+  const std::vector<Eigen::Vector3d> model(outline.begin(), outline.end());
+  std::vector<OutlinePose> found;
+  for (std::size_t first = 0; first < 2; ++first) {  // a square's second is the first again
+    std::vector<Eigen::Vector3d> corners(quadrangle.corners.begin(), quadrangle.corners.end());
+    std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first),
+                corners.end());
+    const auto poses = PosesOf(camera, target, RoughSides(quadrangle, first, sigma_px),
+                               PlanarPoses(model, corners), kRoughPlaceM);
+    if (!poses.empty() && (found.empty() || poses.front().chi2 < found.front().chi2)) found = poses;
+  }
+  std::vector<Rigid3> out;
+  for (const OutlinePose& pose : found) {
+    if (pose.chi2 < kMostRoughChi2) out.push_back(pose.pose.sensor_from_target);
+  }
+  return out;
+}
+
+std::string WhyNotSeen(const Sides& sides) {
+  const auto unseen =
+      std::find_if(sides.begin(), sides.end(), [](const ImageSide& side) { return !side.seen; });
+  return unseen == sides.end() ? "" : "a side of the board cannot be measured: " + unseen->why;
+}
+
+double SigmaOf(const Sides& sides) {
+  double sum = 0;
+  for (const ImageSide& side : sides) sum += 0.5 * side.covariance.trace();
+  return std::sqrt(sum / 4);
+}
+
+class Measurement {
+ public:
+  Measurement(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
+              const Target& target)
+      : grey_(grey), clipped_(clipped), camera_(camera), target_(target) {
+    // The rim of a plain board is not told from its front: what it hides is in the sides' sigma.
+    options_.max_thickness_px = 1e9;
+    options_.max_sigma_px = 8;
+  }
+
+  PlainBoardResult From(const Quadrangle& quadrangle) const {
+    const double sigma = QuadrangleSigmaPx(grey_);
+    const std::vector<Rigid3> rough = RoughPoses(camera_, target_, quadrangle, sigma);
+    if (rough.empty()) return {std::nullopt, "its outlines are not of the target's size"};
+    auto pose = PoseFromSides(camera_, target_, RoughSidesOf(quadrangle, rough.front(), sigma),
+                              rough.front(), kRoughPlaceM);
+    PlainBoard board;
+    for (int round = 0; round < kRounds; ++round) {
+      if (!pose) return {std::nullopt, "its outline does not fit a flat board"};
+      board.sides = FitBoardSides(grey_, clipped_, camera_, target_, pose->pose, options_);
+      const std::string why = WhyNotSeen(board.sides);
+      if (!why.empty()) return {std::nullopt, why};
+      pose = PoseFromSides(camera_, target_, board.sides, pose->pose.sensor_from_target, kSawnM);
+    }
+    if (!pose) return {std::nullopt, "its outline does not fit a flat board"};
+    return Judge(rough, *pose, std::move(board));
+  }
+
+ private:
+  // From the corner that the pose calls the first.
+  Sides RoughSidesOf(const Quadrangle& quadrangle, const Rigid3& pose, double sigma) const {
+    std::size_t best = 0;
+    double nearest = 1e9;
+    for (std::size_t first = 0; first < 4; ++first) {
+      const Eigen::Vector3d corner = (pose * target_.OutlineCorners()[0]).normalized();
+      const double off = (corner - quadrangle.corners[first]).norm();
+      if (off >= nearest) continue;
+      nearest = off;
+      best = first;
+    }
+    return RoughSides(quadrangle, best, sigma);
+  }
+
+  PlainBoardResult Judge(const std::vector<Rigid3>& rough, const OutlinePose& pose,
+                         PlainBoard board) const {
+    if (pose.chi2 > kMostChi2) {
+      return {
+          std::nullopt,
+          Format("an outline does not have the target's size (chi-square %.0f of 2)", pose.chi2)};
+    }
+    const double scale = std::max(1.0, pose.chi2 / 2);
+    for (const OutlinePose& other : PosesOf(camera_, target_, board.sides, rough, kSawnM)) {
+      const bool same =
+          RotationDistance(other.pose.sensor_from_target, pose.pose.sensor_from_target) < 0.01;
+      if (!same && other.chi2 - pose.chi2 < kLeastSecondChi2 * scale) {
+        return {std::nullopt, "the outline does not tell which way the board leans; come nearer"};
+      }
+    }
+    board.pose = pose.pose;
+    board.pose.covariance *= scale;
+    for (std::size_t i = 0; i < 4; ++i) board.sides[i].covariance = pose.side_covariance[i];
+    board.side_sigma_px = SigmaOf(board.sides);
+    return {std::move(board), ""};
+  }
+
+  const cv::Mat& grey_;
+  const cv::Mat& clipped_;
+  const Camera& camera_;
+  const Target& target_;
+  BoardSidesOptions options_;
+};
+
+}  // namespace
+
+PlainBoardResult FindPlainBoard(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
+                                const Target& target) {
+  const std::string useless = WhyImageIsUseless(grey);
+  if (!useless.empty()) return {std::nullopt, useless};
+  const cv::Mat repaired = RepairDeadPixels(grey);
+  const Measurement measurement(repaired, clipped, camera, target);
+  PlainBoardResult result{std::nullopt,
+                          "no quadrangle in the image; are all four sides of the board in view, at "
+                          "least in part, before something brighter or darker?"};
+  bool first = true;
+  for (const Quadrangle& quadrangle : FindQuadrangles(repaired, camera)) {
+    PlainBoardResult one = measurement.From(quadrangle);
+    if (one.board) return one;
+    if (first) result.why = one.why;
+    first = false;
+  }
+  return result;
+}
+
+}  // namespace rgbdt
