@@ -22,6 +22,7 @@ SETTLED_S = 20  # memory is watched from here on, or in a short run from its fir
 SWEEP_POINTS = 1e6  # throughput and ratio are told at this size, or at the largest below
 TARGETS = {
     "assemble_points_per_s": (">=", 30e6),
+    "detect_image_over_sb": ("<=", 0.25),
     "fuse_points_per_s": (">=", 10e6),
     "fuse_ratio_in_view": (">=", 1.3),
     "fuse_ratio_360": (">=", 2.5),
@@ -175,6 +176,8 @@ def stage_figures(rows):
             words = row.split("_")
             name = "_".join([words[0], "ratio", *words[1:]])
             yield figure(name, rival["ratio"])
+        if rival and row == "detect_image_rgb":
+            yield figure("detect_image_over_sb", 1 / rival["ratio"])
         if row in COLOURS:
             slope = last_decade_slope(rows, row)
             if slope is not None:

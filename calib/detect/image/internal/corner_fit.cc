@@ -70,7 +70,13 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
     if (fixed.shape) j.segment<3>(2).setZero();
     if (fixed.cubic) j.tail<kCubic>().setZero();
     const double residual = p.value - j.tail<kLinear>().dot(u.tail<kLinear>());
-    sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(j);
+    if (fixed.cubic) {  // the rest is zero
+      constexpr int kUsed = kUnknowns - kCubic;
+      sums.normal.topLeftCorner<kUsed, kUsed>().selfadjointView<Eigen::Lower>().rankUpdate(
+          j.head<kUsed>());
+    } else {
+      sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(j);
+    }
     sums.right += residual * j;
     sums.squares += residual * residual;
   }

@@ -54,21 +54,24 @@ GridFinder::GridFinder(const std::vector<Saddle>& saddles, int largest)
                    [](const Seed& a, const Seed& b) { return a.irregularity < b.irregularity; });
 }
 
-std::vector<int> GridFinder::Near(const Eigen::Vector2d& place, double radius) const {
-  std::vector<int> near;
+template <typename Visit>
+void GridFinder::ForEachNear(const Eigen::Vector2d& place, double radius,
+                             const Visit& visit) const {
   const auto bin = [](double x, int count) {
     return std::clamp(static_cast<int>(std::floor(x / kBin)), 0, count - 1);
   };
-  for (int y = bin(place.y() - radius, rows_); y <= bin(place.y() + radius, rows_); ++y) {
-    for (int x = bin(place.x() - radius, columns_); x <= bin(place.x() + radius, columns_); ++x) {
+  const int left = bin(place.x() - radius, columns_);
+  const int right = bin(place.x() + radius, columns_);
+  const int bottom = bin(place.y() + radius, rows_);
+  for (int y = bin(place.y() - radius, rows_); y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
       for (const int i : bins_[static_cast<std::size_t>(y * columns_ + x)]) {
         if ((saddles_[static_cast<std::size_t>(i)].place - place).squaredNorm() < radius * radius) {
-          near.push_back(i);
+          visit(i);
         }
       }
     }
   }
-  return near;
 }
 
 // The nearest saddle in a direction that could be the next of a grid; -1: none.
@@ -80,16 +83,18 @@ int GridFinder::NeighbourAlong(int from, double angle) const {
   for (const double radius : {kFarthest / 3, kFarthest}) {
     int best = -1;
     double nearest = radius;
-    for (const int i : Near(saddle.place, radius)) {
-      if (i == from) continue;
+    // All of the sector lies within that circle.
+    const Eigen::Vector2d middle = saddle.place + 0.5 * radius * direction;
+    ForEachNear(middle, 0.55 * radius, [&](int i) {
+      if (i == from) return;
       const Saddle& other = saddles_[static_cast<std::size_t>(i)];
       const Eigen::Vector2d offset = other.place - saddle.place;
       const double distance = offset.norm();
-      if (distance >= nearest || offset.dot(direction) < cosine * distance) continue;
-      if (Likeness(saddle, other) > -kAlike || !AsStrong(saddle, other, kStrength)) continue;
+      if (distance >= nearest || offset.dot(direction) < cosine * distance) return;
+      if (Likeness(saddle, other) > -kAlike || !AsStrong(saddle, other, kStrength)) return;
       nearest = distance;
       best = i;
-    }
+    });
     if (best >= 0) return best;
   }
   return -1;
@@ -118,14 +123,14 @@ int GridFinder::SaddleAt(const Eigen::Vector2d& place, double radius, const Sadd
                          double sign, const std::vector<char>& taken) const {
   int best = -1;
   double nearest = radius;
-  for (const int i : Near(place, radius)) {
+  ForEachNear(place, radius, [&](int i) {
     const Saddle& other = saddles_[static_cast<std::size_t>(i)];
     const double distance = (other.place - place).norm();
-    if (distance >= nearest || taken[static_cast<std::size_t>(i)] != 0) continue;
-    if (sign * Likeness(like, other) < kAlike || !AsStrong(like, other, kStrength)) continue;
+    if (distance >= nearest || taken[static_cast<std::size_t>(i)] != 0) return;
+    if (sign * Likeness(like, other) < kAlike || !AsStrong(like, other, kStrength)) return;
     nearest = distance;
     best = i;
-  }
+  });
   return best;
 }
 

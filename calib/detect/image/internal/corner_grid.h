@@ -32,7 +32,9 @@ class GridFinder {
   };
   using Members = std::map<std::pair<int, int>, int>;
 
-  std::vector<int> Near(const Eigen::Vector2d& place, double radius) const;
+  /// Calls `visit(index)` for each saddle nearer than `radius` [px].
+  template <typename Visit>
+  void ForEachNear(const Eigen::Vector2d& place, double radius, const Visit& visit) const;
   int NeighbourAlong(int from, double angle) const;
   std::optional<Seed> SeedAt(int index) const;
   int SaddleAt(const Eigen::Vector2d& place, double radius, const Saddle& like, double sign,
