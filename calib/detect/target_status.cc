@@ -4,12 +4,15 @@
 #include <cmath>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
 #include "calib/camera/target_pose.h"
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/detect/image/checkerboard.h"
+#include "calib/detect/image/image_edges.h"
+#include "calib/model/pattern.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -36,6 +39,20 @@ std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Target& targe
   return outline;
 }
 
+// Without a pattern: by its outline, as exactly as for the solve.
+TargetStatus LookForPlain(const CameraSpec& spec, const Target& target, const Image& image,
+                          TargetStatus status) {
+  const Camera camera(spec);
+  const ImageEdgesResult found = DetectImageEdges(image, camera, target, nullptr, spec.kind);
+  status.text = found.why;
+  if (!found.edges) return status;
+  const Rigid3& camera_from_target = found.edges->pose->sensor_from_target;
+  status.seen = true;
+  status.outline = OutlineOf(camera, target, camera_from_target);
+  status.text = Format("%.1f m away", camera_from_target.translation.norm());
+  return status;
+}
+
 }  // namespace
 
 TargetStatus LookForTarget(const Rig& rig, const Image& image) {
@@ -44,6 +61,7 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   TargetStatus status;
   status.camera = image.camera;
   status.utime = image.utime;
+  if (!HasPattern(rig.target)) return LookForPlain(spec, rig.target, image, std::move(status));
   cv::Mat grey = ToGrey(image);
   const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
   if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);

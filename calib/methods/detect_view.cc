@@ -138,8 +138,8 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
 
 ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
   RequireMethod(method);
-  if (!HasPattern(rig.target) && method == kPaperMethod) {
-    throw InputError("method \"paper\" needs a checkerboard; the rig's target is plain");
+  if (!HasPattern(rig.target) && method != kAutoMethod) {
+    throw InputError("method \"" + method + "\" needs a checkerboard; the rig's target is plain");
   }
   const bool by_paper = method == kPaperMethod;
   ViewDetection detection;

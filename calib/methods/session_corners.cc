@@ -9,6 +9,8 @@
 #include "calib/camera/pixels.h"
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/contrast.h"
+#include "calib/model/errors.h"
+#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -76,6 +78,9 @@ CameraCorners Collect(const std::string& camera, std::vector<std::vector<Found>>
 
 SessionCorners FindSessionCorners(const Session& session, const std::vector<std::string>& cameras,
                                   const Progress& progress) {
+  if (!HasPattern(session.rig.target)) {
+    throw InputError("a lens is found from a checkerboard; the rig's target is plain");
+  }
   const std::size_t count = session.views.size();
   std::vector<std::vector<Found>> by_view(count);
   std::vector<std::string> unreadable(count);

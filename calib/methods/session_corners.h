@@ -16,7 +16,7 @@ struct SessionCorners {
 
 /// Finds the checkerboard's inner corners in every image of these cameras, two or more views at a
 /// time, with a line of progress for each. Clouds are not read. A view that cannot be
-/// read is named, and the rest goes on.
+/// read is named, and the rest goes on. Throws InputError for a target without a pattern.
 SessionCorners FindSessionCorners(const Session& session, const std::vector<std::string>& cameras,
                                   const Progress& progress);
 

@@ -19,7 +19,7 @@ using Sides = std::array<ImageSide, 4>;
 
 constexpr double kRoughPlaceM = 0.01;  // a rough outline is off by its shadows, too
 constexpr double kMostRoughChi2 = 40;  // of two degrees of freedom
-constexpr double kMostChi2 = 30;       // above: not the target's size
+constexpr double kMostChi2 = 60;       // above: not the target's size
 constexpr double kLeastSecondChi2 = 15;
 constexpr double kMostTilt = 1.15;  // [rad] between the board's normal and the line of sight
 // Plain boards are sawn, not printed: by how much each end of a side is off its place.
@@ -97,6 +97,7 @@ class Measurement {
     // The rim of a plain board is not told from its front: what it hides is in the sides' sigma.
     options_.max_thickness_px = 1e9;
     options_.max_sigma_px = 8;
+    options_.size_tolerance_m = 0.02;  // its lens and its rim may hide more than its pose knows
   }
 
   PlainBoardResult From(const Quadrangle& quadrangle) const {
