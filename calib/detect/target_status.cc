@@ -12,7 +12,6 @@
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/image_edges.h"
-#include "calib/model/pattern.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -61,7 +60,7 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   TargetStatus status;
   status.camera = image.camera;
   status.utime = image.utime;
-  if (!HasPattern(rig.target)) return LookForPlain(spec, rig.target, image, std::move(status));
+  if (!rig.target.HasPattern()) return LookForPlain(spec, rig.target, image, std::move(status));
   cv::Mat grey = ToGrey(image);
   const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
   if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);

@@ -9,7 +9,6 @@
 #include "calib/detect/image/stillness.h"
 #include "calib/methods/paper/cloud_edges.h"
 #include "calib/model/errors.h"
-#include "calib/model/pattern.h"
 #include "calib/model/stopwatch.h"
 
 namespace rgbdt {
@@ -56,7 +55,7 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
   const Camera camera(spec);
   ImageEdgesResult found =
       DetectImageEdges(image, camera, target, by_paper ? picks : nullptr, spec.kind);
-  if (found.edges || by_paper || picks == nullptr || !HasPattern(target)) return found;
+  if (found.edges || by_paper || picks == nullptr || !target.HasPattern()) return found;
   return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
 }
 
@@ -138,7 +137,7 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
 
 ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
   RequireMethod(method);
-  if (!HasPattern(rig.target) && method != kAutoMethod) {
+  if (!rig.target.HasPattern() && method != kAutoMethod) {
     throw InputError("method \"" + method + "\" needs a checkerboard; the rig's target is plain");
   }
   const bool by_paper = method == kPaperMethod;

@@ -10,7 +10,6 @@
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/contrast.h"
 #include "calib/model/errors.h"
-#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -78,7 +77,7 @@ CameraCorners Collect(const std::string& camera, std::vector<std::vector<Found>>
 
 SessionCorners FindSessionCorners(const Session& session, const std::vector<std::string>& cameras,
                                   const Progress& progress) {
-  if (!HasPattern(session.rig.target)) {
+  if (!session.rig.target.HasPattern()) {
     throw InputError("a lens is found from a checkerboard; the rig's target is plain");
   }
   const std::size_t count = session.views.size();

@@ -6,7 +6,6 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/linear_algebra.h"
-#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -87,7 +86,7 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
 void CheckTarget(const Target& target) {
   RequirePositive(target.width_m, "target.width_m");
   RequirePositive(target.height_m, "target.height_m");
-  if (!HasPattern(target)) return;
+  if (!target.HasPattern()) return;
   Require(target.squares_x >= 3 && target.squares_x <= 100, "target.squares_x",
           std::to_string(target.squares_x), "3 to 100");
   Require(target.squares_y >= 3 && target.squares_y <= 100, "target.squares_y",

@@ -75,6 +75,9 @@ struct Target {
   /// The pattern's width and height over what square_m makes them, as a solve found them.
   Eigen::Vector2d print_scale{1, 1};
 
+  /// Whether it has a checkerboard. A plain board, of no squares, is known by its outline alone; it
+  /// has no inner corners, and half a turn (a square: a quarter) cannot be told in one view.
+  bool HasPattern() const { return squares_x != 0 || squares_y != 0; }
   int corners_x() const { return squares_x - 1; }
   int corners_y() const { return squares_y - 1; }
   /// Inner corners, row by row from the top left, target frame [m]; corners_x() * corners_y().

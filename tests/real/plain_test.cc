@@ -59,6 +59,7 @@ TEST(Plain, TheViewsTogetherTellEachBoardsTurn) {
         "%zu views used; halves differ by a median of %.3f deg, %.1f mm, chi-square %.1f of 6\n",
         camera.used.size(), Median(halves->rotation_deg), Median(halves->translation_mm),
         Median(halves->chi2));
+    EXPECT_LE(Median(halves->chi2), 9);
   }
   EXPECT_GE(camera.used.size(), 14U);
 }

@@ -10,9 +10,9 @@
 #include "calib/detect/cloud/internal/board_plane.h"
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
+#include "calib/model/beam_priors.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
-#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -272,7 +272,7 @@ std::vector<FlatRectangle> Vote(const PlaneMembers& members, const Target& targe
   constexpr double kSwellRad = 0.004;
   constexpr int kPlainSizes = 3;
   std::vector<FlatRectangle> voted;
-  for (int i = 0; i < (HasPattern(target) ? 1 : kPlainSizes); ++i) {
+  for (int i = 0; i < (target.HasPattern() ? 1 : kPlainSizes); ++i) {
     const double swell = 2 * i * kSwellRad * range_m;
     const auto more =
         VoteForRectangles(members.crossings, target.width_m + swell, target.height_m + swell);
@@ -366,7 +366,7 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
   constexpr double kMostSigma = 0.045;
   BoardInCloudOptions noisier = options;
-  if (!HasPattern(target)) {
+  if (!target.HasPattern()) {
     noisier.edge.class_sigma_rad = std::max(noisier.edge.class_sigma_rad, kPlainClassShiftSigmaRad);
   }
   const BoardsInCloud as_stated = FindAtNoise(grid, target, noisier);

@@ -14,7 +14,6 @@
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/plain_board.h"
 #include "calib/model/linear_algebra.h"
-#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -323,7 +322,7 @@ ImageEdgesResult Picked(ImageEdgesResult result) {
 ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
                                   const CornerSelection* picks, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
-  if (!HasPattern(target)) {
+  if (!target.HasPattern()) {
     return EdgesOf(image, grey, camera, target, FromPlainBoard(image, grey, camera, target));
   }
   if (picks == nullptr) {

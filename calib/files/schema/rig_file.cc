@@ -11,7 +11,6 @@
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/errors.h"
-#include "calib/model/pattern.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -209,7 +208,7 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
 }
 
 void FromTarget(const Target& spec, proto::Target* out) {
-  if (!HasPattern(spec)) {
+  if (!spec.HasPattern()) {
     out->mutable_plain()->set_width_m(spec.width_m);
     out->mutable_plain()->set_height_m(spec.height_m);
     return;

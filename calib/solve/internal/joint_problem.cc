@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib/model/beam_priors.h"
 #include "calib/model/linear_algebra.h"
-#include "calib/model/pattern.h"
 #include "calib/solve/first_guess.h"
 
 namespace rgbdt {
@@ -46,7 +46,7 @@ class Builder {
   explicit Builder(const Target& target) {
     joint_.problem.target = target;
     joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
-    if (!HasPattern(target)) joint_.problem.priors.class_sigma_rad = kPlainClassShiftSigmaRad;
+    if (!target.HasPattern()) joint_.problem.priors.class_sigma_rad = kPlainClassShiftSigmaRad;
   }
 
   void Add(GuessedCamera guessed) {

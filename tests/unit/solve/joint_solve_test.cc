@@ -367,6 +367,19 @@ TEST(CalibrateJointly, ALensThatTheViewsContradictIsSaidAndFoundAllTheSame) {
   }
 }
 
+TEST(CalibrateJointly, TheViewsTogetherTellAPlainSquaresTurns) {
+  SolveWorldOptions options = Views(8);
+  options.plain = true;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    ASSERT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    EXPECT_THAT(camera.rejected, IsEmpty());
+  }
+}
+
 // A board's sides are not straight to a tenth of a pixel, and show their rims.
 TEST(CalibrateJointly, SidesInImagesThatAreOffCountLess) {
   for (const std::uint32_t seed : {1, 2, 3}) {

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "calib/camera/outline_pose.h"
 #include "calib/camera/pixel_by_point.h"
 #include "calib/model/linear_algebra.h"
+#include "calib/solve/first_guess.h"
 
 namespace rgbdt {
 namespace {
@@ -24,6 +26,11 @@ CameraSpec Fisheye() {
   return spec;
 }
 
+void TurnByQuarters(int count, ImageEdges* image) {
+  image->pose->sensor_from_target = image->pose->sensor_from_target * QuarterTurns(count);
+  std::rotate(image->sides.begin(), image->sides.begin() + count, image->sides.end());
+}
+
 Eigen::Vector3d Outward(int side) {
   const Eigen::Vector3d outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
   return outward[side];
@@ -35,6 +42,7 @@ SolveWorld::SolveWorld(const SolveWorldOptions& options)
     : options_(options), random_(options.seed) {
   rig.hash = "hash";
   rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}, options.print_sigma};
+  if (options.plain) rig.target = {0, 0, 0, 0.8, 0.8};
   rig.cameras = {WorldCamera(), Fisheye()};
   for (CameraSpec& camera : rig.cameras) {
     camera.lens_uncertainty = options.lens_uncertainty;
@@ -138,7 +146,12 @@ ImageEdges SolveWorld::SeeImage(std::size_t c, const Rigid3& camera_from_target)
     }
     image.sides[s] = SeeSide(chain, 0.1);
   }
-  image.pose = PoseOfCorners(camera, image, camera_from_target);
+  if (rig.target.HasPattern()) {
+    image.pose = PoseOfCorners(camera, image, camera_from_target);
+  } else {
+    image.pose = PoseFromSides(camera, rig.target, image.sides, camera_from_target, 0)->pose;
+    TurnByQuarters(static_cast<int>(detections.size()) % 4, &image);
+  }
   return image;
 }
 

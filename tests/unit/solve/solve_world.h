@@ -22,7 +22,8 @@ struct SolveWorldOptions {
   double side_sigma_rad = 0;       ///< each side's own shift
   /// What the rig says of its lenses, which are the very ones; absent: nothing.
   std::optional<LensUncertainty> lens_uncertainty = LensUncertainty{};
-  double print_sigma = 0;                                              ///< Target::print_sigma
+  double print_sigma = 0;  ///< Target::print_sigma
+  bool plain = false;      ///< a square without a pattern, told from each of its corners in turn
   std::array<double, kSharedUnknowns> shared = BoardPriors().Means();  ///< if not drawn
 };
 

@@ -9,7 +9,6 @@
 #include "calib/detect/image/internal/side_line.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
-#include "calib/model/pattern.h"
 
 namespace rgbdt {
 namespace {
@@ -210,7 +209,7 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
                   const TargetPose& pose, std::size_t index, const BoardSidesOptions& options) {
   ImageSide side;
   Prediction p = SideOnTarget(target, index);
-  if (!HasPattern(target)) KeepInside(camera, pose.sensor_from_target, &p);
+  if (!target.HasPattern()) KeepInside(camera, pose.sensor_from_target, &p);
   if (!FillCurve(camera, pose.sensor_from_target, &p)) {
     side.why = "this side lies outside the image";
     return side;

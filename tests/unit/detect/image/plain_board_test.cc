@@ -1,0 +1,98 @@
+#include "calib/detect/image/plain_board.h"
+
+#include <gmock/gmock.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "calib/camera/camera.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+CameraSpec Spec() {
+  CameraSpec spec;
+  spec.name = "rgb";
+  spec.width = 960;
+  spec.height = 600;
+  spec.lens.fx = spec.lens.fy = 1000;
+  spec.lens.cx = 470;
+  spec.lens.cy = 310;
+  return spec;
+}
+
+Target Square() {
+  Target target;
+  target.width_m = target.height_m = 1;
+  return target;
+}
+
+// A board of this size, drawn four times as fine.
+cv::Mat Picture(const Camera& camera, const Target& board, const Rigid3& pose, double board_value) {
+  constexpr int kFine = 4;
+  cv::Mat fine(kFine * camera.height(), kFine * camera.width(), CV_32FC1, cv::Scalar(40));
+  std::vector<cv::Point> corners;
+  for (const Eigen::Vector3d& corner : board.OutlineCorners()) {
+    const Eigen::Vector2d p = *camera.Project(pose * corner);
+    corners.emplace_back(static_cast<int>(std::lround(kFine * (p.x() + 0.5) - 0.5)),
+                         static_cast<int>(std::lround(kFine * (p.y() + 0.5) - 0.5)));
+  }
+  cv::fillConvexPoly(fine, corners, cv::Scalar(board_value));
+  cv::Mat image;
+  cv::resize(fine, image, {}, 1.0 / kFine, 1.0 / kFine, cv::INTER_AREA);
+  cv::GaussianBlur(image, image, {}, 0.8);
+  cv::Mat noise(image.size(), CV_32FC1);
+  cv::RNG random(1);
+  random.fill(noise, cv::RNG::NORMAL, 0, 1.0);
+  return image + noise;
+}
+
+PlainBoardResult Find(const Camera& camera, const Target& target, const cv::Mat& image) {
+  return FindPlainBoard(image, cv::Mat::zeros(image.size(), CV_8UC1), camera, target);
+}
+
+Rigid3 At(double roll, double tilt, double x, double z) {
+  return Rigid3{Eigen::Quaterniond::Identity(), {x, 0.05, z}} *
+         RotationAbout({0.6, 0.8, 0}, tilt * kDegree) * RotationAbout({0, 0, 1}, roll * kDegree);
+}
+
+TEST(PlainBoard, IsFoundAtAnyRollBrightOrDarkAndWithACornerOutside) {
+  const Camera camera(Spec());
+  for (const double value : {200.0, 5.0}) {
+    for (const double roll : {0.0, 20.0, 45.0, 70.0}) {
+      for (const double x : {0.0, 0.9}) {
+        const Rigid3 truth = At(roll, 25, x, 2.6);
+        const PlainBoardResult found =
+            Find(camera, Square(), Picture(camera, Square(), truth, value));
+        if (!found.board) {
+          EXPECT_GT(x, 0) << roll << ": " << found.why;
+          continue;
+        }
+        double least = 1e9;
+        for (int turn = 0; turn < 4; ++turn) {
+          const Rigid3 turned =
+              found.board->pose.sensor_from_target * RotationAbout({0, 0, 1}, 90 * turn * kDegree);
+          least = std::min(least, RotationDistance(turned, truth));
+        }
+        EXPECT_LT(least, 0.5 * kDegree) << roll << " " << x;
+        EXPECT_LT((found.board->pose.sensor_from_target.translation - truth.translation).norm(),
+                  0.012)
+            << roll << " " << x;
+      }
+    }
+  }
+}
+
+TEST(PlainBoard, WhatHasNotItsSizeIsRefused) {
+  const Camera camera(Spec());
+  Target door = Square();
+  door.width_m = 0.5;
+  const PlainBoardResult found =
+      Find(camera, Square(), Picture(camera, door, At(10, 5, 0, 2), 200));
+  EXPECT_FALSE(found.board);
+  EXPECT_THAT(found.why, testing::HasSubstr("size"));
+}
+
+}  // namespace
+}  // namespace rgbdt
