@@ -69,11 +69,21 @@ def figures_of(rigs):
 
 
 def targets_of(rigs):
-    targets = {"silent_failures": ("<=", 0)}
+    targets = {
+        "silent_failures": ("<=", 0),
+        "vlp16_halves_deg": ("<=", 0.12),
+        "vlp16_halves_mm": ("<=", 5),
+        "os64_used": (">=", 11),
+        "os64_sigma_deg": ("<=", 0.08),
+        "os64_sigma_mm": ("<=", 5),
+        "plain_used": (">=", 14),
+        "plain_halves_deg": ("<=", 0.15),
+        "plain_halves_mm": ("<=", 10),
+    }
     for rig in rigs:
-        targets[f"{rig.name}_halves_coverage95"] = ("in", 0.85, 0.99)
-        targets[f"{rig.name}_edge_plane_chi2"] = ("<=", UNLIKELY)
-        targets[f"{rig.name}_lens_chi2"] = ("<=", UNLIKELY)
+        targets[f"{rig.name}_halves_coverage95"] = ("in", 0.88, 0.99)
+        targets[f"{rig.name}_edge_plane_chi2"] = ("<=", 16)
+        targets[f"{rig.name}_lens_chi2"] = ("<=", 16)
     return targets
 
 

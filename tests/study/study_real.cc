@@ -120,8 +120,10 @@ Detections WithoutPlanes(Detections views) {
   return views;
 }
 
-/// The rig with the lens that the session's own images give; nothing where that failed.
+/// The rig with the lens that the session's own images give; nothing where that failed, or where
+/// the board has no pattern to find a lens by.
 std::optional<Rig> WithOwnLens(Rig rig, const Detections& views) {
+  if (!rig.target.HasPattern()) return std::nullopt;
   CameraSpec& camera = rig.cameras.at(0);
   IntrinsicsInput images{
       camera.lens.model == Lens::Model::kFisheye ? LensChoice::kFisheye : LensChoice::kPinhole5,
