@@ -64,7 +64,7 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   cv::Mat grey = ToGrey(image);
   const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
   if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
-  const CheckerboardResult found = FindCheckerboard(grey, rig.target);
+  const CheckerboardResult found = FindCheckerboard(grey, rig.target, SaturatedFrom(image));
   status.text = found.why;
   if (!found.board) return status;
   for (const Eigen::Vector2d& corner : found.board->corners) {

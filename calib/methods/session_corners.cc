@@ -25,7 +25,7 @@ Found FindInImage(const Rig& rig, const Image& image, const std::string& name) {
   CheckImage(rig.Camera(image.camera), image);
   const cv::Mat grey = ToGrey(image);
   Found found{image.camera, {name, {}}, 0};
-  const auto board = FindCheckerboard(grey, rig.target).board;
+  const auto board = FindCheckerboard(grey, rig.target, SaturatedFrom(image)).board;
   if (!board) return found;
   found.view.corners = board->corners;
   found.contrast = SquareContrast(grey, rig.target, board->corners);

@@ -53,7 +53,8 @@ const study::ImageScene& SceneOf(const std::string& class_name) {
 std::function<void()> InImage(const std::string& class_name) {
   const study::ImageScene& scene = SceneOf(class_name);
   return [&scene] {
-    const CheckerboardResult result = FindCheckerboard(ToGrey(scene.image), scene.target);
+    const CheckerboardResult result =
+        FindCheckerboard(ToGrey(scene.image), scene.target, SaturatedFrom(scene.image));
     if (!result.board) throw std::runtime_error("no board in the image: " + result.why);
   };
 }

@@ -50,7 +50,8 @@ void Compare(const std::vector<Eigen::Vector2d>& corners, const std::vector<Eige
 Outcome Detect(const ImageScene& scene) {
   const cv::Mat grey = ToGrey(scene.image);
   const std::clock_t start = std::clock();  // CPU time: other programs do not count
-  const CheckerboardResult result = FindCheckerboard(grey, scene.target);
+  const CheckerboardResult result =
+      FindCheckerboard(grey, scene.target, SaturatedFrom(scene.image));
   Outcome outcome;
   outcome.milliseconds = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   outcome.found = result.board.has_value();

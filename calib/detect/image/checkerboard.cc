@@ -23,6 +23,7 @@ constexpr double kGridTolerance = 0.2;  // of a saddle, of the distance to the n
 constexpr int kMostMeasured = 4;        // places of the pattern in a grid
 constexpr double kSure = 0.015;         // uncertainty of corners, of the distance to the next
 constexpr double kMostResidual = 0.5;   // median of CornerFit::residual; noise at 4 x NETD
+constexpr int kSaturatedRounds = 3;     // of measuring again
 constexpr double kMostLost = 0.05;      // of the corners, that may be measured by their neighbours
 
 // A size at which to look: the image shrunk by a whole number or enlarged, then blurred.
@@ -59,11 +60,12 @@ struct Measured {
   CornerGrid corners;
   std::map<std::pair<int, int>, double> contrasts;  ///< as CornerFit's
   double sigma_px = 0, blur_px = 0, residual = 0;   ///< medians
+  bool saturated = false;                           ///< any of them
 };
 
 // Every corner of the pattern that can be measured in the full image.
-Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<double> blur_px,
-                 const PatternMatch& match, const Target& target) {
+Measured Measure(const cv::Mat& grey, double saturated_from, const GridModel& model,
+                 std::optional<double> blur_px, const PatternMatch& match, const Target& target) {
   Measured measured;
   std::vector<double> sigmas;
   std::vector<double> blurs;
@@ -71,10 +73,11 @@ Measured Measure(const cv::Mat& grey, const GridModel& model, std::optional<doub
   for (int row = match.row; row < match.row + match.rows(target); ++row) {
     for (int column = match.column; column < match.column + match.columns(target); ++column) {
       const auto fit = FitCorner(grey, model.At(column, row), model.Steps(column, row),
-                                 model.Bends(column, row), blur_px);
+                                 model.Bends(column, row), blur_px, saturated_from);
       if (!fit) continue;
       measured.corners[{column, row}] = fit->place;
       measured.contrasts[{column, row}] = fit->contrast;
+      measured.saturated |= fit->saturated;
       sigmas.push_back(fit->sigma_px);
       blurs.push_back(fit->blur_px);
       residuals.push_back(fit->residual);
@@ -145,7 +148,8 @@ Checkerboard InOrder(const Measured& measured, const GridModel& model, double co
 
 class Search {
  public:
-  Search(const cv::Mat& grey, const Target& target) : grey_(grey), target_(target) {}
+  Search(const cv::Mat& grey, const Target& target, double saturated_from)
+      : grey_(grey), target_(target), saturated_from_(saturated_from) {}
 
   /// Looks for boards at one size; keeps the best of what was found so far.
   void LookAt(const Look& look);
@@ -161,6 +165,7 @@ class Search {
 
   const cv::Mat& grey_;
   const Target& target_;
+  double saturated_from_;
   std::optional<Checkerboard> best_;
   double best_uncertainty_ = 0;  ///< of a corner, of the distance to the next
   std::string why_;
@@ -207,12 +212,15 @@ bool Search::Fits(const cv::Mat& picture, const GridModel& model, const PatternM
 bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
   const auto model = GridModel::Fit(rough, kGridTolerance);
   if (!model) return false;
-  Measured measured = Measure(grey_, *model, {}, match, target_);
-  const auto better = GridModel::Fit(measured.corners, kGridTolerance);
-  if (!better) return false;
-  // Again with the blur that all corners agree on, and edges along the grid's lines.
-  measured = Measure(grey_, *better, measured.blur_px, match, target_);
-  const auto fine = GridModel::Fit(measured.corners, kGridTolerance);
+  Measured measured = Measure(grey_, saturated_from_, *model, {}, match, target_);
+  auto fine = GridModel::Fit(measured.corners, kGridTolerance);
+  // Again with the blur that all corners agree on, and edges along the grid's lines. With white
+  // saturated, the first time is much the worse: an edge is seen by its dark half.
+  const int rounds = measured.saturated ? kSaturatedRounds : 1;
+  for (int round = 0; fine && round < rounds; ++round) {
+    measured = Measure(grey_, saturated_from_, *fine, measured.blur_px, match, target_);
+    fine = GridModel::Fit(measured.corners, kGridTolerance);
+  }
   if (!fine) return false;
   const double contrast = TypicalContrast(measured);
   DropWrong(contrast, *fine, &measured);
@@ -236,7 +244,8 @@ bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
 
 }  // namespace
 
-CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target) {
+CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
+                                    double saturated_from) {
   CheckerboardResult result;
   if (grey.empty()) {
     result.why = "the image is empty";
@@ -248,7 +257,7 @@ CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target) {
     return result;
   }
   const cv::Mat repaired = RepairDeadPixels(grey);
-  Search search(repaired, target);
+  Search search(repaired, target, saturated_from);
   for (const Look& look : LooksFor(grey.size())) {
     search.LookAt(look);
     if (search.sure()) break;

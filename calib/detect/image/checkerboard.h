@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/detect/image/saturation.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {
@@ -38,7 +39,9 @@ struct CheckerboardResult {
 ///   5. each corner is measured in the full image (FitCorner)
 /// Corners that do not follow a flat grid seen through a smooth lens, or whose light and dark are
 /// exchanged, are refused: up to 5% of them are then taken from the others' grid, with more there
-/// is no board. Of several boards the one that fits best is returned.
-CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target);
+/// is no board. Of several boards the one that fits best is returned. `saturated_from`: see
+/// SaturatedFrom; corners of white that is overexposed are not rounded off then.
+CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
+                                    double saturated_from = kNeverSaturated);
 
 }  // namespace rgbdt

@@ -238,10 +238,10 @@ Located FromPlainBoard(const Image& image, const cv::Mat& grey, const Camera& ca
   return located;
 }
 
-Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target& target,
-                         CameraKind kind) {
+Located FromCheckerboard(const Image& image, const cv::Mat& grey, const Camera& camera,
+                         const Target& target, CameraKind kind) {
   Located located;
-  const CheckerboardResult found = FindCheckerboard(grey, target);
+  const CheckerboardResult found = FindCheckerboard(grey, target, SaturatedFrom(image));
   if (!found.board) {
     located.why = found.why;
     return located;
@@ -259,12 +259,12 @@ Located FromCheckerboard(const cv::Mat& grey, const Camera& camera, const Target
 }
 
 // Measured where a person picked the board.
-Located FromPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
-                        const Corners& picks, CameraKind kind) {
+Located FromPickedBoard(const Image& image, const cv::Mat& grey, const Camera& camera,
+                        const Target& target, const Corners& picks, CameraKind kind) {
   Located located = FromPicks(camera, target, picks);
   if (!located.why.empty()) return located;
-  PickedBoardResult found =
-      FindPickedBoard(grey, camera, target, picks, kind == CameraKind::kColor);
+  PickedBoardResult found = FindPickedBoard(grey, SaturatedFrom(image), camera, target, picks,
+                                            kind == CameraKind::kColor);
   located.why = std::move(found.why);
   if (!found.board) return located;
   located.inner = std::move(found.board->corners);
@@ -326,7 +326,8 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
     return EdgesOf(image, grey, camera, target, FromPlainBoard(image, grey, camera, target));
   }
   if (picks == nullptr) {
-    return EdgesOf(image, grey, camera, target, FromCheckerboard(grey, camera, target, kind));
+    return EdgesOf(image, grey, camera, target,
+                   FromCheckerboard(image, grey, camera, target, kind));
   }
   return Picked(EdgesOf(image, grey, camera, target, FromPicks(camera, target, picks->corners)));
 }
@@ -335,7 +336,7 @@ ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, co
                                     const CornerSelection& picks, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
   return Picked(EdgesOf(image, grey, camera, target,
-                        FromPickedBoard(grey, camera, target, picks.corners, kind)));
+                        FromPickedBoard(image, grey, camera, target, picks.corners, kind)));
 }
 
 }  // namespace rgbdt

@@ -219,8 +219,8 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
   }
   const bool partly_hidden = CountSeen(sight.corners) < sight.corners.size();
   if (partly_hidden) {  // what occludes it may have moved on
-    auto pose =
-        fitted(CornersNear(grey, *sight.camera, *sight.target, sight.pose.pose.sensor_from_target));
+    auto pose = fitted(CornersNear(grey, kNeverSaturated, *sight.camera, *sight.target,
+                                   sight.pose.pose.sensor_from_target));
     if (pose) return pose;
   }
   const auto found = FindCheckerboard(grey, *sight.target).board;

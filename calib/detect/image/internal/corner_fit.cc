@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/detect/image/internal/lower_bound.h"
 #include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
@@ -18,6 +19,10 @@ constexpr double kMostPx = 10;      // edges are straight enough and blur is see
 constexpr double kMostShift = 0.3;  // of the distance to the next corner
 constexpr int kRounds = 20;
 constexpr double kLeastBlur = 0.4;  // [px]: a pixel's own area
+// Of pixels that are saturated:
+constexpr int kNoiseRounds = 3;       // of solving and telling the noise from what is left over
+constexpr double kFirstNoise = 0.05;  // of the contrast
+constexpr double kLeastNoise = 2e-3;  // likewise
 
 // x y, two angles, blur, contrast, 1 x y, xx xy yy, xxx xxy xyy yyy
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
@@ -30,7 +35,20 @@ struct Pixel {
 struct Equations {
   Normal normal = Normal::Zero();
   Unknowns right = Unknowns::Zero();
-  double squares = 0;
+  double squares = 0;      ///< what is made smallest: for values alone, their residuals' squares
+  int values = 0;          ///< pixels that are no bounds
+  double unexplained = 0;  ///< the residuals' squares, and what bounds add to these
+
+  /// A pixel whose value is at least the level; `above`: the model's value, less that level.
+  void AddBound(const Unknowns& j, double above, double noise) {
+    const double z = above / noise;
+    if (z > 8) return;  // 1e-15 of a pixel
+    const LowerBound bound(z);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(j, bound.weight);
+    right += noise * bound.residual * j;
+    squares += 2 * noise * noise * bound.cost;
+    unexplained -= noise * noise * z * bound.residual;
+  }
 };
 
 // The edge's profile and its derivative by the distance.
@@ -43,6 +61,8 @@ struct Step {
 
 // What is not solved for.
 struct Fixed {
+  double level = kNeverSaturated;         ///< a value from here on is a lower bound
+  double noise = 0;                       ///< of a value; matters to bounds only
   bool shape = false;                     ///< angles and blur stay as they are
   bool cubic = true;                      ///< and so do b's terms of third degree
   double curvature1 = 0, curvature2 = 0;  ///< of the edges, towards rising e1 and e2 [1/px]
@@ -69,7 +89,12 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
         p.x * p.x * p.y, p.x * p.y * p.y, p.y * p.y * p.y;
     if (fixed.shape) j.segment<3>(2).setZero();
     if (fixed.cubic) j.tail<kCubic>().setZero();
-    const double residual = p.value - j.tail<kLinear>().dot(u.tail<kLinear>());
+    const double model = j.tail<kLinear>().dot(u.tail<kLinear>());
+    if (p.value >= fixed.level) {
+      sums.AddBound(j, model - fixed.level, fixed.noise);
+      continue;
+    }
+    const double residual = p.value - model;
     if (fixed.cubic) {  // the rest is zero
       constexpr int kUsed = kUnknowns - kCubic;
       sums.normal.topLeftCorner<kUsed, kUsed>().selfadjointView<Eigen::Lower>().rankUpdate(
@@ -79,6 +104,8 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
     }
     sums.right += residual * j;
     sums.squares += residual * residual;
+    sums.unexplained += residual * residual;
+    ++sums.values;
   }
   sums.normal = sums.normal.selfadjointView<Eigen::Lower>();
   if (fixed.shape) sums.normal.diagonal().segment<3>(2).setOnes();
@@ -172,39 +199,78 @@ Unknowns Start(const std::vector<Pixel>& pixels, const Eigen::Matrix2d& steps, d
   return u;
 }
 
+double HalfRange(const std::vector<Pixel>& pixels, double level) {
+  const auto [low, high] =
+      std::minmax_element(pixels.begin(), pixels.end(),
+                          [](const Pixel& a, const Pixel& b) { return a.value < b.value; });
+  return 0.5 * (std::min(high->value, level) - low->value);
+}
+
+// Of a value, from what the fit leaves over.
+double VarianceOf(const Solution& s, const Fixed& fixed) {
+  return s.at.unexplained / (s.at.values - (fixed.cubic ? kUnknowns - kCubic : kUnknowns));
+}
+
+// With bounds among the pixels: the noise decides what these say, and is known afterwards.
+Solution SolveWithBounds(const std::vector<Pixel>& pixels, Solution s, double spacing,
+                         double half_range, Fixed* fixed) {
+  for (int round = 0; s.good && round < kNoiseRounds; ++round) {
+    const double variance = std::max(0.0, VarianceOf(s, *fixed));
+    fixed->noise = std::clamp(std::sqrt(variance), kLeastNoise * half_range, half_range);
+    s = Solve(pixels, s.unknowns, *fixed, spacing);
+  }
+  return s;
+}
+
+// Half of light minus dark, as far as the image shows it.
+double ContrastOf(const Unknowns& u, double level) {
+  const double dark = u[6] - std::abs(u[5]);
+  if (u[6] + std::abs(u[5]) <= level) return u[5];
+  return std::copysign(0.5 * (level - dark), u[5]);
+}
+
 }  // namespace
 
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
-                                   std::optional<double> blur_px) {
+                                   std::optional<double> blur_px, double saturated_from) {
   const double spacing = steps.colwise().norm().minCoeff();
   if (!(spacing > 3) || !(std::abs(steps.determinant()) > 0.2 * spacing * spacing)) {
     return std::nullopt;
   }
   const std::vector<Pixel> pixels = PixelsRound(grey, place, steps);
-  if (pixels.size() < 2 * kUnknowns) return std::nullopt;
+  const auto values = std::count_if(pixels.begin(), pixels.end(),
+                                    [&](const Pixel& p) { return p.value < saturated_from; });
+  if (values < 2 * kUnknowns) return std::nullopt;
   const double blur = std::clamp(blur_px.value_or(1), kLeastBlur, 0.5 * spacing);
   Fixed fixed;
+  fixed.level = saturated_from;
+  const double half_range = HalfRange(pixels, saturated_from);
+  fixed.noise = kFirstNoise * half_range;
   fixed.shape = blur_px.has_value();
   fixed.curvature1 = Curvature(AngleAcross(steps.col(1), steps.col(0)), steps.col(1), bends.col(1));
   fixed.curvature2 = Curvature(AngleAcross(steps.col(0), steps.col(1)), steps.col(0), bends.col(0));
   Solution s = Solve(pixels, Start(pixels, steps, blur, fixed), fixed, spacing);
-  auto spare = static_cast<double>(pixels.size()) - (kUnknowns - kCubic);
-  if (fixed.shape) {  // a background that bends more sharply, where the pixels clearly say so
-    fixed.cubic = false;
-    const Solution bent = Solve(pixels, s.unknowns, fixed, spacing);
+  const bool bounds = values < static_cast<std::ptrdiff_t>(pixels.size());
+  if (bounds) s = SolveWithBounds(pixels, s, spacing, half_range, &fixed);
+  if (fixed.shape &&
+      !bounds) {  // a background that bends more sharply, where the pixels clearly say so
+    Fixed third = fixed;
+    third.cubic = false;
+    const Solution bent = Solve(pixels, s.unknowns, third, spacing);
     const double gain = (s.at.squares - bent.at.squares) / kCubic;
-    if (bent.good && gain > 4 * bent.at.squares / (spare - kCubic)) {
+    if (bent.good && gain > 4 * VarianceOf(bent, third)) {
       s = bent;
-      spare -= kCubic;
+      fixed = third;
     }
   }
   if (!s.good) return std::nullopt;
   CornerFit fit;
   fit.place = place + s.unknowns.head<2>();
-  fit.contrast = s.unknowns[5];
+  fit.contrast = ContrastOf(s.unknowns, saturated_from);
+  fit.saturated = bounds;
   fit.blur_px = s.unknowns[4];
-  const double variance = s.at.squares / spare;
+  const double variance = VarianceOf(s, fixed);
   if (!(variance < fit.contrast * fit.contrast)) return std::nullopt;  // not much of a corner
   fit.residual = std::sqrt(variance) / std::abs(fit.contrast);
   const Normal inverse = InverseOfSymmetric(s.at.normal);

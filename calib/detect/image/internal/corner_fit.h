@@ -4,16 +4,19 @@
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
+#include "calib/detect/image/saturation.h"
+
 namespace rgbdt {
 
 /// A checkerboard's corner, measured.
 struct CornerFit {
   Eigen::Vector2d place{0, 0};  ///< [px]
   /// Half of light minus dark; positive where the patch between the two steps, and the one opposite
-  /// it, are the lighter ones.
+  /// it, are the lighter ones. Where the light ones are saturated: as far as the image shows it.
   double contrast = 0;
-  double blur_px = 0;   ///< sigma of the edges
-  double residual = 0;  ///< RMS of what the fit leaves over, of the contrast
+  bool saturated = false;  ///< whether any of its pixels was
+  double blur_px = 0;      ///< sigma of the edges
+  double residual = 0;     ///< RMS of what the fit leaves over, of the contrast
   double sigma_px = 0;  ///< of the place along its worst direction, from what the fit leaves over
 };
 
@@ -24,12 +27,16 @@ struct CornerFit {
 /// for straight ones, they draw every corner towards the image's middle, by 1e-5 to 1e-4 of its
 /// distance from there. With `blur_px` given, blur and the edges' directions (along `steps`) are
 /// taken as known, which helps weak corners, and b is of third degree where that clearly fits
-/// better. `grey` is CV_32FC1, dead pixels repaired. `steps`: image
-/// shift from this corner to the next column (first) and to the next row [px]; `bends`: second
-/// differences of the grid's places, likewise (GridModel::Bends). Nothing where the
-/// fit leaves the neighbourhood of `place`, the pixels are not all seen or do not look like that.
+/// better (not where a patch is saturated: what it does there is not seen). Values of
+/// `saturated_from` and above only say that the corner is at least that bright (LowerBound), since
+/// what a sensor clips is the blurred corner: taken for values, they round the corner off. `grey`
+/// is CV_32FC1, dead pixels repaired. `steps`: image shift from this corner to the next column
+/// (first) and to the next row [px]; `bends`: second differences of the grid's places, likewise
+/// (GridModel::Bends). Nothing where the fit leaves the neighbourhood of `place`, the pixels are
+/// not all seen or do not look like that.
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
-                                   std::optional<double> blur_px = std::nullopt);
+                                   std::optional<double> blur_px = std::nullopt,
+                                   double saturated_from = kNeverSaturated);
 
 }  // namespace rgbdt

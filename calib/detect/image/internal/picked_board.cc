@@ -66,8 +66,8 @@ struct Measured {
   }
 };
 
-Measured Measure(const cv::Mat& grey, const Target& target, const BoardMap& map,
-                 std::optional<double> blur_px) {
+Measured Measure(const cv::Mat& grey, double saturated_from, const Target& target,
+                 const BoardMap& map, std::optional<double> blur_px) {
   Measured measured;
   int index = 0;
   for (const Eigen::Vector3d& corner : target.InnerCorners()) {
@@ -78,7 +78,7 @@ Measured Measure(const cv::Mat& grey, const Target& target, const BoardMap& map,
     const auto grid = GridAt(map, corner.head<2>(), target.square_m);
     if (!grid) continue;
     spacing = grid->spacing();
-    fit = FitCorner(grey, grid->place, grid->steps, grid->bends, blur_px);
+    fit = FitCorner(grey, grid->place, grid->steps, grid->bends, blur_px, saturated_from);
     if (fit && !even) fit->contrast = -fit->contrast;
   }
   return measured;
@@ -194,13 +194,13 @@ std::optional<CornerPose> FirstPose(const Camera& camera, const Target& target,
 }
 
 // The pose from the corners of `measured`, and these measured again from there.
-std::optional<CornerPose> Settle(const cv::Mat& grey, const Camera& camera, const Target& target,
-                                 Measured* measured) {
+std::optional<CornerPose> Settle(const cv::Mat& grey, double saturated_from, const Camera& camera,
+                                 const Target& target, Measured* measured) {
   for (int round = 0; round < kRounds; ++round) {
     const auto pose = FirstPose(camera, target, *measured);
     if (!pose) return std::nullopt;
     const BoardMap map = MapByPose(camera, pose->pose.sensor_from_target);
-    *measured = Measure(grey, target, map, measured->blur_px());
+    *measured = Measure(grey, saturated_from, target, map, measured->blur_px());
     DropUnlike(measured);
     DropOffPose(map, target, pose->corner_sigma_px, measured);
     if (!Enough(target, *measured)) return std::nullopt;
@@ -252,19 +252,20 @@ PickedBoardResult InOrder(const cv::Mat& grey, const Camera& camera, const Targe
 
 }  // namespace
 
-PickedBoardResult FindPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
-                                  const std::array<Eigen::Vector2d, 4>& picks, bool black_is_dark) {
+PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, const Camera& camera,
+                                  const Target& target, const std::array<Eigen::Vector2d, 4>& picks,
+                                  bool black_is_dark) {
   const cv::Mat repaired = RepairDeadPixels(grey);
   Measured measured;
   measured.fits.resize(target.InnerCorners().size());
   const auto aligned = AlignPicks(repaired, camera, target, picks);
   const auto map = aligned ? MapByOutline(camera, target, aligned->outline) : std::nullopt;
   if (!map) return {std::nullopt, WhyNotEnough(target, measured)};
-  measured = Measure(repaired, target, *map, std::nullopt);
+  measured = Measure(repaired, saturated_from, target, *map, std::nullopt);
   DropUnlike(&measured);
   DropOffGrid(target, &measured);
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
-  const auto pose = Settle(repaired, camera, target, &measured);
+  const auto pose = Settle(repaired, saturated_from, camera, target, &measured);
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
   if (!pose) {
     return {std::nullopt,
@@ -281,10 +282,10 @@ PickedBoardResult FindPickedBoard(const cv::Mat& grey, const Camera& camera, con
   return InOrder(grey, camera, target, measured.places(), black_is_dark);
 }
 
-Pixels CornersNear(const cv::Mat& grey, const Camera& camera, const Target& target,
-                   const Rigid3& camera_from_target) {
-  Measured measured =
-      Measure(RepairDeadPixels(grey), target, MapByPose(camera, camera_from_target), std::nullopt);
+Pixels CornersNear(const cv::Mat& grey, double saturated_from, const Camera& camera,
+                   const Target& target, const Rigid3& camera_from_target) {
+  Measured measured = Measure(RepairDeadPixels(grey), saturated_from, target,
+                              MapByPose(camera, camera_from_target), std::nullopt);
   DropUnlike(&measured);
   return measured.places();
 }

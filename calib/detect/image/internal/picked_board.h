@@ -9,6 +9,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/camera/target_pose.h"
+#include "calib/detect/image/saturation.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {
@@ -37,14 +38,17 @@ struct PickedBoardResult {
 ///      may as well lie a square farther on (WhyPatternMayBeShifted), and where the board's outline
 ///      is not where the person said
 /// So the picks say where to look and no more: what comes out is as exact as what is measured, and
-/// a corner that was not is NaN. `grey` is CV_32FC1, `picks` lie in the image [px].
-/// `black_is_dark`: see OrderCorners; `pose.half_turn_known` says whether that told the half turn.
-PickedBoardResult FindPickedBoard(const cv::Mat& grey, const Camera& camera, const Target& target,
-                                  const std::array<Eigen::Vector2d, 4>& picks, bool black_is_dark);
+/// a corner that was not is NaN. `grey` is CV_32FC1, `saturated_from` as SaturatedFrom says,
+/// `picks` lie in the image [px]. `black_is_dark`: see OrderCorners; `pose.half_turn_known` says
+/// whether that told the half turn.
+PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, const Camera& camera,
+                                  const Target& target, const std::array<Eigen::Vector2d, 4>& picks,
+                                  bool black_is_dark);
 
 /// The target's inner corners [px] in another image of it, each searched near where the pose puts
 /// it; NaN where none is found there. `grey` is CV_32FC1.
-std::vector<Eigen::Vector2d> CornersNear(const cv::Mat& grey, const Camera& camera,
-                                         const Target& target, const Rigid3& camera_from_target);
+std::vector<Eigen::Vector2d> CornersNear(const cv::Mat& grey, double saturated_from,
+                                         const Camera& camera, const Target& target,
+                                         const Rigid3& camera_from_target);
 
 }  // namespace rgbdt

@@ -70,7 +70,8 @@ class Shots {
   }
 
   PickedBoardResult Find(const Shot& shot) const {
-    return FindPickedBoard(shot.grey, camera_, target(), shot.picks.corners, color());
+    return FindPickedBoard(shot.grey, kNeverSaturated, camera_, target(), shot.picks.corners,
+                           color());
   }
 
  private:
