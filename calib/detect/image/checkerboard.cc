@@ -30,6 +30,7 @@ constexpr double kMostLost = 0.05;      // of the corners, that may be measured 
 struct Look {
   double scale = 1;    ///< size of the image searched, of the image's
   double sigma = 1.5;  ///< [px] there
+  int narrow = 0;      ///< light patches are made narrower by so many pixels first
 };
 
 // Cheap and likely ones first.
@@ -38,6 +39,17 @@ std::vector<Look> LooksFor(const cv::Size& size) {
   std::vector<Look> looks{{1 / shrink, 1.5}, {0.5 / shrink, 1.5}, {1 / shrink, 2.5}};
   looks.push_back({shrink > 1 ? 2 / shrink : 2.0, 1.5});
   return looks;
+}
+
+// Where white is so overexposed that it flows together between the tips of black squares, which
+// then are no saddles: for images in which anything is saturated.
+std::vector<Look> SaturatedLooksFor(const cv::Mat& grey, double saturated_from) {
+  constexpr double kLeastSaturated = 1e-3;  // of the pixels
+  if (!std::isfinite(saturated_from)) return {};
+  const int saturated = cv::countNonZero(grey >= saturated_from);
+  if (saturated < kLeastSaturated * static_cast<double>(grey.total())) return {};
+  const double scale = LooksFor(grey.size()).front().scale;
+  return {{scale, 2.5, 2}, {scale, 2.5, 1}};
 }
 
 cv::Mat Resized(const cv::Mat& grey, double scale) {
@@ -174,7 +186,9 @@ class Search {
 void Search::LookAt(const Look& look) {
   if (look.scale * std::min(grey_.cols, grey_.rows) < kLeastSide) return;
   const cv::Mat picture = Resized(grey_, look.scale);
-  const std::vector<Saddle> saddles = FindSaddles(picture, look.sigma);
+  cv::Mat narrowed = picture;
+  if (look.narrow > 0) cv::erode(picture, narrowed, cv::Mat(), {-1, -1}, look.narrow);
+  const std::vector<Saddle> saddles = FindSaddles(narrowed, look.sigma);
   const int corners = target_.corners_x() * target_.corners_y();
   // A grid may run on where the pattern meets its border.
   GridFinder finder(saddles, std::max(target_.corners_x(), target_.corners_y()) + 4);
@@ -261,6 +275,12 @@ CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
   for (const Look& look : LooksFor(grey.size())) {
     search.LookAt(look);
     if (search.sure()) break;
+  }
+  if (!search.best()) {
+    for (const Look& look : SaturatedLooksFor(repaired, saturated_from)) {
+      search.LookAt(look);
+      if (search.best()) break;
+    }
   }
   result.board = search.best();
   if (result.board) return result;

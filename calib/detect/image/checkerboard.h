@@ -33,7 +33,8 @@ struct CheckerboardResult {
 /// polarity and unevenly bright; of at least 3x3 inner corners. All of its squares must be seen;
 /// hands may hold it by the border. (A part of it: FindPickedBoard.)
 ///   1. dead pixels are repaired
-///   2. saddles of the brightness are found (FindSaddles), at one size after another
+///   2. saddles of the brightness are found (FindSaddles), at one size after another; where that
+///      leads to no board and white is saturated, again with white made narrower
 ///   3. grids are grown among them (GridFinder)
 ///   4. the pattern's place in the grid follows from which squares alternate (MatchPattern)
 ///   5. each corner is measured in the full image (FitCorner)

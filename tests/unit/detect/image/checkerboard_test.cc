@@ -9,6 +9,7 @@
 #include "calib/camera/pixels.h"
 #include "calib/simulate/simulator.h"
 #include "tests/study/image_scenes.h"
+#include "tests/unit/detect/image/overexposed_board.h"
 #include "tests/unit/detect/image/painted_checkerboard.h"
 
 namespace rgbdt {
@@ -174,6 +175,44 @@ TEST(Checkerboard, WhatAlternatesBeyondItsBorderIsNoPartOfIt) {
   const CheckerboardResult result = FindCheckerboard(image, painted.target());
   ASSERT_TRUE(result.board.has_value()) << result.why;
   EXPECT_LT(Compare(result.board->corners, painted.Corners()).worst, 0.3);
+}
+
+// White at 1.25 to 4 times what the image can show, with a good lens and a poor one; OpenCV's
+// detector finds all of these, too, to 0.08 to 0.4 px.
+TEST(Checkerboard, AnOverexposedBoardIsFoundAndItsCornersAreNotRoundedOff) {
+  for (const auto& [exposure, halo] :
+       {std::pair{1.6, 0.0}, {2.0, 0.3}, {3.0, 0.0}, {3.0, 0.3}, {5.0, 0.0}}) {
+    double sum = 0;
+    for (int seed = 0; seed < 6; ++seed) {
+      OverexposedBoard board = OverexposedBoard::Draw(seed);
+      board.exposure = exposure;
+      board.halo = halo;
+      const CheckerboardResult result =
+          FindCheckerboard(board.Paint(), board.pattern.target(), 250);
+      ASSERT_TRUE(result.board.has_value()) << exposure << " " << halo << ": " << result.why;
+      const Errors errors = Compare(result.board->corners, board.pattern.Corners());
+      EXPECT_LT(errors.worst, 0.15) << exposure << " " << halo << " " << seed;
+      sum += errors.rms * errors.rms / 6;
+    }
+    EXPECT_LT(std::sqrt(sum), 0.035) << exposure << " " << halo;  // 0.017 is how it is painted
+  }
+}
+
+TEST(Checkerboard, AnOverexposedPatternOfAnotherSizeIsRefused) {
+  for (const double exposure : {2.0, 5.0}) {
+    for (int seed = 0; seed < 2; ++seed) {
+      OverexposedBoard board = OverexposedBoard::Draw(seed);
+      board.exposure = exposure;
+      const cv::Mat image = board.Paint();
+      for (const auto& [x, y] : {std::pair{-1, 0}, {0, -1}, {1, 0}, {0, 1}, {-2, -1}}) {
+        Target target = board.pattern.target();
+        target.squares_x += x;
+        target.squares_y += y;
+        EXPECT_FALSE(FindCheckerboard(image, target, 250).board.has_value())
+            << exposure << " " << seed << ": " << x << " " << y;
+      }
+    }
+  }
 }
 
 TEST(Checkerboard, ABoardPartlyOutsideTheImageIsNotFound) {
