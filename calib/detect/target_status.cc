@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -67,11 +68,13 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   const CheckerboardResult found = FindCheckerboard(grey, rig.target, SaturatedFrom(image));
   status.text = found.why;
   if (!found.board) return status;
+  std::vector<Eigen::Vector2d> corners;
   for (const Eigen::Vector2d& corner : found.board->corners) {
-    status.corners.push_back(Scaled(corner, shrink));
+    corners.push_back(Scaled(corner, shrink));
   }
+  std::copy_if(corners.begin(), corners.end(), std::back_inserter(status.corners), IsSeen);
   const Camera camera(spec);
-  const auto pose = PoseFromCorners(camera, rig.target, status.corners);
+  const auto pose = PoseFromCorners(camera, rig.target, corners);
   if (!pose) {
     status.text = "a checkerboard that is not flat; check the lens in the rig file";
     return status;

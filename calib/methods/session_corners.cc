@@ -10,6 +10,7 @@
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/contrast.h"
 #include "calib/model/errors.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 namespace {
@@ -19,6 +20,7 @@ struct Found {
   std::string camera;
   IntrinsicsView view;
   double contrast = 0;
+  bool partial = false;  ///< a part of the board is outside the image
 };
 
 Found FindInImage(const Rig& rig, const Image& image, const std::string& name) {
@@ -27,6 +29,11 @@ Found FindInImage(const Rig& rig, const Image& image, const std::string& name) {
   Found found{image.camera, {name, {}}, 0};
   const auto board = FindCheckerboard(grey, rig.target, SaturatedFrom(image)).board;
   if (!board) return found;
+  // A lens is found from whole boards.
+  if (!std::all_of(board->corners.begin(), board->corners.end(), IsSeen)) {
+    found.partial = true;
+    return found;
+  }
   found.view.corners = board->corners;
   found.contrast = SquareContrast(grey, rig.target, board->corners);
   return found;
@@ -50,7 +57,9 @@ std::string Summary(const std::vector<Found>& found) {
   std::string text;
   for (const Found& f : found) {
     text += (text.empty() ? "" : "; ") + f.camera + ": " +
-            (f.view.corners.empty() ? "no board found" : "board found");
+            (f.partial                ? "a part of the board is outside the image"
+             : f.view.corners.empty() ? "no board found"
+                                      : "board found");
   }
   return text.empty() ? "no image" : text;
 }

@@ -50,8 +50,8 @@ inline bool IsSeen(const Eigen::Vector2d& corner) { return corner.allFinite(); }
 /// What one image shows of the target. Pixels of the distorted image, centres at integers.
 struct ImageEdges {
   int width = 0, height = 0;  ///< of the image [px]
-  /// Inner corners, all of them in the target's order; NaN where one was not seen (IsSeen), which
-  /// happens only where `picked`.
+  /// Inner corners, all of them in the target's order; NaN where one was not seen (IsSeen): outside
+  /// the image, or hidden where `picked`.
   std::vector<Eigen::Vector2d> corners;
   /// Board's corners in order round the board; beginning with the target's top left where there is
   /// a pose.
@@ -158,7 +158,7 @@ struct TargetStatus {
   std::string camera;  ///< empty: the LIDAR
   bool seen = false;
   std::string text;                      ///< where it is, or why it is not seen
-  std::vector<Eigen::Vector2d> corners;  ///< camera: inner corners, the target's order [px]
+  std::vector<Eigen::Vector2d> corners;  ///< camera: those inner corners that are seen [px]
   std::vector<Eigen::Vector2d> outline;  ///< camera: closed chain through the lens [px]
   Eigen::Vector3d centre{0, 0, 0};       ///< LIDAR: of the board's points, LIDAR frame [m]
 };

@@ -13,6 +13,7 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/image/checkerboard.h"
+#include "calib/model/view_detection.h"
 #include "tests/study/image_scenes.h"
 #include "tests/study/study_main.h"
 
@@ -36,7 +37,9 @@ void Compare(const std::vector<Eigen::Vector2d>& corners, const std::vector<Eige
     double worst = 0;
     double sum = 0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double error = (corners[turned ? truth.size() - 1 - i : i] - truth[i]).norm();
+      const Eigen::Vector2d& corner = corners[turned ? truth.size() - 1 - i : i];
+      if (!IsSeen(corner)) continue;
+      const double error = (corner - truth[i]).norm();
       worst = std::max(worst, error);
       sum += error * error;
     }

@@ -9,9 +9,11 @@
 #include "calib/detect/image/internal/corner_grid.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/partial_match.h"
 #include "calib/detect/image/internal/pattern_match.h"
 #include "calib/detect/image/internal/saddles.h"
 #include "calib/model/statistics.h"
+#include "calib/model/view_detection.h"
 
 namespace rgbdt {
 namespace {
@@ -24,6 +26,7 @@ constexpr int kMostMeasured = 4;        // places of the pattern in a grid
 constexpr double kSure = 0.015;         // uncertainty of corners, of the distance to the next
 constexpr double kMostResidual = 0.5;   // median of CornerFit::residual; noise at 4 x NETD
 constexpr int kSaturatedRounds = 3;     // of measuring again
+constexpr double kPartialBetter = 0.5;  // uncertainty of a partial board, of a whole one's instead
 constexpr double kMostLost = 0.05;      // of the corners, that may be measured by their neighbours
 
 // A size at which to look: the image shrunk by a whole number or enlarged, then blurred.
@@ -125,9 +128,10 @@ void DropWrong(double contrast, const GridModel& model, Measured* measured) {
   }
 }
 
-// In the target's order: columns to the right of which rows go down.
+// In the target's order: columns to the right of which rows go down. Corners that were not measured
+// follow from the others, or, of a board that is partly outside the image, are unseen.
 Checkerboard InOrder(const Measured& measured, const GridModel& model, double contrast,
-                     const PatternMatch& match, const Target& target) {
+                     const PatternMatch& match, const Target& target, bool partial) {
   const int wide = target.corners_x();
   const int high = target.corners_y();
   const Eigen::Matrix2d steps = model.Steps(match.column + 0.5 * (match.columns(target) - 1),
@@ -146,6 +150,7 @@ Checkerboard InOrder(const Measured& measured, const GridModel& model, double co
       const int row = match.row + (match.turned ? across : down);
       const auto found = measured.corners.find({column, row});
       board.corners.push_back(found != measured.corners.end() ? found->second
+                              : partial                       ? UnseenCorner()
                                                               : model.At(column, row));
       if (x > 0 || y > 0) continue;
       // A corner's contrast tells of the squares in the directions (+, +) and (-, -); a flip of one
@@ -165,6 +170,9 @@ class Search {
 
   /// Looks for boards at one size; keeps the best of what was found so far.
   void LookAt(const Look& look);
+  /// Takes a board that is partly outside the image, where one of the grids seen certainly is one:
+  /// instead of none, or of a whole one that is far worse.
+  void TakePartial();
   const std::optional<Checkerboard>& best() const { return best_; }
   /// Whether there is no need to look at another size.
   bool sure() const { return best_ && best_uncertainty_ < kSure; }
@@ -172,8 +180,16 @@ class Search {
 
  private:
   void Verify(const cv::Mat& picture, const CornerGrid& grid, double scale);
-  bool MeasureBoard(const CornerGrid& rough, const PatternMatch& match);
+  bool MeasureBoard(const CornerGrid& rough, const PatternMatch& match, bool partial);
   bool Fits(const cv::Mat& picture, const GridModel& model, const PatternMatch& match);
+  bool FitsPartly(const GridModel& model, const PatternMatch& match);
+
+  /// A grid that is no board wholly in the image, in one picture of it.
+  struct Rest {
+    cv::Mat picture;
+    CornerGrid grid;
+    double scale;
+  };
 
   const cv::Mat& grey_;
   const Target& target_;
@@ -181,6 +197,7 @@ class Search {
   std::optional<Checkerboard> best_;
   double best_uncertainty_ = 0;  ///< of a corner, of the distance to the next
   std::string why_;
+  std::vector<Rest> rests_;
 };
 
 void Search::LookAt(const Look& look) {
@@ -210,9 +227,36 @@ void Search::Verify(const cv::Mat& picture, const CornerGrid& grid, double scale
     if (!model || !Fits(picture, *model, match)) continue;
     CornerGrid full;
     for (const auto& [at, place] : inside) full[at] = Scaled(place, 1 / scale);
-    if (MeasureBoard(full, match)) return;
+    if (MeasureBoard(full, match, false)) return;
     if (++tried == kMostMeasured) break;
   }
+  rests_.push_back({picture, grid, scale});
+}
+
+void Search::TakePartial() {
+  for (const Rest& rest : rests_) {
+    const auto model = GridModel::Fit(rest.grid, kGridTolerance);
+    if (!model) continue;
+    std::string why;
+    const auto matches = PartialCandidates(rest.picture, *model, rest.grid, target_, &why);
+    if (matches.size() > 1) why = "which of its rows or columns those are cannot be told";
+    if (matches.size() == 1) {
+      CornerGrid full;
+      for (const auto& [at, place] : CornersIn(matches[0], rest.grid, target_)) {
+        full[at] = Scaled(place, 1 / rest.scale);
+      }
+      if (MeasureBoard(full, matches[0], true)) return;
+    }
+    if (!why.empty() && why_.empty()) {
+      why_ = "of a checkerboard with " + Size(target_) +
+             " inner corners a part is outside the image, and " + why;
+    }
+  }
+}
+
+bool Search::FitsPartly(const GridModel& model, const PatternMatch& match) {
+  const auto why = WhyNotPartial(grey_, model, match, target_);
+  return why && why->empty();
 }
 
 bool Search::Fits(const cv::Mat& picture, const GridModel& model, const PatternMatch& match) {
@@ -223,7 +267,7 @@ bool Search::Fits(const cv::Mat& picture, const GridModel& model, const PatternM
   return fit == PatternFit::kYes;
 }
 
-bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
+bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match, bool partial) {
   const auto model = GridModel::Fit(rough, kGridTolerance);
   if (!model) return false;
   Measured measured = Measure(grey_, saturated_from_, *model, {}, match, target_);
@@ -238,19 +282,20 @@ bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match) {
   if (!fine) return false;
   const double contrast = TypicalContrast(measured);
   DropWrong(contrast, *fine, &measured);
-  const double corners = target_.corners_x() * target_.corners_y();
+  const double corners = partial ? CornersInside(grey_.size(), *fine, match, target_)
+                                 : target_.corners_x() * target_.corners_y();
   if (static_cast<double>(measured.corners.size()) < (1 - kMostLost) * corners ||
       measured.residual > kMostResidual) {
     return false;
   }
   const auto last = GridModel::Fit(measured.corners, kGridTolerance);
-  if (!last || !Fits(grey_, *last, match)) return false;
+  if (!last || !(partial ? FitsPartly(*last, match) : Fits(grey_, *last, match))) return false;
   const double uncertainty =
       measured.sigma_px / last->Spacing(match.column + 0.5 * (match.columns(target_) - 1),
                                         match.row + 0.5 * (match.rows(target_) - 1));
   // What merely resembles a checkerboard, such as rows of holes, fits worse.
-  if (!best_ || uncertainty < best_uncertainty_) {
-    best_ = InOrder(measured, *last, contrast, match, target_);
+  if (!best_ || uncertainty < (partial ? kPartialBetter : 1) * best_uncertainty_) {
+    best_ = InOrder(measured, *last, contrast, match, target_, partial);
     best_uncertainty_ = uncertainty;
   }
   return true;
@@ -282,6 +327,7 @@ CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
       if (search.best()) break;
     }
   }
+  if (!search.sure()) search.TakePartial();
   result.board = search.best();
   if (result.board) return result;
   result.why = WhyImageIsUseless(grey);

@@ -12,6 +12,7 @@ namespace {
 
 // Mean of 3x3 pixels; nothing outside the image.
 std::optional<double> ValueAt(const cv::Mat& grey, const Eigen::Vector2d& pixel) {
+  if (!pixel.allFinite()) return std::nullopt;  // beside a corner that was not seen
   const int x = static_cast<int>(std::lround(pixel.x()));
   const int y = static_cast<int>(std::lround(pixel.y()));
   if (x < 1 || y < 1 || x > grey.cols - 2 || y > grey.rows - 2) return std::nullopt;

@@ -119,7 +119,7 @@ Pixels NearerOrder(const Pixels& found, const Pixels& before) {
   double straight = 0;
   double reversed = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!IsSeen(before[i])) continue;
+    if (!IsSeen(before[i]) || !IsSeen(found[i]) || !IsSeen(turned[i])) continue;
     straight += (found[i] - before[i]).norm();
     reversed += (turned[i] - before[i]).norm();
   }

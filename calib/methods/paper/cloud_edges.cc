@@ -51,6 +51,7 @@ Indices PointsNearCorners(const Points& points, const Camera& camera,
   // A mask of the windows: each point then costs one look.
   cv::Mat mask = cv::Mat::zeros(camera.height(), camera.width(), CV_8U);
   for (const Eigen::Vector2d& c : corners) {
+    if (!IsSeen(c)) continue;
     cv::rectangle(mask,
                   cv::Point(static_cast<int>(std::lround(c.x() - half_window)),
                             static_cast<int>(std::lround(c.y() - half_window))),

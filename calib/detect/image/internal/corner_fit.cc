@@ -117,9 +117,9 @@ std::vector<Pixel> PixelsRound(const cv::Mat& grey, const Eigen::Vector2d& place
                                const Eigen::Matrix2d& steps) {
   std::vector<Pixel> pixels;
   const Eigen::Matrix2d grid_from_image = steps.inverse();
-  const Eigen::Vector2d half = kReach * steps.cwiseAbs().rowwise().sum();
-  const double rx = std::min(half.x(), kMostPx);
-  const double ry = std::min(half.y(), kMostPx);
+  const Eigen::Vector2d reach = CornerReach(steps);
+  const double rx = reach.x();
+  const double ry = reach.y();
   if (place.x() < rx || place.y() < ry || place.x() > grey.cols - 1 - rx ||
       place.y() > grey.rows - 1 - ry) {
     return pixels;
@@ -230,6 +230,10 @@ double ContrastOf(const Unknowns& u, double level) {
 }
 
 }  // namespace
+
+Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps) {
+  return (kReach * steps.cwiseAbs().rowwise().sum()).cwiseMin(kMostPx);
+}
 
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,

@@ -20,6 +20,9 @@ struct CornerFit {
   double sigma_px = 0;  ///< of the place along its worst direction, from what the fit leaves over
 };
 
+/// How far from a corner FitCorner looks along x and y [px].
+Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps);
+
 /// Fits to the pixels round a corner
 ///   b(x, y) + contrast * erf(e1 / (sqrt(2) s)) * erf(e2 / (sqrt(2) s))
 /// with b a polynomial of second degree (glow), e1 and e2 the distances to two edges and s the

@@ -9,6 +9,7 @@
 #include "calib/camera/pixels.h"
 #include "calib/simulate/simulator.h"
 #include "tests/study/image_scenes.h"
+#include "tests/unit/detect/image/corner_errors.h"
 #include "tests/unit/detect/image/overexposed_board.h"
 #include "tests/unit/detect/image/painted_checkerboard.h"
 
@@ -17,30 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-struct Errors {
-  double worst = 1e9, rms = 1e9;  ///< [px]
-  bool turned = false;            ///< half a turn from the truth
-};
-
-Errors Compare(const std::vector<Eigen::Vector2d>& corners,
-               const std::vector<Eigen::Vector2d>& truth) {
-  Errors best;
-  if (corners.size() != truth.size()) return best;
-  for (const bool turned : {false, true}) {
-    double worst = 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const double error = (corners[turned ? truth.size() - 1 - i : i] - truth[i]).norm();
-      worst = std::max(worst, error);
-      sum += error * error;
-    }
-    if (worst < best.worst) {
-      best = {worst, std::sqrt(sum / static_cast<double>(truth.size())), turned};
-    }
-  }
-  return best;
-}
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -211,23 +188,6 @@ TEST(Checkerboard, AnOverexposedPatternOfAnotherSizeIsRefused) {
         EXPECT_FALSE(FindCheckerboard(image, target, 250).board.has_value())
             << exposure << " " << seed << ": " << x << " " << y;
       }
-    }
-  }
-}
-
-TEST(Checkerboard, ABoardPartlyOutsideTheImageIsNotFound) {
-  for (const double share : {0.15, 0.3}) {
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-      simulate::Options options;
-      options.seed = seed;
-      options.cameras.erase(options.cameras.begin());  // thermal alone
-      options.pose.outside_image = share;
-      simulate::Simulator simulator(options);
-      simulator.ShowView(0, "0001");
-      const CheckerboardResult result = FindCheckerboard(
-          ToGrey(simulator.TakeImage("thermal", 1'000'000)), simulator.rig().target);
-      EXPECT_FALSE(result.board.has_value()) << share << " " << seed;
-      EXPECT_THAT(result.why, HasSubstr("10x7 inner corners")) << share << " " << seed;
     }
   }
 }

@@ -62,5 +62,13 @@ TEST(SquareContrast, SquaresOutsideTheImageAreNone) {
   EXPECT_EQ(SquareContrast(Board(15, 0), SmallTarget(), corners), 0);
 }
 
+// Of a board of which a column lies outside the image.
+TEST(SquareContrast, CornersThatAreNotSeenDoNotCount) {
+  std::vector<Eigen::Vector2d> corners = Corners();
+  const double all = SquareContrast(Board(50, 0), SmallTarget(), corners);
+  for (std::size_t i = 0; i < corners.size(); i += 6) corners[i].setConstant(std::nan(""));
+  EXPECT_NEAR(SquareContrast(Board(50, 0), SmallTarget(), corners), all, 1e-6);
+}
+
 }  // namespace
 }  // namespace rgbdt
