@@ -18,6 +18,8 @@ void BeamOptions::Check(const std::string& prefix) const {
   kCheck.Between(white_wall_reflectivity, 0.01, 1, prefix + "white_wall_reflectivity");
   kCheck.Positive(max_range_m, prefix + "max_range_m");
   kCheck.NotNegative(intensity_sigma, prefix + "intensity_sigma");
+  kCheck.Between(range_offset_m, -1, 1, prefix + "range_offset_m");
+  kCheck.Between(dark_range_m, -1, 1, prefix + "dark_range_m");
 }
 
 int SpinningOptions::columns() const {
@@ -37,7 +39,7 @@ void SpinningOptions::Check() const {
   kCheck.Between(revolution_s, 1e-3, 60, "spinning.revolution_s");
   kCheck.Between(firing_share, 0, 1, "spinning.firing_share");
   kCheck.Between(ring_bias_sigma_m, 0, 1, "spinning.ring_bias_sigma_m");
-  kCheck.Between(range_offset_m, -1, 1, "spinning.range_offset_m");
+  kCheck.Between(beams_meet_m, 0, 0.2, "spinning.beams_meet_m");
 }
 
 SpinningOptions SpinningLidar(int rings) {

@@ -18,6 +18,8 @@ struct BeamOptions {
   double white_wall_reflectivity = 1.0;  ///< of that wall
   double max_range_m = 60;               ///< nothing returns from farther away
   double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
+  double range_offset_m = 0;             ///< all ranges are measured this much too long
+  double dark_range_m = 0;               ///< black surfaces' ranges, too, against white ones'
 
   /// Throws InputError naming the field, with `prefix` before it, and its value.
   void Check(const std::string& prefix) const;
@@ -32,7 +34,10 @@ struct SpinningOptions : BeamOptions {
   double firing_share = 0;       ///< over this share of it, one ring after the other while
                                  ///< the head turns; 0: all at once
   double ring_bias_sigma_m = 0;  ///< each ring's ranges are off by a constant of its own
-  double range_offset_m = 0;     ///< all ranges are off by this
+  /// Beams leave the axis at heights that differ by elevation, and meet in one height at this
+  /// radius: that of elevation e starts at z = -beams_meet_m tan(e). Its point is published as if
+  /// it had started at the origin. 0: all do.
+  double beams_meet_m = 0;
 
   int rings() const { return static_cast<int>(elevations_rad.size()); }
   int columns() const;  ///< azimuths of a revolution

@@ -60,16 +60,23 @@ void Check(const CameraOptions& o, const std::string& field) {
   kCheck.NotNegative(o.readout_s, field + "readout_s");
   kCheck.Between(o.dead_pixels, 0, 10000, field + "dead_pixels");
   CheckLens(o.lens, o.width, o.height, field + "lens");
+  kCheck.Require(o.lens_error.allFinite(), field + "lens_error", o.lens_error.sum(),
+                 "finite numbers");
+  kCheck.NotNegative(o.lens_sigma.minCoeff(), "least of " + field + "lens_sigma");
+  CheckLens(RigLens(o), o.width, o.height, field + "lens + lens_error");
 }
 
 void Check(const BoardOptions& o) {
   kCheck.Between(o.squares_x, 3, 100, "board.squares_x");
   kCheck.Between(o.squares_y, 3, 100, "board.squares_y");
   kCheck.Positive(o.square_m, "board.square_m");
-  kCheck.Require(o.width_m >= o.squares_x * o.square_m, "board.width_m", o.width_m,
-                 "at least the squares' width");
-  kCheck.Require(o.height_m >= o.squares_y * o.square_m, "board.height_m", o.height_m,
-                 "at least the squares' height");
+  kCheck.Between(o.print_scale.minCoeff(), 0.9, 1.1, "least of board.print_scale");
+  kCheck.Between(o.print_scale.maxCoeff(), 0.9, 1.1, "most of board.print_scale");
+  kCheck.Between(o.print_sigma, 0, 0.1, "board.print_sigma");
+  kCheck.Require(o.width_m >= o.squares_x * o.square_m * o.print_scale.x(), "board.width_m",
+                 o.width_m, "at least the squares' width");
+  kCheck.Require(o.height_m >= o.squares_y * o.square_m * o.print_scale.y(), "board.height_m",
+                 o.height_m, "at least the squares' height");
   kCheck.Positive(o.thickness_m, "board.thickness_m");
   kCheck.Between(o.black_reflectivity, 0, 1, "board.black_reflectivity");
   kCheck.Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");
@@ -123,6 +130,10 @@ ScannerOptions FullTurnScanner() {
   o.sweep_start_rad = -180 * kDegree;
   o.sweep_rad = 360 * kDegree;
   return o;
+}
+
+Lens RigLens(const CameraOptions& camera) {
+  return WithNumbers(camera.lens, NumbersOf(camera.lens) + camera.lens_error);
 }
 
 CameraOptions DefaultColorCamera() {

@@ -47,6 +47,8 @@ struct CameraOptions {
   CameraKind kind = CameraKind::kColor;  ///< kColor gives BayerRG8, kThermal Mono16
   int width = 0, height = 0;             ///< [px]
   Lens lens;
+  /// The rig file's lens is the true one plus this, and is stated to be known to so much (1 sigma).
+  LensNumbers lens_error = LensNumbers::Zero(), lens_sigma = LensNumbers::Zero();
   Eigen::Vector3d position_m{0, 0, 0};  ///< nominal camera centre, LIDAR frame
   double position_spread_m = 0.01;      ///< truth differs by up to this along each axis
   double tilt_rad = 3 * kDegree;        ///< truth looks up to this away from straight ahead
@@ -62,6 +64,9 @@ struct CameraOptions {
   int dead_pixels = 0;        ///< stuck at zero or at full scale; which ones, the seed says
 };
 
+/// The lens that the rig file has.
+Lens RigLens(const CameraOptions& camera);
+
 /// 1936x1456, f = 1100 px, BayerRG8, blur 0.7 px, noise 2 DN.
 CameraOptions DefaultColorCamera();
 /// 640x480, f = 530 px, 14 bit in Mono16, blur 1 px, NETD 50 mK.
@@ -72,6 +77,10 @@ CameraOptions DefaultThermalCamera();
 struct BoardOptions {
   int squares_x = 11, squares_y = 8;
   double square_m = 0.1;
+  /// The pattern's true width and height over what the rig file's square_m makes them, and how well
+  /// that is stated to be known (1 sigma, of each).
+  Eigen::Vector2d print_scale{1, 1};
+  double print_sigma = 0;
   double width_m = 1.2192, height_m = 0.9144;  ///< 4 ft x 3 ft, black border included
   double thickness_m = 0.015;
   double black_reflectivity = 0.08;  ///< in colour and at the LIDAR's wavelength

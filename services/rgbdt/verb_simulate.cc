@@ -4,6 +4,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/simulate/imperfections.h"
 #include "calib/simulate/simulator.h"
 #include "services/rgbdt/verbs.h"
 #include "services/simulator/simulated_sweep.h"
@@ -19,7 +20,7 @@ struct SimulateFlags {
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
   int rings = 0;
-  bool full_turn = false, scanner_error = false;
+  bool full_turn = false, scanner_error = false, imperfect = false;
   simulate::Options options;
 };
 
@@ -53,6 +54,8 @@ int RunSimulate(const SimulateFlags& flags) {
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
   SetScanner(flags, &options);
+  if (flags.imperfect) simulate::MakeImperfect(&options);
+  const std::string off_by = simulate::ImperfectionsText(options);
   Simulator simulator(options);
   Rig rig = simulator.rig();
   for (const std::string& camera : flags.picked) rig.Camera(camera);
@@ -76,8 +79,9 @@ int RunSimulate(const SimulateFlags& flags) {
     }
     now += kMicrosecondsPerSecond;
     WriteView(flags.dir, view);
-    WriteTruth(std::filesystem::path(flags.dir) / "truth.textproto", simulator.truth());
+    WriteTruth(std::filesystem::path(flags.dir) / "truth.textproto", simulator.truth(), off_by);
   }
+  if (!off_by.empty()) std::printf("drawn, and noted in truth.textproto:\n%s", off_by.c_str());
   std::printf("wrote %s: rig.textproto, %d views, truth.textproto\nnext: rgbdt calibrate %s\n",
               flags.dir.c_str(), flags.views, flags.dir.c_str());
   return 0;
@@ -103,6 +107,9 @@ void AddSimulate(CommandLine* program) {
   verb->Flag("--scanner-error", &flags->scanner_error,
              "the rig file's motor_from_scanner is wrong by 5 mm and 0.5 degrees on each axis, "
              "and the clouds are made with it");
+  verb->Flag("--imperfect", &flags->imperfect,
+             "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
+             "ring, of dark surfaces), where beams meet, how wide they are");
   verb->Option("--picked", &flags->picked, "cameras whose corners a person picks");
 }
 

@@ -26,4 +26,13 @@ diff -r "$scratch/named" "$scratch/default" >"$scratch/output" 2>&1 ||
   complain "the turned scanner is not the default"
 grep -q turned_scanner "$scratch/named/rig.textproto" || complain "the turned scanner has no motor"
 
+session=$scratch/imperfect
+accepts "an imperfect rig" "$bin/rgbdt" simulate "$session" --views 1 --lidar vlp16 --imperfect
+holds "imperfect" "$session/rig.textproto" "^  lens_uncertainty"
+holds "imperfect" "$session/rig.textproto" "print_sigma: 0.003"
+holds "imperfect" "$session/truth.textproto" "^# rings' ranges \[mm\], the lowest first:( [+-][0-9.]+){16}$"
+holds "imperfect" "$session/truth.textproto" "^# beams meet at a radius of [0-9.]+ mm$"
+! cmp -s "$session/views/0001/cloud.pcd" "$scratch/vlp16/views/0001/cloud.pcd" ||
+  complain "the imperfect rig's cloud is that of the exact one"
+
 verdict

@@ -42,6 +42,8 @@ void WriteView(const std::filesystem::path& session_dir, const View& view);
 
 /// truth.textproto, where there is one. Throw InputError.
 Truth ReadTruth(const std::filesystem::path& path);
-void WriteTruth(const std::filesystem::path& path, const Truth& truth);
+/// `remark`: lines for a person, written as a comment.
+void WriteTruth(const std::filesystem::path& path, const Truth& truth,
+                const std::string& remark = "");
 
 }  // namespace rgbdt

@@ -30,7 +30,7 @@ Truth ReadTruth(const std::filesystem::path& path) {
   return truth;
 }
 
-void WriteTruth(const std::filesystem::path& path, const Truth& truth) {
+void WriteTruth(const std::filesystem::path& path, const Truth& truth, const std::string& remark) {
   proto::Truth message;
   for (const auto& [name, camera_from_lidar] : truth.camera_from_lidar) {
     proto::TruthCamera* camera = message.add_camera();
@@ -46,7 +46,8 @@ void WriteTruth(const std::filesystem::path& path, const Truth& truth) {
       path, text::PrintText(message,
                             "What only a simulator knows; read by `rgbdt evaluate --truth`.\n"
                             "point_in_camera = camera_from_lidar * point_in_lidar, "
-                            "point_in_lidar = lidar_from_target * point_in_target"));
+                            "point_in_lidar = lidar_from_target * point_in_target\n" +
+                                remark));
 }
 
 }  // namespace rgbdt

@@ -84,6 +84,11 @@ void CastBeams(const World& world, const BeamOptions& options, const Eigen::Vect
   }
 }
 
+double RangeError(const BeamOptions& options, const BeamReturn& back) {
+  const double grey = back.intensity / 0.3;
+  return options.range_offset_m + options.dark_range_m * std::exp(-grey * grey);
+}
+
 float NoisyIntensity(const BeamOptions& options, const BeamReturn& back, double noise) {
   if (std::isnan(back.range)) return 0;
   return static_cast<float>(std::clamp(back.intensity + options.intensity_sigma * noise, 0.0, 1.0));

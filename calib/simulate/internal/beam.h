@@ -35,6 +35,11 @@ std::vector<Eigen::Vector3d> SubRays(const BeamOptions& options, double elevatio
 void CastBeams(const World& world, const BeamOptions& options, const Eigen::Vector3d& origin,
                const std::vector<Eigen::Vector3d>& directions, int sub_rays, BeamReturn* returns);
 
+/// What a range is measured too long by [m], besides noise: all alike, and dark surfaces more,
+///   range_offset_m + dark_range_m exp(-(reflectivity / 0.3)^2),
+/// by what the whole beam returns.
+double RangeError(const BeamOptions& options, const BeamReturn& back);
+
 /// An intensity as it is reported: noisy, within 0 to 1; 0 of a miss. `noise`: standard normal.
 float NoisyIntensity(const BeamOptions& options, const BeamReturn& back, double noise);
 

@@ -64,8 +64,9 @@ std::vector<Mesh> Board::Stand(double ground_z) const {
 }
 
 int Board::Patch(const Eigen::Vector2d& place) const {
-  const double x = place.x() / options_.square_m + 0.5 * options_.squares_x;
-  const double y = place.y() / options_.square_m + 0.5 * options_.squares_y;
+  const Eigen::Vector2d square = options_.square_m * options_.print_scale;
+  const double x = place.x() / square.x() + 0.5 * options_.squares_x;
+  const double y = place.y() / square.y() + 0.5 * options_.squares_y;
   if (x < 0 || y < 0 || x >= options_.squares_x || y >= options_.squares_y) return 0;
   return 1 + static_cast<int>(y) * options_.squares_x + static_cast<int>(x);
 }
@@ -125,6 +126,7 @@ Target MakeTarget(const BoardOptions& options) {
   target.square_m = options.square_m;
   target.width_m = options.width_m;
   target.height_m = options.height_m;
+  target.print_sigma = options.print_sigma;
   return target;
 }
 

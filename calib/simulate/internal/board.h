@@ -73,6 +73,7 @@ class Board {
 HeatMap DrawHeat(const BoardOptions& options, const BoardHeat& scene, std::uint64_t seed,
                  int index);
 
+/// As a rig file has it: it does not know how it was printed.
 Target MakeTarget(const BoardOptions& options);
 
 }  // namespace rgbdt::simulate

@@ -79,8 +79,9 @@ Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& sc
     camera.kind = from.kind;
     camera.width = from.width;
     camera.height = from.height;
-    camera.lens = from.lens;
-    camera.lens_uncertainty = LensUncertainty{};  // it is the very one
+    camera.lens = RigLens(from);
+    camera.lens_uncertainty = LensUncertainty{};
+    camera.lens_uncertainty->covariance.diagonal() = from.lens_sigma.cwiseAbs2();
     camera.readout_s = from.readout_s;
     camera.format = PixelFormat::kBayerRg8;
     if (from.kind == CameraKind::kThermal) {

@@ -80,7 +80,8 @@ LineScan Scanner::LineAt(const World& world, Utime utime,
   for (int beam = 0; beam < options_.beams; ++beam) {
     const BeamReturn back = Beam(world, beam, motor_angle(beam * options_.beam_period_s));
     const auto i = static_cast<std::size_t>(beam);
-    scan.range[i] = static_cast<float>(back.range + options_.range_sigma_m * noise.Normal(2 * i));
+    scan.range[i] = static_cast<float>(back.range + RangeError(options_, back) +
+                                       options_.range_sigma_m * noise.Normal(2 * i));
     scan.intensity[i] = NoisyIntensity(options_, back, noise.Normal(2 * i + 1));
   }
   return scan;

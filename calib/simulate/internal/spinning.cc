@@ -48,6 +48,7 @@ Cloud EmptyGrid(const SpinningOptions& options, Utime utime) {
 /// A ring of beams, without noise.
 std::vector<BeamReturn> CastRing(const World& world, const SpinningOptions& options, int ring) {
   const double elevation = options.elevations_rad[static_cast<std::size_t>(ring)];
+  const Eigen::Vector3d start(0, 0, -options.beams_meet_m * std::tan(elevation));
   const std::vector<Eigen::Vector3d> sub_rays = SubRays(options, elevation);
   std::vector<BeamReturn> returns(static_cast<std::size_t>(options.columns()));
   std::vector<Eigen::Vector3d> directions;
@@ -57,8 +58,8 @@ std::vector<BeamReturn> CastRing(const World& world, const SpinningOptions& opti
       const double azimuth = Azimuth(options, ring, column);
       for (const Eigen::Vector3d& ray : sub_rays) directions.push_back(Turned(ray, azimuth));
     }
-    CastBeams(world, options, Eigen::Vector3d::Zero(), directions,
-              static_cast<int>(sub_rays.size()), &returns[static_cast<std::size_t>(first)]);
+    CastBeams(world, options, start, directions, static_cast<int>(sub_rays.size()),
+              &returns[static_cast<std::size_t>(first)]);
   }
   return returns;
 }
@@ -72,7 +73,8 @@ void FillRing(const SpinningOptions& options, const std::vector<BeamReturn>& ret
     const std::size_t i =
         static_cast<std::size_t>(ring) * returns.size() + static_cast<std::size_t>(column);
     const Eigen::Vector3d direction = Turned(along, Azimuth(options, ring, column));
-    const double range = back.range + bias + options.range_sigma_m * noise.Normal(2 * i);
+    const double range = back.range + (bias + RangeError(options, back)) +
+                         options.range_sigma_m * noise.Normal(2 * i);
     cloud->directions[i] = direction.cast<float>();
     cloud->points[i] = (range * direction).cast<float>();  // of a miss: NaN
     cloud->intensity[i] = NoisyIntensity(options, back, noise.Normal(2 * i + 1));
@@ -95,7 +97,7 @@ Cloud SpinningSweep(const World& world, const SpinningOptions& options, std::uin
   Cloud cloud = EmptyGrid(options, utime);
   const Noise noise(seed, utime, "spinning lidar");
   ForEach(options.rings(), threads, [&](int ring) {
-    const double bias = options.range_offset_m + RingBias(options, seed, ring);
+    const double bias = RingBias(options, seed, ring);
     FillRing(options, CastRing(world, options, ring), noise, bias, ring, &cloud);
   });
   return cloud;

@@ -70,6 +70,18 @@ TEST(Options, BadOnesAreNamed) {
          UseLidar(32, o);
          o->spinning->firing_share = 1.5;
        }},
+      {"spinning.beams_meet_m",
+       [](Options* o) {
+         UseLidar(16, o);
+         o->spinning->beams_meet_m = -0.04;
+       }},
+      {"scanner.range_offset_m", [](Options* o) { o->scanner.range_offset_m = 2; }},
+      {"scanner.dark_range_m", [](Options* o) { o->scanner.dark_range_m = -2; }},
+      {"lens_error", [](Options* o) { o->cameras[0].lens_error[2] = std::nan(""); }},
+      {"lens_sigma", [](Options* o) { o->cameras[0].lens_sigma[2] = -1; }},
+      {"lens + lens_error", [](Options* o) { o->cameras[1].lens_error[4] = -0.7; }},
+      {"board.print_scale", [](Options* o) { o->board.print_scale.x() = 0; }},
+      {"board.print_sigma", [](Options* o) { o->board.print_sigma = -0.003; }},
       {"supersampling", [](Options* o) { o->supersampling = 0; }},
   };
   for (const auto& [field, spoil] : cases) {

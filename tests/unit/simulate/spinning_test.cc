@@ -149,6 +149,53 @@ TEST(SpinningSweep, BiasIsConstantForARingAndOffsetForAll) {
   EXPECT_LT(std::sqrt(squares / 16), 0.036);
 }
 
+/// A plane that leans away as it rises: x - z / 2 = 5.
+World LeaningWorld(double reflectivity) {
+  const Mesh sheet = MakeQuad({2.5, -20, -5}, {2.5, 20, -5}, {7.5, 20, 5}, {7.5, -20, 5});
+  return SheetWorld({sheet}, reflectivity, Options());
+}
+
+TEST(SpinningSweep, DarkSurfacesLieFartherByASmoothFunction) {
+  const auto error_at = [](double reflectivity) {
+    SpinningOptions options = Quiet(16);
+    const World world = LeaningWorld(reflectivity);
+    const Cloud truth = SpinningSweep(world, options, 1, 0);
+    options.dark_range_m = 0.02;
+    const Cloud cloud = SpinningSweep(world, options, 1, 0);
+    const std::size_t i = At(cloud, 7, 900);
+    return double(cloud.points[i].norm()) - double(truth.points[i].norm());
+  };
+  // 20 mm times e to the minus 1/36, 1/9, 1, 49/9.
+  EXPECT_NEAR(error_at(0.05), 0.019452, 2e-6);
+  EXPECT_NEAR(error_at(0.10), 0.017897, 2e-6);
+  EXPECT_NEAR(error_at(0.30), 0.007358, 2e-6);
+  EXPECT_NEAR(error_at(0.70), 0.000086, 2e-6);
+}
+
+// A VLP-16's: 11.2 mm higher at -15 degrees, as much lower at 15.
+TEST(SpinningSweep, BeamsThatMeetStartAtTheirOwnHeights) {
+  EXPECT_NEAR(0.042 * std::tan(15 * kDegree), 0.0112, 1e-4);
+  SpinningOptions options = Quiet(16);
+  options.beams_meet_m = 0.042;
+  const Cloud cloud = SpinningSweep(LeaningWorld(0.5), options, 1, 0);
+  for (int ring = 0; ring < 16; ++ring) {
+    const double elevation = (-15 + 2 * ring) * kDegree;
+    const double start_z = -0.042 * std::tan(elevation);
+    for (const int column : {850, 900, 930}) {
+      const std::size_t i = At(cloud, ring, column);
+      const double azimuth = (-180 + 0.2 * column) * kDegree;
+      const Vector3d beam(std::cos(elevation) * std::cos(azimuth),
+                          std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const double range = (5 + 0.5 * start_z) / (beam.x() - 0.5 * beam.z());
+      const Vector3d point = cloud.points[i].cast<double>();
+      // Published from the origin; 20e-6: the slanted beam's width.
+      ASSERT_NEAR((point - range * beam).norm(), 0, 2e-5) << ring << ' ' << column;
+      const Vector3d true_point = point + start_z * Vector3d::UnitZ();
+      ASSERT_NEAR(true_point.x() - 0.5 * true_point.z(), 5, 2e-5);
+    }
+  }
+}
+
 TEST(SpinningSweep, RangeNoiseHasItsSigma) {
   const Cloud truth = SpinningSweep(WallWorld(), Quiet(16), 1, 0);
   const Cloud cloud = SpinningSweep(WallWorld(), SpinningLidar(16), 1, 0);

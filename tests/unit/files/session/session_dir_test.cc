@@ -264,7 +264,8 @@ TEST_F(SessionDir, TruthGivesBackEveryBit) {
   truth.camera_from_lidar["rgb"] = test::MakePose(0.3, {1, 2, 1.0 / 3});
   truth.camera_from_lidar["thermal"] = test::MakePose(0.5, {0, 0, 0});
   truth.lidar_from_target["0001"] = test::MakePose(1.3, {4, 0.1, 0});
-  WriteTruth(dir_ / "truth.textproto", truth);
+  WriteTruth(dir_ / "truth.textproto", truth, "rgb: off by 3 px\nrings: 5 mm\n");
+  EXPECT_NE(ReadWholeFile(dir_ / "truth.textproto").find("\n# rings: 5 mm\n"), std::string::npos);
   const Truth back = ReadTruth(dir_ / "truth.textproto");
   ASSERT_EQ(back.camera_from_lidar.size(), 2u);
   test::ExpectSame(back.camera_from_lidar.at("rgb"), truth.camera_from_lidar.at("rgb"));
