@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
-#include <tuple>
 #include <vector>
 
 #include "calib/camera/camera.h"
 #include "calib/model/statistics.h"
 #include "calib/simulate/lidar_options.h"
+#include "tests/study/board_leaves.h"
 #include "tests/study/sampled_images.h"
 
 namespace rgbdt::study {
@@ -20,108 +19,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Numbers of the unknowns. Each view has its own ten after what all views share.
+// Numbers of the unknowns; rings follow, if they differ, then cameras. Each view has its own ten
+// after what all views share.
 constexpr Index kClasses = 3, kThickness = kClasses, kRangeOffset = kThickness + 1;
-constexpr Index kPrint = kRangeOffset + 1, kCameras = kPrint + 2;
+constexpr Index kDark = kRangeOffset + 1, kBeamsMeet = kDark + 1;
+constexpr Index kPrint = kBeamsMeet + 1, kRings = kPrint + 2;
 constexpr double kExactM = 1e-9;        // sigma of what is known
 constexpr Index kSides = 6, kOwn = 10;  // of a view: pose, then sides
-
-/// Where a row or column of beams leaves the board.
-struct Leave {
-  std::size_t last = 0;    ///< last beam on the board: the window's index
-  int side = 0;            ///< that it crosses
-  double width_m = 0;      ///< of the interval, across the side
-  bool along_row = false;  ///< the two beams are neighbours in a row
-  std::size_t gap = 0;     ///< the last beam's column (along a row) or row
-  int of_beam = 1;         ///< crossings of the same side by the same last beam
-  int in_gap = 1;          ///< crossings of the same side in the same gap
-};
-
-/// The side between two places on the board's plane, one on the board and one beyond: that which
-/// both face most plainly. Nothing at the board's corners, where it may be either.
-std::optional<int> SideBetween(const Target& target, const Eigen::Vector2d& in,
-                               const Eigen::Vector2d& out) {
-  const Eigen::Vector2d middle = 0.5 * (in + out);
-  const Eigen::Vector2d step = out - in;
-  std::optional<int> best;
-  double nearest = 1e9;
-  for (int side = 0; side < 4; ++side) {
-    const Eigen::Vector2d normal = SideNormal(side);
-    if (normal.dot(step) < 0.25 * step.norm()) continue;
-    const Eigen::Vector2d along(-normal.y(), normal.x());
-    if (std::abs(along.dot(middle)) > SideDistance(target, (side + 1) % 4) - 0.25 * step.norm()) {
-      continue;
-    }
-    const double off = std::abs(normal.dot(middle) - SideDistance(target, side));
-    if (off > nearest) continue;
-    nearest = off;
-    best = side;
-  }
-  return best;
-}
-
-class ViewCrossings {
- public:
-  ViewCrossings(const Target& target, const SampledView& view) : target_(target), view_(view) {
-    const BeamWindow& beams = view.beams;
-    for (int row = 0; row < beams.rows; ++row) {
-      AddLine(beams.At(row, 0), 1, beams.columns, true);
-    }
-    for (int column = 0; column < beams.columns; ++column) {
-      AddLine(beams.At(0, column), static_cast<std::size_t>(beams.columns), beams.rows, false);
-    }
-    Count();
-  }
-  const std::vector<Leave>& leaves() const { return leaves_; }
-
- private:
-  // Both ends of the board along a line of beams.
-  void AddLine(std::size_t start, std::size_t step, int length, bool along_row) {
-    int first = -1;
-    int last = -1;
-    for (int k = 0; k < length; ++k) {
-      if (!view_.beams.on[start + static_cast<std::size_t>(k) * step]) continue;
-      if (first < 0) first = k;
-      last = k;
-    }
-    if (last <= first) return;
-    const auto at = [&](int k) { return start + static_cast<std::size_t>(k) * step; };
-    if (first > 0) Add(at(first), at(first - 1), along_row);
-    if (last + 1 < length) Add(at(last), at(last + 1), along_row);
-  }
-
-  void Add(std::size_t in, std::size_t out, bool along_row) {
-    const Eigen::Vector2d a = MeetPlane(view_.lidar_from_target, view_.beams.directions[in]).place;
-    const Eigen::Vector2d b = MeetPlane(view_.lidar_from_target, view_.beams.directions[out]).place;
-    const auto side = SideBetween(target_, a, b);
-    if (!side) return;
-    const auto columns = static_cast<std::size_t>(view_.beams.columns);
-    Leave leave;
-    leave.last = in;
-    leave.side = *side;
-    leave.width_m = SideNormal(*side).dot(b - a);
-    leave.along_row = along_row;
-    leave.gap = along_row ? in % columns : in / columns;
-    leaves_.push_back(leave);
-  }
-
-  void Count() {
-    std::map<std::pair<std::size_t, int>, int> beams;
-    std::map<std::tuple<bool, std::size_t, int>, int> gaps;
-    for (const Leave& leave : leaves_) {
-      ++beams[{leave.last, leave.side}];
-      ++gaps[{leave.along_row, leave.gap, leave.side}];
-    }
-    for (Leave& leave : leaves_) {
-      leave.of_beam = beams[{leave.last, leave.side}];
-      leave.in_gap = gaps[{leave.along_row, leave.gap, leave.side}];
-    }
-  }
-
-  const Target& target_;
-  const SampledView& view_;
-  std::vector<Leave> leaves_;
-};
 
 /// Derivatives of a function of a pose by delta, the pose being Exp(delta) * pose.
 MatrixXd ByDelta(const Rigid3& pose, const std::function<VectorXd(const Rigid3&)>& function) {
@@ -194,12 +98,16 @@ class Bound {
   Bound(const SampledSession& session, BoundData data)
       : session_(session),
         data_(data),
-        shared_(kCameras + kPoseAndLens * static_cast<Index>(session.rig.cameras.size())),
+        rings_(static_cast<Index>(session.model.ring_offset_m.size())),
+        shared_(kRings + rings_ + kPoseAndLens * static_cast<Index>(session.rig.cameras.size())),
         information_(MatrixXd::Zero(shared_, shared_)) {
     const BeamModel& model = session.model;
-    AddPrior(0, kClasses, model.class_sigma_rad, &information_);
+    AddPrior(0, kClasses, model.class_prior_rad, &information_);
     AddPrior(kThickness, 1, model.thickness_sigma_m, &information_);
     AddPrior(kRangeOffset, 1, std::max(kExactM, model.range_offset_sigma_m), &information_);
+    AddPrior(kDark, 1, std::max(kExactM, model.dark_range_sigma_m), &information_);
+    AddPrior(kBeamsMeet, 1, std::max(kExactM, model.beams_meet_sigma_m), &information_);
+    AddPrior(kRings, rings_, std::max(kExactM, model.ring_offset_sigma_m), &information_);
     AddPrior(kPrint, 2, std::max(kExactM, session.rig.target.print_sigma), &information_);
     for (std::size_t i = 0; i < session.rig.cameras.size(); ++i) {
       const LensUncertainty lens = session.rig.cameras[i].LensUncertaintyOrUsual();
@@ -233,8 +141,8 @@ class Bound {
 
  private:
   // Of its pose; its lens follows.
-  static Index CameraAt(std::size_t camera) {
-    return kCameras + kPoseAndLens * static_cast<Index>(camera);
+  Index CameraAt(std::size_t camera) const {
+    return kRings + rings_ + kPoseAndLens * static_cast<Index>(camera);
   }
 
   static void AddPrior(Index first, Index count, double sigma, MatrixXd* information) {
@@ -279,13 +187,29 @@ class Bound {
         j.transpose() * CornerCovariance(corners.value(), CornerSigma(spec.kind)).ldlt().solve(j);
   }
 
+  PlanePlace Meet(const SampledView& view, std::size_t beam) const {
+    return MeetPlane(view.lidar_from_target, view.beams.directions[beam],
+                     session_.model.beams_meet_m);
+  }
+
+  // What a view's beams have, by the board's pose and by where beams meet.
+  using OfBeams = std::function<VectorXd(const Rigid3& pose, double beams_meet_m)>;
+  void AddPoseAndMeet(const SampledView& view, const OfBeams& of, MatrixXd* j) const {
+    constexpr double kStepM = 1e-5;
+    const double meet = session_.model.beams_meet_m;
+    j->middleCols<6>(shared_) =
+        ByDelta(view.lidar_from_target, [&](const Rigid3& pose) { return of(pose, meet); });
+    j->col(kBeamsMeet) =
+        (of(view.lidar_from_target, meet + kStepM) - of(view.lidar_from_target, meet - kStepM)) /
+        (2 * kStepM);
+  }
+
   // Beams on the board whose ranges are trusted.
   std::vector<std::size_t> Inner(const SampledView& view) const {
     std::vector<std::size_t> inner;
     for (std::size_t i = 0; i < view.beams.on.size(); ++i) {
       if (!view.beams.on[i]) continue;
-      const Eigen::Vector2d place =
-          MeetPlane(view.lidar_from_target, view.beams.directions[i]).place;
+      const Eigen::Vector2d place = Meet(view, i).place;
       bool within = true;
       for (int side = 0; side < 4; ++side) {
         within &= SideNormal(side).dot(place) <
@@ -300,34 +224,42 @@ class Bound {
     const std::vector<std::size_t> inner = Inner(view);
     MatrixXd j = MatrixXd::Zero(static_cast<Index>(inner.size()), shared_ + kOwn);
     j.col(kRangeOffset).setConstant(-1);
-    j.middleCols<6>(shared_) = ByDelta(view.lidar_from_target, [&](const Rigid3& pose) {
-      VectorXd ranges(static_cast<Index>(inner.size()));
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      j(row, kDark) = IsBlack(session_.true_target, Meet(view, inner[i]).place) ? 1 : 0;
+      if (rings_ > 0) j(row, kRings + view.beams.ring[inner[i]]) = -1;
+    }
+    const auto ranges = [&](const Rigid3& pose, double beams_meet_m) {
+      VectorXd of(static_cast<Index>(inner.size()));
       for (std::size_t i = 0; i < inner.size(); ++i) {
-        ranges[static_cast<Index>(i)] = MeetPlane(pose, view.beams.directions[inner[i]]).range_m;
+        of[static_cast<Index>(i)] =
+            MeetPlane(pose, view.beams.directions[inner[i]], beams_meet_m).range_m;
       }
-      return ranges;
-    });
+      return of;
+    };
+    AddPoseAndMeet(view, ranges, &j);
     const double sigma = session_.model.range_sigma_m;
     *information += j.transpose() * j / (sigma * sigma);
   }
 
   void AddCrossings(const SampledView& view, MatrixXd* information) const {
-    const ViewCrossings crossings(session_.rig.target, view);
-    const std::vector<Leave>& leaves = crossings.leaves();
+    const std::vector<Leave> leaves =
+        LeavesOf(session_.rig.target, session_.model.beams_meet_m, view);
     const auto count = static_cast<Index>(leaves.size());
     MatrixXd j = MatrixXd::Zero(count, shared_ + kOwn);
-    j.middleCols<6>(shared_) = ByDelta(view.lidar_from_target, [&](const Rigid3& pose) {
-      VectorXd places(count);
+    const auto places = [&](const Rigid3& pose, double beams_meet_m) {
+      VectorXd of(count);
       for (Index i = 0; i < count; ++i) {
         const Leave& leave = leaves[static_cast<std::size_t>(i)];
-        places[i] =
-            SideNormal(leave.side).dot(MeetPlane(pose, view.beams.directions[leave.last]).place);
+        of[i] = SideNormal(leave.side)
+                    .dot(MeetPlane(pose, view.beams.directions[leave.last], beams_meet_m).place);
       }
-      return places;
-    });
+      return of;
+    };
+    AddPoseAndMeet(view, places, &j);
     for (Index i = 0; i < count; ++i) {
       const Leave& leave = leaves[static_cast<std::size_t>(i)];
-      const PlanePlace beam = MeetPlane(view.lidar_from_target, view.beams.directions[leave.last]);
+      const PlanePlace beam = Meet(view, leave.last);
       const auto side = static_cast<std::size_t>(leave.side);
       const double per_radian = PerRadian(beam, leave.side);
       j(i, static_cast<Index>(view.behind[side]) - 1) = -per_radian;
@@ -343,6 +275,7 @@ class Bound {
 
   const SampledSession& session_;
   BoundData data_;
+  Index rings_;  // that have an offset of their own
   Index shared_;
   MatrixXd information_;
 };

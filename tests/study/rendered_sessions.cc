@@ -3,6 +3,7 @@
 #include <string>
 
 #include "calib/methods/detect_view.h"
+#include "calib/simulate/imperfections.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/simulator.h"
 #include "services/simulator/simulated_sweep.h"
@@ -49,9 +50,6 @@ void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Opti
   const auto draw = [&](const RandomPhysics::Range& range) {
     return noise.Uniform(next++, range.low, range.high);
   };
-  const double divergence = draw(ranges.divergence_rad);
-  options->scanner.divergence_rad = divergence;
-  if (options->spinning) options->spinning->divergence_rad = divergence;
   simulate::BoardOptions& board = options->board;
   board.black_reflectivity = draw(ranges.black_reflectivity);
   board.white_reflectivity = draw(ranges.white_reflectivity);
@@ -71,6 +69,7 @@ void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Opti
     const double distortion = draw(ranges.distortion_times);
     for (double& k : camera.lens.distortion) k *= distortion;
   }
+  MakeImperfect(options);
 }
 
 RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t seed) {

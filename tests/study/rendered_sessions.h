@@ -31,7 +31,6 @@ struct RandomPhysics {
     int squares_x, squares_y;
     double square_m, width_m, height_m;
   };
-  Range divergence_rad{1.5e-3, 4e-3};
   Range blur_times{0.7, 1.5};  ///< each camera's
   Range black_reflectivity{0.05, 0.2}, white_reflectivity{0.5, 0.9};
   Range black_minus_white_k{2, 10};
@@ -44,7 +43,8 @@ struct RandomPhysics {
                             {10, 7, 0.08, 0.841, 0.594}};  // A1
 };
 
-/// The synthetic rig's options with what RandomPhysics allow, drawn from the seed.
+/// The synthetic rig's options with what RandomPhysics allow, and then made imperfect
+/// (simulate/imperfections.h), drawn from the seed.
 void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Options* options);
 
 /// A whole session, rendered and looked at as `rgbdt simulate` and `rgbdt calibrate` do, in memory:

@@ -54,6 +54,9 @@ class Grid {
             (elevation - options_.scanner.first_angle_rad) / ColumnStep()};
   }
 
+  /// Of a spinning LIDAR its row, of a scanner its beam.
+  int Ring(int row, int column) const { return options_.spinning ? row : column; }
+
   double RowStep() const {
     if (!options_.spinning) {
       return options_.scanner.motor_speed_rad_s * ToSeconds(scanner_.line_period());
@@ -97,6 +100,8 @@ BeamWindow WindowAbout(const Grid& grid, const Target& target, const Rigid3& lid
   for (int row = 0; row < window.rows; ++row) {
     for (int column = 0; column < window.columns; ++column) {
       window.directions.push_back(grid.Direction(first_row + row, first_column + column));
+      window.ring.push_back(
+          static_cast<std::uint16_t>(grid.Ring(first_row + row, first_column + column)));
     }
   }
   return window;
@@ -117,7 +122,8 @@ Cloud EmptyCloud(const BeamWindow& beams) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   cloud.points.assign(beams.directions.size(), Eigen::Vector3f::Constant(nan));
   for (const Eigen::Vector3d& d : beams.directions) cloud.directions.emplace_back(d.cast<float>());
-  cloud.intensity.assign(beams.directions.size(), 0.5F);
+  cloud.intensity.resize(beams.directions.size());
+  cloud.ring = beams.ring;
   return cloud;
 }
 
@@ -139,11 +145,34 @@ class CloudSampler {
 
   const std::array<CrossingKind, 4>& behind() const { return behind_; }
 
-  /// Range of one beam; NaN: nothing returns.
-  double Range(const Eigen::Vector3d& direction, bool* on) {
-    const PlanePlace beam = MeetPlane(lidar_from_target_, direction);
+  struct Return {
+    double range_m = 0;  ///< as measured; NaN: nothing returns
+    double intensity = 0;
+    bool on = false;  ///< the board stops it
+  };
+
+  Return Shoot(const Eigen::Vector3d& direction, int ring) {
+    const PlanePlace beam = MeetPlane(lidar_from_target_, direction, model_.beams_meet_m);
+    Return back;
+    back.range_m = Range(beam, ring, &back.on);
+    if (std::isnan(back.range_m)) return back;
+    const bool black = IsBlack(target_, beam.place);
+    const double grey = back.on ? (black ? kBlack : kWhite) : kGrey;
+    if (back.on && black) back.range_m += model_.dark_range_m;
+    back.intensity = std::clamp(grey + kIntensitySigma * noise_.Normal(kShades + next_), 0.0, 1.0);
+    return back;
+  }
+
+ private:
+  static constexpr std::size_t kSides = 4;
+  static constexpr std::uint64_t kShades = std::uint64_t{1} << 40;  // numbers of intensities' noise
+  static constexpr double kBlack = 0.1, kWhite = 0.6, kGrey = 0.3, kIntensitySigma = 0.02;
+
+  // Black and white alike.
+  double Range(const PlanePlace& beam, int ring, bool* on) {
+    const double offset = model_.range_offset_m + RingOffset(ring);
     const double blur = model_.blur_rad * noise_.Normal(next_++);
-    const double ranging = model_.range_sigma_m * noise_.Normal(next_++) - model_.range_offset_m;
+    const double ranging = model_.range_sigma_m * noise_.Normal(next_++) - offset;
     const double depth = noise_.Uniform(next_++);
     *on = false;
     if (!beam.ahead) return std::numeric_limits<double>::quiet_NaN();
@@ -158,14 +187,16 @@ class CloudSampler {
     *on = farthest <= 0;
     if (*on) return beam.range_m + ranging;
     // Uneven, so that what lies behind makes no plane of its own.
-    const double measured = beam.range_m - model_.range_offset_m;
+    const double measured = beam.range_m - offset;
     if (kind == CrossingKind::kFar) return measured + 1.5 + 2.5 * depth;
     if (kind == CrossingKind::kMerged) return measured + 0.2 + 0.25 * depth;
     return std::numeric_limits<double>::quiet_NaN();
   }
 
- private:
-  static constexpr std::size_t kSides = 4;
+  double RingOffset(int ring) const {
+    const auto i = static_cast<std::size_t>(ring);
+    return i < model_.ring_offset_m.size() ? model_.ring_offset_m[i] : 0;
+  }
 
   // How far a beam lies beyond a side that seems displaced.
   double Beyond(const PlanePlace& beam, int side, double blur) const {
@@ -185,15 +216,26 @@ class CloudSampler {
 
 }  // namespace
 
-PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction) {
+PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction,
+                     double beams_meet_m) {
   const Eigen::Quaterniond target_from_lidar = lidar_from_target.rotation.conjugate();
-  const Eigen::Vector3d origin = -(target_from_lidar * lidar_from_target.translation);
+  const double height = -beams_meet_m * direction.z() / direction.head<2>().norm();
+  const Eigen::Vector3d origin =
+      target_from_lidar * (Eigen::Vector3d(0, 0, height) - lidar_from_target.translation);
   PlanePlace beam;
   beam.direction = target_from_lidar * direction;
   beam.ahead = beam.direction.z() > 0.02;
   beam.range_m = -origin.z() / beam.direction.z();
   beam.place = (origin + beam.range_m * beam.direction).head<2>();
   return beam;
+}
+
+bool IsBlack(const Target& target, const Eigen::Vector2d& place) {
+  const Eigen::Array2d squares(target.squares_x, target.squares_y);
+  const Eigen::Array2d size = target.square_m * target.print_scale.array();
+  const Eigen::Array2d at = (place - target.pattern_offset_m).array() / size + 0.5 * squares;
+  if ((at < 0).any() || (at >= squares).any()) return true;
+  return (static_cast<int>(at.x()) + static_cast<int>(at.y())) % 2 == 0;
 }
 
 Eigen::Vector2d SideNormal(int side) {
@@ -233,10 +275,10 @@ SampledCloud SampleCloud(const simulate::Options& lidar, const Target& target,
   sampled.cloud = EmptyCloud(sampled.beams);
   sampled.beams.on.resize(sampled.beams.directions.size());
   for (std::size_t i = 0; i < sampled.beams.directions.size(); ++i) {
-    bool on = false;
-    const double range = sampler.Range(sampled.beams.directions[i], &on);
-    sampled.beams.on[i] = on;
-    sampled.cloud.points[i] = (range * sampled.beams.directions[i]).cast<float>();
+    const auto back = sampler.Shoot(sampled.beams.directions[i], sampled.beams.ring[i]);
+    sampled.beams.on[i] = back.on;
+    sampled.cloud.points[i] = (back.range_m * sampled.beams.directions[i]).cast<float>();
+    sampled.cloud.intensity[i] = static_cast<float>(back.intensity);
   }
   return sampled;
 }

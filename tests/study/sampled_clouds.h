@@ -20,7 +20,14 @@ struct BeamModel {
   double range_offset_m = 0;  ///< true range minus measured, of all
   /// What is known of it beforehand, about zero; 0: exact. For the bound and the rig.
   double range_offset_sigma_m = 0;
+  /// Further, of each ring: true minus measured; empty: rings do not differ.
+  std::vector<double> ring_offset_m;
+  double dark_range_m = 0;  ///< black squares are measured this much farther than white ones
+  double beams_meet_m = 0;  ///< radius at which a spinning LIDAR's beams have one height
+  /// What is known of each of these beforehand, about zero; 0: exact. For the bound.
+  double ring_offset_sigma_m = 0, dark_range_sigma_m = 0, beams_meet_sigma_m = 0;
   double class_sigma_rad = 0.6e-3;  ///< each class of crossing's shift, drawn once a session
+  double class_prior_rad = 0.6e-3;  ///< what is known of it beforehand: for the bound
   double side_sigma_rad = 0.3e-3;   ///< each side's own shift, drawn for every view
   double blur_rad = 0.4e-3;         ///< how exactly one beam tells inside from outside
   double thickness_m = 0.015;       ///< of the board
@@ -29,10 +36,11 @@ struct BeamModel {
   double rim_m = 0.04;  ///< nearer than this to a side, a range is not trusted
 };
 
-/// Whole beams of a LIDAR from its origin: a part of the sensor's grid.
+/// Whole beams of a LIDAR: a part of the sensor's grid.
 struct BeamWindow {
   int rows = 0, columns = 0;
   std::vector<Eigen::Vector3d> directions;  ///< unit, LIDAR frame; row by row
+  std::vector<std::uint16_t> ring;          ///< the laser of each beam; a scanner's: its number
   std::vector<bool> on;                     ///< which of them the board stops
 
   std::size_t At(int row, int column) const {
@@ -48,7 +56,12 @@ struct PlanePlace {
   Eigen::Vector3d direction{0, 0, 1};  ///< of the beam
   bool ahead = false;                  ///< false: it does not meet the plane's front
 };
-PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction);
+/// `beams_meet_m`: of the LIDAR (BeamModel); the beam starts at its height on the axis.
+PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction,
+                     double beams_meet_m);
+
+/// Whether a place on the board [m] is black as it is printed: every other square, and the border.
+bool IsBlack(const Target& target, const Eigen::Vector2d& place);
 
 /// Outward normal of side 0 to 3 (top, right, bottom, left) and its distance from the centre.
 Eigen::Vector2d SideNormal(int side);
@@ -71,7 +84,8 @@ struct SampledCloud {
 };
 
 /// The beams of `lidar` about the board, each on the board or beyond it by where it meets the
-/// board's plane, the sides displaced by what `model`, `shifts` and `noise` draw.
+/// board's plane, the sides displaced by what `model`, `shifts` and `noise` draw. `target`: as it
+/// was printed.
 SampledCloud SampleCloud(const simulate::Options& lidar, const Target& target,
                          const Rigid3& lidar_from_target, const BeamModel& model,
                          const ClassShifts& shifts, const simulate::Noise& noise);

@@ -35,6 +35,7 @@ BeamModel ModelOf(const SampledOptions& sampled, const simulate::Options& option
     model.range_offset_m = sampled.range_offset_m * (2 * noise.Uniform(0) - 1);
     model.range_offset_sigma_m = kUsualRangeOffsetSigmaM;
   }
+  if (sampled.physics) DrawBeamPhysics(sampled.rings, options.seed, &model);
   model.range_sigma_m =
       options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
   model.thickness_m = options.board.thickness_m;
@@ -101,7 +102,7 @@ class SessionSampler {
     view.heldout = IsHeldOut(index, sampled_.views, sampled_.heldout);
     view.lidar_from_target = BoardPose(options_, empty_, scanner_, renderers_, pose);
     SampledCloud cloud =
-        SampleCloud(options_, session_.rig.target, view.lidar_from_target, session_.model, shifts_,
+        SampleCloud(options_, session_.true_target, view.lidar_from_target, session_.model, shifts_,
                     Noise(options_.seed, pose + 1, "sampled cloud"));
     view.beams = std::move(cloud.beams);
     view.behind = cloud.behind;
@@ -147,6 +148,24 @@ class SessionSampler {
 };
 
 }  // namespace
+
+void DrawBeamPhysics(int rings, std::uint64_t seed, BeamModel* model) {
+  const Noise noise(seed, 0, "sampled physics");
+  model->range_offset_sigma_m = kUsualRangeOffsetSigmaM;
+  model->range_offset_m = model->range_offset_sigma_m * noise.Normal(0);
+  model->dark_range_m = noise.Uniform(1, 0, 0.02);
+  model->dark_range_sigma_m = 0.02;
+  model->class_sigma_rad = noise.Uniform(2, 0.6e-3, 1.5e-3);
+  model->class_prior_rad = 1.5e-3;
+  if (rings == 0) return;
+  model->beams_meet_m = noise.Uniform(3, 0, 0.045);
+  model->beams_meet_sigma_m = 0.04;
+  model->ring_offset_sigma_m = 0.015;
+  const double sigma_m = noise.Uniform(4, 0.003, 0.010);
+  for (int ring = 0; ring < rings; ++ring) {
+    model->ring_offset_m.push_back(sigma_m * noise.Normal(5 + static_cast<std::uint64_t>(ring)));
+  }
+}
 
 LensUncertainty LensOff(const Lens& lens) {
   LensNumbers sigma;

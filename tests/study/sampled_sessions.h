@@ -23,11 +23,20 @@ struct SampledOptions {
   /// The printed pattern's width and height are each off by this, relative (1 sigma), and the rig
   /// says so; 0: exact.
   double print_sigma = 0;
+  /// The LIDAR is off by what real ones are, see DrawBeamPhysics.
+  bool physics = false;
 };
 
 /// By what a lens of the rig is off (1 sigma): 0.4% of fx and of fy, 6 px in the centre, 0.02 in
 /// k1.
 LensUncertainty LensOff(const Lens& lens);
+
+/// What a LIDAR of so many rings (0: a scanner) is off by, drawn from the seed: a constant of all
+/// ranges, which the rig states as well as it is known (20 mm); rings' offsets, with a sigma of 3
+/// to 10 mm of their own; black against white, 0 to 20 mm; where beams meet, 0 to 45 mm; and the
+/// edges' classes, with a sigma of 0.6 to 1.5 mrad. Of a scanner there are no rings, and its beams
+/// meet.
+void DrawBeamPhysics(int rings, std::uint64_t seed, BeamModel* model);
 
 /// What the noise model drew in one view.
 struct SampledView {

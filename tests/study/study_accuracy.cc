@@ -1,12 +1,13 @@
 // How far calibrations are off, and whether they know it.
-//   study_accuracy sampled|offset|lens|print|rendered|random SENSOR VIEWS HELDOUT SESSIONS SEED CSV
-//   [METHOD...]
+//   study_accuracy sampled|offset|lens|print|physics|rendered|random SENSOR VIEWS HELDOUT SESSIONS
+//   SEED CSV [METHOD...]
 // SENSOR: dense (the turned scanner), 128, 64, 32 or 16. sampled: sessions drawn from the noise
 // model (sampled_sessions.h), beside its Gaussian bound (bound.h). offset: the same with ranges off
 // by a constant of up to 30 mm, which the rig does not rule out. lens: the same with lenses that
 // are off by what the rig says of them. print: the same, and the pattern's print as far off as is
-// usual. rendered: sessions of the simulator. random: the same with
-// physics that are drawn, too (rendered_sessions.h). METHOD: auto, separate (each camera by
+// usual. physics: the same, and the LIDAR off in every way that real ones are (DrawBeamPhysics).
+// rendered: sessions of the simulator. random: the same with physics that are drawn, too
+// (rendered_sessions.h). METHOD: auto, separate (each camera by
 // itself), plane, first_guess or paper; all but the last, if none is given. A line of CSV for each
 // session, method and camera.
 #include <chrono>
@@ -61,8 +62,10 @@ std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
   if (question.how != "rendered" && question.how != "random") {
     SampledOptions options{question.rings, question.views, question.heldout};
     if (question.how == "offset") options.range_offset_m = kMostOffsetM;
-    options.lenses_off = question.how == "lens" || question.how == "print";
-    if (question.how == "print") options.print_sigma = kUsualPrintSigma;
+    options.physics = question.how == "physics";
+    const bool print_off = question.how == "print" || options.physics;
+    if (print_off) options.print_sigma = kUsualPrintSigma;
+    options.lenses_off = question.how == "lens" || print_off;
     auto made = SampleSession(options, seed);
     if (!made) return std::nullopt;
     return Trial{made->rig,
@@ -250,10 +253,11 @@ int RingsOf(const std::string& sensor) {
 }
 
 void Run(Question question, int sessions, std::uint64_t seed, const std::string& path) {
-  const std::set<std::string> ways = {"sampled", "offset", "lens", "print", "rendered", "random"};
+  const std::set<std::string> ways = {"sampled", "offset",   "lens",  "print",
+                                      "physics", "rendered", "random"};
   if (ways.count(question.how) == 0) {
-    throw std::runtime_error("expected sampled, offset, lens, print, rendered or random, not " +
-                             question.how);
+    throw std::runtime_error(
+        "expected sampled, offset, lens, print, physics, rendered or random, not " + question.how);
   }
   question.rings = RingsOf(question.sensor);
   Table table(question, path);
@@ -285,8 +289,8 @@ int main(int argc, char** argv) {
     rgbdt::study::Run(question, std::stoi(arguments[4]), std::stoull(arguments[5]), arguments[6]);
   };
   return rgbdt::study::StudyMain({"study_accuracy",
-                                  "sampled|offset|lens|print|rendered|random SENSOR VIEWS HELDOUT "
-                                  "SESSIONS SEED CSV [METHOD...]",
+                                  "sampled|offset|lens|print|physics|rendered|random SENSOR VIEWS "
+                                  "HELDOUT SESSIONS SEED CSV [METHOD...]",
                                   7, 1000, run},
                                  argc, argv);
 }
