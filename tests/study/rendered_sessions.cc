@@ -42,6 +42,18 @@ View TakeView(const Simulator& simulator, bool spinning, const std::string& name
   return view;
 }
 
+BeamModel ModelOf(const simulate::Options& options) {
+  const simulate::BeamOptions* beam = &options.scanner;
+  BeamModel model;
+  if (options.spinning) {
+    beam = &*options.spinning;
+    model.beams_meet_m = options.spinning->beams_meet_m;
+  }
+  model.range_offset_m = -beam->range_offset_m;
+  model.dark_range_m = beam->dark_range_m;
+  return model;
+}
+
 }  // namespace
 
 void DrawPhysics(const RandomPhysics& ranges, std::uint64_t seed, simulate::Options* options) {
@@ -86,6 +98,7 @@ RenderedSession RenderSession(const RenderedOptions& rendered, std::uint64_t see
     session.detections.push_back(DetectView(session.rig, view));
   }
   session.truth = simulator.truth();
+  session.model = ModelOf(options);
   return session;
 }
 

@@ -7,6 +7,7 @@
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
 #include "calib/simulate/options.h"
+#include "tests/study/sampled_clouds.h"
 
 namespace rgbdt::study {
 
@@ -20,6 +21,7 @@ struct RenderedSession {
   Rig rig;
   Truth truth;
   std::vector<ViewDetection> detections;  ///< one a view
+  BeamModel model;                        ///< its ranges and where beams meet are as simulated
 };
 
 /// What sessions of random physics are drawn from, evenly: nothing of it is told to the estimator.

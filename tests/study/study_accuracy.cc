@@ -48,7 +48,7 @@ struct Trial {
   Truth truth;
   std::vector<ViewDetection> detections;
   Bounds bounds, plane_bounds;  ///< empty: rendered
-  double range_offset_m = 0;    ///< the truth
+  BeamModel model;              ///< the truth; rendered: see RenderedSession
 };
 
 struct Question {
@@ -73,13 +73,13 @@ std::optional<Trial> MakeTrial(const Question& question, std::uint64_t seed) {
                  made->detections,
                  BoundOf(*made),
                  BoundOf(*made, BoundData::kPlanes),
-                 made->model.range_offset_m};
+                 made->model};
   }
   const bool random = question.how == "random";
   try {
     RenderedSession made =
         RenderSession({question.rings, question.views, question.heldout, random}, seed);
-    return Trial{made.rig, made.truth, std::move(made.detections), {}, {}, 0};
+    return Trial{made.rig, made.truth, std::move(made.detections), {}, {}, made.model};
   } catch (const InputError& error) {
     std::printf("seed %llu left out: %s\n", static_cast<unsigned long long>(seed), error.what());
     return std::nullopt;
@@ -151,12 +151,12 @@ class Table {
  public:
   Table(const Question& question, const std::string& path)
       : question_(question), path_(path), csv_(path) {
-    csv_
-        << "how,sensor,seed,views,method,camera,converged,used,rotation_deg,centre_mm,chi2,"
-           "inside95,sigma_rotation_deg,sigma_centre_mm,bound_rotation_deg,bound_centre_mm,"
-           "bound_rotation_deg_median,bound_centre_mm_median,plane_bound_rotation_deg,"
-           "plane_bound_centre_mm,edge_rms_whitened,dt_px,dt_truth_px,board_chi2_per_6,solve_ms,"
-           "calibrate_ms,range_offset_mm,range_offset_error_mm,range_offset_chi2,doubtful,status\n";
+    csv_ << "how,sensor,seed,views,method,camera,converged,used,rotation_deg,centre_mm,chi2,"
+            "inside95,sigma_rotation_deg,sigma_centre_mm,bound_rotation_deg,bound_centre_mm,"
+            "bound_rotation_deg_median,bound_centre_mm_median,plane_bound_rotation_deg,"
+            "plane_bound_centre_mm,edge_rms_whitened,dt_px,dt_truth_px,board_chi2_per_6,solve_ms,"
+            "calibrate_ms,range_offset_mm,range_offset_error_mm,range_offset_chi2,dark_range_mm,"
+            "beams_meet_mm,doubtful,status\n";
   }
 
   void Add(const Trial& trial, std::uint64_t seed) {
@@ -216,13 +216,15 @@ class Table {
   void WriteOffset(const CameraReport& camera, const Trial& trial) {
     std::optional<double> error_mm, chi2;
     if (camera.range_offset) {
-      const double error_m = camera.range_offset->value - trial.range_offset_m;
+      const double error_m = camera.range_offset->value - trial.model.range_offset_m;
       error_mm = 1e3 * error_m;
       chi2 = std::pow(error_m / camera.range_offset->sigma, 2);
     }
-    Write(1e3 * trial.range_offset_m);
+    Write(1e3 * trial.model.range_offset_m);
     Write(error_mm);
     Write(chi2);
+    Write(1e3 * trial.model.dark_range_m);
+    Write(1e3 * trial.model.beams_meet_m);
     csv_ << ',' << (Judge(camera).grade != Grade::kGood);
   }
 
