@@ -28,8 +28,8 @@ grep -q turned_scanner "$scratch/named/rig.textproto" || complain "the turned sc
 
 session=$scratch/imperfect
 accepts "an imperfect rig" "$bin/rgbdt" simulate "$session" --views 1 --lidar vlp16 --imperfect
-holds "imperfect" "$session/rig.textproto" "^  lens_uncertainty"
-holds "imperfect" "$session/rig.textproto" "print_sigma: 0.003"
+grep -q "print_sigma: 0.003" "$session/rig.textproto" || complain "imperfect: its print is exact"
+! grep -q "exact: true" "$session/rig.textproto" || complain "imperfect: its lenses are exact"
 holds "imperfect" "$session/truth.textproto" "^# rings' ranges \[mm\], the lowest first:( [+-][0-9.]+){16}$"
 holds "imperfect" "$session/truth.textproto" "^# beams meet at a radius of [0-9.]+ mm$"
 ! cmp -s "$session/views/0001/cloud.pcd" "$scratch/vlp16/views/0001/cloud.pcd" ||
