@@ -10,7 +10,20 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import trials  # noqa: E402
-from trials import CAMERAS, COLOURS, METHOD_COLOURS, column, figure, mean, median, pick, rms
+from trials import (
+    CAMERAS,
+    COLOURS,
+    METHOD_COLOURS,
+    column,
+    figure,
+    honesty_figures,
+    mean,
+    median,
+    over_bound,
+    pick,
+    rms,
+    silent_failures,
+)
 
 # What sessions of 8 + 4 views of the turned scanner are to reach, sampled and rendered.
 TARGETS = {
@@ -56,8 +69,6 @@ ONCE = {
 }
 ALL_TARGETS = {**TARGETS, **{f"rendered_{k}": v for k, v in TARGETS.items()}, **ONCE}
 PHYSICS = ("dense", "64", "32", "16")  # sensors
-# Chi-square of six degrees of freedom that is as unlikely as 4 sigma of one.
-FOUR_SIGMA = 28.9
 ERRORS = (("rotation_deg", "rotation_deg", "deg"), ("translation_mm", "centre_mm", "mm"))
 
 
@@ -89,26 +100,6 @@ def worst_figures(rows, prefix):
     auto = pick(rows, method="auto")
     for name, key, unit in ERRORS:
         yield figure(f"{prefix}{name}_worst", max(column(auto, key)), unit)
-
-
-def over_bound(rows, bounds):
-    """RMS error over RMS bound: the largest of both cameras, rotation and centre."""
-    most = 0
-    for camera in CAMERAS:
-        for key in ("rotation_deg", "centre_mm"):
-            errors = column(pick(rows, method="auto", camera=camera), key)
-            bound = column(pick(bounds, method="auto", camera=camera), f"bound_{key}")
-            most = max(most, rms(errors) / rms(bound))
-    return most
-
-
-def honesty_figures(rows, prefix, method="auto"):
-    chi2 = column(pick(rows, method=method), "chi2")
-    if not chi2:
-        return
-    yield figure(f"{prefix}nees_mean", mean(chi2))
-    yield figure(f"{prefix}coverage95", mean(column(pick(rows, method=method), "inside95")))
-    yield figure(f"{prefix}nees_count", len(chi2))
 
 
 def heldout_figures(rows, prefix):
@@ -211,21 +202,6 @@ def physics_figures(parts):
             bound = column(rows, f"bound_{key}_median")
             yield figure(f"{prefix}{name}_median_bound", median(bound), unit)
         yield figure(f"{prefix}silent_failures", len(silent_failures(rows)))
-
-
-def silent_failures(rows):
-    """Results of `auto` that are wrong by more than 4 stated sigma, all six axes together or the
-    length of rotation or translation, and are called good."""
-    return [
-        r
-        for r in pick(rows, method="auto", doubtful=0)
-        if r["chi2"] is not None
-        and (
-            r["chi2"] > FOUR_SIGMA
-            or r["rotation_deg"] > 4 * r["sigma_rotation_deg"]
-            or r["centre_mm"] > 4 * r["sigma_centre_mm"]
-        )
-    ]
 
 
 def basin_figures(rows):

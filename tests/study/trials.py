@@ -16,6 +16,8 @@ METHOD_COLOURS = {
     "plane": "tab:orange",
     "first_guess": "tab:purple",
 }
+# Chi-square of six degrees of freedom that is as unlikely as 4 sigma of one.
+FOUR_SIGMA = 28.9
 # Columns; all others are numbers, and what is not to be had is empty.
 TEXT = {"camera", "case", "how", "judged", "method", "scene", "sensor", "start", "status", "view"}
 
@@ -54,6 +56,41 @@ def rms(values):
 
 def figure(name, value, unit="1"):
     return {"name": name, "value": value, "unit": unit}
+
+
+def over_bound(rows, bounds):
+    """RMS error over RMS bound: the largest of both cameras, rotation and centre."""
+    most = 0
+    for camera in CAMERAS:
+        for key in ("rotation_deg", "centre_mm"):
+            errors = column(pick(rows, method="auto", camera=camera), key)
+            bound = column(pick(bounds, method="auto", camera=camera), f"bound_{key}")
+            most = max(most, rms(errors) / rms(bound))
+    return most
+
+
+def honesty_figures(rows, prefix, method="auto"):
+    chi2 = column(pick(rows, method=method), "chi2")
+    if not chi2:
+        return
+    yield figure(f"{prefix}nees_mean", mean(chi2))
+    yield figure(f"{prefix}coverage95", mean(column(pick(rows, method=method), "inside95")))
+    yield figure(f"{prefix}nees_count", len(chi2))
+
+
+def silent_failures(rows):
+    """Results of `auto` that are wrong by more than 4 stated sigma, all six axes together or the
+    length of rotation or translation, and are called good."""
+    return [
+        r
+        for r in pick(rows, method="auto", doubtful=0)
+        if r["chi2"] is not None
+        and (
+            r["chi2"] > FOUR_SIGMA
+            or r["rotation_deg"] > 4 * r["sigma_rotation_deg"]
+            or r["centre_mm"] > 4 * r["sigma_centre_mm"]
+        )
+    ]
 
 
 def bounds_of(how, target):
