@@ -9,8 +9,13 @@ int main(int argc, char** argv) {
       "'udpm://239.255.76.67:7667?ttl=0'");
   std::string url;
   line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  bool correct_ranges = false;
+  line.Flag("--correct-ranges", &correct_ranges,
+            "puts points where they truly are, by what the calibration found the LIDAR's ranges\n"
+            "and beams to be off by");
   return line.Run(argc, argv, [&] {
-    rgbdt::FuserNode node;
+    rgbdt::FuserNode node(correct_ranges ? rgbdt::FuserNode::Ranges::kCorrected
+                                         : rgbdt::FuserNode::Ranges::kAsMeasured);
     return rgbdt::RunOnLcm(node, url);
   });
 }

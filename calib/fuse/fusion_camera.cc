@@ -22,13 +22,15 @@ bool FusionCamera::Has(const CameraCalibration& calibration, Utime utime) const 
   return calibrated && calibration_utime == utime &&
          camera_from_lidar.translation == pose.translation &&
          camera_from_lidar.rotation.coeffs() == pose.rotation.coeffs() &&
-         spec_.lens == (calibration.lens ? calibration.lens->lens : given_);
+         spec_.lens == (calibration.lens ? calibration.lens->lens : given_) &&
+         range_errors == calibration.range_errors;
 }
 
 void FusionCamera::SetCalibration(const CameraCalibration& calibration, Utime utime) {
   calibrated = true;
   camera_from_lidar = calibration.camera_from_lidar;
   calibration_utime = utime;
+  range_errors = calibration.range_errors;
   spec_.lens = calibration.lens ? calibration.lens->lens : given_;
   camera_ = Camera(spec_);
 }

@@ -3,6 +3,7 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "calib/camera/camera.h"
 #include "calib/fuse/temperature_table.h"
@@ -65,6 +66,7 @@ class FusionCamera {
   bool calibrated = false;
   Rigid3 camera_from_lidar;
   Utime calibration_utime = 0;
+  std::optional<RangeErrors> range_errors;  ///< of the LIDAR, as the calibration has them
 
  private:
   CameraSpec spec_;

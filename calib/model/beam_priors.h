@@ -27,6 +27,9 @@ inline constexpr double kSharedClassShiftSigmaRad = 1.5e-3;
 /// to 29 mm too large at each side, 7 to 11 mrad.
 inline constexpr double kPlainClassShiftSigmaRad = 3e-3;
 
+/// The same where all views share it: as large as it was seen to be.
+inline constexpr double kSharedPlainClassShiftSigmaRad = 8e-3;
+
 /// Further shift of each side in each view: what lies behind one side is not one class throughout.
 /// Opposite sides' difference looks like a turn of the board: 0.3 mrad cost 0.013 degrees.
 inline constexpr double kSideShiftSigmaRad = 0.3e-3;
@@ -53,6 +56,13 @@ inline constexpr double kRangeOffsetSigmaM = 0.1;
 /// The same of a LIDAR that is as its data sheet says: 20 to 30 mm is what most call their
 /// accuracy.
 inline constexpr double kUsualRangeOffsetSigmaM = 0.02;
+
+/// The radius [m] at which a spinning LIDAR's beams meet (RangeErrors), beyond what its driver
+/// makes of it: Velodyne's lasers fire from heights that make it 42 mm, which not all drivers know.
+inline constexpr double kBeamsMeetSigmaM = 0.05;
+
+/// The same where it is taken for zero: small enough to pin it, large enough to be inverted.
+inline constexpr double kNoBeamsMeetSigmaM = 1e-7;
 
 /// The same where it is taken for zero: small enough to pin it, large enough to be inverted.
 inline constexpr double kNoRangeOffsetSigmaM = 1e-9, kNoPrintSigma = 1e-9;

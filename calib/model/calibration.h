@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/range_errors.h"
 #include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
 #include "calib/model/statistics.h"
@@ -39,6 +40,8 @@ struct CameraCalibration {
   std::string detail;  ///< in words: why, and what to do; empty where there is nothing to say
   /// Absent: the rig file's, which was taken for exact.
   std::optional<SolvedLens> lens{};
+  /// What the LIDAR is off by, which belongs to the pose. Absent: ranges were taken as they are.
+  std::optional<RangeErrors> range_errors{};
 
   /// Of pose and lens together; needs `covariance`.
   PoseAndLensCovariance PoseAndLens() const;
@@ -162,8 +165,6 @@ struct CameraReport {
   std::vector<Nuisance> nuisance;
   std::vector<Fold> folds;
   std::optional<Halves> halves;
-  /// [m] true range minus measured; absent: taken for exact.
-  std::optional<Estimate> range_offset;
   double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;

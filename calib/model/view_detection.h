@@ -85,6 +85,14 @@ struct Crossing {
   double sigma_m = 0;
 };
 
+/// Points on the board whose ranges are off alike: one laser's, of about one brightness.
+struct PointGroup {
+  int ring = -1;              ///< the laser; -1: the cloud does not tell, or there is only one
+  double log2_intensity = 0;  ///< mean (Log2Intensity); 0 where the cloud does not tell
+  /// As CloudEdges::scatter, of these points, each counted whole.
+  Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
+};
+
 /// What one cloud shows of the target. LIDAR frame, metres.
 struct CloudEdges {
   /// By the paper's method, which looks where a camera's picks and guess say: that camera's. Empty:
@@ -107,6 +115,9 @@ struct CloudEdges {
   /// The same of the points where they were measured.
   Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();
   double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
+  /// The same points told apart by what shares an error; empty: by the paper's method.
+  std::vector<PointGroup> groups;
+  double group_sigma_m = 0;  ///< of a point's distance from the plane, about its group's mean
 };
 
 /// What detection makes of one camera's image in a view.

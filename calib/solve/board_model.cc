@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/model/range_errors.h"
+
 namespace rgbdt {
 namespace {
 
 constexpr double kRobust = 3;  // sigmas; farther off, a residual counts less
+
+// Of the beam to a point; none where it goes straight up.
+double TanElevation(const Eigen::Vector3d& point) {
+  const double flat = point.head<2>().norm();
+  return flat > 0 ? point.z() / flat : 0;
+}
 
 double HalfExtent(const Target& target, int side) {
   return side % 2 == 1 ? target.width_m / 2 : target.height_m / 2;
@@ -24,6 +32,7 @@ double BoardPriors::Sigma(int unknown) const {
   if (unknown <= kMergedShift) return class_sigma_rad;
   if (unknown == kThickness) return thickness_sigma_m;
   if (unknown == kRangeOffset) return range_offset_sigma_m;
+  if (unknown == kBeamsMeet) return beams_meet_sigma_m;
   if (unknown == kPrintWidth || unknown == kPrintHeight) return print_sigma;
   return outline_sigma_m;
 }
@@ -32,6 +41,23 @@ Target PrintedAs(const Target& target, const std::array<double, kSharedUnknowns>
   Target printed = target;
   printed.print_scale = {1 + shared[kPrintWidth], 1 + shared[kPrintHeight]};
   return printed;
+}
+
+RangeTerms::Parts RangeTerms::PartsOf(const PointGroup& group) const {
+  Parts parts;
+  const auto add = [&](std::size_t term, double weight) {
+    if (weight > 0) parts.all[parts.count++] = {term, weight};
+  };
+  const auto ring = std::lower_bound(rings.begin(), rings.end(), group.ring);
+  if (ring != rings.end() && *ring == group.ring) {
+    add(static_cast<std::size_t>(ring - rings.begin()), 1);
+  }
+  if (octaves > 0) {
+    const OctavePlace place = PlaceOf(group.log2_intensity, first_octave, octaves);
+    add(rings.size() + place.lower, 1 - place.share);
+    add(rings.size() + place.lower + 1, place.share);
+  }
+  return parts;
 }
 
 Eigen::Vector2d OutwardOf(int side) {
@@ -63,7 +89,9 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   out.by_target.setZero();
   const Eigen::Matrix3d rotation = lidar_from_target.rotation.toRotationMatrix();
   const Eigen::Vector3d beam = rotation.transpose() * crossing.point.normalized();
-  const Eigen::Vector3d origin = -(rotation.transpose() * lidar_from_target.translation);
+  const Eigen::Vector3d by_meet = -TanElevation(crossing.point) * rotation.row(2).transpose();
+  const Eigen::Vector3d origin =
+      shared[kBeamsMeet] * by_meet - rotation.transpose() * lidar_from_target.translation;
   if (!(beam.z() > 0.02)) return out;  // the beam does not meet the board's front
   const double range = -origin.z() / beam.z();
   const Eigen::Vector2d at = (origin + range * beam).head<2>();
@@ -82,6 +110,8 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                  out.per_rad * shift - out.per_thickness * shared[kThickness];
   const double blur = priors.blur_rad * out.per_rad;
   out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
+  out.by_beams_meet = outward.dot(by_meet.head<2>() - by_meet.z() * slope) +
+                      shift / upright * by_meet.z() / beam.z();
   // The board moves by delta under the beam: a point at (x, y, 0) goes the other way in its axes,
   // and the beam meets the plane elsewhere by the slope.
   const double across = outward.dot(slope);
@@ -103,31 +133,43 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
 }
 
 PlaneResidual ResidualOf(const CloudEdges& cloud, const Rigid3& lidar_from_target,
-                         double range_offset_m) {
+                         double range_offset_m, double beams_meet_m) {
   const Eigen::Matrix3d rotation = lidar_from_target.rotation.toRotationMatrix();
   const Eigen::Vector3d n = rotation.col(2);
   const double range = cloud.centre.norm();
   const Eigen::Vector3d along = cloud.centre / range;
   const Eigen::Matrix3d across = (Eigen::Matrix3d::Identity() - along * along.transpose()) / range;
-  const Eigen::Matrix3d spread = cloud.scatter.topLeftCorner<3, 3>() / cloud.scatter(3, 3);
+  // Of the points as they are: in `scatter` what rows share counts less.
+  const Eigen::Matrix3d spread = cloud.raw_scatter.topLeftCorner<3, 3>() / cloud.raw_scatter(3, 3);
   const Eigen::Vector3d mean_beam =
       along + (along * (1.5 * along.dot(spread * along) - 0.5 * spread.trace()) - spread * along) /
                   (range * range);
   const Eigen::Vector3d lean = across * n - n.dot(across * n) * n;
+  // Of tan(elevation): its change with the point, whose part along n is noise, too.
+  const double flat = cloud.centre.head<2>().norm();
+  const double rise = TanElevation(cloud.centre);
+  const Eigen::Vector3d by_point =
+      Eigen::Vector3d(-rise * cloud.centre.x() / flat, -rise * cloud.centre.y() / flat, 1) / flat;
+  const Eigen::Vector3d rise_lean = by_point - n.dot(by_point) * n;
   const Eigen::Vector3d from_target =
       cloud.centre + range_offset_m * mean_beam - lidar_from_target.translation;
   PlaneResidual out;
-  out.x << n + range_offset_m * lean, n.dot(from_target);
+  out.x << n + range_offset_m * lean - beams_meet_m * n.z() * rise_lean,
+      n.dot(from_target) - beams_meet_m * n.z() * rise;
   out.by.setZero();
   const auto turn = [&](int column, const Eigen::Vector3d& by_n) {
     const Eigen::Vector3d lean_by_n =
         across * by_n - n.dot(across * n) * by_n - 2 * n.dot(across * by_n) * n;
-    out.by.col(column) << by_n + range_offset_m * lean_by_n, by_n.dot(from_target);
+    const Eigen::Vector3d rise_by_n =
+        by_n.z() * rise_lean - n.z() * (by_n.dot(by_point) * n + n.dot(by_point) * by_n);
+    out.by.col(column) << by_n + range_offset_m * lean_by_n - beams_meet_m * rise_by_n,
+        by_n.dot(from_target) - beams_meet_m * by_n.z() * rise;
   };
   turn(0, -rotation.col(1));
   turn(1, rotation.col(0));
   out.by(3, 2) = -1;
   out.by.col(3) << lean, n.dot(mean_beam);
+  out.by.col(4) << -n.z() * rise_lean, -n.z() * rise;
   return out;
 }
 

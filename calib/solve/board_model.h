@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "calib/model/beam_priors.h"
 #include "calib/model/rig.h"
@@ -24,6 +26,7 @@ enum SharedUnknown {
   kRangeOffset,
   kPrintWidth,  ///< the pattern's width over what its squares make it, less one
   kPrintHeight,
+  kBeamsMeet,  ///< RangeErrors::beams_meet_m
   kSharedUnknowns
 };
 
@@ -39,9 +42,44 @@ struct BoardPriors {
   double image_side_sigma_m = 0;
   double range_offset_sigma_m = kNoRangeOffsetSigmaM;  ///< true range minus measured
   double print_sigma = kNoPrintSigma;                  ///< Target::print_sigma
+  double beams_meet_sigma_m = kNoBeamsMeetSigmaM;
+  /// Further range offsets, of each ring and of each octave of intensity (RangeTerms).
+  double ring_sigma_m = 0, octave_sigma_m = 0;
+  double ring_view_sigma_m = 0;  ///< further still, of each ring in each view; 0: there is none
 
   std::array<double, kSharedUnknowns> Means() const;
   double Sigma(int unknown) const;
+};
+
+/// How exactly the mean of the rings' offsets is held to zero, and of the octaves' [m].
+inline constexpr double kMeanTermSigmaM = 1e-4;
+
+/// Which range offsets are unknowns besides the common one (RangeErrors): of single rings, and of
+/// octaves of intensity. None, unless the data ask for them.
+struct RangeTerms {
+  std::vector<int> rings;   ///< rising
+  double first_octave = 0;  ///< log2 of intensity, where the first one's offset holds
+  std::size_t octaves = 0;  ///< one apart; between them the offset is interpolated
+  /// By term, its share of all points: of the rings they add up to 1, of the octaves, too. What all
+  /// points have in common is the common offset's: the mean of the rings' offsets by these weights
+  /// is zero, and that of the octaves'.
+  std::vector<double> shares;
+
+  std::size_t Count() const { return rings.size() + octaves; }
+
+  /// Of a group of points: which of the terms, in this order rings and octaves, count how much.
+  struct Part {
+    std::size_t term = 0;
+    double weight = 0;
+  };
+  static constexpr int kMostParts = 3;
+  struct Parts {
+    std::array<Part, kMostParts> all;
+    std::size_t count = 0;
+    const Part* begin() const { return all.data(); }
+    const Part* end() const { return all.data() + count; }
+  };
+  Parts PartsOf(const PointGroup& group) const;
 };
 
 /// A detector's errors within one image are partly correlated, more than their residuals show:
@@ -60,6 +98,7 @@ struct CrossingResidual {
   Eigen::Matrix<double, 1, 6> by_target;  ///< d beyond / d delta, lidar_from_target * Exp(delta)
   double per_rad = 0;        ///< metres that a side seems farther out for each radian of shift
   double per_thickness = 0;  ///< the same for each metre of thickness
+  double by_beams_meet = 0;  ///< d beyond / d kBeamsMeet
 };
 CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                             const Crossing& crossing, const Rigid3& lidar_from_target,
@@ -71,14 +110,16 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
 /// the plane, and its mean is shorter. `beam` is the mean of the points' unit beams, to the second
 /// order in the board's size; `lean`, to the first, how a beam's part along n changes across the
 /// board. It has no part along n: there the scatter is noise, which would draw b towards the LIDAR.
+/// Beams that meet at radius m move points by -m tan(elevation) along the LIDAR's z, and across the
+/// board lean the plane likewise. Of a group of points (PointGroup) x is the same, with its own b.
 struct PlaneResidual {
   Eigen::Vector4d x;
   /// d x / d: the delta of lidar_from_target * Exp(delta) about the target's x, about its y, along
-  /// its z; the range offset.
-  Eigen::Matrix4d by;
+  /// its z; the range offset; where beams meet.
+  Eigen::Matrix<double, 4, 5> by;
 };
 PlaneResidual ResidualOf(const CloudEdges& cloud, const Rigid3& lidar_from_target,
-                         double range_offset_m);
+                         double range_offset_m, double beams_meet_m);
 
 /// A crossing's sigma [m] by the cloud's own pose, nothing where its beam misses the board there.
 /// For weights: one that changed with the board's place would be an objective of its own.

@@ -12,7 +12,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kSettled = 1e-4;         // of a step: a hundredth of a sigma, squared
 constexpr double kExactLensSigma = 1e-6;  // [px], and of the distortion
 
 constexpr int kLocal = kOwnUnknowns;
@@ -55,6 +54,25 @@ LensNumbers OffGivenLens(const BoardProblem& problem, const BoardState& state, s
   return NumbersOf(state.lenses[camera]) - NumbersOf(problem.cameras[camera].lens());
 }
 
+double InformationOfTerm(const BoardProblem& problem, std::size_t term) {
+  const double sigma = problem.SigmaOfTerm(term);
+  return 1 / (sigma * sigma);
+}
+
+// The terms of one kind, rings or octaves: [first, last).
+struct Kind {
+  std::size_t first = 0, last = 0;
+};
+std::array<Kind, 2> KindsOf(const RangeTerms& ranges) {
+  return {Kind{0, ranges.rings.size()}, Kind{ranges.rings.size(), ranges.Count()}};
+}
+
+double MeanOf(const RangeTerms& ranges, const Kind& kind, const std::vector<double>& terms) {
+  double mean = 0;
+  for (std::size_t i = kind.first; i < kind.last; ++i) mean += ranges.shares[i] * terms[i];
+  return mean;
+}
+
 double PriorCost(const BoardProblem& problem, const BoardState& state) {
   const BoardPriors& priors = problem.priors;
   const auto means = priors.Means();
@@ -68,6 +86,12 @@ double PriorCost(const BoardProblem& problem, const BoardState& state) {
     const double off = state.shared[i] - means[i];
     cost += off * off / (priors.Sigma(k) * priors.Sigma(k));
   }
+  for (std::size_t i = 0; i < state.range_terms.size(); ++i) {
+    cost += state.range_terms[i] * state.range_terms[i] * InformationOfTerm(problem, i);
+  }
+  for (const Kind& kind : KindsOf(problem.ranges)) {
+    cost += std::pow(MeanOf(problem.ranges, kind, state.range_terms) / kMeanTermSigmaM, 2);
+  }
   return cost;
 }
 
@@ -77,9 +101,34 @@ struct Stepped {
   double size = 0;
 };
 
+// Where residuals lose their say as they grow, steps shrink slowly, each by the same rate as the
+// one before: what all that would follow add up to is known from two of them (Aitken 1926). Where
+// they even grow, off a saddle, it is ten of them.
+class Stretch {
+ public:
+  double factor() const { return factor_; }
+  // After a step of this size; 0: one to draw no conclusions from.
+  void Next(double size) {
+    const double rate = last_ > 0 && factor_ == 1 ? std::sqrt(size / last_) : 0;
+    factor_ = rate > kLeastRate ? 1 / (1 - std::min(rate, kMostRate)) : 1;
+    last_ = size;
+  }
+  // Of a stretched step that led astray. False: it was none.
+  bool Drop() {
+    const bool stretched = factor_ != 1;
+    *this = Stretch();
+    return stretched;
+  }
+
+ private:
+  static constexpr double kLeastRate = 0.2, kMostRate = 0.9;
+  double factor_ = 1;
+  double last_ = 0;  // size of the step before
+};
+
 // The shared unknowns changed by x, the others as they are.
 BoardState MovedBy(BoardState state, const Eigen::VectorXd& x) {
-  const SharedPlaces places(state.lenses.size());
+  const SharedPlaces places(state.lenses.size(), state.range_terms.size());
   for (std::size_t c = 0; c < state.camera_from_lidar.size(); ++c) {
     state.camera_from_lidar[c] =
         Exp(x.segment<6>(SharedPlaces::Pose(c))) * state.camera_from_lidar[c];
@@ -88,6 +137,9 @@ BoardState MovedBy(BoardState state, const Eigen::VectorXd& x) {
   }
   for (int k = 0; k < kSharedUnknowns; ++k) {
     state.shared[static_cast<std::size_t>(k)] += x[places.Of(k)];
+  }
+  for (std::size_t i = 0; i < state.range_terms.size(); ++i) {
+    state.range_terms[i] += x[places.RangeTerm(i)];
   }
   return state;
 }
@@ -116,8 +168,8 @@ class Step {
 
   double cost() const { return cost_; }
 
-  // The step with this damping.
-  Stepped Take(double damping) const {
+  // The step with this damping, so many times as long.
+  Stepped Take(double damping, double stretch = 1) const {
     std::vector<Reduced> reduced;
     Eigen::MatrixXd h = prior_.information;
     Eigen::VectorXd g = prior_.gradient;
@@ -128,11 +180,11 @@ class Step {
     }
     h.diagonal() *= 1 + damping;
     const Eigen::VectorXd x = SolveSymmetric(h, g);
-    Stepped stepped{MovedBy(state_, x), x.dot(h * x)};
+    Stepped stepped{MovedBy(state_, stretch * x), x.dot(h * x)};
     for (std::size_t v = 0; v < reduced.size(); ++v) {
       const LocalVector local = reduced[v].own.step - reduced[v].own.by_shared * x;
       stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
-      MoveView(local, &stepped.state.lidar_from_target[v], &stepped.state.side_shift[v]);
+      MoveView(stretch * local, &stepped.state.lidar_from_target[v], &stepped.state.side_shift[v]);
     }
     return stepped;
   }
@@ -170,6 +222,7 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
   state.camera_from_lidar = camera_from_lidar;
   for (const Camera& camera : problem.cameras) state.lenses.push_back(camera.lens());
   state.shared = problem.priors.Means();
+  state.range_terms.assign(problem.ranges.Count(), 0);
   for (const BoardView& view : problem.views) {
     state.lidar_from_target.push_back(view.cloud.pose->sensor_from_target);
     state.side_shift.push_back({});
@@ -179,8 +232,14 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
 
 BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& views,
                 const BoardState& state) {
-  BoardStart part{{problem.target, problem.cameras, problem.lens_priors, {}, problem.priors},
-                  {state.camera_from_lidar, state.lenses, state.shared, {}, {}}};
+  BoardStart part{{problem.target,
+                   problem.cameras,
+                   problem.lens_priors,
+                   {},
+                   problem.priors,
+                   problem.ranges,
+                   problem.ranges_exact},
+                  {state.camera_from_lidar, state.lenses, state.shared, {}, {}, state.range_terms}};
   for (const std::size_t v : views) {
     part.problem.views.push_back(problem.views[v]);
     part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
@@ -209,8 +268,8 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
   // Steps shrink by at least this rate: what the next one would be.
   const double first = x.dot(sum.information * x);
   const double next = last.size * last.size / first;
-  if (!(next < kNextSettled) && !(last.size < kSettled)) {
-    return SolveBoards(some.problem, last.size < first ? last.state : some.start);
+  if (!(next < kNextSettled) && !(last.size < kNextSettled)) {
+    return SolveBoards(some.problem, last.size < first ? last.state : some.start, kNextSettled);
   }
   BoardSolution solution = step.Conclude();
   solution.state = std::move(last.state);
@@ -218,24 +277,27 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
   return solution;
 }
 
-BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) {
+BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start, double settled) {
   constexpr int kIterations = 100;
   double damping = 0;
   bool converged = false;
   int iterations = 0;
+  Stretch stretch;
   auto here = std::make_unique<Step>(problem, start);
   for (; iterations < kIterations && !converged; ++iterations) {
-    const Stepped step = here->Take(damping);
+    const Stepped step = here->Take(damping, stretch.factor());
     auto there = std::make_unique<Step>(problem, step.state);
     if (!(there->cost() <= here->cost() * (1 + 1e-12))) {
+      if (stretch.Drop()) continue;
       damping = std::max(1e-4, 10 * damping);
       // Where not even a small step helps, this is the minimum as far as rounding tells.
-      converged = std::isfinite(here->cost()) && (damping > 1e4 || step.size < kSettled);
+      converged = std::isfinite(here->cost()) && (damping > 1e4 || step.size < settled);
       if (damping > 1e4) break;
       continue;
     }
+    stretch.Next(damping > 0 ? 0 : step.size);
     damping = damping < 1e-3 ? 0 : 0.1 * damping;
-    converged = step.size < kSettled;
+    converged = step.size < settled;
     here = std::move(there);
   }
   BoardSolution solution = here->Conclude();
@@ -246,7 +308,7 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start) 
 }
 
 ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& state) {
-  const SharedPlaces places(problem.cameras.size());
+  const SharedPlaces places(problem);
   const Eigen::Index size = places.Count();
   const auto means = problem.priors.Means();
   ViewInformation out{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
@@ -255,6 +317,22 @@ ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& 
     const double sigma = problem.priors.Sigma(k);
     out.information(places.Of(k), places.Of(k)) = 1 / (sigma * sigma);
     out.gradient[places.Of(k)] = -(state.shared[i] - means[i]) / (sigma * sigma);
+  }
+  for (std::size_t i = 0; i < problem.ranges.Count(); ++i) {
+    const Eigen::Index at = places.RangeTerm(i);
+    out.information(at, at) = InformationOfTerm(problem, i);
+    out.gradient[at] = -state.range_terms[i] * out.information(at, at);
+  }
+  for (const Kind& kind : KindsOf(problem.ranges)) {
+    const double weight = 1 / (kMeanTermSigmaM * kMeanTermSigmaM);
+    const double mean = MeanOf(problem.ranges, kind, state.range_terms);
+    for (std::size_t i = kind.first; i < kind.last; ++i) {
+      const double by = weight * problem.ranges.shares[i];
+      for (std::size_t k = kind.first; k < kind.last; ++k) {
+        out.information(places.RangeTerm(i), places.RangeTerm(k)) += by * problem.ranges.shares[k];
+      }
+      out.gradient[places.RangeTerm(i)] -= by * mean;
+    }
   }
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     const Eigen::Index at = places.Lens(c);
@@ -285,6 +363,12 @@ ViewInformation InformationOf(const BoardProblem& problem, const BoardState& sta
 std::vector<ImageSideEnd> ImageSideEnds(const BoardProblem& problem, const BoardState& state,
                                         std::size_t view) {
   return ViewEquations(problem, state, view).image_side_ends();
+}
+
+RingsInView RingsOff(const BoardProblem& problem, const BoardState& state, std::size_t view) {
+  const ViewEquations equations(problem, state, view);
+  const LocalMatrix local = equations.h().topLeftCorner<kLocal, kLocal>();
+  return {equations.rings_off(), SolveSymmetric(local, LocalMatrix(equations.of_points())).trace()};
 }
 
 Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view, int camera) {

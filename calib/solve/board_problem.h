@@ -34,6 +34,14 @@ struct BoardProblem {
   std::vector<LensCovariance> lens_priors;  ///< by camera, about the given lens; zero: exact
   std::vector<BoardView> views;
   BoardPriors priors;
+  RangeTerms ranges;
+  /// The LIDAR is taken for exact: groups of points are not told apart.
+  bool ranges_exact = false;
+
+  /// The prior's, of a term of `ranges` [m].
+  double SigmaOfTerm(std::size_t term) const {
+    return term < ranges.rings.size() ? priors.ring_sigma_m : priors.octave_sigma_m;
+  }
 };
 
 /// Values of all unknowns.
@@ -43,25 +51,34 @@ struct BoardState {
   std::array<double, kSharedUnknowns> shared{};   ///< [rad] shifts, 1 print, [m] the others
   std::vector<Rigid3> lidar_from_target;          ///< by view
   std::vector<std::array<double, 4>> side_shift;  ///< by view and side [rad]
+  std::vector<double> range_terms;                ///< by term of BoardProblem::ranges [m]
 };
 
 /// Places of the unknowns that all views share: each camera's pose (delta, rigid3.h),
-/// SharedUnknown, each camera's lens (NumbersOf).
+/// SharedUnknown, each camera's lens (NumbersOf), range offsets (RangeTerms).
 class SharedPlaces {
  public:
-  explicit SharedPlaces(std::size_t cameras) : cameras_(static_cast<Eigen::Index>(cameras)) {}
+  explicit SharedPlaces(std::size_t cameras, std::size_t range_terms = 0)
+      : cameras_(static_cast<Eigen::Index>(cameras)),
+        range_terms_(static_cast<Eigen::Index>(range_terms)) {}
+  explicit SharedPlaces(const BoardProblem& problem)
+      : SharedPlaces(problem.cameras.size(), problem.ranges.Count()) {}
 
   static Eigen::Index Pose(std::size_t camera) { return static_cast<Eigen::Index>(6 * camera); }
   Eigen::Index Of(int shared_unknown) const { return 6 * cameras_ + shared_unknown; }
   Eigen::Index Lens(std::size_t camera) const {
     return Of(kSharedUnknowns) + kLensNumbers * static_cast<Eigen::Index>(camera);
   }
-  Eigen::Index Count() const { return Of(kSharedUnknowns) + kLensNumbers * cameras_; }
+  Eigen::Index RangeTerm(std::size_t term) const {
+    return Of(kSharedUnknowns) + kLensNumbers * cameras_ + static_cast<Eigen::Index>(term);
+  }
+  Eigen::Index Count() const { return RangeTerm(0) + range_terms_; }
   /// Of a camera's pose and its lens.
   std::array<Eigen::Index, kPoseAndLens> PoseAndLens(std::size_t camera) const;
 
  private:
   Eigen::Index cameras_;
+  Eigen::Index range_terms_;
 };
 
 /// What one view says of the shared unknowns, its own ones eliminated: the cost is
@@ -98,15 +115,18 @@ struct BoardSolution {
 ///    of its ends, with that curve's covariance;
 ///  - crossings: where the beam meets the board's plane, its distance beyond the side, less what
 ///    the beam's width (class and side), the board's rim and the board's cut do;
-///  - points on the board: their distances from its plane, all of a view in one quadratic form
-///    (CloudEdges::scatter);
+///  - points on the board: their distances from its plane, a quadratic form for each group of them
+///    (CloudEdges::groups), or one for all of a view (CloudEdges::scatter); what the rings of one
+///    view are off by besides is noise that the points of a ring share;
 ///  - the priors, of each lens, too: its numbers are unknowns like the others.
 ///
 /// A crossing's distance to the fitted outline in the image is the difference of the second and the
 /// third: both refer to the same side of the same board, whose pose all sensors share. Gauss-Newton
 /// with exact derivatives (ceres_test.cc), each view's ten unknowns eliminated (Schur complement).
-/// `start` is near: some degrees and centimetres.
-BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start);
+/// `start` is near: some degrees and centimetres. `settled` is how small the last step must be, in
+/// sigmas of all unknowns together, squared.
+BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start,
+                          double settled = 1e-4);
 
 /// A problem and where its solve starts.
 struct BoardStart {
@@ -142,6 +162,20 @@ struct ImageSideEnd {
 };
 std::vector<ImageSideEnd> ImageSideEnds(const BoardProblem& problem, const BoardState& state,
                                         std::size_t view);
+
+/// By how much a ring's points in one view lie nearer than the board's plane, as the state has it:
+/// the range offset that they ask for besides, and its variance by their own noise.
+struct RingOff {
+  int ring = 0;
+  double offset_m = 0, variance_m2 = 0;
+};
+struct RingsInView {
+  std::vector<RingOff> rings;
+  /// How many of the offsets' freedoms the view's own unknowns take: 3 where the points alone tell
+  /// the board's plane, fewer as the images tell it, too.
+  double fitted = 0;
+};
+RingsInView RingsOff(const BoardProblem& problem, const BoardState& state, std::size_t view);
 
 /// How badly a pose of a camera fits a view that had no say in it.
 struct Misfit {

@@ -33,7 +33,8 @@ constexpr NuisanceLine kNuisances[] = {
     {kOutlineLeft, "board's left side, beyond its pattern", "mm"},
     {kRangeOffset, "range offset", "mm"},
     {kPrintWidth, "pattern's width, found less given", "mm/m"},
-    {kPrintHeight, "pattern's height, found less given", "mm/m"}};
+    {kPrintHeight, "pattern's height, found less given", "mm/m"},
+    {kBeamsMeet, "radius at which the LIDAR's beams meet", "mm"}};
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
@@ -54,6 +55,19 @@ std::optional<Nuisance> SideScatter(const JointProblem& joint) {
   return Nuisance{"beam edge, scatter of single sides",
                   "mrad",
                   {1000 * sigma, 1000 * sigma / std::sqrt(2 * sides)}};
+}
+
+// How much rings differ within a view, beyond their points' noise.
+std::optional<Nuisance> ScatterOfRings(const JointProblem& joint) {
+  const double sigma = joint.problem.priors.ring_view_sigma_m;
+  double rings = 0;
+  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
+    rings += static_cast<double>(joint.problem.views[v].cloud.groups.size());
+  }
+  if (!(sigma > 0)) return std::nullopt;
+  return Nuisance{"rings' ranges, scatter within a view",
+                  "mm",
+                  {1000 * sigma, 1000 * sigma / std::sqrt(2 * std::max(1.0, rings))}};
 }
 
 // The lens's focal lengths and centre, as found less as given.
@@ -80,8 +94,36 @@ std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera)
     nuisances.push_back({line.name, line.unit, {1000 * estimate.value, 1000 * estimate.sigma}});
   }
   if (auto scatter = SideScatter(result.joint)) nuisances.push_back(*scatter);
+  if (auto scatter = ScatterOfRings(result.joint)) nuisances.push_back(*scatter);
   for (Nuisance& line : LensLines(result, camera)) nuisances.push_back(std::move(line));
   return nuisances;
+}
+
+// An offset of one of the problem's terms, with its sigma, the variance factor counted in.
+Estimate TermOf(const JointResult& result, std::size_t term) {
+  const Eigen::Index at = SharedPlaces(result.joint.problem).RangeTerm(term);
+  return {result.solution.state.range_terms[term],
+          std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)))};
+}
+
+// Nothing where the LIDAR was taken for exact.
+std::optional<RangeErrors> RangeErrorsOf(const JointResult& result) {
+  const BoardPriors& priors = result.joint.problem.priors;
+  const RangeTerms& terms = result.joint.problem.ranges;
+  RangeErrors errors;
+  const bool offset = priors.range_offset_sigma_m > kNoRangeOffsetSigmaM;
+  const bool meet = priors.beams_meet_sigma_m > kNoBeamsMeetSigmaM;
+  if (!offset && !meet && terms.Count() == 0) return std::nullopt;
+  if (offset) errors.offset_m = EstimateOf(result, kRangeOffset);
+  if (meet) errors.beams_meet_m = EstimateOf(result, kBeamsMeet);
+  for (std::size_t i = 0; i < terms.rings.size(); ++i) {
+    errors.rings.push_back({terms.rings[i], TermOf(result, i)});
+  }
+  for (std::size_t i = 0; i < terms.octaves; ++i) {
+    errors.intensities.push_back(
+        {terms.first_octave + static_cast<double>(i), TermOf(result, terms.rings.size() + i)});
+  }
+  return errors;
 }
 
 CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
@@ -96,6 +138,7 @@ CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
     calibration.lens =
         SolvedLens{result.solution.state.lenses[camera], covariance.bottomRows<kLensNumbers>()};
   }
+  calibration.range_errors = RangeErrorsOf(result);
   return calibration;
 }
 
@@ -124,12 +167,9 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
   report.calibration = CalibrationOf(result, camera);
   report.nuisance = NuisancesOf(result, camera);
   report.variance_factor = result.variance_factor;
-  if (result.joint.problem.priors.range_offset_sigma_m > kNoRangeOffsetSigmaM) {
-    report.range_offset = EstimateOf(result, kRangeOffset);
-  }
   if (result.refuted_range_offset_sigma_m) {
-    report.warnings.push_back(
-        RangesAreOff(*report.range_offset, *result.refuted_range_offset_sigma_m));
+    report.warnings.push_back(RangesAreOff(report.calibration.range_errors->offset_m,
+                                           *result.refuted_range_offset_sigma_m));
   }
   if (result.lenses_off[camera].contradicts()) {
     report.warnings.push_back(
@@ -146,8 +186,8 @@ EdgeModel EdgesOf(const JointResult& result) {
 
 // Metres more along each boundary point's beam, where the ranges were found to be off.
 CameraViews WithRangeOffset(CameraViews camera) {
-  if (!camera.report.range_offset) return camera;
-  const double offset_m = camera.report.range_offset->value;
+  if (!camera.report.calibration.range_errors) return camera;
+  const double offset_m = camera.report.calibration.range_errors->offset_m.value;
   for (CameraView& view : camera.all) {
     if (!view.cloud) continue;
     for (Eigen::Vector3d& p : view.cloud->boundary) p += offset_m * p.normalized();

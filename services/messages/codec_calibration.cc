@@ -37,6 +37,64 @@ void Check(const solved_lens_t& wire) {
 
 SolvedLens FromWire(const solved_lens_t& wire) { return FieldsFromWire<SolvedLens>(wire); }
 
+range_errors_t ToWire(const RangeErrors& errors) {
+  range_errors_t wire{};
+  wire.offset_m = errors.offset_m.value;
+  wire.offset_sigma_m = errors.offset_m.sigma;
+  wire.beams_meet_m = errors.beams_meet_m.value;
+  wire.beams_meet_sigma_m = errors.beams_meet_m.sigma;
+  wire.num_rings = CountOf(errors.rings.size(), "num_rings");
+  for (const auto& [ring, offset_m] : errors.rings) {
+    wire.ring.push_back(ring);
+    wire.ring_offset_m.push_back(offset_m.value);
+    wire.ring_offset_sigma_m.push_back(offset_m.sigma);
+  }
+  wire.num_intensities = CountOf(errors.intensities.size(), "num_intensities");
+  for (const auto& [log2_intensity, offset_m] : errors.intensities) {
+    wire.log2_intensity.push_back(log2_intensity);
+    wire.intensity_offset_m.push_back(offset_m.value);
+    wire.intensity_offset_sigma_m.push_back(offset_m.sigma);
+  }
+  return wire;
+}
+
+void Check(const range_errors_t& wire) {
+  CheckFinite("range_errors.offset_m", wire.offset_m);
+  CheckNotNegative("range_errors.offset_sigma_m", wire.offset_sigma_m);
+  CheckFinite("range_errors.beams_meet_m", wire.beams_meet_m);
+  CheckNotNegative("range_errors.beams_meet_sigma_m", wire.beams_meet_sigma_m);
+  for (std::size_t i = 0; i < wire.ring.size(); ++i) {
+    const int least = i == 0 ? 0 : wire.ring[i - 1] + 1;
+    CheckRange(At("range_errors.ring", i), wire.ring[i], least, kMostLasers - 1);
+    CheckFinite(At("range_errors.ring_offset_m", i), wire.ring_offset_m[i]);
+    CheckNotNegative(At("range_errors.ring_offset_sigma_m", i), wire.ring_offset_sigma_m[i]);
+  }
+  for (std::size_t i = 0; i < wire.log2_intensity.size(); ++i) {
+    const double log2 = wire.log2_intensity[i];
+    const bool follows = i == 0 || log2 == wire.log2_intensity[i - 1] + 1;
+    if (!(log2 >= kLeastLog2Intensity && log2 <= 0 && follows)) {
+      Fail(At("range_errors.log2_intensity", i), log2, "-8 to 0, each one more than the last");
+    }
+    CheckFinite(At("range_errors.intensity_offset_m", i), wire.intensity_offset_m[i]);
+    CheckNotNegative(At("range_errors.intensity_offset_sigma_m", i),
+                     wire.intensity_offset_sigma_m[i]);
+  }
+}
+
+RangeErrors FromWire(const range_errors_t& wire) {
+  RangeErrors errors;
+  errors.offset_m = {wire.offset_m, wire.offset_sigma_m};
+  errors.beams_meet_m = {wire.beams_meet_m, wire.beams_meet_sigma_m};
+  for (std::size_t i = 0; i < wire.ring.size(); ++i) {
+    errors.rings.push_back({wire.ring[i], {wire.ring_offset_m[i], wire.ring_offset_sigma_m[i]}});
+  }
+  for (std::size_t i = 0; i < wire.log2_intensity.size(); ++i) {
+    errors.intensities.push_back(
+        {wire.log2_intensity[i], {wire.intensity_offset_m[i], wire.intensity_offset_sigma_m[i]}});
+  }
+  return errors;
+}
+
 template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
             StructOf<Copy, CalibrationMessage>& message) {
@@ -51,6 +109,7 @@ void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
   copy.Pose(wire.quaternion_wxyz, wire.translation_m, calibration.camera_from_lidar);
   copy.Optional(wire.has_covariance, wire.covariance, calibration.covariance);
   copy.Optional(wire.has_lens, wire.lens, calibration.lens);
+  copy.Optional(wire.has_range_errors, wire.range_errors, calibration.range_errors);
 }
 
 calibration_t ToWire(const CalibrationMessage& message) {
@@ -68,6 +127,7 @@ void Check(const calibration_t& wire) {
   CheckFinite("translation_m", wire.translation_m, 3);
   if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);
   if (wire.has_lens != 0) Check(wire.lens);
+  if (wire.has_range_errors != 0) Check(wire.range_errors);
 }
 
 CalibrationMessage FromWire(const calibration_t& wire) {

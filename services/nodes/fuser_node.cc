@@ -40,6 +40,7 @@ void FuserNode::OnRig(const RigText& text) {
   Rig rig = ParseRig(text.text, "RIG message");
   fuser_ = SweepFuser(rig.cameras, rig.lidar.range_sigma_m);
   rig_ = std::move(rig);
+  UpdateRangeCorrection();
   newest_image_.clear();
 }
 
@@ -86,12 +87,53 @@ Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
     throw InputError("calibration was made with rig " + message.rig_hash + ", this is rig " +
                      rig_->hash);
   }
-  return MessagesOf(fuser_->SetCalibration(IndexOf(message.calibration.camera), message.calibration,
-                                           message.utime));
+  std::vector<RgbdtCloud> parts = fuser_->SetCalibration(IndexOf(message.calibration.camera),
+                                                         message.calibration, message.utime);
+  UpdateRangeCorrection();
+  return MessagesOf(std::move(parts));
+}
+
+bool FuserNode::calibrated() const {
+  for (std::size_t i = 0; fuser_ && i < fuser_->cameras(); ++i) {
+    if (fuser_->camera(i).calibrated) return true;
+  }
+  return false;
+}
+
+void FuserNode::UpdateRangeCorrection() {
+  if (ranges_ == Ranges::kAsMeasured) return;
+  std::vector<std::optional<RangeErrors>> of_cameras;
+  for (std::size_t i = 0; i < fuser_->cameras(); ++i) {
+    const FusionCamera& camera = fuser_->camera(i);
+    if (camera.calibrated) of_cameras.push_back(camera.range_errors);
+  }
+  range_correction_ = RangeCorrectionFor(of_cameras);
+}
+
+// At a sweep's end: calibrations of one solve come one after the other.
+void FuserNode::WarnOfRanges() {
+  if (ranges_ == Ranges::kAsMeasured || !calibrated()) return;
+  std::string warning;
+  if (!range_correction_.errors) {
+    warning =
+        "--correct-ranges: the calibration has no range errors, clouds stay as measured; "
+        "calibrate with this version and --method auto";
+  } else if (range_correction_.cameras_differ) {
+    warning =
+        "--correct-ranges: cameras differ in their range errors, clouds are corrected by the "
+        "first camera's; calibrate the cameras together";
+  }
+  if (!warning.empty() && warning != ranges_warning_) Warn(warning);
+  ranges_warning_ = warning;
+}
+
+RgbdtCloud FuserNode::Fuse(const Cloud& cloud) {
+  if (!range_correction_.errors) return fuser_->FuseChunk(cloud);
+  return fuser_->FuseChunk(Corrected(cloud, *range_correction_.errors));
 }
 
 Messages FuserNode::OnChunk(const CloudChunk& chunk) {
-  RgbdtCloud fused = fuser_->FuseChunk(chunk.cloud);
+  RgbdtCloud fused = Fuse(chunk.cloud);
   fused.sweep_end = chunk.sweep_end;
   // What served only points well before this chunk serves no more. A cloud from the future does not
   // take the present's images away.
@@ -102,6 +144,7 @@ Messages FuserNode::OnChunk(const CloudChunk& chunk) {
   }
   Messages messages = MessagesOf(PartsOf(std::move(fused), SweepFuser::kPartPoints));
   if (!chunk.sweep_end) return messages;
+  WarnOfRanges();
   for (Message& part : MessagesOf(fuser_->EndSweep())) messages.push_back(std::move(part));
   return messages;
 }
@@ -109,13 +152,10 @@ Messages FuserNode::OnChunk(const CloudChunk& chunk) {
 Status FuserNode::GetStatus() const {
   Status status;
   status.ready = rig_.has_value();
-  bool calibrated = false;
-  for (std::size_t i = 0; fuser_ && i < fuser_->cameras(); ++i) {
-    calibrated |= fuser_->camera(i).calibrated;
-  }
-  status.text = !rig_         ? "waits for the rig (RIG)"
-                : !calibrated ? "no calibration yet: clouds go out without colour"
-                              : "fusing";
+  status.text = !rig_                      ? "waits for the rig (RIG)"
+                : !calibrated()            ? "no calibration yet: clouds go out without colour"
+                : range_correction_.errors ? "fusing, ranges corrected"
+                                           : "fusing";
   const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
   status.counters = {{"points", counts.points},
                      {"coloured", counts.coloured},

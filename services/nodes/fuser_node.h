@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/fuse/range_correction.h"
 #include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
 #include "services/runtime/node.h"
@@ -19,9 +20,16 @@ namespace rgbdt {
 /// one holds from the next chunk on. A calibration of another rig is refused. An image older than
 /// the camera's newest by more than kClockReset means that the clock was set back: the camera's
 /// images go. Memory is bounded.
+///
+/// With Ranges::kCorrected, chunks are corrected by the calibration's range errors as they come:
+/// published points are where they truly are. Where cameras differ in these the first one's hold;
+/// where there are none, chunks stay as measured. A warning tells either, once, at a sweep's end.
 class FuserNode : public Node {
  public:
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
+  enum class Ranges { kAsMeasured, kCorrected };
+
+  explicit FuserNode(Ranges ranges = Ranges::kAsMeasured) : ranges_(ranges) {}
 
   std::string name() const override { return "fuser"; }
   std::vector<std::string> Subscriptions() const override {
@@ -36,10 +44,17 @@ class FuserNode : public Node {
   void OnImage(const Image& image);
   void OnPose(const StampedPose& pose);
   Messages OnChunk(const CloudChunk& chunk);
+  RgbdtCloud Fuse(const Cloud& cloud);
+  void UpdateRangeCorrection();
+  void WarnOfRanges();
+  bool calibrated() const;
   std::size_t IndexOf(const std::string& camera) const;
 
+  Ranges ranges_;
   std::optional<Rig> rig_;
   std::optional<SweepFuser> fuser_;            // while there is a rig
+  RangeCorrection range_correction_;           // none where ranges stay as measured
+  std::string ranges_warning_;                 // the last, until all is well again
   std::map<std::string, Utime> newest_image_;  // by camera
   std::int64_t shutter_frames_ = 0;
   std::int64_t pose_jumps_ = 0;

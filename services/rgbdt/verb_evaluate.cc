@@ -31,7 +31,6 @@ const CameraReport* FindSame(const Report& report, const CameraCalibration& cali
 
 void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->first_guess = before.first_guess;
-  camera->range_offset = before.range_offset;
   camera->variance_factor = before.variance_factor;
   camera->other_starts = before.other_starts;
   camera->sigma = before.sigma;

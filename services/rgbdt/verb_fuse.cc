@@ -2,12 +2,16 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/fuse/fuse.h"
+#include "calib/fuse/range_correction.h"
 #include "calib/model/errors.h"
 #include "calib/present/pictures/cloud_picture.h"
 #include "services/rgbdt/verbs.h"
@@ -17,8 +21,31 @@ namespace {
 
 struct FuseFlags {
   std::string dir, calibration, out, view;
-  bool png = false;
+  bool png = false, correct_ranges = false;
 };
+
+// The view's cloud with its points where they truly are, as the calibration in `file` has it.
+Cloud WithTrueRanges(Cloud cloud, const Rig& rig, const Calibration& calibration,
+                     const std::filesystem::path& file) {
+  std::vector<std::optional<RangeErrors>> of_cameras;
+  for (const CameraSpec& camera : rig.cameras) {
+    const CameraCalibration* found = calibration.Find(camera.name);
+    if (found != nullptr) of_cameras.push_back(found->range_errors);
+  }
+  const RangeCorrection correction = RangeCorrectionFor(of_cameras);
+  if (!correction.errors) {
+    throw InputError(file.string() +
+                     " has no range_errors for --correct-ranges to correct by; calibrate with this "
+                     "version and --method auto, or leave --correct-ranges out");
+  }
+  if (correction.cameras_differ) {
+    std::fprintf(stderr,
+                 "%s: cameras differ in their range_errors, the cloud is corrected by the first "
+                 "camera's; calibrate the cameras together\n",
+                 file.c_str());
+  }
+  return Corrected(std::move(cloud), *correction.errors);
+}
 
 void DrawPictures(const RgbdtCloud& fused, const std::string& title,
                   const std::filesystem::path& out) {
@@ -38,21 +65,26 @@ void DrawPictures(const RgbdtCloud& fused, const std::string& title,
 int RunFuse(const FuseFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
-  const Calibration calibration =
-      ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
+  const std::filesystem::path file =
+      PathOr(flags.calibration, session.root / "calibration.textproto");
+  const Calibration calibration = ReadCalibration(file);
   const std::string view = flags.view.empty() ? session.views.back() : flags.view;
   if (std::find(session.views.begin(), session.views.end(), view) == session.views.end()) {
     throw InputError("session " + session.root.string() + " has no view \"" + view + "\"; it has " +
                      session.views.front() + " to " + session.views.back());
   }
-  const RgbdtCloud fused = FuseView(session.rig, calibration, ReadView(session, view));
+  View seen = ReadView(session, view);
+  if (flags.correct_ranges) {
+    seen.cloud = WithTrueRanges(std::move(seen.cloud), session.rig, calibration, file);
+  }
+  const RgbdtCloud fused = FuseView(session.rig, calibration, seen);
   if (fused.points.empty()) throw InputError("view " + view + " has no points that returned");
   const auto coloured = std::count_if(fused.valid.begin(), fused.valid.end(),
                                       [](std::uint32_t valid) { return valid != 0; });
   WritePly(out / "fused.ply", fused);
   WritePcd(out / "fused.pcd", fused);
-  std::printf("view %s: %zu points, %.0f%% seen by a camera; wrote fused.ply, fused.pcd",
-              view.c_str(), fused.size(),
+  std::printf("view %s: %zu points%s, %.0f%% seen by a camera; wrote fused.ply, fused.pcd",
+              view.c_str(), fused.size(), flags.correct_ranges ? ", ranges corrected" : "",
               100.0 * static_cast<double>(coloured) / static_cast<double>(fused.size()));
   if (flags.png) DrawPictures(fused, "view " + view, out);
   std::printf(" to %s\n", out.c_str());
@@ -74,6 +106,9 @@ void AddFuse(CommandLine* program) {
   verb->Option("--view", &flags->view, "which view; default: the last");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");
+  verb->Flag("--correct-ranges", &flags->correct_ranges,
+             "puts points where they truly are, by what the calibration found the LIDAR's ranges\n"
+             "and beams to be off by");
   verb->Flag("--png", &flags->png,
              "also draw the cloud: fused_rgb.png, fused_thermal.png,\n"
              "and both in one, fused.png");

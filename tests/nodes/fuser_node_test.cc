@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+
 #include "services/messages/codec.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/unit/files/test_data.h"
@@ -284,6 +287,142 @@ TEST_F(FuserNodeTest, AClockSetBackForgetsTheImagesFromBefore) {
   const RgbdtCloud cloud = FuseAt(kNow + 2 * kSecond + kSecond / 2);
   EXPECT_EQ(cloud.valid[0], 1U);
   EXPECT_EQ(cloud.rgb[0][1], 100);
+}
+
+// Ranges 0.25 m too short, beams of ring 2 another 0.5 m, and beams that meet at 50 mm.
+RangeErrors Off() {
+  RangeErrors errors;
+  errors.offset_m.value = 0.25;
+  errors.rings = {{2, {0.5, 0}}};
+  errors.beams_meet_m.value = 0.05;
+  return errors;
+}
+
+CalibrationMessage Calibrated(const std::string& camera, const std::optional<RangeErrors>& errors) {
+  CalibrationMessage message = Calibrated(camera);
+  message.calibration.range_errors = errors;
+  return message;
+}
+
+CloudChunk ChunkOfRings(Utime utime, bool sweep_end) {
+  CloudChunk chunk = Chunk(utime);
+  for (Eigen::Vector3f& point : chunk.cloud.points) point.z() = 1;
+  chunk.cloud.ring = {0, 1, 2, 3};
+  chunk.sweep_end = sweep_end;
+  return chunk;
+}
+
+class CorrectedRanges : public ::testing::Test {
+ protected:
+  CorrectedRanges() {
+    for (FuserNode* node : {&node_, &as_measured_}) {
+      node->Handle(test::TextOf(TinyRig()));
+      node->Handle(Plain("rgb", kNow, 100));
+      node->SetWarningHandler([this](const std::string& warning) { warnings_.push_back(warning); });
+    }
+  }
+  Messages Sweep() { return node_.Handle(ChunkOfRings(kNow + kSecond, true)); }
+
+  FuserNode node_{FuserNode::Ranges::kCorrected}, as_measured_;
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(CorrectedRanges, ChunksAndSweepsAreFusedWherePointsTrulyAre) {
+  for (FuserNode* node : {&node_, &as_measured_}) {
+    node->Handle(Calibrated("rgb", Off()));
+    node->Handle(Calibrated("thermal", Off()));
+  }
+  const CloudChunk measured = ChunkOfRings(kNow + kSecond, true);
+  CloudChunk corrected = measured;
+  corrected.cloud = Corrected(measured.cloud, Off());
+  const Messages out = node_.Handle(measured);
+  ASSERT_EQ(out.size(), 2U) << "the chunk, and the sweep";
+  EXPECT_EQ(test::BytesOf(out), test::BytesOf(as_measured_.Handle(corrected)));
+  for (const RgbdtCloud& cloud : Only<RgbdtCloud>(out)) {
+    ASSERT_EQ(cloud.size(), 4U);
+    // Of a range of sqrt(26) m; a beam that rises by 1 m in 5 starts 10 mm lower.
+    EXPECT_NEAR(cloud.points[0].x(), 5 * (1 + 0.25 / std::sqrt(26.0)), 1e-5);
+    EXPECT_NEAR(cloud.points[0].z(), 1 + 0.25 / std::sqrt(26.0) - 0.01, 1e-5);
+    EXPECT_NEAR(cloud.points[2].x(), 5 * (1 + 0.75 / std::sqrt(26.0)), 1e-4);
+    EXPECT_EQ(cloud.valid[0], 1U);
+  }
+  EXPECT_EQ(node_.GetStatus().text, "fusing, ranges corrected");
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(CorrectedRanges, OnlyWhereAskedFor) {
+  as_measured_.Handle(Calibrated("rgb", Off()));
+  const auto out = Only<RgbdtCloud>(as_measured_.Handle(ChunkOfRings(kNow + kSecond, true)));
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(out[0].points, ChunkOfRings(kNow, true).cloud.points);
+  EXPECT_EQ(as_measured_.GetStatus().text, "fusing");
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(CorrectedRanges, WithoutRangeErrorsCloudsStayAsMeasuredWithOneWarning) {
+  Sweep();
+  EXPECT_TRUE(warnings_.empty()) << "there is no calibration yet";
+  node_.Handle(Calibrated("rgb"));
+  node_.Handle(Calibrated("thermal"));
+  for (int i = 0; i < 3; ++i) {
+    const auto out = Only<RgbdtCloud>(Sweep());
+    ASSERT_EQ(out.size(), 2U);
+    EXPECT_EQ(out[0].points, ChunkOfRings(kNow, true).cloud.points);
+  }
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_THAT(warnings_[0], HasSubstr("no range errors"));
+  EXPECT_THAT(warnings_[0], HasSubstr("calibrate with this version"));
+  EXPECT_EQ(node_.GetStatus().text, "fusing");
+}
+
+TEST_F(CorrectedRanges, OfCamerasThatDifferTheRigsFirstHoldsWithOneWarning) {
+  RangeErrors other = Off();
+  other.offset_m.value = 0.125;
+  node_.Handle(Calibrated("thermal", other));
+  node_.Handle(Calibrated("rgb", Off()));
+  for (int i = 0; i < 3; ++i) {
+    const auto out = Only<RgbdtCloud>(Sweep());
+    EXPECT_EQ(out.at(0).points, Corrected(ChunkOfRings(kNow, true).cloud, Off()).points);
+  }
+  ASSERT_EQ(warnings_.size(), 1U);
+  EXPECT_THAT(warnings_[0], HasSubstr("cameras differ"));
+}
+
+// A calibration's cameras come one after the other, and chunks come in between.
+TEST_F(CorrectedRanges, BetweenACalibrationsMessagesNobodyWarns) {
+  node_.Handle(Calibrated("rgb", RangeErrors{}));
+  node_.Handle(Calibrated("thermal", RangeErrors{}));
+  node_.Handle(Calibrated("rgb", Off()));
+  node_.Handle(ChunkOfRings(kNow + kSecond, false));
+  node_.Handle(Calibrated("thermal", Off()));
+  Sweep();
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(CorrectedRanges, OtherRangeErrorsHoldFromTheNextChunkOn) {
+  node_.Handle(Calibrated("rgb", Off()));
+  node_.Handle(ChunkOfRings(kNow + kSecond, false));
+  EXPECT_TRUE(node_.Handle(Calibrated("rgb", Off())).empty()) << "it is republished every second";
+  RangeErrors other = Off();
+  other.offset_m.value = 0.125;
+  // What the sweep has so far goes out by itself: no message mixes the two.
+  const auto parts = Only<RgbdtCloud>(node_.Handle(Calibrated("rgb", other)));
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].points, Corrected(ChunkOfRings(kNow, true).cloud, Off()).points);
+  for (const RgbdtCloud& cloud : Only<RgbdtCloud>(Sweep())) {
+    EXPECT_EQ(cloud.points, Corrected(ChunkOfRings(kNow, true).cloud, other).points);
+  }
+}
+
+TEST_F(CorrectedRanges, AnotherRigForgetsThem) {
+  node_.Handle(Calibrated("rgb", Off()));
+  RigText other = test::TextOf(TinyRig());
+  other.text += "# moved\n";
+  other.hash = HashOfRigText(other.text);
+  node_.Handle(other);
+  const auto out = Only<RgbdtCloud>(Sweep());
+  EXPECT_EQ(out.at(0).points, ChunkOfRings(kNow, true).cloud.points);
+  EXPECT_TRUE(warnings_.empty()) << "there is no calibration any more";
 }
 
 }  // namespace

@@ -148,9 +148,10 @@ TEST(Acfr, ARangeOffsetThatIsEstimatedMovesTheResultWithinItsSigma) {
   const CameraReport open = Calibrate(rig, detected->views).cameras.at(0);
   rig.lidar.range_offset_sigma_m = 0;
   const CameraReport exact = Calibrate(rig, detected->views).cameras.at(0);
-  ASSERT_TRUE(open.range_offset && open.calibration.covariance);
-  EXPECT_FALSE(exact.range_offset);
-  EXPECT_LT(std::abs(open.range_offset->value), 3 * std::hypot(open.range_offset->sigma, 0.02));
+  ASSERT_TRUE(open.calibration.range_errors && open.calibration.covariance);
+  const Estimate offset = open.calibration.range_errors->offset_m;
+  EXPECT_EQ(exact.calibration.range_errors.value_or(RangeErrors{}).offset_m.sigma, 0);
+  EXPECT_LT(std::abs(offset.value), 3 * std::hypot(offset.sigma, 0.02));
   const Vector6d delta =
       Log(open.calibration.camera_from_lidar * exact.calibration.camera_from_lidar.Inverse());
   EXPECT_LT(delta.dot(open.calibration.covariance->ldlt().solve(delta)), 12.592);

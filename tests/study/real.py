@@ -17,7 +17,7 @@ UNLIKELY = 22.5  # chi-square of six: beyond it once in a thousand times
 CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens", "in_order": "in_order"}
 DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
 SINGLE = ("used", "sigma_deg", "sigma_mm", "variance_factor", "edge_plane_deg", "edge_plane_mm",
-          "edge_plane_chi2", "lens_deg", "lens_mm", "lens_chi2")
+          "edge_plane_chi2", "lens_deg", "lens_mm", "lens_chi2", "range_sd_ratio")
 
 
 class Rig:
@@ -73,6 +73,7 @@ def targets_of(rigs):
         "silent_failures": ("<=", 0),
         "vlp16_halves_deg": ("<=", 0.12),
         "vlp16_halves_mm": ("<=", 5),
+        "vlp16_range_sd_ratio": ("<=", 0.7),
         "os64_used": (">=", 11),
         "os64_sigma_deg": ("<=", 0.08),
         "os64_sigma_mm": ("<=", 5),
@@ -127,9 +128,12 @@ def draw_differences(axes, rig, key, unit):
 
 
 def draw_rings(axes, rig):
-    enough = [r for r in rig.rings if r["points"] >= 5]
-    axes.scatter(column(enough, "ring"), column(enough, "mean_mm"), s=10, c="tab:blue", alpha=0.6)
+    for corrected, colour, label in ((0, "tab:red", "as measured"), (1, "tab:blue", "corrected")):
+        enough = [r for r in rig.rings if r["points"] >= 5 and r["corrected"] == corrected]
+        axes.scatter(column(enough, "ring"), column(enough, "mean_mm"), s=10, c=colour, alpha=0.6,
+                     label=label)
     axes.axhline(0, c="k", lw=0.8)
+    axes.legend(fontsize=8)
     axes.set(xlabel="ring", ylabel="behind the plane, along the beam [mm]",
              title=f"{rig.name}: mean of a ring's points in a view")
 

@@ -215,10 +215,11 @@ class Table {
   // And whether the report itself says that the result is not to be trusted.
   void WriteOffset(const CameraReport& camera, const Trial& trial) {
     std::optional<double> error_mm, chi2;
-    if (camera.range_offset) {
-      const double error_m = camera.range_offset->value - trial.model.range_offset_m;
+    const auto& errors = camera.calibration.range_errors;
+    if (errors && errors->offset_m.sigma > 0) {
+      const double error_m = errors->offset_m.value - trial.model.range_offset_m;
       error_mm = 1e3 * error_m;
-      chi2 = std::pow(error_m / camera.range_offset->sigma, 2);
+      chi2 = std::pow(error_m / errors->offset_m.sigma, 2);
     }
     Write(1e3 * trial.model.range_offset_m);
     Write(error_mm);

@@ -41,7 +41,7 @@ class MemberFinder {
     for (int round = 0; round < 2; ++round) {
       PlaneSums sums;
       ForEach([&](int, int, std::size_t cell) {
-        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point) {
+        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point, std::size_t) {
           const Eigen::Vector3d p = point.cast<double>();
           if (std::abs(plane.Signed(p)) < tolerance && (p - middle).squaredNorm() < reach * reach) {
             sums.Add(p);
@@ -88,12 +88,13 @@ class MemberFinder {
       const double behind = (p - origin).norm() - range;
       if (std::abs(plane.Signed(p)) <= tolerance) {
         beams_[i] = Beam::kOn;
-        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point) {
+        grid_.ForEachPoint(cell, [&](const Eigen::Vector3f& point, std::size_t index) {
           const Eigen::Vector3d q = point.cast<double>();
           if (std::abs(plane.Signed(q)) > tolerance) return;
           members->points.push_back(q);
           members->flat.push_back(flat_[i]);
           members->row.push_back(row);
+          members->index.push_back(index);
         });
       } else if (behind < 0) {
         beams_[i] = Beam::kBefore;
@@ -225,7 +226,7 @@ PlaneMembers FindMembers(const RangeGrid& grid, const PlaneRegion& region,
   const double tolerance = std::max(0.03, 3.5 * options.sigma_m);
   MemberFinder finder(grid, Around(grid, region));
   const Plane plane = finder.Refit(region.plane, options.middle, options.fit_reach_m, tolerance);
-  PlaneMembers members{plane, PlaneFrame(plane, options.middle), {}, {}, {}, {}, {}, 0, 0};
+  PlaneMembers members{plane, PlaneFrame(plane, options.middle), {}, {}, {}, {}, {}, {}, 0, 0};
   finder.Classify(options.middle, options.reach_m, tolerance, &members);
   finder.Spacings(&members);
   finder.Cross(true, &members);

@@ -43,6 +43,7 @@ struct PlaneMembers {
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> flat;     ///< where their beams meet the plane
   std::vector<int> row;                  ///< of the grid, e.g. the ring
+  std::vector<std::size_t> index;        ///< of the point in the cloud
   std::vector<Eigen::Vector2d> through;  ///< where beams went through the plane and hit beyond
   std::vector<FlatCrossing> crossings;
   double row_spacing_m = 0, column_spacing_m = 0;  ///< between neighbouring beams on the plane

@@ -88,6 +88,7 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
       filling.on.points.push_back(members.points[i]);
       filling.on.flat.push_back(members.flat[i]);
       filling.on.row.push_back(members.row[i]);
+      filling.on.index.push_back(members.index[i]);
     }
     if (off > kMargin && off < kMargin + kBand) ++band;
   }
@@ -173,8 +174,9 @@ std::vector<Crossing> CrossingsOf(const PlaneMembers& members, const FlatRectang
   return out;
 }
 
-std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectangle& voted,
-                                  const Target& target, const BoardInCloudOptions& options) {
+std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& members,
+                                  const FlatRectangle& voted, const Target& target,
+                                  const BoardInCloudOptions& options) {
   const FlatRectangle rectangle =
       RefineRectangle(members.crossings, target.width_m, target.height_m, voted, options.edge);
   const auto seen_sides =
@@ -207,6 +209,9 @@ std::optional<Candidate> FitBoard(const PlaneMembers& members, const FlatRectang
   out.edges.scatter = scatter;
   out.edges.raw_scatter = points.RawScatter(pose.translation);
   out.edges.scatter_sigma_m = points.sigma_m();
+  auto groups = points.GroupsAbout(pose.translation, cloud);
+  out.edges.groups = std::move(groups.groups);
+  out.edges.group_sigma_m = groups.sigma_m;
   const Matrix6d to_lidar = Adjoint(pose);
   out.edges.pose = TargetPose{
       pose,
@@ -292,13 +297,13 @@ std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, con
   const PlaneMembers members = FindMembers(grid, region, whole);
   std::vector<Candidate> found;
   for (const FlatRectangle& voted : Vote(members, target, whole.middle.norm())) {
-    const auto board = FitBoard(members, voted, target, options);
+    const auto board = FitBoard(grid.cloud(), members, voted, target, options);
     if (!board) continue;
     region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
     const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
                                0.5 * std::min(target.width_m, target.height_m)};
     const PlaneMembers about = FindMembers(grid, region, closer);
-    auto better = FitBoard(about, InFrame(about.frame, *board), target, options);
+    auto better = FitBoard(grid.cloud(), about, InFrame(about.frame, *board), target, options);
     if (better) found.push_back(std::move(*better));
   }
   if (found.empty()) likeness->Consider(members);

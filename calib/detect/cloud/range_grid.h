@@ -19,6 +19,7 @@ class RangeGrid {
   /// `cloud` outlives the grid.
   explicit RangeGrid(const Cloud& cloud);
 
+  const Cloud& cloud() const { return *cloud_; }
   int rows() const { return rows_; }
   int columns() const { return columns_; }
   /// Columns go round: column -1 is the last one.
@@ -46,16 +47,16 @@ class RangeGrid {
   const Eigen::Vector3f& Point(std::size_t cell) const {
     return cloud_->points[static_cast<std::size_t>(PointOf(cell))];
   }
-  /// All the points of a cell: where the grid is coarser than the points, there are several, and
-  /// which of them comes first depends on their noise.
+  /// All the points of a cell and their indices in the cloud: where the grid is coarser than the
+  /// points, there are several, and which of them comes first depends on their noise.
   template <typename F>
   void ForEachPoint(std::size_t cell, F f) const {
     if (place_.empty()) {
-      if (IsHit(cell)) f(cloud_->points[cell]);
+      if (IsHit(cell)) f(cloud_->points[cell], cell);
       return;
     }
     for (std::int32_t i = place_[cell]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
-      f(cloud_->points[static_cast<std::size_t>(i)]);
+      f(cloud_->points[static_cast<std::size_t>(i)], static_cast<std::size_t>(i));
     }
   }
   /// Where the beam starts.

@@ -4,6 +4,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/lens_convert.h"
+#include "calib/files/schema/internal/report_parts.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -31,6 +32,9 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
     out.covariance = text::ToMatrix(camera.covariance(), place.In("covariance"));
   }
   if (camera.has_lens()) out.lens = text::ToSolvedLens(camera.lens(), place.In("lens"));
+  if (camera.has_range_errors()) {
+    out.range_errors = text::ToRangeErrors(camera.range_errors(), place.In("range_errors"));
+  }
   out.status = text::ToStatus(camera.status(), place);
   out.detail = camera.detail();
   return out;
@@ -43,6 +47,9 @@ void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) 
     text::FromMatrix(*camera.covariance, out->mutable_covariance());
   }
   if (camera.lens) text::FromSolvedLens(*camera.lens, out->mutable_lens());
+  if (camera.range_errors) {
+    text::FromRangeErrors(*camera.range_errors, out->mutable_range_errors());
+  }
   out->set_status(text::FromStatus(camera.status));
   out->set_detail(ValidUtf8(camera.detail));
 }

@@ -136,8 +136,8 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
     FromPoseError(*camera.first_guess_error, out->mutable_first_guess_error());
   }
   if (camera.truth_error) FromPoseError(*camera.truth_error, out->mutable_truth_error());
-  if (camera.range_offset) {
-    text::FromEstimate(*camera.range_offset, out->mutable_range_offset_m());
+  if (calibration.range_errors) {
+    text::FromRangeErrors(*calibration.range_errors, out->mutable_range_errors());
   }
   if (camera.variance_factor != 1) out->set_variance_factor(camera.variance_factor);
   text::FromUncertainty(camera, out);
@@ -170,8 +170,9 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
     camera.other_starts.push_back(
         ToStart(message.other_starts(i), name, place.In("other_starts", i)));
   }
-  if (message.has_range_offset_m()) {
-    camera.range_offset = text::ToEstimate(message.range_offset_m());
+  if (message.has_range_errors()) {
+    camera.calibration.range_errors =
+        text::ToRangeErrors(message.range_errors(), place.In("range_errors"));
   }
   if (message.has_variance_factor()) camera.variance_factor = message.variance_factor();
   if (message.has_first_guess_error()) {

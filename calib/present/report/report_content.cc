@@ -51,10 +51,10 @@ CameraContent ContentOf(const CameraReport& camera, const Report& report) {
       report.method == kPaperMethod ? FitFigure::kDistanceTransform : FitFigure::kSigmas;
   CameraContent content{
       camera.calibration.camera, Judge(camera, report.next_view), BothWays(camera.calibration), {}};
-  for (Table& table :
-       std::array{ReprojectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
-                  PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
-                  StartsTable(camera), NuisanceTable(camera), SolveTable(camera)}) {
+  for (Table& table : std::array{
+           ReprojectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
+           PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
+           StartsTable(camera), NuisanceTable(camera), LidarTable(camera), SolveTable(camera)}) {
     AddIfAny(std::move(table), &content.tables);
   }
   return content;

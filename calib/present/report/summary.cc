@@ -35,6 +35,27 @@ std::string Sigma(const CameraCalibration& calibration) {
                          worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
+RangeErrors RangeErrorsOf(const CameraReport& camera) {
+  return camera.calibration.range_errors.value_or(RangeErrors{});
+}
+
+// The same of all points.
+std::string Common(const RangeErrors& errors) {
+  return errors.offset_m.sigma > 0 ? fmt::format("{:.1f} +- {:.1f}", 1e3 * errors.offset_m.value,
+                                                 1e3 * errors.offset_m.sigma)
+                                   : "-";
+}
+
+// From the least to the most of offsets of rings or intensities.
+template <typename Offsets>
+std::string Spread(const Offsets& offsets) {
+  if (offsets.empty()) return "-";
+  const auto [least, most] = std::minmax_element(
+      offsets.begin(), offsets.end(),
+      [](const auto& a, const auto& b) { return a.offset_m.value < b.offset_m.value; });
+  return fmt::format("{:+.0f} to {:+.0f}", 1e3 * least->offset_m.value, 1e3 * most->offset_m.value);
+}
+
 // In the image's middle and where it is worst.
 std::string ReprojectionSigma(const CameraReport& camera) {
   const ColouringSigma* at = JudgedColouring(camera);
@@ -138,12 +159,15 @@ std::string Summary::FullReport() const {
         [](const CameraReport& c) { return Error(c.first_guess_error); });
     row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
   }
-  if (any([](const CameraReport& c) { return c.range_offset.has_value(); })) {
-    row("ranges are short by [mm]", [](const CameraReport& c) {
-      return !c.range_offset ? std::string("-")
-                             : fmt::format("{:.1f} +- {:.1f}", 1e3 * c.range_offset->value,
-                                           1e3 * c.range_offset->sigma);
-    });
+  if (any([](const CameraReport& c) { return RangeErrorsOf(c).offset_m.sigma > 0; })) {
+    row("ranges are short by [mm]", [](const CameraReport& c) { return Common(RangeErrorsOf(c)); });
+  }
+  if (any([](const CameraReport& c) { return !RangeErrorsOf(c).rings.empty(); })) {
+    row("and rings by [mm]", [](const CameraReport& c) { return Spread(RangeErrorsOf(c).rings); });
+  }
+  if (any([](const CameraReport& c) { return !RangeErrorsOf(c).intensities.empty(); })) {
+    row("and by brightness [mm]",
+        [](const CameraReport& c) { return Spread(RangeErrorsOf(c).intensities); });
   }
   if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
     row("a far start ends off the result by", [](const CameraReport& c) {

@@ -4,6 +4,7 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/present/pictures/colouring_picture.h"
+#include "calib/present/pictures/lidar_picture.h"
 #include "calib/present/report/report_html.h"
 #include "calib/present/session/internal/overlay_picture.h"
 
@@ -16,8 +17,13 @@ std::string PlainPage(const FinishedSession& finished) {
     const CameraCalibration& camera = report.calibration;
     if (auto picture = OverlayPicture(finished, camera)) pictures.push_back(std::move(*picture));
     const cv::Mat map = ColouringPicture(finished.session.rig.Camera(camera.camera), camera);
-    if (map.empty()) continue;
-    pictures.push_back({camera.camera + ": reprojection uncertainty", kColouringCaption, map});
+    if (!map.empty()) {
+      pictures.push_back({camera.camera + ": reprojection uncertainty", kColouringCaption, map});
+    }
+    const cv::Mat lidar = LidarPicture(report);
+    if (!lidar.empty()) {
+      pictures.push_back({camera.camera + ": the LIDAR's own errors", kLidarCaption, lidar});
+    }
   }
   return ReportHtml(ContentOf(finished.report()), pictures);
 }

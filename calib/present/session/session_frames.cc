@@ -13,6 +13,7 @@
 #include "calib/present/frames/session_state.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/pictures/colouring_picture.h"
+#include "calib/present/pictures/lidar_picture.h"
 
 namespace rgbdt {
 namespace {
@@ -180,17 +181,27 @@ void TellFailure(const Rig& rig, const std::string& failure, ViewState* view) {
   detection.cloud.why_not = failure;
 }
 
-// The picture of the reprojection uncertainty, as the image of a view "sigma".
-std::vector<NamedFrame> SigmaFrames(const Rig& rig, const Calibration& calibration) {
+// The pictures of the reprojection uncertainty and of the LIDAR's own errors, as the images of
+// views "sigma" and "lidar".
+std::vector<NamedFrame> PictureFrames(const Rig& rig, const Report& report) {
   std::vector<NamedFrame> frames;
-  for (const CameraCalibration& camera : calibration.cameras) {
+  const auto add = [&](const std::string& view, const std::string& camera, cv::Mat picture) {
+    if (picture.empty()) return;
     Image image;
-    image.camera = camera.camera;
+    image.camera = camera;
     image.format = PixelFormat::kBgr8;
-    image.pixels = ColouringPicture(rig.Camera(camera.camera), camera);
-    if (image.pixels.empty()) continue;
-    frames.push_back(
-        {"image/sigma/" + camera.camera, ImageFrame(image, "sigma", false, {1280, 90})});
+    image.pixels = std::move(picture);
+    std::string name = "image/";
+    name += view;
+    name += '/';
+    name += camera;
+    frames.push_back({std::move(name), ImageFrame(image, view, false, {1280, 90})});
+  };
+  for (const CameraReport& camera : report.cameras) {
+    if (!camera.calibration.solved()) continue;
+    const std::string& name = camera.calibration.camera;
+    add("sigma", name, ColouringPicture(rig.Camera(name), camera.calibration));
+    add("lidar", name, LidarPicture(camera));
   }
   return frames;
 }
@@ -218,7 +229,7 @@ std::vector<NamedFrame> SessionFrames(const FinishedSession& finished,
                                     {"session", SessionFrame(state, &rig)}};
   for (ViewFrames& view : made) Append(std::move(view.thumbs), &frames);
   for (ViewFrames& view : made) Append(std::move(view.images), &frames);
-  Append(SigmaFrames(rig, state.calibration), &frames);
+  Append(PictureFrames(rig, finished.report()), &frames);
   if (!cloud.empty()) frames.push_back({"sweep/0", cloud});
   return frames;
 }

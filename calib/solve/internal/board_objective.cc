@@ -44,9 +44,11 @@ struct ViewTerms {
   double Plane(const Rigid3& lidar_from_target) const {
     const CloudEdges& cloud = view.cloud;
     const double points = cloud.scatter(3, 3);
-    if (!(cloud.scatter_sigma_m > 0) || !(points > 0)) return 0;
+    if (!(cloud.scatter_sigma_m > 0) || !(points > 0) || !(cloud.raw_scatter(3, 3) > 0)) return 0;
     const Eigen::Vector4d x =
-        ResidualOf(cloud, lidar_from_target, shared_state.shared[kRangeOffset]).x;
+        ResidualOf(cloud, lidar_from_target, shared_state.shared[kRangeOffset],
+                   shared_state.shared[kBeamsMeet])
+            .x;
     const double sigma2 = cloud.scatter_sigma_m * cloud.scatter_sigma_m;
     return points * BoundedCost(x.dot(cloud.scatter * x) / (points * sigma2));
   }

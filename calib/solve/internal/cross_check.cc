@@ -54,6 +54,7 @@ Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
   state.camera_from_lidar[camera] = camera_from_lidar;
   state.lenses[camera] = lens;
   state.shared = fold.state.shared;
+  state.range_terms = fold.state.range_terms;
   state.lidar_from_target[0] = alone.views[0].cloud.pose->sensor_from_target;
   state.side_shift[0] = {};
   Misfit misfit = MisfitOf(alone, state, 0, static_cast<int>(camera));

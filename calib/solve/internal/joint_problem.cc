@@ -40,13 +40,24 @@ LensCovariance LensPrior(const CameraViews& camera) {
   return 0.5 * (left_of_it + left_of_it.transpose());
 }
 
+// Whether the LIDAR spins: its clouds tell lasers apart.
+bool HasRings(const BoardProblem& problem) {
+  return std::any_of(problem.views.begin(), problem.views.end(), [](const BoardView& view) {
+    const auto& groups = view.cloud.groups;
+    return std::any_of(groups.begin(), groups.end(),
+                       [](const PointGroup& group) { return group.ring >= 0; });
+  });
+}
+
 // Builds the problem a camera at a time, in the order of the cameras.
 class Builder {
  public:
   explicit Builder(const Target& target) {
     joint_.problem.target = target;
     joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
-    if (!target.HasPattern()) joint_.problem.priors.class_sigma_rad = kPlainClassShiftSigmaRad;
+    if (!target.HasPattern()) {
+      joint_.problem.priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
+    }
   }
 
   void Add(GuessedCamera guessed) {
@@ -60,14 +71,18 @@ class Builder {
   }
 
   JointProblem Finish(double range_offset_sigma_m) {
-    if (range_offset_sigma_m > 0) {
-      joint_.problem.priors.range_offset_sigma_m = range_offset_sigma_m;
-    }
+    BoardProblem& problem = joint_.problem;
+    problem.ranges_exact = range_offset_sigma_m == 0;
+    // A plain board's rim, which images show beside its front, leans it there as an offset of the
+    // ranges would: such boards are no evidence of one, unless nothing is to be known of it.
+    const bool offset = range_offset_sigma_m > 0 &&
+                        (problem.target.HasPattern() || range_offset_sigma_m >= kRangeOffsetSigmaM);
+    if (!problem.ranges_exact) OpenBeams(&problem);
+    if (offset) problem.priors.range_offset_sigma_m = range_offset_sigma_m;
     std::vector<Rigid3> poses;
     for (const GuessedCamera& c : joint_.cameras) poses.push_back(*c.guess.camera_from_lidar);
-    joint_.start = StartOf(joint_.problem, poses);
-    joint_.start.shared[kRangeOffset] =
-        range_offset_sigma_m > 0 ? joint_.cameras.front().guess.range_offset_m : 0;
+    joint_.start = StartOf(problem, poses);
+    joint_.start.shared[kRangeOffset] = offset ? joint_.cameras.front().guess.range_offset_m : 0;
     return std::move(joint_);
   }
 
@@ -105,6 +120,10 @@ class Builder {
 };
 
 }  // namespace
+
+void OpenBeams(BoardProblem* problem) {
+  if (HasRings(*problem)) problem->priors.beams_meet_sigma_m = kBeamsMeetSigmaM;
+}
 
 JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
                               double range_offset_sigma_m) {

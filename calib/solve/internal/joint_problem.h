@@ -15,10 +15,15 @@ struct JointProblem {
   std::vector<GuessedCamera> cameras;  ///< in the order of problem.cameras
 };
 
+/// Where the LIDAR's clouds tell lasers apart, the radius at which its beams meet becomes an
+/// unknown.
+void OpenBeams(BoardProblem* problem);
+
 /// The boards of all views used, of cameras that all have a guess, each brought into one set of
 /// axes for all cameras: the target's own, where one of them knows it. A view whose camera takes
 /// another board of the cloud than the cameras before it becomes rejected. `range_offset_sigma_m`:
-/// how well a constant that ranges may be off by is known; 0: exactly.
+/// how well a constant that ranges may be off by is known; 0: the LIDAR is exact in all. By a plain
+/// board it is found only where nothing is known of it (kRangeOffsetSigmaM or more).
 JointProblem MakeJointProblem(const Target& target, std::vector<GuessedCamera> cameras,
                               double range_offset_sigma_m);
 

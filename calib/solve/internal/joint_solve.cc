@@ -8,6 +8,8 @@
 #include "calib/model/rigid3.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
+#include "calib/solve/internal/evidence.h"
+#include "calib/solve/internal/range_terms.h"
 
 namespace rgbdt {
 namespace {
@@ -115,8 +117,8 @@ BoardSolution Without(const JointProblem& joint, const BoardSolution& all, std::
 // How the result moves when each view is left out in turn, against how it should: nuisances, robust
 // weights and all, whatever makes views differ. Of an efficient estimate with covariance C the move
 // has covariance C_without - C (Hausman 1978), so the sum of move' C^-1 move is that of
-// tr(C^-1 C_without - I): the quotient is the factor of variance. One-sided, since views that
-// scatter less than stated are luck; and only what chance hardly does counts. Of more than ten
+// tr(C^-1 C_without - I): the quotient is the factor of variance, as far as chance lets it be known
+// (FactorFor). One-sided, since views that scatter less than stated are luck. Of more than ten
 // views a tenth at a time: the time then grows with the views, not with their square.
 double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) {
   constexpr std::size_t kMostParts = 10;
@@ -144,24 +146,25 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
   // Cameras share the clouds: their moves are correlated, and count but once.
   const double chance =
       std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
-  const double factor = moved / expected;
-  return factor > 1 + 2.5 * chance ? factor : 1;
+  return FactorFor(moved / expected, 2 / (chance * chance));
 }
 
-// How far sides differ among themselves, by the data: never less than the physics says. Each
-// side's shift as found and what is left open of it (Dempster, Laird and Rubin 1977).
+// How far sides differ among themselves, by the data: never less than the physics says. The shifts
+// as found, over how many of them the data tell (MacKay 1992).
 double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
+  const double prior = joint.problem.priors.side_sigma_rad;
   double sum = 0;
-  double count = 0;
+  double told = 0;
   for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
     for (std::size_t side = 0; side < 4; ++side) {
       if (!joint.problem.views[v].sides[side]) continue;
       const double shift = solution.state.side_shift[v][side];
-      sum += shift * shift + solution.side_variance[v][side];
-      count += 1;
+      sum += shift * shift;
+      told += 1 - solution.side_variance[v][side] / (prior * prior);
     }
   }
-  return count > 0 ? std::max(BoardPriors().side_sigma_rad, std::sqrt(sum / count)) : 0;
+  const double least = BoardPriors().side_sigma_rad;
+  return told > 1 ? std::max(least, std::sqrt(sum / told)) : least;
 }
 
 // The range offset as the views have it, as if nothing had been known of it: one step from the
@@ -214,6 +217,7 @@ class JointSolver {
     SolveOnce();
     PoseImagesAgain();
     FitImageSides();
+    FitRanges();
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Joint(), result_.solution);
@@ -223,7 +227,8 @@ class JointSolver {
         continue;
       }
       if (DropSide()) continue;
-      FitSides();
+      FitScatter();
+      Settle();
       result_.variance_factor = VarianceFactor(Joint(), result_.solution);
       break;
     }
@@ -234,7 +239,14 @@ class JointSolver {
   JointProblem& Joint() { return result_.joint; }
   BoardProblem& Problem() { return result_.joint.problem; }
 
+  // As exactly as it takes to decide what to solve next: to a tenth of a sigma.
   void SolveOnce() {
+    constexpr double kSettled = 1e-2;
+    result_.solution = SolveBoards(Problem(), state_, kSettled);
+    state_ = result_.solution.state;
+  }
+
+  void Settle() {
     result_.solution = SolveBoards(Problem(), state_);
     state_ = result_.solution.state;
   }
@@ -318,14 +330,25 @@ class JointSolver {
     return true;
   }
 
-  // Solves again until the sides' sigma agrees with the sides.
-  void FitSides() {
+  // Solves again until what ranges are off by agrees with the views.
+  void FitRanges() {
+    constexpr int kRounds = 6;
+    for (int round = 0; round < kRounds; ++round) {
+      if (!FitRangeTerms(result_.solution, &Problem(), &state_)) return;
+      SolveOnce();
+    }
+  }
+
+  // Solves again until the sigmas of what differs by view and side agree with the views.
+  void FitScatter() {
     constexpr int kRounds = 12;
     for (int round = 0; round < kRounds; ++round) {
       const double before = Problem().priors.side_sigma_rad;
       const double now = SideSigma(Joint(), result_.solution);
-      if (!(std::abs(now - before) > 0.03 * before)) return;
-      Problem().priors.side_sigma_rad = now;
+      const bool sides = std::abs(now - before) > 0.03 * before;
+      if (sides) Problem().priors.side_sigma_rad = now;
+      const bool ranges = FitRangeTerms(result_.solution, &Problem(), &state_);
+      if (!sides && !ranges) return;
       SolveOnce();
     }
   }
@@ -355,11 +378,16 @@ JointResult SolveWithOffset(JointProblem joint) {
   // NaN, where the views say nothing, refutes nothing.
   const auto refuted = [&](const JointResult& result, double sigmas) {
     const Estimate free = FreeRangeOffset(result.joint, result.solution);
-    return std::abs(free.value) > sigmas * std::hypot(free.sigma, known);
+    const double sigma = std::sqrt(result.variance_factor) * free.sigma;
+    return std::abs(free.value) > sigmas * std::hypot(sigma, known);
   };
-  if (known >= kRangeOffsetSigmaM) return JointSolver(std::move(joint)).Solve();
+  if (known >= kRangeOffsetSigmaM || !joint.problem.target.HasPattern()) {
+    return JointSolver(std::move(joint)).Solve();
+  }
   JointProblem open = joint;
   open.problem.priors.range_offset_sigma_m = kRangeOffsetSigmaM;
+  open.problem.ranges_exact = false;
+  OpenBeams(&open.problem);
   JointResult held = JointSolver(std::move(joint)).Solve();
   if (!refuted(held, 4)) return held;
   JointResult found = JointSolver(std::move(open)).Solve();

@@ -26,8 +26,8 @@ struct JointResult {
 /// the cameras' views. A view's own estimate of a camera against that of all others: beyond
 /// what chance does once in 20,000 views, it is out. A side's own shift beyond 4 of its sigmas: its
 /// crossings are out, and a warning says so. Where the views put the range offset beyond 4 sigma
-/// of what its prior allows, all is solved again with it free; where they contradict what is known
-/// of a lens, with that known as much worse as they say.
+/// of what its prior allows, all is solved again with it free (not by a plain board); where they
+/// contradict what is known of a lens, with that known as much worse as they say.
 JointResult SolveJointly(JointProblem joint);
 
 /// Of camera `index`, the variance factor counted in.

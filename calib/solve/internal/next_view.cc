@@ -108,6 +108,7 @@ CloudEdges ExpectedCloud(const Target& target, const Exactness& exactness,
                                         (w * w * axes.col(0) * axes.col(0).transpose() +
                                          h * h * axes.col(1) * axes.col(1).transpose());
   cloud.scatter(3, 3) = points;
+  cloud.raw_scatter = cloud.scatter;
   cloud.scatter_sigma_m = exactness.scatter_sigma_m;
   const auto corners = target.OutlineCorners();
   for (int side = 0; side < 4; ++side) {
@@ -180,10 +181,10 @@ std::optional<Eigen::MatrixXd> Expected(const BoardProblem& problem, const Board
   for (std::size_t c = 0; c < images->size(); ++c) {
     view.images.push_back({static_cast<int>(c), &(*images)[c], false});
   }
-  const BoardProblem alone{
-      problem.target, problem.cameras, problem.lens_priors, {view}, problem.priors};
-  const BoardState there{
-      state.camera_from_lidar, state.lenses, state.shared, {lidar_from_target}, {{}}};
+  const BoardProblem alone{problem.target, problem.cameras, problem.lens_priors,
+                           {view},         problem.priors,  problem.ranges};
+  const BoardState there{state.camera_from_lidar, state.lenses, state.shared,
+                         {lidar_from_target},     {{}},         state.range_terms};
   return InformationOf(alone, there, 0).information;
 }
 

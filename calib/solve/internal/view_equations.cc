@@ -28,7 +28,7 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
       state_(state),
       lidar_from_target_(state.lidar_from_target[view]),
       side_shift_(state.side_shift[view]),
-      places_(problem.cameras.size()),
+      places_(problem),
       h_(Eigen::MatrixXd::Zero(Size(), Size())),
       g_(Eigen::VectorXd::Zero(Size())) {
   for (const BoardImage& image : view_.images) {
@@ -36,7 +36,9 @@ ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& stat
     AddImageSides(image);
   }
   AddCrossings();
+  of_points_ = -h_.topLeftCorner<kOwnUnknowns, kOwnUnknowns>();
   AddPlane();
+  of_points_ += h_.topLeftCorner<kOwnUnknowns, kOwnUnknowns>();
   AddSidePriors();
 }
 
@@ -203,13 +205,9 @@ double ViewEquations::OwnSigma(const Crossing& crossing, const CrossingResidual&
 }
 
 void ViewEquations::AddCrossings() {
-  // Over the board's pose, the class's shift, the thickness and the outline (whose derivatives
-  // are the side's and the kind's), added up for each of them apart.
-  constexpr int kSums = 9;
-  using Sums = Eigen::Matrix<double, kSums, kSums>;
-  using Sum = Eigen::Matrix<double, kSums, 1>;
-  std::array<std::array<Sums, 3>, 4> h;
-  std::array<std::array<Sum, 3>, 4> g;
+  // The outline's and the class's derivatives are the side's and the kind's: added up apart.
+  std::array<std::array<CrossingMatrix, 3>, 4> h;
+  std::array<std::array<CrossingVector, 3>, 4> g;
   for (int side = 0; side < 4; ++side) {
     for (int kind = 0; kind < 3; ++kind) {
       h[side][kind].setZero();
@@ -222,8 +220,8 @@ void ViewEquations::AddCrossings() {
     const CrossingResidual r = ResidualOf(problem_.target, problem_.priors, crossing,
                                           lidar_from_target_, state_.shared, side_shift_[side]);
     if (!(r.per_rad > 0)) continue;
-    Sum j;
-    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1;
+    CrossingVector j;
+    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet;
     const double sigma = OwnSigma(crossing, r);
     const double squared = r.beyond_m * r.beyond_m / (sigma * sigma);
     // Noise that it shares with its neighbours counts once: in weight, not in what is far off.
@@ -243,42 +241,128 @@ void ViewEquations::AddCrossings() {
   }
 }
 
-void ViewEquations::SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
-                                    const Eigen::Matrix<double, 9, 1>& g) {
+void ViewEquations::SpreadCrossings(int side, int kind, const CrossingMatrix& h,
+                                    const CrossingVector& g) {
   if (h(8, 8) == 0) return;
-  // Places of the ten derivatives: the class's shift stands for the side's, too.
-  const std::array<Eigen::Index, 10> place{0,
-                                           1,
-                                           2,
-                                           3,
-                                           4,
-                                           5,
-                                           Shared(kNoReturnShift + kind),
-                                           Shared(kThickness),
-                                           Shared(kOutlineTop + side),
-                                           6 + side};
-  const std::array<int, 10> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 6};
-  for (std::size_t a = 0; a < 10; ++a) {
-    for (std::size_t b = 0; b < 10; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
+  // Places of the derivatives: the class's shift stands for the side's, too.
+  constexpr std::size_t kPlaces = kCrossingUnknowns + 1;
+  const std::array<Eigen::Index, kPlaces> place{0,
+                                                1,
+                                                2,
+                                                3,
+                                                4,
+                                                5,
+                                                Shared(kNoReturnShift + kind),
+                                                Shared(kThickness),
+                                                Shared(kOutlineTop + side),
+                                                Shared(kBeamsMeet),
+                                                6 + side};
+  const std::array<int, kPlaces> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 6};
+  for (std::size_t a = 0; a < kPlaces; ++a) {
+    for (std::size_t b = 0; b < kPlaces; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
     g_[place[a]] += g[sum[a]];
   }
 }
 
 void ViewEquations::AddPlane() {
   const double sigma = view_.cloud.scatter_sigma_m;
-  if (!(sigma > 0) || !(view_.cloud.scatter(3, 3) > 0)) return;
-  const PlaneResidual r = ResidualOf(view_.cloud, lidar_from_target_, state_.shared[kRangeOffset]);
-  const Eigen::Matrix4d information = view_.cloud.scatter / (sigma * sigma);
-  const Eigen::Matrix4d h = r.by.transpose() * information * r.by;
-  const Eigen::Vector4d g = -r.by.transpose() * information * r.x;
-  cost_ += r.x.dot(information * r.x);
-  const std::array<Eigen::Index, 4> place{0, 1, 5, Shared(kRangeOffset)};
-  for (int a = 0; a < 4; ++a) {
-    for (int b = 0; b < 4; ++b) {
-      h_(place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)]) += h(a, b);
-    }
-    g_[place[static_cast<std::size_t>(a)]] += g[a];
+  if (!(sigma > 0) || !(view_.cloud.scatter(3, 3) > 0) || !(view_.cloud.raw_scatter(3, 3) > 0)) {
+    return;
   }
+  const bool told_apart = !view_.cloud.groups.empty() && view_.cloud.group_sigma_m > 0;
+  if (told_apart && !problem_.ranges_exact) return AddGroups();
+  const PlaneResidual r = ResidualOf(view_.cloud, lidar_from_target_, state_.shared[kRangeOffset],
+                                     state_.shared[kBeamsMeet]);
+  const Eigen::Matrix4d information = view_.cloud.scatter / (sigma * sigma);
+  cost_ += r.x.dot(information * r.x);
+  const std::array<Eigen::Index, 5> place = PlanePlaces();
+  h_(place, place) += r.by.transpose() * information * r.by;
+  g_(place) -= r.by.transpose() * information * r.x;
+}
+
+// Groups of one ring stand together. Their residuals are linear in the range offset.
+void ViewEquations::AddGroups() {
+  const double beams_meet = state_.shared[kBeamsMeet];
+  const PlaneResidual unmoved = ResidualOf(view_.cloud, lidar_from_target_, 0, beams_meet);
+  PlaneResidual by_offset = ResidualOf(view_.cloud, lidar_from_target_, 1, beams_meet);
+  by_offset.x -= unmoved.x;
+  by_offset.by -= unmoved.by;
+  const std::vector<PointGroup>& groups = view_.cloud.groups;
+  const PointGroup* const end = groups.data() + groups.size();
+  for (const PointGroup* first = groups.data(); first != end;) {
+    const PointGroup* const last = std::find_if(
+        first, end, [&](const PointGroup& group) { return group.ring != first->ring; });
+    AddRing(first, last, unmoved, by_offset);
+    first = last;
+  }
+}
+
+// The groups of one ring. What the ring is off by in this view is noise that they share; with its
+// variance s^2 and w the groups' information of it, what they say together is less by
+// 1 / (1 / s^2 + w) of what they say of it, squared.
+void ViewEquations::AddRing(const PointGroup* first, const PointGroup* last,
+                            const PlaneResidual& unmoved, const PlaneResidual& by_offset) {
+  constexpr int kMost = 5 + RangeTerms::kMostParts;
+  const std::array<Eigen::Index, 5> plane = PlanePlaces();
+  const Eigen::Vector4d& along = by_offset.x;  // a point's distance by its offset
+  const double weight = 1 / (view_.cloud.group_sigma_m * view_.cloud.group_sigma_m);
+  std::array<Eigen::Index, kMost> own{};
+  std::copy(plane.begin(), plane.end(), own.begin());
+  // What the groups say of the offset that they share, with each unknown; `place` of each.
+  std::vector<Eigen::Index> place(plane.begin(), plane.end());
+  std::vector<double> shared(plane.size(), 0);
+  double of_offset = 0;  // w
+  double residual = 0;
+  for (const PointGroup* group = first; group != last; ++group) {
+    const RangeTerms::Parts parts = problem_.ranges.PartsOf(*group);
+    double offset = state_.shared[kRangeOffset];
+    for (const auto& [term, part] : parts) offset += part * state_.range_terms[term];
+    Eigen::Matrix<double, 4, kMost> by = Eigen::Matrix<double, 4, kMost>::Zero();
+    by.leftCols<5>() = unmoved.by + offset * by_offset.by;
+    std::size_t count = plane.size();
+    for (const auto& [term, part] : parts) {
+      by.col(static_cast<Eigen::Index>(count)) = part * along;
+      own[count++] = kOwnUnknowns + places_.RangeTerm(term);
+    }
+    const Eigen::Vector4d x = unmoved.x + offset * along;
+    const Eigen::Vector4d weighted = weight * group->scatter * x;
+    const Eigen::Matrix<double, kMost, 4> by_weighted = weight * by.transpose() * group->scatter;
+    const Eigen::Matrix<double, kMost, kMost> h = by_weighted * by;
+    const Eigen::Matrix<double, kMost, 1> g = by.transpose() * weighted;
+    const Eigen::Matrix<double, kMost, 1> of_own = by_weighted * along;
+    for (std::size_t a = 0; a < count; ++a) {
+      const auto at = static_cast<Eigen::Index>(a);
+      for (std::size_t b = 0; b < count; ++b) {
+        h_(own[a], own[b]) += h(at, static_cast<Eigen::Index>(b));
+      }
+      g_[own[a]] -= g[at];
+      if (a < plane.size()) {
+        shared[a] += of_own[at];
+      } else {
+        place.push_back(own[a]);
+        shared.push_back(of_own[at]);
+      }
+    }
+    cost_ += x.dot(weighted);
+    of_offset += weight * along.dot(group->scatter * along);
+    residual += along.dot(weighted);
+  }
+  if (first->ring < 0 || !(of_offset > 0)) return;
+  rings_off_.push_back({first->ring, -residual / of_offset, 1 / of_offset});
+  const double sigma = problem_.priors.ring_view_sigma_m;
+  if (!(sigma > 0)) return;
+  const double share = 1 / (1 / (sigma * sigma) + of_offset);
+  for (std::size_t a = 0; a < place.size(); ++a) {
+    for (std::size_t b = 0; b < place.size(); ++b) {
+      h_(place[a], place[b]) -= share * shared[a] * shared[b];
+    }
+    g_[place[a]] += share * shared[a] * residual;
+  }
+  cost_ -= share * residual * residual;
+}
+
+std::array<Eigen::Index, 5> ViewEquations::PlanePlaces() const {
+  return {0, 1, 5, Shared(kRangeOffset), Shared(kBeamsMeet)};
 }
 
 void ViewEquations::AddSidePriors() {

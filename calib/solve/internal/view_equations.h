@@ -16,12 +16,17 @@ inline constexpr int kOwnUnknowns = 10;  ///< of a view: its board's pose, its f
 /// shared ones (SharedPlaces). Problem and state must outlive it.
 class ViewEquations {
  public:
+  using OwnMatrix = Eigen::Matrix<double, kOwnUnknowns, kOwnUnknowns>;
+
   ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view);
 
   double cost() const { return cost_; }  ///< robust, whitened, squared
   const Eigen::MatrixXd& h() const { return h_; }
   const Eigen::VectorXd& g() const { return g_; }
   const std::vector<ImageSideEnd>& image_side_ends() const { return image_side_ends_; }
+  const std::vector<RingOff>& rings_off() const { return rings_off_; }
+  /// What the points on the board alone add to `h` of the own unknowns.
+  const OwnMatrix& of_points() const { return of_points_; }
 
  private:
   using Row6 = Eigen::Matrix<double, 1, 6>;
@@ -50,9 +55,16 @@ class ViewEquations {
                                      const Eigen::Vector2d& along) const;
   double OwnSigma(const Crossing& crossing, const CrossingResidual& here) const;
   void AddCrossings();
-  void SpreadCrossings(int side, int kind, const Eigen::Matrix<double, 9, 9>& h,
-                       const Eigen::Matrix<double, 9, 1>& g);
+  // Over the board's pose, the class's shift, the thickness, the outline and where beams meet.
+  static constexpr int kCrossingUnknowns = 10;
+  using CrossingMatrix = Eigen::Matrix<double, kCrossingUnknowns, kCrossingUnknowns>;
+  using CrossingVector = Eigen::Matrix<double, kCrossingUnknowns, 1>;
+  void SpreadCrossings(int side, int kind, const CrossingMatrix& h, const CrossingVector& g);
+  std::array<Eigen::Index, 5> PlanePlaces() const;  // of PlaneResidual::by
   void AddPlane();
+  void AddGroups();
+  void AddRing(const PointGroup* first, const PointGroup* last, const PlaneResidual& unmoved,
+               const PlaneResidual& by_offset);
   void AddSidePriors();
 
   const BoardProblem& problem_;
@@ -65,6 +77,8 @@ class ViewEquations {
   Eigen::VectorXd g_;
   double cost_ = 0;
   std::vector<ImageSideEnd> image_side_ends_;
+  std::vector<RingOff> rings_off_;
+  OwnMatrix of_points_;
 };
 
 }  // namespace rgbdt

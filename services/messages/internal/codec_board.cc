@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "calib/model/range_errors.h"
 #include "services/messages/internal/fields.h"
 
 namespace rgbdt {
@@ -77,6 +78,26 @@ Crossing FromWire(const board_crossing_t& wire) {
 }
 
 template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, point_group_t>& wire,
+            StructOf<Copy, PointGroup>& group) {
+  copy(wire.ring, group.ring);
+  copy(wire.log2_intensity, group.log2_intensity);
+  copy(wire.scatter, group.scatter);
+}
+
+point_group_t ToWire(const PointGroup& group) { return FieldsToWire<point_group_t>(group); }
+
+void Check(const point_group_t& wire) {
+  CheckRange("ring", wire.ring, -1, kMostLasers - 1);
+  if (!(wire.log2_intensity >= kLeastLog2Intensity && wire.log2_intensity <= 0)) {
+    Fail("log2_intensity", wire.log2_intensity, "-8 to 0");
+  }
+  CheckCovariance("scatter", wire.scatter[0], 4);
+}
+
+PointGroup FromWire(const point_group_t& wire) { return FieldsFromWire<PointGroup>(wire); }
+
+template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, cloud_board_t>& wire,
             StructOf<Copy, CloudEdges>& cloud) {
   copy(wire.camera, cloud.camera);
@@ -92,6 +113,8 @@ void Fields(const Copy& copy, WireOf<Copy, cloud_board_t>& wire,
   copy(wire.scatter, cloud.scatter);
   copy(wire.raw_scatter, cloud.raw_scatter);
   copy(wire.scatter_sigma_m, cloud.scatter_sigma_m);
+  copy.List("num_groups", wire.num_groups, wire.group, cloud.groups);
+  copy(wire.group_sigma_m, cloud.group_sigma_m);
 }
 
 cloud_board_t ToWire(const CloudEdges& cloud) { return FieldsToWire<cloud_board_t>(cloud); }
@@ -111,6 +134,8 @@ void Check(const cloud_board_t& wire) {
   CheckCovariance("scatter", wire.scatter[0], 4);
   CheckCovariance("raw_scatter", wire.raw_scatter[0], 4);
   CheckNotNegative("scatter_sigma_m", wire.scatter_sigma_m);
+  CheckParts("group", wire.group);
+  CheckNotNegative("group_sigma_m", wire.group_sigma_m);
 }
 
 CloudEdges FromWire(const cloud_board_t& wire) { return FieldsFromWire<CloudEdges>(wire); }

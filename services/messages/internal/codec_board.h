@@ -7,6 +7,7 @@
 #include <lcmtypes/rgbdt/cloud_board_t.hpp>
 #include <lcmtypes/rgbdt/image_detection_t.hpp>
 #include <lcmtypes/rgbdt/image_side_t.hpp>
+#include <lcmtypes/rgbdt/point_group_t.hpp>
 #include <lcmtypes/rgbdt/target_pose_t.hpp>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ ImageSide FromWire(const image_side_t& wire);
 board_crossing_t ToWire(const Crossing& crossing);
 void Check(const board_crossing_t& wire);
 Crossing FromWire(const board_crossing_t& wire);
+
+point_group_t ToWire(const PointGroup& group);
+void Check(const point_group_t& wire);
+PointGroup FromWire(const point_group_t& wire);
 
 image_detection_t ToWire(const ImageDetection& image);
 void Check(const image_detection_t& wire);

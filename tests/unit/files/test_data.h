@@ -96,6 +96,7 @@ Rigid3 MakePose(double angle, const Eigen::Vector3d& translation);
 Rig MakeRig();
 Cloud MakeCloud();
 View MakeView();
+RangeErrors MakeRangeErrors();
 Report MakeReport();
 RgbdtCloud MakeRgbdtCloud(int columns = 60, int rows = 40);
 

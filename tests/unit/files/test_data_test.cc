@@ -169,6 +169,15 @@ View MakeView() {
   return view;
 }
 
+RangeErrors MakeRangeErrors() {
+  RangeErrors errors;
+  errors.offset_m = {-1.0 / 30, 1.0 / 7000};
+  errors.rings = {{0, {0.01 / 3, 0.001}}, {7, {-0.02 / 3, 0.002}}, {255, {0, 0}}};
+  errors.intensities = {{-3.3, {0.01 / 7, 0.003}}, {-2.3, {0.02 / 7, 0.004}}};
+  errors.beams_meet_m = {0.04 / 3, 0.005};
+  return errors;
+}
+
 Report MakeReport() {
   Report report;
   report.method = "paper";

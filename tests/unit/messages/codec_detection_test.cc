@@ -67,6 +67,13 @@ void ExpectSame(const CloudEdges& a, const CloudEdges& b) {
   EXPECT_EQ(a.scatter, b.scatter);
   EXPECT_EQ(a.raw_scatter, b.raw_scatter);
   EXPECT_EQ(a.scatter_sigma_m, b.scatter_sigma_m);
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  for (std::size_t i = 0; i < a.groups.size(); ++i) {
+    EXPECT_EQ(a.groups[i].ring, b.groups[i].ring);
+    EXPECT_EQ(a.groups[i].log2_intensity, b.groups[i].log2_intensity);
+    EXPECT_EQ(a.groups[i].scatter, b.groups[i].scatter);
+  }
+  EXPECT_EQ(a.group_sigma_m, b.group_sigma_m);
   EXPECT_EQ(a.camera, b.camera);
 }
 
@@ -110,6 +117,7 @@ class DetectionOnTheWire : public ::testing::Test {
     CloudEdges board = random_.Boundary();
     board.pose = random_.PoseOfTarget();
     board.crossings.assign(2, random_.WhereAScanLeaves());
+    board.groups.assign(2, random_.Group());
     detection.cloud.candidates.assign(2, board);
     detection.cloud.why_not = "";
     return detection;
@@ -285,6 +293,18 @@ TEST_F(DetectionOnTheWire, BadScatters) {
               HasSubstr("candidate[1]: scatter_sigma_m is -1"));
   EXPECT_THAT(error([](auto& w) { w.candidate[0].scatter[1][1] = INFINITY; }),
               HasSubstr("candidate[0]: scatter[5] is inf"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group[0].ring = 256; }),
+              HasSubstr("candidate[0]: group[0]: ring is 256"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group[0].ring = -2; }),
+              HasSubstr("candidate[0]: group[0]: ring is -2"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group[1].log2_intensity = NAN; }),
+              HasSubstr("candidate[0]: group[1]: log2_intensity is nan"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group[1].log2_intensity = 1; }),
+              HasSubstr("candidate[0]: group[1]: log2_intensity is 1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group[0].scatter[3][3] = -1; }),
+              HasSubstr("candidate[0]: group[0]: diagonal of scatter is -1"));
+  EXPECT_THAT(error([](auto& w) { w.candidate[0].group_sigma_m = -1; }),
+              HasSubstr("candidate[0]: group_sigma_m is -1"));
   // What is not there is not read.
   EXPECT_EQ(error([](auto& w) {
               w.image[0].has_edges = 0;

@@ -79,6 +79,7 @@ class Fuzz : public ::testing::TestWithParam<std::uint64_t> {
     board.boundary.resize(1);
     board.pose = random_.PoseOfTarget();
     board.crossings.assign(2, random_.WhereAScanLeaves());
+    board.groups.assign(1, random_.Group());
     detection.cloud.candidates.assign(2, board);
     detection.cloud.why_not = "";
     return detection;

@@ -144,6 +144,57 @@ TEST_F(Invalid, CalibrationAndPose) {
   EXPECT_THAT(ErrorOf([&] { Encode(pose); }), HasSubstr("norm of quaternion_wxyz is 0"));
 }
 
+TEST_F(Invalid, RangeErrors) {
+  CalibrationMessage message = random_.Calibrated();
+  RangeErrors errors;
+  errors.rings = {{0, {0.01, 0.001}}, {5, {-0.01, 0}}, {255, {0, 0.002}}};
+  errors.intensities = {{-2, {0.01, 0.001}}, {-1, {0.02, 0.001}}, {0, {0, 0.001}}};
+  message.calibration.range_errors = errors;
+  const auto error = [&](auto change) {
+    return ErrorAfter<calibration_t>(message, [&](auto& w) { change(w.range_errors); });
+  };
+  EXPECT_EQ(error([](auto&) {}), "no error");
+  EXPECT_THAT(error([](auto& w) { w.offset_m = NAN; }), HasSubstr("range_errors.offset_m is nan"));
+  EXPECT_THAT(error([](auto& w) { w.offset_sigma_m = -1; }),
+              HasSubstr("range_errors.offset_sigma_m is -1"));
+  EXPECT_THAT(error([](auto& w) { w.beams_meet_m = INFINITY; }),
+              HasSubstr("range_errors.beams_meet_m is inf"));
+  EXPECT_THAT(error([](auto& w) { w.beams_meet_sigma_m = NAN; }),
+              HasSubstr("range_errors.beams_meet_sigma_m is nan"));
+  EXPECT_THAT(error([](auto& w) { w.ring_offset_m[1] = NAN; }),
+              HasSubstr("range_errors.ring_offset_m[1] is nan"));
+  EXPECT_THAT(error([](auto& w) { w.ring_offset_sigma_m[2] = INFINITY; }),
+              HasSubstr("range_errors.ring_offset_sigma_m[2] is inf"));
+  EXPECT_THAT(error([](auto& w) { w.intensity_offset_m[0] = -INFINITY; }),
+              HasSubstr("range_errors.intensity_offset_m[0] is -inf"));
+  EXPECT_THAT(error([](auto& w) { w.intensity_offset_sigma_m[1] = -0.1; }),
+              HasSubstr("range_errors.intensity_offset_sigma_m[1] is -0.1"));
+  EXPECT_THAT(error([](auto& w) { w.ring[0] = -1; }),
+              HasSubstr("range_errors.ring[0] is -1; expected 0 to 255"));
+  EXPECT_THAT(error([](auto& w) { w.ring[1] = 0; }),
+              HasSubstr("range_errors.ring[1] is 0; expected 1 to 255"));
+  EXPECT_THAT(error([](auto& w) { w.ring[2] = 256; }), HasSubstr("range_errors.ring[2] is 256"));
+  EXPECT_THAT(error([](auto& w) { w.log2_intensity[0] = NAN; }),
+              HasSubstr("range_errors.log2_intensity[0] is nan"));
+  EXPECT_THAT(error([](auto& w) {
+                w.log2_intensity = {-9, -8, -7};
+              }),
+              HasSubstr("range_errors.log2_intensity[0] is -9; expected -8 to 0"));
+  EXPECT_THAT(error([](auto& w) {
+                w.log2_intensity = {-1, 0, 1};
+              }),
+              HasSubstr("range_errors.log2_intensity[2] is 1"));
+  EXPECT_THAT(error([](auto& w) { w.log2_intensity[1] = -1.5; }),
+              HasSubstr("range_errors.log2_intensity[1] is -1.5; expected -8 to 0, each one more"));
+  // What is not there is not read.
+  EXPECT_EQ(ErrorAfter<calibration_t>(
+                message, [](auto& w) { w.has_range_errors = 0, w.range_errors.offset_m = NAN; }),
+            "no error");
+  // The sender refuses it, too.
+  message.calibration.range_errors->rings[1].ring = 0;
+  EXPECT_THAT(ErrorOf([&] { Encode(message); }), HasSubstr("range_errors.ring[1] is 0"));
+}
+
 TEST_F(Invalid, Session) {
   const auto command = [&](auto change) {
     return ErrorAfter<session_command_t>(random_.Command(), change);

@@ -152,6 +152,12 @@ TEST_F(RoundTrip, Calibration) {
     EXPECT_EQ(a.calibration.detail, b.calibration.detail);
     ExpectSameRigid(a.calibration.camera_from_lidar, b.calibration.camera_from_lidar);
     EXPECT_EQ(a.calibration.covariance, b.calibration.covariance);
+    ASSERT_EQ(a.calibration.lens.has_value(), b.calibration.lens.has_value());
+    if (a.calibration.lens) {
+      EXPECT_EQ(a.calibration.lens->lens, b.calibration.lens->lens);
+      EXPECT_EQ(a.calibration.lens->covariance, b.calibration.lens->covariance);
+    }
+    EXPECT_TRUE(a.calibration.range_errors == b.calibration.range_errors);
   }
 }
 

@@ -202,6 +202,7 @@ class RandomMessages {
     }
     return scatter;
   }
+  PointGroup Group() { return {Int(-1, 127), Number(-8, 0), Scatter()}; }
   ImageEdges Edges() {
     ImageEdges image;
     image.width = Int(100, 20000);
@@ -230,6 +231,8 @@ class RandomMessages {
     cloud.scatter = Scatter();
     cloud.raw_scatter = Scatter();
     cloud.scatter_sigma_m = Number(0, 0.1);
+    for (int i = Int(0, 9); i > 0; --i) cloud.groups.push_back(Group());
+    cloud.group_sigma_m = Number(0, 0.1);
     return cloud;
   }
 
@@ -240,6 +243,20 @@ class RandomMessages {
     for (Eigen::Index i = 0; i < 6; ++i) solved.covariance.col(i).setConstant(Number());
     solved.covariance.rightCols<kLensNumbers>() = Covariance<kLensNumbers>();
     return solved;
+  }
+
+  RangeErrors AnyRangeErrors() {
+    const auto estimate = [this] { return Estimate{Number(-0.1, 0.1), Number(0, 0.1)}; };
+    RangeErrors errors;
+    errors.offset_m = estimate();
+    errors.beams_meet_m = estimate();
+    for (int ring = Int(0, 200); ring <= 255; ring += Int(1, 50)) {
+      errors.rings.push_back({ring, estimate()});
+    }
+    for (double log2 = Number(-8, 1); log2 <= 0; ++log2) {
+      errors.intensities.push_back({log2, estimate()});
+    }
+    return errors;
   }
 
   CalibrationMessage Calibrated() {
@@ -254,6 +271,7 @@ class RandomMessages {
     message.calibration.detail = Text();
     if (Coin()) message.calibration.covariance = Covariance<6>();
     if (Coin()) message.calibration.lens = AnyLens();
+    if (Coin()) message.calibration.range_errors = AnyRangeErrors();
     return message;
   }
 

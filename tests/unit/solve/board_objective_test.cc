@@ -40,6 +40,7 @@ CloudEdges IdealCloud(const Rigid3& lidar_from_target) {
       cloud.scatter += q * q.transpose();
     }
   }
+  cloud.raw_scatter = cloud.scatter;
   cloud.scatter_sigma_m = kSigma;
   return cloud;
 }

@@ -220,8 +220,9 @@ TEST(PlaneResidual, ARangeOffsetLeansATiltedBoardsPlane) {
       cloud.scatter += q * q.transpose();
     }
   }
+  cloud.raw_scatter = cloud.scatter;
   const auto rms = [&](double offset) {
-    const Eigen::Vector4d x = ResidualOf(cloud, board, offset).x;
+    const Eigen::Vector4d x = ResidualOf(cloud, board, offset, 0).x;
     return std::sqrt(x.dot(cloud.scatter * x) / cloud.scatter(3, 3));
   };
   EXPECT_LT(rms(kOffset), 2e-4);  // what third order leaves
@@ -229,8 +230,57 @@ TEST(PlaneResidual, ARangeOffsetLeansATiltedBoardsPlane) {
   // The lean alone: the board where the centre's own offset puts it.
   Rigid3 moved = board;
   moved.translation -= kOffset * board.translation.normalized();
-  const Eigen::Vector4d flat = ResidualOf(cloud, moved, 0).x;
+  const Eigen::Vector4d flat = ResidualOf(cloud, moved, 0, 0).x;
   EXPECT_GT(std::sqrt(flat.dot(cloud.scatter * flat) / cloud.scatter(3, 3)), 1e-3);
+}
+
+TEST(PlaneResidual, BeamsThatMeetLeanAHighBoardsPlane) {
+  constexpr double kMeet = 0.04;
+  const Rigid3 board{
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.3, 1, 0).normalized())),
+      {0.2, 2.4, 0.8}};
+  // As a cloud has a point that such a beam met: its beam starts at -kMeet tan(elevation).
+  const auto seen = [](const Eigen::Vector3d& point) {
+    Eigen::Vector3d p = point;
+    for (int i = 0; i < 5; ++i) p.z() = point.z() + kMeet * p.z() / p.head<2>().norm();
+    return p;
+  };
+  CloudEdges cloud;
+  cloud.centre = seen(board.translation);
+  for (double x = -0.5; x <= 0.5; x += 0.1) {
+    for (double y = -0.4; y <= 0.4; y += 0.1) {
+      Eigen::Vector4d q(0, 0, 0, 1);
+      q.head<3>() = seen(board * Eigen::Vector3d(x, y, 0)) - cloud.centre;
+      cloud.scatter += q * q.transpose();
+    }
+  }
+  cloud.raw_scatter = cloud.scatter;
+  const auto rms = [&](double meet) {
+    const Eigen::Vector4d x = ResidualOf(cloud, board, 0, meet).x;
+    return std::sqrt(x.dot(cloud.scatter * x) / cloud.scatter(3, 3));
+  };
+  EXPECT_LT(rms(kMeet), 4e-4);  // what second order leaves
+  EXPECT_GT(rms(0), 3e-3);
+}
+
+// What a metre of offset moves a board's points by is told by where they are, not by what they
+// weigh.
+TEST(PlaneResidual, WhatRowsShareDoesNotChangeWhereAnOffsetPutsTheBoard) {
+  CloudEdges cloud;
+  cloud.centre = {3, 0, 0};
+  for (double y = -0.5; y <= 0.5; y += 0.1) {
+    for (double z = -0.4; z <= 0.4; z += 0.1) {
+      const Eigen::Vector4d q(0, y, z, 1);
+      cloud.scatter += q * q.transpose();
+    }
+  }
+  cloud.raw_scatter = cloud.scatter;
+  const Rigid3 board{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitY())),
+                     {3, 0, 0}};
+  const double alone = ResidualOf(cloud, board, 0.02, 0).x[3];
+  EXPECT_NEAR(alone, 0.02 * (1 - 0.5 * (0.1 + 0.0667) / 9), 5e-6);  // beams diverge
+  cloud.scatter(3, 3) *= 0.05;  // of the points' weight a twentieth is left
+  EXPECT_EQ(ResidualOf(cloud, board, 0.02, 0).x[3], alone);
 }
 
 TEST(PlaneResidual, DerivativesAreExact) {
@@ -240,14 +290,16 @@ TEST(PlaneResidual, DerivativesAreExact) {
   CloudEdges cloud;
   cloud.centre = {0.21, -0.41, 2.48};
   cloud.scatter.diagonal() << 20, 30, 10, 300;
-  const PlaneResidual at = ResidualOf(cloud, board, 0.02);
+  cloud.raw_scatter = cloud.scatter;
+  const PlaneResidual at = ResidualOf(cloud, board, 0.02, 0.03);
   constexpr double kStep = 1e-6;
   const std::array<int, 3> moves{0, 1, 5};
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     const auto x = [&](double step) -> Eigen::Vector4d {
-      if (k == 3) return ResidualOf(cloud, board, 0.02 + step).x;
+      if (k == 3) return ResidualOf(cloud, board, 0.02 + step, 0.03).x;
+      if (k == 4) return ResidualOf(cloud, board, 0.02, 0.03 + step).x;
       const Vector6d delta = step * Vector6d::Unit(moves[static_cast<std::size_t>(k)]);
-      return ResidualOf(cloud, board * Exp(delta), 0.02).x;
+      return ResidualOf(cloud, board * Exp(delta), 0.02, 0.03).x;
     };
     const Eigen::Vector4d numeric = (x(kStep) - x(-kStep)) / (2 * kStep);
     EXPECT_LT((at.by.col(k) - numeric).norm(), 1e-8) << "unknown " << k;

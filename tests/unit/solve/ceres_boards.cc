@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "calib/camera/lens.h"
@@ -166,6 +168,12 @@ struct CrossingDistance {  // of board, shared, the view's sides
     lidar = Moved<T>(back, lidar);
     const Point<T> beam = Moved<T>(back, Constant<T>(target_from_lidar.rotation *
                                                      Eigen::Vector3d(crossing.point.normalized())));
+    // Its start, below the LIDAR's origin.
+    const double rise = crossing.point.z() / crossing.point.head<2>().norm();
+    const T none[6] = {back[0], back[1], back[2], T(0), T(0), T(0)};
+    const Point<T> up =
+        Moved<T>(none, Constant<T>(target_from_lidar.rotation * Eigen::Vector3d::UnitZ()));
+    for (int k = 0; k < 3; ++k) lidar[k] -= block[1][kBeamsMeet] * rise * up[k];
     const T range = -lidar[2] / beam[2];
     const Eigen::Vector3d out = OutwardsOf(crossing.side);
     const T lean = Dot<T>(beam, out);
@@ -181,32 +189,63 @@ struct CrossingDistance {  // of board, shared, the view's sides
   }
 };
 
-struct PlaneDistances {  // of board, shared
+// The groups of points that share an error, stacked; without any, all points are one group.
+struct PlaneDistances {  // of board, shared, range terms
+  struct Group {
+    Eigen::Matrix4d root;  // root' root = scatter / sigma^2
+    std::vector<std::pair<std::size_t, double>> terms;
+  };
   Rigid3 lidar_from_target;
   Eigen::Vector3d centre, mean_beam;
-  Eigen::Matrix4d root;  // root' root = scatter / sigma^2
+  std::vector<Group> groups;
+  Eigen::MatrixXd whitening;  // of what the groups share
 
   template <typename T>
   bool operator()(T const* const* block, T* residual) const {
-    const Point<T> origin = Placed<T>(lidar_from_target, Moved<T>(block[0], Point<T>{}));
-    const Point<T> tip = Placed<T>(lidar_from_target, Moved<T>(block[0], Constant<T>({0, 0, 1})));
-    const Eigen::Vector3d along = centre.normalized();
-    const T& offset = block[1][kRangeOffset];
-    const Point<T> n = {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
-    // A beam at q off the centre is along + (q - along (along . q)) / range; times n, less its part
-    // along n.
-    const T facing = Dot<T>(n, along);
-    T x[4] = {T(0), T(0), T(0), T(0)};
-    for (int k = 0; k < 3; ++k) {
-      const T across = n[k] - facing * along[k];
-      x[k] = n[k] + offset / centre.norm() * (across - (1.0 - facing * facing) * n[k]);
-      x[3] += n[k] * (centre[k] + offset * mean_beam[k] - origin[k]);
+    std::vector<T> stacked;
+    for (const Group& group : groups) {
+      T offset = block[1][kRangeOffset];
+      for (const auto& [term, weight] : group.terms) offset += weight * block[2][term];
+      const std::array<T, 4> x = At<T>(block[0], offset, block[1][kBeamsMeet]);
+      for (int row = 0; row < 4; ++row) {
+        T sum(0);
+        for (int k = 0; k < 4; ++k) sum += group.root(row, k) * x[k];
+        stacked.push_back(sum);
+      }
     }
-    for (int row = 0; row < 4; ++row) {
+    for (std::size_t row = 0; row < stacked.size(); ++row) {
       residual[row] = T(0);
-      for (int k = 0; k < 4; ++k) residual[row] += root(row, k) * x[k];
+      for (std::size_t k = 0; k < stacked.size(); ++k) {
+        residual[row] += whitening(static_cast<int>(row), static_cast<int>(k)) * stacked[k];
+      }
     }
     return true;
+  }
+
+  // (n + ..., distance of the centre), as in board_model.h.
+  template <typename T>
+  std::array<T, 4> At(const T* board, const T& offset, const T& meet) const {
+    const Point<T> origin = Placed<T>(lidar_from_target, Moved<T>(board, Point<T>{}));
+    const Point<T> tip = Placed<T>(lidar_from_target, Moved<T>(board, Constant<T>({0, 0, 1})));
+    const Eigen::Vector3d along = centre.normalized();
+    const Point<T> n = {tip[0] - origin[0], tip[1] - origin[1], tip[2] - origin[2]};
+    // A beam at q off the centre is along + (q - along (along . q)) / range; times n, less its part
+    // along n. tan(elevation) there is rise + rise_by . q, taken down the LIDAR's z alike.
+    const T facing = Dot<T>(n, along);
+    const double flat = centre.head<2>().norm();
+    const double rise = centre.z() / flat;
+    const Eigen::Vector3d rise_by =
+        (Eigen::Vector3d::UnitZ() - rise / flat * Eigen::Vector3d(centre.x(), centre.y(), 0)) /
+        flat;
+    const T rise_along = Dot<T>(n, rise_by);
+    std::array<T, 4> x = {T(0), T(0), T(0), -meet * rise * n[2]};
+    for (int k = 0; k < 3; ++k) {
+      const T across = n[k] - facing * along[k];
+      x[k] = n[k] + offset / centre.norm() * (across - (1.0 - facing * facing) * n[k]) -
+             meet * n[2] * (rise_by[k] - rise_along * n[k]);
+      x[3] += n[k] * (centre[k] + offset * mean_beam[k] - origin[k]);
+    }
+    return x;
   }
 };
 
@@ -234,6 +273,20 @@ struct PriorResidual {  // of one block
   bool operator()(T const* const* block, T* residual) const {
     for (std::size_t k = 0; k < mean.size(); ++k) {
       residual[k] = (block[0][k] - mean[k]) / sigma[k];
+    }
+    return true;
+  }
+};
+
+struct MeanTerms {  // of the rings' offsets and of the octaves'
+  std::vector<double> shares;
+  std::size_t rings;
+
+  template <typename T>
+  bool operator()(T const* const* block, T* residual) const {
+    residual[0] = residual[1] = T(0);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      residual[i < rings ? 0 : 1] += shares[i] / kMeanTermSigmaM * block[0][i];
     }
     return true;
   }
@@ -277,6 +330,15 @@ class CeresBoards {
       const Eigen::LLT<LensCovariance> information(LensCovariance(covariance.inverse()));
       Add(LensPriorResidual{NumbersOf(problem.cameras[c].lens()), information.matrixU()},
           kLensNumbers, {lenses_[c].data()});
+    }
+    if (!state_.range_terms.empty()) {
+      const auto count = state_.range_terms.size();
+      AddBlock(state_.range_terms.data(), static_cast<int>(count));
+      PriorResidual of_terms{std::vector<double>(count, 0.0), {}};
+      for (std::size_t i = 0; i < count; ++i) of_terms.sigma.push_back(problem.SigmaOfTerm(i));
+      Add(of_terms, static_cast<int>(count), {state_.range_terms.data()});
+      Add(MeanTerms{problem.ranges.shares, problem.ranges.rings.size()}, 2,
+          {state_.range_terms.data()});
     }
     for (std::size_t v = 0; v < boards_.size(); ++v) {
       AddBlock(boards_[v].data(), 6);
@@ -355,14 +417,65 @@ class CeresBoards {
       Add(CrossingDistance{problem_.target, pose, crossing}, 1, {board, shared, sides},
           new TailLoss(std::pow(own / crossing.sigma_m, 2)));
     }
-    const Eigensystem<4> eigen = EigensystemOf(view.cloud.scatter);
-    const Eigen::Vector4d roots = eigen.values.cwiseMax(0).cwiseSqrt() / view.cloud.scatter_sigma_m;
-    Add(PlaneDistances{pose, view.cloud.centre, MeanBeam(view.cloud.centre, view.cloud.scatter),
-                       Eigen::Matrix4d(roots.asDiagonal() * eigen.vectors.transpose())},
-        4, {board, shared});
+    AddPoints(view.cloud, pose, board);
     Add(PriorResidual{std::vector<double>(4, 0.0),
                       std::vector<double>(4, problem_.priors.side_sigma_rad)},
         4, {sides});
+  }
+
+  void AddPoints(const CloudEdges& cloud, const Rigid3& pose, double* board) {
+    if (cloud.points == 0) return;
+    const auto root_of = [](const Eigen::Matrix4d& scatter, double sigma) {
+      const Eigensystem<4> eigen = EigensystemOf(scatter);
+      const Eigen::Vector4d roots = eigen.values.cwiseMax(0).cwiseSqrt() / sigma;
+      return Eigen::Matrix4d(roots.asDiagonal() * eigen.vectors.transpose());
+    };
+    PlaneDistances all{pose, cloud.centre, MeanBeam(cloud.centre, cloud.raw_scatter), {}, {}};
+    std::map<int, PlaneDistances> rings;
+    if (cloud.groups.empty()) {
+      all.groups.push_back({root_of(cloud.scatter, cloud.scatter_sigma_m), {}});
+      rings.emplace(-1, all);
+    }
+    for (const PointGroup& group : cloud.groups) {
+      PlaneDistances& ring = rings.emplace(group.ring, all).first->second;
+      ring.groups.push_back({root_of(group.scatter, cloud.group_sigma_m), TermsOf(group)});
+    }
+    for (auto& [number, ring] : rings) {
+      // By how much an offset that the ring's groups share moves their residuals, where they are.
+      const auto rows = static_cast<int>(4 * ring.groups.size());
+      const double zero[6] = {};
+      const std::array<double, 4> unmoved = ring.At<double>(zero, 0, 0);
+      const std::array<double, 4> moved = ring.At<double>(zero, 1, 0);
+      Eigen::VectorXd along(rows);
+      for (std::size_t g = 0; g < ring.groups.size(); ++g) {
+        const Eigen::Vector4d by_offset =
+            Eigen::Vector4d(moved.data()) - Eigen::Vector4d(unmoved.data());
+        along.segment<4>(static_cast<int>(4 * g)) = ring.groups[g].root * by_offset;
+      }
+      const double sigma = number < 0 ? 0 : problem_.priors.ring_view_sigma_m;
+      const Eigen::MatrixXd covariance =
+          Eigen::MatrixXd::Identity(rows, rows) + sigma * sigma * along * along.transpose();
+      const Eigen::LLT<Eigen::MatrixXd> information(Eigen::MatrixXd(covariance.inverse()));
+      ring.whitening = information.matrixU();
+      std::vector<double*> blocks{board, state_.shared.data()};
+      if (!state_.range_terms.empty()) blocks.push_back(state_.range_terms.data());
+      Add(ring, rows, blocks);
+    }
+  }
+
+  // Which range terms a group's points have a share in: its ring's and two octaves'.
+  std::vector<std::pair<std::size_t, double>> TermsOf(const PointGroup& group) const {
+    const RangeTerms& ranges = problem_.ranges;
+    std::vector<std::pair<std::size_t, double>> terms;
+    for (std::size_t i = 0; i < ranges.rings.size(); ++i) {
+      if (ranges.rings[i] == group.ring) terms.emplace_back(i, 1.0);
+    }
+    for (std::size_t i = 0; i < ranges.octaves; ++i) {
+      const double away =
+          std::abs(group.log2_intensity - ranges.first_octave - static_cast<double>(i));
+      if (away < 1) terms.emplace_back(ranges.rings.size() + i, 1 - away);
+    }
+    return terms;
   }
 
   void AddImage(const BoardImage& image, const Rigid3& board_pose, double* board) {

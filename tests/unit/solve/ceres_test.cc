@@ -29,6 +29,9 @@ VectorXd Between(const BoardState& from, const BoardState& to) {
     const LensNumbers change = NumbersOf(to.lenses[c]) - NumbersOf(from.lenses[c]);
     out.insert(out.end(), change.begin(), change.end());
   }
+  for (std::size_t i = 0; i < from.range_terms.size(); ++i) {
+    out.push_back(to.range_terms[i] - from.range_terms[i]);
+  }
   for (std::size_t v = 0; v < from.lidar_from_target.size(); ++v) {
     add(Log(from.lidar_from_target[v].Inverse() * to.lidar_from_target[v]));
     for (std::size_t s = 0; s < 4; ++s) out.push_back(to.side_shift[v][s] - from.side_shift[v][s]);
@@ -40,7 +43,7 @@ VectorXd Between(const BoardState& from, const BoardState& to) {
 // of the nuisances more than the prior's sigma, which none has.
 VectorXd LooseUnits(const BoardProblem& problem) {
   const std::size_t cameras = problem.cameras.size();
-  const SharedPlaces places(cameras);
+  const SharedPlaces places(problem);
   VectorXd units(places.Count());
   for (std::size_t c = 0; c < cameras; ++c) {
     units.segment<3>(SharedPlaces::Pose(c)).setConstant(M_PI / 180);
@@ -49,6 +52,9 @@ VectorXd LooseUnits(const BoardProblem& problem) {
         1.1 * problem.lens_priors[c].diagonal().cwiseMax(1e-12).cwiseSqrt();
   }
   for (int k = 0; k < kSharedUnknowns; ++k) units[places.Of(k)] = 1.1 * problem.priors.Sigma(k);
+  for (std::size_t i = 0; i < problem.ranges.Count(); ++i) {
+    units[places.RangeTerm(i)] = 1.1 * problem.SigmaOfTerm(i);
+  }
   return units;
 }
 
@@ -104,6 +110,7 @@ struct SolveProblem {
   double range_offset_sigma_m = 0;
   bool lens = false;  // unknown, and the print's size
   bool sides_bent = false;
+  bool rings = false;  // and octaves are off, and beams meet
 };
 
 void PrintTo(const SolveProblem& problem, std::ostream* out) { *out << problem.name; }
@@ -136,6 +143,7 @@ SolveWorld WorldOf(const SolveProblem& problem) {
     options.lens_uncertainty.reset();
     options.print_sigma = kUsualPrintSigma;
   }
+  if (problem.rings) options.rings = {0.01, 0.015, 0.004, 0.03};
   SolveWorld world(options);
   const Rigid3 first = world.AnyBoard();
   while (static_cast<int>(world.lidar_from_target.size()) < problem.views) {
@@ -147,6 +155,19 @@ SolveWorld WorldOf(const SolveProblem& problem) {
   if (!problem.edges) TakeEdgesAway(&world);
   if (problem.outliers) AddOutliers(&world);
   return world;
+}
+
+void OpenRanges(JointProblem* joint) {
+  RangeTerms& ranges = joint->problem.ranges;
+  for (int ring = 0; ring < 16; ++ring) ranges.rings.push_back(ring);
+  ranges.first_octave = -4;
+  ranges.octaves = 5;
+  ranges.shares.assign(16, 1.0 / 16);
+  ranges.shares.insert(ranges.shares.end(), {0.1, 0.3, 0.1, 0.2, 0.3});
+  joint->problem.priors.ring_sigma_m = 0.01;
+  joint->problem.priors.octave_sigma_m = 0.008;
+  joint->problem.priors.ring_view_sigma_m = 0.004;
+  joint->start.range_terms.assign(ranges.Count(), 0);
 }
 
 BoardState StartOff(const JointProblem& joint) {
@@ -177,6 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
         SolveProblem{"Lens", 8, 0, SolveProblem::kAnyPlace, true, false, 0.1, true},
         SolveProblem{"LensOfOneView", 1, 5, SolveProblem::kAnyPlace, true, false, 0, true},
         SolveProblem{"BentSides", 6, 0, SolveProblem::kAnyPlace, true, false, 0, false, true},
+        SolveProblem{"Rings", 6, 0, SolveProblem::kAnyPlace, true, false, 0.1, false, false, true},
         SolveProblem{"Outliers", 5, 0, SolveProblem::kAnyPlace, true, true},
         SolveProblem{"OutliersOfMany", 12, 0, SolveProblem::kAnyPlace, true, true},
         SolveProblem{"Parallel", 6, 0, SolveProblem::kParallel},
@@ -189,6 +211,7 @@ TEST_P(SolveBoardsAndCeres, FindTheSame) {
   const SolveWorld world = WorldOf(GetParam());
   const SolveSession session(world);
   JointProblem joint = session.Joint(GetParam().range_offset_sigma_m);
+  if (GetParam().rings) OpenRanges(&joint);
   if (GetParam().sides_bent) joint.problem.priors.image_side_sigma_m = 0.0005;
   const BoardSolution ours = SolveToTheEnd(joint.problem, StartOff(joint));
   const BoardState theirs = SolveByCeres(joint.problem, StartOff(joint));

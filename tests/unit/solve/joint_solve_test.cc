@@ -1,8 +1,6 @@
 #include "calib/solve/internal/joint_solve.h"
 
-#include "calib/camera/target_pose.h"
-#include "calib/methods/calibrate.h"
-#include "tests/unit/solve/solve_world.h"
+#include "tests/unit/solve/joint_reports.h"
 
 namespace rgbdt {
 namespace {
@@ -14,25 +12,6 @@ using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-CalibrateOptions Brief() {
-  CalibrateOptions options;
-  options.diagnostics = false;
-  return options;
-}
-
-SolveWorldOptions Views(int views) {
-  SolveWorldOptions options;
-  options.views = views;
-  return options;
-}
-
-double Chi2(const SolveWorld& world, const Report& report, std::size_t camera) {
-  const CameraCalibration& c = report.cameras[camera].calibration;
-  return Chi2Of(world.camera_from_lidar[camera], c.camera_from_lidar, *c.covariance);
-}
-
-constexpr double kMostChi2 = 22.5;  // of six degrees of freedom: one in a thousand lies beyond
 
 TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   const SolveWorld world(Views(10));
@@ -268,202 +247,15 @@ TEST(SolveJointly, ViewsThatScatterMoreThanTheyStateEnlargeTheCovariance) {
   const SolveWorld noisy(options);
   const SolveSession honest_session(honest);
   const SolveSession noisy_session(noisy);
-  EXPECT_EQ(SolveJointly(honest_session.Joint()).variance_factor, 1);
+  // What is to be expected of the factor is a little more than 1 where views scatter as they state.
+  const JointResult as_stated = SolveJointly(honest_session.Joint());
+  EXPECT_GE(as_stated.variance_factor, 1);
+  EXPECT_LT(as_stated.variance_factor, 1.3);
   const JointResult enlarged = SolveJointly(noisy_session.Joint());
   EXPECT_GT(enlarged.variance_factor, 2.5 * 2.5 / 2);
   EXPECT_LT(enlarged.variance_factor, 2.5 * 2.5 * 2);
   EXPECT_NEAR(CovarianceOf(enlarged, 1)(3, 3),
               enlarged.variance_factor * enlarged.solution.covariance(9, 9), 1e-12);
-}
-
-// Measured 20 mm too long.
-SolveWorldOptions LongRanges() {
-  SolveWorldOptions options = Views(12);
-  options.shared[kRangeOffset] = -0.02;
-  return options;
-}
-
-TEST(CalibrateJointly, ARangeOffsetThatTheRigAllowsForIsFoundWithinItsSigma) {
-  const SolveWorld world(LongRanges());
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    ASSERT_TRUE(camera.range_offset);
-    EXPECT_LT(camera.range_offset->sigma, 0.005);
-    EXPECT_NEAR(camera.range_offset->value, -0.02, 3.5 * camera.range_offset->sigma);
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    EXPECT_THAT(camera.rejected, IsEmpty());
-    EXPECT_THAT(camera.warnings, IsEmpty());
-  }
-}
-
-TEST(CalibrateJointly, ARangeOffsetThatTheRigRulesOutIsFoundAllTheSameAndSaid) {
-  SolveWorld world(LongRanges());
-  world.rig.lidar.range_offset_sigma_m = 0;
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    ASSERT_TRUE(camera.range_offset);
-    EXPECT_NEAR(camera.range_offset->value, -0.02, 3.5 * camera.range_offset->sigma);
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    EXPECT_THAT(camera.warnings,
-                Contains(AllOf(HasSubstr("mm too long"), HasSubstr("lidar.range_offset_sigma_m"))));
-  }
-}
-
-// The rig's lenses are off by so much; boards were detected with them.
-SolveWorld LensesOff(double focal_share, double centre_px) {
-  SolveWorld world(Views(12));
-  for (std::size_t c = 0; c < 2; ++c) {
-    CameraSpec& camera = world.rig.cameras[c];
-    camera.lens_uncertainty.reset();
-    camera.lens.fx *= 1 + focal_share;
-    camera.lens.fy *= 1 + focal_share;
-    camera.lens.cx += centre_px;
-    camera.lens.cy -= centre_px;
-    for (std::size_t v = 0; v < world.detections.size(); ++v) {
-      ImageEdges& image = world.ImageAt(v, c);
-      const auto found = PoseFromCorners(Camera(camera), world.rig.target, image.corners);
-      image.pose->sensor_from_target = found->pose.sensor_from_target;
-      image.pose->covariance = found->pose.covariance;
-    }
-  }
-  return world;
-}
-
-LensNumbers LensError(const SolveWorld& world, const CameraCalibration& found, std::size_t camera) {
-  return NumbersOf(found.lens->lens) - NumbersOf(world.TrueLens(camera));
-}
-
-TEST(CalibrateJointly, ALensThatIsOffAsIsUsualIsFoundWithThePose) {
-  const SolveWorld world(LensesOff(0.004, 3));
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    const CameraCalibration& found = camera.calibration;
-    ASSERT_TRUE(found.converged()) << found.StatusText();
-    ASSERT_TRUE(found.lens);
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    const LensNumbers error = LensError(world, found, c);
-    for (Eigen::Index i = 0; i < 4; ++i) {
-      const double sigma = std::sqrt(found.lens->covariance(i, 6 + i));
-      EXPECT_LT(std::abs(error[i]), 4 * sigma) << i;
-    }
-    EXPECT_LT(std::abs(error[0]), 0.5 * 0.004 * world.TrueLens(c).fx);
-    EXPECT_THAT(camera.warnings, IsEmpty());
-    EXPECT_THAT(camera.rejected, IsEmpty());
-  }
-}
-
-TEST(CalibrateJointly, ALensThatTheViewsContradictIsSaidAndFoundAllTheSame) {
-  const SolveWorld world(LensesOff(0.05, 0));
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    ASSERT_TRUE(camera.calibration.lens);
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    EXPECT_THAT(camera.warnings, Contains(AllOf(HasSubstr("the lens in the rig file contradicts"),
-                                                HasSubstr("rgbdt intrinsics"))));
-  }
-}
-
-TEST(CalibrateJointly, TheViewsTogetherTellAPlainSquaresTurns) {
-  SolveWorldOptions options = Views(8);
-  options.plain = true;
-  const SolveWorld world(options);
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    ASSERT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    EXPECT_THAT(camera.rejected, IsEmpty());
-  }
-}
-
-// A board's sides are not straight to a tenth of a pixel, and show their rims.
-TEST(CalibrateJointly, SidesInImagesThatAreOffCountLess) {
-  for (const std::uint32_t seed : {1, 2, 3}) {
-    SolveWorldOptions options = Views(10);
-    options.seed = seed;
-    SolveWorld world(options);
-    for (std::size_t v = 0; v < world.detections.size(); ++v) {
-      for (ImageSide& side : world.ImageAt(v, 0).sides) {
-        const Eigen::Vector2d along = (side.curve.back() - side.curve.front()).normalized();
-        const double off_px = world.Normal();
-        for (Eigen::Vector2d& p : side.curve) p += off_px * Eigen::Vector2d(-along.y(), along.x());
-      }
-    }
-    const Report report = Calibrate(world.rig, world.detections, Brief());
-    EXPECT_LT(Chi2(world, report, 0), kMostChi2) << seed;
-    EXPECT_EQ(report.cameras[0].variance_factor, 1) << seed;
-    EXPECT_THAT(report.cameras[0].rejected, IsEmpty()) << seed;
-  }
-}
-
-// Squares that are not square lean every board in the images.
-TEST(CalibrateJointly, APatternThatThePrinterStretchedIsFoundWithThePose) {
-  SolveWorldOptions options = Views(12);
-  options.print_sigma = kUsualPrintSigma;
-  options.shared[kPrintWidth] = 0.001;
-  options.shared[kPrintHeight] = -0.004;
-  SolveWorld world(options);
-  const Report found = Calibrate(world.rig, world.detections, Brief());
-  world.rig.target.print_sigma = 0;
-  const Report exact = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    EXPECT_LT(Chi2(world, found, c), kMostChi2);
-    EXPECT_GT(Chi2(world, exact, c), kMostChi2);
-    const auto& lines = found.cameras[c].nuisance;
-    const auto height = std::find_if(lines.begin(), lines.end(), [](const Nuisance& line) {
-      return line.name == "pattern's height, found less given";
-    });
-    ASSERT_NE(height, lines.end());
-    EXPECT_NEAR(height->estimate.value, -4, 4 * height->estimate.sigma);
-    EXPECT_LT(height->estimate.sigma, 2);
-  }
-}
-
-// What is stated of a lens made from these very images is theirs again: as if nothing were stated.
-TEST(CalibrateJointly, ALensMadeFromTheSameImagesIsNotCountedTwice) {
-  SolveWorld world(LensesOff(0, 0));
-  const Report usual = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    LensUncertainty stated = world.rig.cameras[c].LensUncertaintyOrUsual();
-    stated.covariance *= 1e-4;
-    world.rig.cameras[c].lens_uncertainty = stated;
-  }
-  const Report other_images = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    for (std::size_t v = 0; v < world.detections.size(); ++v) {
-      world.rig.cameras[c].lens_uncertainty->made_from.push_back(
-          MiddleOf(world.ImageAt(v, c).corners));
-    }
-  }
-  const Report same_images = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const Matrix6d wide = *usual.cameras[c].calibration.covariance;
-    const Matrix6d same = *same_images.cameras[c].calibration.covariance;
-    EXPECT_LT((same - wide).norm(), 1e-6 * wide.norm());
-    EXPECT_LT(other_images.cameras[c].calibration.covariance->trace(), 0.5 * wide.trace());
-  }
-}
-
-TEST(CalibrateJointly, ExactRangesStayExactWhateverOneViewSays) {
-  SolveWorld world(Views(12));
-  world.rig.lidar.range_offset_sigma_m = 0;
-  // By 60 mm along its beam, between the sweep and the images.
-  const Eigen::Vector3d move = 0.06 * world.lidar_from_target[4].translation.normalized();
-  CloudEdges& cloud = world.CloudAt(4);
-  cloud.pose->sensor_from_target.translation += move;
-  cloud.centre += move;
-  for (Crossing& crossing : cloud.crossings) crossing.point += move;
-  const Report report = Calibrate(world.rig, world.detections, Brief());
-  for (std::size_t c = 0; c < 2; ++c) {
-    const CameraReport& camera = report.cameras[c];
-    EXPECT_FALSE(camera.range_offset);
-    EXPECT_EQ(camera.rejected.size(), 1U);
-    EXPECT_LT(Chi2(world, report, c), kMostChi2);
-  }
 }
 
 }  // namespace

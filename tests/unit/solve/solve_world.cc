@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "calib/camera/outline_pose.h"
 #include "calib/camera/pixel_by_point.h"
@@ -52,6 +54,9 @@ SolveWorld::SolveWorld(const SolveWorldOptions& options)
   camera_from_lidar[1].translation = {-0.11, 0.04, 0.02};
   shared = options.shared;
   if (options.draw_nuisances) shared = Drawn(true);
+  if (options.rings) {
+    for (double& offset : ring_offset_m) offset = options.rings->sigma_m * Normal();
+  }
   while (static_cast<int>(lidar_from_target.size()) < options.views) AddView(AnyBoard());
 }
 
@@ -197,6 +202,7 @@ CloudEdges SolveWorld::SeeCloud(const Rigid3& board, const std::array<double, 4>
                                 bool turned) {
   CloudEdges cloud;
   SeePlane(board, &cloud);
+  if (options_.rings) SeeRings(board, &cloud);
   const auto nuisances = options_.nuisances_by_view ? Drawn(false) : shared;
   const auto corners = rig.target.OutlineCorners();
   for (int side = 0; side < 4; ++side) {
@@ -250,7 +256,7 @@ Crossing SolveWorld::SeeCrossing(const Rigid3& board, const Eigen::Vector3d& on_
                        outward;
     crossing.sigma_m = std::hypot(crossing.half_width_m / std::sqrt(3), priors.blur_rad * per_rad);
   }
-  crossing.point = board * at;
+  crossing.point = Published(board * at);
   return crossing;
 }
 
@@ -279,6 +285,64 @@ void SolveWorld::SeePlane(const Rigid3& board, CloudEdges* cloud) {
     q.head<3>() = measured + off / beam.dot(n) * beam - cloud->centre;
     cloud->raw_scatter += q * q.transpose();
   }
+}
+
+// As SeePlane, told apart by ring and by brightness.
+void SolveWorld::SeeRings(const Rigid3& board, CloudEdges* cloud) {
+  constexpr double kRingRad = 2 * M_PI / 180;  // ring 8 looks level
+  constexpr double kAcrossRad = 0.004;
+  constexpr double kDark = -3.4;
+  constexpr double kBright = -0.7;
+  const double range = board.translation.norm();
+  const Eigen::Vector3d n = board.rotation * Eigen::Vector3d::UnitZ();
+  cloud->centre = Published(board.translation);
+  cloud->group_sigma_m = cloud->scatter_sigma_m;
+  cloud->scatter.setZero();
+  std::array<double, 16> in_view{};
+  for (double& offset : in_view) offset = options_.rings->in_view_sigma_m * Normal();
+  std::map<std::pair<int, bool>, PointGroup> groups;
+  for (int ring = 0; ring < 16; ++ring) {
+    const double elevation = kRingRad * (ring - 8);
+    const double azimuth = std::atan2(board.translation.y(), board.translation.x());
+    for (double a = azimuth - 1; a < azimuth + 1; a += kAcrossRad) {
+      const Eigen::Vector3d beam(std::cos(a) * std::cos(elevation),
+                                 std::sin(a) * std::cos(elevation), std::sin(elevation));
+      const Eigen::Vector3d start(0, 0, -options_.rings->beams_meet_m * std::tan(elevation));
+      const double towards = n.dot(beam);
+      const double met = n.dot(board.translation - start) / towards;
+      if (!(met > 0) || met > 2 * range) continue;
+      const Eigen::Vector3d on = board.Inverse() * Eigen::Vector3d(start + met * beam);
+      if (std::abs(on.x()) > 0.46 * rig.target.width_m ||
+          std::abs(on.y()) > 0.46 * rig.target.height_m) {
+        continue;
+      }
+      const bool dark =
+          (static_cast<int>(on.x() / 0.1 + 100) + static_cast<int>(on.y() / 0.1 + 100)) % 2 == 0;
+      const auto r = static_cast<std::size_t>(ring);
+      const double offset = shared[kRangeOffset] + ring_offset_m[r] + in_view[r] -
+                            (dark ? options_.rings->dark_m : 0);
+      const double noise = cloud->group_sigma_m * Noise();
+      Eigen::Vector4d q(0, 0, 0, 1);
+      q.head<3>() = (met - offset) * beam + noise * n - cloud->centre;
+      PointGroup& group = groups[{ring, dark}];
+      group.ring = ring;
+      group.log2_intensity = dark ? kDark : kBright;
+      group.scatter += q * q.transpose();
+      cloud->scatter += q * q.transpose();
+    }
+  }
+  for (const auto& [key, group] : groups) cloud->groups.push_back(group);
+  cloud->raw_scatter = cloud->scatter;
+  cloud->points = static_cast<int>(cloud->scatter(3, 3));
+}
+
+Eigen::Vector3d SolveWorld::Published(const Eigen::Vector3d& met) const {
+  Eigen::Vector3d p = met;
+  if (!options_.rings) return p;
+  for (int i = 0; i < 5; ++i) {
+    p.z() = met.z() + options_.rings->beams_meet_m * p.z() / p.head<2>().norm();
+  }
+  return p;
 }
 
 // From crossings and plane, their shifts unknown.

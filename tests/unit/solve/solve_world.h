@@ -23,7 +23,15 @@ struct SolveWorldOptions {
   /// What the rig says of its lenses, which are the very ones; absent: nothing.
   std::optional<LensUncertainty> lens_uncertainty = LensUncertainty{};
   double print_sigma = 0;  ///< Target::print_sigma
-  bool plain = false;      ///< a square without a pattern, told from each of its corners in turn
+  /// Ranges, as a spinning LIDAR of 16 rings has them: clouds tell rings and intensities apart.
+  struct Rings {
+    double sigma_m = 0;          ///< of each ring's offset
+    double dark_m = 0;           ///< what dark points are measured farther
+    double in_view_sigma_m = 0;  ///< of each ring's further offset in each view
+    double beams_meet_m = 0;
+  };
+  std::optional<Rings> rings;
+  bool plain = false;  ///< a square without a pattern, told from each of its corners in turn
   std::array<double, kSharedUnknowns> shared = BoardPriors().Means();  ///< if not drawn
 };
 
@@ -38,7 +46,8 @@ class SolveWorld {
   std::array<double, kSharedUnknowns> shared{};
   std::vector<Rigid3> lidar_from_target;
   std::vector<std::array<double, 4>> side_shift;
-  std::vector<ViewDetection> detections;  ///< one a view
+  std::array<double, 16> ring_offset_m{};  ///< true less measured
+  std::vector<ViewDetection> detections;   ///< one a view
 
   /// What a camera sees through, whatever the rig says.
   const Lens& TrueLens(std::size_t camera) const { return true_lenses_[camera]; }
@@ -78,6 +87,9 @@ class SolveWorld {
                        double own_shift);
 
   void SeePlane(const Rigid3& board, CloudEdges* cloud);
+  void SeeRings(const Rigid3& board, CloudEdges* cloud);
+  // Where a cloud has what a beam met.
+  Eigen::Vector3d Published(const Eigen::Vector3d& met) const;
 
   // From crossings and plane, their shifts unknown.
   TargetPose PoseOfCloud(const CloudEdges& cloud, Rigid3 pose) const;

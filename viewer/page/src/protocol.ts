@@ -52,7 +52,8 @@ export interface RigFrame {
 export interface ImageFrame {
   type: "image";
   camera: string;
-  view: string; // "" for the newest, live; "sigma" in a finished session: the reprojection uncertainty
+  view: string; // "" for the newest, live; in a finished session also "sigma", the reprojection
+                // uncertainty, and "lidar", the LIDAR's own errors
   utime: number;
   width: number; // of the camera's image [px]; the JPEG may be smaller
   height: number;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/model/range_errors.h"
 
 namespace rgbdt {
 namespace {
@@ -88,7 +91,7 @@ double RowNoise::Correlated(double points) const {
 
 BoardPlane::BoardPlane(const Plane& near, const PlaneFrame& frame, const BoardPoints& points,
                        double least_sigma_m)
-    : near_(near), frame_(frame), points_(points) {
+    : near_(near), frame_(frame), points_(points), least_sigma_m_(least_sigma_m) {
   plane_ = FitAlongRays();
   std::vector<double> off;
   for (std::size_t i = 0; i < points_.points.size(); ++i) {
@@ -127,6 +130,50 @@ Eigen::Matrix4d BoardPlane::Scatter(const Eigen::Vector3d& centre) const {
 Eigen::Matrix4d BoardPlane::RawScatter(const Eigen::Vector3d& centre) const {
   return ScatterOf(points_.row, {1, 0},
                    [&](std::size_t i) -> Eigen::Vector3d { return points_.points[i] - centre; });
+}
+
+BoardPlane::Groups BoardPlane::GroupsAbout(const Eigen::Vector3d& centre,
+                                           const Cloud& cloud) const {
+  const bool lasers = NamesLasers(cloud);
+  const bool bright = cloud.intensity.size() == cloud.size();
+  const auto log2_of = [&](std::size_t i) {
+    return bright ? Log2Intensity(cloud.intensity[points_.index[i]]) : 0;
+  };
+  std::map<std::pair<int, double>, std::vector<std::size_t>> members;
+  for (std::size_t i = 0; i < points_.points.size(); ++i) {
+    const int ring = lasers ? cloud.ring[points_.index[i]] : -1;
+    members[{ring, std::floor(log2_of(i))}].push_back(i);
+  }
+  Groups out;
+  // Lines of a turned scanner share no laser: what a line is off by is taken off as noise.
+  const RowNoise noise = lasers ? RowNoise{1, 0} : noise_;
+  double squares = 0;
+  double freedom = 0;
+  for (const auto& [key, group] : members) {
+    const auto n = static_cast<double>(group.size());
+    double log2_sum = 0;
+    double off_sum = 0;
+    double off_squares = 0;
+    std::vector<int> rows;
+    for (const std::size_t i : group) {
+      const double off = plane_.Signed(AlongNormal(i));
+      log2_sum += log2_of(i);
+      off_sum += off;
+      off_squares += off * off;
+      rows.push_back(points_.row[i]);
+    }
+    squares += off_squares - off_sum * off_sum / n;
+    freedom += n - 1;
+    const auto point_of = [&](std::size_t k) -> Eigen::Vector3d {
+      return AlongNormal(group[k]) - centre;
+    };
+    out.groups.push_back({key.first, log2_sum / n, ScatterOf(rows, noise, point_of)});
+  }
+  constexpr double kLeastFreedom = 10;
+  out.sigma_m = lasers && freedom >= kLeastFreedom
+                    ? std::max(least_sigma_m_, std::sqrt(squares / freedom))
+                    : noise_.within_m;
+  return out;
 }
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "calib/detect/cloud/board_crossings.h"
@@ -13,6 +14,7 @@ struct BoardPoints {
   std::vector<Eigen::Vector3d> points;  ///< [m, LIDAR]
   std::vector<Eigen::Vector2d> flat;    ///< where their beams meet the frame's plane
   std::vector<int> row;                 ///< their rows in the grid: a ring, a line
+  std::vector<std::size_t> index;       ///< in the cloud
 };
 
 /// What the points of one row have in common, and what they have not.
@@ -36,6 +38,13 @@ class BoardPlane {
   const Plane& plane() const { return plane_; }
   double sigma_m() const { return noise_.within_m; }
 
+  /// CloudEdges::groups about a centre, and the points' sigma within them.
+  struct Groups {
+    std::vector<PointGroup> groups;
+    double sigma_m = 0;
+  };
+  Groups GroupsAbout(const Eigen::Vector3d& centre, const Cloud& cloud) const;
+
   /// CloudEdges::scatter and raw_scatter about a centre.
   Eigen::Matrix4d Scatter(const Eigen::Vector3d& centre) const;
   Eigen::Matrix4d RawScatter(const Eigen::Vector3d& centre) const;
@@ -47,6 +56,7 @@ class BoardPlane {
   const Plane& near_;
   const PlaneFrame& frame_;
   const BoardPoints& points_;
+  double least_sigma_m_;
   RowNoise noise_{1, 0};
   Plane plane_;
 };

@@ -158,6 +158,53 @@ Estimate ToEstimate(const proto::Estimate& estimate) {
           OrNan(estimate.has_sigma(), estimate.sigma())};
 }
 
+void FromRangeErrors(const RangeErrors& errors, proto::RangeErrors* out) {
+  FromEstimate(errors.offset_m, out->mutable_offset_m());
+  for (const auto& [ring, offset_m] : errors.rings) {
+    proto::RangeErrors::OfRing* const of = out->add_ring();
+    of->set_ring(ring);
+    FromEstimate(offset_m, of->mutable_offset_m());
+  }
+  for (const auto& [log2_intensity, offset_m] : errors.intensities) {
+    proto::RangeErrors::OfIntensity* const of = out->add_intensity();
+    of->set_log2_intensity(log2_intensity);
+    FromEstimate(offset_m, of->mutable_offset_m());
+  }
+  FromEstimate(errors.beams_meet_m, out->mutable_beams_meet_m());
+}
+
+RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place) {
+  const auto estimate = [](const proto::Estimate& message, const Place& at) {
+    const Estimate out = ToEstimate(message);
+    RequireFinite(out.value, at, "value");
+    RequireFinite(out.sigma, at, "sigma");
+    if (out.sigma < 0) at.Fail("sigma", "is " + std::to_string(out.sigma) + "; expected 0 or more");
+    return out;
+  };
+  RangeErrors out;
+  out.offset_m = estimate(errors.offset_m(), place.In("offset_m"));
+  out.beams_meet_m = estimate(errors.beams_meet_m(), place.In("beams_meet_m"));
+  for (int i = 0; i < errors.ring_size(); ++i) {
+    const Place at = place.In("ring", i);
+    const int ring = errors.ring(i).ring();
+    if (ring < 0 || ring >= kMostLasers || (i > 0 && ring <= out.rings.back().ring)) {
+      at.Fail("ring", "is " + std::to_string(ring) + "; expected numbers from 0 on that rise");
+    }
+    out.rings.push_back({ring, estimate(errors.ring(i).offset_m(), at.In("offset_m"))});
+  }
+  for (int i = 0; i < errors.intensity_size(); ++i) {
+    const Place at = place.In("intensity", i);
+    const double log2 = errors.intensity(i).log2_intensity();
+    if (!(log2 >= kLeastLog2Intensity && log2 <= 0) ||
+        (i > 0 && log2 != out.intensities.back().log2_intensity + 1)) {
+      at.Fail("log2_intensity",
+              "is " + std::to_string(log2) + "; expected -8 to 0, each one more than the last");
+    }
+    out.intensities.push_back({log2, estimate(errors.intensity(i).offset_m(), at.In("offset_m"))});
+  }
+  return out;
+}
+
 void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out) {
   if (figure.train) SetFinite(*figure.train, &proto::TrainHeldout::set_train, out);
   if (figure.heldout) SetFinite(*figure.heldout, &proto::TrainHeldout::set_heldout, out);

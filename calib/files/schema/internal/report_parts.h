@@ -14,6 +14,9 @@ PoseError ToPoseError(const proto::PoseError& error);
 
 void FromEstimate(const Estimate& estimate, proto::Estimate* out);
 Estimate ToEstimate(const proto::Estimate& estimate);
+void FromRangeErrors(const RangeErrors& errors, proto::RangeErrors* out);
+/// Throws InputError for rings and intensities that do not rise, and numbers that are not finite.
+RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place);
 
 void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);

@@ -1,6 +1,7 @@
 #include "calib/present/report/internal/fit_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "calib/model/text.h"
@@ -136,13 +137,35 @@ Table SolveTable(const CameraReport& camera) {
   }
   add("First guess away from the truth", PoseErrorText(camera.first_guess_error));
   add("Result away from the truth", PoseErrorText(camera.truth_error));
-  if (camera.range_offset) {
-    add("LIDAR's range offset", WithUnit(1000 * camera.range_offset->value, 1, "mm") + " ± " +
-                                    WithUnit(1000 * camera.range_offset->sigma, 1, "mm"));
-  }
   add("Computing time, all views", "images " + WithUnit(camera.detect_image_s, 2, "s") +
                                        ", clouds " + WithUnit(camera.detect_cloud_s, 2, "s") +
                                        ", solve " + WithUnit(camera.solve_s, 3, "s"));
+  return table;
+}
+
+Table LidarTable(const CameraReport& camera) {
+  if (!camera.calibration.range_errors) return {};
+  const RangeErrors& errors = *camera.calibration.range_errors;
+  Table table{
+      "The LIDAR's own errors",
+      {"True range less measured range; what stands below adds up. The calibration file has "
+       "them, too: rgbdt fuse --correct-ranges applies them."},
+      {"", "offset", "1 sigma"},
+      {}};
+  const auto add = [&](const std::string& name, const Estimate& estimate) {
+    table.rows.push_back({{name},
+                          {WithUnit(1000 * estimate.value, 1, "mm")},
+                          {WithUnit(1000 * estimate.sigma, 1, "mm")}});
+  };
+  if (errors.offset_m.sigma > 0) add("all ranges", errors.offset_m);
+  for (const auto& [ring, offset_m] : errors.rings) add("ring " + std::to_string(ring), offset_m);
+  for (const auto& [log2_intensity, offset_m] : errors.intensities) {
+    add("intensity " + Number(std::exp2(log2_intensity), 3), offset_m);
+  }
+  if (errors.beams_meet_m.sigma > 0) {
+    add("beams meet at a radius of (beams start at z = -radius tan(elevation))",
+        errors.beams_meet_m);
+  }
   return table;
 }
 

@@ -23,4 +23,7 @@ Table DetectionTable(const Report& report);
 Table StartsTable(const CameraReport& camera);
 Table SolveTable(const CameraReport& camera);
 
+/// What the LIDAR's ranges and beams are off by.
+Table LidarTable(const CameraReport& camera);
+
 }  // namespace rgbdt

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <set>
 
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/board.h"
@@ -262,6 +263,56 @@ TEST(BoardInCloud, ANoisierLidarThanTheRigSaysIsNoHindrance) {
     const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));  // 10 mm
     ASSERT_FALSE(boards.candidates.empty()) << rings << ": " << boards.why;
     EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
+  }
+}
+
+// Mean distance of groups' points behind the board's front [m]: of dark ones and of bright ones.
+struct Behind {
+  double dark = 0, bright = 0;
+};
+Behind BehindOf(const CloudEdges& board) {
+  double sums[2] = {0, 0};
+  double counts[2] = {0, 0};
+  for (const PointGroup& group : board.groups) {
+    const int bright = group.log2_intensity > -2 ? 1 : 0;
+    sums[bright] -= group.scatter.col(3).head<3>().dot(board.normal);
+    counts[bright] += group.scatter(3, 3);
+  }
+  return {sums[0] / counts[0], sums[1] / counts[1]};
+}
+
+TEST(BoardInCloud, ItsPointsAreToldApartByRingAndBrightness) {
+  for (const int rings : {0, 32}) {
+    simulate::Options options = Physics(rings, 3);
+    (rings == 0 ? options.scanner.dark_range_m : options.spinning->dark_range_m) = 0.015;
+    const CloudWorld world(options, 0);
+    Cloud cloud = world.Sweep(kSweep);
+    const auto boards = FindBoards(cloud, world.target(), Detection(rings));
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    const CloudEdges& board = boards.candidates[0];
+    double points = 0;
+    std::set<int> found;
+    for (const PointGroup& group : board.groups) {
+      found.insert(group.ring);
+      points += group.scatter(3, 3);
+    }
+    EXPECT_NEAR(points, board.points, rings == 0 ? 0.05 * board.points : 1e-9) << rings;
+    if (rings == 0) {
+      EXPECT_EQ(found, std::set<int>{-1});
+    } else {
+      EXPECT_GE(found.size(), 3U);
+      EXPECT_GE(*found.begin(), 0);
+      EXPECT_LT(*found.rbegin(), rings);
+    }
+    const Behind behind = BehindOf(board);
+    EXPECT_NEAR(behind.dark - behind.bright, 0.015, 0.006) << rings;
+    EXPECT_NEAR(board.group_sigma_m, rings == 0 ? 0.01 : 0.02, 0.008) << rings;
+
+    cloud.intensity.clear();
+    for (const PointGroup& group :
+         FindBoards(cloud, world.target(), Detection(rings)).candidates.at(0).groups) {
+      EXPECT_EQ(group.log2_intensity, 0);
+    }
   }
 }
 

@@ -17,6 +17,7 @@ TEST(CalibrationFile, GivesBackEveryBit) {
   SolvedLens& lens = calibration.cameras[1].lens.emplace();
   lens.lens = {Lens::Model::kFisheye, 500.1, 501.2, 320.3, 240.4, {0.1, -0.2, 0.3, -0.4}};
   for (int i = 0; i < lens.covariance.size(); ++i) lens.covariance(i / 15, i % 15) = std::sin(i);
+  calibration.cameras[1].range_errors = test::MakeRangeErrors();
   WriteCalibration(dir / "calibration.textproto", calibration);
   const Calibration back = ReadCalibration(dir / "calibration.textproto");
   EXPECT_EQ(back.method, calibration.method);
@@ -32,7 +33,9 @@ TEST(CalibrationFile, GivesBackEveryBit) {
     EXPECT_EQ(b.status, a.status);
     EXPECT_EQ(b.detail, a.detail);
     ASSERT_EQ(b.lens.has_value(), a.lens.has_value());
+    EXPECT_TRUE(b.range_errors == a.range_errors);
   }
+  EXPECT_FALSE(back.cameras[0].range_errors);
   EXPECT_EQ(back.cameras[1].lens->lens, lens.lens);
   EXPECT_EQ(back.cameras[1].lens->covariance, lens.covariance);
   EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
@@ -73,13 +76,52 @@ TEST(CalibrationFile, ErrorsNameLineAndKey) {
               HasSubstr("c.textproto:3: camera.camera is \"rgb\" for the second"));
 }
 
+TEST(CalibrationFile, RangeErrorsThatMakeNoSenseAreRefused) {
+  const test::TempDir dir;
+  Calibration calibration = test::MakeReport().ToCalibration();
+  calibration.cameras.resize(1);
+  calibration.cameras[0].range_errors = test::MakeRangeErrors();
+  const auto error = [&](auto change) {
+    Calibration changed = calibration;
+    change(&*changed.cameras[0].range_errors);
+    WriteCalibration(dir / "c", changed);
+    return test::ErrorOf([&] { ReadCalibration(dir / "c"); });
+  };
+  using Errors = RangeErrors*;
+  EXPECT_THAT(error([](Errors e) { e->rings[0].ring = -1; }),
+              HasSubstr("camera.range_errors.ring.ring is -1; expected numbers from 0"));
+  EXPECT_THAT(error([](Errors e) { e->rings[2].ring = 256; }), HasSubstr("ring.ring is 256"));
+  EXPECT_THAT(error([](Errors e) { e->rings[1].ring = 0; }), HasSubstr("ring.ring is 0"));
+  EXPECT_THAT(error([](Errors e) { e->intensities[0].log2_intensity = -8.5; }),
+              HasSubstr("camera.range_errors.intensity.log2_intensity is -8.5"));
+  EXPECT_THAT(error([](Errors e) {
+                e->intensities = {{0.5, {}}};
+              }),
+              HasSubstr("intensity.log2_intensity is 0.5"));
+  EXPECT_THAT(error([](Errors e) { e->intensities[1].log2_intensity = -1.3; }),
+              HasSubstr("intensity.log2_intensity is -1.3"));
+  // What is not finite is not written, and missed when it is read.
+  EXPECT_THAT(error([](Errors e) { e->offset_m.value = INFINITY; }),
+              HasSubstr("camera.range_errors.offset_m.value is nan"));
+  EXPECT_THAT(error([](Errors e) { e->beams_meet_m.sigma = NAN; }),
+              HasSubstr("camera.range_errors.beams_meet_m.sigma is nan"));
+  EXPECT_THAT(error([](Errors e) { e->rings[2].offset_m.value = NAN; }),
+              HasSubstr("camera.range_errors.ring.offset_m.value is nan"));
+  EXPECT_THAT(error([](Errors e) { e->intensities[0].offset_m.sigma = NAN; }),
+              HasSubstr("camera.range_errors.intensity.offset_m.sigma is nan"));
+  EXPECT_THAT(error([](Errors e) { e->offset_m.sigma = -0.5; }),
+              HasSubstr("camera.range_errors.offset_m.sigma is -0.5"));
+}
+
 TEST(CalibrationFile, DamagedTextNeverCrashes) {
   const test::TempDir dir;
   const auto parse = [&](const std::string& text) {
     test::WriteQuickly(dir / "c", text);
     ReadCalibration(dir / "c");
   };
-  const std::string text = PrintCalibration(test::MakeReport().ToCalibration());
+  Calibration calibration = test::MakeReport().ToCalibration();
+  calibration.cameras[0].range_errors = test::MakeRangeErrors();
+  const std::string text = PrintCalibration(calibration);
   test::ParseTruncations(text, parse, 100);
   test::ParseDamaged(text, parse, 60);
 }

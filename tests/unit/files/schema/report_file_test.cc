@@ -11,7 +11,8 @@ using ::testing::Not;
 
 TEST(ReportFile, GivesBackEveryFigure) {
   const test::TempDir dir;
-  const Report report = test::MakeReport();
+  Report report = test::MakeReport();
+  report.cameras[1].calibration.range_errors = test::MakeRangeErrors();
   WriteReport(dir / "report.json", report);
   const Report back = ReadReport(dir / "report.json");
   ASSERT_EQ(back.cameras.size(), 2u);
@@ -21,6 +22,7 @@ TEST(ReportFile, GivesBackEveryFigure) {
     EXPECT_EQ(b.calibration.camera, a.calibration.camera);
     test::ExpectSame(b.calibration.camera_from_lidar, a.calibration.camera_from_lidar);
     EXPECT_EQ(b.calibration.covariance, a.calibration.covariance);
+    EXPECT_TRUE(b.calibration.range_errors == a.calibration.range_errors);
     ASSERT_EQ(b.first_guess.has_value(), a.first_guess.has_value());
     if (a.first_guess) test::ExpectSame(*b.first_guess, *a.first_guess);
     EXPECT_EQ(b.used, a.used);

@@ -4,7 +4,7 @@ import { rig, session, targetStatus } from "../store";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
 import { EventLog } from "./session/event_log";
-import { ReportSection, SigmaPictures } from "./session/report";
+import { ReportSection, ReportPictures } from "./session/report";
 import { TableView } from "./session/table";
 import { TargetStatusLine } from "./session/target_status_line";
 import { SigmaCharts } from "./session/uncertainty";
@@ -71,7 +71,7 @@ export function SessionPanel() {
         <h2>Where the board was held</h2>
         <Coverage cameras={rig.value?.cameras ?? []} views={state.views} />
       </section>
-      <SigmaPictures />
+      <ReportPictures />
       <section aria-label="Views">
         <h2>Views ({state.views.length})</h2>
         <ViewCards session={state} />

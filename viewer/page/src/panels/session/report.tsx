@@ -14,23 +14,41 @@ function CameraSection({ report, open }: { report: CameraReport; open: boolean }
   );
 }
 
-/// The report's pictures: the reprojection uncertainty all over each camera's image.
-export function SigmaPictures() {
-  const pictures = [...images.value.values()].filter(({ header }) => header.view === "sigma");
+interface PicturesProps {
+  view: string; // of the images
+  title: string;
+  words: string;
+}
+
+/// One kind of the report's pictures, each camera's.
+function Pictures({ view, title, words }: PicturesProps) {
+  const pictures = [...images.value.values()].filter(({ header }) => header.view === view);
   if (pictures.length === 0) return null;
   return (
-    <section class="card">
-      <h3>Reprojection uncertainty</h3>
-      <p class="muted">1 sigma of where in the image a point's colour is taken from, all over each camera's image.</p>
+    <section class="card" data-testid={`pictures-${view}`}>
+      <h3>{title}</h3>
+      <p class="muted">{words}</p>
       <div class="pictures several">
         {pictures.map(({ header, url }) => (
           <figure key={header.camera} class="sigma-picture">
-            <img src={url} alt={`Reprojection uncertainty of ${header.camera}, all over its image`} />
+            <img src={url} alt={`${title}: ${header.camera}`} />
             <figcaption>{header.camera}</figcaption>
           </figure>
         ))}
       </div>
     </section>
+  );
+}
+
+/// The report's pictures.
+export function ReportPictures() {
+  return (
+    <>
+      <Pictures view="sigma" title="Reprojection uncertainty"
+        words="1 sigma of where in the image a point's colour is taken from, all over each camera's image." />
+      <Pictures view="lidar" title="The LIDAR's own errors"
+        words="True range less measured range, by ring and by intensity, and how much larger a board looks at its edges; as each camera's solve found them. Bars are 1 sigma." />
+    </>
   );
 }
 
