@@ -309,8 +309,9 @@ TEST(BoardInCloud, ItsPointsAreToldApartByRingAndBrightness) {
     EXPECT_NEAR(board.group_sigma_m, rings == 0 ? 0.01 : 0.02, 0.008) << rings;
 
     cloud.intensity.clear();
-    for (const PointGroup& group :
-         FindBoards(cloud, world.target(), Detection(rings)).candidates.at(0).groups) {
+    const auto unlit = FindBoards(cloud, world.target(), Detection(rings));
+    ASSERT_FALSE(unlit.candidates.empty()) << unlit.why;
+    for (const PointGroup& group : unlit.candidates[0].groups) {
       EXPECT_EQ(group.log2_intensity, 0);
     }
   }
