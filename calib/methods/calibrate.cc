@@ -1,8 +1,8 @@
 #include "calib/methods/calibrate.h"
 
-#include <algorithm>
 #include <utility>
 
+#include "calib/methods/internal/report_parts.h"
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
 #include "calib/solve/by_boards.h"
@@ -10,38 +10,13 @@
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
-namespace {
-
-std::vector<DetectedView> SummariesOf(const std::vector<ViewDetection>& detections) {
-  std::vector<DetectedView> summaries;
-  for (const ViewDetection& detection : detections) {
-    DetectedView& summary = summaries.emplace_back();
-    summary.view = detection.view;
-    summary.heldout = detection.heldout;
-    for (const ImageDetection& image : detection.images) {
-      summary.images.push_back({image.camera, image.why_not});
-    }
-    summary.cloud_candidates = static_cast<int>(detection.cloud.candidates.size());
-    summary.cloud_why_not = detection.cloud.why_not;
-  }
-  return summaries;
-}
-
-}  // namespace
 
 Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
                  const CalibrateOptions& options) {
   options.Check();
-  CalibrateOptions with_rig = options;
-  if (!(options.first_guess.range_offset_sigma_m > 0)) {
-    with_rig.first_guess.range_offset_sigma_m = rig.lidar.range_offset_sigma_m;
-  }
-  Report report;
-  report.method = options.method;
-  report.rig_hash = rig.hash;
-  report.detections = SummariesOf(detections);
-  std::vector<CameraViews> cameras;
-  for (const CameraSpec& camera : rig.cameras) cameras.push_back(ViewsOf(camera, detections));
+  const CalibrateOptions with_rig = WithRig(options, rig);
+  Report report = BlankReport(rig, options.method, detections);
+  std::vector<CameraViews> cameras = ViewsOfCameras(rig, detections);
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
@@ -53,22 +28,13 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
     report.closure = std::move(calibrated.closure);
     report.next_view = std::move(calibrated.next_view);
   }
-  for (CameraViews& camera : cameras) {
-    camera.Describe();
-    for (const CameraView* view : camera.Usable()) {
-      report.utime = std::max(report.utime, view->image_utime);
-    }
-    report.cameras.push_back(std::move(camera.report));
-  }
+  for (CameraViews& camera : cameras) AddCamera(std::move(camera), &report);
   return report;
 }
 
 Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
                 const Calibration& calibration) {
-  Report report;
-  report.method = calibration.method;
-  report.rig_hash = rig.hash;
-  report.detections = SummariesOf(detections);
+  Report report = BlankReport(rig, calibration.method, detections);
   report.utime = calibration.utime;
   for (const CameraSpec& camera : rig.cameras) {
     const CameraCalibration* found = calibration.Find(camera.name);

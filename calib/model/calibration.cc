@@ -48,6 +48,14 @@ Calibration Report::ToCalibration() const {
   return calibration;
 }
 
+// Wilson and Hilferty 1931: the cube root of a chi-square is nearly normal.
+double ViewScatter::Chance() const {
+  if (!(freedom > 0)) return 1;
+  const double variance = 2 / (9 * freedom);
+  const double sigmas = (std::cbrt(factor) - (1 - variance)) / std::sqrt(variance);
+  return 0.5 * std::erfc(sigmas / std::sqrt(2.0));
+}
+
 PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth) {
   return {RotationDistance(estimate, truth) * 180.0 / M_PI,
           CentreDistance(estimate, truth) * 1000.0};

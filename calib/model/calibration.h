@@ -141,6 +141,15 @@ struct Halves {
   double chi2 = 0;  ///< by the stated covariances, six degrees of freedom
 };
 
+/// How far results move as views are left out, over what the views' own sigmas say.
+struct ViewScatter {
+  double factor = 1;   ///< of variance
+  double freedom = 0;  ///< degrees of freedom that tell it
+
+  /// Of chance making it as large, were the views as stated.
+  double Chance() const;
+};
+
 /// The same solve from another start: how much the start matters.
 struct StartResult {
   std::string start;  ///< in words
@@ -155,6 +164,8 @@ struct CameraReport {
   std::optional<Rigid3> first_guess;  ///< camera_from_lidar that the solve began from
   std::vector<std::string> used, heldout;
   std::vector<RejectedView> rejected;
+  /// Why the views cannot all be of one pose, in words; empty: they can, as far as is known.
+  std::string contradiction;
   std::vector<std::string> warnings;   ///< what a person should know of the views, in words
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
@@ -165,7 +176,9 @@ struct CameraReport {
   std::vector<Nuisance> nuisance;
   std::vector<Fold> folds;
   std::optional<Halves> halves;
-  double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
+  std::optional<ViewScatter> view_scatter;  ///< absent: too few views, or no covariance
+  /// By which the covariance was enlarged, as views may scatter more than stated (`view_scatter`).
+  double variance_factor = 1;
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views

@@ -10,4 +10,9 @@ double ChanceOfChi2(double chi2) {
   return std::exp(-x) * (1 + x + x * x / 2);
 }
 
+bool Moved(const PoseComparison& camera) {
+  constexpr double kChance = 0.01;
+  return camera.chi2 && ChanceOfChi2(*camera.chi2) < kChance;
+}
+
 }  // namespace rgbdt

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/model/time.h"
 
 namespace rgbdt {
 
@@ -26,6 +27,17 @@ struct PoseComparison {
   std::optional<double> chi2;      ///< six degrees of freedom; absent where sigmas are NaN
   std::vector<PixelShift> pixels;  ///< empty: no lens at hand
 };
+
+/// Two calibrations of a rig: b against a, whichever is the later one.
+struct CalibrationComparison {
+  std::string a, b;                ///< as the user named them
+  Utime utime_a = 0, utime_b = 0;  ///< 0: not known
+  bool same_rig = true;            ///< the rig files are the same, lenses and all
+  std::vector<PoseComparison> cameras;
+};
+
+/// Whether a comparison says that a camera moved: beyond what chance does once in a hundred.
+bool Moved(const PoseComparison& camera);
 
 /// How often chance alone makes a chi-square of six degrees of freedom as large.
 double ChanceOfChi2(double chi2);

@@ -78,6 +78,7 @@ double PriorCost(const BoardProblem& problem, const BoardState& state) {
   const auto means = priors.Means();
   double cost = 0;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    if (!problem.HasOwnLens(c)) continue;
     const LensNumbers off = OffGivenLens(problem, state, c);
     cost += off.dot(InformationOfLens(problem.lens_priors[c]) * off);
   }
@@ -127,8 +128,7 @@ class Stretch {
 };
 
 // The shared unknowns changed by x, the others as they are.
-BoardState MovedBy(BoardState state, const Eigen::VectorXd& x) {
-  const SharedPlaces places(state.lenses.size(), state.range_terms.size());
+BoardState MovedBy(BoardState state, const SharedPlaces& places, const Eigen::VectorXd& x) {
   for (std::size_t c = 0; c < state.camera_from_lidar.size(); ++c) {
     state.camera_from_lidar[c] =
         Exp(x.segment<6>(SharedPlaces::Pose(c))) * state.camera_from_lidar[c];
@@ -180,7 +180,7 @@ class Step {
     }
     h.diagonal() *= 1 + damping;
     const Eigen::VectorXd x = SolveSymmetric(h, g);
-    Stepped stepped{MovedBy(state_, stretch * x), x.dot(h * x)};
+    Stepped stepped{MovedBy(state_, SharedPlaces(problem_), stretch * x), x.dot(h * x)};
     for (std::size_t v = 0; v < reduced.size(); ++v) {
       const LocalVector local = reduced[v].own.step - reduced[v].own.by_shared * x;
       stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
@@ -235,6 +235,7 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
   BoardStart part{{problem.target,
                    problem.cameras,
                    problem.lens_priors,
+                   problem.lens_of,
                    {},
                    problem.priors,
                    problem.ranges,
@@ -258,7 +259,7 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
   }
   const Eigen::VectorXd x = SolveSymmetric(sum.information, sum.gradient);
   const BoardStart some = Part(problem, views, all.state);
-  BoardState there = MovedBy(some.start, x);
+  BoardState there = MovedBy(some.start, SharedPlaces(problem), x);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const OwnUnknowns& own = all.own[views[i]];
     MoveView(own.step - own.by_shared * x, &there.lidar_from_target[i], &there.side_shift[i]);
@@ -335,12 +336,24 @@ ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& 
     }
   }
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    if (!problem.HasOwnLens(c)) continue;
     const Eigen::Index at = places.Lens(c);
     const LensCovariance information = InformationOfLens(problem.lens_priors[c]);
     out.information.block<kLensNumbers, kLensNumbers>(at, at) = information;
     out.gradient.segment<kLensNumbers>(at) = -information * OffGivenLens(problem, state, c);
   }
   return out;
+}
+
+SharedPlaces::SharedPlaces(const BoardProblem& problem) : shared_(Pose(problem.cameras.size())) {
+  Eigen::Index next = shared_ + kSharedUnknowns;
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    const bool own = problem.HasOwnLens(c);
+    lenses_.push_back(own ? next : lenses_[problem.lens_of[c]]);
+    if (own) next += kLensNumbers;
+  }
+  range_terms_ = next;
+  count_ = next + static_cast<Eigen::Index>(problem.ranges.Count());
 }
 
 std::array<Eigen::Index, kPoseAndLens> SharedPlaces::PoseAndLens(std::size_t camera) const {
@@ -350,8 +363,9 @@ std::array<Eigen::Index, kPoseAndLens> SharedPlaces::PoseAndLens(std::size_t cam
   return out;
 }
 
-PoseAndLensCovariance BoardSolution::PoseAndLens(std::size_t camera) const {
-  const auto places = SharedPlaces(state.lenses.size()).PoseAndLens(camera);
+PoseAndLensCovariance BoardSolution::PoseAndLens(const SharedPlaces& all,
+                                                 std::size_t camera) const {
+  const auto places = all.PoseAndLens(camera);
   return covariance(places, places);
 }
 
@@ -389,7 +403,7 @@ Misfit MisfitOf(const BoardProblem& problem, BoardState state, std::size_t view,
   const Eigen::Index at = SharedPlaces::Pose(c);
   const Matrix6d information = reduced.information.block<6, 6>(at, at);
   const Vector6d gradient = reduced.gradient.segment<6>(at);
-  const auto places = SharedPlaces(problem.cameras.size()).PoseAndLens(c);
+  const auto places = SharedPlaces(problem).PoseAndLens(c);
   return {gradient.dot(SolveSymmetric(information, gradient)), information,
           reduced.information.middleRows<6>(at)(Eigen::all, places)};
 }

@@ -32,11 +32,20 @@ struct BoardProblem {
   Target target;
   std::vector<Camera> cameras;              ///< with their given lenses
   std::vector<LensCovariance> lens_priors;  ///< by camera, about the given lens; zero: exact
+  /// By camera, the first one with the same lens: one that moved on its mount between two sessions
+  /// is two cameras with one lens. Empty: each has its own.
+  std::vector<std::size_t> lens_of;
   std::vector<BoardView> views;
   BoardPriors priors;
   RangeTerms ranges;
   /// The LIDAR is taken for exact: groups of points are not told apart.
   bool ranges_exact = false;
+
+  /// The first camera with this one's lens.
+  std::size_t LensOf(std::size_t camera) const {
+    return lens_of.empty() ? camera : lens_of[camera];
+  }
+  bool HasOwnLens(std::size_t camera) const { return LensOf(camera) == camera; }
 
   /// The prior's, of a term of `ranges` [m].
   double SigmaOfTerm(std::size_t term) const {
@@ -55,30 +64,25 @@ struct BoardState {
 };
 
 /// Places of the unknowns that all views share: each camera's pose (delta, rigid3.h),
-/// SharedUnknown, each camera's lens (NumbersOf), range offsets (RangeTerms).
+/// SharedUnknown, each lens (NumbersOf), range offsets (RangeTerms).
 class SharedPlaces {
  public:
-  explicit SharedPlaces(std::size_t cameras, std::size_t range_terms = 0)
-      : cameras_(static_cast<Eigen::Index>(cameras)),
-        range_terms_(static_cast<Eigen::Index>(range_terms)) {}
-  explicit SharedPlaces(const BoardProblem& problem)
-      : SharedPlaces(problem.cameras.size(), problem.ranges.Count()) {}
+  explicit SharedPlaces(const BoardProblem& problem);
 
   static Eigen::Index Pose(std::size_t camera) { return static_cast<Eigen::Index>(6 * camera); }
-  Eigen::Index Of(int shared_unknown) const { return 6 * cameras_ + shared_unknown; }
-  Eigen::Index Lens(std::size_t camera) const {
-    return Of(kSharedUnknowns) + kLensNumbers * static_cast<Eigen::Index>(camera);
-  }
+  Eigen::Index Of(int shared_unknown) const { return shared_ + shared_unknown; }
+  /// Of a camera's lens, which may be another one's, too.
+  Eigen::Index Lens(std::size_t camera) const { return lenses_[camera]; }
   Eigen::Index RangeTerm(std::size_t term) const {
-    return Of(kSharedUnknowns) + kLensNumbers * cameras_ + static_cast<Eigen::Index>(term);
+    return range_terms_ + static_cast<Eigen::Index>(term);
   }
-  Eigen::Index Count() const { return RangeTerm(0) + range_terms_; }
+  Eigen::Index Count() const { return count_; }
   /// Of a camera's pose and its lens.
   std::array<Eigen::Index, kPoseAndLens> PoseAndLens(std::size_t camera) const;
 
  private:
-  Eigen::Index cameras_;
-  Eigen::Index range_terms_;
+  Eigen::Index shared_, range_terms_ = 0, count_ = 0;
+  std::vector<Eigen::Index> lenses_;  // by camera
 };
 
 /// What one view says of the shared unknowns, its own ones eliminated: the cost is
@@ -104,7 +108,7 @@ struct BoardSolution {
   bool converged = false;
   int iterations = 0;
 
-  PoseAndLensCovariance PoseAndLens(std::size_t camera) const;
+  PoseAndLensCovariance PoseAndLens(const SharedPlaces& all, std::size_t camera) const;
 };
 
 /// Least squares over all cameras, boards and nuisances together, robust. Residuals, each whitened:

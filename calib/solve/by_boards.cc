@@ -9,6 +9,7 @@
 #include "calib/model/text.h"
 #include "calib/solve/closure.h"
 #include "calib/solve/colouring.h"
+#include "calib/solve/compare.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/internal/cross_check.h"
 #include "calib/solve/internal/joint_solve.h"
@@ -38,7 +39,7 @@ constexpr NuisanceLine kNuisances[] = {
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
-  const auto at = SharedPlaces(result.joint.cameras.size()).Of(unknown);
+  const auto at = SharedPlaces(result.joint.problem).Of(unknown);
   return {result.solution.state.shared[static_cast<std::size_t>(unknown)],
           std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)))};
 }
@@ -166,6 +167,7 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
   CameraReport report = result.joint.cameras[camera].views.report;
   report.calibration = CalibrationOf(result, camera);
   report.nuisance = NuisancesOf(result, camera);
+  report.view_scatter = result.view_scatter;
   report.variance_factor = result.variance_factor;
   if (result.refuted_range_offset_sigma_m) {
     report.warnings.push_back(RangesAreOff(report.calibration.range_errors->offset_m,
@@ -202,9 +204,27 @@ CameraViews Judged(const EdgeModel& edges, CameraViews camera) {
   return camera;
 }
 
+// How far cameras moved between sessions, by this solve.
+std::vector<MountChange> ChangesOf(const JointResult& result) {
+  std::vector<MountChange> changes;
+  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
+    const std::size_t first = result.joint.problem.LensOf(c);
+    if (first == c) continue;
+    const CameraViews& from = result.joint.cameras[first].views;
+    const CameraViews& to = result.joint.cameras[c].views;
+    const Matrix6d together =
+        result.variance_factor *
+        result.solution.covariance.block<6, 6>(SharedPlaces::Pose(c), SharedPlaces::Pose(first));
+    changes.push_back(
+        {first, c, Compare(from.report.calibration, to.report.calibration, to.spec, together)});
+  }
+  return changes;
+}
+
 // Cameras that were solved together, and where to hold the board next.
 struct SolvedGroup {
   std::vector<GuessedCamera> cameras;
+  std::vector<MountChange> changes;  // indices into `cameras`
   std::optional<NextView> next_view;
 };
 
@@ -218,9 +238,11 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
     result.joint.cameras[c].views.report = WithSolution(result, c, seconds);
   }
   SolvedGroup solved;
+  solved.changes = ChangesOf(result);
   if (options.diagnostics) {
     result = CrossValidate(std::move(result), options.folds);
-    solved.next_view = FindNextView(result);
+    // Of a session that is over there is no next view.
+    if (solved.changes.empty()) solved.next_view = FindNextView(result);
   }
   const EdgeModel edges = EdgesOf(result);
   solved.cameras = std::move(result.joint.cameras);
@@ -230,14 +252,17 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   return solved;
 }
 
-// Which of the cameras, those with a guess, are solved together: all, or each by itself.
+// Which of the cameras, those with a guess, are solved together: all, or those of one name.
 std::vector<std::vector<std::size_t>> GroupsOf(const std::vector<GuessedCamera>& cameras,
                                                bool joint) {
   std::vector<std::vector<std::size_t>> groups;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     if (!cameras[c].guess.camera_from_lidar) continue;
-    if (!joint || groups.empty()) groups.emplace_back();
-    groups.back().push_back(c);
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& others) {
+      return joint || cameras[others.front()].views.spec->name == cameras[c].views.spec->name;
+    });
+    if (group == groups.end()) group = groups.emplace(group);
+    group->push_back(c);
   }
   return groups;
 }
@@ -261,6 +286,9 @@ CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions
     for (const std::size_t c : group) together.push_back(std::move(guessed[c]));
     SolvedGroup solved = SolveGroup(target, options, std::move(together));
     for (std::size_t i = 0; i < group.size(); ++i) guessed[group[i]] = std::move(solved.cameras[i]);
+    for (MountChange& change : solved.changes) {
+      out.changes.push_back({group[change.from], group[change.to], std::move(change.moved)});
+    }
     out.next_view = Worse(std::move(out.next_view), std::move(solved.next_view));
   }
   if (options.diagnostics) out.closure = CloseLoops(guessed);

@@ -8,7 +8,8 @@
 
 namespace rgbdt {
 
-/// "auto": see Calibrate.
+/// "auto": see Calibrate. Cameras of one name are one, in several sessions: each has a pose of its
+/// own, and all one lens. Their views have different names.
 CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras);
 

@@ -15,17 +15,33 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kDistancesM[] = {2, 5, 10};
 
-std::optional<Matrix6d> CovarianceOfDifference(const CameraCalibration& a,
-                                               const CameraCalibration& b, const Rigid3& b_from_a) {
-  if (!a.converged() || !b.converged() || !a.covariance || !b.covariance) return std::nullopt;
-  const Matrix6d adjoint = Adjoint(b_from_a);
-  return Matrix6d(*b.covariance + adjoint * *a.covariance * adjoint.transpose());
-}
+// Two calibrations whose poses have covariances, and the covariance of b's delta with a's.
+struct Stated {
+  const CameraCalibration& a;
+  const CameraCalibration& b;
+  Matrix6d b_with_a;
 
-// Of the camera's centre, LIDAR axes (colouring.h).
-Eigen::Matrix3d CentreCovariance(const CameraCalibration& calibration) {
-  const Eigen::Matrix3d r = calibration.camera_from_lidar.rotation.toRotationMatrix();
-  return r.transpose() * calibration.covariance->bottomRightCorner<3, 3>() * r;
+  // Of Log(b a^-1).
+  Matrix6d OfDifference() const {
+    const Matrix6d adjoint = Adjoint(b.camera_from_lidar * a.camera_from_lidar.Inverse());
+    const Matrix6d both = b_with_a * adjoint.transpose();
+    return *b.covariance + adjoint * *a.covariance * adjoint.transpose() - both - both.transpose();
+  }
+
+  // Of the difference of the cameras' centres, LIDAR axes: each moves by -R' of its delta's
+  // translation.
+  Eigen::Matrix3d OfCentres() const {
+    const Eigen::Matrix3d of_a = a.camera_from_lidar.rotation.toRotationMatrix();
+    const Eigen::Matrix3d of_b = b.camera_from_lidar.rotation.toRotationMatrix();
+    const auto part = [](const Matrix6d& m) { return m.bottomRightCorner<3, 3>(); };
+    const Eigen::Matrix3d both = of_b.transpose() * part(b_with_a) * of_a;
+    return of_b.transpose() * part(*b.covariance) * of_b +
+           of_a.transpose() * part(*a.covariance) * of_a - both - both.transpose();
+  }
+};
+
+bool HaveCovariances(const CameraCalibration& a, const CameraCalibration& b) {
+  return a.converged() && b.converged() && a.covariance && b.covariance;
 }
 
 std::array<Estimate, 3> Estimates(const Eigen::Vector3d& values,
@@ -38,12 +54,19 @@ std::array<Estimate, 3> Estimates(const Eigen::Vector3d& values,
   return out;
 }
 
-// Both with their lenses; the covariance of each where the two can be compared.
+// Both with their lenses; where the two can be compared, what counts of each one's uncertainty.
 struct Pair {
   Camera a, b;
   Rigid3 b_from_a;
   std::optional<PoseAndLensCovariance> of_a, of_b;
 };
+
+// With the lens in common, which moves both alike, that of the difference alone is left.
+PoseAndLensCovariance OfPoseAlone(const Matrix6d& covariance) {
+  PoseAndLensCovariance out = PoseAndLensCovariance::Zero();
+  out.topLeftCorner<6, 6>() = covariance;
+  return out;
+}
 
 // A point that a sees at `pixel`, seen by b. Where there are covariances, the sum of both.
 PixelShift ShiftAt(const Pair& pair, double distance_m) {
@@ -74,16 +97,19 @@ PixelShift ShiftAt(const Pair& pair, double distance_m) {
 }  // namespace
 
 PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
-                       const CameraSpec* spec) {
+                       const CameraSpec* spec, const std::optional<Matrix6d>& b_with_a) {
   const Rigid3 b_from_a = b.camera_from_lidar * a.camera_from_lidar.Inverse();
   const Vector6d delta = Log(b_from_a);
-  auto covariance = CovarianceOfDifference(a, b, b_from_a);
-  const auto information = covariance ? InverseOfPositive(*covariance) : std::nullopt;
-  if (!information) covariance.reset();
-  std::optional<Eigen::Matrix3d> of_rotation, of_centre;
+  const Stated stated{a, b, b_with_a.value_or(Matrix6d::Zero())};
+  std::optional<Matrix6d> covariance, information;
+  if (HaveCovariances(a, b)) covariance = stated.OfDifference();
   if (covariance) {
+    if (const auto inverse = InverseOfPositive(*covariance)) information = Matrix6d(*inverse);
+  }
+  std::optional<Eigen::Matrix3d> of_rotation, of_centre;
+  if (information) {
     of_rotation = covariance->topLeftCorner<3, 3>();
-    of_centre = CentreCovariance(a) + CentreCovariance(b);
+    of_centre = stated.OfCentres();
   }
   PoseComparison out;
   out.camera = a.camera;
@@ -95,9 +121,9 @@ PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
   if (information) out.chi2 = delta.dot(*information * delta);
   if (spec == nullptr) return out;
   Pair pair{Camera(a.WithSolvedLens(*spec)), Camera(b.WithSolvedLens(*spec)), b_from_a, {}, {}};
-  if (covariance) {
-    pair.of_a = a.PoseAndLens();
-    pair.of_b = b.PoseAndLens();
+  if (information) {
+    pair.of_a = b_with_a ? OfPoseAlone(Matrix6d::Zero()) : a.PoseAndLens();
+    pair.of_b = b_with_a ? OfPoseAlone(*covariance) : b.PoseAndLens();
   }
   for (const double distance_m : kDistancesM) out.pixels.push_back(ShiftAt(pair, distance_m));
   return out;

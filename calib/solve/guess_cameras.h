@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/model/comparison.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
@@ -10,9 +11,17 @@
 
 namespace rgbdt {
 
+/// One camera of the rig in two sessions, solved together with its lens and the LIDAR's errors in
+/// common: how far it moved on its mount.
+struct MountChange {
+  std::size_t from = 0, to = 0;  ///< indices into CalibratedCameras::cameras
+  PoseComparison moved;          ///< by the covariance that the two have together
+};
+
 /// What a method makes of the cameras' views: each one's report, and what they say together.
 struct CalibratedCameras {
   std::vector<CameraViews> cameras;
+  std::vector<MountChange> changes;  ///< of cameras of one name, each against the first of them
   std::vector<Closure> closure;
   std::optional<NextView> next_view;
 };

@@ -1,10 +1,16 @@
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/methods/calibrate_by_views.h"
+#include "calib/methods/calibrate_sessions.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/beam_priors.h"
+#include "calib/model/errors.h"
 #include "calib/present/session/report_files.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
@@ -13,26 +19,109 @@ namespace rgbdt {
 namespace {
 
 struct CalibrateFlags {
-  std::string dir, out, truth;
+  std::vector<std::string> dirs;
+  std::string out, truth;
   CalibrateOptions options;
   bool separate = false;
   bool range_offset = false;
+  bool mounts_moved = false;
 };
+
+// Where one result goes, and what it is compared with.
+struct Place {
+  std::filesystem::path out, truth;
+};
+
+// Writes and prints one result. False: it is not one to use.
+bool Finish(const Place& place, const Session& session, const SessionDetection& detection,
+            Report report) {
+  const std::string wrote = WriteIfSolved(place.out, report);
+  if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
+  const auto reports = CalibrateByViews(session.rig, detection.views, report);
+  WriteReportFiles(place.out, {session, detection.views, reports});
+  PrintReport(report, wrote, detection.unreadable);
+  return detection.unreadable.empty() && Summary(report).converged();
+}
+
+bool CalibrateOne(const CalibrateFlags& flags) {
+  const Session session = OpenSession(flags.dirs[0]);
+  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
+  std::fprintf(stderr, "solving ...\n");
+  return Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
+                detection, Calibrate(session.rig, detection.views, flags.options));
+}
+
+Session OpenAll(const CalibrateFlags& flags) {
+  if (flags.out.empty()) {
+    throw InputError("several sessions: say with --out where the result is to be written");
+  }
+  std::vector<Session> sessions;
+  for (const std::string& dir : flags.dirs) sessions.push_back(OpenSession(dir));
+  return JoinSessions(std::move(sessions));
+}
+
+// Each part's views of a joined session, in its order.
+std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewDetection>& views) {
+  std::vector<SessionViews> sessions;
+  auto view = views.begin();
+  for (const Session::Part& part : joined.parts) {
+    const auto count = static_cast<std::ptrdiff_t>(part.session.views.size());
+    sessions.push_back({part.name, {view, std::next(view, count)}});
+    view += count;
+  }
+  return sessions;
+}
+
+// One pose of each camera in all sessions. False, too, where the sessions contradict that.
+bool CalibrateTogether(const CalibrateFlags& flags) {
+  const Session session = OpenAll(flags);
+  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
+  std::fprintf(stderr, "solving ...\n");
+  std::vector<CalibrationComparison> comparisons;
+  if (flags.options.method == kAutoMethod) {
+    CalibrateOptions brief = flags.options;
+    brief.diagnostics = false;
+    comparisons =
+        CalibrateSessions(session.rig, Divided(session, detection.views), brief).comparisons;
+  }
+  const bool usable =
+      Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)}, session, detection,
+             WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons));
+  return PrintComparisons(comparisons) && usable;
+}
+
+// Poses of its own in each session; what all have in common is told by all.
+bool CalibrateEach(const CalibrateFlags& flags) {
+  const Session session = OpenAll(flags);
+  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
+  std::fprintf(stderr, "solving ...\n");
+  const std::vector<SessionViews> views = Divided(session, detection.views);
+  CalibratedSessions result = CalibrateSessions(session.rig, views, flags.options);
+  const std::vector<Session> parts = PartsOf(session);
+  bool usable = detection.unreadable.empty();
+  for (std::size_t s = 0; s < parts.size(); ++s) {
+    std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
+    const Place place{flags.out / std::filesystem::path(views[s].name).relative_path(),
+                      TruthPath(flags.truth, parts[s].parts[0].session.root)};
+    const bool used = Finish(place, parts[s], {views[s].detections, {}}, result.reports[s]);
+    usable = usable && used;
+  }
+  for (const std::string& line : detection.unreadable) {
+    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
+  }
+  PrintComparisons(result.comparisons);
+  return usable;
+}
 
 int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
-  const Session session = OpenSession(flags.dir);
-  const std::filesystem::path out = PathOr(flags.out, session.root);
-  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
-  std::fprintf(stderr, "solving ...\n");
-  Report report = Calibrate(session.rig, detection.views, flags.options);
-  const std::string wrote = WriteIfSolved(out, report);
-  const auto truth = TruthPath(flags.truth, session.root);
-  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
-  const auto reports = CalibrateByViews(session.rig, detection.views, report);
-  WriteReportFiles(out, {session, detection.views, reports});
-  PrintReport(report, wrote, detection.unreadable);
-  return detection.unreadable.empty() && Summary(report).converged() ? 0 : 1;
+  if (flags.mounts_moved && flags.dirs.size() < 2) {
+    throw InputError("--mounts-moved is for several sessions; name two or more");
+  }
+  const bool usable = flags.dirs.size() == 1 ? CalibrateOne(flags)
+                      : flags.mounts_moved   ? CalibrateEach(flags)
+                                             : CalibrateTogether(flags);
+  return usable ? 0 : 1;
 }
 
 }  // namespace
@@ -42,18 +131,25 @@ void AddCalibrate(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "calibrate",
       "Finds each camera's pose relative to the LIDAR from a session directory.\n"
-      "Writes calibration.textproto, report.json and report.html. Exit code 1: a camera did not\n"
-      "converge, or a view could not be read.\n"
-      "Example: rgbdt calibrate out/demo/session --out out/again",
+      "Writes calibration.textproto, report.json and report.html. Several sessions of one rig are\n"
+      "solved together: the lenses and the LIDAR's own errors are the same in all of them, the\n"
+      "poses, too, unless --mounts-moved; whether they are is said. Exit code 1: a camera did not\n"
+      "converge, a view could not be read, or sessions contradict each other.\n"
+      "Examples: rgbdt calibrate out/demo/session --out out/again\n"
+      "          rgbdt calibrate monday friday --mounts-moved --out out/week",
       [flags] {
         flags->options.joint = !flags->separate;
         if (flags->range_offset)
           flags->options.first_guess.range_offset_sigma_m = kRangeOffsetSigmaM;
         return RunCalibrate(*flags);
       });
-  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
-  verb->Option("--out", &flags->out, "where to write; default: DIR");
+  verb->Required("DIR", &flags->dirs, "session directories (rig.textproto, views/)");
+  verb->Option("--out", &flags->out,
+               "where to write; default: DIR. Of several sessions it must be given");
   verb->Option("--method", &flags->options.method, kMethodHelp);
+  verb->Flag("--mounts-moved", &flags->mounts_moved,
+             "auto: each session has poses of its own, written to OUT/SESSION, since a camera was\n"
+             "touched in between; how far each one moved is said with its uncertainty");
   verb->Flag("--range-offset", &flags->range_offset,
              "auto: take the LIDAR's ranges to be off by any constant, whatever the rig file\n"
              "says of them (lidar.range_offset_sigma_m)");

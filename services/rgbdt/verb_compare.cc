@@ -7,8 +7,8 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
-#include "calib/present/report/comparison_text.h"
 #include "calib/solve/compare.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -69,15 +69,13 @@ int RunCompare(const CompareFlags& flags) {
   if (flags.calibrations.size() < 2) throw InputError("name two calibrations, or more");
   const std::optional<Rig> rig = RigOf(flags);
   const Named first = ReadNamed(flags.calibrations[0]);
-  bool moved = false;
+  std::vector<CalibrationComparison> comparisons;
   for (std::size_t i = 1; i < flags.calibrations.size(); ++i) {
-    const CalibrationComparison comparison =
-        CompareAll(first, ReadNamed(flags.calibrations[i]), rig);
-    std::printf("%s", ComparisonText(comparison).c_str());
-    for (const PoseComparison& camera : comparison.cameras) moved = moved || Moved(camera);
+    comparisons.push_back(CompareAll(first, ReadNamed(flags.calibrations[i]), rig));
   }
+  const bool same = PrintComparisons(comparisons);
   if (!rig) std::printf("in pixels: name the rig with --rig FILE\n");
-  return moved ? 1 : 0;
+  return same ? 0 : 1;
 }
 
 }  // namespace

@@ -139,6 +139,11 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   if (calibration.range_errors) {
     text::FromRangeErrors(*calibration.range_errors, out->mutable_range_errors());
   }
+  out->set_contradiction(ValidUtf8(camera.contradiction));
+  if (camera.view_scatter) {
+    out->mutable_view_scatter()->set_factor(camera.view_scatter->factor);
+    out->mutable_view_scatter()->set_freedom(camera.view_scatter->freedom);
+  }
   if (camera.variance_factor != 1) out->set_variance_factor(camera.variance_factor);
   text::FromUncertainty(camera, out);
   out->mutable_seconds()->set_detect_image(camera.detect_image_s);
@@ -174,6 +179,11 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
     camera.calibration.range_errors =
         text::ToRangeErrors(message.range_errors(), place.In("range_errors"));
   }
+  if (message.has_view_scatter()) {
+    camera.view_scatter =
+        ViewScatter{message.view_scatter().factor(), message.view_scatter().freedom()};
+  }
+  camera.contradiction = message.contradiction();
   if (message.has_variance_factor()) camera.variance_factor = message.variance_factor();
   if (message.has_first_guess_error()) {
     camera.first_guess_error = ToPoseError(message.first_guess_error());

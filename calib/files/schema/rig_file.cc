@@ -1,8 +1,11 @@
 #include "calib/files/schema/rig_file.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/device_convert.h"
@@ -224,6 +227,15 @@ void FromTarget(const Target& spec, proto::Target* out) {
   out->add_pattern_offset_m(spec.pattern_offset_m.y());
 }
 
+proto::Rig ToMessage(const Rig& rig) {
+  proto::Rig message;
+  message.set_name(ValidUtf8(rig.name));
+  FromLidar(rig.lidar, message.mutable_lidar());
+  for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
+  FromTarget(rig.target, message.mutable_target());
+  return message;
+}
+
 }  // namespace
 
 Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
@@ -254,16 +266,40 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses)
 }
 
 std::string PrintRig(const Rig& rig) {
-  proto::Rig message;
-  message.set_name(ValidUtf8(rig.name));
-  FromLidar(rig.lidar, message.mutable_lidar());
-  for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
-  FromTarget(rig.target, message.mutable_target());
   return text::PrintText(
-      message,
+      ToMessage(rig),
       "A rig (schema: calib/files/schema/rig.proto). Metres, pixels, seconds, kelvin.\n"
       "a_from_b: point_in_a = R(quaternion w x y z) * point_in_b + translation. LIDAR: x forward,\n"
       "y left, z up. Camera: x right, y down, z forward.");
+}
+
+std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
+  proto::Rig was = ToMessage(a);
+  proto::Rig is = ToMessage(b);
+  for (proto::Rig* rig : {&was, &is}) {
+    rig->clear_name();
+    rig->mutable_lidar()->clear_name();
+    rig->mutable_lidar()->clear_device();
+    rig->mutable_lidar()->mutable_turned_scanner()->clear_dynamixel();
+    for (proto::Camera& camera : *rig->mutable_camera()) {
+      camera.clear_device();
+      camera.clear_camera_from_lidar_guess();
+    }
+  }
+  std::string text;
+  google::protobuf::util::MessageDifferencer differencer;
+  // Cameras are told by their names, whatever their order.
+  differencer.TreatAsMap(proto::Rig::descriptor()->FindFieldByName("camera"),
+                         proto::Camera::descriptor()->FindFieldByName("name"));
+  differencer.ReportDifferencesToString(&text);
+  differencer.Compare(was, is);
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  // What only stands elsewhere is no difference.
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("moved:", 0) != 0) lines.push_back(line);
+  }
+  return lines;
 }
 
 std::string HashOfRigText(const std::string& text) {

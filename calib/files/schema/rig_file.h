@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "calib/model/rig.h"
 
@@ -17,6 +18,10 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses 
 
 /// The rig as rig.textproto, full precision; `text` and `hash` are not looked at.
 std::string PrintRig(const Rig& rig);
+
+/// What differs between two rigs that a calibration depends on, a line for each field ("modified:
+/// camera[0].pinhole.fx: 600 -> 610"): names of rig and LIDAR, devices and guesses do not count.
+std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b);
 
 /// What stands in Rig::hash: FNV-1a, 64 bit, 16 hexadecimal digits.
 std::string HashOfRigText(const std::string& text);

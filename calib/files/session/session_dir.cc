@@ -1,6 +1,8 @@
 #include "calib/files/session/session_dir.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
@@ -22,6 +24,47 @@ std::vector<std::string> ListViews(const fs::path& folder) {
   if (error) throw InputError("cannot list " + folder.string() + ": " + error.message());
   std::sort(views.begin(), views.end(), NaturalLess);
   return views;
+}
+
+fs::path Whole(const Session& session) {
+  fs::path path = fs::weakly_canonical(session.root);
+  return path.has_filename() ? path : path.parent_path();
+}
+
+std::vector<std::string> NamesOf(const std::vector<Session>& sessions) {
+  std::map<fs::path, int> paths;
+  std::map<std::string, int> folders;
+  for (const Session& session : sessions) {
+    const fs::path path = Whole(session);
+    ++folders[path.filename().string()];
+    if (++paths[path] == 2) {
+      throw InputError("the session " + session.root.string() + " is named twice");
+    }
+  }
+  std::vector<std::string> names;
+  for (const Session& session : sessions) {
+    const std::string folder = Whole(session).filename().string();
+    names.push_back(folders[folder] == 1 ? folder : Whole(session).string());
+  }
+  return names;
+}
+
+void AddPart(Session::Part part, Session* joined) {
+  for (const std::string& view : part.session.views) {
+    joined->views.push_back(part.name + "/" + view);
+  }
+  joined->parts.push_back(std::move(part));
+}
+
+void RequireSameRig(const Session& a, const Session& b) {
+  const std::vector<std::string> differences = DifferencesOf(a.rig, b.rig);
+  if (differences.empty()) return;
+  std::string text;
+  for (const std::string& line : differences) text += (text.empty() ? "" : "; ") + line;
+  throw InputError("the rigs of " + a.root.string() + " and " + b.root.string() +
+                   " differ, so they cannot be solved together (" + text +
+                   "): make the rig files agree, or calibrate each session by itself and use "
+                   "`rgbdt compare`");
 }
 
 }  // namespace
@@ -46,6 +89,31 @@ Session OpenSession(const fs::path& dir, LensNeed lenses) {
                      "that names its cloud and images");
   }
   return session;
+}
+
+std::string Session::Title() const {
+  if (parts.empty()) return root.lexically_normal().string();
+  std::string title;
+  for (const Part& part : parts) title += (title.empty() ? "" : ", ") + part.name;
+  return title;
+}
+
+Session JoinSessions(std::vector<Session> sessions) {
+  Session joined{{}, sessions.at(0).rig, {}};
+  const std::vector<std::string> names = NamesOf(sessions);
+  for (const Session& other : sessions) RequireSameRig(sessions[0], other);
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    AddPart({names[i], std::move(sessions[i])}, &joined);
+  }
+  return joined;
+}
+
+std::vector<Session> PartsOf(const Session& joined) {
+  std::vector<Session> parts;
+  for (const Session::Part& part : joined.parts) {
+    AddPart(part, &parts.emplace_back(Session{{}, joined.rig, {}}));
+  }
+  return parts;
 }
 
 void WriteRig(const fs::path& session_dir, const Rig& rig) {

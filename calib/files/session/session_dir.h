@@ -11,16 +11,37 @@
 
 namespace rgbdt {
 
-/// A session directory: what calibration needs, on disk. Its layout stands in README.md beside.
+/// A session directory: what calibration needs, on disk. Its layout stands in README.md beside. Or
+/// several of them as one (JoinSessions).
 struct Session {
-  std::filesystem::path root;
+  std::filesystem::path root;  ///< of a joined one: empty
   Rig rig;
   std::vector<std::string> views;  ///< folders of root/views, sorted with numbers as numbers
+
+  struct Part;
+  std::vector<Part> parts{};  ///< of a joined one
+
+  /// For a person: the directory, or the names of the parts.
+  std::string Title() const;
+};
+
+struct Session::Part {
+  std::string name;
+  Session session;
 };
 
 /// Reads rig.textproto and lists the views. Throws InputError saying what is missing and what to
 /// do.
 Session OpenSession(const std::filesystem::path& dir, LensNeed lenses = LensNeed::kKnown);
+
+/// Several sessions of one rig as one, whose view "monday/0001" is the view 0001 of the session
+/// that is called monday: after its folder, or after its whole path where two folders are called
+/// the same. Throws InputError where a session is given twice, or rigs differ in what a calibration
+/// depends on, with what differs.
+Session JoinSessions(std::vector<Session> sessions);
+
+/// A joined session's parts, each with the names that its views have there.
+std::vector<Session> PartsOf(const Session& joined);
 
 /// Reads one view: its cloud, its images and a person's picks. Where view.textproto does not say
 /// whether it is held out, every third view of the session is (the 3rd, 6th, ...). Throws

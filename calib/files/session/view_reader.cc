@@ -17,6 +17,20 @@ using text::Place;
 
 constexpr Utime kSameTime = 60 * kMicrosecondsPerSecond;
 
+// The session that a view is in, and its name there: those of a joined one's part.
+struct InSession {
+  const Session& session;
+  std::string view;
+};
+
+InSession Find(const Session& session, const std::string& view) {
+  for (const Session::Part& part : session.parts) {
+    const std::string start = part.name + "/";
+    if (view.rfind(start, 0) == 0) return {part.session, view.substr(start.size())};
+  }
+  return {session, view};
+}
+
 std::size_t IndexOf(const Session& session, const std::string& view) {
   const auto found = std::find(session.views.begin(), session.views.end(), view);
   if (found != session.views.end()) {
@@ -142,7 +156,8 @@ struct ViewFile {
 };
 
 // `file` is kept by who calls: the place refers to its tree.
-Place ReadViewFile(const Session& session, const std::string& view, ViewFile* file) {
+Place ReadViewFile(const Session& any, const std::string& name, ViewFile* file) {
+  const auto [session, view] = Find(any, name);
   file->index = IndexOf(session, view);
   file->folder = session.root / "views" / view;
   const fs::path path = file->folder / "view.textproto";

@@ -11,7 +11,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kChance = 0.01;
 constexpr double kTellingSigmas = 3;  // from which a single axis is named
 constexpr std::size_t kMostAxes = 2;  // in a sentence
 
@@ -87,10 +86,6 @@ std::string PixelsLine(const std::vector<PixelShift>& pixels) {
 }
 
 }  // namespace
-
-bool Moved(const PoseComparison& camera) {
-  return camera.chi2 && ChanceOfChi2(*camera.chi2) < kChance;
-}
 
 std::string ComparisonText(const CalibrationComparison& comparison) {
   std::string text = fmt::format("{} against {}\n", comparison.b, comparison.a);

@@ -14,8 +14,10 @@ constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
-// Of the views' scatter over what is stated: below, the enlarged sigma makes good for it.
-constexpr double kMostVarianceFactor = 2.5;
+// Of the views' scatter over what is stated (variance): below, the enlarged sigma makes good for
+// it.
+constexpr double kMostScatter = 2.5;
+constexpr double kUnlikely = 1e-3;
 // Of views left out, over what is expected: by chance the mean over eight views stays below this.
 constexpr double kMostMisfit = 2;
 constexpr char kWhyViewsDisagree[] =
@@ -52,6 +54,7 @@ class Judgement {
 
 // Whether the views fit together at all: before any figure that takes them to.
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
+  if (!camera.contradiction.empty()) judgement->Bad(camera.contradiction);
   double misfit = 0;
   double expected = 0;
   for (const Fold& fold : camera.folds) {
@@ -65,10 +68,11 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
         Number(misfit, 0) + " where " + Number(expected, 0) +
         " is expected (50 is the most that is counted). " + kWhyViewsDisagree);
   }
-  if (camera.variance_factor > kMostVarianceFactor) {
-    judgement->Caution("The views scatter " + Number(std::sqrt(camera.variance_factor), 1) +
-                       " times as much as their own sigmas say; the stated sigma was enlarged by "
-                       "as much, but what moves all of them alike is not in it. " +
+  const auto& scatter = camera.view_scatter;
+  if (scatter && scatter->factor > kMostScatter && scatter->Chance() < kUnlikely) {
+    judgement->Caution("The views scatter " + Number(std::sqrt(scatter->factor), 1) +
+                       " times as much as their own sigmas say; the stated sigma was enlarged for "
+                       "it, but what moves all of them alike is not in it. " +
                        kWhyViewsDisagree);
   }
 }

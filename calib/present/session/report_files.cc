@@ -31,7 +31,7 @@ std::string PlainPage(const FinishedSession& finished) {
 // The viewer's page with the whole session in it.
 std::string PageOf(const FinishedSession& finished) {
   SessionFramesOptions options;
-  options.title = finished.session.root.lexically_normal().string();
+  options.title = finished.session.Title();
   return PageWithFrames(ViewerPage(), SessionFrames(finished, options));
 }
 

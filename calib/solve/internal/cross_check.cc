@@ -65,7 +65,8 @@ Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_
 Judged JudgeFold(const JointProblem& joint, const BoardSolution& solution, std::size_t camera,
                  const std::vector<std::size_t>& left_out, const FirstGuess& guess) {
   const CameraReport& report = joint.cameras[camera].views.report;
-  const PoseAndLensCovariance covariance = solution.PoseAndLens(camera);
+  const PoseAndLensCovariance covariance =
+      solution.PoseAndLens(SharedPlaces(joint.problem), camera);
   const CameraCalibration fold_calibration{
       report.calibration.camera, solution.state.camera_from_lidar[camera],
       Matrix6d(covariance.topLeftCorner<6, 6>()), SolveStatus::kConverged, ""};

@@ -19,11 +19,10 @@ void TurnCloud(CloudEdges* cloud) {
 // tell it again: of the share s of its images that come again, the square of 1 - s is left of its
 // information. With 1 - s the images that come again would still be in its mean: the variance would
 // come out up to a fifth too small; with the square it is a twelfth.
-LensCovariance LensPrior(const CameraViews& camera) {
+LensCovariance LensPrior(const CameraSpec& spec, const std::vector<const CameraView*>& used) {
   // Two detections of one image differ by hundredths of a pixel, two images by more than this.
   constexpr double kSamePx = 0.25;
-  const LensUncertainty stated = camera.spec->LensUncertaintyOrUsual();
-  const std::vector<const CameraView*> used = camera.Used();
+  const LensUncertainty stated = spec.LensUncertaintyOrUsual();
   const auto shared = std::count_if(used.begin(), used.end(), [&](const CameraView* view) {
     const Eigen::Vector2d middle = MiddleOf(view->image->corners);
     return std::any_of(stated.made_from.begin(), stated.made_from.end(),
@@ -32,7 +31,6 @@ LensCovariance LensPrior(const CameraViews& camera) {
   if (shared == 0 || stated.exact()) return stated.covariance;
   const double left =
       1 - std::min(1.0, static_cast<double>(shared) / static_cast<double>(stated.made_from.size()));
-  const CameraSpec& spec = *camera.spec;
   const LensCovariance usual = UsualLensUncertainty(spec.lens, spec.width, spec.height).covariance;
   // (left^2 stated^-1 + usual^-1)^-1, also where the stated one is singular.
   const LensCovariance both = stated.covariance + left * left * usual;
@@ -62,9 +60,9 @@ class Builder {
 
   void Add(GuessedCamera guessed) {
     const int index = static_cast<int>(joint_.cameras.size());
+    joint_.problem.lens_of.push_back(FirstOfName(guessed.views.spec->name));
     GuessedCamera& camera = joint_.cameras.emplace_back(std::move(guessed));
     joint_.problem.cameras.emplace_back(*camera.views.spec);
-    joint_.problem.lens_priors.push_back(LensPrior(camera.views));
     for (CameraView& o : camera.views.all) {
       if (o.usable() && !o.heldout) AddImage(index, &o);
     }
@@ -77,6 +75,7 @@ class Builder {
     // ranges would: such boards are no evidence of one, unless nothing is to be known of it.
     const bool offset = range_offset_sigma_m > 0 &&
                         (problem.target.HasPattern() || range_offset_sigma_m >= kRangeOffsetSigmaM);
+    AddLensPriors();
     if (!problem.ranges_exact) OpenBeams(&problem);
     if (offset) problem.priors.range_offset_sigma_m = range_offset_sigma_m;
     std::vector<Rigid3> poses;
@@ -87,6 +86,28 @@ class Builder {
   }
 
  private:
+  // The camera of this name that came first; the next one, where there is none yet.
+  std::size_t FirstOfName(const std::string& name) const {
+    const auto first =
+        std::find_if(joint_.cameras.begin(), joint_.cameras.end(),
+                     [&](const GuessedCamera& camera) { return camera.views.spec->name == name; });
+    return static_cast<std::size_t>(first - joint_.cameras.begin());
+  }
+
+  void AddLensPriors() {
+    const std::size_t count = joint_.cameras.size();
+    for (std::size_t c = 0; c < count; ++c) {
+      const std::size_t lens = joint_.problem.LensOf(c);
+      std::vector<const CameraView*> used;
+      for (std::size_t other = lens; other < count; ++other) {
+        if (joint_.problem.LensOf(other) != lens) continue;
+        const auto own = joint_.cameras[other].views.Used();
+        used.insert(used.end(), own.begin(), own.end());
+      }
+      joint_.problem.lens_priors.push_back(LensPrior(*joint_.cameras[c].views.spec, used));
+    }
+  }
+
   void AddImage(int camera, CameraView* o) {
     const Rigid3& camera_from_lidar =
         *joint_.cameras[static_cast<std::size_t>(camera)].guess.camera_from_lidar;

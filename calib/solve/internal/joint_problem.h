@@ -19,7 +19,8 @@ struct JointProblem {
 /// unknown.
 void OpenBeams(BoardProblem* problem);
 
-/// The boards of all views used, of cameras that all have a guess, each brought into one set of
+/// The boards of all views used, of cameras that all have a guess; cameras of one name are one that
+/// was moved between sessions, and have its lens in common. Each board is brought into one set of
 /// axes for all cameras: the target's own, where one of them knows it. A view whose camera takes
 /// another board of the cloud than the cameras before it becomes rejected. `range_offset_sigma_m`:
 /// how well a constant that ranges may be off by is known; 0: the LIDAR is exact in all. By a plain

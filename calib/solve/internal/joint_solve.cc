@@ -117,13 +117,12 @@ BoardSolution Without(const JointProblem& joint, const BoardSolution& all, std::
 // How the result moves when each view is left out in turn, against how it should: nuisances, robust
 // weights and all, whatever makes views differ. Of an efficient estimate with covariance C the move
 // has covariance C_without - C (Hausman 1978), so the sum of move' C^-1 move is that of
-// tr(C^-1 C_without - I): the quotient is the factor of variance, as far as chance lets it be known
-// (FactorFor). One-sided, since views that scatter less than stated are luck. Of more than ten
+// tr(C^-1 C_without - I): the quotient is the factor of variance. Of more than ten
 // views a tenth at a time: the time then grows with the views, not with their square.
-double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) {
+std::optional<ViewScatter> ViewScatterOf(const JointProblem& joint, const BoardSolution& solution) {
   constexpr std::size_t kMostParts = 10;
   const std::size_t views = joint.problem.views.size();
-  if (views < 4) return 1;
+  if (views < 4) return std::nullopt;
   const std::size_t parts = std::min(views, kMostParts);
   double moved = 0;
   double expected = 0;
@@ -142,11 +141,14 @@ double VarianceFactor(const JointProblem& joint, const BoardSolution& solution) 
       expected2 += (more * more).trace();
     }
   }
-  if (!(expected > 0) || !std::isfinite(moved)) return 1;
-  // Cameras share the clouds: their moves are correlated, and count but once.
-  const double chance =
-      std::sqrt(2 * expected2 * static_cast<double>(joint.cameras.size())) / expected;
-  return FactorFor(moved / expected, 2 / (chance * chance));
+  if (!(expected > 0) || !std::isfinite(moved)) return std::nullopt;
+  // Cameras of one view share its cloud: their moves are correlated, and count but once.
+  std::size_t together = 1;
+  for (const BoardView& view : joint.problem.views) {
+    together = std::max(together, view.images.size());
+  }
+  const double chance = std::sqrt(2 * expected2 * static_cast<double>(together)) / expected;
+  return ViewScatter{moved / expected, 2 / (chance * chance)};
 }
 
 // How far sides differ among themselves, by the data: never less than the physics says. The shifts
@@ -170,7 +172,7 @@ double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
 // The range offset as the views have it, as if nothing had been known of it: one step from the
 // solution.
 Estimate FreeRangeOffset(const JointProblem& joint, const BoardSolution& solution) {
-  const Index at = SharedPlaces(joint.cameras.size()).Of(kRangeOffset);
+  const Index at = SharedPlaces(joint.problem).Of(kRangeOffset);
   const double offset = solution.state.shared[kRangeOffset];
   ViewInformation all = PriorInformation(joint.problem, solution.state);
   all.information(at, at) = 1 / (kRangeOffsetSigmaM * kRangeOffsetSigmaM);
@@ -229,7 +231,10 @@ class JointSolver {
       if (DropSide()) continue;
       FitScatter();
       Settle();
-      result_.variance_factor = VarianceFactor(Joint(), result_.solution);
+      result_.view_scatter = ViewScatterOf(Joint(), result_.solution);
+      if (const auto& scatter = result_.view_scatter) {
+        result_.variance_factor = FactorFor(scatter->factor, scatter->freedom);
+      }
       break;
     }
     return std::move(result_);
@@ -359,7 +364,7 @@ class JointSolver {
 };
 
 std::vector<LensOff> LensesOff(const JointResult& result) {
-  const SharedPlaces places(result.joint.cameras.size());
+  const SharedPlaces places(result.joint.problem);
   std::vector<LensOff> off;
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
     const Index at = places.Lens(c);
@@ -418,7 +423,8 @@ JointResult SolveJointly(JointProblem joint) {
 
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
   const PoseAndLensCovariance covariance =
-      result.variance_factor * result.solution.PoseAndLens(index);
+      result.variance_factor *
+      result.solution.PoseAndLens(SharedPlaces(result.joint.problem), index);
   return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -13,7 +13,8 @@ namespace rgbdt {
 struct JointResult {
   JointProblem joint;  ///< what is left of it
   BoardSolution solution;
-  double variance_factor = 1;  ///< by which the covariance was enlarged: views scatter more
+  std::optional<ViewScatter> view_scatter;  ///< absent: fewer than four views
+  double variance_factor = 1;               ///< by which the covariance was enlarged (FactorFor)
   /// The range offset was held to less than the views say (see SolveJointly): what it was held to
   /// [m], 1 sigma. The problem's prior is wide then.
   std::optional<double> refuted_range_offset_sigma_m;

@@ -181,7 +181,7 @@ std::optional<Eigen::MatrixXd> Expected(const BoardProblem& problem, const Board
   for (std::size_t c = 0; c < images->size(); ++c) {
     view.images.push_back({static_cast<int>(c), &(*images)[c], false});
   }
-  const BoardProblem alone{problem.target, problem.cameras, problem.lens_priors,
+  const BoardProblem alone{problem.target, problem.cameras, problem.lens_priors, problem.lens_of,
                            {view},         problem.priors,  problem.ranges};
   const BoardState there{state.camera_from_lidar, state.lenses, state.shared,
                          {lidar_from_target},     {{}},         state.range_terms};
@@ -240,7 +240,7 @@ Worst WorstOf(const BoardProblem& problem, const Eigen::MatrixXd& covariance) {
   Worst worst;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
     const Camera& camera = problem.cameras[c];
-    const auto places = SharedPlaces(problem.cameras.size()).PoseAndLens(c);
+    const auto places = SharedPlaces(problem).PoseAndLens(c);
     const PoseAndLensCovariance own = covariance(places, places);
     for (const double x : {0.0, 0.5, 1.0}) {
       for (const double y : {0.0, 0.5, 1.0}) {

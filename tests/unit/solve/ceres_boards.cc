@@ -322,6 +322,7 @@ class CeresBoards {
     Add(prior, kSharedUnknowns, {state_.shared.data()});
     for (const Lens& lens : state_.lenses) lenses_.push_back(NumbersOf(lens));
     for (std::size_t c = 0; c < lenses_.size(); ++c) {
+      if (!problem.HasOwnLens(c)) continue;
       AddBlock(lenses_[c].data(), kLensNumbers);
       LensCovariance covariance = problem.lens_priors[c];
       for (double& variance : covariance.diagonal()) {
@@ -362,7 +363,7 @@ class CeresBoards {
     BoardState found = state_;
     for (std::size_t c = 0; c < cameras_.size(); ++c) {
       found.camera_from_lidar[c] = MotionOf(cameras_[c]) * state_.camera_from_lidar[c];
-      found.lenses[c] = WithNumbers(found.lenses[c], lenses_[c]);
+      found.lenses[c] = WithNumbers(found.lenses[c], lenses_[problem_.LensOf(c)]);
     }
     for (std::size_t v = 0; v < boards_.size(); ++v) {
       found.lidar_from_target[v] = state_.lidar_from_target[v] * MotionOf(boards_[v]);
@@ -481,7 +482,7 @@ class CeresBoards {
   void AddImage(const BoardImage& image, const Rigid3& board_pose, double* board) {
     const auto c = static_cast<std::size_t>(image.camera);
     double* camera = cameras_[c].data();
-    double* lens = lenses_[c].data();
+    double* lens = lenses_[problem_.LensOf(c)].data();
     const Seen seen{state_.lenses[c], state_.camera_from_lidar[c], board_pose};
     const ImageEdges& edges = *image.edges;
     const auto model = problem_.target.InnerCorners();

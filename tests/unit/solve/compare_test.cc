@@ -48,6 +48,30 @@ TEST(Compare, ACalibrationWithItselfIsTheSame) {
   EXPECT_EQ(ChanceOfChi2(0), 1);
 }
 
+// What moves both poses alike is no change.
+TEST(Compare, WhatTwoPosesHaveInCommonCancels) {
+  const CameraSpec spec = Spec();
+  const CameraCalibration a = Somewhere();
+  CameraCalibration b = a;
+  b.camera_from_lidar = RotationAbout({0, 1, 0}, 0.4 * kDegree) * a.camera_from_lidar;
+  const PoseComparison apart = Compare(a, b, &spec);
+  const Matrix6d common = 0.75 * *a.covariance;
+  const PoseComparison together = Compare(a, b, &spec, common);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(together.rotation_deg[k].value, apart.rotation_deg[k].value);
+    EXPECT_NEAR(together.rotation_deg[k].sigma, apart.rotation_deg[k].sigma / 2,
+                0.02 * apart.rotation_deg[k].sigma);
+    EXPECT_NEAR(together.centre_mm[k].sigma, apart.centre_mm[k].sigma / 2,
+                0.02 * apart.centre_mm[k].sigma);
+  }
+  EXPECT_NEAR(*together.chi2, 4 * *apart.chi2, 0.1 * *apart.chi2);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(together.pixels[k].rms_px, apart.pixels[k].rms_px);
+    EXPECT_NEAR(*together.pixels[k].sigma_px, *apart.pixels[k].sigma_px / 2,
+                0.03 * *apart.pixels[k].sigma_px);
+  }
+}
+
 TEST(Compare, SaysWhatMovedInWhichAxes) {
   const CameraSpec spec = Spec();
   const CameraCalibration a = Somewhere();

@@ -402,6 +402,13 @@ TargetPose SolveWorld::PoseOfCloud(const CloudEdges& cloud, Rigid3 pose) const {
           false};
 }
 
+void SolveWorld::MoveCameras(double angle, double distance_m) {
+  for (Rigid3& pose : camera_from_lidar) {
+    pose = RotationAbout(random_.Direction(), angle) * pose;
+    pose.translation += distance_m * random_.Direction();
+  }
+}
+
 void TurnImage(ImageEdges* image) {
   std::reverse(image->corners.begin(), image->corners.end());
   std::rotate(image->sides.begin(), image->sides.begin() + 2, image->sides.end());
@@ -414,6 +421,19 @@ SolveSession::SolveSession(const SolveWorld& world, const std::vector<Rigid3>& g
     cameras.push_back({ViewsOf(rig_.cameras[c], world.detections), {}});
     cameras.back().guess.camera_from_lidar = guesses[c];
   }
+}
+
+void SolveSession::Divide(std::size_t first_view, const std::vector<Rigid3>& camera_from_lidar) {
+  std::vector<GuessedCamera> later = cameras;
+  const auto at = static_cast<std::ptrdiff_t>(first_view);
+  for (std::size_t c = 0; c < later.size(); ++c) {
+    auto& before = cameras[c].views.all;
+    before.erase(before.begin() + at, before.end());
+    auto& after = later[c].views.all;
+    after.erase(after.begin(), after.begin() + at);
+    later[c].guess.camera_from_lidar = camera_from_lidar[c];
+  }
+  cameras.insert(cameras.end(), later.begin(), later.end());
 }
 
 JointProblem SolveSession::Joint(double range_offset_sigma_m) const {

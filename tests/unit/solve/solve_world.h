@@ -52,6 +52,10 @@ class SolveWorld {
   /// What a camera sees through, whatever the rig says.
   const Lens& TrueLens(std::size_t camera) const { return true_lenses_[camera]; }
 
+  /// All cameras turned by so much about an axis of their own, and moved: what is seen from here
+  /// on.
+  void MoveCameras(double angle, double distance_m);
+
   /// The board held once more.
   void AddView(const Rigid3& board);
 
@@ -108,6 +112,9 @@ class SolveSession {
   explicit SolveSession(const SolveWorld& world) : SolveSession(world, world.camera_from_lidar) {}
   SolveSession(const SolveSession&) = delete;
   SolveSession& operator=(const SolveSession&) = delete;
+
+  /// Views from this one on are another session's, whose cameras are elsewhere.
+  void Divide(std::size_t first_view, const std::vector<Rigid3>& camera_from_lidar);
 
   JointProblem Joint(double range_offset_sigma_m = 0) const;
 

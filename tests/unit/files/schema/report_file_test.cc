@@ -49,10 +49,18 @@ TEST(ReportFile, GivesBackEveryFigure) {
 TEST(ReportFile, GivesBackHowSureItIs) {
   Report report = test::MakeReport();
   report.cameras[0].variance_factor = 2.25;
+  report.cameras[0].view_scatter = ViewScatter{1.5, 20};
+  report.cameras[0].contradiction = "friday puts this camera elsewhere";
   const Report back = ReportFromJson(ReportToJson(report));
   const CameraReport& a = report.cameras[0];
   const CameraReport& b = back.cameras[0];
   EXPECT_EQ(b.variance_factor, a.variance_factor);
+  EXPECT_EQ(b.contradiction, a.contradiction);
+  ASSERT_EQ(b.view_scatter.has_value(), a.view_scatter.has_value());
+  if (a.view_scatter) {
+    EXPECT_EQ(b.view_scatter->factor, a.view_scatter->factor);
+    EXPECT_EQ(b.view_scatter->freedom, a.view_scatter->freedom);
+  }
   EXPECT_EQ(b.edge_rms_whitened.train, a.edge_rms_whitened.train);
   EXPECT_EQ(b.edge_rms_whitened.heldout, a.edge_rms_whitened.heldout);
   EXPECT_FALSE(b.views[0].edge_rms_whitened);

@@ -9,8 +9,11 @@
 namespace rgbdt {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 // `text` with the first `from` replaced.
 std::string With(std::string text, const std::string& from, const std::string& to) {
@@ -137,6 +140,29 @@ TEST(RigFile, GivesBackEveryFieldBitForBit) {
   EXPECT_EQ(back.target.pattern_offset_m, rig.target.pattern_offset_m);
   EXPECT_EQ(PrintRig(back), PrintRig(rig));
   EXPECT_THAT(PrintRig(rig), HasSubstr("ticks_per_degree: 1400\n"));
+}
+
+TEST(RigFile, WhatDiffersBetweenTwoRigsIsNamed) {
+  const Rig rig = test::MakeRig();
+  Rig other = rig;
+  EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
+  // What no calibration depends on.
+  other.name = "another name";
+  other.lidar.name = "another LIDAR";
+  other.lidar.device = PcdFolderDevice{};
+  for (CameraSpec& camera : other.cameras) {
+    camera.camera_from_lidar_guess.reset();
+    camera.device.reset();
+  }
+  std::reverse(other.cameras.begin(), other.cameras.end());
+  EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
+  other.cameras.back().lens.fx += 10;
+  other.target.square_m *= 2;
+  EXPECT_THAT(DifferencesOf(rig, other),
+              UnorderedElementsAre(HasSubstr(".fx: "), HasSubstr("target.square_m: ")));
+  other = rig;
+  other.cameras.pop_back();
+  EXPECT_THAT(DifferencesOf(rig, other), ElementsAre(HasSubstr("camera")));
 }
 
 TEST(RigFile, KeepsTextAndHash) {

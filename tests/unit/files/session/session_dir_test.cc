@@ -11,6 +11,7 @@ namespace rgbdt {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -109,6 +110,64 @@ TEST_F(SessionDir, EveryThirdViewIsHeldOutUnlessSaid) {
   std::vector<bool> heldout;
   for (const std::string& view : session.views) heldout.push_back(ReadView(session, view).heldout);
   EXPECT_THAT(heldout, ElementsAre(false, false, true, false, true, true));
+}
+
+// A copy of the session, in a folder of this name somewhere.
+void CopyTo(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to);
+  fs::copy(from, to, fs::copy_options::recursive);
+}
+
+TEST_F(SessionDir, SeveralAreOne) {
+  const test::TempDir other;
+  CopyTo(dir_.path(), other / "monday");
+  CopyTo(dir_.path(), other / "friday");
+  const Session joined =
+      JoinSessions({OpenSession(other / "monday"), OpenSession(other / "friday/")});
+  EXPECT_EQ(joined.Title(), "monday, friday");
+  ASSERT_EQ(joined.views.size(), 12u);
+  EXPECT_EQ(joined.views.front(), "monday/0001");
+  EXPECT_EQ(joined.views.back(), "friday/0006");
+  const View view = ReadView(joined, "friday/0001");
+  EXPECT_EQ(view.name, "friday/0001");
+  test::ExpectSame(view.cloud, ReadView(OpenSession(other / "friday"), "0001").cloud);
+  EXPECT_EQ(ReadCloud(joined, "friday/0001").size(), view.cloud.size());
+  EXPECT_THAT(test::ErrorOf([&] { ReadView(joined, "friday/0009"); }),
+              AllOf(HasSubstr("has no view \"0009\""), HasSubstr("0001")));
+  EXPECT_THAT(test::ErrorOf([&] { ReadView(joined, "sunday/0001"); }), HasSubstr("monday/0001"));
+
+  const std::vector<Session> parts = PartsOf(joined);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[1].Title(), "friday");
+  EXPECT_EQ(parts[1].views.front(), "friday/0001");
+  EXPECT_EQ(ReadView(parts[1], "friday/0001").name, "friday/0001");
+}
+
+TEST_F(SessionDir, SeveralOfOneNameAreToldByTheirPaths) {
+  const test::TempDir other;
+  CopyTo(dir_.path(), other / "monday/session");
+  CopyTo(dir_.path(), other / "friday/session");
+  const Session joined =
+      JoinSessions({OpenSession(other / "monday/session"), OpenSession(other / "friday/session")});
+  for (const std::string& view : joined.views) EXPECT_EQ(ReadView(joined, view).name, view);
+  EXPECT_THAT(joined.views.front(), HasSubstr("monday/session/0001"));
+  EXPECT_THAT(test::ErrorOf([&] {
+                JoinSessions({OpenSession(other / "monday/session"),
+                              OpenSession(other / "friday/../monday/session")});
+              }),
+              HasSubstr("named twice"));
+}
+
+TEST_F(SessionDir, SeveralAreOfOneRig) {
+  const test::TempDir other;
+  CopyTo(dir_.path(), other / "friday");
+  Rig rig = test::MakeRig();
+  rig.cameras[0].lens.fx += 10;
+  WriteRig(other / "friday", rig);
+  EXPECT_THAT(test::ErrorOf([&] {
+                JoinSessions({OpenSession(dir_.path()), OpenSession(other / "friday")});
+              }),
+              AllOf(HasSubstr("fx: "), HasSubstr("rgbdt compare")));
 }
 
 TEST_F(SessionDir, ViewsAreSortedAsPeopleCount) {

@@ -110,7 +110,7 @@ TEST(Summary, IsConvergedWhereAllCamerasAre) {
 
 TEST(Summary, SaysWhatSpeaksAgainstTheResult) {
   Report report = MakeReport();
-  report.cameras[1].variance_factor = 9;
+  report.cameras[1].view_scatter = ViewScatter{9, 20};
   EXPECT_THAT(FullReport(report),
               HasSubstr("thermal: Take care before using it. The views scatter 3.0 times"));
 }

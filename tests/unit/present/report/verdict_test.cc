@@ -101,11 +101,22 @@ TEST(Verdict, ViewsThatContradictEachOtherAreTheFirstSentence) {
   EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Two halves"));
 }
 
+TEST(Verdict, SessionsThatContradictEachOtherAreNotToBeUsed) {
+  CameraReport camera = Good();
+  camera.contradiction = "friday puts this camera elsewhere than monday does.";
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kBad);
+  EXPECT_EQ(verdict.reasons.at(0), camera.contradiction);
+}
+
 TEST(Verdict, ViewsThatScatterFarMoreThanStatedAreAnAlarm) {
   CameraReport camera = Good();
-  camera.variance_factor = 2.4;
+  camera.view_scatter = ViewScatter{2.4, 40};
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
-  camera.variance_factor = 9;
+  camera.view_scatter = ViewScatter{3, 5};  // once in a hundred times by chance
+  EXPECT_NEAR(camera.view_scatter->Chance(), 0.0104, 0.001);
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.view_scatter = ViewScatter{9, 5};
   EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("scatter 3.0 times as much"));
 }
