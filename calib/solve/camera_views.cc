@@ -30,6 +30,20 @@ void RejectEmpty(const CameraSpec& camera, CameraView* view) {
   if (view->usable()) view->cloud = *candidates.front();
 }
 
+bool SeesAllCorners(const ImageEdges& image) {
+  return std::all_of(image.corners.begin(), image.corners.end(), &IsSeen);
+}
+
+// Whether the board's size is known to be as the rig file has it: a board of another size, cut by
+// the image's edge along the very side by which it differs, looks like it.
+bool IsSeenWhole(const std::vector<ViewDetection>& detections) {
+  return std::any_of(detections.begin(), detections.end(), [](const ViewDetection& view) {
+    return std::any_of(view.images.begin(), view.images.end(), [](const ImageDetection& image) {
+      return image.edges && !image.edges->picked && SeesAllCorners(*image.edges);
+    });
+  });
+}
+
 std::string WhyNoImage(const ImageDetection* image) {
   if (image == nullptr) return "the view has no image of this camera";
   if (!image->why_not.empty()) return image->why_not;
@@ -121,9 +135,14 @@ CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& 
                      return std::tie(a->view, a->sweep_utime, a->seq) <
                             std::tie(b->view, b->sweep_utime, b->seq);
                    });
+  const bool seen_whole = IsSeenWhole(detections);
   for (const ViewDetection* detection : in_order) {
-    views.all.push_back(CameraViewOf(camera.name, *detection));
-    RejectEmpty(camera, &views.all.back());
+    CameraView& view = views.all.emplace_back(CameraViewOf(camera.name, *detection));
+    RejectEmpty(camera, &view);
+    if (seen_whole || !view.usable() || view.image->picked || SeesAllCorners(*view.image)) continue;
+    view.Reject(
+        "a part of the board lies outside the image, and no view shows it whole: a board of "
+        "another size would look the same. Take a view with all of the board in the image");
   }
   return views;
 }

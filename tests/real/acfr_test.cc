@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "calib/detect/image/checkerboard.h"
 #include "calib/methods/calibrate.h"
 
 namespace rgbdt {
@@ -35,6 +39,23 @@ TEST(Acfr, EveryBoardBeforeTheRollerDoorIsFound) {
   EXPECT_EQ(detected->views.size(), 11U);
   for (const ViewDetection& view : detected->views) {
     EXPECT_TRUE(view.images.at(0).edges) << view.view << ": " << view.images.at(0).why_not;
+  }
+}
+
+// Behind the board hangs a wire mesh, of squares of eight pixels.
+TEST(Acfr, TheMeshIsNoBoard) {
+  const char* real = std::getenv("RGBDT_REAL_DATA");
+  const fs::path images = fs::path(real == nullptr ? "" : real) / "acfr_vlp16/images";
+  if (real == nullptr || !fs::exists(images)) GTEST_SKIP() << kAbsent;
+  for (const char* name : {"pose5.png", "pose9.png", "pose12.png"}) {
+    const cv::Mat image = cv::imread((images / name).string(), cv::IMREAD_GRAYSCALE);
+    ASSERT_FALSE(image.empty()) << name;
+    cv::Mat grey;
+    image.convertTo(grey, CV_32FC1);
+    for (const auto& [columns, rows] : {std::pair{6, 4}, {6, 6}, {8, 6}, {8, 8}}) {
+      const Target target{columns + 1, rows + 1, 0.1, 0.1 * (columns + 2), 0.1 * (rows + 2)};
+      EXPECT_FALSE(FindCheckerboard(grey, target).board) << name << " " << columns << "x" << rows;
+    }
   }
 }
 

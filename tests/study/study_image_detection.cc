@@ -13,9 +13,9 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/image/checkerboard.h"
-#include "calib/model/view_detection.h"
 #include "tests/study/image_scenes.h"
 #include "tests/study/study_main.h"
+#include "tests/unit/detect/image/corner_errors.h"
 
 namespace rgbdt::study {
 namespace {
@@ -24,31 +24,10 @@ constexpr double kWrongPx = 1.5;  // a board with a corner farther off than this
 
 struct Outcome {
   bool found = false, wrong = false;
-  double sum_of_squares = 0;  ///< of the corners' errors [px^2]
-  double worst_px = 0, milliseconds = 0;
+  double rms_px = 0, worst_px = 0;  ///< of the corners' errors
+  double milliseconds = 0;
   std::string why;
 };
-
-// The order of corners is the target's up to a half turn: the better of the two counts.
-void Compare(const std::vector<Eigen::Vector2d>& corners, const std::vector<Eigen::Vector2d>& truth,
-             Outcome* outcome) {
-  outcome->worst_px = 1e9;
-  for (const bool turned : {false, true}) {
-    double worst = 0;
-    double sum = 0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const Eigen::Vector2d& corner = corners[turned ? truth.size() - 1 - i : i];
-      if (!IsSeen(corner)) continue;
-      const double error = (corner - truth[i]).norm();
-      worst = std::max(worst, error);
-      sum += error * error;
-    }
-    if (worst >= outcome->worst_px) continue;
-    outcome->worst_px = worst;
-    outcome->sum_of_squares = sum;
-  }
-  outcome->wrong = outcome->worst_px > kWrongPx;
-}
 
 Outcome Detect(const ImageScene& scene) {
   const cv::Mat grey = ToGrey(scene.image);
@@ -59,7 +38,12 @@ Outcome Detect(const ImageScene& scene) {
   outcome.milliseconds = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   outcome.found = result.board.has_value();
   outcome.why = result.why;
-  if (result.board) Compare(result.board->corners, scene.corners, &outcome);
+  if (result.board) {
+    const Errors errors = Compare(result.board->corners, scene.corners);
+    outcome.rms_px = errors.rms;
+    outcome.worst_px = errors.worst;
+    outcome.wrong = errors.worst > kWrongPx;
+  }
   return outcome;
 }
 
@@ -76,7 +60,7 @@ struct Summary {
     ++found;
     wrong += o.wrong ? 1 : 0;
     if (o.wrong) return;
-    sum_of_squares += o.sum_of_squares;
+    sum_of_squares += o.rms_px * o.rms_px * static_cast<double>(scene.corners.size());
     worst_px = std::max(worst_px, o.worst_px);
     corners += scene.corners.size();
   }
@@ -101,9 +85,8 @@ void Run(int count, std::uint64_t seed, const std::string& csv_path, const std::
       const Outcome o = Detect(scene);
       summary.Add(scene, o);
       csv << scene_class.name << ',' << index << ',' << scene.range_m << ',' << scene.contrast_k
-          << ',' << o.found << ',' << o.wrong << ','
-          << std::sqrt(o.sum_of_squares / static_cast<double>(scene.corners.size())) << ','
-          << o.worst_px << ',' << o.milliseconds << ",\"" << o.why << "\"\n";
+          << ',' << o.found << ',' << o.wrong << ',' << o.rms_px << ',' << o.worst_px << ','
+          << o.milliseconds << ",\"" << o.why << "\"\n";
     });
     summary.Print(scene_class.name);
   }

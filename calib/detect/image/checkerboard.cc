@@ -7,6 +7,7 @@
 
 #include "calib/detect/image/internal/corner_fit.h"
 #include "calib/detect/image/internal/corner_grid.h"
+#include "calib/detect/image/internal/edge_profiles.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/grid_model.h"
 #include "calib/detect/image/internal/partial_match.h"
@@ -163,10 +164,15 @@ Checkerboard InOrder(const Measured& measured, const GridModel& model, double co
   return board;
 }
 
+double SpacingOf(const GridModel& model, const PatternMatch& match, const Target& target) {
+  return model.Spacing(match.column + 0.5 * (match.columns(target) - 1),
+                       match.row + 0.5 * (match.rows(target) - 1));
+}
+
 class Search {
  public:
   Search(const cv::Mat& grey, const Target& target, double saturated_from)
-      : grey_(grey), target_(target), saturated_from_(saturated_from) {}
+      : grey_(grey), target_(target), saturated_from_(saturated_from), noise_(NoiseOf(grey)) {}
 
   /// Looks for boards at one size; keeps the best of what was found so far.
   void LookAt(const Look& look);
@@ -183,6 +189,8 @@ class Search {
   bool MeasureBoard(const CornerGrid& rough, const PatternMatch& match, bool partial);
   bool Fits(const cv::Mat& picture, const GridModel& model, const PatternMatch& match);
   bool FitsPartly(const GridModel& model, const PatternMatch& match);
+  bool IsFlat(const Measured& measured, const GridModel& model, double contrast,
+              const PatternMatch& match) const;
 
   /// A grid that is no board wholly in the image, in one picture of it.
   struct Rest {
@@ -194,6 +202,7 @@ class Search {
   const cv::Mat& grey_;
   const Target& target_;
   double saturated_from_;
+  double noise_;
   std::optional<Checkerboard> best_;
   double best_uncertainty_ = 0;  ///< of a corner, of the distance to the next
   std::string why_;
@@ -267,6 +276,32 @@ bool Search::Fits(const cv::Mat& picture, const GridModel& model, const PatternM
   return fit == PatternFit::kYes;
 }
 
+// Whether the corners lie as exactly on a smooth grid as a flat board's would. Printed ones are
+// within 0.3% of the distance of neighbours; wire meshes and tiles are not, and where they are so
+// faint that this drowns in noise, it has to be no more than the image's own noise makes.
+bool Search::IsFlat(const Measured& measured, const GridModel& model, double contrast,
+                    const PatternMatch& match) const {
+  constexpr double kPrinted = 0.01;                  // of the distance of neighbours
+  constexpr double kFaint = 0.01, kTooFaint = 0.02;  // of it, what noise alone does to a corner
+  constexpr double kMostOfNoise = 2.5;               // scatter, over what noise does
+  constexpr double kMostOfFaint = 1.15;              // the same, of a faint one
+  constexpr double kGridUnknowns = 22;               // GridModel's, about
+  double squares = 0;
+  for (const auto& corner : measured.corners) {
+    squares += (corner.second - model.At(corner.first.first, corner.first.second)).squaredNorm();
+  }
+  const double spacing = SpacingOf(model, match, target_);
+  const double freedom =
+      std::max(1.0, 2 * static_cast<double>(measured.corners.size()) - kGridUnknowns);
+  const double scatter = std::sqrt(squares / freedom) / spacing;
+  // What the fits leave over, were it the image's noise alone.
+  const double by_noise =
+      noise_ / (measured.residual * std::abs(contrast)) * measured.sigma_px / spacing;
+  if (by_noise > kTooFaint) return false;
+  return by_noise > kFaint ? scatter < kMostOfFaint * by_noise
+                           : scatter < std::hypot(kPrinted, kMostOfNoise * by_noise);
+}
+
 bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match, bool partial) {
   const auto model = GridModel::Fit(rough, kGridTolerance);
   if (!model) return false;
@@ -289,10 +324,9 @@ bool Search::MeasureBoard(const CornerGrid& rough, const PatternMatch& match, bo
     return false;
   }
   const auto last = GridModel::Fit(measured.corners, kGridTolerance);
-  if (!last || !(partial ? FitsPartly(*last, match) : Fits(grey_, *last, match))) return false;
-  const double uncertainty =
-      measured.sigma_px / last->Spacing(match.column + 0.5 * (match.columns(target_) - 1),
-                                        match.row + 0.5 * (match.rows(target_) - 1));
+  if (!last || !IsFlat(measured, *last, contrast, match)) return false;
+  if (!(partial ? FitsPartly(*last, match) : Fits(grey_, *last, match))) return false;
+  const double uncertainty = measured.sigma_px / SpacingOf(*last, match, target_);
   // What merely resembles a checkerboard, such as rows of holes, fits worse.
   if (!best_ || uncertainty < (partial ? kPartialBetter : 1) * best_uncertainty_) {
     best_ = InOrder(measured, *last, contrast, match, target_, partial);

@@ -42,12 +42,14 @@ struct CheckerboardResult {
 ///   5. each corner is measured in the full image (FitCorner)
 /// Corners that do not follow a flat grid seen through a smooth lens, or whose light and dark are
 /// exchanged, are refused: up to 5% of them are then taken from the others' grid, with more there
-/// is no board. A board that is partly outside the image is looked for where no sure one is found,
-/// and only what is certain is taken (WhyNotPartial): along rows and along columns one of its ends
-/// is seen with what lies beyond, the other follows from the size. A target of another size whose
-/// other end is outside the image as well cannot be told from it. Of several boards the one that
-/// fits best is returned. `saturated_from`: see SaturatedFrom; corners of white that is overexposed
-/// are not rounded off then.
+/// is no board. Nor is there where corners scatter about their grid by more than 1% of the distance
+/// of neighbours and the image's noise: meshes and tiles do. A board that is partly outside the
+/// image is looked for where no sure one is found, and only what is certain is taken
+/// (WhyNotPartial): along rows and along columns one of its ends is seen with what lies beyond, the
+/// other follows from the size. A target of another size whose other end is outside the image as
+/// well cannot be told from it. Of several boards the one that fits best is returned.
+/// `saturated_from`: see SaturatedFrom; corners of white that is overexposed are not rounded off
+/// then.
 CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
                                     double saturated_from = kNeverSaturated);
 

@@ -100,6 +100,23 @@ TEST(CameraView, TheFirstReasonStays) {
   EXPECT_FALSE(view.usable());
 }
 
+TEST(ViewsOf, APartOfABoardCountsOnlyWhereItsSizeIsKnown) {
+  SolveWorldOptions options;
+  options.views = 3;
+  SolveWorld world(options);
+  const auto usable = [&](std::size_t camera) {
+    return ViewsOf(world.rig.cameras[camera], world.detections).Usable().size();
+  };
+  for (std::size_t v = 0; v < 3; ++v) world.ImageAt(v, 0).corners[0] = UnseenCorner();
+  EXPECT_EQ(usable(0), 3U) << "the other camera sees it whole";
+  for (std::size_t v = 0; v < 3; ++v) world.ImageAt(v, 1).corners[7] = UnseenCorner();
+  EXPECT_EQ(usable(0), 0U);
+  EXPECT_THAT(ViewsOf(world.rig.cameras[0], world.detections).all[0].rejected,
+              HasSubstr("no view shows it whole"));
+  world.ImageAt(2, 0).picked = true;  // where corners are hidden, a person has said where it is
+  EXPECT_EQ(usable(0), 1U);
+}
+
 TEST(ViewsOf, ACandidateWithoutBoundaryPointsIsNone) {
   SolveWorldOptions options;
   options.views = 2;

@@ -139,25 +139,15 @@ std::vector<PatternMatch> PartialCandidates(const cv::Mat& grey, const GridModel
   }
   const int corners = target.corners_x() * target.corners_y();
   std::vector<PatternMatch> candidates;
-  for (const bool turned : {false, true}) {
-    PatternMatch match;
-    match.turned = turned;
-    const int wide = match.columns(target);
-    const int high = match.rows(target);
-    if (turned && wide == high) continue;
-    for (match.row = rows.low - kReach; match.row + high - 1 <= rows.high + kReach; ++match.row) {
-      for (match.column = columns.low - kReach; match.column + wide - 1 <= columns.high + kReach;
-           ++match.column) {
-        const auto known = CornersIn(match, grid, target).size();
-        if (static_cast<double>(known) < kLeastInGrid * corners) continue;
-        const int inside = CornersInside(grey.size(), model, match, target);
-        if (inside == corners || inside < kLeastInside * corners) continue;
-        const auto reason = WhyNotPartial(grey, model, match, target);
-        if (!reason) continue;
-        if (reason->empty()) candidates.push_back(match);
-        if (!reason->empty()) *why = *reason;
-      }
-    }
+  for (const PatternMatch& match : PlacesIn(columns, rows, kReach, target)) {
+    const auto known = CornersIn(match, grid, target).size();
+    if (static_cast<double>(known) < kLeastInGrid * corners) continue;
+    const int inside = CornersInside(grey.size(), model, match, target);
+    if (inside == corners || inside < kLeastInside * corners) continue;
+    const auto reason = WhyNotPartial(grey, model, match, target);
+    if (!reason) continue;
+    if (reason->empty()) candidates.push_back(match);
+    if (!reason->empty()) *why = *reason;
   }
   return candidates;
 }

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "calib/detect/image/internal/square_steps.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -88,6 +87,25 @@ CornerGrid CornersIn(const PatternMatch& match, const CornerGrid& grid, const Ta
   return inside;
 }
 
+std::vector<PatternMatch> PlacesIn(const Range& columns, const Range& rows, int reach,
+                                   const Target& target) {
+  std::vector<PatternMatch> places;
+  for (const bool turned : {false, true}) {
+    PatternMatch match;
+    match.turned = turned;
+    const int wide = match.columns(target);
+    const int high = match.rows(target);
+    if (turned && wide == high) continue;
+    for (match.row = rows.low - reach; match.row + high - 1 <= rows.high + reach; ++match.row) {
+      for (match.column = columns.low - reach; match.column + wide - 1 <= columns.high + reach;
+           ++match.column) {
+        places.push_back(match);
+      }
+    }
+  }
+  return places;
+}
+
 std::vector<PatternMatch> PatternCandidates(const cv::Mat& grey, const GridModel& model,
                                             const CornerGrid& grid, const Target& target) {
   Range columns;
@@ -103,22 +121,14 @@ std::vector<PatternMatch> PatternCandidates(const cv::Mat& grey, const GridModel
   const SquareSteps edges(grey, model, columns, rows, kMargin);
   const double enough = kSeen * target.corners_x() * target.corners_y();
   std::vector<std::pair<double, PatternMatch>> rated;
-  for (const bool turned : {false, true}) {
-    PatternMatch match;
-    match.turned = turned;
-    const int wide = match.columns(target);
-    const int high = match.rows(target);
-    if (turned && wide == high) continue;
-    for (match.row = rows.low - kBeyond; match.row + high - 1 <= rows.high + kBeyond; ++match.row) {
-      for (match.column = columns.low - kBeyond; match.column + wide - 1 <= columns.high + kBeyond;
-           ++match.column) {
-        const auto seen = static_cast<double>(CornersIn(match, agreeing, target).size());
-        if (seen < enough) continue;
-        // The squares between the corners, without the outermost ones.
-        const double weakest = Rate(edges, match.column, match.row, wide - 1, high - 1).weakest;
-        if (weakest > 0) rated.emplace_back(weakest * seen, match);
-      }
-    }
+  for (const PatternMatch& match : PlacesIn(columns, rows, kBeyond, target)) {
+    const auto seen = static_cast<double>(CornersIn(match, agreeing, target).size());
+    if (seen < enough) continue;
+    // The squares between the corners, without the outermost ones.
+    const double weakest =
+        Rate(edges, match.column, match.row, match.columns(target) - 1, match.rows(target) - 1)
+            .weakest;
+    if (weakest > 0) rated.emplace_back(weakest * seen, match);
   }
   std::stable_sort(rated.begin(), rated.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/square_steps.h"
 #include "calib/model/rig.h"
 
 namespace rgbdt {
@@ -16,6 +17,11 @@ struct PatternMatch {
   int columns(const Target& t) const { return turned ? t.corners_y() : t.corners_x(); }
   int rows(const Target& t) const { return turned ? t.corners_x() : t.corners_y(); }
 };
+
+/// Every place of the pattern, turned or not, that goes beyond these columns and rows of corners by
+/// no more than `reach`.
+std::vector<PatternMatch> PlacesIn(const Range& columns, const Range& rows, int reach,
+                                   const Target& target);
 
 /// Where in a grid the pattern may lie, judging by the squares between its corners; most likely
 /// first. `grey` is CV_32FC1; `model` maps the grid to its pixels.
