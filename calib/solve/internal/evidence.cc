@@ -8,7 +8,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kAsStated = 0.2;     // of all sessions
+constexpr double kAsStated = 0.5;     // of all sessions
 constexpr double kUsualLog = 1;       // sigma of the factor's logarithm in the others
 constexpr double kInside95 = 12.592;  // chi-square of six degrees of freedom
 
@@ -20,6 +20,50 @@ double SumOver(const std::vector<double>& values, const std::vector<double>& var
   }
   return sum;
 }
+
+// By which factor variances may be larger than stated, and how likely each is.
+struct Factors {
+  static constexpr double kMostLog = 6;
+
+  // `freedom` squares, each over its stated variance, have the mean `measured`; before, a session
+  // is as stated with this probability.
+  Factors(double measured, double freedom, double as_stated) {
+    constexpr int kSteps = 300;
+    const auto log_likelihood = [&](double log_factor) {
+      return -0.5 * freedom * (log_factor + measured * std::exp(-log_factor));
+    };
+    const double highest = log_likelihood(std::max(0.0, std::log(std::max(measured, 1e-9))));
+    const auto prior = [](int step) {
+      return std::exp(-0.5 * std::pow(kMostLog * (step + 0.5) / kSteps / kUsualLog, 2));
+    };
+    double all = 0;
+    for (int i = 0; i < kSteps; ++i) all += prior(i);
+    values.push_back(1);
+    weights.push_back(as_stated * std::exp(log_likelihood(0) - highest));
+    for (int i = 0; i < kSteps; ++i) {
+      const double log_factor = kMostLog * (i + 0.5) / kSteps;
+      values.push_back(std::exp(log_factor));
+      weights.push_back((1 - as_stated) * prior(i) / all *
+                        std::exp(log_likelihood(log_factor) - highest));
+    }
+    double sum = 0;
+    for (const double weight : weights) sum += weight;
+    for (double& weight : weights) weight /= sum;
+  }
+
+  // How much of a pose's errors lies beyond its 95% region, taken this much larger.
+  double Beyond(double factor) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double half = 0.5 * kInside95 * factor / values[i];
+      sum += weights[i] * std::exp(-half) * (1 + half + 0.5 * half * half);
+    }
+    return sum;
+  }
+
+  std::vector<double> values;   // the first one, 1: as stated
+  std::vector<double> weights;  // together 1
+};
 
 }  // namespace
 
@@ -77,42 +121,17 @@ bool Exceeds(double between, double between_freedom, double within, double withi
          kChanceSigmas * std::sqrt(of_within * root * root + of_between);
 }
 
-double FactorFor(double measured, double freedom) {
-  constexpr int kSteps = 300;
-  constexpr double kMostLog = 6;
-  const auto log_likelihood = [&](double log_factor) {
-    return -0.5 * freedom * (log_factor + measured * std::exp(-log_factor));
-  };
-  const double highest = log_likelihood(std::max(0.0, std::log(std::max(measured, 1e-9))));
-  std::vector<double> factors{1};
-  std::vector<double> weights{kAsStated * std::exp(log_likelihood(0) - highest)};
-  double normal = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    normal += std::exp(-0.5 * std::pow(kMostLog * (i + 0.5) / kSteps / kUsualLog, 2));
-  }
-  for (int i = 0; i < kSteps; ++i) {
-    const double log_factor = kMostLog * (i + 0.5) / kSteps;
-    const double prior =
-        (1 - kAsStated) * std::exp(-0.5 * std::pow(log_factor / kUsualLog, 2)) / normal;
-    factors.push_back(std::exp(log_factor));
-    weights.push_back(prior * std::exp(log_likelihood(log_factor) - highest));
-  }
-  double all = 0;
-  for (const double weight : weights) all += weight;
-  // How much lies beyond the 95% region of six degrees of freedom, taken this much larger.
-  const auto beyond = [&](double factor) {
-    double sum = 0;
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-      const double half = 0.5 * kInside95 * factor / factors[i];
-      sum += weights[i] * std::exp(-half) * (1 + half + 0.5 * half * half);
-    }
-    return sum / all;
-  };
+double ShareAsStated(double measured, double freedom) {
+  return Factors(measured, freedom, kAsStated).weights.front();
+}
+
+double FactorFor(double measured, double freedom, double as_stated) {
+  const Factors factors(measured, freedom, as_stated);
   double low = 1;
-  double high = std::exp(kMostLog);
+  double high = std::exp(Factors::kMostLog);
   for (int i = 0; i < 50; ++i) {
     const double middle = std::sqrt(low * high);
-    (beyond(middle) > 0.05 ? low : high) = middle;
+    (factors.Beyond(middle) > 0.05 ? low : high) = middle;
   }
   return high;
 }

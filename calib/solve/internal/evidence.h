@@ -35,11 +35,14 @@ double ScatterBeyond(const std::vector<double>& values, const std::vector<double
 /// approximation, 1942).
 bool Exceeds(double between, double between_freedom, double within, double within_freedom);
 
-/// The factor of variance with which the 95% region of a pose holds 95%, where `freedom` squares,
-/// each over its variance, have the mean `measured`: neither the likeliest factor nor the expected
-/// one does, as it is not known exactly. Before these squares one session in five is taken to be as
-/// stated; in the others the factor's logarithm is spread over 0 and more (half a normal of sigma
-/// 1). 1 or more.
-double FactorFor(double measured, double freedom);
+/// How likely it is that variances are as stated, where `freedom` squares, each over its variance,
+/// have the mean `measured`. Before, one session in two is taken to be; in the others the factor's
+/// logarithm is spread over 0 and more (half a normal of sigma 1).
+double ShareAsStated(double measured, double freedom);
+
+/// The factor of variance with which the 95% region of a pose holds 95%, likewise: neither the
+/// likeliest factor nor the expected one does, as it is not known exactly. `as_stated`: how likely
+/// that is by what else is known. 1 or more.
+double FactorFor(double measured, double freedom, double as_stated);
 
 }  // namespace rgbdt

@@ -81,6 +81,17 @@ double ScatterOf(const std::vector<Contradiction>& contradictions) {
   return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);
 }
 
+// How likely it is that views differ by no more than they state: by all directions of each view's
+// own estimate, where the moves of the result (ViewScatterOf) know but the few that it hangs on.
+// How much more they differ is for the moves to say. Images of one view share its cloud, and count
+// once.
+double AsStated(const std::vector<Contradiction>& contradictions, std::size_t views) {
+  double chi2 = 0;
+  for (const Contradiction& c : contradictions) chi2 += c.chi2;
+  const double measured = chi2 / (6 * static_cast<double>(contradictions.size()));
+  return ShareAsStated(contradictions.empty() ? 1 : measured, 6 * (static_cast<double>(views) - 1));
+}
+
 // Images left of a camera.
 int ImagesOf(const BoardProblem& problem, int camera) {
   int count = 0;
@@ -233,7 +244,9 @@ class JointSolver {
       Settle();
       result_.view_scatter = ViewScatterOf(Joint(), result_.solution);
       if (const auto& scatter = result_.view_scatter) {
-        result_.variance_factor = FactorFor(scatter->factor, scatter->freedom);
+        result_.variance_factor =
+            FactorFor(scatter->factor, scatter->freedom,
+                      AsStated(Contradictions(Joint(), result_.solution), Problem().views.size()));
       }
       break;
     }

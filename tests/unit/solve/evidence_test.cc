@@ -131,36 +131,45 @@ TEST(Exceeds, AgreesWithTablesOfTheFDistribution) {
 }
 
 // Poses whose errors are by an unknown factor larger than stated, drawn as it is expected to be,
-// and squares that tell of it.
+// and squares that tell of it: first whether there is one, then others how large it is.
 TEST(FactorFor, A95PercentRegionHolds95Percent) {
   for (const int freedom : {10, 40}) {
     int inside = 0;
     constexpr int kRuns = 4000;
     Normals random(static_cast<std::uint32_t>(freedom));
     for (int run = 0; run < kRuns; ++run) {
-      const bool as_stated = run % 5 == 0;
+      const bool as_stated = run % 2 == 0;
       const double factor = as_stated ? 1 : std::exp(std::abs(random.Normal()));
       const auto squares = [&](int count) {
         double sum = 0;
         for (int i = 0; i < count; ++i) sum += factor * std::pow(random.Normal(), 2);
         return sum;
       };
-      const double stated = FactorFor(squares(freedom) / freedom, freedom);
+      const double stated = FactorFor(squares(freedom) / freedom, freedom,
+                                      ShareAsStated(squares(freedom) / freedom, freedom));
       inside += squares(6) < 12.592 * stated ? 1 : 0;
     }
     EXPECT_NEAR(inside / static_cast<double>(kRuns), 0.95, 0.012) << freedom;
   }
 }
 
+TEST(ShareAsStated, IsWhatSquaresSay) {
+  EXPECT_NEAR(ShareAsStated(1, 0), 0.5, 1e-6);  // of none
+  EXPECT_GT(ShareAsStated(0.9, 42), 0.8);
+  EXPECT_LT(ShareAsStated(2, 42), 0.02);
+  EXPECT_GT(ShareAsStated(1.5, 6), 0.3);
+}
+
 TEST(FactorFor, IsNearlyWhatWasMeasuredWhereManySaySo) {
-  EXPECT_NEAR(FactorFor(3, 500), 3, 0.1);
-  EXPECT_LT(FactorFor(0.8, 50), 1.1);
-  EXPECT_GE(FactorFor(0.1, 50), 1);
-  EXPECT_LT(FactorFor(20, 3), 20);  // few who say that it is much do not prevail
+  EXPECT_NEAR(FactorFor(3, 500, 0.2), 3, 0.1);
+  EXPECT_LT(FactorFor(0.8, 50, 0.2), 1.1);
+  EXPECT_GE(FactorFor(0.1, 50, 0.2), 1);
+  EXPECT_LT(FactorFor(20, 3, 0.2), 20);  // few who say that it is much do not prevail
+  EXPECT_EQ(FactorFor(2, 10, 1), FactorFor(0.5, 10, 1));  // what is known is not asked
   for (const double freedom : {3.0, 10.0, 100.0}) {
     double last = 1;
     for (double measured = 0.5; measured < 20; measured *= 1.3) {
-      const double factor = FactorFor(measured, freedom);
+      const double factor = FactorFor(measured, freedom, 0.2);
       EXPECT_GE(factor, last);
       last = factor;
     }
