@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
-#include "calib/model/rigid3.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 #include "calib/solve/internal/evidence.h"
 #include "calib/solve/internal/range_terms.h"
+#include "calib/solve/internal/view_scatter.h"
 
 namespace rgbdt {
 namespace {
@@ -21,55 +21,6 @@ const char* const kSideNames[] = {"top", "right", "bottom", "left"};
 
 using Index = Eigen::Index;
 
-// How far a view's own estimate of a camera is from that of all the others.
-struct Contradiction {
-  std::size_t view = 0, image = 0;
-  double chi2 = 0;
-  double rotation_deg = 0, centre_mm = 0;
-};
-
-// From normal equations at the solution: the view alone would step by information^-1 gradient, the
-// others without it the other way.
-std::vector<Contradiction> Contradictions(const JointProblem& joint,
-                                          const BoardSolution& solution) {
-  const auto cameras = static_cast<Index>(6 * joint.cameras.size());
-  // Nuisances as they are: a view's own and the others' then add up.
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(cameras, cameras);
-  for (const ViewInformation& view : solution.views) {
-    all += view.information.topLeftCorner(cameras, cameras);
-  }
-  std::vector<Contradiction> out;
-  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    const BoardView& view = joint.problem.views[v];
-    // The view's cameras only: of others it says nothing.
-    std::vector<Index> place;
-    for (const BoardImage& image : view.images) {
-      for (Index k = 0; k < 6; ++k) place.push_back(6 * image.camera + k);
-    }
-    const auto own = Eigen::MatrixXd(
-        solution.views[v].information.topLeftCorner(cameras, cameras)(place, place));
-    const auto gradient = Eigen::VectorXd(solution.views[v].gradient.head(cameras)(place));
-    const Eigen::MatrixXd others =
-        all - solution.views[v].information.topLeftCorner(cameras, cameras);
-    const Eigen::MatrixXd others_covariance = InverseOfSymmetric(others)(place, place);
-    const Eigen::MatrixXd covariance = InverseOfSymmetric(own) + others_covariance;
-    const Eigen::VectorXd off = covariance * gradient;
-    for (std::size_t s = 0; s < view.images.size(); ++s) {
-      const auto at = static_cast<Index>(6 * s);
-      const Matrix6d block = covariance.block<6, 6>(at, at);
-      const Vector6d delta = off.segment<6>(at);
-      Contradiction c;
-      c.view = v;
-      c.image = s;
-      c.chi2 = delta.dot(SolveSymmetric(block, delta));
-      c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
-      c.centre_mm = delta.tail<3>().norm() * 1000;
-      if (std::isfinite(c.chi2)) out.push_back(c);  // not where no other view has this camera
-    }
-  }
-  return out;
-}
-
 // What views scatter more than stated, as a factor of variance; the median is not moved by a few
 // that are wrong.
 double ScatterOf(const std::vector<Contradiction>& contradictions) {
@@ -79,17 +30,6 @@ double ScatterOf(const std::vector<Contradiction>& contradictions) {
   for (const Contradiction& c : contradictions) chi2.push_back(c.chi2);
   std::sort(chi2.begin(), chi2.end());
   return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);
-}
-
-// How likely it is that views differ by no more than they state: by all directions of each view's
-// own estimate, where the moves of the result (ViewScatterOf) know but the few that it hangs on.
-// How much more they differ is for the moves to say. Images of one view share its cloud, and count
-// once.
-double AsStated(const std::vector<Contradiction>& contradictions, std::size_t views) {
-  double chi2 = 0;
-  for (const Contradiction& c : contradictions) chi2 += c.chi2;
-  const double measured = chi2 / (6 * static_cast<double>(contradictions.size()));
-  return ShareAsStated(contradictions.empty() ? 1 : measured, 6 * (static_cast<double>(views) - 1));
 }
 
 // Images left of a camera.
@@ -113,53 +53,6 @@ const Contradiction* WorstToReject(const JointProblem& joint,
     if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
   }
   return worst;
-}
-
-// The result without every `parts`-th view from `part` on.
-BoardSolution Without(const JointProblem& joint, const BoardSolution& all, std::size_t part,
-                      std::size_t parts) {
-  std::vector<std::size_t> others;
-  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    if (v % parts != part) others.push_back(v);
-  }
-  return SolveSome(joint.problem, all, others);
-}
-
-// How the result moves when each view is left out in turn, against how it should: nuisances, robust
-// weights and all, whatever makes views differ. Of an efficient estimate with covariance C the move
-// has covariance C_without - C (Hausman 1978), so the sum of move' C^-1 move is that of
-// tr(C^-1 C_without - I): the quotient is the factor of variance. Of more than ten
-// views a tenth at a time: the time then grows with the views, not with their square.
-std::optional<ViewScatter> ViewScatterOf(const JointProblem& joint, const BoardSolution& solution) {
-  constexpr std::size_t kMostParts = 10;
-  const std::size_t views = joint.problem.views.size();
-  if (views < 4) return std::nullopt;
-  const std::size_t parts = std::min(views, kMostParts);
-  double moved = 0;
-  double expected = 0;
-  double expected2 = 0;
-  for (std::size_t part = 0; part < parts; ++part) {
-    const BoardSolution without = Without(joint, solution, part, parts);
-    for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-      const auto at = static_cast<Index>(6 * c);
-      const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
-      const Matrix6d covariance_without = without.covariance.block<6, 6>(at, at);
-      const Matrix6d more = SolveSymmetric(covariance, covariance_without) - Matrix6d::Identity();
-      const Vector6d move =
-          Log(without.state.camera_from_lidar[c] * solution.state.camera_from_lidar[c].Inverse());
-      moved += move.dot(SolveSymmetric(covariance, move));
-      expected += more.trace();
-      expected2 += (more * more).trace();
-    }
-  }
-  if (!(expected > 0) || !std::isfinite(moved)) return std::nullopt;
-  // Cameras of one view share its cloud: their moves are correlated, and count but once.
-  std::size_t together = 1;
-  for (const BoardView& view : joint.problem.views) {
-    together = std::max(together, view.images.size());
-  }
-  const double chance = std::sqrt(2 * expected2 * static_cast<double>(together)) / expected;
-  return ViewScatter{moved / expected, 2 / (chance * chance)};
 }
 
 // How far sides differ among themselves, by the data: never less than the physics says. The shifts
@@ -233,7 +126,7 @@ class JointSolver {
     FitRanges();
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
-      const auto contradictions = Contradictions(Joint(), result_.solution);
+      const auto contradictions = Contradictions(Problem(), result_.solution);
       const Contradiction* worst = WorstToReject(Joint(), contradictions, images_at_first_);
       if (worst != nullptr) {
         RejectImage(*worst);
@@ -242,11 +135,11 @@ class JointSolver {
       if (DropSide()) continue;
       FitScatter();
       Settle();
-      result_.view_scatter = ViewScatterOf(Joint(), result_.solution);
+      result_.view_scatter = ViewScatterOf(Problem(), result_.solution);
       if (const auto& scatter = result_.view_scatter) {
-        result_.variance_factor =
-            FactorFor(scatter->factor, scatter->freedom,
-                      AsStated(Contradictions(Joint(), result_.solution), Problem().views.size()));
+        result_.variance_factor = FactorFor(
+            scatter->factor, scatter->freedom,
+            AsStated(Contradictions(Problem(), result_.solution), Problem().views.size()));
       }
       break;
     }
