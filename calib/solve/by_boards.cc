@@ -62,8 +62,8 @@ std::optional<Nuisance> SideScatter(const JointProblem& joint) {
 std::optional<Nuisance> ScatterOfRings(const JointProblem& joint) {
   const double sigma = joint.problem.priors.ring_view_sigma_m;
   double rings = 0;
-  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    rings += static_cast<double>(joint.problem.views[v].cloud.groups.size());
+  for (const BoardView& view : joint.problem.views) {
+    rings += static_cast<double>(view.cloud.groups.size());
   }
   if (!(sigma > 0)) return std::nullopt;
   return Nuisance{"rings' ranges, scatter within a view",
