@@ -76,10 +76,16 @@ std::vector<ViewDetection> AllViews(const std::vector<SessionViews>& sessions) {
 }
 
 Report WithChanges(Report report, const std::vector<CalibrationComparison>& comparisons) {
+  std::size_t count = 0;
+  for (const CalibrationComparison& sessions : comparisons) count += sessions.cameras.size();
+  // Of many comparisons some are unlikely.
+  const auto certain = [&](const PoseComparison& moved) {
+    return moved.chi2 && ChanceOfChi2(*moved.chi2) * static_cast<double>(count) < kMovedChance;
+  };
   for (CameraReport& camera : report.cameras) {
     for (const CalibrationComparison& sessions : comparisons) {
       for (const PoseComparison& moved : sessions.cameras) {
-        if (moved.camera != camera.calibration.camera || !Moved(moved)) continue;
+        if (moved.camera != camera.calibration.camera || !certain(moved)) continue;
         if (!camera.contradiction.empty()) camera.contradiction += " ";
         camera.contradiction += MovedText(moved, sessions);
       }

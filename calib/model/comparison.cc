@@ -11,8 +11,7 @@ double ChanceOfChi2(double chi2) {
 }
 
 bool Moved(const PoseComparison& camera) {
-  constexpr double kChance = 0.01;
-  return camera.chi2 && ChanceOfChi2(*camera.chi2) < kChance;
+  return camera.chi2 && ChanceOfChi2(*camera.chi2) < kMovedChance;
 }
 
 }  // namespace rgbdt

@@ -36,6 +36,9 @@ struct CalibrationComparison {
   std::vector<PoseComparison> cameras;
 };
 
+/// From which chance on a camera is said to have moved.
+inline constexpr double kMovedChance = 0.01;
+
 /// Whether a comparison says that a camera moved: beyond what chance does once in a hundred.
 bool Moved(const PoseComparison& camera);
 

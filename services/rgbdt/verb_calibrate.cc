@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -84,10 +85,15 @@ bool CalibrateTogether(const CalibrateFlags& flags) {
     comparisons =
         CalibrateSessions(session.rig, Divided(session, detection.views), brief).comparisons;
   }
-  const bool usable =
-      Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)}, session, detection,
-             WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons));
-  return PrintComparisons(comparisons) && usable;
+  const Report report =
+      WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons);
+  const bool agree =
+      std::all_of(report.cameras.begin(), report.cameras.end(),
+                  [](const CameraReport& camera) { return camera.contradiction.empty(); });
+  const bool usable = Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)},
+                             session, detection, report);
+  PrintComparisons(comparisons);
+  return usable && agree;
 }
 
 // Poses of its own in each session; what all have in common is told by all.
