@@ -285,6 +285,7 @@ bool Search::IsFlat(const Measured& measured, const GridModel& model, double con
   constexpr double kFaint = 0.01, kTooFaint = 0.02;  // of it, what noise alone does to a corner
   constexpr double kMostOfNoise = 2.5;               // scatter, over what noise does
   constexpr double kMostOfFaint = 1.15;              // the same, of a faint one
+  constexpr double kMostNoise = 1.3;                 // of the image, over what fits leave
   constexpr double kGridUnknowns = 22;               // GridModel's, about
   double squares = 0;
   for (const auto& corner : measured.corners) {
@@ -294,9 +295,10 @@ bool Search::IsFlat(const Measured& measured, const GridModel& model, double con
   const double freedom =
       std::max(1.0, 2 * static_cast<double>(measured.corners.size()) - kGridUnknowns);
   const double scatter = std::sqrt(squares / freedom) / spacing;
-  // What the fits leave over, were it the image's noise alone.
-  const double by_noise =
-      noise_ / (measured.residual * std::abs(contrast)) * measured.sigma_px / spacing;
+  // Were what the fits leave over the image's noise alone. It is not less: where noise seems to be
+  // more, that is the texture of other things in the image.
+  const double of_noise = std::min(kMostNoise, noise_ / (measured.residual * std::abs(contrast)));
+  const double by_noise = of_noise * measured.sigma_px / spacing;
   if (by_noise > kTooFaint) return false;
   return by_noise > kFaint ? scatter < kMostOfFaint * by_noise
                            : scatter < std::hypot(kPrinted, kMostOfNoise * by_noise);

@@ -62,6 +62,39 @@ std::vector<study::SceneClass> TestedClasses() {
 INSTANTIATE_TEST_SUITE_P(Checkerboard, RenderedBoard, ::testing::ValuesIn(TestedClasses()),
                          [](const auto& tested) { return tested.param.name; });
 
+// Printed ones are even to a thousandth; wire meshes and tiles are not.
+TEST(Checkerboard, AnUnevenGridIsNoBoard) {
+  for (const double unevenness : {0.001, 0.003}) {
+    PaintedCheckerboard painted;
+    painted.noise = 1;
+    painted.unevenness = unevenness;
+    EXPECT_TRUE(FindCheckerboard(painted.Paint(), painted.target()).board) << unevenness;
+  }
+  for (const double unevenness : {0.02, 0.03}) {
+    PaintedCheckerboard painted;
+    painted.noise = 1;
+    painted.unevenness = unevenness;
+    EXPECT_FALSE(FindCheckerboard(painted.Paint(), painted.target()).board) << unevenness;
+  }
+}
+
+// Gravel and leaves all over the image look like noise, and are not on the board.
+TEST(Checkerboard, ABoardAmongTextureIsFound) {
+  PaintedCheckerboard painted;
+  painted.noise = 1;
+  painted.square_px = 10;
+  cv::Mat texture(480, 640, CV_32F);
+  cv::RNG random(3);
+  random.fill(texture, cv::RNG::NORMAL, 0, 40);
+  painted.behind = [&](double x, double y) {
+    const bool beside = std::hypot(x - painted.centre.x(), y - painted.centre.y()) > 90;
+    return beside ? texture.at<float>(static_cast<int>(y), static_cast<int>(x)) : 0.0F;
+  };
+  const CheckerboardResult result = FindCheckerboard(painted.Paint(), painted.target());
+  ASSERT_TRUE(result.board) << result.why;
+  EXPECT_LT(Compare(result.board->corners, painted.Corners()).worst, 0.15);
+}
+
 TEST(Checkerboard, OrderIsTheTargetsInEveryTurnAndNeverMirrored) {
   for (const bool mirrored : {false, true}) {
     for (int step = 0; step < 8; ++step) {

@@ -19,9 +19,13 @@ struct PaintedCheckerboard {
   Eigen::Vector2d perspective{2e-4, -3e-4};      ///< [1/px]
   double contrast = 50, noise = 0, blur = 1;     ///< [px] sigma of the blur
   bool mirrored = false;                         ///< as seen in a mirror
+  double unevenness = 0;                         ///< of a square: 1 sigma of each corner's place
   std::function<double(double, double)> behind;  ///< added to the image
 
   Eigen::Vector2d Pixel(double column, double row) const {
+    cv::RNG own(static_cast<std::uint64_t>(1 + 100 * column + row) * 0x9e3779b97f4a7c15u);
+    column += own.gaussian(unevenness);
+    row += own.gaussian(unevenness);
     const double x = (mirrored ? -1 : 1) * (column - 0.5 * squares_x) * square_px;
     const double y = (row - 0.5 * squares_y) * square_px;
     const double w = 1 + perspective.x() * x + perspective.y() * y;
