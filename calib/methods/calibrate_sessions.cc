@@ -67,14 +67,6 @@ CalibratedSessions CalibrateSessions(const Rig& rig, const std::vector<SessionVi
   return out;
 }
 
-std::vector<ViewDetection> AllViews(const std::vector<SessionViews>& sessions) {
-  std::vector<ViewDetection> all;
-  for (const SessionViews& session : sessions) {
-    all.insert(all.end(), session.detections.begin(), session.detections.end());
-  }
-  return all;
-}
-
 Report WithChanges(Report report, const std::vector<CalibrationComparison>& comparisons) {
   std::size_t count = 0;
   for (const CalibrationComparison& sessions : comparisons) count += sessions.cameras.size();

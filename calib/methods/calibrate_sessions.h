@@ -29,9 +29,6 @@ struct CalibratedSessions {
 CalibratedSessions CalibrateSessions(const Rig& rig, const std::vector<SessionViews>& sessions,
                                      const CalibrateOptions& options = {});
 
-/// All views of all sessions.
-std::vector<ViewDetection> AllViews(const std::vector<SessionViews>& sessions);
-
 /// A report of all sessions as one, in which each camera that moved in between has a contradiction:
 /// beyond what chance does in one of a hundred sets of sessions.
 [[nodiscard]] Report WithChanges(Report report,

@@ -65,11 +65,12 @@ std::vector<Contradiction> Contradictions(const BoardProblem& problem,
 }
 
 double AsStated(const std::vector<Contradiction>& contradictions, std::size_t views) {
-  // Images of one view share its cloud, and count once.
+  if (contradictions.empty()) return ShareAsStated(1, 0);
   double chi2 = 0;
   for (const Contradiction& c : contradictions) chi2 += c.chi2;
-  const double measured = chi2 / (6 * static_cast<double>(contradictions.size()));
-  return ShareAsStated(contradictions.empty() ? 1 : measured, 6 * (static_cast<double>(views) - 1));
+  // Images of one view share its cloud, and count once.
+  return ShareAsStated(chi2 / (6 * static_cast<double>(contradictions.size())),
+                       6 * (static_cast<double>(views) - 1));
 }
 
 std::optional<ViewScatter> ViewScatterOf(const BoardProblem& problem,

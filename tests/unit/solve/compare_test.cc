@@ -39,6 +39,13 @@ CameraCalibration Somewhere() {
   return calibration;
 }
 
+// By 0.4 degrees about the camera's y.
+CameraCalibration TurnedAboutY(CameraCalibration calibration) {
+  calibration.camera_from_lidar =
+      RotationAbout({0, 1, 0}, 0.4 * kDegree) * calibration.camera_from_lidar;
+  return calibration;
+}
+
 TEST(Compare, ACalibrationWithItselfIsTheSame) {
   const CameraSpec spec = Spec();
   const PoseComparison same = Compare(Somewhere(), Somewhere(), &spec);
@@ -52,8 +59,7 @@ TEST(Compare, ACalibrationWithItselfIsTheSame) {
 TEST(Compare, WhatTwoPosesHaveInCommonCancels) {
   const CameraSpec spec = Spec();
   const CameraCalibration a = Somewhere();
-  CameraCalibration b = a;
-  b.camera_from_lidar = RotationAbout({0, 1, 0}, 0.4 * kDegree) * a.camera_from_lidar;
+  const CameraCalibration b = TurnedAboutY(a);
   const PoseComparison apart = Compare(a, b, &spec);
   const Matrix6d common = 0.75 * *a.covariance;
   const PoseComparison together = Compare(a, b, &spec, common);
@@ -75,8 +81,7 @@ TEST(Compare, WhatTwoPosesHaveInCommonCancels) {
 TEST(Compare, SaysWhatMovedInWhichAxes) {
   const CameraSpec spec = Spec();
   const CameraCalibration a = Somewhere();
-  CameraCalibration b = a;
-  b.camera_from_lidar = RotationAbout({0, 1, 0}, 0.4 * kDegree) * a.camera_from_lidar;
+  CameraCalibration b = TurnedAboutY(a);
   const PoseComparison turned = Compare(a, b, &spec);
   EXPECT_NEAR(turned.rotation_deg[0].value, 0, 1e-9);
   EXPECT_NEAR(turned.rotation_deg[1].value, 0.4, 1e-9);

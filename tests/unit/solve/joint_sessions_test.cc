@@ -109,7 +109,7 @@ TEST(CalibrateSessions, CamerasThatStayedAreTheSame) {
 TEST(CalibrateSessions, ThatContradictEachOtherAreNotOne) {
   const TwoSessions two(4);
   const auto comparisons = CalibrateSessions(two.world.rig, two.sessions, Brief()).comparisons;
-  const Report both = Calibrate(two.world.rig, AllViews(two.sessions), Brief());
+  const Report both = Calibrate(two.world.rig, two.world.detections, Brief());
   EXPECT_THAT(both.cameras[0].contradiction, IsEmpty());
   const Report report = WithChanges(both, comparisons);
   for (const CameraReport& camera : report.cameras) {
