@@ -1,0 +1,171 @@
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/schema/exports.h"
+#include "calib/files/schema/internal/export_parts.h"
+#include "calib/files/schema/proto_convert.h"
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+using exports::Exported;
+using exports::HashComment;
+using exports::kFrames;
+using exports::List;
+using exports::StatusWarning;
+
+constexpr char kDirection[] =
+    "ROS takes the pose of the child in the parent: what follows is the camera's pose in the\n"
+    "LIDAR frame, point_in_lidar = lidar_from_camera * point_in_camera, the inverse of\n"
+    "calibration.textproto.";
+
+// One camera as ROS sees it.
+struct Joint {
+  std::string camera, parent, child;
+  Eigen::Vector3d xyz;      // of lidar_from_camera [m]
+  Eigen::Quaterniond xyzw;  // its rotation
+  std::string warning;      // empty: none
+};
+
+bool IsFrameLetter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+}
+
+// Names of the rig come from a file: only what a frame may be called goes on a command line.
+std::string Cleaned(const std::string& name, const std::string& otherwise) {
+  std::string cleaned;
+  for (const char c : name) cleaned += IsFrameLetter(c) ? c : '_';
+  return cleaned.empty() || cleaned[0] == '-' ? otherwise : cleaned;
+}
+
+// What a user asks for is taken as it is or refused. "robot1/lidar" is one name.
+std::string Checked(const std::string& name) {
+  bool good = !name.empty() && name.front() != '-' && name.front() != '/' && name.back() != '/';
+  for (const char c : name) good = good && (IsFrameLetter(c) || c == '.' || c == '/');
+  if (good) return name;
+  std::string shown = name;
+  for (char& c : shown) c = static_cast<unsigned char>(c) < ' ' ? '?' : c;
+  throw InputError("\"" + shown +
+                   "\" is no name of a frame; expected letters, digits, _ - . and / in the middle");
+}
+
+std::string LidarFrame(const Rig& rig, const FrameNames& frames) {
+  return frames.lidar.empty() ? Cleaned(rig.lidar.name, "lidar") : Checked(frames.lidar);
+}
+
+std::string CameraFrame(const std::string& camera, const FrameNames& frames) {
+  const auto named = frames.cameras.find(camera);
+  return named == frames.cameras.end() ? camera + "_optical_frame" : Checked(named->second);
+}
+
+std::vector<Joint> JointsOf(const Rig& rig, const Calibration& calibration,
+                            const FrameNames& frames) {
+  for (const auto& named : frames.cameras) rig.Camera(named.first);
+  const std::string lidar = LidarFrame(rig, frames);
+  std::set<std::string> taken{lidar};
+  std::vector<Joint> joints;
+  for (const Exported& camera : exports::Match(rig, calibration)) {
+    const Rigid3 lidar_from_camera = camera.calibration.camera_from_lidar.Inverse();
+    const std::string child = CameraFrame(camera.spec.name, frames);
+    if (!taken.insert(child).second) {
+      throw InputError("the frame \"" + child + "\" twice; give each camera and the LIDAR its own");
+    }
+    joints.push_back({camera.spec.name, lidar, child, lidar_from_camera.translation,
+                      text::Normalised(lidar_from_camera.rotation), StatusWarning(camera)});
+  }
+  return joints;
+}
+
+// The options of ROS 2's static_transform_publisher.
+std::string Ros2Options(const Joint& joint) {
+  const Eigen::Vector3d& t = joint.xyz;
+  const Eigen::Quaterniond& q = joint.xyzw;
+  return "--x " + Exact(t.x()) + " --y " + Exact(t.y()) + " --z " + Exact(t.z()) + " --qx " +
+         Exact(q.x()) + " --qy " + Exact(q.y()) + " --qz " + Exact(q.z()) + " --qw " +
+         Exact(q.w()) + " --frame-id " + joint.parent + " --child-frame-id " + joint.child;
+}
+
+std::string CommandLines(const Joint& joint) {
+  return "\n" + HashComment(joint.camera) +
+         (joint.warning.empty() ? "" : HashComment(joint.warning)) +
+         "# ROS 2\nros2 run tf2_ros static_transform_publisher " + Ros2Options(joint) +
+         "\n# ROS 1 (x y z qx qy qz qw parent child)\n"
+         "rosrun tf2_ros static_transform_publisher " +
+         List(joint.xyz.data(), 3) + " " + List(joint.xyzw.coeffs().data(), 4) + " " +
+         joint.parent + " " + joint.child + "\n";
+}
+
+std::string LaunchNode(const Joint& joint) {
+  return (joint.warning.empty() ? "" : "  # " + joint.warning + "\n") +
+         "  - node:\n"
+         "      pkg: \"tf2_ros\"\n"
+         "      exec: \"static_transform_publisher\"\n"
+         "      name: \"publish_pose_of_" +
+         joint.camera + "\"\n      args: \"" + Ros2Options(joint) + "\"\n";
+}
+
+// rotation = Rz(yaw) * Ry(pitch) * Rx(roll), as roll, pitch, yaw [rad]. Roll is what is left once
+// yaw and pitch are undone, so a pitch of 90 degrees, which leaves yaw free, costs no digits.
+Eigen::Vector3d RollPitchYaw(const Eigen::Quaterniond& rotation) {
+  const Eigen::Matrix3d m = rotation.toRotationMatrix();
+  const double yaw = std::atan2(m(1, 0), m(0, 0));
+  const double pitch = std::atan2(-m(2, 0), std::hypot(m(0, 0), m(1, 0)));
+  const Eigen::Matrix3d rest = Eigen::AngleAxisd(-pitch, Eigen::Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitZ()) * m;
+  return {std::atan2(rest(2, 1), rest(2, 2)), pitch, yaw};
+}
+
+// XML ends a comment at two dashes.
+std::string XmlComment(std::string text) {
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) {
+    text.insert(at + 1, " ");
+  }
+  return "<!-- " + text + " -->\n";
+}
+
+std::string UrdfJoint(const Joint& joint) {
+  const Eigen::Vector3d rpy = RollPitchYaw(joint.xyzw);
+  return "\n" + (joint.warning.empty() ? "" : "  " + XmlComment(joint.warning)) +
+         "  <link name=\"" + joint.child + "\"/>\n  <joint name=\"" + joint.camera +
+         "_optical_joint\" type=\"fixed\">\n    <parent link=\"" + joint.parent +
+         "\"/>\n    <child link=\"" + joint.child + "\"/>\n    <origin xyz=\"" +
+         List(joint.xyz.data(), 3) + "\" rpy=\"" + List(rpy.data(), 3) + "\"/>\n  </joint>\n";
+}
+
+}  // namespace
+
+void ExportRosStaticTransform(const std::filesystem::path& path, const Rig& rig,
+                              const Calibration& calibration, const FrameNames& frames) {
+  std::string text = HashComment(std::string(kFrames) + "\n" + kDirection);
+  for (const Joint& joint : JointsOf(rig, calibration, frames)) text += CommandLines(joint);
+  WriteFileAtomically(path, text);
+}
+
+void ExportRosLaunch(const std::filesystem::path& path, const Rig& rig,
+                     const Calibration& calibration, const FrameNames& frames) {
+  std::string text =
+      HashComment(std::string("For `ros2 launch FILE`. ") + kFrames + "\n" + kDirection) +
+      "launch:\n";
+  for (const Joint& joint : JointsOf(rig, calibration, frames)) text += LaunchNode(joint);
+  WriteFileAtomically(path, text);
+}
+
+void ExportUrdf(const std::filesystem::path& path, const Rig& rig, const Calibration& calibration,
+                const FrameNames& frames) {
+  const std::vector<Joint> joints = JointsOf(rig, calibration, frames);
+  std::string text =
+      "<?xml version=\"1.0\"?>\n" +
+      XmlComment(std::string(kFrames) + "\n" + kDirection +
+                 "\nrpy is roll, pitch, yaw [rad]: rotation = Rz(yaw) * Ry(pitch) * Rx(roll).\n"
+                 "Where a robot's own URDF has the LIDAR's link, leave it out here.") +
+      "<robot name=\"" + Cleaned(rig.name, "rig") + "\">\n  <link name=\"" + joints[0].parent +
+      "\"/>\n";
+  for (const Joint& joint : joints) text += UrdfJoint(joint);
+  WriteFileAtomically(path, text + "</robot>\n");
+}
+
+}  // namespace rgbdt

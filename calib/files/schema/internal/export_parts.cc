@@ -1,0 +1,38 @@
+#include "calib/files/schema/internal/export_parts.h"
+
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+
+namespace rgbdt::exports {
+
+std::vector<Exported> Match(const Rig& rig, const Calibration& calibration) {
+  std::vector<Exported> cameras;
+  for (const CameraCalibration& camera : calibration.cameras) {
+    cameras.push_back({camera.WithSolvedLens(rig.Camera(camera.camera)), camera});
+  }
+  if (cameras.empty()) throw InputError("the calibration holds no camera: nothing to export");
+  return cameras;
+}
+
+std::string List(const double* values, int count, const char* separator) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i > 0 ? separator : "") + Exact(values[i]);
+  return text;
+}
+
+std::string StatusWarning(const Exported& camera) {
+  if (camera.calibration.converged()) return {};
+  std::string status = camera.calibration.StatusText();
+  for (char& c : status) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return "WARNING: " + camera.spec.name + " did not converge: " + status;
+}
+
+std::string HashComment(const std::string& text) {
+  std::string comment = "# ";
+  for (const char c : text) comment += c == '\n' ? std::string("\n# ") : std::string(1, c);
+  return comment + "\n";
+}
+
+}  // namespace rgbdt::exports
