@@ -27,9 +27,9 @@ std::unique_ptr<rgbdt::SessionNode> ByScript(const Flags& flags) {
 }
 
 std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
-  if (flags.rig.empty()) throw rgbdt::InputError("without a script --rig is needed: which rig?");
+  if (flags.rig.empty()) throw rgbdt::UsageError("without a script --rig is needed: which rig?");
   if (flags.by_hand)
-    throw rgbdt::InputError("--by-hand goes with a script; the page asks by itself");
+    throw rgbdt::UsageError("--by-hand goes with a script; the page asks by itself");
   std::printf("The viewer's page leads this session: rgbdt-viewer prints its address.\n");
   std::fflush(stdout);
   return std::make_unique<rgbdt::SessionNode>(rgbdt::ReadRig(flags.rig), flags.out,
@@ -41,14 +41,14 @@ int Run(const Flags& flags) {
   const int code = rgbdt::RunOnLcm(*node, flags.url);
   if (!node->failure().empty()) {
     std::fprintf(stderr, "rgbdt-session: %s\n", node->failure().c_str());
-    return 1;
+    return rgbdt::EndsWith(false);
   }
   if (node->finished()) return code;
   if (code == 0) {
     std::fprintf(stderr, "rgbdt-session: stopped before its end: %s\n",
                  node->GetStatus().text.c_str());
   }
-  return 1;
+  return rgbdt::EndsWith(false);
 }
 
 }  // namespace
@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
       "Example: rgbdt-session scripts/sessions/demo.session.textproto --rig out/rig.textproto "
       "--out out/session\n"
       "         rgbdt-session --rig out/rig.textproto --out out/session");
+  line.Ends(rgbdt::ExitCode::kFailed, "failed, or ended before its end; stderr says why");
   Flags flags;
   line.Option("FILE", &flags.script, "session.textproto; without it the viewer's page leads");
   line.Option("--rig", &flags.rig, "rig.textproto; default: the one that the script names");

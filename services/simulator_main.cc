@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   rgbdt::simulate::Options options;
   line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
   line.Option("--seed", &options.seed, "of everything random");
-  line.Choice("--scene", &options.scene, rgbdt::simulate::kSceneNames, "outdoor, indoor or night");
+  line.Choice("--scene", &options.scene, rgbdt::simulate::kSceneNames, "");
   line.Within("--speed", &speed, 0.01, 1000.0, "simulated seconds per second");
   line.Option("--rig", &rig_file, "write the rig (with its hand-measured guesses) here first");
   line.Option("--truth", &truth_file, "keep the truth here; no process reads it");

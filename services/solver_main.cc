@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   std::string url;
   line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
   std::string method = rgbdt::kAutoMethod;
-  line.Option("--method", &method, rgbdt::kMethodHelp);
+  line.Choice("--method", &method, rgbdt::kMethodNames, rgbdt::kMethodHelp);
   return line.Run(argc, argv, [&] {
     rgbdt::CalibrateOptions options;
     options.method = method;

@@ -53,7 +53,7 @@ void ParseAddress(const std::string& listen, ServerOptions* options) {
   } catch (const std::exception&) {
   }
   if (used == 0 || used != port.size()) {
-    throw rgbdt::InputError("--listen is \"" + listen +
+    throw rgbdt::UsageError("--listen is \"" + listen +
                             "\"; expected ADDRESS:PORT, e.g. 0.0.0.0:8080");
   }
 }
@@ -216,11 +216,11 @@ int ShowSession(const Flags& flags) {
 
 void CheckFlags(const Flags& flags, bool run) {
   if (run == flags.run.empty()) {
-    throw rgbdt::InputError(run ? "--run: which command?"
-                                : "unexpected \"" + flags.run.front() + "\"; see --help");
+    throw rgbdt::UsageError(run ? "--run: which command?"
+                                : "unexpected \"" + flags.run.front() + "\"");
   }
   if (!flags.session.empty() && !flags.url.empty()) {
-    throw rgbdt::InputError("--session shows files, --lcm-url a bus; give one of them");
+    throw rgbdt::UsageError("--session shows files, --lcm-url a bus; give one of them");
   }
 }
 

@@ -39,7 +39,8 @@ SessionDetection DetectSession(const Session& session, const std::string& method
     }
     const std::lock_guard<std::mutex> lock(mutex);
     progress("[" + std::to_string(++done) + "/" + std::to_string(count) + "] view " + name + ": " +
-             BriefReport(detections[i]) + (detections[i].heldout ? " (held out)" : ""));
+             (unreadable[i].empty() ? BriefReport(detections[i]) : "not read") +
+             (detections[i].heldout ? " (held out)" : ""));
   });
 
   SessionDetection detection{std::move(detections), {}};

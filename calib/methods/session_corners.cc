@@ -105,7 +105,7 @@ SessionCorners FindSessionCorners(const Session& session, const std::vector<std:
       }
       const std::lock_guard<std::mutex> lock(mutex);
       progress("[" + std::to_string(++done) + "/" + std::to_string(count) + "] view " + name +
-               ": " + (unreadable[i].empty() ? Summary(by_view[i]) : unreadable[i]));
+               ": " + (unreadable[i].empty() ? Summary(by_view[i]) : "not read"));
     }
   };
   std::vector<std::thread> threads;

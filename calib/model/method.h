@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace rgbdt {
 
@@ -13,11 +14,11 @@ inline constexpr const char* kAutoMethod = "auto";
 inline constexpr const char* kPlaneMethod = "plane";
 inline constexpr const char* kPaperMethod = "paper";
 
-/// For command lines.
+/// For command lines: their names, and what stands beside these.
+inline const std::vector<std::string> kMethodNames = {kAutoMethod, kPlaneMethod, kPaperMethod};
 inline constexpr const char* kMethodHelp =
-    "auto (the board finds itself), plane (the same boards, by their planes alone; Unnikrishnan "
-    "and "
-    "Hebert 2005) or paper (Krishnan et al. 2015, the reference)";
+    "auto, the board finds itself; plane, the same boards by their planes alone (Unnikrishnan and\n"
+    "Hebert 2005); paper, the reference (Krishnan et al. 2015)";
 
 /// Throws InputError with the names that there are.
 void RequireMethod(const std::string& method);

@@ -1,14 +1,36 @@
 #include "services/command_line/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <utility>
 
+#include "calib/model/text.h"
 #include "calib/model/version.h"
+#include "services/command_line/commit.h"
 
 namespace rgbdt {
 namespace {
+
+// A check that --help does not name: `problem` gives what is wrong with a value, or nothing.
+CLI::Validator Check(const std::function<std::string(const std::string&)>& problem) {
+  return {problem, "", ""};
+}
+
+CLI::Validator NotNegative() {
+  return Check([](const std::string& given) {
+    return !given.empty() && given.front() == '-' ? given + " is less than 0" : std::string();
+  });
+}
+
+CLI::Validator Between(double least, double most) {
+  return Check([=](const std::string& given) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(given, value) && value >= least && value <= most;
+    return good ? std::string() : given + " is not within " + Exact(least) + " to " + Exact(most);
+  });
+}
 
 CLI::Option* AddValue(CLI::App* app, const std::string& name, std::vector<std::string>* value,
                       const std::string& help) {
@@ -17,12 +39,27 @@ CLI::Option* AddValue(CLI::App* app, const std::string& name, std::vector<std::s
 
 CLI::Option* AddValue(CLI::App* app, const std::string& name, std::uint64_t* value,
                       const std::string& help) {  // CLI11 would take -1 for a large number
-  return app->add_option(name, *value, help)->check(CLI::NonNegativeNumber);
+  return app->add_option(name, *value, help)->check(NotNegative());
 }
 
 template <typename T>
 CLI::Option* AddValue(CLI::App* app, const std::string& name, T* value, const std::string& help) {
   return app->add_option(name, *value, help);
+}
+
+std::string Joined(const std::vector<std::string>& words, const char* separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+  return text;
+}
+
+// The default as --help shows it.
+template <typename T>
+void ShowDefault(const T& /*value*/, CLI::Option* option) {
+  option->capture_default_str();
+}
+void ShowDefault(const std::vector<std::string>& value, CLI::Option* option) {
+  option->default_str(Joined(value, " "));
 }
 
 template <typename T>
@@ -38,14 +75,43 @@ bool HasVerb(const CLI::App& app, const std::string& name) {
               .empty();
 }
 
+// "0.1.0", or "0.1.0 (commit 0123456789ab)" where the build knew it.
+std::string VersionText() {
+  const std::string commit = Commit();
+  return Version() + (commit.empty() ? "" : " (commit " + commit + ")");
+}
+
+// What others throw may have lines.
+std::string OneLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+// In the columns that options have.
+std::string Footer(const std::map<ExitCode, std::string>& ends) {
+  const std::string indent(29, ' ');
+  std::string text = "Exit codes:";
+  for (const auto& [code, when] : ends) {
+    text += "\n  " + std::to_string(static_cast<int>(code)) + indent.substr(2);
+    for (const char c : when) text += c == '\n' ? "\n " + indent : std::string(1, c);
+  }
+  return text;
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& program, const std::string& description)
-    : program_(std::make_unique<CLI::App>(description, program)), app_(program_.get()) {
-  app_->set_version_flag("--version", Version());
+    : program_(std::make_unique<CLI::App>(description, program)),
+      app_(program_.get()),
+      ends_(UsualEnds()) {
+  app_->set_version_flag("--version", VersionText());
+  app_->footer(Footer(ends_));
 }
 
-CommandLine::CommandLine(CLI::App* verb) : app_(verb) {}
+CommandLine::CommandLine(CLI::App* verb) : app_(verb), ends_(UsualEnds()) {
+  app_->footer(Footer(ends_));
+}
 
 CommandLine::~CommandLine() = default;
 
@@ -53,7 +119,8 @@ CLI::Option* CommandLine::Add(const std::string& name, Value value, const std::s
   return std::visit(
       [&](auto* variable) {
         CLI::Option* option = AddValue(app_, name, variable, help);
-        return IsEmpty(*variable) ? option : option->capture_default_str();
+        if (!IsEmpty(*variable)) ShowDefault(*variable, option);
+        return option;
       },
       value);
 }
@@ -68,17 +135,31 @@ void CommandLine::Required(const std::string& name, Value value, const std::stri
 
 void CommandLine::Within(const std::string& name, double* value, double least, double most,
                          const std::string& help) {
-  Add(name, value, help)->check(CLI::Range(least, most));
+  Add(name, value, help + ", " + Exact(least) + " to " + Exact(most))->check(Between(least, most));
 }
 
 void CommandLine::Flag(const std::string& name, bool* value, const std::string& help) {
   app_->add_flag(name, *value, help);
 }
 
-void CommandLine::ChoiceOf(const std::string& name, const std::vector<std::string>& names,
-                           const std::string& help,
+void CommandLine::ChoiceOf(const std::string& name, std::vector<std::string> names,
+                           const std::string& usual, const std::string& help,
                            const std::function<void(const std::string&)>& choose) {
-  app_->add_option_function<std::string>(name, choose, help)->check(CLI::IsMember(names));
+  std::sort(names.begin(), names.end(), NaturalLess);
+  const std::string all = Joined(names, ", ");
+  const auto check = [=](const std::string& given) {
+    const bool good = std::find(names.begin(), names.end(), given) != names.end();
+    return good ? std::string() : "\"" + given + "\" is none of " + all;
+  };
+  app_->add_option_function<std::string>(name, choose, help.empty() ? all : all + ": " + help)
+      ->check(Check(check))
+      ->type_name("NAME")
+      ->default_str(usual);
+}
+
+void CommandLine::Ends(ExitCode code, const std::string& when) {
+  ends_[code] = when;
+  app_->footer(Footer(ends_));
 }
 
 void CommandLine::Rest(std::vector<std::string>* words) {
@@ -95,25 +176,45 @@ CommandLine* CommandLine::Verb(const std::string& name, const std::string& descr
   return verbs_.back().get();
 }
 
+// The program, and the verb where one was named.
+std::string CommandLine::Called() const {
+  const std::vector<CLI::App*> verbs = app_->get_subcommands();
+  return app_->get_name() + (verbs.empty() ? "" : " " + verbs.front()->get_name());
+}
+
 int CommandLine::Run(int argc, char** argv, const std::function<int()>& run) {
+  const auto fail = [&](ExitCode code, const std::string& why) {
+    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), OneLine(why).c_str());
+    return static_cast<int>(code);
+  };
+  const auto misused = [&](const std::string& why) {
+    return fail(ExitCode::kUsage, why + "; see " + Called() + " --help");
+  };
   try {
     app_->parse(argc, argv);
     return run();
+  } catch (const CLI::Success& help) {
+    return app_->exit(help);
+  } catch (const CLI::RequiredError& e) {
+    const bool no_verb = !verbs_.empty() && app_->get_subcommands().empty();
+    return misused(no_verb ? "which verb?" : e.what());
   } catch (const CLI::ParseError& e) {
-    return app_->exit(e);
+    return misused(e.what());
+  } catch (const UsageError& e) {
+    return misused(e.what());
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), e.what());
-    return 1;
+    return fail(ExitCode::kFailed, e.what());
   }
 }
 
 int CommandLine::Run(int argc, char** argv) {
   const std::string verb = argc > 1 ? argv[1] : "";
-  if (!verb.empty() && verb[0] != '-' && !HasVerb(*app_, verb)) {
+  if (verb.empty() || (verb[0] != '-' && !HasVerb(*app_, verb))) {
     const char* const program = app_->get_name().c_str();
-    std::fprintf(stderr, "%s: there is no verb \"%s\"; see %s --help\n", program, verb.c_str(),
-                 program);
-    return 1;
+    const std::string what =
+        verb.empty() ? "which verb?" : "there is no verb \"" + OneLine(verb) + "\"";
+    std::fprintf(stderr, "%s: %s; see %s --help\n", program, what.c_str(), program);
+    return static_cast<int>(ExitCode::kUsage);
   }
   return Run(argc, argv, [this] { return chosen_(); });
 }

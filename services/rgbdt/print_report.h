@@ -4,18 +4,39 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
 #include "calib/present/report/comparison_text.h"
+#include "calib/present/report/said_once.h"
 #include "calib/present/report/summary.h"
+#include "calib/present/report/words.h"
 
 namespace rgbdt {
 
-/// How a verb that made a report ends: the table, the files (`wrote`, in words), and a line on
-/// stderr for each view that could not be read.
+/// Views that could not be read (`what` in other words), on stderr: what is wrong alike in many is
+/// said once.
+inline void PrintUnreadable(const std::vector<std::string>& unreadable,
+                            const std::string& what = "not read") {
+  for (const std::string& line : SaidOnce(OfViews(unreadable), what)) {
+    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
+  }
+}
+
+/// Throws InputError where not one of the session's views could be read.
+inline void RequireReadable(const Session& session, const std::vector<std::string>& unreadable) {
+  if (unreadable.empty() || unreadable.size() < session.views.size()) return;
+  throw InputError("nothing of " + session.Title() +
+                   " could be read: " + Joined(SaidOnce(OfViews(unreadable), "not read")));
+}
+
+/// What a verb says that made a report: the table and the files (`wrote`, in words). Of views that
+/// could not be read PrintUnreadable tells the reason.
 inline void PrintReport(const Report& report, const std::string& wrote,
                         const std::vector<std::string>& unreadable) {
-  std::fputs(Summary(report).FullReport().c_str(), stdout);
+  std::vector<std::string> told;
+  for (const Said& said : OfViews(unreadable)) told.push_back(said.text);
+  std::fputs(Summary(report).FullReport(told).c_str(), stdout);
   std::printf("%s report.json, report.html\n", wrote.c_str());
-  for (const std::string& line : unreadable) std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
 }
 
 /// In words and figures. False: a camera moved.

@@ -33,6 +33,13 @@ struct Place {
   std::filesystem::path out, truth;
 };
 
+SessionDetection Detect(const Session& session, const std::string& method) {
+  SessionDetection detection = DetectSession(session, method, PrintProgress);
+  RequireReadable(session, detection.unreadable);
+  std::fprintf(stderr, "solving ...\n");
+  return detection;
+}
+
 // Writes and prints one result. False: it is not one to use.
 bool Finish(const Place& place, const Session& session, const SessionDetection& detection,
             Report report) {
@@ -46,15 +53,17 @@ bool Finish(const Place& place, const Session& session, const SessionDetection& 
 
 bool CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
-  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
-  std::fprintf(stderr, "solving ...\n");
-  return Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
-                detection, Calibrate(session.rig, detection.views, flags.options));
+  const SessionDetection detection = Detect(session, flags.options.method);
+  const bool usable =
+      Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
+             detection, Calibrate(session.rig, detection.views, flags.options));
+  PrintUnreadable(detection.unreadable);
+  return usable;
 }
 
 Session OpenAll(const CalibrateFlags& flags) {
   if (flags.out.empty()) {
-    throw InputError("several sessions: say with --out where the result is to be written");
+    throw UsageError("several sessions: say with --out where the result is to be written");
   }
   std::vector<Session> sessions;
   for (const std::string& dir : flags.dirs) sessions.push_back(OpenSession(dir));
@@ -76,8 +85,7 @@ std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewD
 // One pose of each camera in all sessions. False, too, where the sessions contradict that.
 bool CalibrateTogether(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
-  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
-  std::fprintf(stderr, "solving ...\n");
+  const SessionDetection detection = Detect(session, flags.options.method);
   std::vector<CalibrationComparison> comparisons;
   if (flags.options.method == kAutoMethod) {
     CalibrateOptions brief = flags.options;
@@ -92,6 +100,7 @@ bool CalibrateTogether(const CalibrateFlags& flags) {
                   [](const CameraReport& camera) { return camera.contradiction.empty(); });
   const bool usable = Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)},
                              session, detection, report);
+  PrintUnreadable(detection.unreadable);
   PrintComparisons(comparisons);
   return usable && agree;
 }
@@ -99,8 +108,7 @@ bool CalibrateTogether(const CalibrateFlags& flags) {
 // Poses of its own in each session; what all have in common is told by all.
 bool CalibrateEach(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
-  const SessionDetection detection = DetectSession(session, flags.options.method, PrintProgress);
-  std::fprintf(stderr, "solving ...\n");
+  const SessionDetection detection = Detect(session, flags.options.method);
   const std::vector<SessionViews> views = Divided(session, detection.views);
   CalibratedSessions result = CalibrateSessions(session.rig, views, flags.options);
   const std::vector<Session> parts = PartsOf(session);
@@ -109,12 +117,11 @@ bool CalibrateEach(const CalibrateFlags& flags) {
     std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
     const Place place{flags.out / std::filesystem::path(views[s].name).relative_path(),
                       TruthPath(flags.truth, parts[s].parts[0].session.root)};
-    const bool used = Finish(place, parts[s], {views[s].detections, {}}, result.reports[s]);
+    const bool used =
+        Finish(place, parts[s], {views[s].detections, detection.unreadable}, result.reports[s]);
     usable = usable && used;
   }
-  for (const std::string& line : detection.unreadable) {
-    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
-  }
+  PrintUnreadable(detection.unreadable);
   PrintComparisons(result.comparisons);
   return usable;
 }
@@ -122,12 +129,12 @@ bool CalibrateEach(const CalibrateFlags& flags) {
 int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
   if (flags.mounts_moved && flags.dirs.size() < 2) {
-    throw InputError("--mounts-moved is for several sessions; name two or more");
+    throw UsageError("--mounts-moved is for several sessions; name two or more");
   }
   const bool usable = flags.dirs.size() == 1 ? CalibrateOne(flags)
                       : flags.mounts_moved   ? CalibrateEach(flags)
                                              : CalibrateTogether(flags);
-  return usable ? 0 : 1;
+  return EndsWith(usable);
 }
 
 }  // namespace
@@ -139,8 +146,7 @@ void AddCalibrate(CommandLine* program) {
       "Finds each camera's pose relative to the LIDAR from a session directory.\n"
       "Writes calibration.textproto, report.json and report.html. Several sessions of one rig are\n"
       "solved together: the lenses and the LIDAR's own errors are the same in all of them, the\n"
-      "poses, too, unless --mounts-moved; whether they are is said. Exit code 1: a camera did not\n"
-      "converge, a view could not be read, or sessions contradict each other.\n"
+      "poses, too, unless --mounts-moved; whether they are is said.\n"
       "Examples: rgbdt calibrate out/demo/session --out out/again\n"
       "          rgbdt calibrate monday friday --mounts-moved --out out/week",
       [flags] {
@@ -149,10 +155,14 @@ void AddCalibrate(CommandLine* program) {
           flags->options.first_guess.range_offset_sigma_m = kRangeOffsetSigmaM;
         return RunCalibrate(*flags);
       });
+  verb->Ends(
+      ExitCode::kFailed,
+      "failed, or not to be relied on: a camera did not converge, a view could not be read,\n"
+      "or sessions contradict each other");
   verb->Required("DIR", &flags->dirs, "session directories (rig.textproto, views/)");
   verb->Option("--out", &flags->out,
                "where to write; default: DIR. Of several sessions it must be given");
-  verb->Option("--method", &flags->options.method, kMethodHelp);
+  verb->Choice("--method", &flags->options.method, kMethodNames, kMethodHelp);
   verb->Flag("--mounts-moved", &flags->mounts_moved,
              "auto: each session has poses of its own, written to OUT/SESSION, since a camera was\n"
              "touched in between; how far each one moved is said with its uncertainty");

@@ -66,7 +66,7 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
 }
 
 int RunCompare(const CompareFlags& flags) {
-  if (flags.calibrations.size() < 2) throw InputError("name two calibrations, or more");
+  if (flags.calibrations.size() < 2) throw UsageError("name two calibrations, or more");
   const std::optional<Rig> rig = RigOf(flags);
   const Named first = ReadNamed(flags.calibrations[0]);
   std::vector<CalibrationComparison> comparisons;
@@ -75,7 +75,7 @@ int RunCompare(const CompareFlags& flags) {
   }
   const bool same = PrintComparisons(comparisons);
   if (!rig) std::printf("in pixels: name the rig with --rig FILE\n");
-  return same ? 0 : 1;
+  return EndsWith(same);
 }
 
 }  // namespace
@@ -85,10 +85,11 @@ void AddCompare(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "compare",
       "Compares calibrations of one rig with the first one named: in degrees, millimetres and\n"
-      "pixels, against what both state as their uncertainty. Exit code 1: a camera moved by more\n"
-      "than chance does once in a hundred.\n"
+      "pixels, against what both state as their uncertainty.\n"
       "Example: rgbdt compare out/monday out/friday",
       [flags] { return RunCompare(*flags); });
+  verb->Ends(ExitCode::kFailed,
+             "failed, or a camera moved by more than chance does once in a hundred");
   verb->Required("CALIBRATION", &flags->calibrations,
                  "two or more: session directories, or calibration.textproto files");
   verb->Option("--rig", &flags->rig,

@@ -71,7 +71,7 @@ int RunDoctor(const DoctorFlags& flags) {
   Findings findings = CheckMachine(roots, flags.url, interfaces);
   if (!flags.rig.empty()) Append(CheckRig(roots, flags.rig, interfaces), &findings);
   std::fputs(FindingsText(findings).c_str(), stdout);
-  return HasProblem(findings) ? 1 : 0;
+  return EndsWith(!HasProblem(findings));
 }
 
 }  // namespace
@@ -82,9 +82,9 @@ void AddDoctor(CommandLine* program) {
       program->Verb("doctor",
                     "Looks for what would go wrong with the live system, on this machine\n"
                     "and with a rig's devices, and names the command that mends it.\n"
-                    "Exit code 1 where there is a problem.\n"
                     "Example: rgbdt doctor --rig rig.textproto",
                     [flags] { return RunDoctor(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, or there is a problem");
   verb->Option("--rig", &flags->rig, "rig.textproto; default: only the machine is looked at");
   verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
 }

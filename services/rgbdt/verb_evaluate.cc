@@ -68,6 +68,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   const bool by_paper = calibration.method == kPaperMethod;
   const SessionDetection detection =
       DetectSession(session, by_paper ? kPaperMethod : kAutoMethod, PrintProgress);
+  RequireReadable(session, detection.unreadable);
   Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(session.root / "report.json", &report);
   const auto truth = TruthPath(flags.truth, session.root);
@@ -75,7 +76,8 @@ int RunEvaluate(const EvaluateFlags& flags) {
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   WriteReportFiles(out, {session, detection.views, reports});
   PrintReport(report, "wrote to " + out.string() + ":", detection.unreadable);
-  return detection.unreadable.empty() ? 0 : 1;
+  PrintUnreadable(detection.unreadable);
+  return EndsWith(detection.unreadable.empty());
 }
 
 }  // namespace
@@ -88,6 +90,7 @@ void AddEvaluate(CommandLine* program) {
       "simulated session. Writes report.json and report.html.\n"
       "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto",
       [flags] { return RunEvaluate(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, or a view could not be read");
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");

@@ -4,7 +4,6 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/exports.h"
 #include "calib/files/schema/rig_file.h"
-#include "calib/model/errors.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -20,7 +19,7 @@ FrameNames FramesOf(const ExportFlags& flags) {
   for (const std::string& text : flags.camera_frames) {
     const std::size_t at = text.find('=');
     if (at == std::string::npos) {
-      throw InputError("--camera-frame is \"" + text +
+      throw UsageError("--camera-frame is \"" + text +
                        "\"; expected CAMERA=FRAME, as in rgb=camera_optical_frame");
     }
     frames.cameras[text.substr(0, at)] = text.substr(at + 1);
@@ -37,7 +36,7 @@ int RunExport(const ExportFlags& flags) {
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {
     std::printf("wrote %s: %s\n", file.path.c_str(), file.purpose.c_str());
   }
-  return 0;
+  return EndsWith(true);
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ int RunFuse(const FuseFlags& flags) {
               100.0 * static_cast<double>(coloured) / static_cast<double>(fused.size()));
   if (flags.png) DrawPictures(fused, "view " + view, out);
   std::printf(" to %s\n", out.c_str());
-  return 0;
+  return EndsWith(true);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "calib/model/errors.h"
 #include "calib/present/report/intrinsics_html.h"
 #include "calib/present/report/intrinsics_text.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -85,6 +86,7 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
   const Session session = OpenSession(flags.dir, LensNeed::kMayBeUnknown);
   const SessionCorners corners =
       FindSessionCorners(session, CamerasFor(flags, session.rig), PrintProgress);
+  RequireReadable(session, corners.unreadable);
   Rig rig = session.rig;
   std::vector<CameraIntrinsics> solved;
   bool good = corners.unreadable.empty();
@@ -104,10 +106,10 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
       }
     }
   }
-  for (const std::string& line : corners.unreadable) std::printf("not read: %s\n", line.c_str());
+  PrintUnreadable(corners.unreadable);
   if (solved.empty()) throw InputError(flags.dir + " holds no image of any camera of its rig");
   WriteIntrinsics(flags, session, rig, solved);
-  return good ? 0 : 1;
+  return EndsWith(good);
 }
 
 }  // namespace
@@ -120,13 +122,14 @@ void AddIntrinsics(CommandLine* program) {
       "needed, and the rig file may lack the lenses. 20 views or more, tilted by 30 to 45 "
       "degrees,\n"
       "in every part of the image. Writes the rig with the lenses, and intrinsics.html beside it.\n"
-      "Exit code 1: a camera did not converge, or a view could not be read.\n"
       "Example: rgbdt intrinsics out/lenses --camera rgb --model pinhole5",
       [flags] { return RunIntrinsics(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, a camera did not converge, or a view could not be read");
   verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
   verb->Option("--camera", &flags->cameras, "only this one; may be given again");
   verb->Choice("--model", &flags->choice, kChoices,
-               "pinhole5, pinhole8 or fisheye; default: the rig file's, else pinhole5");
+               "with 5 or 8 numbers of distortion, or OpenCV's fisheye; default: the rig file's,\n"
+               "else pinhole5");
   verb->Option("--out", &flags->out,
                "the rig file to write; default: DIR/rig.intrinsics.textproto, so that the rig\n"
                "file in use is not replaced");

@@ -70,7 +70,7 @@ int RunMap(const MapFlags& flags) {
                 static_cast<long long>(node.map().evicted()));
   }
   std::printf("next: rgbdt terrain %s\n", flags.out.c_str());
-  return 0;
+  return EndsWith(true);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ int RunReplay(const ReplayFlags& flags) {
   const std::optional<Report>& report = replay.solver().report();
   if (!report && replay.took_calibration()) {
     PrintFused(fuser->GetStatus());
-    return 0;
+    return EndsWith(true);
   }
   if (!report) {
     throw InputError(
@@ -79,7 +79,7 @@ int RunReplay(const ReplayFlags& flags) {
   std::fputs(Summary(*report).FullReport().c_str(), stdout);
   PrintFused(fuser->GetStatus());
   std::printf("%s report.json\n", written.c_str());
-  return Summary(*report).converged() ? 0 : 1;
+  return EndsWith(Summary(*report).converged());
 }
 
 }  // namespace
@@ -93,9 +93,10 @@ void AddReplay(CommandLine* program) {
       "by the CALIBRATION in it.\n"
       "Example: rgbdt replay out/demo/session.lcm --out out/replay",
       [flags] { return RunReplay(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, or a camera did not converge");
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");
-  verb->Option("--method", &flags->method, kMethodHelp);
+  verb->Choice("--method", &flags->method, kMethodNames, kMethodHelp);
 }
 
 }  // namespace rgbdt

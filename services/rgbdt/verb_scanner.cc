@@ -7,6 +7,7 @@
 #include "calib/present/pictures/scanner_picture.h"
 #include "calib/scan_assembly/scanner_geometry.h"
 #include "services/replay/scanner_sweeps.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -48,9 +49,7 @@ void WriteScanner(const ScannerFlags& flags, const ScannerSweeps& input,
 
 int RunScanner(const ScannerFlags& flags) {
   const ScannerSweeps input = ReadScannerSweeps(flags.input);
-  for (const std::string& problem : input.problems) {
-    std::fprintf(stderr, "not used: %s\n", problem.c_str());
-  }
+  PrintUnreadable(input.problems, "not used");
   const TurnedScanner& before = *input.rig.lidar.turned_scanner;
   ScannerGeometryOptions options;
   options.range_sigma_m = input.rig.lidar.range_sigma_m;
@@ -59,11 +58,11 @@ int RunScanner(const ScannerFlags& flags) {
               flags.input.c_str(), found.BriefReport().c_str());
   if (!found.converged) {
     std::printf("no rig file was written\n");
-    return 1;
+    return EndsWith(false);
   }
   PrintTransform(before, found.scanner);
   WriteScanner(flags, input, found);
-  return 0;
+  return EndsWith(true);
 }
 
 }  // namespace
@@ -78,9 +77,9 @@ void AddScanner(CommandLine* program) {
       "sweep by 360 degrees is enough, with a scan line that reaches over the vertical. Reports\n"
       "what the sweep cannot determine. Writes the rig with the geometry, and scanner.png beside "
       "it.\n"
-      "Exit code 1: not converged, nothing was written.\n"
       "Example: rgbdt scanner out/room",
       [flags] { return RunScanner(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, or not converged; nothing was written");
   verb->Required("DIR", &flags->input,
                  "session directory (rig.textproto, views/ with organised clouds made with it; "
                  "images are not needed), or a log with RIG, LINE_SCAN and ENCODER");

@@ -27,7 +27,7 @@ struct SimulateFlags {
 // Of the turned scanner: how far it turns, and how wrong the rig file is about where it sits.
 void SetScanner(const SimulateFlags& flags, simulate::Options* options) {
   if ((flags.full_turn || flags.scanner_error) && flags.rings != 0) {
-    throw InputError(
+    throw UsageError(
         "--full-turn and --scanner-error are of the turned scanner; leave --lidar out");
   }
   if (flags.full_turn) options->scanner = simulate::FullTurnScanner();
@@ -49,7 +49,7 @@ Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Ut
 
 int RunSimulate(const SimulateFlags& flags) {
   if (flags.views < 1 || flags.views > 9999) {
-    throw InputError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
+    throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
@@ -84,7 +84,7 @@ int RunSimulate(const SimulateFlags& flags) {
   if (!off_by.empty()) std::printf("drawn, and noted in truth.textproto:\n%s", off_by.c_str());
   std::printf("wrote %s: rig.textproto, %d views, truth.textproto\nnext: rgbdt calibrate %s\n",
               flags.dir.c_str(), flags.views, flags.dir.c_str());
-  return 0;
+  return EndsWith(true);
 }
 
 }  // namespace
@@ -99,9 +99,9 @@ void AddSimulate(CommandLine* program) {
   verb->Required("DIR", &flags->dir, "session directory to write");
   verb->Option("--views", &flags->views, "number of views");
   verb->Option("--seed", &flags->options.seed, "of all random numbers");
-  verb->Choice("--scene", &flags->options.scene, simulate::kSceneNames, "outdoor, indoor or night");
+  verb->Choice("--scene", &flags->options.scene, simulate::kSceneNames, "");
   verb->Choice("--lidar", &flags->rings, simulate::kLidarRings,
-               "turned, vlp16, 32, 64 or 128: scanner or rings");
+               "a turned scanner, or a spinning LIDAR by its rings");
   verb->Flag("--full-turn", &flags->full_turn,
              "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
   verb->Flag("--scanner-error", &flags->scanner_error,

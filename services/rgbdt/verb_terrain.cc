@@ -65,7 +65,7 @@ int RunTerrain(TerrainFlags flags) {
   PrintCells(terrain.grid, cloud.frame);
   PrintSites(terrain.sites);
   std::printf("wrote terrain.json, terrain.png to %s; look at terrain.png\n", flags.out.c_str());
-  return 0;
+  return EndsWith(true);
 }
 
 void AddLimits(TerrainFlags* flags, CommandLine* verb) {

@@ -8,21 +8,29 @@ mkdir "$scratch/kept"
 accepts "a session of one view" "$bin/rgbdt" simulate "$scratch/good" --views 1
 good=$scratch/good
 
-refuses "no verb" "$bin/rgbdt"
+misuses "no verb" "$bin/rgbdt"
 says=("frobnicate")
-refuses "an unknown verb" "$bin/rgbdt" frobnicate
+misuses "an unknown verb" "$bin/rgbdt" frobnicate
 says=("--colour")
-refuses "an unknown flag" "$bin/rgbdt" calibrate "$good" --colour
+misuses "an unknown flag" "$bin/rgbdt" calibrate "$good" --colour
+says=("verb" "--help")
+misuses "flags only" "$bin/rgbdt" --frob
+says=("--seed" "-1" "less than 0")
+misuses "a seed below zero" "$bin/rgbdt" simulate "$scratch/new" --seed -1
+says=("--out")
+misuses "two sessions and no folder" "$bin/rgbdt" calibrate "$good" "$good"
+says=("two")
+misuses "one calibration" "$bin/rgbdt" compare "$good"
 says=("DIR")
-refuses "no directory" "$bin/rgbdt" calibrate
+misuses "no directory" "$bin/rgbdt" calibrate
 says=("magic" "paper")
-refuses "an unknown method" "$bin/rgbdt" calibrate "$good" --method magic --out "$scratch/kept"
+misuses "an unknown method" "$bin/rgbdt" calibrate "$good" --method magic --out "$scratch/kept"
 says=("--views" "0")
-refuses "no views at all" "$bin/rgbdt" simulate "$scratch/new" --views 0
+misuses "no views at all" "$bin/rgbdt" simulate "$scratch/new" --views 0
 says=("--scene" "moon")
-refuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
+misuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
 says=("--lidar" "moon")
-refuses "an unknown LIDAR" "$bin/rgbdt" simulate "$scratch/new" --lidar moon
+misuses "an unknown LIDAR" "$bin/rgbdt" simulate "$scratch/new" --lidar moon
 says=("front" "rgb" "thermal")
 refuses "picks for a camera that is not there" "$bin/rgbdt" simulate "$scratch/new" --picked front
 mkdir "$scratch/out"
@@ -46,32 +54,32 @@ refuses "a file system that takes no files" "$bin/rgbdt" simulate /proc/rgbdt --
 
 for process in assembler detector solver fuser simulator viewer; do
   says=("--colour")
-  refuses "an unknown flag of rgbdt-$process" "$bin/rgbdt-$process" --colour
+  misuses "an unknown flag of rgbdt-$process" "$bin/rgbdt-$process" --colour
   says=("nonsense://")
   refuses "a bus that is none (rgbdt-$process)" "$bin/rgbdt-$process" --lcm-url nonsense://
 done
 says=("--speed")
-refuses "standing still" "$bin/rgbdt-simulator" --speed 0
+misuses "standing still" "$bin/rgbdt-simulator" --speed 0
 
 says=("--listen" "nonsense" "0.0.0.0:8080")
-refuses "no address" "$bin/rgbdt-viewer" --listen nonsense
+misuses "no address" "$bin/rgbdt-viewer" --listen nonsense
 says=("1.2.3.4.5")
 refuses "another that is none" "$bin/rgbdt-viewer" --listen 1.2.3.4.5:0
 says=("--run" "which command")
-refuses "nothing to run" "$bin/rgbdt-viewer" --run
+misuses "nothing to run" "$bin/rgbdt-viewer" --run
 says=("unexpected" "out/session" "--help")
-refuses "a session without --session" "$bin/rgbdt-viewer" out/session
+misuses "a session without --session" "$bin/rgbdt-viewer" out/session
 says=("$scratch/nowhere" "rig.textproto")
 refuses "a session that is not there" "$bin/rgbdt-viewer" --listen 127.0.0.1:0 --session "$scratch/nowhere"
 says=("--session" "--lcm-url")
-refuses "files and a bus" "$bin/rgbdt-viewer" --session "$good" --lcm-url udpm://
+misuses "files and a bus" "$bin/rgbdt-viewer" --session "$good" --lcm-url udpm://
 
 script=$scratch/session.textproto
 run=("$bin/rgbdt-session" "$script" --rig "$good/rig.textproto" --out "$scratch/kept/session")
 says=("--rig")
-refuses "neither script nor rig" "$bin/rgbdt-session"
+misuses "neither script nor rig" "$bin/rgbdt-session"
 says=("--by-hand" "script")
-refuses "carried by hand without a script" "$bin/rgbdt-session" --by-hand --rig "$good/rig.textproto"
+misuses "carried by hand without a script" "$bin/rgbdt-session" --by-hand --rig "$good/rig.textproto"
 says=("session.textproto")
 refuses "a missing script" "${run[@]}"
 printf 'step { next_pose {} }\nstep { frobnicate {} }\n' >"$script"

@@ -13,8 +13,8 @@ complain() {
   failures=$((failures + 1))
 }
 
-# refuses "what" COMMAND...: fails, by itself and not by a signal, with a line that holds each of
-# the words given by `says` before; nothing in $scratch/kept changes.
+# refuses "what" COMMAND...: fails with exit code 1 or 2, not by a signal, with a line that holds
+# each of the words given by `says` before; nothing in $scratch/kept changes.
 says=()
 refuses() {
   local what=$1 code=0 word before
@@ -22,7 +22,7 @@ refuses() {
   before=$(fingerprint)
   timeout 120 "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
   [ "$code" -ne 0 ] || complain "$what: exit code 0"
-  [ "$code" -lt 124 ] || complain "$what: exit code $code, a signal or a time-out"
+  [ "$code" -le 2 ] || complain "$what: exit code $code: another reason, a signal or a time-out"
   for word in "${says[@]}"; do
     grep -qiF -- "$word" "$scratch/output" || complain "$what: no word of '$word'"
   done
@@ -31,6 +31,15 @@ refuses() {
   fi
   [ "$(fingerprint)" = "$before" ] || complain "$what: existing outputs changed"
   says=()
+  refused_with=$code
+}
+
+# The same of a command line that makes no sense: exit code 2, and one line that leads to --help.
+misuses() {
+  refuses "$@"
+  [ "$refused_with" -eq 2 ] || complain "$1: exit code $refused_with"
+  [ "$(wc -l <"$scratch/output")" -eq 1 ] || complain "$1: not one line"
+  grep -qF -e '; see ' "$scratch/output" || complain "$1: no way to --help"
 }
 
 accepts() {

@@ -51,7 +51,7 @@ grep -q -- '--frame-id vlp16 --child-frame-id rgb_optical_frame' "$scratch"/plai
   complain "names that were not given"
 
 says=("--camera-frame" "CAMERA=FRAME")
-refuses "a frame of no camera" "$bin/rgbdt" export "$session" --camera-frame front --out "$scratch/kept"
+misuses "a frame of no camera" "$bin/rgbdt" export "$session" --camera-frame front --out "$scratch/kept"
 says=("front" "rgb" "thermal")
 refuses "a camera that is not there" "$bin/rgbdt" export "$session" --camera-frame front=x --out "$scratch/kept"
 says=("a b" "name of a frame")

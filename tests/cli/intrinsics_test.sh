@@ -54,7 +54,7 @@ refuses "a model that is none" "$bin/rgbdt" intrinsics "$good" --model pinhole9
 says=("nowhere")
 refuses "a session that is none" "$bin/rgbdt" intrinsics "$scratch/nowhere"
 head -c 1000 "$good/views/0001/rgb.png" >"$bare/views/0002/rgb.png"
-says=("not read: view 0002" "rgb.png")
+says=("view 0002 not read" "rgb.png")
 refuses "a truncated image" "$bin/rgbdt" intrinsics "$bare" --out "$scratch/two/rig.textproto"
 
 verdict

@@ -17,7 +17,7 @@ complain() {
 
 cmake --install "$build" --prefix "$prefix" >"$scratch/log"
 version=$("$prefix/bin/rgbdt" --version)
-[[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+$ ]] || complain "rgbdt --version says '$version'"
+[[ $version =~ ^[0-9]+\.[0-9]+\.[0-9]+(\ \(commit\ [0-9a-f]+\))?$ ]] || complain "rgbdt --version says '$version'"
 
 for program in "$prefix"/bin/*; do
   name=${program##*/}

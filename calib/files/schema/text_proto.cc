@@ -25,6 +25,25 @@ std::size_t BeginOfLine(const std::string& text, int line) {
   return at;
 }
 
+std::string Quoted(const std::string& message, std::size_t at) {
+  const std::size_t begin = message.find('"', at);
+  if (begin == std::string::npos) return {};
+  return message.substr(begin + 1, message.find('"', begin + 1) - begin - 1);
+}
+
+// Of Protobuf's words about a key that its message does not have: with the keys that it has.
+std::string InWords(const std::string& message) {
+  const std::size_t unknown = message.find(" has no field named ");
+  if (unknown == std::string::npos) return message;
+  std::string words = "unknown key \"" + Quoted(message, unknown) + "\"";
+  const auto* type =
+      google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(Quoted(message, 0));
+  for (int i = 0; type != nullptr && i < type->field_count(); ++i) {
+    words += (i == 0 ? "; expected one of: " : ", ") + type->field(i)->name();
+  }
+  return words;
+}
+
 // Keeps the first error; later ones only follow from it.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
@@ -33,7 +52,7 @@ class FirstError : public google::protobuf::io::ErrorCollector {
   void AddError(int line, google::protobuf::io::ColumnNumber column,
                 const std::string& message) override {
     if (!text.empty()) return;
-    text = (line < 0 ? " " : Position(line, column, message)) + message;  // -1: of no line
+    text = (line < 0 ? " " : Position(line, column, message)) + InWords(message);  // -1: of no line
   }
   void AddWarning(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
 

@@ -9,6 +9,7 @@
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/method.h"
+#include "calib/present/report/said_once.h"
 #include "calib/present/report/verdict.h"
 
 namespace rgbdt {
@@ -70,18 +71,24 @@ std::string Alarm(const CameraReport& camera, const std::optional<NextView>& nex
                      verdict.reasons.front());
 }
 
-// What a camera's column has no room for.
-std::string Warnings(const CameraReport& camera) {
-  const std::string& name = camera.calibration.camera;
+// What the cameras' columns have no room for.
+std::string Warnings(const Report& report, const std::vector<std::string>& told) {
+  std::vector<Said> statuses, rejected, warnings;
+  for (const CameraReport& camera : report.cameras) {
+    const std::string& name = camera.calibration.camera;
+    if (camera.calibration.status != SolveStatus::kConverged) {
+      statuses.push_back({name, "", camera.calibration.StatusText()});
+    }
+    for (const RejectedView& view : camera.rejected) {
+      if (std::find(told.begin(), told.end(), view.why) != told.end()) continue;
+      rejected.push_back({name, view.view, view.why});
+    }
+    for (const std::string& warning : camera.warnings) warnings.push_back({name, "", warning});
+  }
   std::string text;
-  if (camera.calibration.status != SolveStatus::kConverged) {
-    text += fmt::format("{}: {}\n", name, camera.calibration.StatusText());
-  }
-  for (const RejectedView& view : camera.rejected) {
-    text += fmt::format("{}: view {} rejected: {}\n", name, view.view, view.why);
-  }
-  for (const std::string& warning : camera.warnings) {
-    text += fmt::format("{}: {}\n", name, warning);
+  for (const auto& [said, what] :
+       {std::pair{statuses, ""}, {rejected, "rejected"}, {warnings, ""}}) {
+    for (const std::string& line : SaidOnce(said, what)) text += line + "\n";
   }
   return text;
 }
@@ -109,7 +116,7 @@ std::string Summary::BriefReport() const {
   return text;
 }
 
-std::string Summary::FullReport() const {
+std::string Summary::FullReport(const std::vector<std::string>& told) const {
   std::string text;
   const auto row = [&](const std::string& label,
                        const std::function<std::string(const CameraReport&)>& cell) {
@@ -178,7 +185,7 @@ std::string Summary::FullReport() const {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
   for (const CameraReport& camera : report_.cameras) text += Alarm(camera, report_.next_view);
-  for (const CameraReport& camera : report_.cameras) text += Warnings(camera);
+  text += Warnings(report_, told);
   if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
   return text;
 }

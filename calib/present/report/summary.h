@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "calib/model/calibration.h"
 
@@ -17,8 +18,8 @@ class Summary {
   /// method the mean distance transform.
   std::string BriefReport() const;
   /// A table, units in the first column, cameras side by side; what has no room in it, in lines
-  /// below.
-  std::string FullReport() const;
+  /// below. Why a view was rejected is left out where it is one of `told`.
+  std::string FullReport(const std::vector<std::string>& told = {}) const;
 
  private:
   const Report& report_;

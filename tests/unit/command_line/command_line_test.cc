@@ -1,5 +1,7 @@
 #include "services/command_line/command_line.h"
 
+#include <algorithm>
+
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -27,6 +29,8 @@ struct Flags {
   std::vector<std::string> cameras;
   bool png = false;
   Fruit fruit = Fruit::kApple;
+  std::string method = "auto";
+  std::vector<std::string> dishes = {"pie", "soup"};
 };
 
 int Parse(Flags* flags, const std::vector<std::string>& words) {
@@ -38,15 +42,25 @@ int Parse(Flags* flags, const std::vector<std::string>& words) {
   line.Option("--seed", &flags->seed, "of everything random");
   line.Option("--camera", &flags->cameras, "may be given again");
   line.Flag("--png", &flags->png, "also draw");
-  line.Choice("--fruit", &flags->fruit, kFruits, "apple or pear");
+  line.Choice("--fruit", &flags->fruit, kFruits, "what to eat");
+  line.Choice("--method", &flags->method, {"auto", "10", "9"}, "");
+  line.Option("--dish", &flags->dishes, "what is cooked");
   return RunWith(&line, words, [] { return 7; });
+}
+
+std::string Help() {
+  Flags flags;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(Parse(&flags, {"--help"}), 0);
+  return testing::internal::GetCapturedStdout();
 }
 
 TEST(CommandLine, ReadsWhatIsGivenAndKeepsTheRest) {
   Flags flags;
-  EXPECT_EQ(Parse(&flags, {"here", "--speed", "0.5", "--camera", "rgb", "--camera", "thermal",
-                           "--png", "--fruit", "pear", "--seed", "18446744073709551615"}),
-            7);
+  EXPECT_EQ(
+      Parse(&flags, {"here", "--speed", "0.5", "--camera", "rgb", "--camera", "thermal", "--png",
+                     "--fruit", "pear", "--seed", "18446744073709551615", "--method", "10"}),
+      7);
   EXPECT_EQ(flags.dir, "here");
   EXPECT_EQ(flags.out, "out/here");
   EXPECT_EQ(flags.speed, 0.5);
@@ -54,32 +68,68 @@ TEST(CommandLine, ReadsWhatIsGivenAndKeepsTheRest) {
   EXPECT_THAT(flags.cameras, ElementsAre("rgb", "thermal"));
   EXPECT_TRUE(flags.png);
   EXPECT_EQ(flags.fruit, Fruit::kPear);
+  EXPECT_EQ(flags.method, "10");
 }
 
-TEST(CommandLine, RefusesWhatMakesNoSense) {
+// What stderr says, in one line, of words that make no sense.
+std::string Refusal(const std::vector<std::string>& words) {
   Flags flags;
-  for (const std::vector<std::string>& words :
-       std::vector<std::vector<std::string>>{{},
-                                             {"here", "there"},
-                                             {"here", "--colour"},
-                                             {"here", "--speed", "11"},
-                                             {"here", "--speed", "fast"},
-                                             {"here", "--seed", "-1"},
-                                             {"here", "--fruit", "moon"}}) {
-    EXPECT_NE(Parse(&flags, words), 0) << testing::PrintToString(words);
-    EXPECT_NE(Parse(&flags, words), 7) << testing::PrintToString(words);
-  }
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(Parse(&flags, words), 2) << testing::PrintToString(words);
+  std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  EXPECT_THAT(text, testing::StartsWith("program: "));
+  EXPECT_THAT(text, testing::EndsWith("; see program --help\n"));
+  return text;
+}
+
+TEST(CommandLine, RefusesWhatMakesNoSenseInALine) {
+  EXPECT_THAT(Refusal({}), HasSubstr("DIR"));
+  EXPECT_THAT(Refusal({"here", "there"}), HasSubstr("there"));
+  EXPECT_THAT(Refusal({"here", "--colour"}), HasSubstr("--colour"));
+  EXPECT_THAT(Refusal({"here", "--speed", "11"}), HasSubstr("--speed: 11 is not within 0.1 to 10"));
+  EXPECT_THAT(Refusal({"here", "--speed", "fast"}), HasSubstr("--speed: fast is not within"));
+  EXPECT_THAT(Refusal({"here", "--seed", "-1"}), HasSubstr("--seed: -1 is less than 0"));
+  EXPECT_THAT(Refusal({"here", "--fruit", "moon"}),
+              HasSubstr("--fruit: \"moon\" is none of apple, pear"));
+  EXPECT_THAT(Refusal({"here", "--method", "magic"}),
+              HasSubstr("--method: \"magic\" is none of 9, 10, auto"));
 }
 
 TEST(CommandLine, HelpShowsDefaultsThatAreNotEmpty) {
-  Flags flags;
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(Parse(&flags, {"--help"}), 0);
-  const std::string help = testing::internal::GetCapturedStdout();
+  const std::string help = Help();
   EXPECT_THAT(help, HasSubstr("out/here"));
   EXPECT_THAT(help, HasSubstr("--version"));
-  EXPECT_THAT(help, HasSubstr("apple,pear"));
+  EXPECT_THAT(help, HasSubstr("--seed UINT=1  "));
+  EXPECT_THAT(help, HasSubstr("--dish TEXT=pie soup ...  "));
+  EXPECT_THAT(help, HasSubstr("of it, 0.1 to 10\n"));
   EXPECT_THAT(help, Not(HasSubstr("--lcm-url TEXT=")));
+}
+
+TEST(CommandLine, HelpHasTheNamesOfAChoiceAndNothingElseOfIt) {
+  const std::string help = Help();
+  EXPECT_THAT(help, HasSubstr("--fruit NAME=apple          apple, pear: what to eat\n"));
+  EXPECT_THAT(help, HasSubstr("--method NAME=auto          9, 10, auto\n"));
+  EXPECT_THAT(help, Not(testing::ContainsRegex("[{}]|->|NONNEG|FLOAT in")));
+}
+
+TEST(CommandLine, HelpSaysHowItEnds) {
+  EXPECT_THAT(Help(),
+              testing::ContainsRegex("\nExit codes:\n  0 +done\n  1 +failed.*\n  2 +wrong"));
+  CommandLine line("program", "Does it.");
+  line.Ends(ExitCode::kFailed, "failed, or\nrotten");
+  testing::internal::CaptureStdout();
+  RunWith(&line, {"--help"}, [] { return 7; });
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::ContainsRegex("\n  1 {27}failed, or\n {30}rotten\n  2 +wrong"));
+}
+
+TEST(CommandLine, TheVersionMayHaveACommitAndNothingElse) {
+  Flags flags;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(Parse(&flags, {"--version"}), 0);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+( \\(commit [0-9a-f]{12,}\\))?\n"));
 }
 
 TEST(CommandLine, TellsWhatIsThrown) {
@@ -87,6 +137,13 @@ TEST(CommandLine, TellsWhatIsThrown) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(RunWith(&line, {}, []() -> int { throw std::runtime_error("no such rig"); }), 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: no such rig\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {}, []() -> int { throw std::runtime_error("two\nlines\n"); }), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: two lines\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {}, []() -> int { throw UsageError("--a goes with --b"); }), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "program: --a goes with --b; see program --help\n");
 }
 
 TEST(CommandLine, RunsTheVerbThatIsNamed) {
@@ -97,9 +154,15 @@ TEST(CommandLine, RunsTheVerbThatIsNamed) {
       ->Required("DIR", &dir, "a folder");
   EXPECT_EQ(RunWith(&line, {"work", "here"}, nullptr), 5);
   testing::internal::CaptureStderr();
-  EXPECT_EQ(RunWith(&line, {"play"}, nullptr), 1);
+  EXPECT_EQ(RunWith(&line, {"play"}, nullptr), 2);
   EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("there is no verb \"play\""));
-  EXPECT_NE(RunWith(&line, {}, nullptr), 0);
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {}, nullptr), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: which verb?; see program --help\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {"work"}, nullptr), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "program: DIR is required; see program work --help\n");
 }
 
 TEST(CommandLine, AVectorWithoutDashesTakesAllWords) {

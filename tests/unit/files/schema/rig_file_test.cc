@@ -206,7 +206,8 @@ TEST(RigFile, ExactRangesMayBeStated) {
 TEST(RigFile, AnUnknownKeyIsNamedWithFileLineAndColumn) {
   const std::string error = ErrorOfRig("height: 480", "hieght: 480");
   EXPECT_THAT(error, StartsWith("rig.textproto:7:3: "));
-  EXPECT_THAT(error, HasSubstr("hieght"));
+  EXPECT_THAT(error,
+              HasSubstr("unknown key \"hieght\"; expected one of: name, kind, width, height, "));
   EXPECT_THAT(ErrorOfRig("COLOR", "COLOUR"), StartsWith("rig.textproto:5:"));
   EXPECT_THAT(ErrorOfRig("width: 640", "width: 640 px"), StartsWith("rig.textproto:6:"));
 }

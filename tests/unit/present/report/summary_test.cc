@@ -108,6 +108,21 @@ TEST(Summary, IsConvergedWhereAllCamerasAre) {
   EXPECT_FALSE(Summary(report).converged());
 }
 
+TEST(Summary, SaysOnceWhyViewsWereRejected) {
+  Report report = MakeReport();
+  for (CameraReport& camera : report.cameras) {
+    camera.rejected = {{"0001", "no board in the cloud"},
+                       {"0002", "no board in the cloud"},
+                       {"0003", "cannot read 0003/rgb.png"}};
+    camera.warnings = {"rings scatter"};
+  }
+  EXPECT_THAT(FullReport(report),
+              HasSubstr("rgb, thermal: 2 views rejected (0001, 0002), 0001: no board in the cloud\n"
+                        "rgb, thermal: view 0003 rejected: cannot read 0003/rgb.png\n"
+                        "rgb, thermal: rings scatter\n"));
+  EXPECT_THAT(Summary(report).FullReport({"cannot read 0003/rgb.png"}), Not(HasSubstr("0003")));
+}
+
 TEST(Summary, SaysWhatSpeaksAgainstTheResult) {
   Report report = MakeReport();
   report.cameras[1].view_scatter = ViewScatter{9, 20};
