@@ -1,0 +1,80 @@
+"""Pages against the project: what stands in backticks in the first column of TROUBLESHOOTING.md's
+tables is said by a program; every relative link of a page leads to something, a heading included.
+Usage: check_messages.py SOURCE_DIR"""
+import pathlib
+import re
+import subprocess
+import sys
+
+root = pathlib.Path(sys.argv[1])
+problems = []
+
+
+def read(path):
+    return path.read_text(encoding="utf-8", errors="replace")
+
+
+def said_by_programs():
+    """All literals of the sources, put together where they go on in the next line."""
+    text = ""
+    for folder in ("calib", "services", "viewer"):
+        for path in sorted((root / folder).rglob("*.cc")) + sorted((root / folder).rglob("*.h")):
+            text += read(path)
+    literals = re.findall(r'"((?:[^"\\\n]|\\.)*)"', re.sub(r'"\s*\n\s*"', "", text))
+    return "\n".join(literals).replace('\\"', '"')
+
+
+def check_messages(page):
+    sources = said_by_programs()
+    quotes = 0
+    for line in read(page).splitlines():
+        if not line.startswith("|"):
+            continue
+        first = line.split(" | ")[0].lstrip("| ")
+        for _, quote in re.findall(r"(?<!`)(`{1})(?!`)((?:[^`]|``)+)`(?!`)", first):
+            if " " not in quote:
+                continue  # a name, not a message
+            quotes += 1
+            for part in quote.replace("``", "`").split("..."):
+                if part.strip() and part.strip() not in sources:
+                    problems.append(f'{page}: no program says "{part}"')
+    if quotes < 15:
+        problems.append(f"{page}: only {quotes} messages")
+
+
+def anchors(page):
+    heads = re.findall(r"^#+ (.*)$", read(page), re.M)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+def check_links(page):
+    text = re.sub(r"^```.*?^```$", "", read(page), flags=re.M | re.S)
+    links = re.findall(r"\]\(([^)\s]+)\)", text)
+    for link in links:
+        if re.match(r"[a-z]+:", link):
+            continue
+        file, _, anchor = link.partition("#")
+        target = (page.parent / file).resolve() if file else page
+        if target.is_dir() and anchor:
+            target /= "README.md"
+        if not target.exists():
+            problems.append(f"{page}: {link} leads nowhere")
+        elif anchor and anchor not in anchors(target):
+            problems.append(f"{page}: no heading {anchor} in {file}")
+    return links
+
+
+PAGES = ["calib/present/report/GLOSSARY.md", "services/rgbdt/TROUBLESHOOTING.md",
+         "scripts/examples/session/README.md"]
+listed = subprocess.run(["git", "-C", str(root), "ls-files", "*.md"], capture_output=True, text=True)
+pages = {root / name for name in [*listed.stdout.splitlines(), *PAGES, "README.md"]}
+for page in pages:
+    check_links(page)
+for name in PAGES:
+    if name not in check_links(root / "README.md"):
+        problems.append(f"README.md does not lead to {name}")
+check_messages(root / "services/rgbdt/TROUBLESHOOTING.md")
+for problem in sorted(set(problems)):
+    print(problem)
+print(f"{len(pages)} pages")
+sys.exit(bool(problems))
