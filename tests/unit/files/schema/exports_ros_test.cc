@@ -11,7 +11,6 @@
 namespace rgbdt {
 namespace {
 
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -136,7 +135,9 @@ TEST_F(RosExports, TheUrdfHasAFixedJointForEachCamera) {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string& camera = calibration_.cameras[i].camera;
     EXPECT_THAT(text, HasSubstr("  <link name=\"" + camera + "_optical_frame\"/>\n"));
-    rest = Behind(rest, "<joint name=\"" + camera + "_optical_joint\" type=\"fixed\">");
+    std::string joint = "<joint name=\"";
+    joint.append(camera).append("_optical_joint\" type=\"fixed\">");
+    rest = Behind(rest, joint);
     const Published published = FromUrdf(rest);
     EXPECT_EQ(published.parent, "scanner");
     EXPECT_EQ(published.child, camera + "_optical_frame");
