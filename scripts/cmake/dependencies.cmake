@@ -26,6 +26,7 @@ rgbdt_external(Ceres::ceres CMAKE "find_dependency(Ceres)" DEBIAN libceres-dev
 rgbdt_external(protobuf::libprotobuf CMAKE "find_dependency(Protobuf)" DEBIAN libprotobuf-dev
   REQUIRES protobuf)
 rgbdt_external(lzf DEBIAN liblzf-dev REQUIRES liblzf)
+rgbdt_external(yaml DEBIAN libyaml-dev REQUIRES yaml-0.1)
 rgbdt_external(embree CMAKE "find_dependency(embree 3)" DEBIAN libembree-dev LIBS "-lembree3")
 rgbdt_external(fmt::fmt CMAKE "find_dependency(fmt)" DEBIAN libfmt-dev REQUIRES fmt)
 rgbdt_external(spdlog::spdlog CMAKE "find_dependency(spdlog)" DEBIAN libspdlog-dev REQUIRES spdlog)

@@ -61,6 +61,23 @@ void WriteRig(const std::filesystem::path& session_dir, const Rig& rig);
 /// Writes views/NAME: cloud.pcd, one PNG an image, and last view.textproto.
 void WriteView(const std::filesystem::path& session_dir, const View& view);
 
+/// A view of files that lie elsewhere.
+struct ViewFiles {
+  struct OfCamera {
+    std::string camera;
+    std::filesystem::path file;
+    Utime utime = 0;  ///< 0: unknown
+  };
+  std::string name;
+  std::filesystem::path cloud;
+  Utime sweep_utime = 0;  ///< 0: unknown
+  std::vector<OfCamera> images;
+};
+
+/// Writes views/NAME/view.textproto, which names the files by their whole paths; nothing is copied.
+/// Whether it is held out is left to its place in the session.
+void WriteView(const std::filesystem::path& session_dir, const ViewFiles& view);
+
 /// truth.textproto, where there is one. Throw InputError.
 Truth ReadTruth(const std::filesystem::path& path);
 /// `remark`: lines for a person, written as a comment.

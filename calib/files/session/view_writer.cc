@@ -78,7 +78,37 @@ void FromPicks(const View& view, const CornerSelection& picks, proto::View* out)
                    ", but the view has no such image");
 }
 
+// Of a link its own path: what it points at may be called otherwise. Protobuf takes UTF-8 only.
+std::string WholePath(const fs::path& path) {
+  std::string whole = (fs::weakly_canonical(path.parent_path()) / path.filename()).string();
+  if (ValidUtf8(whole) != whole) {
+    throw InputError(ValidUtf8(whole) + ": its name is not UTF-8; rename it");
+  }
+  return whole;
+}
+
+void WriteViewFile(const fs::path& folder, const proto::View& message) {
+  WriteFileAtomically(folder / "view.textproto",
+                      text::PrintText(message,
+                                      "One view of the board (schema: "
+                                      "calib/files/schema/session.proto). utime: us, UTC."));
+}
+
 }  // namespace
+
+void WriteView(const fs::path& session_dir, const ViewFiles& view) {
+  CheckName(view.name, "the view's name");
+  proto::View message;
+  message.set_cloud(WholePath(view.cloud));
+  message.set_sweep_utime(view.sweep_utime);
+  for (const ViewFiles::OfCamera& image : view.images) {
+    proto::ViewImage* const out = message.add_image();
+    out->set_camera(ValidUtf8(image.camera));
+    out->set_file(WholePath(image.file));
+    out->set_utime(image.utime);
+  }
+  WriteViewFile(session_dir / "views" / view.name, message);
+}
 
 void WriteView(const fs::path& session_dir, const View& view) {
   CheckName(view.name, "the view's name");
@@ -98,11 +128,7 @@ void WriteView(const fs::path& session_dir, const View& view) {
   for (std::size_t i = 0; i < view.images.size(); ++i) {
     WritePng(folder / message.image(static_cast<int>(i)).file(), view.images[i].pixels);
   }
-  // Last: a folder with a view.textproto is complete.
-  WriteFileAtomically(folder / "view.textproto",
-                      text::PrintText(message,
-                                      "One view of the board (schema: "
-                                      "calib/files/schema/session.proto). utime: us, UTC."));
+  WriteViewFile(folder, message);  // last: a folder with a view.textproto is complete
 }
 
 }  // namespace rgbdt

@@ -41,6 +41,8 @@ const std::map<std::string, Folders>& Allowed() {
       {"calib/files/schema", {"calib/files"}},
       {"calib/files/points", {"calib/files"}},
       {"calib/files/session", {"calib/files", "calib/files/schema", "calib/files/points"}},
+      {"calib/files/import",
+       {"calib/files", "calib/files/schema", "calib/files/points", "calib/files/session"}},
       {"calib/present/layout", {}},
       {"calib/present/pictures",
        {"calib/camera", "calib/scan_assembly", "calib/solve", "calib/terrain"}},

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "calib/model/rig.h"
+
+namespace rgbdt {
+
+/// A board in a few characters, lengths in metres, width before height:
+///  - "8x6@0.095,0.85x0.61": 8 x 6 squares of 95 mm on a board of 850 x 610 mm;
+///  - "7x5corners@0.095,0.85x0.61": the same by its inner corners, one fewer each way;
+///  - "plain@1.016x1.016": a board without a pattern.
+/// Throws InputError: what is missing, what looks like millimetres, what does not fit on the board.
+Target ParseBoard(const std::string& text);
+
+/// The same board in these characters, for messages: its squares and its inner corners.
+std::string DescribeBoard(const Target& board);
+
+}  // namespace rgbdt

@@ -1,0 +1,364 @@
+#include "calib/files/import/folders.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "calib/files/import/internal/folder_files.h"
+#include "calib/files/import/lens_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A camera's folder once it was read.
+struct ReadCamera {
+  FileList images;
+  Pairs pairs;
+  std::set<std::size_t> unreadable, without;  // images, and the clouds that had them
+  CameraSpec spec;
+};
+
+std::string SizeOf(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+// "a.png, b.png, c.png and 12 more"
+std::string Some(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    text += (i == 0 ? "" : ", ") + names[i];
+  }
+  return names.size() <= kMost ? text
+                               : text + " and " + std::to_string(names.size() - kMost) + " more";
+}
+
+std::string Counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+// Takes the pairs apart whose image cannot be read; gives the others' facts.
+std::vector<ImageFacts> DropUnreadable(ReadCamera* camera, std::vector<std::string>* left_over) {
+  std::vector<std::size_t> paired;
+  for (std::size_t i = 0; i < camera->images.names.size(); ++i) {
+    if (camera->pairs.cloud_of[i]) paired.push_back(i);
+  }
+  const std::vector<ImageFacts> facts = LookAtImages(camera->images, paired);
+  std::vector<ImageFacts> good;
+  std::string problem;
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    if (facts[k].problem.empty()) {
+      good.push_back(facts[k]);
+      continue;
+    }
+    problem = facts[k].problem;
+    left_over->push_back(problem);
+    camera->without.insert(*camera->pairs.cloud_of[paired[k]]);
+    camera->pairs.cloud_of[paired[k]].reset();
+    camera->unreadable.insert(paired[k]);
+  }
+  if (good.empty()) {
+    throw InputError("no image of " + camera->images.folder.string() + " can be used: " + problem);
+  }
+  return good;
+}
+
+bool IsSixteenBit(const ImageFacts& facts) { return facts.format == PixelFormat::kMono16; }
+
+void CheckAlike(const FileList& files, const std::vector<ImageFacts>& facts) {
+  for (const ImageFacts& other : facts) {
+    const ImageFacts& first = facts[0];
+    if (other.width != first.width || other.height != first.height) {
+      throw InputError("the images of " + files.folder.string() + " are of several sizes (" +
+                       SizeOf(first.width, first.height) + ", " +
+                       SizeOf(other.width, other.height) +
+                       "); expected those of one camera in a folder");
+    }
+    if (IsSixteenBit(other) != IsSixteenBit(first)) {
+      throw InputError("the images of " + files.folder.string() +
+                       " have 8 bits and 16; expected those of one camera in a folder");
+    }
+  }
+}
+
+bool SaysThermal(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
+}
+
+std::string LastName(const fs::path& folder) {
+  const fs::path whole = fs::weakly_canonical(folder);
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+CameraKind KindOf(const Folders::Camera& camera, const ImageFacts& facts) {
+  if (IsSixteenBit(facts)) return CameraKind::kThermal;
+  const std::string name = camera.name.empty() ? LastName(camera.images) : camera.name;
+  if (!SaysThermal(name)) return CameraKind::kColor;
+  if (facts.format == PixelFormat::kBgr8) {
+    throw InputError("\"" + name + "\" is a thermal camera's name, but the images of " +
+                     camera.images.string() +
+                     " have 3 channels: give its raw counts (one channel, 16 or 8 bit), not a "
+                     "coloured picture of them");
+  }
+  return CameraKind::kThermal;
+}
+
+// "rgb", "thermal", and "rgb_2" where that is taken.
+std::string FreeName(const std::string& wanted, const std::set<std::string>& taken) {
+  std::string name = wanted;
+  for (int i = 2; taken.count(name) != 0; ++i) name = wanted + "_" + std::to_string(i);
+  return name;
+}
+
+std::string ModelName(Lens::Model model) {
+  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
+}
+
+// The file for camera `index` of those that are called `names`; none: it has none.
+const Folders::LensFile* LensFor(const Folders& folders, const std::vector<std::string>& names,
+                                 std::size_t index) {
+  const auto by_name = [&](const std::string& name) -> const Folders::LensFile* {
+    for (const Folders::LensFile& lens : folders.lenses) {
+      if (lens.camera == name) return &lens;
+    }
+    return nullptr;
+  };
+  if (const Folders::LensFile* lens = by_name(names[index])) return lens;
+  std::vector<const Folders::LensFile*> in_order;
+  for (const Folders::LensFile& lens : folders.lenses) {
+    if (lens.camera.empty()) in_order.push_back(&lens);
+  }
+  const auto before = static_cast<std::size_t>(
+      std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(index),
+                    [&](const std::string& name) { return by_name(name) == nullptr; }));
+  if (before < in_order.size()) return in_order[before];
+  return in_order.size() == 1 ? in_order[0] : nullptr;  // one file may be all cameras'
+}
+
+[[noreturn]] void RefuseWithoutLens(const std::string& camera) {
+  throw InputError("camera \"" + camera +
+                   "\" has no lens: give --lens FILE, or say --pinhole or --fisheye and it is "
+                   "found from the images");
+}
+
+// Sets the lens, or the model that is wanted; gives what there is to say of it.
+std::string SetLens(const Folders& folders, const std::vector<std::string>& names,
+                    std::size_t index, CameraSpec* spec) {
+  if (const Folders::LensFile* file = LensFor(folders, names, index)) {
+    const FileLens found =
+        ReadLensFile({file->file, file->entry, spec->name, static_cast<int>(index),
+                      static_cast<int>(names.size()), folders.model});
+    const bool shared = file->camera.empty() && folders.lenses.size() < names.size() && index > 0 &&
+                        found.parts == 1;
+    if (!shared) {
+      CheckLensSize(found, spec->name, spec->width, spec->height);
+      spec->lens = found.lens;
+      return ModelName(spec->lens.model) + " lens of " + found.where;
+    }
+  }
+  if (!folders.model) RefuseWithoutLens(spec->name);
+  if (!folders.board.HasPattern()) {
+    throw InputError("camera \"" + spec->name +
+                     "\" has no lens, and a plain board has no corners to find it from: give "
+                     "--lens FILE");
+  }
+  spec->lens.model = *folders.model;
+  return ModelName(spec->lens.model) + " lens, not known yet";
+}
+
+ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const FileList& clouds,
+                   std::set<std::string>* names, std::vector<std::string>* left_over) {
+  ReadCamera read;
+  read.images = ListImages(camera.images);
+  read.pairs = PairFiles(read.images, clouds, folders.pairing);
+  const std::vector<ImageFacts> facts = DropUnreadable(&read, left_over);
+  CheckAlike(read.images, facts);
+  CameraSpec& spec = read.spec;
+  spec.kind = KindOf(camera, facts[0]);
+  const bool thermal = spec.kind == CameraKind::kThermal;
+  spec.name = camera.name.empty() ? FreeName(thermal ? "thermal" : "rgb", *names) : camera.name;
+  names->insert(spec.name);
+  spec.width = facts[0].width;
+  spec.height = facts[0].height;
+  spec.format = facts[0].format;
+  return read;
+}
+
+// A line each of what they are.
+std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamera>* cameras) {
+  std::vector<std::string> names, lines;
+  std::string list;
+  for (const ReadCamera& camera : *cameras) {
+    names.push_back(camera.spec.name);
+    list += (list.empty() ? "" : ", ") + camera.spec.name;
+  }
+  for (const Folders::LensFile& lens : folders.lenses) {
+    if (lens.camera.empty() || std::count(names.begin(), names.end(), lens.camera) > 0) continue;
+    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " + list);
+  }
+  if (folders.lenses.size() > names.size()) {
+    throw InputError(std::to_string(folders.lenses.size()) + " lens files are given for " +
+                     Counted(names.size(), "camera") + " (" + list + "); expected one for each");
+  }
+  for (std::size_t i = 0; i < cameras->size(); ++i) {
+    CameraSpec& spec = (*cameras)[i].spec;
+    const std::string lens = SetLens(folders, names, i, &spec);
+    lines.push_back("camera " + spec.name + ": " +
+                    (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
+                    SizeOf(spec.width, spec.height) + ", " + lens);
+  }
+  return lines;
+}
+
+Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
+  Rig rig;
+  rig.lidar.name = "lidar";
+  rig.target = folders.board;
+  for (const ReadCamera& camera : cameras) rig.cameras.push_back(camera.spec);
+  rig.Check(LensNeed::kMayBeUnknown);
+  return rig;
+}
+
+std::string ViewName(const std::string& file, std::set<std::string>* taken) {
+  std::string name = fs::path(file).stem().string().substr(0, 90);
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) <= ' ') c = '_';
+  }
+  name = FreeName(ValidUtf8(name), *taken);
+  taken->insert(name);
+  return name;
+}
+
+std::vector<ViewFiles> MakeViews(const FileList& clouds, const std::vector<ReadCamera>& cameras,
+                                 std::vector<std::string>* left_over) {
+  std::map<std::size_t, ViewFiles> of_cloud;
+  for (const ReadCamera& camera : cameras) {
+    for (std::size_t i = 0; i < camera.images.names.size(); ++i) {
+      if (!camera.pairs.cloud_of[i]) continue;
+      const std::size_t cloud = *camera.pairs.cloud_of[i];
+      ViewFiles& view = of_cloud[cloud];
+      if (view.sweep_utime == 0) view.sweep_utime = camera.pairs.cloud_utime[cloud];
+      view.images.push_back({camera.spec.name, camera.images.folder / camera.images.names[i],
+                             camera.pairs.image_utime[i]});
+    }
+  }
+  std::vector<std::size_t> used;
+  used.reserve(of_cloud.size());
+  for (const auto& [cloud, view] : of_cloud) used.push_back(cloud);
+  const std::vector<std::string> problems = LookAtClouds(clouds, used);
+  std::vector<ViewFiles> views;
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (!problems[k].empty()) {
+      left_over->push_back(problems[k]);
+      continue;
+    }
+    ViewFiles& view = of_cloud[used[k]];
+    view.name = ViewName(clouds.names[used[k]], &taken);
+    view.cloud = clouds.folder / clouds.names[used[k]];
+    views.push_back(std::move(view));
+  }
+  if (views.empty()) {
+    throw InputError("no cloud of " + clouds.folder.string() + " can be used: " + problems.front());
+  }
+  return views;
+}
+
+// What no other file belongs to.
+void AddAlone(const FileList& clouds, const std::vector<ReadCamera>& cameras,
+              std::vector<std::string>* left_over) {
+  std::set<std::size_t> used;
+  for (const ReadCamera& camera : cameras) {
+    const Pairs& pairs = camera.pairs;
+    for (const auto& cloud : pairs.cloud_of) {
+      if (cloud) used.insert(*cloud);
+    }
+    used.insert(camera.without.begin(), camera.without.end());
+    std::vector<std::string> alone;
+    for (std::size_t i = 0; i < camera.images.names.size(); ++i) {
+      if (!pairs.cloud_of[i] && camera.unreadable.count(i) == 0) {
+        alone.push_back(camera.images.names[i]);
+      }
+    }
+    if (alone.empty()) continue;
+    const bool as_many =
+        pairs.by == PairedBy::kNumber && camera.images.names.size() == clouds.names.size();
+    left_over->push_back(Counted(alone.size(), "image") + " of " + camera.spec.name +
+                         " without a cloud " + pairs.why_not + ": " + Some(alone) +
+                         (as_many ? "; there are as many clouds: where the first belongs to the "
+                                    "first and so on, say --in-order"
+                                  : ""));
+  }
+  std::vector<std::string> alone;
+  for (std::size_t i = 0; i < clouds.names.size(); ++i) {
+    if (used.count(i) == 0) alone.push_back(clouds.names[i]);
+  }
+  if (alone.empty()) return;
+  left_over->push_back(Counted(alone.size(), "cloud") + " without an image " +
+                       cameras[0].pairs.why_not + ": " + Some(alone));
+}
+
+void CheckFolders(const Folders& folders) {
+  std::set<fs::path> seen;
+  for (const Folders::Camera& camera : folders.cameras) {
+    if (!seen.insert(fs::weakly_canonical(camera.images)).second) {
+      throw InputError("the folder " + camera.images.string() +
+                       " is given for two cameras; expected one for each");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> FolderSession::WithoutLens() const {
+  std::vector<std::string> names;
+  for (const CameraSpec& camera : rig.cameras) {
+    if (!camera.lens.known()) names.push_back(camera.name);
+  }
+  return names;
+}
+
+FolderSession ReadFolders(const Folders& folders) {
+  CheckFolders(folders);
+  const FileList clouds = ListClouds(folders.clouds);
+  FolderSession session;
+  std::set<std::string> names;
+  std::vector<ReadCamera> cameras;
+  for (const Folders::Camera& camera : folders.cameras) {
+    cameras.push_back(ReadOne(folders, camera, clouds, &names, &session.left_over));
+  }
+  session.cameras = SetLenses(folders, &cameras);
+  session.paired_by = cameras.at(0).pairs.by;
+  session.rig = MakeRig(folders, cameras);
+  AddAlone(clouds, cameras, &session.left_over);
+  session.views = MakeViews(clouds, cameras, &session.left_over);
+  return session;
+}
+
+void RequireNoSession(const fs::path& dir) {
+  const fs::path views = dir / "views";
+  std::error_code ignored;
+  if (fs::exists(views, ignored) && !fs::is_empty(views, ignored)) {
+    throw InputError(views.string() +
+                     " holds views of an earlier session; remove them or name another directory");
+  }
+  if (fs::exists(dir / "rig.textproto", ignored)) {
+    throw InputError((dir / "rig.textproto").string() +
+                     " is an earlier session's; remove it or name another directory");
+  }
+}
+
+void WriteSession(const fs::path& dir, const FolderSession& session) {
+  RequireNoSession(dir);
+  for (const ViewFiles& view : session.views) WriteView(dir, view);
+  WriteRig(dir, session.rig);
+}
+
+}  // namespace rgbdt

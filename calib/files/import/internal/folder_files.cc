@@ -1,0 +1,149 @@
+#include "calib/files/import/internal/folder_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "calib/files/image_files.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/model/errors.h"
+#include "calib/model/parallel.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFarthestM = 500;  // no LIDAR has half of its returns from beyond
+
+std::string EndingOf(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+// What a folder holds besides: kinds of files, and folders by their names.
+struct Others {
+  std::map<std::string, int> endings;
+  std::set<std::string> folders;
+};
+
+std::string Described(const Others& others) {
+  std::string text;
+  for (const auto& [ending, count] : others.endings) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
+            (ending.empty() ? "without an ending" : ending);
+  }
+  std::string folders;
+  for (const std::string& name : others.folders) {
+    folders += (folders.empty() ? "" : ", ") + name + "/";
+  }
+  if (!text.empty() && !folders.empty()) text += " and ";
+  return text.empty() && folders.empty() ? "nothing" : text + folders;
+}
+
+FileList List(const fs::path& folder, const std::set<std::string>& endings, const char* wanted) {
+  if (!fs::is_directory(folder)) throw InputError("there is no folder " + folder.string());
+  FileList files{folder, {}};
+  Others others;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.front() == '.') continue;
+    if (it->is_directory(error)) {
+      others.folders.insert(name);
+    } else if (endings.count(EndingOf(it->path())) != 0) {
+      files.names.push_back(name);
+    } else {
+      ++others.endings[EndingOf(it->path())];
+    }
+  }
+  if (error) throw InputError("cannot list " + folder.string() + ": " + error.message());
+  if (files.names.empty()) {
+    throw InputError(folder.string() + " holds no " + wanted + "; it has " + Described(others));
+  }
+  std::sort(files.names.begin(), files.names.end(), NaturalLess);
+  return files;
+}
+
+ImageFacts LookAt(const fs::path& path) {
+  ImageFacts facts;
+  try {
+    cv::Mat pixels = DecodeImageFile(path);
+    facts.width = pixels.cols;
+    facts.height = pixels.rows;
+    try {
+      facts.format = FormatOf(static_cast<PixelFormat>(0), &pixels);
+    } catch (const InputError& error) {
+      facts.problem = path.string() + " " + error.what();
+    }
+  } catch (const InputError& error) {
+    facts.problem = error.what();
+  }
+  return facts;
+}
+
+struct CloudFacts {
+  std::string problem;
+  double median_m = 0;
+};
+
+CloudFacts LookAtCloud(const fs::path& path) {
+  CloudFacts facts;
+  try {
+    const Cloud cloud = ReadPcd(path);
+    std::vector<float> ranges;
+    for (const Eigen::Vector3f& point : cloud.points) {
+      if (point.allFinite()) ranges.push_back(point.norm());
+    }
+    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+    std::nth_element(ranges.begin(), middle, ranges.end());
+    facts.median_m = *middle;
+  } catch (const InputError& error) {
+    facts.problem = error.what();
+  }
+  return facts;
+}
+
+}  // namespace
+
+FileList ListImages(const fs::path& folder) {
+  return List(folder, {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm"},
+              "image (png, jpg, tif, bmp, pgm, ppm)");
+}
+
+FileList ListClouds(const fs::path& folder) {
+  return List(folder, {".pcd"}, "cloud; expected PCD files");
+}
+
+std::vector<ImageFacts> LookAtImages(const FileList& files, const std::vector<std::size_t>& which) {
+  std::vector<ImageFacts> facts(which.size());
+  ForEach(static_cast<int>(which.size()), 0, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    facts[k] = LookAt(files.folder / files.names[which[k]]);
+  });
+  return facts;
+}
+
+std::vector<std::string> LookAtClouds(const FileList& files,
+                                      const std::vector<std::size_t>& which) {
+  std::vector<CloudFacts> facts(which.size());
+  ForEach(static_cast<int>(which.size()), 0, [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    facts[k] = LookAtCloud(files.folder / files.names[which[k]]);
+  });
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < facts.size(); ++i) {
+    if (facts[i].median_m > kFarthestM) {
+      throw InputError((files.folder / files.names[which[i]]).string() +
+                       ": half of its points lie " + Format("%.0f", facts[i].median_m) +
+                       " m away or more, which looks like millimetres; expected metres");
+    }
+    problems.push_back(facts[i].problem);
+  }
+  return problems;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/time.h"
+
+namespace rgbdt {
+
+/// The time since 1970 that a file's name holds, as recorders write it: seconds with or without a
+/// fraction (1700000000.25, 1700000000_250000000), or a whole number of milli-, micro- or
+/// nanoseconds; 2001 to 2099. Absent: none.
+std::optional<Utime> TimeInName(const std::string& stem);
+
+/// The number by which each of these names of one folder is told from the others: "frame_0012_rgb8"
+/// and "frame_0013_rgb8" give "12" and "13". Empty for names that are built otherwise than most.
+std::vector<std::string> NumbersInNames(const std::vector<std::string>& stems);
+
+}  // namespace rgbdt
