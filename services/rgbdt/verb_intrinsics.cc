@@ -114,6 +114,14 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
 
 }  // namespace
 
+bool FindLenses(const std::string& session_dir, const std::vector<std::string>& cameras) {
+  IntrinsicsFlags flags;
+  flags.dir = session_dir;
+  flags.out = (fs::path(session_dir) / "rig.textproto").string();
+  flags.cameras = cameras;
+  return RunIntrinsics(flags) == 0;
+}
+
 void AddIntrinsics(CommandLine* program) {
   auto flags = std::make_shared<IntrinsicsFlags>();
   CommandLine* verb = program->Verb(

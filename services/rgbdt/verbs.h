@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "services/command_line/command_line.h"
 
@@ -13,6 +14,7 @@ void AddCalibrate(CommandLine* program);
 void AddEvaluate(CommandLine* program);
 void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
+void AddSession(CommandLine* program);
 void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);
 void AddIntrinsics(CommandLine* program);
@@ -34,6 +36,10 @@ inline std::filesystem::path TruthPath(const std::string& given,
   const std::filesystem::path beside = session_root / "truth.textproto";
   return given.empty() && !std::filesystem::exists(beside) ? "" : PathOr(given, beside);
 }
+
+/// What `rgbdt intrinsics` does for these cameras of a session, into the rig file that is in use.
+/// False: a lens was not found.
+bool FindLenses(const std::string& session_dir, const std::vector<std::string>& cameras);
 
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }

@@ -1,0 +1,39 @@
+#include "calib/methods/board_check.h"
+
+#include "calib/camera/pixels.h"
+#include "calib/detect/image/checkerboard.h"
+
+namespace rgbdt {
+namespace {
+
+CheckerboardResult FindInAny(const CameraSpec& camera, const Target& target,
+                             const std::vector<Image>& images) {
+  CheckerboardResult result;
+  for (const Image& image : images) {
+    CheckImage(camera, image);
+    result = FindCheckerboard(ToGrey(image), target, SaturatedFrom(image));
+    if (result.board) break;
+  }
+  return result;
+}
+
+}  // namespace
+
+BoardCheck CheckBoard(const CameraSpec& camera, const Target& target,
+                      const std::vector<Image>& images) {
+  BoardCheck check;
+  const CheckerboardResult stated = FindInAny(camera, target, images);
+  check.found = stated.board.has_value();
+  check.why = stated.why;
+  for (const int more : {1, -1}) {
+    if (check.found || check.instead) break;
+    Target other = target;
+    other.squares_x += more;
+    other.squares_y += more;
+    if (other.squares_x < 4 || other.squares_y < 4) continue;
+    if (FindInAny(camera, other, images).board) check.instead = other;
+  }
+  return check;
+}
+
+}  // namespace rgbdt
