@@ -1,4 +1,5 @@
-"""Makes manual pages from what programs print at --help: one a program, one a verb of rgbdt.
+"""Makes manual pages from what programs print at --help: one a program, one a verb of rgbdt. A verb
+that is called as a program (rgbdt session, rgbdt-session) follows on that one's page.
 
 Usage: man_pages.py OUT_DIR VERSION PROGRAM...
 """
@@ -41,10 +42,11 @@ def escape(text):
 
 
 def split_examples(description):
-    """Prose and the commands after "Example:", which go on to the end."""
+    """Prose and the commands after "Example:" or "Examples:", which go on to the end."""
     for i, line in enumerate(description):
-        before, found, example = line.partition("Example: ")
+        found = re.search(r"Examples?: ", line)
         if found:
+            before, example = line[:found.start()], line[found.end():]
             prose = description[:i] + ([before] if before else [])
             return prose, [example] + [after.strip() for after in description[i + 1:]]
     return description, []
@@ -58,7 +60,7 @@ def page(name, text, version, see_also):
     description, usage, sections = parse(text)
     prose, examples = split_examples(description)
     prose = [line.removeprefix(name + ": ") for line in prose]
-    lines = [f'.TH {name.upper()} 1 "" "rgbdt {version}" "{MANUAL}"', ".SH NAME",
+    lines = [f'.TH "{name.upper()}" 1 "" "rgbdt {version}" "{MANUAL}"', ".SH NAME",
              f"{escape(name)} \\- {escape(first_sentence(prose))}",
              ".SH SYNOPSIS", escape(usage), ".SH DESCRIPTION", *map(escape, prose)]
     for section, entries in sections.items():
@@ -75,18 +77,23 @@ def page(name, text, version, see_also):
 
 
 def main(out, version, *programs):
-    texts = {}
+    texts, verbs = {}, {}
     for program in programs:
         name = pathlib.Path(program).name
         texts[name] = help_of([program])
         for verb, *_ in parse(texts[name])[2].get("Subcommands", []):
-            texts[f"{name}-{verb}"] = help_of([program, verb])
+            verbs[f"{name}-{verb}"] = f"{name} {verb}", help_of([program, verb])
+    names = sorted({*texts, *verbs})
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     for stale in folder.glob("*.1.gz"):
         stale.unlink()
-    for name, text in texts.items():
-        source = page(name, text, version, sorted(texts)).encode()
+    for name in names:
+        pages = [page(name, texts[name], version, names)] if name in texts else []
+        if name in verbs:
+            title, text = verbs[name]
+            pages.append(page(title if pages else name, text, version, names))
+        source = "".join(pages).encode()
         (folder / f"{name}.1.gz").write_bytes(gzip.compress(source, mtime=0))
 
 
