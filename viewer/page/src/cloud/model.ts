@@ -3,12 +3,11 @@
 import { effect } from "@preact/signals";
 import type { CloudFrame, Frame, Vec3 } from "../protocol";
 import { ack, onCloud, watched } from "../store";
-import { theme } from "../theme";
 import { kZeroCelsius } from "../format";
 import { partOf, valuesOf, type PointValues } from "./points";
 import { percentiles } from "./range";
 import { CloudScene } from "./scene";
-import { colour, isRanged, mode, picked, pointSize, ranges, setRange, stats, voxel } from "./settings";
+import { colour, dark, isRanged, lighting, mode, picked, pointSize, ranges, setRange, stats, voxel } from "./settings";
 import { Sweeps } from "./sweeps";
 import { VoxelMap } from "./voxel_map";
 
@@ -67,7 +66,7 @@ function show(): void {
   const inMap = mode.peek() === "map";
   scene.setLidar(inMap && map.frame === "map" ? pose : null);
   if (inMap) scene.showMap(map);
-  else scene.showParts(sweeps.shown());
+  else scene.showParts(sweeps.shown(), sweeps.isWhole());
   autoRange();
 }
 
@@ -90,7 +89,8 @@ export function startScene(canvas: HTMLCanvasElement, onDrawn: () => void): Clou
   stats.value = { ...stats.peek(), budget: made.budget, renderer: made.renderer };
   watched.value = { ...watched.peek(), points: made.budget };
   made.onDrawn = () => { ackAll(); tell(); onDrawn(); };
-  effect(() => made.setGround(theme.value === "dark"));
+  effect(() => made.setGround(dark.value));
+  effect(() => made.setLighting(lighting.value));
   effect(() => made.setPointSize(pointSize.value));
   effect(() => { void ranges.value; made.setColour(colour.value, sceneRange()); });
   effect(() => { void colour.value; autoRange(); });

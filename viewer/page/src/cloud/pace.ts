@@ -6,6 +6,7 @@ const kLeastShare = 0.1;
 
 export class Pace {
   share = 1; // of the points, while the camera moves
+  hurry = false; // it draws slowly: what costs less is to be taken while the camera moves
   frames = 0; // drawn since the page was opened
   private times: number[] = []; // when [ms]
 

@@ -1,6 +1,6 @@
 // What of the cloud is on the graphics card: one object a part, made and disposed as parts come and go.
 import * as THREE from "three";
-import { makeGeometry } from "./material";
+import { sweepGeometry, voxelGeometry } from "./material";
 import { kWords, type Points } from "./points";
 import type { VoxelMap } from "./voxel_map";
 
@@ -11,7 +11,13 @@ export class PointObjects {
   private shown: Shown[] = [];
   private map: { object: THREE.Points; words: Uint32Array } | null = null;
 
-  constructor(private readonly material: THREE.Material) {}
+  constructor(private material: THREE.Material) {}
+
+  use(material: THREE.Material): void {
+    if (material === this.material) return;
+    this.material = material;
+    this.shown.forEach(({ object }) => { object.material = material; });
+  }
 
   /// Parts in place of what was shown; those that stay are not uploaded again.
   showParts(parts: Points[]): void {
@@ -19,7 +25,7 @@ export class PointObjects {
     const wanted = new Set(parts);
     this.shown.filter(({ points }) => !wanted.has(points)).forEach((one) => this.remove(one.object));
     const known = new Map(this.shown.map((one) => [one.points, one]));
-    this.shown = parts.map((points) => known.get(points) ?? { points, object: this.add(makeGeometry(points.words)), drawn: 0 });
+    this.shown = parts.map((points) => known.get(points) ?? { points, object: this.add(sweepGeometry(points)), drawn: 0 });
   }
 
   showMap(map: VoxelMap): void {
@@ -34,9 +40,11 @@ export class PointObjects {
     geometry.index!.needsUpdate = true;
   }
 
+  total(): number { return this.shown.reduce((sum, { points }) => sum + points.count, 0); }
+
   /// Draws `share` of the points, `most` at most; says how many.
   thin(share: number, most: number): number {
-    const total = this.shown.reduce((sum, { points }) => sum + points.count, 0);
+    const total = this.total();
     const part = Math.min(share, total > 0 ? most / total : 1);
     for (const one of this.shown) {
       one.drawn = Math.floor(one.points.count * part);
@@ -49,7 +57,7 @@ export class PointObjects {
 
   private remakeMap(map: VoxelMap): void {
     this.showParts([]);
-    const geometry = makeGeometry(map.words);
+    const geometry = voxelGeometry(map.words);
     geometry.setIndex(new THREE.BufferAttribute(map.order, 1));
     this.map = { object: this.add(geometry), words: map.words };
     this.shown = [{ points: map, object: this.map.object, drawn: 0 }];

@@ -29,6 +29,13 @@ export function partOf(header: CloudFrame, frame: Frame): Part {
   };
 }
 
+/// Calls `visit` with some `most` points of `shown`, evenly: the points, and where the record begins.
+export function forSample(shown: Points[], most: number, visit: (points: Points, at: number, index: number) => void): void {
+  const total = shown.reduce((sum, { count }) => sum + count, 0);
+  const step = Math.max(1, Math.floor(total / most));
+  for (const points of shown) for (let i = 0; i < points.count; i += step) visit(points, i * kWords, i);
+}
+
 /// One point's values, for a person.
 export interface PointValues {
   position: Vec3; // [m], in the frame of what is shown

@@ -1,6 +1,6 @@
 // A legend's ends, found from the points.
 import type { Vec3 } from "../protocol";
-import { kWords, type Points } from "./points";
+import { forSample, type Points } from "./points";
 import type { Colour } from "./color_maps";
 
 const kSample = 4000; // values that are looked at
@@ -16,14 +16,11 @@ const kValue: Partial<Record<Colour, (points: Points, at: number, lidar: Vec3) =
 export function percentiles(shown: Points[], colour: Colour, lidar: Vec3): [number, number] | null {
   const value = kValue[colour];
   if (!value) return null;
-  const total = shown.reduce((sum, { count }) => sum + count, 0);
-  const step = Math.max(1, Math.floor(total / kSample));
   const values: number[] = [];
-  for (const points of shown)
-    for (let i = 0; i < points.count; i += step) {
-      const one = value(points, i * kWords, lidar);
-      if (Number.isFinite(one)) values.push(one);
-    }
+  forSample(shown, kSample, (points, at) => {
+    const one = value(points, at, lidar);
+    if (Number.isFinite(one)) values.push(one);
+  });
   if (values.length === 0) return null;
   values.sort((a, b) => a - b);
   const at = (share: number) => values[Math.round(share * (values.length - 1))];

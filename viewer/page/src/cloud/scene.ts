@@ -3,13 +3,23 @@ import * as THREE from "three";
 import type { Vec3 } from "../protocol";
 import { isSoftware, pointBudget, rendererName } from "./budget";
 import type { Colour } from "./color_maps";
-import { Viewpoint, type ViewName } from "./viewpoint";
-import { makeMaterial, setColour } from "./material";
+import { subjectOf } from "./fit";
+import { Lighting, projectionOf } from "./lighting";
+import { makeMaterials, setColour } from "./material";
 import { Pace } from "./pace";
 import { pick, type Picked } from "./picking";
 import type { Points } from "./points";
 import { PointObjects } from "./point_objects";
+import { Viewpoint, type ViewName } from "./viewpoint";
 import type { VoxelMap } from "./voxel_map";
+
+const kSizes = { least: 1.25, most: 32, mostQuick: 10 }; // of a point [CSS px]
+const kVoxelRadius = 0.62; // of its side
+const kMostGrowth = 2; // of points that stand for those left out
+const kGrounds = {
+  dark: { above: 0.063, below: 0.188, unknown: 0.3 },
+  light: { above: 0.96, below: 0.9, unknown: 0.66 },
+};
 
 export class CloudScene {
   readonly renderer: string; // what draws
@@ -20,60 +30,93 @@ export class CloudScene {
   onDrawn: () => void = () => undefined;
 
   private readonly gl: THREE.WebGLRenderer;
-  private readonly scene = new THREE.Scene();
-  private readonly material = makeMaterial();
-  private readonly objects = new PointObjects(this.material);
+  private readonly cloud = new THREE.Scene();
+  private readonly lines = new THREE.Scene(); // among the points
+  private readonly materials = makeMaterials();
+  private readonly objects = new PointObjects(this.materials.fine);
+  private readonly lighting = new Lighting();
   private readonly axes = new THREE.AxesHelper(0.5); // the LIDAR's
   private readonly viewpoint: Viewpoint;
   private readonly pixel = new Uint8Array(4);
+  private pointSize = 1;
   private asked = false;
+  private fitted: "nothing" | "part" | "sweep" = "nothing"; // what the first view was fitted to
 
   /// Throws where the browser has no WebGL 2.
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.gl = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
+    this.gl.autoClear = false;
     this.renderer = rendererName(this.gl.getContext() as WebGL2RenderingContext);
     this.budget = pointBudget(this.renderer);
     this.gl.setPixelRatio(isSoftware(this.renderer) ? 1 : Math.min(devicePixelRatio, 2));
-    this.scene.add(this.objects.group, this.axes);
+    this.cloud.add(this.objects.group);
+    this.lines.add(this.axes);
     this.viewpoint = new Viewpoint(canvas, () => this.draw());
     canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
   resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
+    const { camera } = this.viewpoint, ratio = this.gl.getPixelRatio();
     this.gl.setSize(width, height, false);
-    this.viewpoint.camera.aspect = width / height;
-    this.viewpoint.camera.updateProjectionMatrix();
+    this.lighting.resize(this.canvas.width, this.canvas.height, ratio);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    const { focal, projection } = this.materials.uniforms;
+    focal.value = this.canvas.height / 2 / Math.tan((camera.fov * Math.PI) / 360);
+    projection.value = projectionOf(camera);
+    if (!this.viewpoint.touched) this.fitted = "nothing";
+    this.fitFirst(true);
     this.draw();
   }
 
-  showParts(parts: Points[]): void { this.objects.showParts(parts); this.draw(); }
-  showMap(map: VoxelMap): void { this.objects.showMap(map); this.draw(); }
+  /// `whole`: not only a part of a sweep.
+  showParts(parts: Points[], whole: boolean): void {
+    this.objects.showParts(parts);
+    this.materials.uniforms.voxel.value = 0;
+    this.fitFirst(whole);
+    this.draw();
+  }
+
+  showMap(map: VoxelMap): void {
+    this.objects.showMap(map);
+    this.materials.uniforms.voxel.value = kVoxelRadius * map.voxel_m;
+    this.fitFirst(true);
+    this.draw();
+  }
 
   /// Where the LIDAR is in the frame that is shown: 4x4 row by row; null: it is that frame.
   setLidar(pose: number[] | null): void {
     this.axes.matrixAutoUpdate = false;
     if (pose) this.axes.matrix.set(...(pose as Parameters<THREE.Matrix4["set"]>));
     else this.axes.matrix.identity();
-    (this.material.uniforms.origin.value as THREE.Vector3).setFromMatrixPosition(this.axes.matrix);
+    this.lidar.setFromMatrixPosition(this.axes.matrix);
   }
 
   /// `range`: the legend's ends [K, m, intensity].
-  setColour(colour: Colour, range: [number, number]): void { setColour(this.material, colour, range); this.draw(); }
+  setColour(colour: Colour, range: [number, number]): void { setColour(this.materials, colour, range); this.draw(); }
 
-  setPointSize(size_px: number): void {
-    this.material.uniforms.size.value = size_px * this.gl.getPixelRatio();
-    this.draw();
-  }
+  /// `times` as large as closes the gaps.
+  setPointSize(times: number): void { this.pointSize = times; this.draw(); }
+
+  setLighting(on: boolean): void { this.lighting.on = on; this.draw(); }
 
   setGround(dark: boolean): void {
-    this.gl.setClearColor(dark ? 0x0e1115 : 0xf1f4f7);
-    (this.material.uniforms.unknown.value as THREE.Vector3).setScalar(dark ? 0.32 : 0.68);
+    const { above, below, unknown } = kGrounds[dark ? "dark" : "light"];
+    this.lighting.setBackground(above, below);
+    (this.materials.uniforms.unknown.value as THREE.Vector3).setScalar(unknown);
     this.draw();
   }
 
   look(view: ViewName): void {
-    this.viewpoint.look(view, this.material.uniforms.origin.value as THREE.Vector3);
+    this.viewpoint.look(view, this.subject(), this.lidar);
+    this.draw();
+  }
+
+  /// All of it on the canvas, seen along the same direction.
+  fit(): void {
+    this.viewpoint.touched = true;
+    this.viewpoint.lookAlong(null, this.subject());
     this.draw();
   }
 
@@ -100,17 +143,40 @@ export class CloudScene {
     return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top);
   }
 
+  private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value as THREE.Vector3; }
+
+  private subject(): Float32Array { return subjectOf(this.objects.drawn().map(({ points }) => points)); }
+
+  /// The first view, and once more when there is a whole sweep, unless a person chose one.
+  private fitFirst(whole: boolean): void {
+    const now = whole ? "sweep" : "part";
+    const sized = this.canvas.clientWidth > 0;
+    if (this.viewpoint.touched || !sized || this.fitted === now || this.fitted === "sweep" || this.objects.total() === 0) return;
+    this.fitted = now;
+    this.viewpoint.lookFirst(this.subject(), this.lidar);
+  }
+
   private clipFromPoints(): THREE.Matrix4 {
     const { camera } = this.viewpoint;
     camera.updateMatrixWorld();
     return new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   }
 
+  private setSizes(quick: boolean): void {
+    const { grow, sizes } = this.materials.uniforms;
+    const ratio = this.gl.getPixelRatio(), total = this.objects.total();
+    grow.value = this.pointSize * Math.min(kMostGrowth, Math.sqrt(total / Math.max(this.points, 1)));
+    (sizes.value as THREE.Vector2).set(kSizes.least, quick ? kSizes.mostQuick : kSizes.most).multiplyScalar(ratio);
+    this.objects.use(quick ? this.materials.quick : this.materials.fine);
+  }
+
   private drawNow(): void {
     const { moving, camera } = this.viewpoint;
     const start = performance.now();
     this.points = this.objects.thin(moving ? this.pace.share : 1, this.budget);
-    this.gl.render(this.scene, camera);
+    this.setSizes(moving && this.pace.hurry);
+    this.lighting.draw(this.gl, this.cloud, camera);
+    this.gl.render(this.lines, camera);
     // Reading a pixel waits until it is there, which finish() need not.
     const context = this.gl.getContext();
     context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, this.pixel);

@@ -9,7 +9,9 @@ export interface Range { auto: boolean; low: number; high: number }
 
 export const mode = signal<Mode>("sweep");
 export const colour = signal<Colour>("rgb");
-export const pointSize = signal(2.5); // [px], 5 m away
+export const pointSize = signal(1); // times what closes the gaps
+export const lighting = signal(true); // eye-dome lighting
+export const dark = signal(true); // behind the cloud
 export const voxel = signal(0.05); // of the map [m]
 /// The legends' ends [°C, m, intensity].
 export const ranges = signal<Record<Ranged, Range>>({

@@ -18,6 +18,9 @@ export class Sweeps {
     return [...(this.whole?.parts.values() ?? []), ...this.chunks];
   }
 
+  /// A whole sweep is shown, not only chunks of one.
+  isWhole(): boolean { return this.whole !== null; }
+
   add(part: Part): void {
     if (part.header.sweep_utime < this.newest() - kRestartUs) this.clear();
     if (part.header.whole) this.addWhole(part);

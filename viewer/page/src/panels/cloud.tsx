@@ -35,6 +35,7 @@ function start(canvas: HTMLCanvasElement, marker: HTMLElement): () => void {
   const stopMarker = picked.subscribe(() => placeMarker(marker, scene, canvas));
   const forget = (event: KeyboardEvent) => { if (event.key === "Escape") picked.value = null; };
   addEventListener("keydown", forget);
+  canvas.addEventListener("dblclick", () => { picked.value = null; scene.fit(); });
   const sizes = new ResizeObserver(([entry]) => scene.resize(entry.contentRect.width, entry.contentRect.height));
   sizes.observe(canvas.parentElement!);
   return () => { stopMarker(); removeEventListener("keydown", forget); sizes.disconnect(); };
@@ -56,7 +57,7 @@ export function CloudPanel({ visible }: { visible: boolean }) {
     <div class="cloud">
       <div class="cloud-canvas">
         <canvas ref={canvas} tabIndex={0} data-testid="cloud-canvas"
-          aria-label="The fused cloud. Arrow keys shift it, with Shift turn it; plus and minus come nearer and go back." />
+          aria-label="The fused cloud. Arrow keys move it, with Shift turn it; plus and minus zoom." />
         <div ref={marker} class="cloud-marker" hidden data-testid="cloud-marker" />
         {failure && <p class="empty bad" role="alert">{failure}</p>}
       </div>

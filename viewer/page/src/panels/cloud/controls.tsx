@@ -1,7 +1,8 @@
+import type { Signal } from "@preact/signals";
 import { kColours, type Colour } from "../../cloud/color_maps";
 import { kViews } from "../../cloud/viewpoint";
 import { clearMap, sceneNow } from "../../cloud/model";
-import { colour, mode, pointSize, stats, voxel, type Mode } from "../../cloud/settings";
+import { colour, dark, lighting, mode, pointSize, stats, voxel, type Mode } from "../../cloud/settings";
 import { fixed, grouped } from "../../format";
 
 const kModes: { id: Mode; name: string }[] = [{ id: "sweep", name: "Sweep" }, { id: "map", name: "Map" }];
@@ -50,24 +51,46 @@ function MapSettings() {
   );
 }
 
+function Appearance() {
+  return (
+    <>
+      <label class="check">point size
+        <input type="range" min={0.5} max={3} step={0.25} value={pointSize.value} aria-label="Point size, times the spacing"
+          onInput={(event) => { pointSize.value = Number(event.currentTarget.value); }} />
+        {fixed(pointSize.value, 2, "×")}
+      </label>
+      <div class="row">
+        <Switch name="Eye-dome lighting" of={lighting} testid="cloud-lighting" title="Edges in depth are darkened" />
+        <Switch name="Dark background" of={dark} testid="cloud-dark" />
+      </div>
+    </>
+  );
+}
+
+function Switch({ name, of, testid, title }: { name: string; of: Signal<boolean>; testid: string; title?: string }) {
+  return (
+    <label class="check" title={title}>
+      <input type="checkbox" checked={of.value} data-testid={testid} onChange={(event) => { of.value = event.currentTarget.checked; }} />
+      {name}
+    </label>
+  );
+}
+
 export function Controls() {
   return (
     <div class="cloud-controls" data-testid="cloud-controls">
       <div class="row">
         <ModeButtons />
         <ColourChoice />
+        <button data-testid="cloud-fit" title="All of the cloud on the screen (double click)" onClick={() => sceneNow()?.fit()}>Fit</button>
       </div>
       {mode.value === "map" && <MapSettings />}
       <details class="cloud-more">
         <summary>View</summary>
         <ViewButtons />
-        <label class="check">point size
-          <input type="range" min={1} max={6} step={0.5} value={pointSize.value} aria-label="Point size, px"
-            onInput={(event) => { pointSize.value = Number(event.currentTarget.value); }} />
-          {fixed(pointSize.value, 1, "px")}
-        </label>
-        <p class="muted">Drag: turn. Right button or two fingers: shift. Wheel or pinch: nearer. Arrow keys: shift, with
-          Shift: turn; + and −: nearer. Tap a point for its values.</p>
+        <Appearance />
+        <p class="muted">Drag: turn. Right button or two fingers: move. Wheel or pinch: zoom. Double click: fit. Arrow keys:
+          move, with Shift: turn; + and −: zoom. Tap a point for its values.</p>
       </details>
     </div>
   );
