@@ -10,6 +10,8 @@ const access = {
     drawn: (): number => sceneNow()?.pace.frames ?? 0,
     /// Frames drawn in the last second. It draws on demand: 0 where nothing changes.
     fps: (): number => sceneNow()?.pace.fps(performance.now()) ?? 0,
+    /// What the frame drawn last took [ms].
+    cost: (): number => sceneNow()?.pace.cost_ms ?? 0,
     /// "": it does not say; what draws, e.g. "ANGLE (... SwiftShader ...)".
     renderer: (): string => sceneNow()?.renderer ?? "",
     /// A point of the shown frame [m] to pixels of the window, as a mouse has them.

@@ -7,4 +7,4 @@ export function rendererName(gl: WebGL2RenderingContext): string {
 }
 
 export const isSoftware = (renderer: string): boolean => /swiftshader|llvmpipe|software/i.test(renderer);
-export const pointBudget = (renderer: string): number => (isSoftware(renderer) ? 100_000 : 2_000_000);
+export const pointBudget = (renderer: string): number => (isSoftware(renderer) ? 500_000 : 2_000_000);

@@ -9,62 +9,56 @@ precision highp float;
 in vec3 position;
 void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }`;
 
-// As calib/present/pictures/internal/splats.cc shades pictures, with half of its samples.
+// As calib/present/pictures/internal/splats.cc shades pictures and closes their holes, with half of its
+// samples. 1 / depth is linear in what the texture holds; its ratios stand for differences of logarithms.
 const kFragment = `
 precision highp float;
 precision highp sampler2D;
 uniform sampler2D colors;
 uniform sampler2D depths;
-uniform vec2 projection; // as projectionOf
+uniform float infinite; // what the texture would hold at infinity
 uniform float strength; // 0: no lighting
-uniform int reach; // [px]
+uniform float reach; // [px]
 uniform vec3 above; // the background's ends
 uniform vec3 below;
 out vec4 pixel;
 
-const float kBelongs = 0.015; // of the logarithm: what is nearer by less is the same surface
-const float kBound = 0.06; // one large step is to draw a line, not to blacken a surface
-
-float depthAt(ivec2 at) { return texelFetch(depths, clamp(at, ivec2(0), textureSize(depths, 0) - 1), 0).r; }
-float logOf(float depth) { return log2(projection.y / (projection.x - (2.0 * depth - 1.0))); }
+const float kBelongs = 0.01; // nearer by less, as a share: the same surface
+const float kBound = 0.04; // one large step is to draw a line, not to blacken a surface
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  float depth = depthAt(at);
-  float here = logOf(depth);
-  vec4 near, far; // right, left, above, below
-  ivec2 steps[4] = ivec2[4](ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1));
-  for (int i = 0; i < 4; ++i) {
-    near[i] = logOf(depthAt(at + reach * steps[i]));
-    far[i] = logOf(depthAt(at + 3 * reach * steps[i]));
-  }
-  vec3 color = texelFetch(colors, at, 0).rgb;
-  float light = 1.0;
-  // A hole in a surface has nearer ones on at least three sides, and takes their mean.
-  vec3 around = vec3(0.0);
-  float sides = 0.0, nearest = 1.0;
-  for (int i = 0; i < 4; ++i) {
-    float limit = here - kBelongs;
-    if (min(near[i], far[i]) >= limit) continue;
-    ivec2 found = at + (near[i] < limit ? 1 : 3) * reach * steps[i];
-    around += texelFetch(colors, found, 0).rgb;
-    nearest = min(nearest, depthAt(found));
-    sides += 1.0;
-  }
-  if (sides > 2.5) {
-    color = around / sides;
-    depth = nearest;
-  } else if (depth == 1.0) {
-    color = mix(below, above, gl_FragCoord.y / float(textureSize(depths, 0).y));
-  } else if (strength > 0.0) {
-    vec4 sum = clamp(here - near, 0.0, kBound) + clamp(here - far, 0.0, kBound);
-    light = exp(-strength * (sum.x + sum.y + sum.z + sum.w));
-  }
+  vec2 texel = 1.0 / vec2(textureSize(depths, 0));
+  vec2 at = gl_FragCoord.xy * texel;
+  float depth = texture(depths, at).r;
+  vec2 right = vec2(reach * texel.x, 0.0), up = vec2(0.0, reach * texel.y);
+  vec4 near = vec4(texture(depths, at + right).r, texture(depths, at - right).r,
+                   texture(depths, at + up).r, texture(depths, at - up).r);
+  vec4 far = vec4(texture(depths, at + 3.0 * right).r, texture(depths, at - 3.0 * right).r,
+                  texture(depths, at + 3.0 * up).r, texture(depths, at - 3.0 * up).r);
+  // How much nearer the surroundings are, as a share.
+  float here = 1.0 / (infinite - depth);
+  vec4 nearer = (infinite - near) * here - 1.0;
+  vec4 farther = (infinite - far) * here - 1.0;
   gl_FragDepth = depth;
-  pixel = vec4(light * color, 1.0);
+  // A hole in a surface has nearer ones on at least three sides.
+  vec4 sides = step(kBelongs, max(nearer, farther));
+  float count = dot(sides, vec4(1.0));
+  if (count > 2.5) {
+    vec4 reached = 3.0 - 2.0 * step(kBelongs, nearer);
+    vec3 sum = sides.x * texture(colors, at + reached.x * right).rgb + sides.y * texture(colors, at - reached.y * right).rgb
+      + sides.z * texture(colors, at + reached.z * up).rgb + sides.w * texture(colors, at - reached.w * up).rgb;
+    vec4 around = min(near, far);
+    gl_FragDepth = min(min(around.x, around.y), min(around.z, around.w));
+    pixel = vec4(sum / count, 1.0);
+  } else if (depth == 1.0) {
+    pixel = vec4(mix(below, above, at.y), 1.0);
+  } else {
+    vec4 sum = clamp(nearer, 0.0, kBound) + clamp(farther, 0.0, kBound);
+    pixel = vec4(exp(-strength * dot(sum, vec4(1.0))) * texture(colors, at).rgb, 1.0);
+  }
 }`;
 
-const kStrength = 4;
+const kStrength = 6;
 
 export class Lighting {
   on = true;
@@ -74,7 +68,7 @@ export class Lighting {
   private readonly material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3, vertexShader: kVertex, fragmentShader: kFragment, depthFunc: THREE.AlwaysDepth,
     uniforms: {
-      colors: { value: this.target.texture }, depths: { value: this.target.depthTexture }, projection: { value: new THREE.Vector2() },
+      colors: { value: this.target.texture }, depths: { value: this.target.depthTexture }, infinite: { value: 1 },
       strength: { value: kStrength }, reach: { value: 1 }, above: { value: new THREE.Vector3() }, below: { value: new THREE.Vector3() },
     },
   });
@@ -104,7 +98,7 @@ export class Lighting {
   /// `points` as seen by `camera`, onto the canvas.
   draw(gl: THREE.WebGLRenderer, points: THREE.Scene, camera: THREE.PerspectiveCamera): void {
     const { uniforms } = this.material;
-    (uniforms.projection.value as THREE.Vector2).copy(projectionOf(camera));
+    uniforms.infinite.value = 0.5 + 0.5 * projectionOf(camera).x;
     uniforms.strength.value = this.on ? kStrength : 0;
     gl.setRenderTarget(this.target);
     gl.clear();

@@ -13,7 +13,8 @@ import { PointObjects } from "./point_objects";
 import { Viewpoint, type ViewName } from "./viewpoint";
 import type { VoxelMap } from "./voxel_map";
 
-const kSizes = { least: 1.25, most: 32, mostQuick: 10 }; // of a point [CSS px]
+const kSizes = { least: 1.25, most: 32 }; // of a point [CSS px]
+const kQuick = { ratio: 0.5, grow: 0.75, most: 10 }; // what a frame in a hurry has of pixels, and of a point
 const kVoxelRadius = 0.62; // of its side
 const kMostGrowth = 2; // of points that stand for those left out
 const kGrounds = {
@@ -38,6 +39,8 @@ export class CloudScene {
   private readonly axes = new THREE.AxesHelper(0.5); // the LIDAR's
   private readonly viewpoint: Viewpoint;
   private readonly pixel = new Uint8Array(4);
+  private readonly ratio: number; // pixels of the screen in a CSS px
+  private size = { width: 1, height: 1 }; // [CSS px]
   private pointSize = 1;
   private asked = false;
   private fitted: "nothing" | "part" | "sweep" = "nothing"; // what the first view was fitted to
@@ -48,7 +51,7 @@ export class CloudScene {
     this.gl.autoClear = false;
     this.renderer = rendererName(this.gl.getContext() as WebGL2RenderingContext);
     this.budget = pointBudget(this.renderer);
-    this.gl.setPixelRatio(isSoftware(this.renderer) ? 1 : Math.min(devicePixelRatio, 2));
+    this.ratio = isSoftware(this.renderer) ? 1 : Math.min(devicePixelRatio, 2);
     this.cloud.add(this.objects.group);
     this.lines.add(this.axes);
     this.viewpoint = new Viewpoint(canvas, () => this.draw());
@@ -57,14 +60,12 @@ export class CloudScene {
 
   resize(width: number, height: number): void {
     if (width === 0 || height === 0) return;
-    const { camera } = this.viewpoint, ratio = this.gl.getPixelRatio();
-    this.gl.setSize(width, height, false);
-    this.lighting.resize(this.canvas.width, this.canvas.height, ratio);
+    const { camera } = this.viewpoint;
+    this.size = { width, height };
+    this.setPixels(this.ratio);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
-    const { focal, projection } = this.materials.uniforms;
-    focal.value = this.canvas.height / 2 / Math.tan((camera.fov * Math.PI) / 360);
-    projection.value = projectionOf(camera);
+    this.materials.uniforms.projection.value = projectionOf(camera);
     if (!this.viewpoint.touched) this.fitted = "nothing";
     this.fitFirst(true);
     this.draw();
@@ -162,11 +163,23 @@ export class CloudScene {
     return new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
   }
 
-  private setSizes(quick: boolean): void {
+  /// So many pixels a CSS px.
+  private setPixels(ratio: number): void {
+    const { width, height } = this.size;
+    this.gl.setPixelRatio(ratio);
+    this.gl.setSize(width, height, false);
+    this.lighting.resize(this.canvas.width, this.canvas.height, ratio);
+    this.materials.uniforms.focal.value = this.canvas.height / 2 / Math.tan((this.viewpoint.camera.fov * Math.PI) / 360);
+  }
+
+  /// `quick`: fewer pixels, and squares for discs.
+  private setQuality(quick: boolean): void {
+    const ratio = quick ? kQuick.ratio * this.ratio : this.ratio;
+    if (ratio !== this.gl.getPixelRatio()) this.setPixels(ratio);
     const { grow, sizes } = this.materials.uniforms;
-    const ratio = this.gl.getPixelRatio(), total = this.objects.total();
-    grow.value = this.pointSize * Math.min(kMostGrowth, Math.sqrt(total / Math.max(this.points, 1)));
-    (sizes.value as THREE.Vector2).set(kSizes.least, quick ? kSizes.mostQuick : kSizes.most).multiplyScalar(ratio);
+    const thinned = Math.min(kMostGrowth, Math.sqrt(this.objects.total() / Math.max(this.points, 1)));
+    grow.value = this.pointSize * thinned * (quick ? kQuick.grow : 1);
+    (sizes.value as THREE.Vector2).set(Math.max(1, kSizes.least * ratio), (quick ? kQuick.most : kSizes.most) * ratio);
     this.objects.use(quick ? this.materials.quick : this.materials.fine);
   }
 
@@ -174,7 +187,7 @@ export class CloudScene {
     const { moving, camera } = this.viewpoint;
     const start = performance.now();
     this.points = this.objects.thin(moving ? this.pace.share : 1, this.budget);
-    this.setSizes(moving && this.pace.hurry);
+    this.setQuality(moving && this.pace.hurry);
     this.lighting.draw(this.gl, this.cloud, camera);
     this.gl.render(this.lines, camera);
     // Reading a pixel waits until it is there, which finish() need not.
