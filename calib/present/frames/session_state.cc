@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "calib/camera/camera.h"
 #include "calib/present/frames/internal/content_json.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/report/session_verdict.h"
@@ -15,6 +16,21 @@ namespace {
 using nlohmann::json;
 
 const char* NameOf(CameraKind kind) { return kind == CameraKind::kThermal ? "thermal" : "color"; }
+
+// Where the image's corners look, going round; empty where the lens does not tell.
+json CornersOf(const CameraSpec& spec) {
+  if (!spec.lens.known()) return json::array();
+  const Camera camera(spec);
+  json corners = json::array();
+  const double right = spec.width - 0.5, below = spec.height - 0.5;
+  for (const Eigen::Vector2d& pixel :
+       {Eigen::Vector2d(-0.5, -0.5), {right, -0.5}, {right, below}, {-0.5, below}}) {
+    const auto direction = camera.Unproject(pixel);
+    if (!direction) return json::array();
+    corners.push_back({direction->x(), direction->y(), direction->z()});
+  }
+  return corners;
+}
 
 const char* NameOf(EventKind kind) {
   switch (kind) {
@@ -281,7 +297,8 @@ std::string RigFrame(const Rig& rig) {
     cameras.push_back({{"name", camera.name},
                        {"kind", NameOf(camera.kind)},
                        {"width", camera.width},
-                       {"height", camera.height}});
+                       {"height", camera.height},
+                       {"corners", CornersOf(camera)}});
   }
   return JsonFrame({{"type", "rig"},
                     {"hash", rig.hash},

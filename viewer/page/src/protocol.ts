@@ -37,6 +37,7 @@ export interface CameraInfo {
   kind: "color" | "thermal";
   width: number; // [px]
   height: number;
+  corners: Vec3[]; // where the image's four corners look, going round, camera axes; empty: no lens is known
 }
 
 /// The rig, as far as the page needs it.

@@ -1,5 +1,6 @@
 #include "calib/present/frames/session_state.h"
 
+#include "calib/camera/camera.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/report/report_content.h"
 #include "calib/solve/colouring.h"
@@ -370,10 +371,27 @@ TEST(RigFrame, HasWhatThePageDraws) {
   rig.hash = "abc";
   const json frame = Parse(RigFrame(rig)).header;
   EXPECT_EQ(frame.at("hash"), "abc");
-  EXPECT_EQ(frame.at("cameras").at(1),
-            json({{"name", "thermal"}, {"kind", "thermal"}, {"width", 24}, {"height", 18}}));
+  const json& thermal = frame.at("cameras").at(1);
+  EXPECT_EQ(thermal.at("name"), "thermal");
+  EXPECT_EQ(thermal.at("kind"), "thermal");
+  EXPECT_EQ(thermal.at("width"), 24);
+  EXPECT_EQ(thermal.at("height"), 18);
   EXPECT_EQ(frame.at("target").at("squares_x"), 11);
   EXPECT_EQ(frame.at("target").at("height_m"), 0.9144);
+}
+
+TEST(RigFrame, SaysWhereEachImagesCornersLook) {
+  Rig rig = test::MakeRig();
+  const Camera camera(rig.cameras[0]);
+  const json corners = Parse(RigFrame(rig)).header.at("cameras").at(0).at("corners");
+  ASSERT_EQ(corners.size(), 4U);
+  const auto pixel = camera.Project({corners[2].at(0).get<double>(), corners[2].at(1).get<double>(),
+                                     corners[2].at(2).get<double>()});
+  ASSERT_TRUE(pixel);
+  EXPECT_NEAR(pixel->x(), rig.cameras[0].width - 0.5, 1e-6);
+  EXPECT_NEAR(pixel->y(), rig.cameras[0].height - 0.5, 1e-6);
+  rig.cameras[0].lens = {};
+  EXPECT_TRUE(Parse(RigFrame(rig)).header.at("cameras").at(0).at("corners").empty());
 }
 
 TEST(SigmaOf, IsTheRootMeanSquareOfTheReportsThreeAxes) {

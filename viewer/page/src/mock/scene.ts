@@ -1,9 +1,16 @@
 // A yard with a checkerboard, a warm wall and a person who walks; LIDAR frame [m], [K].
 import type { CameraInfo, RigFrame, Vec3 } from "../protocol";
 
+const kFocal = 0.95; // times the width
+
+function cornersOf(width: number, height: number): Vec3[] {
+  const [u, v] = [0.5 / kFocal, (0.5 * height) / width / kFocal];
+  return [[-u, -v, 1], [u, -v, 1], [u, v, 1], [-u, v, 1]];
+}
+
 export const kCameras: CameraInfo[] = [
-  { name: "rgb", kind: "color", width: 1936, height: 1456 },
-  { name: "thermal", kind: "thermal", width: 640, height: 512 },
+  { name: "rgb", kind: "color", width: 1936, height: 1456, corners: cornersOf(1936, 1456) },
+  { name: "thermal", kind: "thermal", width: 640, height: 512, corners: cornersOf(640, 512) },
 ];
 export const kTarget: RigFrame["target"] = { squares_x: 8, squares_y: 6, square_m: 0.1, width_m: 1.0, height_m: 0.8 };
 
@@ -32,7 +39,7 @@ export function project(camera: CameraInfo, [x, y, z]: Vec3): Vec3 | null {
   const m = camera_from_lidar(camera);
   const [cx, cy, cz] = [0, 4, 8].map((row) => m[row] * x + m[row + 1] * y + m[row + 2] * z + m[row + 3]);
   if (cz < 0.1) return null;
-  const focal = 0.95 * camera.width;
+  const focal = kFocal * camera.width;
   return [camera.width / 2 + (focal * cx) / cz, camera.height / 2 + (focal * cy) / cz, cz];
 }
 
