@@ -37,3 +37,9 @@ test("left of the LIDAR is left on the screen", () => {
   const x = 400 - (300 / Math.tan(Math.PI / 6)) * 0.1; // 1 m of 10
   expect(picked([[10, 1, 0]], x, 300)).toBe(0);
 });
+
+test("none that is cropped away", () => {
+  const points = part([{ at: [4, 0, 0] }, { at: [10, 0, 0] }]);
+  const found = pick([{ points, drawn: 2 }], clipFromPoints(), kScreen, 400, 300, { low: [5, -1, -1], high: [20, 1, 1] });
+  expect(found?.index).toBe(1);
+});

@@ -1,18 +1,33 @@
 // Tables of 256 colours: perceptual ones for values, one colour a combination of cameras.
 import { interpolateInferno, interpolateTurbo, interpolateViridis } from "d3-scale-chromatic";
 
-export type Colour = "rgb" | "temperature" | "depth" | "intensity" | "cameras";
+import type { CameraInfo } from "../protocol";
+
+export type Colour = "rgb" | "temperature" | "depth" | "intensity" | "cameras" | "blend";
 export const kColours: { id: Colour; name: string; unit: string }[] = [
   { id: "rgb", name: "Colour (RGB)", unit: "" },
   { id: "temperature", name: "Temperature", unit: "°C" },
   { id: "depth", name: "Distance", unit: "m" },
   { id: "intensity", name: "Intensity", unit: "" },
   { id: "cameras", name: "Cameras", unit: "" },
+  { id: "blend", name: "Colour + temperature", unit: "°C" },
 ];
 
+/// What these cameras let be shown, the best first; null: it is not known which there are.
+export function coloursOf(cameras: Pick<CameraInfo, "kind">[] | null): Colour[] {
+  const has = (kind: CameraInfo["kind"]) => !cameras || cameras.some((camera) => camera.kind === kind);
+  const [color, thermal] = [has("color"), has("thermal")];
+  const offered: [Colour, boolean][] = [
+    ["rgb", color], ["temperature", thermal], ["blend", color && thermal], ["depth", true], ["intensity", true], ["cameras", color || thermal],
+  ];
+  return offered.filter(([, there]) => there).map(([id]) => id);
+}
+
 /// The darkest ends cannot be told from a dark ground.
+const warm = (t: number) => interpolateInferno(0.12 + 0.88 * t);
 const kRamps: Partial<Record<Colour, (t: number) => string>> = {
-  temperature: (t) => interpolateInferno(0.12 + 0.88 * t),
+  temperature: warm,
+  blend: warm,
   depth: (t) => interpolateTurbo(0.05 + 0.93 * t),
   intensity: (t) => interpolateViridis(t),
 };

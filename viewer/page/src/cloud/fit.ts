@@ -1,6 +1,7 @@
 // From where a cloud fills the canvas.
 import { Matrix4, Quaternion, Vector3 } from "three";
 import type { Vec3 } from "../protocol";
+import { isInside, kEverything, type Box } from "./crop";
 import { forSample, type Points } from "./points";
 
 const kSample = 4000; // points that are looked at
@@ -9,11 +10,12 @@ const kMargin = 0.94; // share of the canvas that they fill
 const kLeastSeen = 50;
 
 /// What the view is fitted to: points that a camera saw, or all where hardly any was; x y z each [m].
-export function subjectOf(shown: Points[], inside: (x: number, y: number, z: number) => boolean = () => true): Float32Array {
+/// Only within `limits`.
+export function subjectOf(shown: Points[], limits: Box = kEverything): Float32Array {
   const seen: number[] = [], all: number[] = [];
   forSample(shown, kSample, ({ floats, words }, at) => {
     const point = [floats[at], floats[at + 1], floats[at + 2]];
-    if (!point.every(Number.isFinite) || !inside(point[0], point[1], point[2])) return;
+    if (!point.every(Number.isFinite) || !isInside(limits, point[0], point[1], point[2])) return;
     all.push(...point);
     if (words[at + 6] >>> 16) seen.push(...point);
   });
@@ -24,8 +26,17 @@ export function quantile(sorted: ArrayLike<number>, share: number): number {
   return sorted[Math.round(share * (sorted.length - 1))];
 }
 
+/// Some of the points, seen or not; x y z each [m].
+export function sampleOf(shown: Points[]): Float32Array {
+  const all: number[] = [];
+  forSample(shown, kSample, ({ floats }, at) => {
+    if (Number.isFinite(floats[at] + floats[at + 1] + floats[at + 2])) all.push(floats[at], floats[at + 1], floats[at + 2]);
+  });
+  return Float32Array.from(all);
+}
+
 /// Robust extents of x y z triples, in each axis from the 2nd to the 98th percentile; null: no points.
-export function extentsOf(points: Float32Array): { low: Vec3; high: Vec3 } | null {
+export function extentsOf(points: Float32Array): Box | null {
   if (points.length === 0) return null;
   const sorted = [0, 1, 2].map((axis) => points.filter((_, i) => i % 3 === axis).sort());
   const at = (share: number) => sorted.map((values) => quantile(values, share)) as Vec3;

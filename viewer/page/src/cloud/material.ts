@@ -18,6 +18,9 @@ uniform int mode; // as kColours
 uniform vec2 range; // the legend's ends: K, m, intensity
 uniform vec3 origin; // the LIDAR [m]
 uniform vec3 unknown;
+uniform float blend; // of the temperature, the rest of the colour
+uniform vec3 low; // what is shown
+uniform vec3 high;
 uniform float voxel; // radius of what is in a voxel [m]
 uniform float grow; // times the radius
 uniform float focal; // pixels that 1 m is long, 1 m away
@@ -36,9 +39,12 @@ vec3 color(vec3 point) {
   uint colors = head.w;
   uint intensity = colors >> 24;
   uint valid = tail.z >> 16;
-  if (mode == 0 && (colors & 0xffffffu) != 0u)
-    return vec3(colors & 255u, (colors >> 8) & 255u, (colors >> 16) & 255u) / 255.0;
-  if (mode == 1 && !isNan(tail.x)) return ramped(uintBitsToFloat(tail.x));
+  bool coloured = (mode == 0 || mode == 5) && (colors & 0xffffffu) != 0u;
+  bool warm = (mode == 1 || mode == 5) && !isNan(tail.x);
+  vec3 rgb = vec3(colors & 255u, (colors >> 8) & 255u, (colors >> 16) & 255u) / 255.0;
+  if (coloured && warm) return mix(rgb, ramped(uintBitsToFloat(tail.x)), blend);
+  if (coloured) return rgb;
+  if (warm) return ramped(uintBitsToFloat(tail.x));
   if (mode == 2) return ramped(distance(point, origin));
   if (mode == 3 && intensity != 255u) return ramped(float(intensity));
   if (mode == 4 && valid != 0u) return texelFetch(ramp, ivec2(min(int(valid), 255), 0), 0).rgb;
@@ -48,7 +54,8 @@ vec3 color(vec3 point) {
 void main() {
   vec3 point = uintBitsToFloat(head.xyz);
   vec4 seen = modelViewMatrix * vec4(point, 1.0);
-  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z);
+  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z)
+    || any(lessThan(point, low)) || any(greaterThan(point, high));
   gl_Position = missing ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
   float radius = grow * (angle > 0.0 ? angle * ANGLE_UNIT * distance(point, origin) : voxel);
   gl_PointSize = clamp(2.0 * radius * focal / max(-seen.z, 0.01), sizes.x, sizes.y);
@@ -95,6 +102,7 @@ export function makeMaterials(): Materials {
   const uniforms = {
     ramp: { value: textureOf("temperature") }, mode: { value: 0 }, range: { value: new THREE.Vector2(0, 1) },
     origin: { value: new THREE.Vector3() }, unknown: { value: new THREE.Vector3() },
+    blend: { value: 0.5 }, low: { value: new THREE.Vector3() }, high: { value: new THREE.Vector3() },
     voxel: { value: 0 }, grow: { value: 1 }, focal: { value: 1 }, sizes: { value: new THREE.Vector2(1, 1) },
     projection: { value: new THREE.Vector2() },
   };

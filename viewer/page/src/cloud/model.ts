@@ -1,13 +1,21 @@
 // Cloud frames in, the scene out. It outlives the panel: what came while another tab was shown is
 // there when this one is.
 import { effect } from "@preact/signals";
-import type { CloudFrame, Frame, Vec3 } from "../protocol";
-import { ack, onCloud, watched } from "../store";
+import { Matrix4 } from "three";
+import type { CloudFrame, Frame, SessionFrame, RigFrame, Vec3 } from "../protocol";
+import { ack, onCloud, rig, session, watched } from "../store";
 import { kZeroCelsius } from "../format";
+import { coloursOf } from "./color_maps";
+import { limitsOf } from "./crop";
+import { withPoint } from "./measure";
 import { partOf, valuesOf, type PointValues } from "./points";
 import { percentiles } from "./range";
 import { CloudScene } from "./scene";
-import { colour, dark, isRanged, lighting, mode, picked, pointSize, ranges, setRange, stats, voxel } from "./settings";
+import {
+  blend, colour, crop, dark, ends, extents, lighting, mode, picked, pointSize, rangedBy, ranges, section, setRange, showCameras, showGrid,
+  stats, voxel,
+} from "./settings";
+import type { Frustum } from "./surroundings";
 import { Sweeps } from "./sweeps";
 import { VoxelMap } from "./voxel_map";
 
@@ -44,16 +52,16 @@ function tell(): void {
 
 /// The legend's ends in the scene's units.
 function sceneRange(): [number, number] {
-  const which = colour.peek();
-  if (!isRanged(which)) return [0, 1];
+  const which = rangedBy(colour.peek());
+  if (!which) return [0, 1];
   const { low, high } = ranges.peek()[which];
   const zero = which === "temperature" ? kZeroCelsius : 0;
   return [low + zero, high + zero];
 }
 
 function autoRange(): void {
-  const which = colour.peek();
-  if (!isRanged(which) || !ranges.peek()[which].auto) return;
+  const which = rangedBy(colour.peek());
+  if (!which || !ranges.peek()[which].auto) return;
   const inMap = mode.peek() === "map";
   const lidar: Vec3 = inMap && map.frame === "map" && pose ? [pose[3], pose[7], pose[11]] : [0, 0, 0];
   const ends = percentiles(inMap ? [map] : sweeps.shown(), which, lidar);
@@ -68,6 +76,19 @@ function show(): void {
   if (inMap) scene.showMap(map);
   else scene.showParts(sweeps.shown(), sweeps.isWhole());
   autoRange();
+  if (scene.extents !== extents.peek()) extents.value = scene.extents;
+}
+
+const kKindColours = { color: "#7cc4ff", thermal: "#ffa94d" };
+
+/// Cameras that are calibrated, where they are.
+function frustaOf(cameras: RigFrame["cameras"], states: SessionFrame["cameras"]): Frustum[] {
+  return states.flatMap(({ camera: name, camera_from_lidar: pose }) => {
+    const info = cameras.find((each) => each.name === name);
+    if (!info || !pose) return [];
+    const lidar_from_camera = new Matrix4().set(...(pose as Parameters<Matrix4["set"]>)).invert();
+    return [{ name, color: kKindColours[info.kind], lidar_from_camera, corners: info.corners }];
+  });
 }
 
 /// Begins the map with what is known now.
@@ -83,8 +104,8 @@ export function clearMap(): void {
 }
 
 /// The scene on a canvas, once; throws where the browser has no WebGL 2. `onDrawn` follows each frame.
-export function startScene(canvas: HTMLCanvasElement, onDrawn: () => void): CloudScene {
-  const made = new CloudScene(canvas);
+export function startScene(canvas: HTMLCanvasElement, words: HTMLElement, onDrawn: () => void): CloudScene {
+  const made = new CloudScene(canvas, words);
   scene = made;
   stats.value = { ...stats.peek(), budget: made.budget, renderer: made.renderer };
   watched.value = { ...watched.peek(), points: made.budget };
@@ -92,11 +113,23 @@ export function startScene(canvas: HTMLCanvasElement, onDrawn: () => void): Clou
   effect(() => made.setGround(dark.value));
   effect(() => made.setLighting(lighting.value));
   effect(() => made.setPointSize(pointSize.value));
+  effect(() => made.setBlend(blend.value));
+  effect(() => made.setGrid(showGrid.value));
+  effect(() => {
+    made.surroundings.setBox(crop.value);
+    made.setLimits(limitsOf(crop.value, section.value));
+  });
+  effect(() => { made.surroundings.setEnds(ends.value); made.draw(); });
+  effect(() => {
+    made.surroundings.setFrusta(showCameras.value ? frustaOf(rig.value?.cameras ?? [], session.value?.cameras ?? []) : []);
+    made.draw();
+  });
   effect(() => { void ranges.value; made.setColour(colour.value, sceneRange()); });
   effect(() => { void colour.value; autoRange(); });
   effect(() => {
     void voxel.value;
     picked.value = null;
+    ends.value = [];
     if (mode.value === "map") restartMap();
     show();
   });
@@ -119,5 +152,16 @@ export function pickAt(x: number, y: number): PointValues | null {
   return picked.value;
 }
 
+/// The point at a pixel of the window becomes an end of what is measured.
+export function measureAt(x: number, y: number): void {
+  const found = scene?.pickAt(x, y);
+  if (found) ends.value = withPoint(ends.peek(), valuesOf(found.points, found.index).position);
+}
+
 onCloud(take);
+// What there is to be shown depends on the rig.
+effect(() => {
+  const offered = coloursOf(rig.value?.cameras ?? null);
+  if (!offered.includes(colour.peek())) colour.value = offered[0];
+});
 document.addEventListener("visibilitychange", () => { if (document.hidden) ackAll(); });

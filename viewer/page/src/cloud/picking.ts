@@ -1,5 +1,6 @@
 // The point under a finger.
 import type { Matrix4 } from "three";
+import { isInside, kEverything, type Box } from "./crop";
 import { kWords, type Points } from "./points";
 
 export interface Screen { width: number; height: number } // [px]
@@ -9,9 +10,9 @@ const kReach = 12; // from the finger [px]
 const kAsNear = 3; // no farther than the nearest and this [px]: drawn over each other
 
 /// Of the points nearest to (x, y) on the screen [px from its upper left], the nearest to the viewpoint.
-/// `clip_from_points`: projection * view.
+/// `clip_from_points`: projection * view; `limits`: points beyond are not shown.
 export function pick(shown: { points: Points; drawn: number }[], clip_from_points: Matrix4, screen: Screen,
-  x: number, y: number): Picked | null {
+  x: number, y: number, limits: Box = kEverything): Picked | null {
   const m = clip_from_points.elements;
   const found: { points: Points; index: number; away: number; depth: number }[] = [];
   for (const { points, drawn } of shown)
@@ -19,7 +20,7 @@ export function pick(shown: { points: Points; drawn: number }[], clip_from_point
       const at = index * kWords;
       const [px, py, pz] = [points.floats[at], points.floats[at + 1], points.floats[at + 2]];
       const w = m[3] * px + m[7] * py + m[11] * pz + m[15];
-      if (!(w > 0)) continue;
+      if (!(w > 0) || !isInside(limits, px, py, pz)) continue;
       const dx = (((m[0] * px + m[4] * py + m[8] * pz + m[12]) / w + 1) / 2) * screen.width - x;
       if (Math.abs(dx) > kReach) continue;
       const dy = ((1 - (m[1] * px + m[5] * py + m[9] * pz + m[13]) / w) / 2) * screen.height - y;

@@ -3,19 +3,24 @@ import * as THREE from "three";
 import type { Vec3 } from "../protocol";
 import { isSoftware, pointBudget, rendererName } from "./budget";
 import type { Colour } from "./color_maps";
-import { subjectOf } from "./fit";
+import { kEverything, type Box } from "./crop";
+import { extentsOf, sampleOf, subjectOf } from "./fit";
+import { gridOf, groundHeight } from "./ground";
+import { Labels } from "./labels";
 import { Lighting, projectionOf } from "./lighting";
 import { makeMaterials, setColour } from "./material";
 import { Pace } from "./pace";
 import { pick, type Picked } from "./picking";
 import type { Points } from "./points";
 import { PointObjects } from "./point_objects";
+import { Surroundings } from "./surroundings";
 import { Viewpoint, type ViewName } from "./viewpoint";
 import type { VoxelMap } from "./voxel_map";
 
 const kSizes = { least: 1.25, most: 32 }; // of a point [CSS px]
 const kQuick = { ratio: 0.5, grow: 0.75, most: 10 }; // what a frame in a hurry has of pixels, and of a point
 const kVoxelRadius = 0.62; // of its side
+const kSurveyMs = 2000;
 const kMostGrowth = 2; // of points that stand for those left out
 const kGrounds = {
   dark: { above: 0.063, below: 0.188, unknown: 0.3 },
@@ -26,6 +31,9 @@ export class CloudScene {
   readonly renderer: string; // what draws
   readonly budget: number; // points
   readonly pace = new Pace();
+  readonly surroundings = new Surroundings();
+  extents = kEverything; // about where points are
+  grid = true;
   points = 0; // in the frame drawn last
   /// Called after each frame that was really drawn.
   onDrawn: () => void = () => undefined;
@@ -36,7 +44,9 @@ export class CloudScene {
   private readonly materials = makeMaterials();
   private readonly objects = new PointObjects(this.materials.fine);
   private readonly lighting = new Lighting();
-  private readonly axes = new THREE.AxesHelper(0.5); // the LIDAR's
+  private readonly labels: Labels;
+  private limits = kEverything;
+  private surveyed = -Infinity; // when [ms]
   private readonly viewpoint: Viewpoint;
   private readonly pixel = new Uint8Array(4);
   private readonly ratio: number; // pixels of the screen in a CSS px
@@ -46,14 +56,15 @@ export class CloudScene {
   private fitted: "nothing" | "part" | "sweep" = "nothing"; // what the first view was fitted to
 
   /// Throws where the browser has no WebGL 2.
-  constructor(private readonly canvas: HTMLCanvasElement) {
+  constructor(private readonly canvas: HTMLCanvasElement, words: HTMLElement) {
+    this.labels = new Labels(words);
     this.gl = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: "high-performance" });
     this.gl.autoClear = false;
     this.renderer = rendererName(this.gl.getContext() as WebGL2RenderingContext);
     this.budget = pointBudget(this.renderer);
     this.ratio = isSoftware(this.renderer) ? 1 : Math.min(devicePixelRatio, 2);
     this.cloud.add(this.objects.group);
-    this.lines.add(this.axes);
+    this.lines.add(this.surroundings.group);
     this.viewpoint = new Viewpoint(canvas, () => this.draw());
     canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
@@ -88,14 +99,28 @@ export class CloudScene {
 
   /// Where the LIDAR is in the frame that is shown: 4x4 row by row; null: it is that frame.
   setLidar(pose: number[] | null): void {
-    this.axes.matrixAutoUpdate = false;
-    if (pose) this.axes.matrix.set(...(pose as Parameters<THREE.Matrix4["set"]>));
-    else this.axes.matrix.identity();
-    this.lidar.setFromMatrixPosition(this.axes.matrix);
+    const { matrix } = this.surroundings.lidar;
+    if (pose) matrix.set(...(pose as Parameters<THREE.Matrix4["set"]>));
+    else matrix.identity();
+    this.lidar.setFromMatrixPosition(matrix);
   }
 
   /// `range`: the legend's ends [K, m, intensity].
   setColour(colour: Colour, range: [number, number]): void { setColour(this.materials, colour, range); this.draw(); }
+
+  /// How much of the temperature, of 1, is in the blend.
+  setBlend(share: number): void { this.materials.uniforms.blend.value = share; this.draw(); }
+
+  /// Only what is within is shown.
+  setLimits(limits: Box): void {
+    this.limits = limits;
+    const { low, high } = this.materials.uniforms;
+    (low.value as THREE.Vector3).set(...limits.low);
+    (high.value as THREE.Vector3).set(...limits.high);
+    this.draw();
+  }
+
+  setGrid(on: boolean): void { this.grid = on; this.survey(true); this.draw(); }
 
   /// `times` as large as closes the gaps.
   setPointSize(times: number): void { this.pointSize = times; this.draw(); }
@@ -118,6 +143,14 @@ export class CloudScene {
   fit(): void {
     this.viewpoint.touched = true;
     this.viewpoint.lookAlong(null, this.subject());
+    this.survey(true);
+    this.draw();
+  }
+
+  /// All of it on the canvas, seen along an axis.
+  lookAlong(axis: 0 | 1 | 2): void {
+    this.viewpoint.touched = true;
+    this.viewpoint.lookAlong(new THREE.Vector3().setComponent(axis, axis === 2 ? -1 : 1), this.subject());
     this.draw();
   }
 
@@ -141,15 +174,26 @@ export class CloudScene {
   /// The point at a pixel of the window.
   pickAt(x: number, y: number): Picked | null {
     const box = this.canvas.getBoundingClientRect();
-    return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top);
+    return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top, this.limits);
   }
 
   private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value as THREE.Vector3; }
 
-  private subject(): Float32Array { return subjectOf(this.objects.drawn().map(({ points }) => points)); }
+  private subject(): Float32Array { return subjectOf(this.objects.drawn().map(({ points }) => points), this.limits); }
+
+  /// Where points are, and the grid below them; from time to time, as they come.
+  private survey(now: boolean): void {
+    if (this.objects.total() === 0 || (!now && performance.now() < this.surveyed + kSurveyMs)) return;
+    this.surveyed = performance.now();
+    const points = sampleOf(this.objects.drawn().map(({ points: each }) => each));
+    const found = extentsOf(points);
+    if (found) this.extents = found;
+    this.surroundings.setGrid(found && this.grid ? gridOf(found, groundHeight(points)) : null);
+  }
 
   /// The first view, and once more when there is a whole sweep, unless a person chose one.
   private fitFirst(whole: boolean): void {
+    this.survey(false);
     const now = whole ? "sweep" : "part";
     const sized = this.canvas.clientWidth > 0;
     if (this.viewpoint.touched || !sized || this.fitted === now || this.fitted === "sweep" || this.objects.total() === 0) return;
@@ -190,6 +234,7 @@ export class CloudScene {
     this.setQuality(moving && this.pace.hurry);
     this.lighting.draw(this.gl, this.cloud, camera);
     this.gl.render(this.lines, camera);
+    this.labels.place(this.surroundings.labels(), (at) => this.project(at));
     // Reading a pixel waits until it is there, which finish() need not.
     const context = this.gl.getContext();
     context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, this.pixel);

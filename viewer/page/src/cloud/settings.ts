@@ -1,6 +1,8 @@
 // What a person set in the Cloud panel, and what is read from it.
 import { signal } from "@preact/signals";
+import type { Vec3 } from "../protocol";
 import type { Colour } from "./color_maps";
+import { kEverything, type Box, type Section } from "./crop";
 import type { PointValues } from "./points";
 
 export type Mode = "sweep" | "map";
@@ -23,7 +25,21 @@ export const picked = signal<PointValues | null>(null);
 /// Of what is shown.
 export const stats = signal({ points: 0, budget: 0, voxel_m: 0, frame: "lidar" as "lidar" | "map", cameras: [] as string[], renderer: "" });
 
-export const isRanged = (which: Colour): which is Ranged => which in ranges.peek();
+export const blend = signal(0.5); // of the temperature, the rest of the colour
+export const crop = signal<Box | null>(null); // what is shown; null: all
+export const section = signal<Section | null>(null);
+/// About where points are, in the frame that is shown.
+export const extents = signal<Box>(kEverything);
+export const measuring = signal(false);
+export const ends = signal<Vec3[]>([]); // of what is measured
+export const showGrid = signal(true);
+export const showCameras = signal(true);
+
+/// Which legend a colour has; null: none with ends.
+export function rangedBy(which: Colour): Ranged | null {
+  const ranged = which === "blend" ? "temperature" : which;
+  return ranged in ranges.peek() ? (ranged as Ranged) : null;
+}
 
 export function setRange(which: Ranged, change: Partial<Range>): void {
   ranges.value = { ...ranges.peek(), [which]: { ...ranges.peek()[which], ...change } };

@@ -1,7 +1,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
-import { pickAt, setVisible, startScene } from "../cloud/model";
+import { measureAt, pickAt, setVisible, startScene } from "../cloud/model";
 import type { CloudScene } from "../cloud/scene";
-import { picked } from "../cloud/settings";
+import { ends, measuring, picked } from "../cloud/settings";
 import { hello } from "../store";
 import { Controls, Status } from "./cloud/controls";
 import { Legend } from "./cloud/legend";
@@ -29,13 +29,16 @@ function placeMarker(marker: HTMLElement, scene: CloudScene, canvas: HTMLCanvasE
   if (at) marker.style.transform = `translate(${at.x - box.left}px, ${at.y - box.top}px)`;
 }
 
-function start(canvas: HTMLCanvasElement, marker: HTMLElement): () => void {
-  const scene = startScene(canvas, () => placeMarker(marker, scene, canvas));
-  listenToTaps(canvas, pickAt);
+function start(canvas: HTMLCanvasElement, marker: HTMLElement, words: HTMLElement): () => void {
+  const scene = startScene(canvas, words, () => placeMarker(marker, scene, canvas));
+  listenToTaps(canvas, (x, y) => (measuring.peek() ? measureAt(x, y) : pickAt(x, y)));
   const stopMarker = picked.subscribe(() => placeMarker(marker, scene, canvas));
-  const forget = (event: KeyboardEvent) => { if (event.key === "Escape") picked.value = null; };
+  const forget = (event: KeyboardEvent) => { if (event.key === "Escape") [picked.value, ends.value] = [null, []]; };
   addEventListener("keydown", forget);
-  canvas.addEventListener("dblclick", () => { picked.value = null; scene.fit(); });
+  canvas.addEventListener("dblclick", () => {
+    [picked.value, ends.value] = [null, []];
+    scene.fit();
+  });
   const sizes = new ResizeObserver(([entry]) => scene.resize(entry.contentRect.width, entry.contentRect.height));
   sizes.observe(canvas.parentElement!);
   return () => { stopMarker(); removeEventListener("keydown", forget); sizes.disconnect(); };
@@ -44,10 +47,11 @@ function start(canvas: HTMLCanvasElement, marker: HTMLElement): () => void {
 export function CloudPanel({ visible }: { visible: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const marker = useRef<HTMLDivElement>(null);
+  const words = useRef<HTMLDivElement>(null);
   const [failure, setFailure] = useState("");
   useEffect(() => {
     try {
-      return start(canvas.current!, marker.current!);
+      return start(canvas.current!, marker.current!, words.current!);
     } catch (error) {
       setFailure(`The cloud cannot be drawn: this browser has no WebGL 2 (${error})`);
     }
@@ -58,6 +62,7 @@ export function CloudPanel({ visible }: { visible: boolean }) {
       <div class="cloud-canvas">
         <canvas ref={canvas} tabIndex={0} data-testid="cloud-canvas"
           aria-label="The fused cloud. Arrow keys move it, with Shift turn it; plus and minus zoom." />
+        <div ref={words} class="cloud-labels" aria-hidden="true" data-testid="cloud-labels" />
         <div ref={marker} class="cloud-marker" hidden data-testid="cloud-marker" />
         {failure && <p class="empty bad" role="alert">{failure}</p>}
       </div>

@@ -1,7 +1,7 @@
 // What the colours mean, and where the colour table begins and ends.
 import { useState } from "preact/hooks";
 import { cameraColor, gradient, kColours } from "../../cloud/color_maps";
-import { colour, isRanged, ranges, setRange, stats, type Ranged } from "../../cloud/settings";
+import { blend, colour, rangedBy, ranges, setRange, stats, type Ranged } from "../../cloud/settings";
 
 /// All combinations of few cameras; of many each alone.
 function combinations(cameras: string[]): { valid: number; name: string }[] {
@@ -57,8 +57,23 @@ function RangeLegend({ which }: { which: Ranged }) {
   );
 }
 
+function BlendSlide() {
+  return (
+    <label class="cloud-blend">Colour
+      <input type="range" min={0} max={1} step={0.05} value={blend.value} data-testid="cloud-blend" aria-label="From colour to temperature"
+        onInput={(event) => { blend.value = Number(event.currentTarget.value); }} />
+      Temperature
+    </label>
+  );
+}
+
 export function Legend() {
-  const which = colour.value;
+  const which = colour.value, ranged = rangedBy(which);
   if (which === "cameras") return <CamerasLegend />;
-  return isRanged(which) ? <RangeLegend which={which} /> : null;
+  return (
+    <>
+      {which === "blend" && <BlendSlide />}
+      {ranged && <RangeLegend which={ranged} />}
+    </>
+  );
 }
