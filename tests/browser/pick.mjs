@@ -49,6 +49,6 @@ run(async () => {
   await openTab(page, "session");
   await until("thermal to be accepted", () => thermal.getAttribute("data-state"), (state) => state === "accepted");
   console.log(`after: ${await thermal.innerText()}`);
-  require(/corners by hand/.test(await thermal.innerText()), "the card does not say that corners were picked");
+  require(/corners picked by hand/.test(await thermal.innerText()), "the card does not say that corners were picked");
   await shot(page, "accepted");
 });

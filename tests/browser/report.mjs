@@ -41,6 +41,8 @@ run(async () => {
 
   await online.page.goto(url);
   const served = await look(online.page, "served");
+  require(await byId(online.page, "connection").innerText() === "finished session", "it does not say that the session is finished");
+  require(await byId(online.page, "tab-bus").count() === 0, "a finished session has a tab for the bus");
   require(JSON.stringify(served) === JSON.stringify(figures), `by the bridge it is ${JSON.stringify(served)}`);
   await openTab(online.page, "session");
   const buttons = byId(online.page, "panel-session").locator("[data-testid^=request-]:enabled");

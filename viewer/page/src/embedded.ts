@@ -13,7 +13,7 @@ export function takeEmbedded(): boolean {
     try {
       take(decodeFrame(bytesOf(element.textContent ?? "")));
     } catch (error) {
-      notices.value = [{ type: "notice", level: "error", text: `a frame of this report is broken: ${error}`, at: Date.now() }];
+      notices.value = [{ type: "notice", level: "error", text: `A frame of this report is damaged: ${error}`, at: Date.now() }];
     }
     element.remove(); // their text would be kept twice
   }

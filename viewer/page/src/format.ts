@@ -21,8 +21,14 @@ export function bytes(value: number): string {
   return fixed(scaled, scaled < 10 ? 2 : scaled < 100 ? 1 : 0, unit);
 }
 
-/// "2026-11-22 10:20:30.123456 UTC".
+const kFirstDate = 946_684_800e6; // 2000-01-01 [us]; before that a clock counts from when it was switched on
+
+/// Whether a time is one of the calendar, [us].
+export const isDate = (utime: number): boolean => utime >= kFirstDate;
+
+/// "2026-11-22 10:20:30.123456 UTC"; of a clock that has no date, its seconds.
 export function utc(utime: number): string {
+  if (!isDate(utime)) return utime > 0 ? fixed(utime / 1e6, 6, "s") : kNothing;
   const whole = new Date(Math.floor(utime / 1e6) * 1000);
   if (Number.isNaN(whole.getTime())) return kNothing;
   const micros = String(Math.floor(utime % 1e6)).padStart(6, "0");

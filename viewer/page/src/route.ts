@@ -1,7 +1,8 @@
 // Which tab is shown: "#/cameras" in the address. Other hashes (the token's) are left alone.
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
+import { connection, hello } from "./store";
 
-export const kTabs = [
+const kTabs = [
   { id: "cloud", name: "Cloud" },
   { id: "cameras", name: "Cameras" },
   { id: "session", name: "Session" },
@@ -10,16 +11,23 @@ export const kTabs = [
 ] as const;
 export type Tab = (typeof kTabs)[number]["id"];
 
-export const tab = signal<Tab>("cloud");
+/// A finished session has no bus, and corners picked in it would change nothing.
+export const tabs = computed(() => {
+  const over = connection.value === "embedded" || hello.value?.source === "session";
+  return kTabs.filter(({ id }) => !over || (id !== "pick" && id !== "bus"));
+});
+
+const wanted = signal<Tab>("cloud");
+export const tab = computed<Tab>(() => (tabs.value.some(({ id }) => id === wanted.value) ? wanted.value : "cloud"));
 
 function readAddress(): void {
   const named = kTabs.find(({ id }) => location.hash.split("?")[0] === `#/${id}`);
-  if (named) tab.value = named.id;
+  if (named) wanted.value = named.id;
 }
 
 export function goTo(next: Tab): void {
   if (location.hash !== `#/${next}`) history.pushState(null, "", `#/${next}`);
-  tab.value = next;
+  wanted.value = next;
 }
 
 export function startRoute(): void {

@@ -6,7 +6,7 @@ import { CamerasPanel } from "./panels/cameras";
 import { CloudPanel } from "./panels/cloud";
 import { PickPanel } from "./panels/pick";
 import { SessionPanel } from "./panels/session";
-import { goTo, kTabs, tab, type Tab } from "./route";
+import { goTo, tab, tabs, type Tab } from "./route";
 import { connection, hello, session, type Connection } from "./store";
 import { switchTheme, theme } from "./theme";
 import { Toasts } from "./toasts";
@@ -17,19 +17,31 @@ import "./shell.css";
 const kConnectionWords: Record<Connection, { text: string; grade: string }> = {
   connecting: { text: "connecting", grade: "caution" },
   open: { text: "live", grade: "good" },
-  lost: { text: "no bridge", grade: "bad" },
+  lost: { text: "disconnected", grade: "bad" },
   embedded: { text: "report", grade: "muted" },
 };
-const kGradeWords = { good: "good", caution: "caution", bad: "bad", none: "no verdict" } as const;
+const kGradeWords = { good: "good", caution: "caution", bad: "bad", none: "not assessed" } as const;
+
+/// A bridge to a finished session is no live one.
+function connectionWords(): { text: string; grade: string } {
+  if (connection.value === "open" && hello.value?.source === "session") return { text: "finished session", grade: "muted" };
+  return kConnectionWords[connection.value];
+}
+
+/// A session by its directory's name, so that it is whole on a phone, too.
+function shortTitle(): string {
+  const { source, title } = hello.value ?? { source: "", title: "" };
+  return source === "session" ? title.replace(/\/+$/, "").split("/").pop() || title : title;
+}
 
 function Head() {
-  const { text, grade } = kConnectionWords[connection.value];
+  const { text, grade } = connectionWords();
   const verdict = session.value?.verdict;
   const other = theme.value === "dark" ? "light" : "dark";
   return (
     <header class="shell-head">
       <h1>rgbdt</h1>
-      <span class="shell-title" data-testid="title" title={hello.value?.title}>{hello.value?.title}</span>
+      <span class="shell-title" data-testid="title" title={hello.value?.title}>{shortTitle()}</span>
       {verdict && (
         <span class={`badge ${verdict.grade === "none" ? "muted" : verdict.grade}`} data-testid="verdict-badge" title={verdict.headline}>
           {kGradeWords[verdict.grade]}
@@ -45,7 +57,7 @@ function Head() {
 
 /// Left and right go round the tabs, Home and End to the first and last (WAI-ARIA's tabs).
 function tabFor(key: string, from: number): number | null {
-  const last = kTabs.length - 1;
+  const last = tabs.value.length - 1;
   if (key === "ArrowRight") return from === last ? 0 : from + 1;
   if (key === "ArrowLeft") return from === 0 ? last : from - 1;
   if (key === "Home") return 0;
@@ -54,7 +66,7 @@ function tabFor(key: string, from: number): number | null {
 
 function Tabs() {
   const onKey = (event: KeyboardEvent, index: number) => {
-    const next = kTabs[tabFor(event.key, index) ?? -1];
+    const next = tabs.value[tabFor(event.key, index) ?? -1];
     if (!next) return;
     event.preventDefault();
     goTo(next.id);
@@ -62,7 +74,7 @@ function Tabs() {
   };
   return (
     <div class="shell-tabs" role="tablist" aria-label="Panels">
-      {kTabs.map(({ id, name }, index) => (
+      {tabs.value.map(({ id, name }, index) => (
         <button key={id} id={`tab-${id}`} role="tab" data-testid={`tab-${id}`} aria-selected={tab.value === id}
           aria-controls={`panel-${id}`} tabIndex={tab.value === id ? 0 : -1} title={`${name} (${index + 1})`}
           onClick={() => goTo(id)} onKeyDown={(event) => onKey(event, index)}>
@@ -93,7 +105,7 @@ const kPanels: Record<Exclude<Tab, "cloud">, () => ComponentChildren> = {
 function onDigit(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   if (event.ctrlKey || event.metaKey || event.altKey || target.closest("input, select, textarea")) return;
-  const chosen = /^[1-5]$/.test(event.key) ? kTabs[Number(event.key) - 1] : undefined;
+  const chosen = /^[1-5]$/.test(event.key) ? tabs.value[Number(event.key) - 1] : undefined;
   if (chosen) goTo(chosen.id);
 }
 
@@ -108,7 +120,7 @@ export function Shell() {
       <Head />
       <Tabs />
       {connection.value === "lost" && (
-        <div class="shell-gone" role="alert" data-testid="gone">The bridge is gone; trying again</div>
+        <div class="shell-gone" role="alert" data-testid="gone">Connection lost; reconnecting</div>
       )}
       <main class={`shell-main ${now === "cloud" ? "" : "beside"}`}>
         <CloudPlace alone={now === "cloud"} />

@@ -1,6 +1,7 @@
 // What browser tests read and do where clicks and `data-testid` do not reach: `window.rgbdt`.
 import { pickAt, sceneNow } from "./cloud/model";
 import type { PointValues } from "./cloud/points";
+import type { ViewName } from "./cloud/viewpoint";
 
 const access = {
   cloud: {
@@ -16,6 +17,7 @@ const access = {
     renderer: (): string => sceneNow()?.renderer ?? "",
     /// A point of the shown frame [m] to pixels of the window, as a mouse has them.
     project: (x: number, y: number, z: number) => sceneNow()?.project([x, y, z]) ?? null,
+    look: (view: ViewName): void => sceneNow()?.look(view),
     /// As a tap on that pixel of the window; the picked point's values, null where there is none.
     pickAt: (x: number, y: number): PointValues | null => pickAt(x, y),
   },

@@ -24,7 +24,7 @@ function onBytes(bytes: ArrayBuffer): void {
     take(decodeFrame(bytes));
   } catch (error) {
     notices.value = [...notices.value.slice(-4),
-      { type: "notice", level: "error", text: `the bridge sent what this page cannot read: ${error}`, at: Date.now() }];
+      { type: "notice", level: "error", text: `Received data that cannot be read: ${error}`, at: Date.now() }];
   }
 }
 

@@ -21,7 +21,7 @@ function Channels({ channels }: Pick<BusFrame, "channels">) {
   return (
     <Card title="Channels">
       <div class="scroll-x"><table data-testid="bus-channels">
-        <Heads names={[["Name"], ["Rate", true], ["Trend"], ["Latency", true], ["Lost", true], ["Size", true], ["Per s", true]]} />
+        <Heads names={[["Name"], ["Rate", true], ["Trend"], ["Latency", true], ["Lost", true], ["Size", true], ["Data rate", true]]} />
         <tbody>{channels.map((one) => (
           <tr key={one.name} data-testid={`channel-${one.name}`}>
             <th scope="row" class="mono">{one.name}</th>
@@ -40,8 +40,8 @@ function Channels({ channels }: Pick<BusFrame, "channels">) {
 
 type Process = BusFrame["processes"][number];
 function light({ ready, age_s }: Process): [grade: string, word: string] {
-  if (age_s > kLateS) return ["bad", `silent for ${fixed(age_s, 0, "s")}`];
-  return ready ? ["good", "ready"] : ["caution", "waits"];
+  if (age_s > kLateS) return ["bad", `no status for ${fixed(age_s, 0, "s")}`];
+  return ready ? ["good", "ready"] : ["caution", "not ready"];
 }
 
 function ProcessRow({ process }: { process: Process }) {
@@ -70,11 +70,11 @@ function Browsers({ browsers, screen_ms }: Pick<BusFrame, "browsers" | "screen_m
   return (
     <Card title="Browsers">
       {screen_ms && (
-        <p data-testid="screen-ms">From the bus to the screen: <strong>{fixed(screen_ms.p50, 0, "ms")}</strong> (median),{" "}
-          <strong>{fixed(screen_ms.p95, 0, "ms")}</strong> (95 %), newest {screen_ms.count} frames.</p>
+        <p data-testid="screen-ms">Delay from bus to screen: <strong>{fixed(screen_ms.p50, 0, "ms")}</strong> (median),{" "}
+          <strong>{fixed(screen_ms.p95, 0, "ms")}</strong> (95 %), last {screen_ms.count} frames.</p>
       )}
       <div class="scroll-x"><table data-testid="bus-browsers">
-        <Heads names={[["Address"], ["Waiting", true], ["Thinned", true], ["Points", true]]} />
+        <Heads names={[["Address"], ["Queued", true], ["Reduced", true], ["Points", true]]} />
         <tbody>{browsers.map((one) => (
           <tr key={one.address}>
             <th scope="row" class="mono">{one.address}</th>
@@ -90,13 +90,13 @@ function Browsers({ browsers, screen_ms }: Pick<BusFrame, "browsers" | "screen_m
 
 export function BusPanel() {
   const now = bus.value;
-  if (!now) return <p class="empty">Nothing of a bus: a finished session, or the bridge has not said yet.</p>;
+  if (!now) return <p class="empty">No bus data yet.</p>;
   return (
     <div class="panel bus">
       <Channels channels={now.channels} />
       <Card title="Processes">
         <ul class="bus-processes">{now.processes.map((one) => <ProcessRow key={one.process} process={one} />)}</ul>
-        {now.processes.length === 0 && <p class="muted">None has said how it is.</p>}
+        {now.processes.length === 0 && <p class="muted">No process has reported its status.</p>}
       </Card>
       <Browsers browsers={now.browsers} screen_ms={now.screen_ms} />
     </div>

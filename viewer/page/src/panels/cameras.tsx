@@ -71,7 +71,7 @@ export function CamerasPanel() {
   useViewRequest(shownView);
   useWatched(shownView === "" && hasLive ? names : [], shownView === "" && hasLive && switches.value.cloud);
 
-  if (!rig.value) return <p class="empty">No rig yet: nobody on the bus has said which cameras there are.</p>;
+  if (!rig.value) return <p class="empty">No rig description received yet.</p>;
   return (
     <section class="panel cameras" aria-label="Cameras">
       <CameraButtons cameras={rig.value.cameras} shown={names} />

@@ -72,7 +72,7 @@ export function CloudPanel({ visible }: { visible: boolean }) {
         <Status />
       </div>
       <PointCard />
-      {!hello.value && <p class="cloud-wait empty">Nothing yet.</p>}
+      {!hello.value && <p class="cloud-wait empty">Waiting for data.</p>}
     </div>
   );
 }

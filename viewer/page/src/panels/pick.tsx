@@ -15,15 +15,15 @@ import "./panels.css";
 
 function whyNotSend(state: SessionFrame): string {
   const why = whyNotCommand(connection.value, hello.value);
-  return why === "" && state.mode === "finished" ? "This session is finished: corners picked now would change nothing." : why;
+  return why === "" && state.mode === "finished" ? "This session is finished: corners can no longer be picked." : why;
 }
 
 function Help() {
   return (
     <div class="pick-help">
-      <p><strong>Click the board's four outer corners, going round; the border counts, not the squares.</strong></p>
+      <p><strong>Click the four outer corners of the board, in order around it (the corners of the board, not of the squares).</strong></p>
       <details>
-        <summary>How to be exact</summary>
+        <summary>How to pick accurately</summary>
         <p>Zoom in with the wheel or two fingers. Drag a corner to move it; arrow keys move the chosen one by 0.25 px,
           with Shift by 2 px. Tab goes to the next corner, Backspace removes it. Without a mouse: move the image with the
           arrow keys and press Enter to set a corner in its middle.</p>
@@ -48,13 +48,13 @@ function SendLine({ state, target, image }: { state: SessionFrame; target: Targe
         <button type="button" class={possible ? "primary" : ""} disabled={!possible} onClick={sendCorners} data-testid="pick-send">
           Send corners
         </button>
-        <button type="button" disabled={corners.length === 0} onClick={() => setCorners(key, [])} data-testid="pick-clear">Begin again</button>
+        <button type="button" disabled={corners.length === 0} onClick={() => setCorners(key, [])} data-testid="pick-clear">Clear</button>
         {corners.length === kCorners && fault !== "" && (
-          <button type="button" onClick={() => setCorners(key, goingRound(corners))} data-testid="pick-order">Put them in order</button>
+          <button type="button" onClick={() => setCorners(key, goingRound(corners))} data-testid="pick-order">Sort the corners</button>
         )}
       </div>
       <p aria-live="polite" data-testid="pick-fault" class={corners.length === kCorners && fault ? "caution" : "muted"}>
-        {refused || fault || "The four go round the board."}
+        {refused || fault || "Four corners are set."}
       </p>
     </>
   );
@@ -63,7 +63,7 @@ function SendLine({ state, target, image }: { state: SessionFrame; target: Targe
 function Picking({ state, target }: { state: SessionFrame; target: Target }) {
   const key = keyOf(target.view, target.camera);
   const image = images.value.get(key);
-  if (!image) return <p class="empty">Waits for the image of {target.camera} in view {target.view}.</p>;
+  if (!image) return <p class="empty">Waiting for the image of {target.camera} in view {target.view}.</p>;
   return (
     <>
       <PickImage key={key} image={image} corners={cornersOf(key)} set={(next) => { choose(target); setCorners(key, next); }}
@@ -77,7 +77,7 @@ export function PickPanel() {
   const state = session.value;
   const target = state && targetOf(state);
   useViewRequest(target?.view ?? "");
-  if (!state || !target) return <p class="empty">No view yet: there is no image to pick corners in.</p>;
+  if (!state || !target) return <p class="empty">No views yet.</p>;
   return (
     <div class="panel pick">
       <div class="card">

@@ -15,7 +15,7 @@ import "./panels.css";
 function NextView({ next }: { next: NonNullable<SessionFrame["next_view"]> }) {
   return (
     <div class="next-view" data-testid="next-view">
-      <h3>Where to hold the board next</h3>
+      <h3>Next board position</h3>
       <p class="next-words">{next.words}</p>
       <p class="muted">{next.gain}</p>
     </div>
@@ -49,10 +49,11 @@ function isEmpty(state: SessionFrame): boolean {
 
 export function SessionPanel() {
   const state = session.value;
-  if (!state) return <p class="empty">Nothing is known of a session yet.</p>;
+  if (!state) return <p class="empty">No session data yet.</p>;
   return (
     <div class="panel session">
-      <section class="card" aria-label="Verdict">
+      <section class="card" aria-label="Assessment">
+        <h2>Assessment</h2>
         <VerdictCard verdict={state.verdict} testid="verdict" />
         {state.cameras.length > 1 && (
           <details>
@@ -68,7 +69,7 @@ export function SessionPanel() {
         {state.heldout.rows.length > 0 && <TableView table={state.heldout} />}
       </section>
       <section class="card" aria-label="Coverage">
-        <h2>Where the board was held</h2>
+        <h2>Board positions</h2>
         <Coverage cameras={rig.value?.cameras ?? []} views={state.views} />
       </section>
       <ReportPictures />

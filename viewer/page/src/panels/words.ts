@@ -1,5 +1,5 @@
 // Numbers and times as these panels say them, always with their unit.
-import { fixed, kZeroCelsius } from "../format";
+import { fixed, isDate, kZeroCelsius, utc } from "../format";
 
 type Number = number | null | undefined; // unknown where there is none
 
@@ -26,8 +26,9 @@ export function celsius(kelvin: number): string {
   return fixed(kelvin - kZeroCelsius, 1, "°C");
 }
 
-/// [us] as the time of day, UTC.
+/// [us] as the time of day, UTC; of a clock that has no date, its seconds.
 export function clock(utime: number): string {
+  if (!isDate(utime)) return utc(utime);
   return `${new Date(utime / 1000).toISOString().slice(11, 23)} UTC`;
 }
 

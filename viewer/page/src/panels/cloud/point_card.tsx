@@ -8,7 +8,7 @@ function rows(point: PointValues): [string, string][] {
   const sigma = point.sigma_k === null ? "" : ` ± ${fixed(point.sigma_k, 2, "K")}`;
   return [
     ["x", metres(x)], ["y", metres(y)], ["z", metres(z)],
-    [stats.value.frame === "map" ? "from the map's origin" : "distance", metres(Math.hypot(x, y, z))],
+    [stats.value.frame === "map" ? "distance from the map's origin" : "distance", metres(Math.hypot(x, y, z))],
     ["RGB", point.color?.join(" ") ?? "–"],
     ["intensity", fixed(point.intensity, 0)],
     ["temperature", celsius(point.kelvin) + sigma],
@@ -27,7 +27,7 @@ export function PointCard() {
       <div class="cloud-card-head">
         <h3>Point, {stats.value.frame === "map" ? "map frame" : "LIDAR frame"}</h3>
         {point.color && <i style={{ background: `rgb(${point.color.join(" ")})` }} />}
-        <button aria-label="Forget the point" title="Esc" onClick={() => { picked.value = null; }}>✕</button>
+        <button aria-label="Close" title="Esc" onClick={() => { picked.value = null; }}>✕</button>
       </div>
       <dl>
         {rows(point).map(([name, value]) => (

@@ -13,11 +13,11 @@ const kLateUs = 300_000; // an overlay that is older than its image by more is s
 
 /// What a person should see.
 export function whatToSee(overlay: ShownOverlay): string {
-  if (!overlay.header.calibrated) return "No calibration of this camera yet: nothing of the cloud can be laid on the image.";
-  if (overlay.edge.length === 0) return "The cloud shows no edge of the board to compare with.";
-  const rule = "Points of the board's edge should lie on its border";
+  if (!overlay.header.calibrated) return "This camera is not calibrated yet: the cloud cannot be projected onto the image.";
+  if (overlay.edge.length === 0) return "There is no board edge in the cloud to compare with.";
+  const rule = "The board edge from the cloud should lie on the board's border";
   const { rms } = summaryOf(overlay.edge);
-  return rms === null ? `${rule}; its outline was not found in the image, so judge by eye.` : `${rule}: ${px(rms, 1)} RMS.`;
+  return rms === null ? `${rule}; the outline was not detected in the image, so compare by eye.` : `${rule}, outline error ${px(rms, 1)} RMS.`;
 }
 
 function lateness(image: ShownImage, overlay: ShownOverlay): string {
@@ -26,7 +26,7 @@ function lateness(image: ShownImage, overlay: ShownOverlay): string {
 }
 
 function OverlayWords({ image, overlay }: { image: ShownImage; overlay: ShownOverlay | undefined }) {
-  if (!overlay) return <p class="muted">Nothing was looked for in this image yet.</p>;
+  if (!overlay) return <p class="muted">Detection has not run on this image yet.</p>;
   return (
     <>
       <p data-testid={`overlay-text-${image.header.camera}`}>
@@ -37,12 +37,18 @@ function OverlayWords({ image, overlay }: { image: ShownImage; overlay: ShownOve
   );
 }
 
+/// A finished session without a view has no live image either.
+function titleOf(camera: string, view: string): string {
+  if (view !== "") return `${camera}, view ${view}`;
+  return session.value?.mode === "finished" ? camera : `${camera}, live`;
+}
+
 interface Props { camera: CameraInfo; view: string; switches: OverlaySwitches }
 
 function waitingFor(camera: string, view: string): string {
-  if (view === "") return "Waits for this camera's first image.";
+  if (view === "") return session.value?.mode === "finished" ? "No view has an image of this camera." : "Waiting for this camera's first image.";
   const own = session.value?.views.find((each) => each.name === view)?.cameras.find((each) => each.camera === camera);
-  return own?.image_utime ? `Waits for the image of view ${view}.` : `View ${view} has no image of this camera.`;
+  return own?.image_utime ? `Waiting for the image of view ${view}.` : `View ${view} has no image of this camera.`;
 }
 
 function Waiting({ camera, view }: { camera: CameraInfo; view: string }) {
@@ -57,13 +63,13 @@ export function CameraPicture({ camera, view, switches }: Props) {
   const [falseColour, setFalseColour] = useState(false);
   const image = images.value.get(keyOf(view, camera.name));
   const overlay = overlays.value.get(keyOf(view, camera.name));
-  const title = `${camera.name}, ${view === "" ? "live" : `view ${view}`}`;
+  const title = titleOf(camera.name, view);
   const { min_k: low, max_k: high } = image?.header ?? { min_k: null, max_k: null };
   return (
     <article class="card picture" aria-label={title} data-testid={`picture-${camera.name}`}>
       <header class="row">
         <h3>{title}</h3>
-        <span class="muted">{camera.width} × {camera.height} px{image ? `, ${clock(image.header.utime)}` : ""}</span>
+        <span class="muted">{camera.width} × {camera.height} px{image && image.header.utime > 0 ? `, ${clock(image.header.utime)}` : ""}</span>
       </header>
       {image ? (
         <ImageCanvas key={`${view}/${camera.name}`} image={image} falseColour={falseColour && camera.kind === "thermal"}

@@ -81,7 +81,7 @@ function LookButtons({ zoom, whole, moved, viewport }: Look & { moved: boolean; 
     <div class="imagebox-buttons" role="group" aria-label="Zoom">
       <button type="button" onClick={() => zoom(kKeyZoom)} aria-label="Zoom in">+</button>
       <button type="button" onClick={() => zoom(1 / kKeyZoom)} aria-label="Zoom out">−</button>
-      <button type="button" onClick={whole} disabled={!moved}>Whole image</button>
+      <button type="button" onClick={whole} disabled={!moved}>Fit image</button>
       {viewport && <span class="muted">{Math.round(100 * viewport.scale)} %</span>}
     </div>
   );

@@ -33,11 +33,11 @@ function Ramp({ name, low, high, title }: { name: "turbo" | "inferno" | "grey"; 
 export function ResidualLegend({ overlay }: { overlay: ShownOverlay }) {
   const { counts, rms } = summaryOf(overlay.edge);
   return (
-    <ul class="legend" aria-label="Board edge of the cloud: distance from the outline">
+    <ul class="legend" aria-label="Outline error: distance of the board edge from the outline">
       {kResidualClasses.map((each, i) => (counts[i]! > 0 || each.name !== "unknown") && (
         <li key={each.name}><Mark mark={each.mark} colour={each.colour} /> {each.words}: {counts[i]}</li>
       ))}
-      <li><strong data-testid="edge-rms">RMS {px(rms)}</strong></li>
+      <li><strong data-testid="edge-rms">outline error {px(rms)} RMS</strong></li>
     </ul>
   );
 }
@@ -47,9 +47,9 @@ function FoundLegend({ overlay, switches }: { overlay: ShownOverlay; switches: O
   return (
     <ul class="legend">
       {switches.corners && corners > 0 &&
-        <li><span class="swatch" style={{ background: kOverlayColours.corners }} /> {count(corners, "corner")} found</li>}
+        <li><span class="swatch" style={{ background: kOverlayColours.corners }} /> {count(corners, "corner")} detected</li>}
       {switches.outline && overlay.outline.length > 0 &&
-        <li><span class="swatch" style={{ background: kOverlayColours.outline }} /> board's outline</li>}
+        <li><span class="swatch" style={{ background: kOverlayColours.outline }} /> board outline</li>}
     </ul>
   );
 }
@@ -60,7 +60,7 @@ export function OverlayLegends({ overlay, switches }: { overlay: ShownOverlay; s
     <>
       <FoundLegend overlay={overlay} switches={switches} />
       {switches.edge && overlay.edge.length > 0 && <ResidualLegend overlay={overlay} />}
-      {depths && <Ramp name="turbo" title="Cloud" low={metres(depths.low, 1)} high={metres(depths.high, 1)} />}
+      {depths && <Ramp name="turbo" title="Depth" low={metres(depths.low, 1)} high={metres(depths.high, 1)} />}
     </>
   );
 }

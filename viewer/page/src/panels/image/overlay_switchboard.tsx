@@ -1,10 +1,10 @@
 import type { OverlaySwitches } from "./overlay_drawing";
 
 const kNames: Record<keyof OverlaySwitches, string> = {
-  corners: "Corners found",
-  outline: "Board's outline",
-  edge: "Board edge of the cloud",
-  cloud: "Cloud by depth",
+  corners: "Detected corners",
+  outline: "Board outline",
+  edge: "Board edge from the cloud",
+  cloud: "Cloud, coloured by depth",
 };
 
 interface Props { switches: OverlaySwitches; set(next: OverlaySwitches): void }
@@ -12,7 +12,7 @@ interface Props { switches: OverlaySwitches; set(next: OverlaySwitches): void }
 export function OverlaySwitchboard({ switches, set }: Props) {
   return (
     <fieldset class="row switches">
-      <legend class="muted">Drawn on the image</legend>
+      <legend class="muted">Show on the image</legend>
       {(Object.keys(kNames) as (keyof OverlaySwitches)[]).map((name) => (
         <label key={name} class="check">
           <input type="checkbox" checked={switches[name]} data-testid={`overlay-${name}`}

@@ -25,7 +25,7 @@ export function ViewStrip({ views, chosen, hasLive, camera, choose }: Props) {
           <button type="button" key={name} class="strip-item" aria-pressed={chosen === name}
             data-testid={`view-${name}`} onClick={() => choose(name)}>
             {url ? <img src={url} alt="" /> : <span class="strip-none" aria-hidden="true">no image</span>}
-            {name}{heldout ? " (check)" : ""}
+            {name}{heldout ? " (held out)" : ""}
           </button>
         );
       })}

@@ -39,8 +39,8 @@ export function Choice({ session, target }: { session: SessionFrame; target: Tar
   return (
     <div class="choice">
       {session.pick_wanted.length > 0 && (
-        <div class="row" role="group" aria-label="Images that want picked corners">
-          <span>Wanted:</span>
+        <div class="row" role="group" aria-label="Images that need picked corners">
+          <span>Needed for:</span>
           {session.pick_wanted.map((each) => (
             <button type="button" key={keyOf(each.view, each.camera)} aria-pressed={keyOf(each.view, each.camera) === shown}
               title={each.why} data-testid={`pick-wanted-${each.view}-${each.camera}`} onClick={() => choose(each)}>
@@ -50,7 +50,7 @@ export function Choice({ session, target }: { session: SessionFrame; target: Tar
         </div>
       )}
       <label class="row">
-        <span>Any image:</span>
+        <span>Image:</span>
         <select data-testid="pick-view" value={shown} onChange={(event) => {
           const next = all.find((each) => keyOf(each.view, each.camera) === event.currentTarget.value);
           if (next) choose(next);
@@ -62,7 +62,7 @@ export function Choice({ session, target }: { session: SessionFrame; target: Tar
           ))}
         </select>
       </label>
-      {wanted?.why && <p class="caution" data-testid="pick-why">Why it is wanted: {wanted.why}</p>}
+      {wanted?.why && <p class="caution" data-testid="pick-why">Reason: {wanted.why}</p>}
     </div>
   );
 }

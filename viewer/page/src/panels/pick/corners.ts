@@ -21,7 +21,7 @@ function around(corners: Vec2[], i: number): Vec2 {
 
 /// What is wrong with them; "": nothing. A flat board's outline is convex in every image.
 export function faultOf(corners: Vec2[], image: Size): string {
-  if (corners.length < kCorners) return `Corner ${corners.length + 1} of ${kCorners} is to be clicked.`;
+  if (corners.length < kCorners) return `Click corner ${corners.length + 1} of ${kCorners}.`;
   const outside = corners.findIndex(([x, y]) => x < -0.5 || y < -0.5 || x > image.width - 0.5 || y > image.height - 0.5);
   if (outside >= 0) return `Corner ${outside + 1} is outside the image.`;
   const close = corners.findIndex((at, i) => Math.hypot(at[0] - around(corners, i + 1)[0], at[1] - around(corners, i + 1)[1]) < kLeastSidePx);
@@ -30,7 +30,7 @@ export function faultOf(corners: Vec2[], image: Size): string {
   if (turns.some((each) => Math.abs(each) < kLeastTurn)) return "Three corners lie on a line.";
   const right = turns.filter((each) => each > 0).length;
   if (right === 0 || right === kCorners) return "";
-  return right === 2 ? "The lines cross: the four must go round the board." : "One corner lies inside the other three.";
+  return right === 2 ? "The outline crosses itself: the corners must be in order around the board." : "One corner lies inside the other three.";
 }
 
 /// Clockwise as seen, from the one that came first.

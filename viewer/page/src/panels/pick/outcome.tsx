@@ -15,10 +15,10 @@ function answerOf(own: ViewCamera | undefined, sent: Sent): { grade: string; wor
   const error = notices.value.filter((notice) => notice.level === "error" && notice.at >= sent.at).pop();
   if (error) return { grade: "bad", words: `✗ Refused: ${error.text}` };
   if (!own || JSON.stringify(own) === sent.before || own.state === "waiting") {
-    return { grade: "muted", words: "Sent. The detector is looking at them…" };
+    return { grade: "muted", words: "Sent. Waiting for the detector…" };
   }
   if (own.state === "rejected") return { grade: "bad", words: `✗ Rejected: ${own.why || "no reason was given"}` };
-  const edge = own.edge_rms_px === null ? "" : ` The cloud's edge lies within ${px(own.edge_rms_px)} RMS of them.`;
+  const edge = own.edge_rms_px === null ? "" : ` Outline error: ${px(own.edge_rms_px)} RMS.`;
   return { grade: "good", words: `✓ Accepted.${edge}` };
 }
 
@@ -33,7 +33,7 @@ export function Outcome({ session, target, sent }: Props) {
     <div class="row" role="status" data-testid="pick-outcome">
       <strong class={grade}>{words}</strong>
       {grade === "good" && next && (
-        <button type="button" onClick={() => choose(next)} data-testid="pick-next">Next wanted: {next.view} {next.camera}</button>
+        <button type="button" onClick={() => choose(next)} data-testid="pick-next">Next image: {next.view} {next.camera}</button>
       )}
     </div>
   );

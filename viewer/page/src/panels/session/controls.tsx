@@ -6,8 +6,8 @@ import { connection, hello, notices, send } from "../../store";
 import { heldoutByDefault, whyNot } from "./permission";
 
 const kNames: Record<RequestName, string> = {
-  next_pose: "Next place",
-  pose_is_set: "The board stands",
+  next_pose: "Next position",
+  pose_is_set: "Board in position",
   capture: "Capture",
   finish: "Finish and save",
 };
@@ -49,9 +49,9 @@ function Confirm({ yes, no }: ConfirmProps) {
   return (
     <div class="confirm" role="alertdialog" aria-label="Finish and save?"
       onKeyDown={(event) => { if (event.key === "Escape") no(); }}>
-      <p>Finish? The calibration is solved and judged once more, and saved; no views can be added after that.</p>
+      <p>Finish? The calibration is computed and assessed once more, and saved. No views can be added afterwards.</p>
       <div class="row">
-        <button type="button" ref={first} onClick={no} data-testid="finish-cancel">Go on with the session</button>
+        <button type="button" ref={first} onClick={no} data-testid="finish-cancel">Continue the session</button>
         <button type="button" class="primary" onClick={yes} data-testid="finish-confirm">Finish and save</button>
       </div>
     </div>
@@ -85,7 +85,7 @@ export function Controls({ session }: { session: SessionFrame }) {
   const button = (name: RequestName, act: () => void) => (
     <button type="button" class={name === primary ? "primary" : ""} disabled={!possible(name)} onClick={act}
       title={reasons.get(name)} data-testid={`request-${name}`} aria-keyshortcuts={name === "capture" ? "c" : undefined}>
-      {asked.value === name ? "Asked…" : kNames[name]}{name === "capture" && <kbd aria-hidden="true">c</kbd>}
+      {asked.value === name ? "Requested…" : kNames[name]}{name === "capture" && <kbd aria-hidden="true">c</kbd>}
     </button>
   );
   return (
@@ -99,7 +99,7 @@ export function Controls({ session }: { session: SessionFrame }) {
       <label class="check">
         <input type="checkbox" data-testid="heldout" checked={heldout.value}
           onChange={(event) => { heldout.value = event.currentTarget.checked; }} />
-        <span>Hold out the next view <span class="muted">(the solver never sees it: it checks the result)</span></span>
+        <span>Hold out the next view <span class="muted">(not used by the solver; used to check the result)</span></span>
       </label>
       {confirming.value && possible("finish") && <Confirm yes={finish} no={() => { confirming.value = false; }} />}
       {reasonsOf(reasons).map((why) => <p key={why} class="muted" data-testid="why-not">{why}</p>)}

@@ -42,7 +42,7 @@ function FrameCoverage({ camera, views }: { camera: CameraInfo; views: View[] })
         aria-label={`Image of ${camera.name} with the board's outlines of ${found.length} views`}>
         {found.map(({ view, own }) => <Outline key={view.name} view={view} own={own} text={camera.width / 18} />)}
       </svg>
-      <figcaption>{camera.name}: {camera.width} × {camera.height} px, board found in {found.length} of {views.length} views</figcaption>
+      <figcaption>{camera.name}: {camera.width} × {camera.height} px, board detected in {found.length} of {views.length} views</figcaption>
     </figure>
   );
 }
@@ -51,7 +51,7 @@ const kLabelShare = 0.08, kRowPx = 26;
 
 function DepthStrip({ views }: { views: View[] }) {
   const seen = views.flatMap((view) => (view.board ? [{ view, distance: view.board.distance_m }] : []));
-  if (seen.length === 0) return <p class="muted">No board was found in the cloud yet.</p>;
+  if (seen.length === 0) return <p class="muted">No board detected in the cloud yet.</p>;
   const { length, parts } = stripOf(Math.max(...seen.map((each) => each.distance)));
   const rows = rowsOf(seen.map((each) => each.distance / length), kLabelShare);
   const ticks = Array.from({ length: parts + 1 }, (_, i) => i / parts);

@@ -3,17 +3,17 @@ import type { Hello, RequestName, SessionFrame } from "../../protocol";
 import type { Connection } from "../../store";
 
 const kModeWords: Record<SessionFrame["mode"], string> = {
-  none: "No session runs: start rgbdt-session.",
-  script: "A script leads this session; it asks when it needs you.",
-  by_hand: "Not possible just now.",
+  none: "No session is running: start rgbdt-session.",
+  script: "A script runs this session; it asks when input is needed.",
+  by_hand: "Not available now.",
   finished: "This session is finished.",
 };
 
 /// Why this browser may not command the rig; "": it may.
 export function whyNotCommand(connection: Connection, hello: Hello | null): string {
-  if (connection === "embedded") return "This is a report: nothing can be asked for.";
+  if (connection === "embedded") return "This is a report: there is nothing to control.";
   if (connection !== "open" || !hello) return "Not connected to the bridge.";
-  return hello.may_command ? "" : hello.why_not || "This browser may not command the rig.";
+  return hello.may_command ? "" : hello.why_not || "This browser is not allowed to control the rig.";
 }
 
 /// "": it may be asked for.

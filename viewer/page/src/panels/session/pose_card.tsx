@@ -12,7 +12,7 @@ export function textOf(matrix: number[]): string {
 function Matrix({ pose: { name, sentence, matrix }, testid }: { pose: Pose; testid: string }) {
   const message = useSignal("");
   const copy = async (): Promise<void> => {
-    message.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not let this page copy.";
+    message.value = (await copyText(textOf(matrix))) ? "Copied." : "The browser does not allow copying.";
   };
   return (
     <div class="matrix" data-testid={testid}>

@@ -44,10 +44,10 @@ function Pictures({ view, title, words }: PicturesProps) {
 export function ReportPictures() {
   return (
     <>
-      <Pictures view="sigma" title="Reprojection uncertainty"
-        words="1 sigma of where in the image a point's colour is taken from, all over each camera's image." />
-      <Pictures view="lidar" title="The LIDAR's own errors"
-        words="True range less measured range, by ring and by intensity, and how much larger a board looks at its edges; as each camera's solve found them. Bars are 1 sigma." />
+      <Pictures view="sigma" title="Projection uncertainty"
+        words="1 sigma of the position at which a point is projected into the image, over the whole image." />
+      <Pictures view="lidar" title="LIDAR errors"
+        words="True minus measured range, by ring and by intensity, and by how much a board is enlarged at its edges, as estimated with each camera. Bars: 1 sigma." />
     </>
   );
 }

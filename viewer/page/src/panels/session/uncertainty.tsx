@@ -18,13 +18,13 @@ function linesOf(sigma: SessionFrame["sigma"], value: (step: Step) => number): L
 }
 
 export function SigmaCharts({ sigma }: { sigma: SessionFrame["sigma"] }) {
-  if (sigma.length === 0) return <p class="muted">No calibration yet: its uncertainty is shown from the first one on.</p>;
+  if (sigma.length === 0) return <p class="muted">No calibration yet.</p>;
   const x = sigma.map(({ views }) => views);
   return (
     <div class="charts">
       <LineChart title="Rotation, 1 sigma [°], by number of views" testid="chart-rotation" x={x}
         lines={linesOf(sigma, (step) => step.rotation_deg)} text={(value) => degrees(value)} />
-      <LineChart title="Camera's centre, 1 sigma [mm], by number of views" testid="chart-centre" x={x}
+      <LineChart title="Camera position, 1 sigma [mm], by number of views" testid="chart-centre" x={x}
         lines={linesOf(sigma, (step) => step.centre_mm)} text={(value) => millimetres(value, value < 10 ? 1 : 0)} />
     </div>
   );

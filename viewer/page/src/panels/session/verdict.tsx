@@ -1,7 +1,7 @@
 import type { Grade, SessionFrame, Verdict } from "../../protocol";
 
 export const kGradeIcon: Record<Grade, string> = { good: "✓", caution: "!", bad: "✗", none: "…" };
-const kGradeWords: Record<Grade, string> = { good: "Good", caution: "Usable", bad: "Bad", none: "No verdict yet" };
+const kGradeWords: Record<Grade, string> = { good: "Good", caution: "Usable", bad: "Bad", none: "Not assessed yet" };
 
 export const gradeClass = (grade: Grade): string => (grade === "none" ? "muted" : grade);
 

@@ -1,13 +1,14 @@
 import type { SessionFrame, View, ViewCamera } from "../../protocol";
 import { keyOf, thumbs } from "../../store";
 import { choose } from "../pick/choice";
+import { tabs } from "../../route";
 import { linkTo, open } from "../route";
 import { degrees, metres, px, sigmas } from "../words";
 
 const kStateWords = {
   accepted: { icon: "✓", words: "accepted", grade: "good" },
   rejected: { icon: "✗", words: "rejected", grade: "bad" },
-  waiting: { icon: "…", words: "waits", grade: "muted" },
+  waiting: { icon: "…", words: "waiting", grade: "muted" },
 } as const;
 
 function Thumb({ view, camera }: { view: string; camera: string }) {
@@ -15,7 +16,7 @@ function Thumb({ view, camera }: { view: string; camera: string }) {
   const name = camera || "board";
   return (
     <figure class="thumb">
-      {url ? <img src={url} alt={`View ${view}: ${camera || "the board in the cloud"}`} /> : <span class="thumb-none">no picture</span>}
+      {url ? <img src={url} alt={`View ${view}: ${camera || "the board in the cloud"}`} /> : <span class="thumb-none">no image</span>}
       <figcaption class="muted">{name}</figcaption>
     </figure>
   );
@@ -33,15 +34,15 @@ function PickButton({ view, camera }: { view: string; camera: string }) {
 
 function CameraLine({ view, own, wanted }: { view: string; own: ViewCamera; wanted: boolean }) {
   const { icon, words, grade } = kStateWords[own.state];
-  const rms = own.edge_rms_px === null ? "" : `edge ${px(own.edge_rms_px)}`;
+  const rms = own.edge_rms_px === null ? "" : `outline error ${px(own.edge_rms_px)}`;
   const whitened = own.edge_rms_sigmas === null ? "" : sigmas(own.edge_rms_sigmas);
   return (
     <li data-testid={`view-state-${view}-${own.camera}`} data-state={own.state}>
       <span class={grade}><strong><span aria-hidden="true">{icon}</span> {own.camera}</strong> {words}</span>
-      {own.picked && ", corners by hand"}
+      {own.picked && ", corners picked by hand"}
       {own.why && <span>: {own.why}</span>}
       {(rms || whitened) && <span class="muted">, {[rms, whitened].filter(Boolean).join(", ")}</span>}
-      {wanted && <PickButton view={view} camera={own.camera} />}
+      {wanted && tabs.value.some(({ id }) => id === "pick") && <PickButton view={view} camera={own.camera} />}
     </li>
   );
 }
@@ -53,8 +54,8 @@ function tiltOf(board: NonNullable<View["board"]>): number {
 }
 
 function BoardLine({ view }: { view: View }) {
-  if (!view.board) return <p class="muted">No board in the cloud.</p>;
-  return <p class="muted">{metres(view.board.distance_m)} away, turned {degrees(tiltOf(view.board), 0)}</p>;
+  if (!view.board) return <p class="muted">No board detected in the cloud.</p>;
+  return <p class="muted">{metres(view.board.distance_m)} away, tilted {degrees(tiltOf(view.board), 0)}</p>;
 }
 
 function ViewCard({ view, wanted }: { view: View; wanted: Set<string> }) {
@@ -69,7 +70,7 @@ function ViewCard({ view, wanted }: { view: View; wanted: Set<string> }) {
         {view.cameras.map(({ camera }) => <Thumb key={camera} view={view.name} camera={camera} />)}
         <Thumb view={view.name} camera="" />
       </div>
-      {view.waits && <p class="caution">Waits for: {view.waits}</p>}
+      {view.waits && <p class="caution">Waiting for: {view.waits}</p>}
       <ul class="plain">
         {view.cameras.map((own) => (
           <CameraLine key={own.camera} view={view.name} own={own} wanted={wanted.has(keyOf(view.name, own.camera))} />
@@ -78,7 +79,7 @@ function ViewCard({ view, wanted }: { view: View; wanted: Set<string> }) {
       <footer class="row">
         <BoardLine view={view} />
         <a class="view-show" href={linkTo("cameras", show)}
-          onClick={(event) => { event.preventDefault(); open("cameras", show); }}>Show large</a>
+          onClick={(event) => { event.preventDefault(); open("cameras", show); }}>Enlarge</a>
       </footer>
     </article>
   );
