@@ -14,7 +14,6 @@ in float angle; // the disc's radius as the LIDAR sees it, see angularRadii; 0: 
 uniform mat4 modelViewMatrix;
 uniform mat4 projectionMatrix;
 uniform sampler2D ramp;
-uniform int mode; // as kColours
 uniform vec2 range; // the legend's ends: K, m, intensity
 uniform vec3 origin; // the LIDAR [m]
 uniform vec3 unknown;
@@ -26,7 +25,9 @@ uniform float grow; // times the radius
 uniform float focal; // pixels that 1 m is long, 1 m away
 uniform vec2 sizes; // least and most diameter [px]
 out vec3 shade;
+#ifdef ROUND
 flat out vec3 disc; // how deep it is, its radius [m], its diameter [px]
+#endif
 
 bool isNan(uint bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
 
@@ -35,31 +36,40 @@ vec3 ramped(float value) {
   return texelFetch(ramp, ivec2(int(t * 255.0 + 0.5), 0), 0).rgb;
 }
 
+// MODE: as kColours. Known to the compiler, as software rendering would reckon all of them.
 vec3 color(vec3 point) {
-  uint colors = head.w;
-  uint intensity = colors >> 24;
+#if MODE == 0 || MODE == 5
+  bool coloured = (head.w & 0xffffffu) != 0u;
+  vec3 rgb = vec3(head.w & 255u, (head.w >> 8) & 255u, (head.w >> 16) & 255u) / 255.0;
+#endif
+#if MODE == 0
+  return coloured ? rgb : unknown;
+#elif MODE == 1
+  return isNan(tail.x) ? unknown : ramped(uintBitsToFloat(tail.x));
+#elif MODE == 2
+  return ramped(distance(point, origin));
+#elif MODE == 3
+  return head.w >> 24 == 255u ? unknown : ramped(float(head.w >> 24));
+#elif MODE == 4
   uint valid = tail.z >> 16;
-  bool coloured = (mode == 0 || mode == 5) && (colors & 0xffffffu) != 0u;
-  bool warm = (mode == 1 || mode == 5) && !isNan(tail.x);
-  vec3 rgb = vec3(colors & 255u, (colors >> 8) & 255u, (colors >> 16) & 255u) / 255.0;
-  if (coloured && warm) return mix(rgb, ramped(uintBitsToFloat(tail.x)), blend);
-  if (coloured) return rgb;
-  if (warm) return ramped(uintBitsToFloat(tail.x));
-  if (mode == 2) return ramped(distance(point, origin));
-  if (mode == 3 && intensity != 255u) return ramped(float(intensity));
-  if (mode == 4 && valid != 0u) return texelFetch(ramp, ivec2(min(int(valid), 255), 0), 0).rgb;
-  return unknown;
+  return valid == 0u ? unknown : texelFetch(ramp, ivec2(min(int(valid), 255), 0), 0).rgb;
+#else
+  if (isNan(tail.x)) return coloured ? rgb : unknown;
+  vec3 warm = ramped(uintBitsToFloat(tail.x));
+  return coloured ? mix(rgb, warm, blend) : warm;
+#endif
 }
 
 void main() {
   vec3 point = uintBitsToFloat(head.xyz);
   vec4 seen = modelViewMatrix * vec4(point, 1.0);
-  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z)
-    || any(lessThan(point, low)) || any(greaterThan(point, high));
+  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z) || any(lessThan(point, low)) || any(greaterThan(point, high));
   gl_Position = missing ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
   float radius = grow * (angle > 0.0 ? angle * ANGLE_UNIT * distance(point, origin) : voxel);
   gl_PointSize = clamp(2.0 * radius * focal / max(-seen.z, 0.01), sizes.x, sizes.y);
+#ifdef ROUND
   disc = vec3(-seen.z, radius, gl_PointSize);
+#endif
   shade = color(point);
 }`;
 
@@ -68,7 +78,9 @@ void main() {
 const kFragment = `
 precision highp float;
 in vec3 shade;
+#ifdef ROUND
 flat in vec3 disc;
+#endif
 uniform vec2 projection; // as projectionOf
 out vec4 pixel;
 void main() {
@@ -92,36 +104,38 @@ function textureOf(colour: Colour): THREE.DataTexture {
   return texture;
 }
 
-export interface Materials {
-  fine: THREE.RawShaderMaterial; // round
-  quick: THREE.RawShaderMaterial; // square, for who draws slowly, while the view moves
-  uniforms: Record<string, THREE.IUniform>; // of both
-}
-
-export function makeMaterials(): Materials {
-  const uniforms = {
-    ramp: { value: textureOf("temperature") }, mode: { value: 0 }, range: { value: new THREE.Vector2(0, 1) },
-    origin: { value: new THREE.Vector3() }, unknown: { value: new THREE.Vector3() },
-    blend: { value: 0.5 }, low: { value: new THREE.Vector3() }, high: { value: new THREE.Vector3() },
+/// Materials for each colour, round discs and, for who draws slowly, squares.
+export class Materials {
+  readonly uniforms = {
+    ramp: { value: textureOf("temperature") }, range: { value: new THREE.Vector2(0, 1) },
+    origin: { value: new THREE.Vector3() }, unknown: { value: new THREE.Vector3() }, blend: { value: 0.5 },
+    low: { value: new THREE.Vector3() }, high: { value: new THREE.Vector3() }, // what is shown
     voxel: { value: 0 }, grow: { value: 1 }, focal: { value: 1 }, sizes: { value: new THREE.Vector2(1, 1) },
     projection: { value: new THREE.Vector2() },
   };
-  const make = (defines: Record<string, string>) => {
-    const material = new THREE.RawShaderMaterial({
-      glslVersion: THREE.GLSL3, vertexShader: kVertex, fragmentShader: kFragment,
-      defines: { ANGLE_UNIT: kAngleUnit.toExponential(), ...defines },
-    });
-    material.uniforms = uniforms;
-    return material;
-  };
-  return { fine: make({ ROUND: "1" }), quick: make({}), uniforms };
-}
+  private colour: Colour = "rgb";
+  private readonly made = new Map<string, THREE.RawShaderMaterial>();
 
-/// `range` in the values' own units (K, m, intensity).
-export function setColour({ uniforms }: Materials, colour: Colour, range: [number, number]): void {
-  uniforms.mode.value = kColours.findIndex(({ id }) => id === colour);
-  uniforms.ramp.value = textureOf(colour);
-  (uniforms.range.value as THREE.Vector2).set(...range);
+  /// `range` in the values' own units (K, m, intensity).
+  setColour(colour: Colour, range: [number, number]): void {
+    this.colour = colour;
+    this.uniforms.ramp.value = textureOf(colour);
+    this.uniforms.range.value.set(...range);
+  }
+
+  now(round: boolean): THREE.RawShaderMaterial {
+    const key = `${this.colour} ${round}`;
+    const known = this.made.get(key);
+    if (known) return known;
+    const mode = kColours.findIndex(({ id }) => id === this.colour);
+    const made = new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3, vertexShader: kVertex, fragmentShader: kFragment,
+      defines: { ANGLE_UNIT: kAngleUnit.toExponential(), MODE: mode, ...(round ? { ROUND: 1 } : {}) },
+    });
+    made.uniforms = this.uniforms;
+    this.made.set(key, made);
+    return made;
+  }
 }
 
 /// A geometry over records where they lie, and the points' radii.

@@ -1,7 +1,7 @@
 // How fast drawing is, and what is drawn while the camera moves so that it keeps up.
 
-const kGoal_ms = { slow: 90, fast: 35 }; // what a frame may take, and what leaves room for more
-const kLeastShare = 0.1;
+const kGoal_ms = { slow: 70, fast: 35 }; // what a frame may take, and what leaves room for more
+const kLeastShare = 0.05;
 const kTooSlowAtRest_ms = 60; // so that moving is begun in a hurry
 
 export class Pace {

@@ -8,7 +8,7 @@ import { extentsOf, sampleOf, subjectOf } from "./fit";
 import { gridOf, groundHeight } from "./ground";
 import { Labels } from "./labels";
 import { Lighting, projectionOf } from "./lighting";
-import { makeMaterials, setColour } from "./material";
+import { Materials } from "./material";
 import { Pace } from "./pace";
 import { pick, type Picked } from "./picking";
 import type { Points } from "./points";
@@ -41,8 +41,8 @@ export class CloudScene {
   private readonly gl: THREE.WebGLRenderer;
   private readonly cloud = new THREE.Scene();
   private readonly lines = new THREE.Scene(); // among the points
-  private readonly materials = makeMaterials();
-  private readonly objects = new PointObjects(this.materials.fine);
+  private readonly materials = new Materials();
+  private readonly objects = new PointObjects(this.materials.now(true));
   private readonly lighting = new Lighting();
   private readonly labels: Labels;
   private limits = kEverything;
@@ -106,7 +106,7 @@ export class CloudScene {
   }
 
   /// `range`: the legend's ends [K, m, intensity].
-  setColour(colour: Colour, range: [number, number]): void { setColour(this.materials, colour, range); this.draw(); }
+  setColour(colour: Colour, range: [number, number]): void { this.materials.setColour(colour, range); this.draw(); }
 
   /// How much of the temperature, of 1, is in the blend.
   setBlend(share: number): void { this.materials.uniforms.blend.value = share; this.draw(); }
@@ -115,8 +115,8 @@ export class CloudScene {
   setLimits(limits: Box): void {
     this.limits = limits;
     const { low, high } = this.materials.uniforms;
-    (low.value as THREE.Vector3).set(...limits.low);
-    (high.value as THREE.Vector3).set(...limits.high);
+    low.value.set(...limits.low);
+    high.value.set(...limits.high);
     this.draw();
   }
 
@@ -130,7 +130,7 @@ export class CloudScene {
   setGround(dark: boolean): void {
     const { above, below, unknown } = kGrounds[dark ? "dark" : "light"];
     this.lighting.setBackground(above, below);
-    (this.materials.uniforms.unknown.value as THREE.Vector3).setScalar(unknown);
+    this.materials.uniforms.unknown.value.setScalar(unknown);
     this.draw();
   }
 
@@ -177,7 +177,7 @@ export class CloudScene {
     return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top, this.limits);
   }
 
-  private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value as THREE.Vector3; }
+  private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value; }
 
   private subject(): Float32Array { return subjectOf(this.objects.drawn().map(({ points }) => points), this.limits); }
 
@@ -223,18 +223,20 @@ export class CloudScene {
     const { grow, sizes } = this.materials.uniforms;
     const thinned = Math.min(kMostGrowth, Math.sqrt(this.objects.total() / Math.max(this.points, 1)));
     grow.value = this.pointSize * thinned * (quick ? kQuick.grow : 1);
-    (sizes.value as THREE.Vector2).set(Math.max(1, kSizes.least * ratio), (quick ? kQuick.most : kSizes.most) * ratio);
-    this.objects.use(quick ? this.materials.quick : this.materials.fine);
+    sizes.value.set(Math.max(1, kSizes.least * ratio), (quick ? kQuick.most : kSizes.most) * ratio);
+    this.objects.use(this.materials.now(!quick));
   }
 
   private drawNow(): void {
     const { moving, camera } = this.viewpoint;
     const start = performance.now();
     this.points = this.objects.thin(moving ? this.pace.share : 1, this.budget);
-    this.setQuality(moving && this.pace.hurry);
+    const quick = moving && this.pace.hurry;
+    this.setQuality(quick);
     this.lighting.draw(this.gl, this.cloud, camera);
     this.gl.render(this.lines, camera);
-    this.labels.place(this.surroundings.labels(), (at) => this.project(at));
+    // Words cost software more than lines: they come back at rest.
+    this.labels.place(quick ? [] : this.surroundings.labels(), (at) => this.project(at));
     // Reading a pixel waits until it is there, which finish() need not.
     const context = this.gl.getContext();
     context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, this.pixel);

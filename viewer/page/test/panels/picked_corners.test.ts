@@ -21,7 +21,7 @@ describe("four picked corners", () => {
   });
 
   test("must be four, apart, not on a line, in the image", () => {
-    expect(faultOf([a, b], kImage)).toContain("Corner 3");
+    expect(faultOf([a, b], kImage)).toContain("corner 3");
     expect(faultOf([a, b, c, [c[0] + 1, c[1]]], kImage)).toContain("Corners 3 and 4");
     expect(faultOf([a, [200, 100], [300, 100], d], kImage)).toContain("line");
     expect(faultOf([a, b, c, [-3, 200]], kImage)).toContain("Corner 4 is outside");
