@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import { angularRadii, beamSpacing, kAngleUnit } from "../src/cloud/spacing";
+import { angularRadii, kAngleUnit } from "../src/cloud/spacing";
 import type { Vec3 } from "../src/protocol";
 import { part } from "./cloud";
 
@@ -13,8 +13,13 @@ function wall(away: number, across: number, along: number, columns = 40, rows = 
 const radii = (points: Vec3[]) => Array.from(angularRadii(part(points.map((at) => ({ at }))))).map((unit) => unit * kAngleUnit);
 const median = (values: number[]) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-test("the beams' spacing is told from the points, whatever their distance", () => {
-  for (const away of [2, 30]) expect(beamSpacing(part(wall(away, 0.004, 0.004).map((at) => ({ at }))))).toBeCloseTo(0.004, 4);
+test("as the LIDAR sees it a point is as large near by as far away", () => {
+  const [near, far] = [2, 30].map((away) => median(radii(wall(away, 0.004, 0.004))));
+  expect(far).toBeCloseTo(near, 4);
+});
+
+test("beams that are twice as far apart make points twice as large", () => {
+  expect(median(radii(wall(5, 0.008, 0.008))) / median(radii(wall(5, 0.004, 0.004)))).toBeCloseTo(2, 1);
 });
 
 test("points as large as their spacing close a surface's gaps, and no more", () => {

@@ -25,6 +25,7 @@ function directionsOf({ floats, count }: Positions): { units: Float32Array; dist
   return { units, distances };
 }
 
+/// Angle between neighbouring beams [rad], the median over some of them.
 function spacingOf(units: Float32Array, count: number): number {
   const samples = Math.min(count, Math.max(15, Math.min(101, Math.floor(kComparisons / count))));
   const found: number[] = [];
@@ -43,9 +44,6 @@ function spacingOf(units: Float32Array, count: number): number {
   found.sort((a, b) => a - b);
   return Math.min(0.03, Math.max(0.0005, found[found.length >> 1]));
 }
-
-/// Angle between neighbouring beams [rad], the median over some of them.
-export const beamSpacing = (points: Positions): number => spacingOf(directionsOf(points).units, points.count);
 
 /// Points by direction, in cells as large as the beams' spacing.
 class Cells {
