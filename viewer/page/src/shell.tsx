@@ -28,9 +28,10 @@ function connectionWords(): { text: string; grade: string } {
   return kConnectionWords[connection.value];
 }
 
-/// A session by its directory's name, so that it is whole on a phone, too.
+/// A session by its directory's name, a bus by its address: so that it is whole on a phone, too.
 function shortTitle(): string {
   const { source, title } = hello.value ?? { source: "", title: "" };
+  if (source === "live") return title.replace(/^udpm:\/\//, "").replace(/\?\S*/, "");
   return source === "session" ? title.replace(/\/+$/, "").split("/").pop() || title : title;
 }
 

@@ -1,5 +1,6 @@
 import { PerspectiveCamera, Matrix4 } from "three";
 import { expect, test } from "vitest";
+import { kEverything } from "../src/cloud/crop";
 import { pick } from "../src/cloud/picking";
 import type { Vec3 } from "../src/protocol";
 import { part } from "./cloud";
@@ -40,6 +41,13 @@ test("left of the LIDAR is left on the screen", () => {
 
 test("none that is cropped away", () => {
   const points = part([{ at: [4, 0, 0] }, { at: [10, 0, 0] }]);
-  const found = pick([{ points, drawn: 2 }], clipFromPoints(), kScreen, 400, 300, { low: [5, -1, -1], high: [20, 1, 1] });
+  const found = pick([{ points, drawn: 2 }], clipFromPoints(), kScreen, 400, 300, { limits: { low: [5, -1, -1], high: [20, 1, 1] }, before: 0 });
   expect(found?.index).toBe(1);
+});
+
+test("none that is cut away, unless a camera saw it", () => {
+  const points = part([{ at: [4, 0, 0] }, { at: [10, 0, 0] }, { at: [12, 2, 0] }, { at: [3, 0.5, 0], valid: 1 }]);
+  const find = (x: number) => pick([{ points, drawn: 4 }], clipFromPoints(), kScreen, x, 300, { limits: kEverything, before: 5 })?.index;
+  expect(find(400)).toBe(1);
+  expect(find(400 - (300 / Math.tan(Math.PI / 6)) * (0.5 / 3))).toBe(3);
 });

@@ -7,4 +7,6 @@ export function rendererName(gl: WebGL2RenderingContext): string {
 }
 
 export const isSoftware = (renderer: string): boolean => /swiftshader|llvmpipe|software/i.test(renderer);
+/// Of what comes live: a machine that draws by software often does the rest of the work, too.
+export const liveBudget = (renderer: string): number => (isSoftware(renderer) ? 100_000 : pointBudget(renderer));
 export const pointBudget = (renderer: string): number => (isSoftware(renderer) ? 500_000 : 2_000_000);

@@ -18,6 +18,7 @@ uniform vec2 range; // the legend's ends: K, m, intensity
 uniform vec3 origin; // the LIDAR [m]
 uniform vec3 unknown;
 uniform float blend; // of the temperature, the rest of the colour
+uniform float before; // what no camera saw is not shown nearer to the eye [m]
 uniform vec3 low; // what is shown
 uniform vec3 high;
 uniform float voxel; // radius of what is in a voxel [m]
@@ -63,7 +64,8 @@ vec3 color(vec3 point) {
 void main() {
   vec3 point = uintBitsToFloat(head.xyz);
   vec4 seen = modelViewMatrix * vec4(point, 1.0);
-  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z) || any(lessThan(point, low)) || any(greaterThan(point, high));
+  bool missing = isNan(head.x) || isNan(head.y) || isNan(head.z) || any(lessThan(point, low)) || any(greaterThan(point, high))
+    || (-seen.z < before && tail.z >> 16 == 0u);
   gl_Position = missing ? vec4(2.0, 2.0, 2.0, 1.0) : projectionMatrix * seen;
   float radius = grow * (angle > 0.0 ? angle * ANGLE_UNIT * distance(point, origin) : voxel);
   gl_PointSize = clamp(2.0 * radius * focal / max(-seen.z, 0.01), sizes.x, sizes.y);
@@ -108,7 +110,7 @@ function textureOf(colour: Colour): THREE.DataTexture {
 export class Materials {
   readonly uniforms = {
     ramp: { value: textureOf("temperature") }, range: { value: new THREE.Vector2(0, 1) },
-    origin: { value: new THREE.Vector3() }, unknown: { value: new THREE.Vector3() }, blend: { value: 0.5 },
+    origin: { value: new THREE.Vector3() }, unknown: { value: new THREE.Vector3() }, blend: { value: 0.5 }, before: { value: 0 },
     low: { value: new THREE.Vector3() }, high: { value: new THREE.Vector3() }, // what is shown
     voxel: { value: 0 }, grow: { value: 1 }, focal: { value: 1 }, sizes: { value: new THREE.Vector2(1, 1) },
     projection: { value: new THREE.Vector2() },

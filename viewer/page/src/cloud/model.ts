@@ -5,6 +5,7 @@ import { Matrix4 } from "three";
 import type { CloudFrame, Frame, SessionFrame, RigFrame, Vec3 } from "../protocol";
 import { ack, onCloud, rig, session, watched } from "../store";
 import { kZeroCelsius } from "../format";
+import { liveBudget } from "./budget";
 import { coloursOf } from "./color_maps";
 import { limitsOf } from "./crop";
 import { withPoint } from "./measure";
@@ -12,7 +13,7 @@ import { partOf, valuesOf, type PointValues } from "./points";
 import { percentiles } from "./range";
 import { CloudScene } from "./scene";
 import {
-  blend, colour, crop, dark, ends, extents, lighting, mode, picked, pointSize, rangedBy, ranges, section, setRange, showCameras, showGrid,
+  blend, colour, crop, cutaway, dark, ends, extents, lighting, mode, picked, pointSize, rangedBy, ranges, section, setRange, showCameras, showGrid,
   stats, voxel,
 } from "./settings";
 import type { Frustum } from "./surroundings";
@@ -108,12 +109,13 @@ export function startScene(canvas: HTMLCanvasElement, words: HTMLElement, onDraw
   const made = new CloudScene(canvas, words);
   scene = made;
   stats.value = { ...stats.peek(), budget: made.budget, renderer: made.renderer };
-  watched.value = { ...watched.peek(), points: made.budget };
+  watched.value = { ...watched.peek(), points: liveBudget(made.renderer) };
   made.onDrawn = () => { ackAll(); tell(); onDrawn(); };
   effect(() => made.setGround(dark.value));
   effect(() => made.setLighting(lighting.value));
   effect(() => made.setPointSize(pointSize.value));
   effect(() => made.setBlend(blend.value));
+  effect(() => made.setCutaway(cutaway.value));
   effect(() => made.setGrid(showGrid.value));
   effect(() => {
     made.surroundings.setBox(crop.value);

@@ -1,6 +1,6 @@
 // The cloud on a canvas. It is drawn when there is something new or the viewpoint moves, and only then.
 import * as THREE from "three";
-import type { Vec3 } from "../protocol";
+import type { Vec2, Vec3 } from "../protocol";
 import { isSoftware, pointBudget, rendererName } from "./budget";
 import type { Colour } from "./color_maps";
 import { kEverything, type Box } from "./crop";
@@ -21,6 +21,7 @@ const kSizes = { least: 1.25, most: 32 }; // of a point [CSS px]
 const kQuick = { ratio: 0.5, grow: 0.75, most: 10 }; // what a frame in a hurry has of pixels, and of a point
 const kVoxelRadius = 0.62; // of its side
 const kSurveyMs = 2000;
+const kBeside_m = 0.5; // from the LIDAR: there its axes and cameras would only stand in the way
 const kMostGrowth = 2; // of points that stand for those left out
 const kGrounds = {
   dark: { above: 0.063, below: 0.188, unknown: 0.3 },
@@ -46,6 +47,8 @@ export class CloudScene {
   private readonly lighting = new Lighting();
   private readonly labels: Labels;
   private limits = kEverything;
+  private cutaway = true;
+  private seen = false; // by cameras, some of the points
   private surveyed = -Infinity; // when [ms]
   private readonly viewpoint: Viewpoint;
   private readonly pixel = new Uint8Array(4);
@@ -84,6 +87,7 @@ export class CloudScene {
 
   /// `whole`: not only a part of a sweep.
   showParts(parts: Points[], whole: boolean): void {
+    if (this.objects.total() > 0) this.viewpoint.stir();
     this.objects.showParts(parts);
     this.materials.uniforms.voxel.value = 0;
     this.fitFirst(whole);
@@ -119,6 +123,9 @@ export class CloudScene {
     high.value.set(...limits.high);
     this.draw();
   }
+
+  /// What stands between the eye and the LIDAR would hide what the LIDAR looks at.
+  setCutaway(on: boolean): void { this.cutaway = on; this.draw(); }
 
   setGrid(on: boolean): void { this.grid = on; this.survey(true); this.draw(); }
 
@@ -171,10 +178,21 @@ export class CloudScene {
     };
   }
 
+  /// Each axis of the frame as it points on the screen: x right, y down, at most 1 long.
+  axesOnScreen(): Vec2[] {
+    const { camera } = this.viewpoint;
+    camera.updateMatrixWorld();
+    return [0, 1, 2].map((axis) => {
+      const towards = new THREE.Vector3().setComponent(axis, 1).transformDirection(camera.matrixWorldInverse);
+      return [towards.x, -towards.y];
+    });
+  }
+
   /// The point at a pixel of the window.
   pickAt(x: number, y: number): Picked | null {
     const box = this.canvas.getBoundingClientRect();
-    return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top, this.limits);
+    return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top,
+      { limits: this.limits, before: this.materials.uniforms.before.value });
   }
 
   private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value; }
@@ -186,6 +204,7 @@ export class CloudScene {
     if (this.objects.total() === 0 || (!now && performance.now() < this.surveyed + kSurveyMs)) return;
     this.surveyed = performance.now();
     const points = sampleOf(this.objects.drawn().map(({ points: each }) => each));
+    this.seen = subjectOf(this.objects.drawn().map(({ points: each }) => each)).length < points.length;
     const found = extentsOf(points);
     if (found) this.extents = found;
     this.surroundings.setGrid(found && this.grid ? gridOf(found, groundHeight(points)) : null);
@@ -231,9 +250,12 @@ export class CloudScene {
     const { moving, camera } = this.viewpoint;
     const start = performance.now();
     this.points = this.objects.thin(moving ? this.pace.share : 1, this.budget);
+    const lidar = this.lidar.clone().applyMatrix4(camera.matrixWorldInverse);
+    this.materials.uniforms.before.value = this.cutaway && this.seen ? Math.max(0, -lidar.z) : 0;
     const quick = moving && this.pace.hurry;
     this.setQuality(quick);
     this.lighting.draw(this.gl, this.cloud, camera);
+    this.surroundings.lidar.visible = camera.position.distanceTo(this.lidar) > kBeside_m;
     this.gl.render(this.lines, camera);
     // Words cost software more than lines: they come back at rest.
     this.labels.place(quick ? [] : this.surroundings.labels(), (at) => this.project(at));

@@ -32,6 +32,7 @@ export const section = signal<Section | null>(null);
 export const extents = signal<Box>(kEverything);
 export const measuring = signal(false);
 export const ends = signal<Vec3[]>([]); // of what is measured
+export const cutaway = signal(true); // what stands before the LIDAR, and no camera saw, is left out
 export const showGrid = signal(true);
 export const showCameras = signal(true);
 

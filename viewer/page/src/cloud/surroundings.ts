@@ -10,7 +10,7 @@ export interface Label { kind: "axis" | "camera" | "grid" | "end"; text: string;
 export interface Frustum { name: string; color: string; lidar_from_camera: THREE.Matrix4; corners: Vec3[] }
 
 const kAxis = 0.5; // [m]
-const kAxes = [["x", "#ff6b6b"], ["y", "#69db7c"], ["z", "#74b3ff"]] as const;
+export const kAxes = [["x", "#ff6b6b"], ["y", "#69db7c"], ["z", "#74b3ff"]] as const;
 const kFrustum = 0.45; // how far its picture is from the camera [m]
 
 function segments(color: THREE.ColorRepresentation, opacity = 1): THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial> {
@@ -80,7 +80,8 @@ export class Surroundings {
   }
 
   labels(): Label[] {
-    return [...this.axisLabels(), ...this.cameraLabels(), ...this.gridLabels(),
+    const lidar = this.lidar.visible ? [...this.axisLabels(), ...this.cameraLabels()] : [];
+    return [...lidar, ...this.gridLabels(),
       ...this.ends.map((at, i): Label => ({ kind: "end", text: String(i + 1), at }))];
   }
 

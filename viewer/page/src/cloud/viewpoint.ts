@@ -61,6 +61,9 @@ export class Viewpoint {
     this.controls.update();
   }
 
+  /// New points came: as if it moved, until none do.
+  stir(): void { this.moved(); }
+
   /// It moves for as long as it is held, or changes again and again, as the wheel makes it.
   private moved(): void {
     this.moving = true;

@@ -3,6 +3,7 @@ import { measureAt, pickAt, setVisible, startScene } from "../cloud/model";
 import type { CloudScene } from "../cloud/scene";
 import { ends, measuring, picked } from "../cloud/settings";
 import { hello } from "../store";
+import { compassParts, turnCompass } from "./cloud/compass";
 import { Controls, Status } from "./cloud/controls";
 import { Legend } from "./cloud/legend";
 import { PointCard } from "./cloud/point_card";
@@ -29,8 +30,13 @@ function placeMarker(marker: HTMLElement, scene: CloudScene, canvas: HTMLCanvasE
   if (at) marker.style.transform = `translate(${at.x - box.left}px, ${at.y - box.top}px)`;
 }
 
-function start(canvas: HTMLCanvasElement, marker: HTMLElement, words: HTMLElement): () => void {
-  const scene = startScene(canvas, words, () => placeMarker(marker, scene, canvas));
+interface Parts { canvas: HTMLCanvasElement; marker: HTMLElement; words: HTMLElement; compass: SVGSVGElement }
+
+function start({ canvas, marker, words, compass }: Parts): () => void {
+  const scene = startScene(canvas, words, () => {
+    placeMarker(marker, scene, canvas);
+    turnCompass(compass, scene.axesOnScreen());
+  });
   listenToTaps(canvas, (x, y) => (measuring.peek() ? measureAt(x, y) : pickAt(x, y)));
   const stopMarker = picked.subscribe(() => placeMarker(marker, scene, canvas));
   const forget = (event: KeyboardEvent) => { if (event.key === "Escape") [picked.value, ends.value] = [null, []]; };
@@ -48,10 +54,11 @@ export function CloudPanel({ visible }: { visible: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const marker = useRef<HTMLDivElement>(null);
   const words = useRef<HTMLDivElement>(null);
+  const compass = useRef<SVGSVGElement>(null);
   const [failure, setFailure] = useState("");
   useEffect(() => {
     try {
-      return start(canvas.current!, marker.current!, words.current!);
+      return start({ canvas: canvas.current!, marker: marker.current!, words: words.current!, compass: compass.current! });
     } catch (error) {
       setFailure(`The cloud cannot be drawn: this browser has no WebGL 2 (${error})`);
     }
@@ -63,6 +70,7 @@ export function CloudPanel({ visible }: { visible: boolean }) {
         <canvas ref={canvas} tabIndex={0} data-testid="cloud-canvas"
           aria-label="The fused cloud. Arrow keys move it, with Shift turn it; plus and minus zoom." />
         <div ref={words} class="cloud-labels" aria-hidden="true" data-testid="cloud-labels" />
+        <svg ref={compass} class="cloud-compass" viewBox="-42 -42 84 84" aria-hidden="true" data-testid="cloud-compass">{compassParts()}</svg>
         <div ref={marker} class="cloud-marker" hidden data-testid="cloud-marker" />
         {failure && <p class="empty bad" role="alert">{failure}</p>}
       </div>

@@ -3,7 +3,7 @@ import { coloursOf, kColours, type Colour } from "../../cloud/color_maps";
 import { kViews } from "../../cloud/viewpoint";
 import { clearMap, sceneNow } from "../../cloud/model";
 import {
-  colour, crop, dark, lighting, measuring, mode, pointSize, section, showCameras, showGrid, stats, voxel, type Mode,
+  colour, crop, cutaway, dark, lighting, measuring, mode, pointSize, section, showCameras, showGrid, stats, voxel, type Mode,
 } from "../../cloud/settings";
 import { fixed, grouped } from "../../format";
 import { hello, rig } from "../../store";
@@ -95,6 +95,7 @@ function Appearance() {
       <div class="cloud-switches">
         <Switch name="Grid" of={showGrid} testid="cloud-grid" title="On the ground, metres" />
         <Switch name="Cameras" of={showCameras} testid="cloud-cameras" title="Where they are and what they see" />
+        <Switch name="Cutaway" of={cutaway} testid="cloud-cutaway" title="Leaves out what stands in front of the LIDAR and no camera saw" />
         <Switch name="Eye-dome lighting" of={lighting} testid="cloud-lighting" title="Edges in depth are darkened" />
         <Switch name="Dark background" of={dark} testid="cloud-dark" />
       </div>
