@@ -191,6 +191,7 @@ export class CloudScene {
   /// The point at a pixel of the window.
   pickAt(x: number, y: number): Picked | null {
     const box = this.canvas.getBoundingClientRect();
+    this.objects.thin(1, this.budget); // also those that are left out while it moves
     return pick(this.objects.drawn(), this.clipFromPoints(), box, x - box.left, y - box.top,
       { limits: this.limits, before: this.materials.uniforms.before.value });
   }

@@ -26,9 +26,10 @@ export class Viewpoint {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.listenToKeyEvents(canvas);
     this.controls.keyPanSpeed = 30;
-    this.controls.addEventListener("change", () => this.moved());
-    this.controls.addEventListener("start", () => { this.held = this.touched = true; });
-    this.controls.addEventListener("end", () => { this.held = false; this.moved(); });
+    this.controls.addEventListener("change", () => { this.touched ||= this.held; this.moved(); });
+    this.controls.addEventListener("start", () => { this.held = true; });
+    // A tap moves nothing.
+    this.controls.addEventListener("end", () => { this.held = false; if (this.moving) this.moved(); });
     canvas.addEventListener("keydown", (event) => this.onKey(event));
     this.camera.position.set(-3.5, 0, 2);
     this.place(new THREE.Vector3(3, 0, 0));
