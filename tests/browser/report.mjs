@@ -5,10 +5,12 @@ import { byId, kPhone, numberOf, openBrowser, openTab, require, run, shot, until
 const [report, url] = process.argv.slice(2);
 const kCameras = ["rgb", "thermal"], kViews = 6, kHeldout = "0003", kHeldoutPx = 1.5;
 
-/// What it shows of the session, in words and numbers.
-async function look(page, name) {
-  await until("the cloud", () => page.evaluate(() => window.rgbdt.cloud.points()), (points) => points > 10_000);
-  const points = await page.evaluate(() => window.rgbdt.cloud.points());
+/// What it shows of the session, in words and numbers. `all`: points that are to come.
+async function look(page, name, all = null) {
+  // While parts of the cloud come, not all of it is drawn.
+  const drawn = () => page.evaluate(() => ({ points: window.rgbdt.cloud.points(), total: window.rgbdt.cloud.total() }));
+  await until("the cloud", drawn, ({ points, total }) => points > 10_000 && points === total && (all ?? total) === total);
+  const { points } = await drawn();
   await openTab(page, "session");
   const verdict = await byId(page, "verdict").innerText();
   const states = [];
@@ -40,7 +42,7 @@ run(async () => {
   require(asked.length === 0, `the report asked for ${asked}`);
 
   await online.page.goto(url);
-  const served = await look(online.page, "served");
+  const served = await look(online.page, "served", figures.points);
   require(await byId(online.page, "connection").innerText() === "finished session", "it does not say that the session is finished");
   require(await byId(online.page, "tab-bus").count() === 0, "a finished session has a tab for the bus");
   require(JSON.stringify(served) === JSON.stringify(figures), `by the bridge it is ${JSON.stringify(served)}`);

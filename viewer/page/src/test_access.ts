@@ -7,6 +7,8 @@ const access = {
   cloud: {
     /// Points in the frame drawn last.
     points: (): number => sceneNow()?.points ?? 0,
+    /// Points that are shown: while the view moves, fewer are drawn.
+    total: (): number => sceneNow()?.total ?? 0,
     /// Frames drawn since the page was opened.
     drawn: (): number => sceneNow()?.pace.frames ?? 0,
     /// Frames drawn in the last second. It draws on demand: 0 where nothing changes.

@@ -4,11 +4,13 @@
 #include <cctype>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/parallel.h"
+#include "calib/model/statistics.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -98,9 +100,7 @@ CloudFacts LookAtCloud(const fs::path& path) {
     for (const Eigen::Vector3f& point : cloud.points) {
       if (point.allFinite()) ranges.push_back(point.norm());
     }
-    const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-    std::nth_element(ranges.begin(), middle, ranges.end());
-    facts.median_m = *middle;
+    facts.median_m = Median(std::move(ranges));
   } catch (const InputError& error) {
     facts.problem = error.what();
   }

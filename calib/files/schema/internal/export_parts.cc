@@ -14,9 +14,9 @@ std::vector<Exported> Match(const Rig& rig, const Calibration& calibration) {
   return cameras;
 }
 
-std::string List(const double* values, int count, const char* separator) {
+std::string List(const double* values, int count) {
   std::string text;
-  for (int i = 0; i < count; ++i) text += (i > 0 ? separator : "") + Exact(values[i]);
+  for (int i = 0; i < count; ++i) text += (i > 0 ? " " : "") + Exact(values[i]);
   return text;
 }
 

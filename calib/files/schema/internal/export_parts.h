@@ -21,8 +21,8 @@ struct Exported {
 /// Throws InputError where a camera is not the rig's, and where there is none.
 std::vector<Exported> Match(const Rig& rig, const Calibration& calibration);
 
-/// Numbers that read back as the same bits.
-std::string List(const double* values, int count, const char* separator = " ");
+/// Numbers that read back as the same bits, spaces between them.
+std::string List(const double* values, int count);
 
 /// What a reader must know of a camera that did not converge, in one line; empty: it did.
 std::string StatusWarning(const Exported& camera);

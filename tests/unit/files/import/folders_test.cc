@@ -209,6 +209,13 @@ TEST_F(FoldersTest, RealFolders) {
   EXPECT_EQ(made.rig.cameras[0].width, 1920);
 }
 
+TEST_F(FoldersTest, ACloudOfWhichNothingReturnedIsReadToo) {
+  Cloud nothing = test::MakeCloud();
+  for (Eigen::Vector3f& point : nothing.points) point.setConstant(NAN);
+  WritePcd(dir_ / "clouds/p2.pcd", nothing);
+  EXPECT_EQ(ReadFolders(folders_).views.size(), 3U);
+}
+
 TEST_F(FoldersTest, CloudsInMillimetresAreRefused) {
   test::WriteQuickly(dir_ / "clouds/p2.pcd",
                      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\n"

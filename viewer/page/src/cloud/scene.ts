@@ -196,6 +196,9 @@ export class CloudScene {
       { limits: this.limits, before: this.materials.uniforms.before.value });
   }
 
+  /// Points that are shown: while the view moves, fewer are drawn.
+  get total(): number { return this.objects.total(); }
+
   private get lidar(): THREE.Vector3 { return this.materials.uniforms.origin.value; }
 
   private subject(): Float32Array { return subjectOf(this.objects.drawn().map(({ points }) => points), this.limits); }
