@@ -1,5 +1,8 @@
 #include "calib/model/calibration.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rgbdt {
 
 namespace {
@@ -15,10 +18,19 @@ const char* NameOf(SolveStatus status) {
       return "not converged";
     case SolveStatus::kFirstGuessKept:
       return "converged; the first guess was kept";
+    case SolveStatus::kContradicted:
+      return "contradicted: do not use it";
     case SolveStatus::kConverged:
       break;
   }
   return "converged";
+}
+
+// Of a chi-square over its degrees of freedom: its cube root is nearly normal (Wilson and Hilferty
+// 1931).
+double NormalOf(double mean_square, double freedom) {
+  const double variance = 2 / (9 * freedom);
+  return (std::cbrt(mean_square) - (1 - variance)) / std::sqrt(variance);
 }
 
 }  // namespace
@@ -41,19 +53,19 @@ CameraSpec CameraCalibration::WithSolvedLens(CameraSpec spec) const {
 }
 
 Calibration Report::ToCalibration() const {
-  Calibration calibration{method, rig_hash, utime, {}};
+  Calibration calibration{method, rig_hash, utime, {}, {}};
   for (const CameraReport& camera : cameras) {
     if (camera.calibration.solved()) calibration.cameras.push_back(camera.calibration);
   }
   return calibration;
 }
 
-// Wilson and Hilferty 1931: the cube root of a chi-square is nearly normal.
 double ViewScatter::Chance() const {
-  if (!(freedom > 0)) return 1;
-  const double variance = 2 / (9 * freedom);
-  const double sigmas = (std::cbrt(factor) - (1 - variance)) / std::sqrt(variance);
-  return 0.5 * std::erfc(sigmas / std::sqrt(2.0));
+  return freedom > 0 ? 0.5 * std::erfc(NormalOf(factor, freedom) / std::sqrt(2.0)) : 1;
+}
+
+double Cause::Sigmas() const {
+  return freedom == 1 ? std::sqrt(chi2) : std::max(0.0, NormalOf(chi2 / freedom, freedom));
 }
 
 PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth) {

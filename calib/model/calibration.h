@@ -11,6 +11,7 @@
 #include "calib/model/rigid3.h"
 #include "calib/model/statistics.h"
 #include "calib/model/time.h"
+#include "calib/model/verdict.h"
 
 namespace rgbdt {
 
@@ -22,6 +23,7 @@ enum class SolveStatus {
   kDegenerate = 3,      ///< a pose that the views leave loose in some direction
   kFirstGuessKept = 4,  ///< it fits views left out better than the refined pose
   kConverged = 5,
+  kContradicted = 6,  ///< a pose that is not to be used: what was given contradicts the views
 };
 
 /// The lens that a camera was solved with, and that belongs to its pose.
@@ -64,6 +66,8 @@ struct Calibration {
   std::string rig_hash;  ///< the rig it was made with
   Utime utime = 0;       ///< of the newest image used
   std::vector<CameraCalibration> cameras;
+  /// What it holds for (SensorsOf the rig it was made with); absent: not known.
+  std::optional<Rig> sensors{};
 
   const CameraCalibration* Find(const std::string& camera) const {
     for (const CameraCalibration& c : cameras) {
@@ -76,6 +80,22 @@ struct Calibration {
     const CameraCalibration* found = Find(spec.name);
     return found == nullptr ? spec : found->WithSolvedLens(spec);
   }
+};
+
+/// From so many sigmas on, what was given is taken to be wrong: by chance once in 400 times.
+inline constexpr double kGivenWrongSigmas = 3;
+
+/// Something that was given, which these views contradict: a lens's numbers, the board's size.
+struct Cause {
+  std::string name;   ///< e.g. "focal length"
+  std::string words;  ///< by how much it is off, and what to do about it
+  double chi2 = 0;    ///< of what was given against the views
+  int freedom = 1;    ///< of chi2
+  /// How far the pose moves where it is put right, in its own sigmas. Absent: not known.
+  std::optional<double> moves_sigma{};
+
+  /// As unlikely as so many sigmas of one number.
+  double Sigmas() const;
 };
 
 /// A figure over the views used and over the views held out; absent: not to be had.
@@ -166,6 +186,9 @@ struct CameraReport {
   std::vector<RejectedView> rejected;
   /// Why the views cannot all be of one pose, in words; empty: they can, as far as is known.
   std::string contradiction;
+  /// What may have been given wrong, the likeliest first: from kGivenWrongSigmas on it is taken to
+  /// be, below that it is named where something else says that all is not well.
+  std::vector<Cause> causes;
   std::vector<std::string> warnings;   ///< what a person should know of the views, in words
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
@@ -179,6 +202,7 @@ struct CameraReport {
   std::optional<ViewScatter> view_scatter;  ///< absent: too few views, or no covariance
   /// By which the covariance was enlarged, as views may scatter more than stated (`view_scatter`).
   double variance_factor = 1;
+  std::optional<Verdict> verdict;              ///< absent: not judged (calib/present/report)
   std::optional<PoseError> first_guess_error;  ///< against truth, where there is one
   std::optional<PoseError> truth_error;
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views

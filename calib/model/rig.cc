@@ -169,4 +169,24 @@ const CameraSpec& Rig::Camera(const std::string& camera_name) const {
   throw InputError("the rig has no camera \"" + camera_name + "\"; it has: " + names);
 }
 
+Rig SensorsOf(const Rig& rig) {
+  Rig sensors;
+  sensors.name = rig.name;
+  sensors.lidar.name = rig.lidar.name;
+  if (rig.lidar.turned_scanner) {
+    sensors.lidar.turned_scanner = rig.lidar.turned_scanner;
+    sensors.lidar.turned_scanner->motor.reset();
+  }
+  for (const CameraSpec& camera : rig.cameras) {
+    CameraSpec& sensor = sensors.cameras.emplace_back();
+    sensor.name = camera.name;
+    sensor.kind = camera.kind;
+    sensor.format = camera.format;
+    sensor.width = camera.width;
+    sensor.height = camera.height;
+    sensor.lens = camera.lens;
+  }
+  return sensors;
+}
+
 }  // namespace rgbdt

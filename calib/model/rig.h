@@ -100,4 +100,7 @@ struct Rig {
   const CameraSpec& Camera(const std::string& camera_name) const;
 };
 
+/// What a calibration holds for: each camera's image size and lens, the LIDAR's turned scanner.
+Rig SensorsOf(const Rig& rig);
+
 }  // namespace rgbdt

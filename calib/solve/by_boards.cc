@@ -12,6 +12,8 @@
 #include "calib/solve/compare.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/internal/cross_check.h"
+#include "calib/solve/internal/disagreement.h"
+#include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "calib/solve/internal/next_view.h"
 
@@ -152,16 +154,6 @@ std::string RangesAreOff(const Estimate& offset, double known_m) {
       1000 * known_m);
 }
 
-std::string LensIsOff(const CameraSpec& spec, const LensOff& off) {
-  return Format(
-      "the lens in the rig file contradicts these views (chi-square %.0f where %d is expected): "
-      "they put the focal length %+.2f%%, the centre %+.1f, %+.1f px off. The lens found here is "
-      "used and stands in the calibration. Find the lens with 20 views or more all over the image "
-      "(rgbdt intrinsics) and put it into the rig file",
-      off.chi2, off.freedom, 50 * (off.off[0] / spec.lens.fx + off.off[1] / spec.lens.fy),
-      off.off[2], off.off[3]);
-}
-
 // A camera's report with what the joint solve found, which took `seconds`.
 CameraReport WithSolution(const JointResult& result, std::size_t camera, double seconds) {
   CameraReport report = result.joint.cameras[camera].views.report;
@@ -173,10 +165,7 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
     report.warnings.push_back(RangesAreOff(report.calibration.range_errors->offset_m,
                                            *result.refuted_range_offset_sigma_m));
   }
-  if (result.lenses_off[camera].contradicts()) {
-    report.warnings.push_back(
-        LensIsOff(*result.joint.cameras[camera].views.spec, result.lenses_off[camera]));
-  }
+  report.causes = GivenWrong(result, camera);
   report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
   return report;
 }
@@ -228,11 +217,42 @@ struct SolvedGroup {
   std::optional<NextView> next_view;
 };
 
+std::size_t ImagesUsed(const JointResult& result) {
+  std::size_t images = 0;
+  for (const BoardView& view : result.joint.problem.views) images += view.images.size();
+  return images;
+}
+
+// Where a lens was refuted, boards are posed anew by the one that was found, so that those that the
+// given one bent out of shape have their say, and all is solved again. `detected`: the cameras'
+// views before any guess.
+JointResult SolveWithLensFound(const Target& target, const CalibrateOptions& options,
+                               std::vector<GuessedCamera> cameras,
+                               const std::vector<CameraViews>& detected) {
+  const double offset_sigma_m = options.first_guess.range_offset_sigma_m;
+  JointResult result = SolveJointly(MakeJointProblem(target, std::move(cameras), offset_sigma_m));
+  std::vector<CameraViews> posed;
+  bool refuted = false;
+  for (std::size_t c = 0; c < detected.size(); ++c) {
+    const bool off = result.lenses_off[c].contradicts();
+    posed.push_back(off ? PosedAgain(detected[c], result.solution.state.lenses[c], target)
+                        : detected[c]);
+    refuted = refuted || off;
+  }
+  if (!refuted) return result;
+  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(posed));
+  for (const GuessedCamera& camera : guessed) {
+    if (!camera.guess.camera_from_lidar) return result;
+  }
+  JointResult again = SolveJointly(MakeJointProblem(target, std::move(guessed), offset_sigma_m));
+  return ImagesUsed(again) < ImagesUsed(result) ? std::move(result) : std::move(again);
+}
+
 SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
-                       std::vector<GuessedCamera> cameras) {
+                       std::vector<GuessedCamera> cameras,
+                       const std::vector<CameraViews>& detected) {
   const Stopwatch watch;
-  JointResult result = SolveJointly(
-      MakeJointProblem(target, std::move(cameras), options.first_guess.range_offset_sigma_m));
+  JointResult result = SolveWithLensFound(target, options, std::move(cameras), detected);
   const double seconds = watch.Seconds();
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
     result.joint.cameras[c].views.report = WithSolution(result, c, seconds);
@@ -272,6 +292,21 @@ std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView>
   return b && (!a || b->sigma_before_px > a->sigma_before_px) ? std::move(b) : std::move(a);
 }
 
+// The first guesses; where views do not agree on one, what makes them.
+std::vector<GuessedCamera> GuessOrSayWhyNot(const Target& target, const CalibrateOptions& options,
+                                            std::vector<CameraViews>* cameras) {
+  std::vector<GuessedCamera> guessed = GuessCameras(options, *cameras);
+  for (std::size_t c = 0; c < guessed.size(); ++c) {
+    const Disagreement why = WhyViewsDisagree(target, options, (*cameras)[c], guessed[c].guess);
+    if (why.lens) {
+      (*cameras)[c] = PosedAgain(std::move((*cameras)[c]), *why.lens, target);
+      guessed[c] = std::move(GuessCameras(options, {(*cameras)[c]}).front());
+    }
+    guessed[c].views.report.contradiction = why.contradiction;
+  }
+  return guessed;
+}
+
 }  // namespace
 
 CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
@@ -279,12 +314,16 @@ CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions
   CalibratedCameras out;
   CalibrateOptions pairing = options;
   pairing.first_guess.accept = kVotingGate;  // what contradicts the rest is found by the solve
-  std::vector<GuessedCamera> guessed = GuessCameras(pairing, std::move(cameras));
+  std::vector<GuessedCamera> guessed = GuessOrSayWhyNot(target, pairing, &cameras);
   for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
     std::vector<GuessedCamera> together;
+    std::vector<CameraViews> detected;
     together.reserve(group.size());
-    for (const std::size_t c : group) together.push_back(std::move(guessed[c]));
-    SolvedGroup solved = SolveGroup(target, options, std::move(together));
+    for (const std::size_t c : group) {
+      together.push_back(std::move(guessed[c]));
+      detected.push_back(cameras[c]);
+    }
+    SolvedGroup solved = SolveGroup(target, pairing, std::move(together), detected);
     for (std::size_t i = 0; i < group.size(); ++i) guessed[group[i]] = std::move(solved.cameras[i]);
     for (MountChange& change : solved.changes) {
       out.changes.push_back({group[change.from], group[change.to], std::move(change.moved)});

@@ -121,7 +121,7 @@ void Check(const calibration_t& wire) {
   CheckCameraName("camera", wire.camera);
   CheckName("rig_hash", wire.rig_hash, true);
   CheckName("method", wire.method, true);
-  CheckRange("status", wire.status, calibration_t::NOT_SOLVED, calibration_t::CONVERGED);
+  CheckRange("status", wire.status, calibration_t::NOT_SOLVED, calibration_t::CONTRADICTED);
   CheckText("detail", wire.detail);
   CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
   CheckFinite("translation_m", wire.translation_m, 3);

@@ -9,6 +9,7 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/present/report/verdict.h"
 #include "services/nodes/internal/session_steps.h"
 
 namespace rgbdt {
@@ -310,8 +311,8 @@ void SessionNode::Save() {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
     return;
   }
-  WriteReport(directory_ / "report.json", *report_);
-  const Calibration calibration = report_->ToCalibration();
+  WriteReport(directory_ / "report.json", WithVerdicts(*report_));
+  const Calibration calibration = JudgedCalibration(*report_, rig_);
   if (!calibration.cameras.empty()) {
     WriteCalibration(directory_ / "calibration.textproto", calibration);
   }

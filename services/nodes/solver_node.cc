@@ -4,6 +4,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/summary.h"
+#include "calib/present/report/verdict.h"
 
 namespace rgbdt {
 
@@ -50,7 +51,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   }
   report_ = Solve(detections_, true);
   Messages out = Calibrations();
-  out.push_back(ReportText{0, report_->utime, ReportToJson(*report_)});
+  out.push_back(ReportText{0, report_->utime, ReportToJson(WithVerdicts(*report_))});
   event.text = Summary(*report_).BriefReport();
   out.push_back(std::move(event));
   return out;
@@ -68,7 +69,7 @@ Report SolverNode::Solve(const Detections& detections, bool for_report) const {
 Messages SolverNode::Calibrations() const {
   Messages out;
   if (!report_) return out;
-  for (const CameraCalibration& camera : report_->ToCalibration().cameras) {
+  for (const CameraCalibration& camera : JudgedCalibration(*report_, *rig_).cameras) {
     out.push_back(
         CalibrationMessage{0, report_->utime, report_->rig_hash, report_->method, camera});
   }

@@ -31,6 +31,8 @@ class SolverNode : public Node {
 
   /// The newest report; none before the first view.
   const std::optional<Report>& report() const { return report_; }
+  /// Its rig; none before it is known.
+  const std::optional<Rig>& rig() const { return rig_; }
 
  private:
   using Detections = std::map<std::string, ViewDetection>;  // by view

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -40,25 +39,25 @@ SessionDetection Detect(const Session& session, const std::string& method) {
   return detection;
 }
 
-// Writes and prints one result. False: it is not one to use.
-bool Finish(const Place& place, const Session& session, const SessionDetection& detection,
-            Report report) {
-  const std::string wrote = WriteIfSolved(place.out, report);
+// Writes and prints one result.
+ExitCode Finish(const Place& place, const Session& session, const SessionDetection& detection,
+                Report report) {
+  const std::string wrote = WriteIfSolved(place.out, session.rig, report);
   if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   WriteReportFiles(place.out, {session, detection.views, reports});
   PrintReport(report, wrote, detection.unreadable);
-  return detection.unreadable.empty() && Summary(report).converged();
+  return WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report));
 }
 
-bool CalibrateOne(const CalibrateFlags& flags) {
+ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
   const SessionDetection detection = Detect(session, flags.options.method);
-  const bool usable =
+  const ExitCode end =
       Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
              detection, Calibrate(session.rig, detection.views, flags.options));
   PrintUnreadable(detection.unreadable);
-  return usable;
+  return end;
 }
 
 Session OpenAll(const CalibrateFlags& flags) {
@@ -82,8 +81,8 @@ std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewD
   return sessions;
 }
 
-// One pose of each camera in all sessions. False, too, where the sessions contradict that.
-bool CalibrateTogether(const CalibrateFlags& flags) {
+// One pose of each camera in all sessions.
+ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
   const SessionDetection detection = Detect(session, flags.options.method);
   std::vector<CalibrationComparison> comparisons;
@@ -95,35 +94,31 @@ bool CalibrateTogether(const CalibrateFlags& flags) {
   }
   const Report report =
       WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons);
-  const bool agree =
-      std::all_of(report.cameras.begin(), report.cameras.end(),
-                  [](const CameraReport& camera) { return camera.contradiction.empty(); });
-  const bool usable = Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)},
-                             session, detection, report);
+  const ExitCode end = Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root)},
+                              session, detection, report);
   PrintUnreadable(detection.unreadable);
   PrintComparisons(comparisons);
-  return usable && agree;
+  return end;
 }
 
 // Poses of its own in each session; what all have in common is told by all.
-bool CalibrateEach(const CalibrateFlags& flags) {
+ExitCode CalibrateEach(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
   const SessionDetection detection = Detect(session, flags.options.method);
   const std::vector<SessionViews> views = Divided(session, detection.views);
   CalibratedSessions result = CalibrateSessions(session.rig, views, flags.options);
   const std::vector<Session> parts = PartsOf(session);
-  bool usable = detection.unreadable.empty();
+  ExitCode end = EndsIf(detection.unreadable.empty());
   for (std::size_t s = 0; s < parts.size(); ++s) {
     std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
     const Place place{flags.out / std::filesystem::path(views[s].name).relative_path(),
                       TruthPath(flags.truth, parts[s].parts[0].session.root)};
-    const bool used =
-        Finish(place, parts[s], {views[s].detections, detection.unreadable}, result.reports[s]);
-    usable = usable && used;
+    end = WorseOf(end, Finish(place, parts[s], {views[s].detections, detection.unreadable},
+                              result.reports[s]));
   }
   PrintUnreadable(detection.unreadable);
   PrintComparisons(result.comparisons);
-  return usable;
+  return end;
 }
 
 int RunCalibrate(const CalibrateFlags& flags) {
@@ -131,10 +126,9 @@ int RunCalibrate(const CalibrateFlags& flags) {
   if (flags.mounts_moved && flags.dirs.size() < 2) {
     throw UsageError("--mounts-moved is for several sessions; name two or more");
   }
-  const bool usable = flags.dirs.size() == 1 ? CalibrateOne(flags)
-                      : flags.mounts_moved   ? CalibrateEach(flags)
-                                             : CalibrateTogether(flags);
-  return EndsWith(usable);
+  return static_cast<int>(flags.dirs.size() == 1 ? CalibrateOne(flags)
+                          : flags.mounts_moved   ? CalibrateEach(flags)
+                                                 : CalibrateTogether(flags));
 }
 
 }  // namespace
@@ -155,10 +149,9 @@ void AddCalibrate(CommandLine* program) {
           flags->options.first_guess.range_offset_sigma_m = kRangeOffsetSigmaM;
         return RunCalibrate(*flags);
       });
-  verb->Ends(
-      ExitCode::kFailed,
-      "failed, or not to be relied on: a camera did not converge, a view could not be read,\n"
-      "or sessions contradict each other");
+  verb->Ends(ExitCode::kFailed,
+             "failed, or not all of it: a camera did not converge, or a view could not be read");
+  AddVerdictEnds(verb);
   verb->Required("DIR", &flags->dirs, "session directories (rig.textproto, views/)");
   verb->Option("--out", &flags->out,
                "where to write; default: DIR. Of several sessions it must be given");

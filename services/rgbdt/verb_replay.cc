@@ -5,10 +5,10 @@
 
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
-#include "calib/present/report/summary.h"
 #include "calib/present/session/report_files.h"
 #include "services/bus/log.h"
 #include "services/replay/replay.h"
+#include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -74,12 +74,12 @@ int RunReplay(const ReplayFlags& flags) {
         solver->GetStatus().text + "; detector: " + detector->GetStatus().text);
   }
   const std::filesystem::path out = flags.out;
-  const std::string written = WriteIfSolved(out, *report);
-  WriteReport(out / "report.json", *report);
+  const std::string written = WriteIfSolved(out, *replay.solver().rig(), *report);
+  WriteReport(out / "report.json", WithVerdicts(*report));
   std::fputs(Summary(*report).FullReport().c_str(), stdout);
   PrintFused(fuser->GetStatus());
   std::printf("%s report.json\n", written.c_str());
-  return EndsWith(Summary(*report).converged());
+  return static_cast<int>(EndOf(*report));
 }
 
 }  // namespace
@@ -94,6 +94,7 @@ void AddReplay(CommandLine* program) {
       "Example: rgbdt replay out/demo/session.lcm --out out/replay",
       [flags] { return RunReplay(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or a camera did not converge");
+  AddVerdictEnds(verb);
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");
   verb->Choice("--method", &flags->method, kMethodNames, kMethodHelp);

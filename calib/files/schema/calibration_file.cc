@@ -5,6 +5,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/lens_convert.h"
 #include "calib/files/schema/internal/report_parts.h"
+#include "calib/files/schema/internal/rig_convert.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -60,7 +61,7 @@ Calibration ReadCalibration(const std::filesystem::path& path) {
   proto::Calibration message;
   Place::Tree tree;
   const Place place = text::ParseText(ReadWholeFile(path), path.string(), &message, &tree);
-  Calibration calibration{message.method(), message.rig_hash(), message.utime(), {}};
+  Calibration calibration{message.method(), message.rig_hash(), message.utime(), {}, {}};
   std::set<std::string> names;
   for (int i = 0; i < message.camera_size(); ++i) {
     const Place at = place.In("camera", i);
@@ -68,6 +69,9 @@ Calibration ReadCalibration(const std::filesystem::path& path) {
     if (!names.insert(message.camera(i).camera()).second) {
       at.Fail("camera", "is \"" + message.camera(i).camera() + "\" for the second time");
     }
+  }
+  if (message.has_sensors()) {
+    calibration.sensors = text::ToRig(message.sensors(), place.In("sensors"), LensNeed::kKnown);
   }
   if (calibration.cameras.empty()) {
     place.Fail("camera", "is missing; the file holds no calibrated camera");
@@ -83,6 +87,7 @@ std::string PrintCalibration(const Calibration& calibration) {
   for (const CameraCalibration& camera : calibration.cameras) {
     FromCamera(camera, message.add_camera());
   }
+  if (calibration.sensors) *message.mutable_sensors() = text::FromRig(*calibration.sensors);
   return text::PrintText(message, kComment);
 }
 

@@ -89,6 +89,32 @@ DetectedView ToDetection(const proto::DetectedView& message) {
   return detection;
 }
 
+void FromCause(const Cause& cause, proto::Cause* out) {
+  out->set_name(ValidUtf8(cause.name));
+  out->set_words(ValidUtf8(cause.words));
+  out->set_chi2(cause.chi2);
+  out->set_freedom(cause.freedom);
+  if (cause.moves_sigma) out->set_moves_sigma(*cause.moves_sigma);
+}
+
+Cause ToCause(const proto::Cause& message) {
+  Cause cause{message.name(), message.words(), message.chi2(), message.freedom(), std::nullopt};
+  if (message.has_moves_sigma()) cause.moves_sigma = message.moves_sigma();
+  return cause;
+}
+
+void FromVerdict(const Verdict& verdict, proto::Verdict* out) {
+  out->set_grade(NameOf(verdict.grade));
+  out->set_headline(ValidUtf8(verdict.headline));
+  for (const std::string& reason : verdict.reasons) out->add_reasons(ValidUtf8(reason));
+}
+
+Verdict ToVerdict(const proto::Verdict& message) {
+  return {GradeNamed(message.grade()),
+          message.headline(),
+          {message.reasons().begin(), message.reasons().end()}};
+}
+
 void FromStart(const StartResult& start, proto::StartResult* out) {
   out->set_start(ValidUtf8(start.start));
   text::FromRigid3(start.calibration.camera_from_lidar, out->mutable_camera_from_lidar());
@@ -140,6 +166,8 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
     text::FromRangeErrors(*calibration.range_errors, out->mutable_range_errors());
   }
   out->set_contradiction(ValidUtf8(camera.contradiction));
+  for (const Cause& cause : camera.causes) FromCause(cause, out->add_causes());
+  if (camera.verdict) FromVerdict(*camera.verdict, out->mutable_verdict());
   if (camera.view_scatter) {
     out->mutable_view_scatter()->set_factor(camera.view_scatter->factor);
     out->mutable_view_scatter()->set_freedom(camera.view_scatter->freedom);
@@ -184,6 +212,8 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
         ViewScatter{message.view_scatter().factor(), message.view_scatter().freedom()};
   }
   camera.contradiction = message.contradiction();
+  for (const proto::Cause& cause : message.causes()) camera.causes.push_back(ToCause(cause));
+  if (message.has_verdict()) camera.verdict = ToVerdict(message.verdict());
   if (message.has_variance_factor()) camera.variance_factor = message.variance_factor();
   if (message.has_first_guess_error()) {
     camera.first_guess_error = ToPoseError(message.first_guess_error());

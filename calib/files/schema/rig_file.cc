@@ -10,6 +10,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/device_convert.h"
 #include "calib/files/schema/internal/lens_convert.h"
+#include "calib/files/schema/internal/rig_convert.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -227,36 +228,41 @@ void FromTarget(const Target& spec, proto::Target* out) {
   out->add_pattern_offset_m(spec.pattern_offset_m.y());
 }
 
-proto::Rig ToMessage(const Rig& rig) {
+}  // namespace
+
+proto::Rig text::FromRig(const Rig& rig) {
   proto::Rig message;
   message.set_name(ValidUtf8(rig.name));
   FromLidar(rig.lidar, message.mutable_lidar());
   for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
-  FromTarget(rig.target, message.mutable_target());
+  if (rig.target.width_m > 0) FromTarget(rig.target, message.mutable_target());
   return message;
 }
 
-}  // namespace
-
-Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
-  return ParseRig(ReadWholeFile(path), path.string(), lenses);
-}
-
-Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses) {
-  proto::Rig message;
-  Place::Tree tree;
-  const Place place = text::ParseText(text, where, &message, &tree);
-  if (!message.has_lidar()) place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
-  if (!message.has_target()) place.Fail("target", "is missing; expected target { ... }");
+Rig text::ToRig(const proto::Rig& message, const Place& place, LensNeed lenses) {
   Rig rig;
   rig.name = message.name();
   rig.lidar = ToLidar(message.lidar(), place.In("lidar"));
   for (int i = 0; i < message.camera_size(); ++i) {
     rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
   }
-  rig.target = ToTarget(message.target(), place.In("target"));
-  rig.text = text;
-  rig.hash = HashOfRigText(text);
+  if (message.has_target()) rig.target = ToTarget(message.target(), place.In("target"));
+  return rig;
+}
+
+Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
+  return ParseRig(ReadWholeFile(path), path.string(), lenses);
+}
+
+Rig ParseRig(const std::string& source, const std::string& where, LensNeed lenses) {
+  proto::Rig message;
+  Place::Tree tree;
+  const Place place = text::ParseText(source, where, &message, &tree);
+  if (!message.has_lidar()) place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
+  if (!message.has_target()) place.Fail("target", "is missing; expected target { ... }");
+  Rig rig = text::ToRig(message, place, lenses);
+  rig.text = source;
+  rig.hash = HashOfRigText(source);
   try {
     rig.Check(lenses);
   } catch (const InputError& error) {
@@ -267,15 +273,15 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses)
 
 std::string PrintRig(const Rig& rig) {
   return text::PrintText(
-      ToMessage(rig),
+      text::FromRig(rig),
       "A rig (schema: calib/files/schema/rig.proto). Metres, pixels, seconds, kelvin.\n"
       "a_from_b: point_in_a = R(quaternion w x y z) * point_in_b + translation. LIDAR: x forward,\n"
       "y left, z up. Camera: x right, y down, z forward.");
 }
 
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
-  proto::Rig was = ToMessage(a);
-  proto::Rig is = ToMessage(b);
+  proto::Rig was = text::FromRig(a);
+  proto::Rig is = text::FromRig(b);
   for (proto::Rig* rig : {&was, &is}) {
     rig->clear_name();
     rig->mutable_lidar()->clear_name();

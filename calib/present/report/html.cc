@@ -20,9 +20,10 @@ h3 { font-size: 1.05rem; margin: 1.4rem 0 .3rem; }
 .verdict { border-left: .5rem solid; padding: .6rem .9rem; background: var(--soft); }
 .verdict p { margin: .2rem 0; color: var(--fore); }
 .verdict strong { font-size: 1.2rem; }
-.verdict.good { border-color: var(--good); } strong.good, .good strong { color: var(--good); }
-.verdict.caution { border-color: var(--caution); }
-strong.caution, .caution strong { color: var(--caution); }
+.verdict.good, .verdict.usable { border-color: var(--good); }
+strong.good, .good strong, strong.usable, .usable strong { color: var(--good); }
+.verdict.doubtful { border-color: var(--caution); }
+strong.doubtful, .doubtful strong { color: var(--caution); }
 .verdict.bad { border-color: var(--bad); } strong.bad, .bad strong { color: var(--bad); }
 td strong { font-weight: inherit; }
 .scroll { overflow-x: auto; max-width: 100%; }
@@ -37,8 +38,9 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; height: auto; display: block
 const char* IconOf(Grade mark) {
   switch (mark) {
     case Grade::kGood:
+    case Grade::kUsable:
       return "✓ ";
-    case Grade::kCaution:
+    case Grade::kDoubtful:
       return "! ";
     case Grade::kBad:
       return "✗ ";

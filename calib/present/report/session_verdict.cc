@@ -59,7 +59,8 @@ std::string Listed(const std::vector<std::string>& names) {
 std::string Clause(Grade grade, const std::vector<std::string>& names) {
   if (grade == Grade::kBad) return "do not use the calibration of " + Listed(names);
   if (grade == Grade::kNone) return "no calibration yet of " + Listed(names);
-  if (grade == Grade::kCaution) return "take care with " + Listed(names);
+  if (grade == Grade::kDoubtful) return "doubtful: " + Listed(names);
+  if (grade == Grade::kUsable) return "usable: " + Listed(names);
   return Listed(names) + (names.size() == 1 ? " is" : " are") + " calibrated";
 }
 
@@ -69,7 +70,8 @@ std::string Mixed(const std::vector<JudgedCamera>& cameras, const std::vector<Ve
   const auto add = [&](const std::string& clause) {
     headline += (headline.empty() ? "" : "; ") + clause;
   };
-  for (const Grade grade : {Grade::kBad, Grade::kNone, Grade::kCaution, Grade::kGood}) {
+  for (const Grade grade :
+       {Grade::kBad, Grade::kNone, Grade::kDoubtful, Grade::kUsable, Grade::kGood}) {
     std::vector<std::string> names;
     std::vector<std::string> unjudged;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -86,8 +88,8 @@ std::string Mixed(const std::vector<JudgedCamera>& cameras, const std::vector<Ve
 
 Cell JudgedSigmas(const std::optional<double>& rms) {
   if (!rms) return {"not judged yet"};
-  if (*rms > kMostWhitened) return {"less exact than stated", Grade::kCaution};
-  if (*rms < kLeastWhitened) return {"more exact than stated", Grade::kCaution};
+  if (*rms > kMostWhitened) return {"less exact than stated", Grade::kDoubtful};
+  if (*rms < kLeastWhitened) return {"more exact than stated", Grade::kUsable};
   return {"as expected", Grade::kGood};
 }
 

@@ -63,12 +63,14 @@ std::string ReprojectionSigma(const CameraReport& camera) {
   return at == nullptr ? "-" : fmt::format("{:.2f} / {:.2f}", at->centre_px, at->worst_px);
 }
 
-// The verdict where it is not good: its headline and what speaks most against the result.
-std::string Alarm(const CameraReport& camera, const std::optional<NextView>& next_view) {
+// The verdict, and what speaks most against the result.
+std::string VerdictLines(const CameraReport& camera, const std::optional<NextView>& next_view) {
   const Verdict verdict = Judge(camera, next_view);
-  if (verdict.grade == Grade::kGood || verdict.reasons.empty()) return "";
-  return fmt::format("{}: {} {}\n", camera.calibration.camera, verdict.headline,
-                     verdict.reasons.front());
+  std::string lines = fmt::format("{}: {}", camera.calibration.camera, verdict.headline);
+  if (verdict.grade == Grade::kGood || verdict.reasons.empty()) return lines + "\n";
+  lines += " " + verdict.reasons.front() + "\n";
+  if (verdict.grade < Grade::kDoubtful || verdict.reasons.size() < 2) return lines;
+  return lines + "  " + verdict.reasons[1] + "\n";
 }
 
 // What the cameras' columns have no room for.
@@ -118,6 +120,9 @@ std::string Summary::BriefReport() const {
 
 std::string Summary::FullReport(const std::vector<std::string>& told) const {
   std::string text;
+  for (const CameraReport& camera : report_.cameras) {
+    text += VerdictLines(camera, report_.next_view);
+  }
   const auto row = [&](const std::string& label,
                        const std::function<std::string(const CameraReport&)>& cell) {
     text += fmt::format("{:<{}}", label, kLabel);
@@ -184,7 +189,6 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  for (const CameraReport& camera : report_.cameras) text += Alarm(camera, report_.next_view);
   text += Warnings(report_, told);
   if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
   return text;

@@ -17,8 +17,8 @@ class Summary {
   /// One line: how each camera's solve ended, and its reprojection uncertainty; of the paper's
   /// method the mean distance transform.
   std::string BriefReport() const;
-  /// A table, units in the first column, cameras side by side; what has no room in it, in lines
-  /// below. Why a view was rejected is left out where it is one of `told`.
+  /// The cameras' verdicts; a table, units in the first column, cameras side by side; what has no
+  /// room in it, in lines below. Why a view was rejected is left out where it is one of `told`.
   std::string FullReport(const std::vector<std::string>& told = {}) const;
 
  private:

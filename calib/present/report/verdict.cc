@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/present/report/words.h"
 
@@ -14,12 +15,18 @@ constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
-// Of the views' scatter over what is stated (variance): below, the enlarged sigma makes good for
-// it.
-constexpr double kMostScatter = 2.5;
+// Of the views' scatter over what is stated (variance): above the first it is said, and the
+// enlarged sigma makes good for it; above the second nobody knows what the views have wrong.
+constexpr double kMuchScatter = 2.5, kMostScatter = 6;
 constexpr double kUnlikely = 1e-3;
 // Of views left out, over what is expected: by chance the mean over eight views stays below this.
 constexpr double kMostMisfit = 2;
+// Of what was given wrong, in sigmas of the pose that it moves.
+constexpr double kMovesLittle = 1, kMovesMuch = 4;
+// What is less likely than this is not named as a cause.
+constexpr double kLeastNamedSigmas = 1;
+constexpr std::size_t kMostNamed = 2;
+constexpr std::size_t kManyRejected = 3;
 constexpr char kWhyViewsDisagree[] =
     "Check the lens (rgbdt intrinsics), the board's size in the rig file, and that board and rig "
     "stood still.";
@@ -28,33 +35,90 @@ constexpr char kWhyViewsDisagree[] =
 class Judgement {
  public:
   void AddReason(const std::string& sentence) { others_.push_back(sentence); }
-  void Caution(const std::string& sentence) {
-    verdict_.grade = std::max(verdict_.grade, Grade::kCaution);
-    verdict_.reasons.push_back(sentence);
-  }
-  void Bad(const std::string& sentence) {
-    verdict_.grade = Grade::kBad;
-    verdict_.reasons.push_back(sentence);
+  void Usable(const std::string& sentence) { Say(Grade::kUsable, sentence); }
+  void Doubtful(const std::string& sentence) { Say(Grade::kDoubtful, sentence); }
+  void Bad(const std::string& sentence) { Say(Grade::kBad, sentence); }
+  Grade grade() const { return grade_; }
+  /// Before all else of this grade.
+  void Cause(Grade grade, const std::string& sentence) {
+    grade_ = std::max(grade_, grade);
+    causes_.emplace_back(grade, sentence);
   }
   /// Nothing else matters beside it.
-  void Headline(const std::string& headline) { verdict_.headline = headline; }
+  void Headline(const std::string& headline) { headline_ = headline; }
+  /// What is worst comes first.
   Verdict Finish() {
-    verdict_.reasons.insert(verdict_.reasons.end(), others_.begin(), others_.end());
-    if (!verdict_.headline.empty()) return verdict_;
-    verdict_.headline = verdict_.grade == Grade::kGood ? "Consistent: no sign that it is wrong."
-                        : verdict_.grade == Grade::kCaution ? "Take care before using it."
-                                                            : "Do not use it.";
-    return verdict_;
+    against_.insert(against_.begin(), causes_.begin(), causes_.end());
+    std::stable_sort(against_.begin(), against_.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    Verdict verdict{grade_, headline_, {}};
+    for (const auto& [grade, sentence] : against_) verdict.reasons.push_back(sentence);
+    verdict.reasons.insert(verdict.reasons.end(), others_.begin(), others_.end());
+    if (!headline_.empty()) return verdict;
+    verdict.headline = grade_ == Grade::kGood       ? "Good: no sign that it is wrong."
+                       : grade_ == Grade::kUsable   ? "Usable."
+                       : grade_ == Grade::kDoubtful ? "Doubtful: something does not fit together."
+                                                    : "Do not use it.";
+    return verdict;
   }
 
  private:
-  Verdict verdict_;
+  void Say(Grade grade, const std::string& sentence) {
+    grade_ = std::max(grade_, grade);
+    against_.emplace_back(grade, sentence);
+  }
+
+  Grade grade_ = Grade::kGood;
+  std::string headline_;
+  std::vector<std::pair<Grade, std::string>> causes_, against_;
   std::vector<std::string> others_;  // reasons that are no alarm
 };
+
+std::string Moves(const Cause& cause) {
+  if (!cause.moves_sigma) return "";
+  return " Put right, it moves the result by " + Number(*cause.moves_sigma, 1) + " sigma.";
+}
+
+// What was given wrong, by how much the result moves where it is put right.
+Grade GradeOf(const Cause& cause) {
+  if (!cause.moves_sigma) return Grade::kDoubtful;
+  return *cause.moves_sigma > kMovesMuch     ? Grade::kBad
+         : *cause.moves_sigma > kMovesLittle ? Grade::kDoubtful
+                                             : Grade::kUsable;
+}
+
+// What was given and cannot be right; where something else says that all is not well, also what
+// may be behind it.
+void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
+  if (!camera.contradiction.empty()) return;
+  const bool alarm = judgement->grade() >= Grade::kDoubtful;
+  std::size_t named = 0;
+  for (const Cause& cause : camera.causes) {
+    const bool wrong = cause.Sigmas() >= kGivenWrongSigmas;
+    if (!wrong && (!alarm || cause.Sigmas() < kLeastNamedSigmas)) continue;
+    const std::string sentence = (named == 0   ? "Likeliest cause: "
+                                  : named == 1 ? "Second likeliest: "
+                                               : "Or: ") +
+                                 cause.words + "." + Moves(cause);
+    if (named < kMostNamed || (wrong && GradeOf(cause) > judgement->grade())) {
+      if (wrong) {
+        judgement->Cause(GradeOf(cause), sentence);
+      } else {
+        judgement->AddReason(sentence);
+      }
+    }
+    ++named;
+  }
+}
 
 // Whether the views fit together at all: before any figure that takes them to.
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) judgement->Bad(camera.contradiction);
+  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
+  if (camera.rejected.size() >= kManyRejected && 4 * camera.rejected.size() > views) {
+    judgement->Doubtful("Rejected: " + std::to_string(camera.rejected.size()) + " of " +
+                        Count(views, "view") + "; why stands in the table of views.");
+  }
   double misfit = 0;
   double expected = 0;
   for (const Fold& fold : camera.folds) {
@@ -62,25 +126,30 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
     expected += fold.expected_misfit / static_cast<double>(camera.folds.size());
   }
   if (misfit > kMostMisfit * expected) {
-    judgement->Caution(
+    judgement->Usable(
         "The views contradict each other: what the others say misses a view by a "
         "chi-square of " +
         Number(misfit, 0) + " where " + Number(expected, 0) +
         " is expected (50 is the most that is counted). " + kWhyViewsDisagree);
   }
   const auto& scatter = camera.view_scatter;
-  if (scatter && scatter->factor > kMostScatter && scatter->Chance() < kUnlikely) {
-    judgement->Caution("The views scatter " + Number(std::sqrt(scatter->factor), 1) +
-                       " times as much as their own sigmas say; the stated sigma was enlarged for "
-                       "it, but what moves all of them alike is not in it. " +
-                       kWhyViewsDisagree);
+  if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) return;
+  const std::string scatters =
+      "The views scatter " + Number(std::sqrt(scatter->factor), 1) +
+      " times as much as their own sigmas say; the stated sigma was enlarged for it, but what "
+      "moves all of them alike is not in it. " +
+      kWhyViewsDisagree;
+  if (scatter->factor > kMostScatter) {
+    judgement->Doubtful(scatters);
+  } else {
+    judgement->Usable(scatters);
   }
 }
 
 void JudgeFit(const CameraReport& camera, Judgement* judgement) {
   const TrainHeldout& rms = camera.edge_rms_px;
   if (!rms.heldout) {
-    judgement->Caution("It was not checked: no view that was kept from the solver could be used.");
+    judgement->Usable("It was not checked: no view that was kept from the solver could be used.");
     return;
   }
   const std::string held =
@@ -89,8 +158,8 @@ void JudgeFit(const CameraReport& camera, Judgement* judgement) {
   if (!rms.train) {
     judgement->AddReason(held + ".");
   } else if (*rms.heldout > kWorse * *rms.train + kWorsePx) {
-    judgement->Caution(held + ", clearly worse than the " + Number(*rms.train, 2) +
-                       " px on the views used: take more views, at other distances and tilts.");
+    judgement->Usable(held + ", clearly worse than the " + Number(*rms.train, 2) +
+                      " px on the views used: take more views, at other distances and tilts.");
   } else {
     judgement->AddReason(held + ", as well as on the views used (" + Number(*rms.train, 2) +
                          " px).");
@@ -119,8 +188,8 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
   const std::string away = "up to " + Number(worst.rotation_deg, 2) + "° and " +
                            Number(worst.translation_mm, 0) + " mm away";
   if (rivals > 0) {
-    judgement->Caution(std::to_string(rivals) + of + " ended elsewhere, " + away +
-                       ", and fits about as well: the result depends on the start.");
+    judgement->Usable(std::to_string(rivals) + of + " ended elsewhere, " + away +
+                      ", and fits about as well: the result depends on the start.");
   } else if (stuck > 0) {
     judgement->AddReason(std::to_string(stuck) + of + " ended elsewhere, " + away +
                          ", and fits worse: the first guess has to be nearer than that.");
@@ -143,6 +212,9 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
     case SolveStatus::kNotSolved:
       judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
       break;
+    case SolveStatus::kContradicted:
+      judgement->Bad("Status of the solve: " + calibration.StatusText());
+      break;
     case SolveStatus::kNotConverged:
       judgement->Bad("The solve did not converge" + (detail.empty() ? "." : ": " + detail));
       break;
@@ -159,8 +231,8 @@ void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
                                 " m away is " + Number(at.worst_px, 2) +
                                 " px (1 sigma) where it is worst in the image";
   if (at.worst_px > kUncertainPx) {
-    judgement->Caution(uncertain + ", more than " + Number(kUncertainPx, 0) +
-                       " px: take more views in that part of the image, some about as far away.");
+    judgement->Usable(uncertain + ", more than " + Number(kUncertainPx, 0) +
+                      " px: take more views in that part of the image, some about as far away.");
   } else {
     judgement->AddReason(uncertain + ".");
   }
@@ -170,37 +242,30 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
   const std::string differ = "Two halves of the views, each solved by itself, differ by " +
                              PoseErrorText(halves.difference);
   if (halves.chi2 > kUnlikelyChi2) {
-    judgement->Caution(differ + ", more than their sigmas allow (chi-square " +
-                       Number(halves.chi2, 1) + ", by chance above " + Number(kUnlikelyChi2, 1) +
-                       " once in a thousand times): the stated uncertainty cannot be trusted.");
+    judgement->Doubtful(differ + ", more than their sigmas allow (chi-square " +
+                        Number(halves.chi2, 1) + ", by chance above " + Number(kUnlikelyChi2, 1) +
+                        " once in a thousand times): the stated uncertainty cannot be trusted.");
   } else {
     judgement->AddReason(differ +
                          (std::isnan(halves.chi2) ? "." : ", no more than their sigmas allow."));
   }
 }
 
-void JudgeWhitened(const std::optional<double>& rms, Judgement* judgement) {
-  if (!rms || (*rms >= kLeastWhitened && *rms <= kMostWhitened)) return;
-  judgement->Caution("On the held-out views the beams miss the board's edge by " + Number(*rms, 2) +
-                     " sigmas (RMS; expected: 1): they are " + (*rms > 1 ? "less" : "more") +
-                     " exact than stated, and the stated uncertainty cannot be trusted.");
+// Sigmas that are enlarged because views scatter already say what crossings do.
+void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
+  const std::optional<double>& rms = camera.edge_rms_whitened.heldout;
+  if (!rms) return;
+  const std::string miss = "On the held-out views the beams miss the board's edge by " +
+                           Number(*rms, 2) + " sigmas (RMS; expected: 1): they are ";
+  if (*rms > kMostWhitened * std::sqrt(camera.variance_factor)) {
+    judgement->Doubtful(miss +
+                        "less exact than stated, and the stated uncertainty cannot be trusted.");
+  } else if (*rms < kLeastWhitened) {
+    judgement->AddReason(miss + "more exact than stated.");
+  }
 }
 
 }  // namespace
-
-const char* NameOf(Grade grade) {
-  switch (grade) {
-    case Grade::kGood:
-      return "good";
-    case Grade::kCaution:
-      return "caution";
-    case Grade::kNone:
-      return "none";
-    case Grade::kBad:
-      break;
-  }
-  return "bad";
-}
 
 const ColouringSigma* JudgedColouring(const CameraReport& camera) {
   if (!camera.sigma) return nullptr;
@@ -215,24 +280,56 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
   JudgeStatus(camera.calibration, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
   JudgeFit(camera, &judgement);
-  JudgeWhitened(camera.edge_rms_whitened.heldout, &judgement);
+  JudgeWhitened(camera, &judgement);
   if (camera.halves) JudgeHalves(*camera.halves, &judgement);
   if (const auto* at = JudgedColouring(camera)) JudgeColouring(*at, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {
-    judgement.Caution("Views used: only " + std::to_string(camera.used.size()) + "; take " +
-                      std::to_string(kFewViews) + " or more.");
+    judgement.Usable("Views used: only " + std::to_string(camera.used.size()) + "; take " +
+                     std::to_string(kFewViews) + " or more.");
   }
-  if (!camera.rejected.empty()) {
-    judgement.AddReason("Rejected: " + Count(camera.rejected.size(), "view") +
-                        "; why stands in the table of views.");
+  if (camera.calibration.converged() && !camera.calibration.covariance) {
+    judgement.Usable(
+        "How exact the result is cannot be told by this method; --method auto tells "
+        "it.");
   }
+  JudgeCauses(camera, &judgement);
   if (camera.truth_error) {
     judgement.AddReason("The truth is known here: the result is " +
                         Number(camera.truth_error->rotation_deg, 3) + "° and " +
                         Number(camera.truth_error->translation_mm, 1) + " mm away from it.");
   }
   return judgement.Finish();
+}
+
+Grade GradeOf(const Report& report) {
+  if (report.cameras.empty()) return Grade::kNone;
+  Grade worst = Grade::kGood;
+  for (const CameraReport& camera : report.cameras) {
+    worst = std::max(worst, Judge(camera, report.next_view).grade);
+  }
+  return worst;
+}
+
+Report WithVerdicts(Report report) {
+  for (CameraReport& camera : report.cameras) camera.verdict = Judge(camera, report.next_view);
+  return report;
+}
+
+Calibration JudgedCalibration(const Report& report, const Rig& rig) {
+  Calibration calibration = report.ToCalibration();
+  calibration.sensors = SensorsOf(rig);
+  for (CameraCalibration& camera : calibration.cameras) {
+    if (!camera.converged()) continue;
+    for (const CameraReport& judged : report.cameras) {
+      if (judged.calibration.camera != camera.camera) continue;
+      const Verdict verdict = Judge(judged);
+      if (verdict.grade != Grade::kBad) continue;
+      camera.status = SolveStatus::kContradicted;
+      camera.detail = verdict.reasons.front();
+    }
+  }
+  return calibration;
 }
 
 }  // namespace rgbdt

@@ -8,19 +8,6 @@
 
 namespace rgbdt {
 
-/// From good to bad: of several cameras the worst one counts. kNone: not judged yet.
-enum class Grade { kGood, kCaution, kNone, kBad };
-
-/// "good", "caution", "none" or "bad": the word in frames, and the class in HTML.
-const char* NameOf(Grade grade);
-
-struct Verdict {
-  Grade grade = Grade::kGood;
-  std::string headline;
-  /// Sentences; the figures are in them. What speaks against the result comes first.
-  std::vector<std::string> reasons;
-};
-
 /// Of a difference of two poses (6 degrees of freedom): by chance above it once in a thousand
 /// times.
 inline constexpr double kUnlikelyChi2 = 22.5;
@@ -34,12 +21,29 @@ inline constexpr double kJudgedAtM = 5;
 /// That uncertainty; null: unknown.
 const ColouringSigma* JudgedColouring(const CameraReport& camera);
 
-/// Judges by what the report itself holds, and gives the rule with the figure. Bad: not converged,
-/// or views that do not determine the pose. Caution: views contradict each other, or scatter far
-/// more than they state; nothing was held out; held-out views fit
-/// clearly worse than the views used; few views were used; another start ended elsewhere and fits
-/// about as well; the reprojection uncertainty 5 m away is more than a pixel; halves or held-out
-/// views contradict the stated uncertainty. `next_view` is the report's.
+/// Judges by what the report itself holds, and gives the rule with the figure.
+///
+///  - do not use: no pose, or one short of the optimum, or that the views do not determine;
+///    sessions that contradict each other; something was given wrong (Cause) that moves the pose by
+///    more than 4 of its sigmas.
+///  - doubtful: something was given wrong that moves the pose by more than 1 sigma, or nobody knows
+///    how far; more than a quarter of the views were rejected; views scatter far more than they
+///    state; halves or held-out views contradict the stated uncertainty.
+///  - usable: it could be more exact, or better checked: few views, nothing held out, a
+///    reprojection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
+///    which the enlarged sigma makes good for; a method that states no uncertainty.
+///
+/// `next_view` is the report's.
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view = std::nullopt);
+
+/// The worst of its cameras'; kNone of none.
+Grade GradeOf(const Report& report);
+
+/// The report with each camera's verdict, as files have it.
+[[nodiscard]] Report WithVerdicts(Report report);
+
+/// The calibration that the report of this rig holds: for its sensors, and with the status
+/// `contradicted` where a pose was found that is not to be used.
+Calibration JudgedCalibration(const Report& report, const Rig& rig);
 
 }  // namespace rgbdt

@@ -6,6 +6,7 @@
 #include "calib/present/pictures/colouring_picture.h"
 #include "calib/present/pictures/lidar_picture.h"
 #include "calib/present/report/report_html.h"
+#include "calib/present/report/verdict.h"
 #include "calib/present/session/internal/overlay_picture.h"
 
 namespace rgbdt {
@@ -37,9 +38,9 @@ std::string PageOf(const FinishedSession& finished) {
 
 }  // namespace
 
-std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report) {
+std::string WriteIfSolved(const std::filesystem::path& dir, const Rig& rig, const Report& report) {
   const std::filesystem::path path = dir / "calibration.textproto";
-  const Calibration calibration = report.ToCalibration();
+  const Calibration calibration = JudgedCalibration(report, rig);
   if (calibration.cameras.empty()) {
     return "no camera was solved, so " + path.string() + " was not written; wrote";
   }
@@ -48,7 +49,7 @@ std::string WriteIfSolved(const std::filesystem::path& dir, const Report& report
 }
 
 void WriteReportFiles(const std::filesystem::path& dir, const FinishedSession& finished) {
-  WriteReport(dir / "report.json", finished.report());
+  WriteReport(dir / "report.json", WithVerdicts(finished.report()));
   WriteFileAtomically(dir / "report.html",
                       ViewerPage().empty() ? PlainPage(finished) : PageOf(finished));
 }

@@ -315,15 +315,28 @@ JointResult SolveJointly(JointProblem joint) {
   JointResult result = SolveWithOffset(std::move(joint));
   result.lenses_off = LensesOff(result);
   bool contradicted = false;
+  std::vector<LensCovariance> given = wider.problem.lens_priors;
   for (std::size_t c = 0; c < wider.cameras.size(); ++c) {
     const LensOff& off = result.lenses_off[c];
     if (!off.contradicts()) continue;
-    wider.problem.lens_priors[c] *= off.chi2 / off.freedom;
+    // As little as of any lens, and as much worse than that as they say: numbers that were held
+    // exactly, of a distortion left out, must move, too.
+    const CameraSpec& spec = *wider.cameras[c].views.spec;
+    LensCovariance& prior = wider.problem.lens_priors[c];
+    prior += UsualLensUncertainty(spec.lens, spec.width, spec.height).covariance;
+    prior *= off.chi2 / off.freedom;
     contradicted = true;
   }
   if (!contradicted) return result;
   JointResult again = SolveWithOffset(std::move(wider));
   again.lenses_off = std::move(result.lenses_off);
+  for (std::size_t c = 0; c < again.joint.cameras.size(); ++c) {
+    LensOff& off = again.lenses_off[c];
+    off.off = NumbersOf(again.solution.state.lenses[c]) -
+              NumbersOf(again.joint.problem.cameras[c].lens());
+    off.covariance =
+        given[c] + CovarianceOf(again, c).bottomRightCorner<kLensNumbers, kLensNumbers>();
+  }
   return again;
 }
 

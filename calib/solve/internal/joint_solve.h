@@ -18,7 +18,8 @@ struct JointResult {
   /// The range offset was held to less than the views say (see SolveJointly): what it was held to
   /// [m], 1 sigma. The problem's prior is wide then.
   std::optional<double> refuted_range_offset_sigma_m;
-  /// By camera: the lens found against the given one, as it was before its prior was widened.
+  /// By camera: the lens found against the given one; chi-square as it was before its prior was
+  /// widened.
   std::vector<LensOff> lenses_off;
 };
 

@@ -34,6 +34,7 @@ LensOff AgainstPrior(const LensNumbers& off, const LensCovariance& prior,
                      const LensCovariance& posterior) {
   LensOff out;
   out.off = off;
+  out.covariance = prior + posterior;
   const Eigen::MatrixXd whitening = Whitening(prior);
   if (whitening.cols() == 0) return out;
   const auto eigen = EigensystemOf(Eigen::MatrixXd(whitening.transpose() * posterior * whitening));

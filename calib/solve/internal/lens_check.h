@@ -6,7 +6,8 @@ namespace rgbdt {
 
 /// How far a lens that was solved for lies from what was known of it.
 struct LensOff {
-  LensNumbers off = LensNumbers::Zero();  ///< found minus given
+  LensNumbers off = LensNumbers::Zero();               ///< found minus given
+  LensCovariance covariance = LensCovariance::Zero();  ///< of `off`, what was given counted in
   double chi2 = 0;
   int freedom = 0;  ///< directions that the views tell anything of, of chi2
 

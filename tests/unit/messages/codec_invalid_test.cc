@@ -134,7 +134,7 @@ TEST_F(Invalid, CalibrationAndPose) {
   EXPECT_THAT(error([](auto& w) { w.quaternion_wxyz[1] = NAN; }), HasSubstr("quaternion_wxyz[1]"));
   EXPECT_THAT(error([](auto& w) { w.translation_m[2] = INFINITY; }), HasSubstr("translation_m[2]"));
   EXPECT_THAT(error([](auto& w) { w.covariance[1][1] = -1; }), HasSubstr("covariance"));
-  EXPECT_THAT(error([](auto& w) { w.status = 6; }), HasSubstr("status is 6"));
+  EXPECT_THAT(error([](auto& w) { w.status = 7; }), HasSubstr("status is 7"));
   EXPECT_THAT(error([](auto& w) { w.covariance[1][2] = 1; }), HasSubstr("symmetric"));
   EXPECT_THAT(error([](auto& w) { w.has_covariance = 0, w.covariance[1][2] = 1; }), "no error");
   StampedPose pose = random_.Pose();

@@ -12,7 +12,7 @@
 // Page -> bridge: JSON text, see ToBridge. Every frame with `ack` in its header is answered by
 // {type: "ack", id} once it has been drawn; the bridge sends no more than a few ahead of that.
 
-export type Grade = "good" | "caution" | "bad" | "none";
+export type Grade = "good" | "usable" | "doubtful" | "bad" | "none";
 export type Vec2 = [number, number];
 export type Vec3 = [number, number, number];
 

@@ -15,12 +15,12 @@ import "./style.css";
 import "./shell.css";
 
 const kConnectionWords: Record<Connection, { text: string; grade: string }> = {
-  connecting: { text: "connecting", grade: "caution" },
+  connecting: { text: "connecting", grade: "doubtful" },
   open: { text: "live", grade: "good" },
   lost: { text: "disconnected", grade: "bad" },
   embedded: { text: "report", grade: "muted" },
 };
-const kGradeWords = { good: "good", caution: "caution", bad: "bad", none: "not assessed" } as const;
+const kGradeWords = { good: "good", usable: "usable", doubtful: "doubtful", bad: "do not use", none: "not assessed" } as const;
 
 /// A bridge to a finished session is no live one.
 function connectionWords(): { text: string; grade: string } {

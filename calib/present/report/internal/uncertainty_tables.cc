@@ -19,7 +19,7 @@ Row AxesRow(const std::string& name, const Axes& axes, int decimals, const std::
 
 Cell Agreement(double chi2) {
   if (std::isnan(chi2)) return {"–"};
-  if (chi2 > kUnlikelyChi2) return {"more than the sigmas allow", Grade::kCaution};
+  if (chi2 > kUnlikelyChi2) return {"more than the sigmas allow", Grade::kDoubtful};
   return {"no more than the sigmas allow", Grade::kGood};
 }
 

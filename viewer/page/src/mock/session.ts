@@ -39,7 +39,7 @@ function cameraState(views: number, camera: (typeof kCameras)[number]): CameraSt
     utime: kStart + views * 60e6, camera_from_lidar: camera_from_lidar(camera),
     rotation_sigma_deg: 0.2 / views, centre_sigma_mm: (thermal ? 30 : 12) / views,
     verdict: thermal
-      ? { grade: "caution", headline: "Usable, with care", reasons: ["the upper left of the image has no view", "held-out edge 1.6 sigma"] }
+      ? { grade: "usable", headline: "Usable: rgb and thermal", reasons: ["the upper left of the image has no view", "held-out edge 1.6 sigma"] }
       : { grade: "good", headline: "Good", reasons: [] },
   };
 }
@@ -70,12 +70,12 @@ export class MockSession {
         cameras: cameras.map(({ camera }, i) => ({ camera, rotation_deg: 0.2 / (step + 4), centre_mm: (i ? 30 : 12) / (step + 4) })),
       })),
       cameras,
-      verdict: { grade: "caution", headline: "thermal: usable, with care", reasons: ["thermal: the upper left of the image has no view"] },
+      verdict: { grade: "usable", headline: "Usable: thermal", reasons: ["thermal: the upper left of the image has no view"] },
       heldout: {
         title: "Held-out views", notes: ["RMS distance on views that the solver never saw."], head: ["Camera", "Distance", "In sigmas", "Verdict"],
         rows: [
           [plain("rgb"), plain("0.70 px"), plain("1.05 sigma"), { text: "as expected", mark: "good" }],
-          [plain("thermal"), plain("1.10 px"), plain("1.60 sigma"), { text: "less exact than stated", mark: "caution" }],
+          [plain("thermal"), plain("1.10 px"), plain("1.60 sigma"), { text: "less exact than stated", mark: "doubtful" }],
         ],
       },
       next_view: {

@@ -41,7 +41,7 @@ function Channels({ channels }: Pick<BusFrame, "channels">) {
 type Process = BusFrame["processes"][number];
 function light({ ready, age_s }: Process): [grade: string, word: string] {
   if (age_s > kLateS) return ["bad", `no status for ${fixed(age_s, 0, "s")}`];
-  return ready ? ["good", "ready"] : ["caution", "not ready"];
+  return ready ? ["good", "ready"] : ["doubtful", "not ready"];
 }
 
 function ProcessRow({ process }: { process: Process }) {

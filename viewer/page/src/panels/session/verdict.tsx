@@ -1,7 +1,6 @@
 import type { Grade, SessionFrame, Verdict } from "../../protocol";
 
-export const kGradeIcon: Record<Grade, string> = { good: "✓", caution: "!", bad: "✗", none: "…" };
-const kGradeWords: Record<Grade, string> = { good: "Good", caution: "Usable", bad: "Bad", none: "Not assessed yet" };
+export const kGradeIcon: Record<Grade, string> = { good: "✓", usable: "✓", doubtful: "!", bad: "✗", none: "…" };
 
 export const gradeClass = (grade: Grade): string => (grade === "none" ? "muted" : grade);
 
@@ -11,7 +10,7 @@ export function VerdictCard({ verdict, title, testid }: { verdict: Verdict; titl
       <span class="verdict-icon" aria-hidden="true">{kGradeIcon[verdict.grade]}</span>
       <div>
         {title && <h3 class="verdict-of">{title}</h3>}
-        <p class="verdict-head"><strong>{kGradeWords[verdict.grade]}.</strong> {verdict.headline}</p>
+        <p class="verdict-head"><strong>{verdict.headline}</strong></p>
         {verdict.reasons.length > 0 && (
           <ul>{verdict.reasons.map((reason) => <li key={reason}>{reason}</li>)}</ul>
         )}
