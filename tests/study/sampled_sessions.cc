@@ -110,6 +110,7 @@ class SessionSampler {
     detector.range_sigma_m = session_.rig.lidar.range_sigma_m;
     BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
     if (boards.candidates.empty()) return;
+    view.cloud = std::move(cloud.cloud);
     ViewDetection detection;
     detection.view = view.name;
     detection.heldout = view.heldout;

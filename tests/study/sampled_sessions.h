@@ -45,6 +45,7 @@ struct SampledView {
   Rigid3 lidar_from_target;
   BeamWindow beams;
   std::array<CrossingKind, 4> behind{};
+  Cloud cloud;  ///< organised, as large as the window
 };
 
 struct SampledSession {

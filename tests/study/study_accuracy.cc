@@ -226,7 +226,7 @@ class Table {
     Write(chi2);
     Write(1e3 * trial.model.dark_range_m);
     Write(1e3 * trial.model.beams_meet_m);
-    csv_ << ',' << (Judge(camera).grade != Grade::kGood);
+    csv_ << ',' << (Judge(camera).grade > Grade::kUsable);
   }
 
   void WriteBounds(const std::string& camera, const Trial& trial) {

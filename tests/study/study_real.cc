@@ -9,6 +9,7 @@
 // the same images as `rgbdt intrinsics` does. RINGS_CSV: how far each ring's points on a board lie
 // behind its plane, along their beams, before and after the cloud is corrected by what the solve
 // found; range_sd_ratio: the RMS of all of them after over before.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -196,7 +197,7 @@ class Splits {
     } else {
       csv_ << ",,,,,,";
     }
-    csv_ << ',' << (Judge(a).grade != Grade::kGood || Judge(b).grade != Grade::kGood) << '\n';
+    csv_ << ',' << (std::max(Judge(a).grade, Judge(b).grade) > Grade::kUsable) << '\n';
   }
 
   std::ofstream csv_;
@@ -236,7 +237,7 @@ void AddWhole(const Recorded& recorded, const CameraReport& whole, Facts* facts)
   facts->Add("found", static_cast<double>(recorded.views.size()));
   facts->Add("used", static_cast<double>(whole.used.size()));
   facts->Add("converged", whole.calibration.converged() ? 1 : 0);
-  facts->Add("doubtful", Judge(whole).grade != Grade::kGood ? 1 : 0);
+  facts->Add("doubtful", Judge(whole).grade > Grade::kUsable ? 1 : 0);
   facts->Add("variance_factor", whole.variance_factor);
   if (const auto pose = PoseOf(whole)) {
     const Vector6d sigma = pose->covariance.diagonal().cwiseSqrt();

@@ -19,7 +19,8 @@ METHOD_COLOURS = {
 # Chi-square of six degrees of freedom that is as unlikely as 4 sigma of one.
 FOUR_SIGMA = 28.9
 # Columns; all others are numbers, and what is not to be had is empty.
-TEXT = {"camera", "case", "how", "judged", "method", "scene", "sensor", "start", "status", "view"}
+TEXT = {"camera", "case", "first", "grade", "how", "judged", "method", "mistake", "scene", "second",
+        "sensor", "start", "status", "view"}
 
 
 def read(parts, *prefixes):
@@ -80,7 +81,7 @@ def honesty_figures(rows, prefix, method="auto"):
 
 def silent_failures(rows):
     """Results of `auto` that are wrong by more than 4 stated sigma, all six axes together or the
-    length of rotation or translation, and are called good."""
+    length of rotation or translation, and are called good or usable."""
     return [
         r
         for r in pick(rows, method="auto", doubtful=0)

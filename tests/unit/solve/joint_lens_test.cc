@@ -7,6 +7,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -61,8 +62,9 @@ TEST(CalibrateJointly, ALensThatTheViewsContradictIsSaidAndFoundAllTheSame) {
     const CameraReport& camera = report.cameras[c];
     ASSERT_TRUE(camera.calibration.lens);
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
-    EXPECT_THAT(camera.warnings, Contains(AllOf(HasSubstr("the lens in the rig file contradicts"),
-                                                HasSubstr("rgbdt intrinsics"))));
+    EXPECT_THAT(camera.causes,
+                Contains(Field(&Cause::words, AllOf(HasSubstr("contradicts these views"),
+                                                    HasSubstr("rgbdt intrinsics")))));
   }
 }
 

@@ -209,11 +209,13 @@ TEST_F(FoldersTest, RealFolders) {
   EXPECT_EQ(made.rig.cameras[0].width, 1920);
 }
 
-TEST_F(FoldersTest, ACloudOfWhichNothingReturnedIsReadToo) {
+TEST_F(FoldersTest, ACloudOfWhichNothingReturnedIsLeftOut) {
   Cloud nothing = test::MakeCloud();
   for (Eigen::Vector3f& point : nothing.points) point.setConstant(NAN);
   WritePcd(dir_ / "clouds/p2.pcd", nothing);
-  EXPECT_EQ(ReadFolders(folders_).views.size(), 3U);
+  const FolderSession made = ReadFolders(folders_);
+  EXPECT_EQ(made.views.size(), 2U);
+  EXPECT_THAT(made.left_over, ElementsAre(HasSubstr("p2.pcd: none of its 20 points")));
 }
 
 TEST_F(FoldersTest, CloudsInMillimetresAreRefused) {

@@ -261,8 +261,8 @@ TEST(SessionFrame, HeldOutViewsAreJudgedCameraByCamera) {
     return SessionJson(state, &rig).at("heldout").at("rows").at(0).at(3);
   };
   EXPECT_EQ(judged(1.0), json({{"text", "as expected"}, {"mark", "good"}}));
-  EXPECT_EQ(judged(1.41), json({{"text", "less exact than stated"}, {"mark", "caution"}}));
-  EXPECT_EQ(judged(0.69), json({{"text", "more exact than stated"}, {"mark", "caution"}}));
+  EXPECT_EQ(judged(1.41), json({{"text", "less exact than stated"}, {"mark", "doubtful"}}));
+  EXPECT_EQ(judged(0.69), json({{"text", "more exact than stated"}, {"mark", "usable"}}));
   const json thermal = SessionJson(state, &rig).at("heldout").at("rows").at(1);
   EXPECT_EQ(thermal.at(0).at("text"), "thermal");
   EXPECT_EQ(thermal.at(3), json({{"text", "not judged yet"}, {"mark", "none"}}));
@@ -312,20 +312,20 @@ TEST(SessionFrame, TheWorstCameraCounts) {
   Report report = GoodReport({"back", "rgb", "thermal"});
   report.cameras[1].used = {"0001"};
   json verdict = VerdictOfReport(report);
-  EXPECT_EQ(verdict.at("grade"), "caution");
-  EXPECT_EQ(verdict.at("headline"), "Take care with rgb; back and thermal are calibrated");
+  EXPECT_EQ(verdict.at("grade"), "usable");
+  EXPECT_EQ(verdict.at("headline"), "Usable: rgb; back and thermal are calibrated");
   report.cameras[2].calibration.status = SolveStatus::kNotConverged;
   verdict = VerdictOfReport(report);
   EXPECT_EQ(verdict.at("grade"), "bad");
   EXPECT_EQ(verdict.at("headline"),
-            "Do not use the calibration of thermal; take care with rgb; back is calibrated");
+            "Do not use the calibration of thermal; usable: rgb; back is calibrated");
   report.cameras[2].distance_transform_px = {};  // a guess
   report.cameras[2].edge_rms_px = {};
   report.cameras[2].calibration.status = SolveStatus::kNotSolved;
   verdict = VerdictOfReport(report);
   EXPECT_EQ(verdict.at("grade"), "none");
   EXPECT_THAT(verdict.at("headline").get<std::string>(),
-              HasSubstr("No calibration yet of thermal; take care with rgb"));
+              HasSubstr("No calibration yet of thermal; usable: rgb"));
 }
 
 // A script solves at its end: until then each view's calibration is used, and nobody judged it.

@@ -81,7 +81,7 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
     change(&report.cameras[0]);
     return HtmlOf(report);
   };
-  EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Consistent: no sign that it is wrong."));
+  EXPECT_THAT(page([](CameraReport*) {}), HasSubstr("Good: no sign that it is wrong."));
   const std::string failed = page([](CameraReport* camera) {
     camera->calibration.status = SolveStatus::kNotConverged;
     camera->calibration.detail = "too few views";

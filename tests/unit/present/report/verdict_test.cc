@@ -5,6 +5,7 @@
 namespace rgbdt {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -13,6 +14,10 @@ CameraReport Good() {
   CameraReport camera = test::MakeReport().cameras[0];
   camera.other_starts.clear();
   return camera;
+}
+
+Cause Wrong(double chi2, std::optional<double> moves_sigma) {
+  return {"squares", "the squares are 3.0% larger than given", chi2, 1, moves_sigma};
 }
 
 TEST(Verdict, AGoodReportIsConsistentAndSaysWhy) {
@@ -50,7 +55,7 @@ TEST(Verdict, MoreThanAPixelOfReprojectionUncertaintyAtFiveMetresIsAWarning) {
   camera.sigma->colouring[0].worst_px = camera.sigma->colouring[3].worst_px = 9;  // 2 and 50 m
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
   camera.sigma->colouring[1].worst_px = 1.01;
-  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
 }
 
@@ -59,7 +64,7 @@ TEST(Verdict, HalvesThatDifferTooMuchContradictTheStatedUncertainty) {
   camera.halves->chi2 = 22.4;
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
   camera.halves->chi2 = 22.6;
-  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("uncertainty cannot be trusted")));
 }
 
@@ -70,7 +75,7 @@ TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("sigmas allow"))));
 }
 
-TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheVerdictIsCaution) {
+TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   CameraReport camera = Good();
   const auto grade = [&](double rms) {
     camera.edge_rms_whitened.heldout = rms;
@@ -78,10 +83,14 @@ TEST(Verdict, HeldOutCrossingsAreAsExactAsStatedOrTheVerdictIsCaution) {
   };
   EXPECT_EQ(grade(0.71), Grade::kGood);
   EXPECT_EQ(grade(1.39), Grade::kGood);
-  EXPECT_EQ(grade(0.69), Grade::kCaution);
+  EXPECT_EQ(grade(0.69), Grade::kGood);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("more exact than stated")));
-  EXPECT_EQ(grade(1.41), Grade::kCaution);
+  EXPECT_EQ(grade(1.41), Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("less exact than stated")));
+  camera.variance_factor = 4;  // the stated uncertainty was enlarged for it
+  EXPECT_EQ(grade(2.7), Grade::kGood);
+  EXPECT_EQ(grade(2.9), Grade::kDoubtful);
+  camera.variance_factor = 1;
   camera.edge_rms_whitened.heldout.reset();
   camera.edge_rms_whitened.train = 5;  // the views used are no judge
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
@@ -92,13 +101,13 @@ TEST(Verdict, ViewsThatContradictEachOtherAreTheFirstSentence) {
   ASSERT_FALSE(camera.folds.empty());
   for (Fold& fold : camera.folds) fold.misfit = 11;
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
-  camera.halves->chi2 = 100;  // an alarm, too, but one that follows from it
   for (Fold& fold : camera.folds) fold.misfit = 50;
-  const Verdict verdict = Judge(camera);
-  EXPECT_EQ(verdict.grade, Grade::kCaution);
-  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("chi-square of 50 where 6 is expected"));
-  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("rgbdt intrinsics"));
-  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Two halves"));
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("chi-square of 50 where 6 is expected"));
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("rgbdt intrinsics"));
+  camera.halves->chi2 = 100;
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Two halves"));  // the worst comes first
 }
 
 TEST(Verdict, SessionsThatContradictEachOtherAreNotToBeUsed) {
@@ -116,9 +125,84 @@ TEST(Verdict, ViewsThatScatterFarMoreThanStatedAreAnAlarm) {
   camera.view_scatter = ViewScatter{3, 5};  // once in a hundred times by chance
   EXPECT_NEAR(camera.view_scatter->Chance(), 0.0104, 0.001);
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.view_scatter = ViewScatter{4, 40};
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   camera.view_scatter = ViewScatter{9, 5};
-  EXPECT_EQ(Judge(camera).grade, Grade::kCaution);
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("scatter 3.0 times as much"));
+}
+
+TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
+  CameraReport camera = Good();
+  const auto grade = [&](double chi2, std::optional<double> moves_sigma) {
+    camera.causes = {Wrong(chi2, moves_sigma)};
+    return Judge(camera).grade;
+  };
+  EXPECT_EQ(grade(8.9, 10), Grade::kGood);  // by chance once in 300 times
+  EXPECT_EQ(grade(9.1, 0.9), Grade::kUsable);
+  EXPECT_EQ(grade(9.1, 1.1), Grade::kDoubtful);
+  EXPECT_EQ(grade(9.1, std::nullopt), Grade::kDoubtful);
+  EXPECT_EQ(grade(9.1, 4.1), Grade::kBad);
+  EXPECT_THAT(Judge(camera).reasons.at(0),
+              AllOf(HasSubstr("Likeliest cause: the squares are 3.0% larger than given."),
+                    HasSubstr("moves the result by 4.1 sigma")));
+}
+
+TEST(Verdict, TheLikeliestAndTheSecondLikeliestCauseAreNamed) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(25, 3),
+                   {"focal length", "the focal length is too long", 16, 1, 3.0},
+                   {"board's size", "the board is wider", 12, 2, 3.0}};
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kDoubtful);
+  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("Likeliest cause: the squares"));
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Second likeliest: the focal length"));
+  EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("the board is wider"))));
+}
+
+// Where something else says that all is not well, what is less sure is worth a look.
+TEST(Verdict, AnUnsureCauseIsNamedOnlyBesideAnotherAlarm) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(4, 3)};
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Likeliest cause"))));
+  camera.view_scatter = ViewScatter{9, 5};
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("Likeliest cause: the squares")));
+  camera.contradiction = "Images and clouds are 1 apart";
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Likeliest cause"))));
+}
+
+TEST(Verdict, ManyRejectedViewsAreDoubtful) {
+  CameraReport camera = Good();
+  camera.used = {"1", "2", "3", "4", "5", "6"};
+  camera.heldout = {"7", "8", "9"};
+  camera.rejected = {{"a", "why"}, {"b", "why"}, {"c", "why"}};
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.rejected.push_back({"d", "why"});
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Rejected: 4 of 13 views"));
+}
+
+TEST(Verdict, AMethodWithoutACovarianceIsNoMoreThanUsable) {
+  CameraReport camera = Good();
+  camera.calibration.covariance.reset();
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("cannot be told by this method")));
+}
+
+TEST(JudgedCalibration, WhatIsNotToBeUsedSaysSo) {
+  const Rig rig = test::MakeRig();
+  Report report = test::MakeReport();
+  EXPECT_EQ(JudgedCalibration(report, rig).cameras[0].status, report.cameras[0].calibration.status);
+  report.cameras[0].calibration.status = SolveStatus::kConverged;
+  report.cameras[0].causes = {Wrong(100, 10)};
+  const Calibration judged = JudgedCalibration(report, rig);
+  EXPECT_EQ(judged.cameras[0].status, SolveStatus::kContradicted);
+  EXPECT_THAT(judged.cameras[0].detail, HasSubstr("the squares are 3.0% larger"));
+  EXPECT_FALSE(judged.cameras[0].converged());
+  ASSERT_TRUE(judged.sensors);
+  EXPECT_EQ(judged.sensors->cameras[0].lens, rig.cameras[0].lens);
+  EXPECT_EQ(GradeOf(report), Grade::kBad);
+  EXPECT_EQ(WithVerdicts(report).cameras[0].verdict->grade, Grade::kBad);
 }
 
 }  // namespace

@@ -1,0 +1,146 @@
+#include "tests/study/mistakes.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "calib/present/report/verdict.h"
+
+namespace rgbdt::study {
+namespace {
+
+constexpr char kPairing[] = "pairs of images and clouds";
+constexpr char kSizeInCloud[] = "board's size in the cloud";
+
+double At(const Mistake& mistake, const std::array<double, 3>& sizes) {
+  return sizes.at(static_cast<std::size_t>(mistake.size - 1));
+}
+
+// The true lens is nearly a pinhole's: taken for equidistant it bends all but the middle.
+Lens AsOtherModel(Lens lens, double share) {
+  lens.model = lens.model == Lens::Model::kPinhole ? Lens::Model::kFisheye : Lens::Model::kPinhole;
+  // The image's edge, where it matters, is nearer the smaller the focal length seems.
+  lens.fx *= 1 + share;
+  lens.fy *= 1 + share;
+  lens.distortion = {};
+  return lens;
+}
+
+void SpoilLens(const Mistake& mistake, const CameraSpec& camera, Lens* lens) {
+  const std::string& name = mistake.name;
+  const double by = name == "focal" || name == "fx" ? At(mistake, {0.015, 0.03, 0.10}) : 0;
+  if (name == "focal") {
+    lens->fx *= 1 + by;
+    lens->fy *= 1 + by;
+  } else if (name == "fx") {
+    lens->fx *= 1 + by;
+  } else if (name == "centre") {
+    lens->cx += At(mistake, {0.0125, 0.025, 0.05}) * camera.width;
+    lens->cy -= At(mistake, {0.0125, 0.025, 0.05}) * camera.height;
+  } else if (name == "distortion") {
+    for (double& k : lens->distortion) k *= 1 - At(mistake, {0.5, 1, 2});
+  } else if (name == "model") {
+    *lens = AsOtherModel(*lens, At(mistake, {0, 0.02, 0.05}));
+  }
+}
+
+void SpoilTarget(const Mistake& mistake, Target* target) {
+  if (mistake.name == "squares") {
+    target->square_m *= 1 + At(mistake, {0.01, 0.025, 0.0526});
+  } else if (mistake.name == "board") {
+    // Towards the pattern's own size, as if there were no border.
+    const double share = At(mistake, {0.25, 0.5, 1});
+    const auto shrink = [&](double size, double pattern) {
+      return size - share * std::max(0.0, size - pattern);
+    };
+    target->width_m = shrink(target->width_m, target->squares_x * target->square_m);
+    target->height_m = shrink(target->height_m, target->squares_y * target->square_m);
+  } else if (mistake.name == "size") {
+    target->width_m += At(mistake, {0.02, 0.05, 0.1});
+  } else if (mistake.name == "place") {
+    target->pattern_offset_m.x() += At(mistake, {0.005, 0.01, 0.02});
+  }
+}
+
+const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
+  static const std::map<std::string, std::set<std::string>> kNames = {
+      {"focal", {"focal length", "lens"}},
+      {"fx", {"fx against fy", "focal length", "lens"}},
+      {"centre", {"image centre", "lens"}},
+      {"distortion", {"distortion", "lens"}},
+      {"model", {"distortion", "lens"}},
+      {"squares", {"squares", "cloud's scale"}},
+      {"scale", {"cloud's scale", "squares", kSizeInCloud}},
+      {"board", {"board's size", kSizeInCloud}},
+      {"size", {"board's size", kSizeInCloud}},
+      {"place", {"pattern's place"}},
+      {"pairs", {kPairing}}};
+  return kNames;
+}
+
+}  // namespace
+
+std::vector<Mistake> AllMistakes(const Target& target) {
+  static const std::set<std::string> kOfPatterns = {"squares", "board", "place"};
+  std::vector<Mistake> all = {{"none", 0}};
+  for (const auto& [name, causes] : NamesOfMistakes()) {
+    if (!target.HasPattern() && kOfPatterns.count(name) > 0) continue;
+    for (int size = 1; size <= 3; ++size) all.push_back({name, size});
+  }
+  return all;
+}
+
+Rig WithMistake(const Mistake& mistake, Rig rig) {
+  if (mistake.name == "none") return rig;
+  for (CameraSpec& camera : rig.cameras) SpoilLens(mistake, camera, &camera.lens);
+  SpoilTarget(mistake, &rig.target);
+  return rig;
+}
+
+Cloud WithMistake(const Mistake& mistake, Cloud cloud) {
+  if (mistake.name != "scale") return cloud;
+  const auto by = static_cast<float>(At(mistake, {1.01, 1.03, 1.1}));
+  for (Eigen::Vector3f& point : cloud.points) point *= by;
+  return cloud;
+}
+
+int ViewsApart(const Mistake& mistake) { return mistake.name == "pairs" ? mistake.size : 0; }
+
+std::vector<ViewDetection> PairedApart(std::vector<ViewDetection> views, int apart) {
+  if (apart == 0) return views;
+  const auto left = views.size() - static_cast<std::size_t>(apart);
+  for (std::size_t i = 0; i < left; ++i) {
+    views[i].cloud = views[i + static_cast<std::size_t>(apart)].cloud;
+  }
+  views.resize(left);
+  return views;
+}
+
+bool Names(const Mistake& mistake, const std::string& cause) {
+  const auto found = NamesOfMistakes().find(mistake.name);
+  return found != NamesOfMistakes().end() && found->second.count(cause) > 0;
+}
+
+std::vector<std::string> CausesRead(const CameraReport& camera) {
+  constexpr std::size_t kRead = 2;
+  if (camera.contradiction.rfind("Images and clouds are", 0) == 0) return {kPairing};
+  std::vector<std::string> read;
+  const auto sized =
+      std::count_if(camera.rejected.begin(), camera.rejected.end(), [](const RejectedView& view) {
+        return view.why.find("no board of the target's size in the cloud") != std::string::npos;
+      });
+  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
+  if (2 * static_cast<std::size_t>(sized) > views) read.emplace_back(kSizeInCloud);
+  const Verdict verdict = Judge(camera);
+  for (const Cause& cause : camera.causes) {
+    const bool said = std::any_of(
+        verdict.reasons.begin(), verdict.reasons.end(),
+        [&](const std::string& reason) { return reason.find(cause.words) != std::string::npos; });
+    if (said && read.size() < kRead) read.push_back(cause.name);
+  }
+  return read;
+}
+
+}  // namespace rgbdt::study

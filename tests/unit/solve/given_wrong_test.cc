@@ -1,0 +1,181 @@
+#include "calib/solve/internal/given_wrong.h"
+
+#include "calib/camera/target_pose.h"
+#include "tests/unit/solve/joint_reports.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+SolveWorldOptions Drawn(std::uint32_t seed) {
+  SolveWorldOptions options = Views(10);
+  options.seed = seed;
+  options.draw_nuisances = true;
+  return options;
+}
+
+// Boards as a detector has them that believes the rig.
+Report Believed(SolveWorld world) {
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t v = 0; v < world.detections.size(); ++v) {
+      ImageEdges& image = world.ImageAt(v, c);
+      const auto found =
+          PoseFromCorners(Camera(world.rig.cameras[c]), world.rig.target, image.corners);
+      image.pose->sensor_from_target = found->pose.sensor_from_target;
+      image.pose->covariance = found->pose.covariance;
+    }
+  }
+  return Calibrate(world.rig, world.detections, Brief());
+}
+
+const Cause* Find(const CameraReport& camera, const std::string& name) {
+  for (const Cause& cause : camera.causes) {
+    if (cause.name == name) return &cause;
+  }
+  return nullptr;
+}
+
+TEST(GivenWrong, NothingIsWhereAllIsAsStated) {
+  int alarms = 0;
+  double focal = 0;
+  constexpr int kWorlds = 40;
+  for (int i = 0; i < kWorlds; ++i) {
+    const SolveWorld world(Drawn(static_cast<std::uint32_t>(100 + i)));
+    for (const CameraReport& camera : Calibrate(world.rig, world.detections, Brief()).cameras) {
+      for (const Cause& cause : camera.causes) alarms += cause.Sigmas() >= kGivenWrongSigmas;
+      const Cause* const found = Find(camera, "focal length");
+      ASSERT_NE(found, nullptr);
+      focal += found->chi2 / (2 * kWorlds * camera.variance_factor);
+    }
+  }
+  EXPECT_LE(alarms, 3);
+  EXPECT_NEAR(focal, 1, 0.5);
+}
+
+// A lens that is taken for exact, so that nothing heals it.
+TEST(GivenWrong, AFocalLengthIsNamedAndWhatItMovesForetold) {
+  SolveWorld world(Drawn(1));
+  Lens& lens = world.rig.cameras[0].lens;
+  lens.fx *= 1.003;
+  lens.fy *= 1.003;
+  const Report report = Believed(world);
+  const Cause& cause = report.cameras[0].causes.at(0);
+  EXPECT_EQ(cause.name, "focal length");
+  EXPECT_GT(cause.Sigmas(), kGivenWrongSigmas);
+  EXPECT_THAT(cause.words, AllOf(HasSubstr("too long"), HasSubstr("rgbdt intrinsics")));
+  const double moved = std::sqrt(Chi2(world, report, 0));
+  EXPECT_NEAR(cause.moves_sigma.value_or(0), moved, 0.3 * moved);
+}
+
+TEST(GivenWrong, TheImagesCentreIsNamed) {
+  SolveWorld world(Drawn(2));
+  world.rig.cameras[0].lens.cx += 0.02 * world.rig.cameras[0].width;
+  const Cause cause = Believed(world).cameras[0].causes.at(0);
+  EXPECT_EQ(cause.name, "image centre");
+  EXPECT_GT(cause.Sigmas(), kGivenWrongSigmas);
+  EXPECT_THAT(cause.words, HasSubstr("px away"));
+}
+
+TEST(GivenWrong, SquaresAreNamedWithTheirSize) {
+  SolveWorld world(Drawn(3));
+  const double truth = world.rig.target.square_m;
+  world.rig.target.square_m *= 1.03;
+  for (const CameraReport& camera : Believed(world).cameras) {
+    const Cause* const squares = Find(camera, "squares");
+    ASSERT_NE(squares, nullptr);
+    EXPECT_GT(squares->Sigmas(), kGivenWrongSigmas);
+    EXPECT_THAT(squares->words, HasSubstr("smaller than given"));
+    double found_mm = 0;
+    std::sscanf(squares->words.substr(squares->words.find(": ")).c_str(), ": %lf mm", &found_mm);
+    EXPECT_NEAR(found_mm, 1000 * truth, 0.005 * 1000 * truth);
+  }
+}
+
+TEST(GivenWrong, ABoardThatIsWiderThanGivenIsNamed) {
+  SolveWorld world(Drawn(4));
+  world.rig.target.width_m -= 0.03;
+  for (const CameraReport& camera : Believed(world).cameras) {
+    const Cause* const size = Find(camera, "board's size");
+    ASSERT_NE(size, nullptr);
+    EXPECT_GT(size->Sigmas(), kGivenWrongSigmas);
+    EXPECT_THAT(size->words, HasSubstr("wider"));
+  }
+}
+
+TEST(GivenWrong, APatternThatLiesElsewhereOnTheBoardIsNamed) {
+  SolveWorld world(Drawn(5));
+  world.rig.target.pattern_offset_m.x() -= 0.02;
+  for (const CameraReport& camera : Believed(world).cameras) {
+    const Cause* const place = Find(camera, "pattern's place");
+    ASSERT_NE(place, nullptr);
+    EXPECT_GT(place->Sigmas(), kGivenWrongSigmas);
+    EXPECT_THAT(place->words, HasSubstr("+20 +- "));
+  }
+}
+
+// As a cloud in which all is 3% too large looks to a rig that has its board right.
+TEST(GivenWrong, ACloudOfAnotherScaleIsNamed) {
+  SolveWorld world(Drawn(6));
+  world.rig.target.square_m /= 1.03;
+  world.rig.target.width_m /= 1.03;
+  world.rig.target.height_m /= 1.03;
+  for (const CameraReport& camera : Believed(world).cameras) {
+    ASSERT_GE(camera.causes.size(), 2U);
+    EXPECT_TRUE(camera.causes[0].name == "cloud's scale" ||
+                camera.causes[1].name == "cloud's scale");
+    const Cause* const scale = Find(camera, "cloud's scale");
+    EXPECT_GT(scale->Sigmas(), kGivenWrongSigmas);
+    EXPECT_THAT(scale->words, HasSubstr("too large"));
+  }
+}
+
+// Its lens is stated with an uncertainty: the one that is found is used.
+TEST(GivenWrong, ALensThatWasRefutedIsNamedAndMovesNothingMore) {
+  SolveWorld world(Drawn(7));
+  for (CameraSpec& camera : world.rig.cameras) {
+    camera.lens_uncertainty.reset();
+    camera.lens.fx *= 1.05;
+    camera.lens.fy *= 1.05;
+  }
+  const Report report = Believed(world);
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    const Cause* const focal = Find(report.cameras[c], "focal length");
+    ASSERT_NE(focal, nullptr);
+    EXPECT_GT(focal->Sigmas(), kGivenWrongSigmas);
+    EXPECT_EQ(focal->moves_sigma, 0);
+  }
+}
+
+TEST(WhyViewsDisagree, ImagesBesideTheNextViewsCloudsAreNamed) {
+  for (const int apart : {-2, 1}) {
+    SolveWorld world(Views(12));
+    const std::vector<ViewDetection> right = world.detections;
+    for (int v = 0; v < 12; ++v) {
+      const auto other = static_cast<std::size_t>(std::min(11, std::max(0, v + apart)));
+      world.detections[static_cast<std::size_t>(v)].cloud = right[other].cloud;
+    }
+    for (const CameraReport& camera : Calibrate(world.rig, world.detections, Brief()).cameras) {
+      EXPECT_THAT(camera.contradiction,
+                  HasSubstr("Images and clouds are " + std::to_string(std::abs(apart)) + " apart"));
+    }
+  }
+}
+
+TEST(WhyViewsDisagree, ALensThatIsFarOffIsFoundByTheViewsThemselves) {
+  SolveWorld world(Views(14));
+  CameraSpec& camera = world.rig.cameras[0];
+  camera.lens_uncertainty.reset();
+  camera.lens.fx *= 1.3;
+  camera.lens.fy *= 1.3;
+  const Report report = Believed(world);
+  ASSERT_TRUE(report.cameras[0].calibration.converged());
+  EXPECT_LT(Chi2(world, report, 0), kMostChi2);
+  EXPECT_GT(report.cameras[0].causes.at(0).Sigmas(), kGivenWrongSigmas);
+  EXPECT_THAT(report.cameras[0].contradiction, "");
+}
+
+}  // namespace
+}  // namespace rgbdt
