@@ -134,11 +134,11 @@ std::vector<std::string> CausesRead(const CameraReport& camera) {
   const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
   if (2 * static_cast<std::size_t>(sized) > views) read.emplace_back(kSizeInCloud);
   const Verdict verdict = Judge(camera);
-  for (const Cause& cause : camera.causes) {
-    const bool said = std::any_of(
-        verdict.reasons.begin(), verdict.reasons.end(),
-        [&](const std::string& reason) { return reason.find(cause.words) != std::string::npos; });
-    if (said && read.size() < kRead) read.push_back(cause.name);
+  for (const std::string& reason : verdict.reasons) {
+    for (const Cause& cause : camera.causes) {
+      const bool said = reason.find(cause.words) != std::string::npos;
+      if (said && read.size() < kRead) read.push_back(cause.name);
+    }
   }
   return read;
 }

@@ -1,15 +1,17 @@
 // What people give wrong, and whether it is found.
-//   study_mistakes sampled SENSOR SESSIONS SEED CSV
+//   study_mistakes sampled SENSOR SESSIONS SEED CSV [MISTAKE...]
 //   study_mistakes recorded SESSION CSV
 // sampled: sessions of the noise model (sampled_sessions.h), 10 views and 4 held out; the views'
 // boards are found anew in their clouds and posed anew by what the rig says. recorded: a session
-// directory; images and clouds are looked at anew. A line of CSV for each session, mistake and
-// camera: chi2 is the result's against the truth or, recorded, against that of the right rig.
+// directory; images and clouds are looked at anew. MISTAKE: those only; "none" is the right rig. A
+// line of CSV for each session, mistake and camera: chi2 is the result's against the truth or,
+// recorded, against that of the right rig.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -61,7 +63,7 @@ class Table {
   Table(std::string sensor, const std::string& path)
       : sensor_(std::move(sensor)), path_(path), csv_(path) {
     csv_ << "sensor,session,mistake,size,camera,status,used,rejected,chi2,moved_mm,grade,first,"
-            "second,named\n";
+            "second,named,first_sigmas,first_moves_sigma,reason\n";
   }
 
   void Add(std::uint64_t session, const Mistake& mistake, const Report& report,
@@ -73,11 +75,16 @@ class Table {
            << ',' << camera.rejected.size() << ',';
       WriteMove(found, right.at(found.camera));
       const std::vector<std::string> read = CausesRead(camera);
-      csv_ << ',' << NameOf(Judge(camera, report.next_view).grade);
+      const Verdict verdict = Judge(camera, report.next_view);
+      csv_ << ',' << NameOf(verdict.grade);
       for (std::size_t i = 0; i < 2; ++i) csv_ << ",\"" << (i < read.size() ? read[i] : "") << '"';
       bool named = false;
       for (const std::string& cause : read) named = named || Names(mistake, cause);
-      csv_ << ',' << named << '\n';
+      csv_ << ',' << named << ',';
+      if (!camera.causes.empty()) csv_ << camera.causes.front().Sigmas();
+      csv_ << ',';
+      if (!camera.causes.empty()) csv_ << camera.causes.front().moves_sigma.value_or(0);
+      csv_ << ",\"" << (verdict.reasons.empty() ? "" : verdict.reasons.front()) << "\"\n";
     }
   }
 
@@ -104,7 +111,7 @@ class Table {
 };
 
 void RunSampled(const std::string& sensor, int sessions, std::uint64_t seed,
-                const std::string& path) {
+                const std::string& path, const std::set<std::string>& only) {
   static const std::map<std::string, int> kRings = {{"dense", 0}, {"32", 32}, {"16", 16}};
   const auto rings = kRings.find(sensor);
   if (rings == kRings.end()) {
@@ -124,6 +131,7 @@ void RunSampled(const std::string& sensor, int sessions, std::uint64_t seed,
       right[camera].camera_from_lidar = pose;
     }
     for (const Mistake& mistake : AllMistakes(session->rig.target)) {
+      if (!only.empty() && only.count(mistake.name) == 0) continue;
       const Rig rig = WithMistake(mistake, session->rig);
       std::vector<ViewDetection> views;
       for (std::size_t v = 0; v < session->views.size(); ++v) {
@@ -171,14 +179,15 @@ int main(int argc, char** argv) {
   const auto run = [](const std::vector<std::string>& arguments) {
     if (arguments[0] == "recorded" && arguments.size() == 3) {
       rgbdt::study::RunRecorded(arguments[1], arguments[2]);
-    } else if (arguments[0] == "sampled" && arguments.size() == 5) {
+    } else if (arguments[0] == "sampled" && arguments.size() >= 5) {
       rgbdt::study::RunSampled(arguments[1], std::stoi(arguments[2]), std::stoull(arguments[3]),
-                               arguments[4]);
+                               arguments[4], {arguments.begin() + 5, arguments.end()});
     } else {
       throw std::runtime_error("expected sampled SENSOR SESSIONS SEED CSV or recorded SESSION CSV");
     }
   };
   return rgbdt::study::StudyMain(
-      {"study_mistakes", "sampled SENSOR SESSIONS SEED CSV | recorded SESSION CSV", 3, 5, run},
+      {"study_mistakes", "sampled SENSOR SESSIONS SEED CSV [MISTAKE...] | recorded SESSION CSV", 3,
+       16, run},
       argc, argv);
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
+#include "calib/model/statistics.h"
 #include "calib/present/report/words.h"
 
 namespace rgbdt {
@@ -87,27 +89,33 @@ Grade GradeOf(const Cause& cause) {
                                              : Grade::kUsable;
 }
 
-// What was given and cannot be right; where something else says that all is not well, also what
-// may be behind it.
+// Those to be named, what counts most first. Where something else says that all is not well
+// (`alarm`), also what may be behind it.
+std::vector<const Cause*> CausesToName(const CameraReport& camera, bool alarm) {
+  std::vector<const Cause*> named;
+  const auto wrong = [](const Cause& cause) { return cause.Sigmas() >= kGivenWrongSigmas; };
+  for (const Cause& cause : camera.causes) {
+    if (wrong(cause) || (alarm && cause.Sigmas() >= kLeastNamedSigmas)) named.push_back(&cause);
+  }
+  std::stable_sort(named.begin(), named.end(), [&](const Cause* a, const Cause* b) {
+    if (wrong(*a) != wrong(*b)) return wrong(*a);
+    return wrong(*a) && GradeOf(*a) > GradeOf(*b);
+  });
+  if (named.size() > kMostNamed) named.resize(kMostNamed);
+  return named;
+}
+
 void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) return;
-  const bool alarm = judgement->grade() >= Grade::kDoubtful;
-  std::size_t named = 0;
-  for (const Cause& cause : camera.causes) {
-    const bool wrong = cause.Sigmas() >= kGivenWrongSigmas;
-    if (!wrong && (!alarm || cause.Sigmas() < kLeastNamedSigmas)) continue;
-    const std::string sentence = (named == 0   ? "Likeliest cause: "
-                                  : named == 1 ? "Second likeliest: "
-                                               : "Or: ") +
-                                 cause.words + "." + Moves(cause);
-    if (named < kMostNamed || (wrong && GradeOf(cause) > judgement->grade())) {
-      if (wrong) {
-        judgement->Cause(GradeOf(cause), sentence);
-      } else {
-        judgement->AddReason(sentence);
-      }
+  const char* prefix = "Likeliest cause: ";
+  for (const Cause* cause : CausesToName(camera, judgement->grade() >= Grade::kDoubtful)) {
+    const std::string sentence = prefix + cause->words + "." + Moves(*cause);
+    prefix = "Second likeliest: ";
+    if (cause->Sigmas() >= kGivenWrongSigmas) {
+      judgement->Cause(GradeOf(*cause), sentence);
+    } else {
+      judgement->AddReason(sentence);
     }
-    ++named;
   }
 }
 
@@ -251,15 +259,27 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
   }
 }
 
+// Of the held-out views' own RMS [sigma]: a single one that is wrong does not count.
+std::optional<double> MedianWhitened(const CameraReport& camera) {
+  std::vector<double> rms;
+  for (const ViewQuality& view : camera.views) {
+    if (view.heldout && view.edge_rms_whitened) rms.push_back(*view.edge_rms_whitened);
+  }
+  return rms.empty() ? camera.edge_rms_whitened.heldout : std::optional(Median(std::move(rms)));
+}
+
 // Sigmas that are enlarged because views scatter already say what crossings do.
 void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
   const std::optional<double>& rms = camera.edge_rms_whitened.heldout;
   if (!rms) return;
+  const double most = kMostWhitened * std::sqrt(camera.variance_factor);
   const std::string miss = "On the held-out views the beams miss the board's edge by " +
                            Number(*rms, 2) + " sigmas (RMS; expected: 1): they are ";
-  if (*rms > kMostWhitened * std::sqrt(camera.variance_factor)) {
+  if (*rms > most && *MedianWhitened(camera) > most) {
     judgement->Doubtful(miss +
                         "less exact than stated, and the stated uncertainty cannot be trusted.");
+  } else if (*rms > most) {
+    judgement->Usable(miss + "less exact than stated in some views, not in most.");
   } else if (*rms < kLeastWhitened) {
     judgement->AddReason(miss + "more exact than stated.");
   }

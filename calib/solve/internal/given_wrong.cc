@@ -1,6 +1,7 @@
 #include "calib/solve/internal/given_wrong.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -64,19 +65,18 @@ class Tester {
     with_priors_ = gradient_ + PriorInformation(problem_, result.solution.state).gradient;
   }
 
-  std::vector<Cause> All() const {
+  std::vector<Cause> All() {
     std::vector<Cause> causes;
     const auto add = [&](std::optional<Cause> cause) {
       if (cause && std::isfinite(cause->Sigmas())) causes.push_back(std::move(*cause));
     };
-    const LensOff& lens = result_.lenses_off[camera_];
-    if (lens.contradicts()) {
-      for (Cause& cause : OfRefutedLens(lens)) add(std::move(cause));
-    } else {
-      add(Focal());
-      add(Aspect());
-      add(Centre());
-      add(Distortion());
+    for (lens_ = 0; lens_ < problem_.cameras.size(); ++lens_) {
+      if (!problem_.HasOwnLens(lens_)) continue;
+      for (Cause& cause : OfLens()) {
+        // Cameras that are solved together share boards: what is wrong of one moves the others.
+        const bool own = lens_ == problem_.LensOf(camera_);
+        if (own || cause.Sigmas() >= kGivenWrongSigmas) add(std::move(cause));
+      }
     }
     const bool pattern = problem_.target.HasPattern();
     if (pattern) {
@@ -91,9 +91,9 @@ class Tester {
   }
 
  private:
-  const CameraSpec& Spec() const { return *result_.joint.cameras[camera_].views.spec; }
+  const CameraSpec& Spec() const { return *result_.joint.cameras[lens_].views.spec; }
   const Target& Board() const { return problem_.target; }
-  Index Lens(Index number) const { return places_.Lens(camera_) + number; }
+  Index Lens(Index number) const { return places_.Lens(lens_) + number; }
   Eigen::MatrixXd Directions(Index count) const {
     return Eigen::MatrixXd::Zero(places_.Count(), count);
   }
@@ -151,6 +151,16 @@ class Tester {
                           "pinhole or fisheye as the lens is",
                           Spec().name.c_str(), kFindTheLens),
                    off);
+  }
+
+  std::vector<Cause> OfLens() const {
+    const LensOff& off = result_.lenses_off[lens_];
+    if (off.contradicts()) return OfRefutedLens(off);
+    std::vector<Cause> causes;
+    for (std::optional<Cause> cause : std::array{Focal(), Aspect(), Centre(), Distortion()}) {
+      if (cause) causes.push_back(std::move(*cause));
+    }
+    return causes;
   }
 
   std::optional<Cause> Focal() const {
@@ -342,7 +352,8 @@ class Tester {
   const JointResult& result_;
   const BoardProblem& problem_;
   SharedPlaces places_;
-  std::size_t camera_;
+  std::size_t camera_;    // whose pose it is about
+  std::size_t lens_ = 0;  // whose lens is looked at
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_, with_priors_;
 };

@@ -8,7 +8,8 @@
 namespace rgbdt {
 
 /// What may have been given wrong to a solve, as one camera's report has it, the likeliest first:
-/// its lens; the squares; the board's size and its pattern's place; the cloud's scale.
+/// its lens, and those of other cameras that are surely off; the squares; the board's size and its
+/// pattern's place; the cloud's scale.
 ///
 /// Score tests (Rao 1948) at the solution: no unknown is added, and nothing is solved again. With D
 /// the views' information about the shared unknowns, d their gradient, C the covariance with the

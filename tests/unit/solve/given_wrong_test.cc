@@ -78,6 +78,18 @@ TEST(GivenWrong, TheImagesCentreIsNamed) {
   EXPECT_THAT(cause.words, HasSubstr("px away"));
 }
 
+// They share boards, and with them its mistakes.
+TEST(GivenWrong, AnotherCamerasLensIsNamedToo) {
+  SolveWorld world(Drawn(2));
+  world.rig.cameras[0].lens.distortion = {};
+  for (const CameraReport& camera : Believed(world).cameras) {
+    const Cause* const distortion = Find(camera, "distortion");
+    ASSERT_NE(distortion, nullptr);
+    EXPECT_GT(distortion->Sigmas(), kGivenWrongSigmas);
+    EXPECT_THAT(distortion->words, HasSubstr(world.rig.cameras[0].name));
+  }
+}
+
 TEST(GivenWrong, SquaresAreNamedWithTheirSize) {
   SolveWorld world(Drawn(3));
   const double truth = world.rig.target.square_m;

@@ -79,6 +79,7 @@ TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   CameraReport camera = Good();
   const auto grade = [&](double rms) {
     camera.edge_rms_whitened.heldout = rms;
+    camera.views = {{"1", true, 1, 1, rms}, {"2", true, 1, 1, rms}, {"3", true, 1, 1, rms}};
     return Judge(camera).grade;
   };
   EXPECT_EQ(grade(0.71), Grade::kGood);
@@ -91,6 +92,9 @@ TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   EXPECT_EQ(grade(2.7), Grade::kGood);
   EXPECT_EQ(grade(2.9), Grade::kDoubtful);
   camera.variance_factor = 1;
+  grade(1.5);
+  camera.views[0].edge_rms_whitened = camera.views[1].edge_rms_whitened = 1;  // a single bad view
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   camera.edge_rms_whitened.heldout.reset();
   camera.edge_rms_whitened.train = 5;  // the views used are no judge
   EXPECT_EQ(Judge(camera).grade, Grade::kGood);
