@@ -6,9 +6,13 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/linear_algebra.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
+
+// Larger than any, and smaller than any in millimetres.
+constexpr double kLargestRigM = 50, kLargestBoardM = 20, kLargestSquareM = 3, kMostNoiseM = 1;
 
 void Require(bool good, const std::string& field, const std::string& value,
              const std::string& expected) {
@@ -17,6 +21,12 @@ void Require(bool good, const std::string& field, const std::string& value,
 
 void RequirePositive(double value, const std::string& field) {
   Require(std::isfinite(value) && value > 0, field, std::to_string(value), "a positive number");
+}
+
+// A length in metres, of something that is never larger than `most`.
+void RequireMetres(double value, double most, const std::string& field) {
+  Require(std::abs(value) <= most, field, Format("%g", value),
+          Format("metres, %g at most; where these are millimetres: %g", most, value / 1000));
 }
 
 void CheckName(const std::string& name, const std::string& field) {
@@ -31,6 +41,9 @@ void CheckName(const std::string& name, const std::string& field) {
 void CheckPose(const Rigid3& pose, const std::string& field) {
   Require(pose.translation.allFinite() && std::abs(pose.rotation.norm() - 1) < 1e-6, field,
           "not a pose", "finite metres and a unit quaternion");
+  for (const double along : pose.translation) {
+    RequireMetres(along, kLargestRigM, field + ".translation_m");
+  }
 }
 
 void CheckLens(const Lens& lens, const std::string& field) {
@@ -86,15 +99,19 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
 void CheckTarget(const Target& target) {
   RequirePositive(target.width_m, "target.width_m");
   RequirePositive(target.height_m, "target.height_m");
+  RequireMetres(target.width_m, kLargestBoardM, "target.width_m");
+  RequireMetres(target.height_m, kLargestBoardM, "target.height_m");
   if (!target.HasPattern()) return;
   Require(target.squares_x >= 3 && target.squares_x <= 100, "target.squares_x",
           std::to_string(target.squares_x), "3 to 100");
   Require(target.squares_y >= 3 && target.squares_y <= 100, "target.squares_y",
           std::to_string(target.squares_y), "3 to 100");
   RequirePositive(target.square_m, "target.square_m");
-  for (const double offset : {target.pattern_offset_m.x(), target.pattern_offset_m.y()}) {
+  RequireMetres(target.square_m, kLargestSquareM, "target.square_m");
+  for (const double offset : target.pattern_offset_m) {
     Require(std::isfinite(offset), "target.pattern_offset_m", std::to_string(offset),
             "finite numbers");
+    RequireMetres(offset, kLargestBoardM, "target.pattern_offset_m");
   }
   Require(target.print_sigma >= 0 && target.print_sigma < 0.1, "target.print_sigma",
           std::to_string(target.print_sigma), "0 (exact) to 0.1");
@@ -150,6 +167,7 @@ void Rig::Check(LensNeed lenses) const {
     CheckPose(lidar.turned_scanner->motor_from_scanner, "lidar.turned_scanner.motor_from_scanner");
   }
   RequirePositive(lidar.range_sigma_m, "lidar.range_sigma_m");
+  RequireMetres(lidar.range_sigma_m, kMostNoiseM, "lidar.range_sigma_m");
   Require(lidar.range_offset_sigma_m >= 0 && std::isfinite(lidar.range_offset_sigma_m),
           "lidar.range_offset_sigma_m", std::to_string(lidar.range_offset_sigma_m),
           "a number not less than zero");

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "calib/detect/cloud/board_crossings.h"
+#include "calib/detect/cloud/cloud_sanity.h"
 #include "calib/detect/cloud/internal/board_plane.h"
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
@@ -380,7 +381,9 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
     noisier.range_sigma_m *= 2;
     boards = FindAtNoise(grid, target, noisier);
   }
-  return boards.candidates.empty() ? as_stated : boards;
+  if (!boards.candidates.empty()) return boards;
+  const std::string off = WhyCloudIsOff(cloud);
+  return off.empty() ? as_stated : BoardsInCloud{{}, off};
 }
 
 }  // namespace rgbdt
