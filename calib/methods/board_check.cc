@@ -2,6 +2,7 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/image/checkerboard.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -34,6 +35,15 @@ BoardCheck CheckBoard(const CameraSpec& camera, const Target& target,
     if (FindInAny(camera, other, images).board) check.instead = other;
   }
   return check;
+}
+
+std::string OtherBoard(const Target& stated, const BoardCheck& check) {
+  const Target& seen = *check.instead;
+  return Format(
+      "the images show %d x %d squares (%d x %d inner corners), not %d x %d: count squares, "
+      "not inner corners",
+      seen.squares_x, seen.squares_y, seen.corners_x(), seen.corners_y(), stated.squares_x,
+      stated.squares_y);
 }
 
 }  // namespace rgbdt

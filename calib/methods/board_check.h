@@ -21,4 +21,8 @@ struct BoardCheck {
 BoardCheck CheckBoard(const CameraSpec& camera, const Target& target,
                       const std::vector<Image>& images);
 
+/// What such a check found instead, in words: "the images show 8 x 6 squares (7 x 5 inner corners),
+/// not 7 x 5: count squares, not inner corners".
+std::string OtherBoard(const Target& stated, const BoardCheck& check);
+
 }  // namespace rgbdt

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "calib/methods/internal/guess_check.h"
 #include "calib/methods/internal/report_parts.h"
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
@@ -10,6 +11,17 @@
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
+namespace {
+
+CameraViews WithGuessChecked(CameraViews camera) {
+  const CameraCalibration& found = camera.report.calibration;
+  if (!found.converged()) return camera;
+  std::string why = WhyGuessIsOff(*camera.spec, found.camera_from_lidar);
+  if (!why.empty()) camera.report.warnings.push_back(std::move(why));
+  return camera;
+}
+
+}  // namespace
 
 Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
                  const CalibrateOptions& options) {
@@ -25,6 +37,7 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
             ? CalibrateByPlanes(rig.target, with_rig, std::move(cameras))
             : CalibrateByBoards(rig.target, with_rig, std::move(cameras));
     cameras = std::move(calibrated.cameras);
+    for (CameraViews& camera : cameras) camera = WithGuessChecked(std::move(camera));
     report.closure = std::move(calibrated.closure);
     report.next_view = std::move(calibrated.next_view);
   }

@@ -1,9 +1,13 @@
 #include "calib/methods/detect_session.h"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
+#include <optional>
 
+#include "calib/methods/board_check.h"
 #include "calib/methods/detect_view.h"
+#include "calib/model/errors.h"
 #include "calib/model/parallel.h"
 
 namespace rgbdt {
@@ -17,6 +21,45 @@ ViewDetection Unreadable(const Rig& rig, const std::string& view, const std::str
   }
   detection.cloud.why_not = why;
   return detection;
+}
+
+// Some of a camera's images, from the first view to the last; of those that can be read.
+std::vector<Image> SomeImages(const Session& session, const std::string& camera) {
+  constexpr std::size_t kImages = 3;
+  std::vector<Image> images;
+  const std::size_t count = std::min(kImages, session.views.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& name = session.views[(2 * i + 1) * session.views.size() / (2 * count)];
+    try {
+      for (Image& image : ReadImages(session, name).images) {
+        if (image.camera == camera) images.push_back(std::move(image));
+      }
+    } catch (const InputError&) {
+    }
+  }
+  return images;
+}
+
+bool BoardIsSeen(const std::vector<ViewDetection>& detections, const std::string& camera) {
+  return std::any_of(detections.begin(), detections.end(), [&](const ViewDetection& view) {
+    const ImageDetection* image = view.Find(camera);
+    return image != nullptr && image->edges;
+  });
+}
+
+// Of a camera that sees no board in any view, another one may be seen: then that is why.
+void SayWhatIsSeenInstead(const Session& session, const CameraSpec& camera,
+                          std::vector<ViewDetection>* detections) {
+  const Target& target = session.rig.target;
+  if (!target.HasPattern() || BoardIsSeen(*detections, camera.name)) return;
+  const BoardCheck check = CheckBoard(camera, target, SomeImages(session, camera.name));
+  if (!check.instead) return;
+  for (ViewDetection& view : *detections) {
+    for (ImageDetection& image : view.images) {
+      const bool read = image.why_not != view.cloud.why_not;
+      if (image.camera == camera.name && read) image.why_not = OtherBoard(target, check);
+    }
+  }
 }
 
 }  // namespace
@@ -43,6 +86,9 @@ SessionDetection DetectSession(const Session& session, const std::string& method
              (detections[i].heldout ? " (held out)" : ""));
   });
 
+  for (const CameraSpec& camera : session.rig.cameras) {
+    SayWhatIsSeenInstead(session, camera, &detections);
+  }
   SessionDetection detection{std::move(detections), {}};
   for (std::size_t i = 0; i < count; ++i) {
     if (!unreadable[i].empty()) {

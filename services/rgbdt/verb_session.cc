@@ -116,11 +116,7 @@ void CheckBoardIsSeen(const FolderSession& session) {
   const CameraSpec& camera = colour == cameras.end() ? cameras[0] : *colour;
   const BoardCheck check = CheckBoard(camera, board, SomeImages(session, camera));
   if (check.instead) {
-    throw InputError(
-        Format("--board says %d x %d squares, but the images of %s show %d x %d "
-               "(%d x %d inner corners): count squares, not inner corners",
-               board.squares_x, board.squares_y, camera.name.c_str(), check.instead->squares_x,
-               check.instead->squares_y, check.instead->corners_x(), check.instead->corners_y()));
+    throw InputError("--board: " + camera.name + ": " + OtherBoard(board, check));
   }
   if (check.found) return;
   std::printf("warning: the board is in none of the images of %s looked at: %s\n",
