@@ -1,9 +1,11 @@
 #include "calib/solve/guess_cameras.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
+#include "calib/model/statistics.h"
 #include "calib/model/stopwatch.h"
 #include "calib/model/text.h"
 #include "calib/solve/colouring.h"
@@ -35,26 +37,46 @@ std::string Place(const Eigen::Vector3d& p) {
   return Format("x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
 }
 
-// Names what else in the clouds looks like the target: a second board, a door, a poster. Empty:
-// nothing does.
-std::string OthersIn(const CameraViews& camera) {
+// Two boards of a cloud lie where the guess puts one: only the one taken has a say, and it may be
+// the wrong one. What lies elsewhere does no harm. Empty: there are none.
+std::string RivalsIn(const CameraViews& camera, const FirstGuess& guess, const PoseGate& gate) {
   int views = 0;
   std::string example;
   for (const CameraView* o : camera.Usable()) {
-    if (o->candidates.size() < 2) continue;
+    const CloudEdges* rival = nullptr;
+    for (const CloudEdges* candidate : o->candidates) {
+      if ((candidate->centre - o->cloud->centre).norm() < 0.01) continue;
+      CameraView alone = *o;
+      alone.candidates = {candidate};
+      const CandidateChoice choice =
+          ChooseCandidate(alone, *guess.camera_from_lidar, gate, guess.range_offset_m);
+      if (choice.candidate >= 0) rival = candidate;
+    }
+    if (rival == nullptr) continue;
     ++views;
-    const auto other = std::find_if(
-        o->candidates.begin(), o->candidates.end(),
-        [&](const CloudEdges* c) { return (c->centre - o->cloud->centre).norm() > 0.01; });
-    if (!example.empty() || other == o->candidates.end()) continue;
+    if (!example.empty()) continue;
     example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
-              Place((*other)->centre) + " (LIDAR frame)";
+              Place(rival->centre) + " (LIDAR frame)";
   }
   if (example.empty()) return "";
-  return "something else of the target's size stands in " + std::to_string(views) + " of " +
-         std::to_string(camera.Usable().size()) +
-         " clouds, e.g. a second board; the views together chose the target. " + example +
-         ". If that is wrong, take the other thing away";
+  return Format(
+      "two boards of the target's size stand close together in %d of %zu clouds. %s. "
+      "Remove one of them",
+      views, camera.Usable().size(), example.c_str());
+}
+
+// A camera looks along its own z, a LIDAR's z is up: boards stand beside it. Empty: they do.
+std::string AxesAreACameras(const CameraViews& camera) {
+  constexpr double kMostUp = 0.8;
+  std::vector<double> up;
+  for (const CameraView* o : camera.Used()) {
+    up.push_back(o->cloud->centre.z() / o->cloud->centre.norm());
+  }
+  if (!(Median(std::move(up)) > kMostUp)) return "";
+  return "the boards lie along the cloud's z axis: its axes seem to be a camera's (x right, y "
+         "down, "
+         "z forward), and the LIDAR frame is x forward, y left, z up. The result holds for the "
+         "clouds as they are";
 }
 
 // The first guess, from the views used; the views held out have no say, but they choose their board
@@ -81,8 +103,10 @@ GuessedCamera Guess(const CalibrateOptions& options, CameraViews views) {
     return {std::move(views), {}};
   }
   report.first_guess = guess.camera_from_lidar;
-  const std::string others = OthersIn(views);
-  if (!others.empty()) report.warnings.push_back(others);
+  for (std::string& warning :
+       std::array{RivalsIn(views, guess, options.first_guess.accept), AxesAreACameras(views)}) {
+    if (!warning.empty()) report.warnings.push_back(std::move(warning));
+  }
   return {std::move(views), std::move(guess)};
 }
 

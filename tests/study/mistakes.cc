@@ -41,6 +41,9 @@ void SpoilLens(const Mistake& mistake, const CameraSpec& camera, Lens* lens) {
     lens->cy -= At(mistake, {0.0125, 0.025, 0.05}) * camera.height;
   } else if (name == "distortion") {
     for (double& k : lens->distortion) k *= 1 - At(mistake, {0.5, 1, 2});
+  } else if (name == "exchanged") {
+    if (mistake.size != 2) std::swap(lens->fx, lens->cx);
+    if (mistake.size != 1) std::swap(lens->fy, lens->cy);
   } else if (name == "model") {
     *lens = AsOtherModel(*lens, At(mistake, {0, 0.02, 0.05}));
   }
@@ -71,6 +74,7 @@ const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
       {"centre", {"image centre", "lens"}},
       {"distortion", {"distortion", "lens"}},
       {"model", {"distortion", "lens"}},
+      {"exchanged", {"fx and cx", "fy and cy"}},
       {"squares", {"squares", "cloud's scale"}},
       {"scale", {"cloud's scale", "squares", kSizeInCloud}},
       {"board", {"board's size", kSizeInCloud}},

@@ -45,6 +45,12 @@ std::string Millimetres(double value, double sigma) {
   return Format("%+.0f +- %.0f mm", 1000 * value, 1000 * sigma);
 }
 
+// Whether a focal length stands where the centre belongs, and the other way round.
+bool AreExchanged(double focal, double centre, double found_focal, double found_centre) {
+  const auto near = [](double a, double b) { return std::abs(a - b) < 0.05 * std::abs(b); };
+  return near(focal, found_centre) && near(centre, found_focal) && !near(focal, found_focal);
+}
+
 Cause CauseOf(std::string name, std::string words, const Off& off) {
   return {std::move(name), std::move(words),
           off.value.dot(SolveSymmetric(off.covariance, off.value)),
@@ -223,8 +229,22 @@ class Tester {
                      50 * (lens.off[0] / Spec().lens.fx + lens.off[1] / Spec().lens.fy),
                      lens.off[2], lens.off[3], kFindTheLens),
               lens.chi2, lens.freedom, 0.0};
+    const std::string exchanged = Exchanged(lens.off);
+    if (!exchanged.empty()) {
+      all = {exchanged, exchanged + " of " + Spec().name + " are exchanged in the rig file",
+             lens.chi2, lens.freedom, 0.0};
+      return {std::move(all)};
+    }
     return {FocalCause(part(focal)), AspectCause(part(aspect)), CentreCause(part(centre)),
             DistortionCause(part(distortion)), std::move(all)};
+  }
+
+  // "fx and cx", "fy and cy", or nothing.
+  std::string Exchanged(const LensNumbers& off) const {
+    const auto& given = Spec().lens;
+    if (AreExchanged(given.fx, given.cx, given.fx + off[0], given.cx + off[2])) return "fx and cx";
+    if (AreExchanged(given.fy, given.cy, given.fy + off[1], given.cy + off[3])) return "fy and cy";
+    return "";
   }
 
   std::optional<Cause> Squares() const {
