@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "calib/files/schema/calibration_file.h"
+#include "calib/present/report/verdict.h"
 #include "tests/nodes/nodes_testing.h"
 
 namespace rgbdt::test {
@@ -28,7 +29,8 @@ std::int64_t Services::dropped() const {
 }
 
 std::string CalibrationOf(const SolverNode& solver) {
-  return solver.report() ? PrintCalibration(solver.report()->ToCalibration()) : "";
+  if (!solver.report()) return "";
+  return PrintCalibration(JudgedCalibration(*solver.report(), *solver.rig()));
 }
 
 SessionScript MakeScript(int views) {

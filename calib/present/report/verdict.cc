@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/model/statistics.h"
+#include "calib/present/report/said_once.h"
 #include "calib/present/report/words.h"
 
 namespace rgbdt {
@@ -207,8 +208,16 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
   }
 }
 
-void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextView>& next_view,
+// Without a pose: why views could not be used; what is alike is said once.
+void JudgeRejections(const CameraReport& camera, Judgement* judgement) {
+  std::vector<Said> rejected;
+  for (const RejectedView& view : camera.rejected) rejected.push_back({"", view.view, view.why});
+  for (const std::string& line : SaidOnce(rejected, "rejected")) judgement->Bad(line + ".");
+}
+
+void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next_view,
                  Judgement* judgement) {
+  const CameraCalibration& calibration = camera.calibration;
   const std::string& detail = calibration.detail;
   switch (calibration.status) {
     case SolveStatus::kUndetermined:
@@ -219,6 +228,7 @@ void JudgeStatus(const CameraCalibration& calibration, const std::optional<NextV
       break;
     case SolveStatus::kNotSolved:
       judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
+      JudgeRejections(camera, judgement);
       break;
     case SolveStatus::kContradicted:
       judgement->Bad("Status of the solve: " + calibration.StatusText());
@@ -297,7 +307,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera) {
 
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
-  JudgeStatus(camera.calibration, next_view, &judgement);
+  JudgeStatus(camera, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
   JudgeFit(camera, &judgement);
   JudgeWhitened(camera, &judgement);
