@@ -217,6 +217,7 @@ Messages SessionNode::Start() {
     if (!by_request_ && now_ - *began_ > kStartTimeout) Fail("not ready after 30 s: " + who);
     return {};
   }
+  SetEarlierResultsAside();
   WriteRig(directory_, rig_);
   started_ = true;
   Messages out = Send(SessionVerb::kReset);
@@ -306,16 +307,24 @@ bool SessionNode::StepDone() {
   }
 }
 
+// So that what an earlier run found is not taken for this session's.
+void SessionNode::SetEarlierResultsAside() {
+  const std::string kept = SetResultsAside(directory_);
+  if (!kept.empty()) Warn(kept);
+}
+
 void SessionNode::Save() {
   if (!report_) {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
     return;
   }
-  WriteReport(directory_ / "report.json", WithVerdicts(*report_));
   const Calibration calibration = JudgedCalibration(*report_, rig_);
-  if (!calibration.cameras.empty()) {
+  if (calibration.cameras.empty()) {
+    SetEarlierResultsAside();
+  } else {
     WriteCalibration(directory_ / "calibration.textproto", calibration);
   }
+  WriteReport(directory_ / "report.json", WithVerdicts(*report_));
   for (const CameraReport& camera : report_->cameras) {
     if (camera.calibration.solved()) continue;
     Fail("camera " + camera.calibration.camera + ": " + camera.calibration.StatusText());

@@ -29,13 +29,14 @@ struct SessionProgress {
 /// is). It begins when assembler, detector, solver, fuser and the processes of the rig file's
 /// devices are ready (STATUS). next_pose and sweep end with anybody's done, capture with the
 /// detector's and the view on disk, solve and evaluate with the solver's. save writes the report,
-/// and the calibration of the cameras that were solved. A failed event, no answer in the step's
-/// time, a camera that could not be solved, or a file that cannot be written ends the session with
-/// the reason; one that a person leads publishes the reason and goes on. Each capture that a person
-/// asks for is followed by solve and evaluate, so that there always is a report. Corners that a
-/// person picks in an image of a view that is on disk are written to it, and once the detector has
-/// detected it again, a session that a person leads solves again. Advance's time serves time-outs
-/// and waits, and RIG once a second.
+/// and the calibration of the cameras that were solved; results of an earlier run in the directory
+/// are kept aside (SetResultsAside), once the session begins. A failed event, no answer in the
+/// step's time, a camera that could not be solved, or a file that cannot be written ends the
+/// session with the reason; one that a person leads publishes the reason and goes on. Each capture
+/// that a person asks for is followed by solve and evaluate, so that there always is a report.
+/// Corners that a person picks in an image of a view that is on disk are written to it, and once
+/// the detector has detected it again, a session that a person leads solves again. Advance's time
+/// serves time-outs and waits, and RIG once a second.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
@@ -82,6 +83,7 @@ class SessionNode : public Node {
   void OnEvent(const SessionEvent& event);
   void SaveView();
   void Save();
+  void SetEarlierResultsAside();
   void Fail(const std::string& why);
   void EndStep();
   void Append(SessionStep::Kind kind, bool heldout = false);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,13 @@ inline void RequireReadable(const Session& session, const std::vector<std::strin
   if (unreadable.empty() || unreadable.size() < session.views.size()) return;
   throw InputError("nothing of " + session.Title() +
                    " could be read: " + Joined(SaidOnce(OfViews(unreadable), "not read")));
+}
+
+/// Before a run begins that writes its results into `out`: those of an earlier one are set aside,
+/// and stderr tells it. However the run ends, what is there then is its own.
+inline void SetAside(const std::filesystem::path& out) {
+  const std::string kept = SetResultsAside(out);
+  if (!kept.empty()) std::fprintf(stderr, "%s\n", kept.c_str());
 }
 
 /// What a verb says that made a report: the table and the files (`wrote`, in words). Of views that

@@ -52,6 +52,7 @@ ExitCode Finish(const Place& place, const Session& session, const SessionDetecti
 
 ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
+  SetAside(PathOr(flags.out, session.root));
   const SessionDetection detection = Detect(session, flags.options.method);
   const ExitCode end =
       Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
@@ -84,6 +85,7 @@ std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewD
 // One pose of each camera in all sessions.
 ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
+  SetAside(flags.out);
   const SessionDetection detection = Detect(session, flags.options.method);
   std::vector<CalibrationComparison> comparisons;
   if (flags.options.method == kAutoMethod) {
@@ -101,9 +103,15 @@ ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   return end;
 }
 
+// Where the result of one of several sessions goes.
+std::filesystem::path OutOf(const CalibrateFlags& flags, const std::string& session) {
+  return flags.out / std::filesystem::path(session).relative_path();
+}
+
 // Poses of its own in each session; what all have in common is told by all.
 ExitCode CalibrateEach(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
+  for (const Session::Part& part : session.parts) SetAside(OutOf(flags, part.name));
   const SessionDetection detection = Detect(session, flags.options.method);
   const std::vector<SessionViews> views = Divided(session, detection.views);
   CalibratedSessions result = CalibrateSessions(session.rig, views, flags.options);
@@ -111,7 +119,7 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
   ExitCode end = EndsIf(detection.unreadable.empty());
   for (std::size_t s = 0; s < parts.size(); ++s) {
     std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
-    const Place place{flags.out / std::filesystem::path(views[s].name).relative_path(),
+    const Place place{OutOf(flags, views[s].name),
                       TruthPath(flags.truth, parts[s].parts[0].session.root)};
     end = WorseOf(end, Finish(place, parts[s], {views[s].detections, detection.unreadable},
                               result.reports[s]));
@@ -138,7 +146,9 @@ void AddCalibrate(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "calibrate",
       "Finds each camera's pose relative to the LIDAR from a session directory.\n"
-      "Writes calibration.textproto, report.json and report.html. Several sessions of one rig are\n"
+      "Writes calibration.textproto, report.json and report.html; those of an earlier run are "
+      "kept\n"
+      "aside, as calibration.previous.textproto and so on. Several sessions of one rig are\n"
       "solved together: the lenses and the LIDAR's own errors are the same in all of them, the\n"
       "poses, too, unless --mounts-moved; whether they are is said.\n"
       "Examples: rgbdt calibrate out/demo/session --out out/again\n"

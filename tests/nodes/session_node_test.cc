@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
@@ -90,6 +91,24 @@ TEST_F(SessionNodeTest, TheHappyPathWritesTheSessionDirectory) {
   EXPECT_EQ(progress_.front().steps, 6);
   EXPECT_EQ(progress_.back().step, 6);
   EXPECT_EQ(progress_.back().fraction, 1);
+}
+
+// The folder's name may have served before: what stands there is not this session's.
+TEST_F(SessionNodeTest, ResultsOfAnEarlierRunAreSetAsideOnceItBegins) {
+  const auto calibration = dir_ / "session/calibration.textproto";
+  WriteFileAtomically(calibration, "an earlier one");
+  world_.solved = false;
+  Start(Script(kOneView));
+  AdvanceTo(0, node_.get());
+  EXPECT_TRUE(std::filesystem::exists(calibration)) << "nobody is ready yet";
+  EverybodyReady();
+  Run();
+  EXPECT_TRUE(node_->finished());
+  EXPECT_NE(node_->failure(), "");
+  EXPECT_FALSE(std::filesystem::exists(calibration));
+  EXPECT_EQ(ReadWholeFile(dir_ / "session/calibration.previous.textproto"), "an earlier one");
+  EXPECT_EQ(ReadReport(dir_ / "session/report.json").cameras[0].calibration.status,
+            SolveStatus::kNotSolved);
 }
 
 TEST_F(SessionNodeTest, WaitsUntilEverybodyIsReady) {

@@ -55,6 +55,14 @@ View ReadImages(const Session& session, const std::string& view);
 /// The cloud alone; the view then need not have images.
 Cloud ReadCloud(const Session& session, const std::string& view);
 
+/// Moves what an earlier run left in `dir` out of the way of a run that begins, so that it is not
+/// taken for that one's where it fails: calibration.textproto becomes
+/// calibration.previous.textproto, report.json and report.html likewise, in place of what these
+/// names held. Reports without a calibration never take the place of an earlier run's results: they
+/// are removed. Says in words what was kept; empty: nothing. Throws InputError where a file cannot
+/// be renamed.
+std::string SetResultsAside(const std::filesystem::path& dir);
+
 /// Writes rig.textproto: the rig's own text where it has one, so that its hash stays.
 void WriteRig(const std::filesystem::path& session_dir, const Rig& rig);
 

@@ -1,0 +1,65 @@
+#include <array>
+
+#include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first of them is what counts: a set without it is what a failed run left.
+constexpr std::array<const char*, 3> kResults = {"calibration.textproto", "report.json",
+                                                 "report.html"};
+
+// "calibration.previous.textproto"
+fs::path PreviousOf(const std::string& name) {
+  const fs::path path(name);
+  return path.stem().string() + ".previous" + path.extension().string();
+}
+
+bool PreviousIsThere(const fs::path& dir) {
+  std::error_code ignored;
+  for (const char* name : kResults) {
+    if (fs::exists(dir / PreviousOf(name), ignored)) return true;
+  }
+  return false;
+}
+
+void Remove(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw InputError("cannot remove " + path.string() + ": " + error.message());
+}
+
+void Rename(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) {
+    throw InputError("cannot rename " + from.string() + " to " + to.string() + ": " +
+                     error.message());
+  }
+}
+
+}  // namespace
+
+std::string SetResultsAside(const fs::path& dir) {
+  std::error_code ignored;
+  std::string kept;
+  const bool keep = fs::exists(dir / kResults[0], ignored) || !PreviousIsThere(dir);
+  for (const char* name : kResults) {
+    const fs::path previous = PreviousOf(name);
+    if (keep) Remove(dir / previous);
+    if (!fs::exists(dir / name, ignored)) continue;
+    if (keep) {
+      Rename(dir / name, dir / previous);
+      kept += (kept.empty() ? "" : ", ") + previous.string();
+    } else {
+      Remove(dir / name);
+    }
+  }
+  return kept.empty() ? ""
+                      : "results of an earlier run are kept in " + dir.string() + " as " + kept;
+}
+
+}  // namespace rgbdt
