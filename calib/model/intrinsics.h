@@ -94,6 +94,27 @@ struct IntrinsicsResult {
   int ViewsUsed() const;
 };
 
+/// Another lens model on the same images.
+struct LensAlternative {
+  LensChoice choice = LensChoice::kPinhole5;
+  bool converged = false;
+  double rms_px = 0;  ///< over the corners that this model uses
+  /// Of the model that was asked for, over the same corners.
+  double asked_rms_px = 0;
+  /// Difference of the Bayesian information criterion (Schwarz 1978), this less the one asked for:
+  /// n ln(RSS/RSS_asked) + (k - k_asked) ln n, of n coordinates and k numbers of the lens. Below 0:
+  /// the images want this one.
+  double bic = 0;
+};
+
+/// What the images say of the lens model that was asked for.
+struct LensComparison {
+  LensChoice asked = LensChoice::kPinhole5;
+  std::vector<LensAlternative> others;
+  /// The one of `others` that the images want instead; absent: none.
+  std::optional<LensAlternative> better;
+};
+
 /// What a rig file states of the lens, made from those of `views` (the input's) that were used; the
 /// result must have a covariance. k4, k5 and k6 of the rational model are taken as known there, so
 /// the others' covariance is that given them.

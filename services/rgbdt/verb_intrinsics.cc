@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "calib/camera/intrinsics.h"
+#include "calib/camera/lens_choice.h"
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/methods/session_corners.h"
@@ -46,11 +47,10 @@ std::vector<std::string> CamerasFor(const IntrinsicsFlags& flags, const Rig& rig
   return all;
 }
 
-IntrinsicsResult SolveCamera(const IntrinsicsFlags& flags, const Rig& rig,
-                             const CameraCorners& corners) {
+IntrinsicsInput InputOf(const IntrinsicsFlags& flags, const Rig& rig,
+                        const CameraCorners& corners) {
   const CameraSpec& camera = rig.Camera(corners.camera);
-  return CalibrateIntrinsics(
-      {ChoiceFor(flags, camera.lens), camera.width, camera.height, rig.target, corners.views});
+  return {ChoiceFor(flags, camera.lens), camera.width, camera.height, rig.target, corners.views};
 }
 
 // A camera without a single image is left as it is, unless it was asked for by name.
@@ -93,9 +93,11 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
   for (const CameraCorners& camera : corners.cameras) {
     if (IsSkipped(flags, camera)) continue;
     const CameraSpec& before = session.rig.Camera(camera.camera);
-    const CameraIntrinsics& found = solved.emplace_back(
-        CameraIntrinsics{before, camera, SolveCamera(flags, session.rig, camera)});
-    std::printf("%s\n", IntrinsicsText(found).c_str());
+    const IntrinsicsInput input = InputOf(flags, session.rig, camera);
+    const CameraIntrinsics& found =
+        solved.emplace_back(CameraIntrinsics{before, camera, CalibrateIntrinsics(input)});
+    std::printf("%s%s\n", IntrinsicsText(found).c_str(),
+                LensComparisonText(CompareLenses(input, found.result)).c_str());
     good &= found.result.converged;
     for (CameraSpec& spec : rig.cameras) {
       if (spec.name != camera.camera || !found.result.converged) continue;
@@ -137,7 +139,8 @@ void AddIntrinsics(CommandLine* program) {
   verb->Option("--camera", &flags->cameras, "only this one; may be given again");
   verb->Choice("--model", &flags->choice, kChoices,
                "with 5 or 8 numbers of distortion, or OpenCV's fisheye; default: the rig file's,\n"
-               "else pinhole5");
+               "else pinhole5. The other models are tried on the same images, and one that these\n"
+               "want is named");
   verb->Option("--out", &flags->out,
                "the rig file to write; default: DIR/rig.intrinsics.textproto, so that the rig\n"
                "file in use is not replaced");

@@ -24,11 +24,19 @@ for word in "converged" "fx " "+-" "RMS" "covered" "next: mv"; do
   grep -qF -- "$word" "$scratch/output" || complain "no word of '$word'"
 done
 as_true "with a lens before" "$good/rig.intrinsics.textproto"
+grep -q '^  no other lens model fits these images better: ' "$scratch/output" ||
+  complain "the right lens model is not left alone"
 [ -s "$good/intrinsics.html" ] || complain "no page was written"
 cmp -s "$good/rig.textproto" "$scratch/kept/rig.textproto" || complain "the rig file was replaced"
 sed -n '/name: "thermal"/,/^}/p' "$good/rig.textproto" >"$scratch/before"
 sed -n '/name: "thermal"/,/^}/p' "$good/rig.intrinsics.textproto" >"$scratch/after"
 cmp -s "$scratch/before" "$scratch/after" || complain "the other camera is not as it was"
+
+# More numbers than the images tell, which may not converge.
+"$bin/rgbdt" intrinsics "$good" --camera rgb --model pinhole8 --out "$scratch/eight/rig.textproto" \
+  >"$scratch/output" 2>&1 || true
+grep -qE '^  pinhole5 fits these images as well, with fewer numbers: .*; give --model pinhole5$' \
+  "$scratch/output" || complain "more numbers than the images tell: nothing said"
 
 # Images alone, a rig without lenses.
 bare=$scratch/bare

@@ -114,6 +114,24 @@ std::string IntrinsicsText(const CameraIntrinsics& camera) {
   return text + ViewsText(before, corners, result) + CoverageText(result.coverage);
 }
 
+std::string LensComparisonText(const LensComparison& comparison) {
+  if (comparison.better) {
+    const auto& [choice, converged, rms_px, asked_rms_px, bic] = *comparison.better;
+    const bool fewer = comparison.asked == LensChoice::kPinhole8 && choice == LensChoice::kPinhole5;
+    return fmt::format(
+        "  {} fits these images {}: RMS {:.3f} px against {:.3f} px; give --model {}\n",
+        NameOf(choice), fewer ? "as well, with fewer numbers" : "better", rms_px, asked_rms_px,
+        NameOf(choice));
+  }
+  std::string others;
+  for (const LensAlternative& other : comparison.others) {
+    others +=
+        (others.empty() ? "" : ", ") + NameOf(other.choice) +
+        (other.converged ? fmt::format(" RMS {:.3f} px", other.rms_px) : " does not converge");
+  }
+  return "  no other lens model fits these images better: " + others + "\n";
+}
+
 std::string NameOf(LensChoice choice) {
   switch (choice) {
     case LensChoice::kPinhole8:

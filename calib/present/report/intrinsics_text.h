@@ -17,6 +17,10 @@ struct CameraIntrinsics {
 /// which part of the image was covered and what to do about the rest.
 std::string IntrinsicsText(const CameraIntrinsics& camera);
 
+/// One line: which lens model the images want instead, and how to ask for it; or that none fits
+/// better.
+std::string LensComparisonText(const LensComparison& comparison);
+
 /// "pinhole5", "pinhole8", "fisheye": as a person types them.
 std::string NameOf(LensChoice choice);
 
