@@ -191,6 +191,11 @@ Rig SensorsOf(const Rig& rig) {
   Rig sensors;
   sensors.name = rig.name;
   sensors.lidar.name = rig.lidar.name;
+  if (const auto* velodyne = std::get_if<VelodyneDevice>(&rig.lidar.device)) {
+    VelodyneDevice model;
+    model.model = velodyne->model;
+    sensors.lidar.device = model;
+  }
   if (rig.lidar.turned_scanner) {
     sensors.lidar.turned_scanner = rig.lidar.turned_scanner;
     sensors.lidar.turned_scanner->motor.reset();

@@ -5,6 +5,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "services/nodes/rig_check.h"
 
 namespace rgbdt {
 namespace {
@@ -39,7 +40,8 @@ void FuserNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
   Rig rig = ParseRig(text.text, "RIG message");
   fuser_ = SweepFuser(rig.cameras, rig.lidar.range_sigma_m);
-  rig_ = std::move(rig);
+  rig_before_ = std::exchange(rig_, std::move(rig));
+  against_.clear();
   UpdateRangeCorrection();
   newest_image_.clear();
 }
@@ -82,13 +84,28 @@ void FuserNode::OnPose(const StampedPose& pose) {
   }
 }
 
-Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
-  if (message.rig_hash != rig_->hash) {
-    throw InputError("calibration was made with rig " + message.rig_hash + ", this is rig " +
-                     rig_->hash);
+// What speaks against a camera's newest calibration, or nothing; told once.
+void FuserNode::Tell(const std::string& camera, const std::vector<std::string>& against) {
+  if (against.empty()) {
+    against_.erase(camera);
+    return;
   }
-  std::vector<RgbdtCloud> parts = fuser_->SetCalibration(IndexOf(message.calibration.camera),
-                                                         message.calibration, message.utime);
+  const std::string prefix = use_ == Use::kAnyway ? "used anyway: " : "";
+  std::string text;
+  for (const std::string& why : against) text += (text.empty() ? "" : "; ") + prefix + why;
+  if (std::exchange(against_[camera], text) != text) Warn(text);
+}
+
+Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
+  const std::size_t camera = IndexOf(message.calibration.camera);
+  std::vector<std::string> against =
+      RequireRigOf(message, *rig_, rig_before_ ? &*rig_before_ : nullptr, use_);
+  const std::string why = WhyNotToUse(message.calibration);
+  if (!why.empty()) against.push_back(why);
+  Tell(message.calibration.camera, against);
+  if (!why.empty() && use_ == Use::kIfSound) return {};
+  std::vector<RgbdtCloud> parts =
+      fuser_->SetCalibration(camera, message.calibration, message.utime);
   UpdateRangeCorrection();
   return MessagesOf(std::move(parts));
 }
@@ -156,6 +173,7 @@ Status FuserNode::GetStatus() const {
                 : !calibrated()            ? "no calibration yet: clouds go out without colour"
                 : range_correction_.errors ? "fusing, ranges corrected"
                                            : "fusing";
+  for (const auto& [camera, why] : against_) status.text += "; " + why;
   const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
   status.counters = {{"points", counts.points},
                      {"coloured", counts.coloured},

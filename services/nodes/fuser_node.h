@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/schema/calibration_use.h"
 #include "calib/fuse/range_correction.h"
 #include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
@@ -17,9 +18,13 @@ namespace rgbdt {
 /// its end, tested for occlusion as a whole. Nothing waits for the future: a point is coloured by
 /// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
 /// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
-/// one holds from the next chunk on. A calibration of another rig is refused. An image older than
-/// the camera's newest by more than kClockReset means that the clock was set back: the camera's
-/// images go. Memory is bounded.
+/// one holds from the next chunk on. An image older than the camera's newest by more than
+/// kClockReset means that the clock was set back: the camera's images go. Memory is bounded.
+///
+/// A calibration of another rig is refused (calibration_use.h); the rig heard before this one may
+/// have been the same in all that counts. One that is not to be used is not taken, either: what
+/// held before goes on, a warning tells the reason once, and so does the status for as long as that
+/// is the camera's newest. With Use::kAnyway both are used, with the same warning.
 ///
 /// With Ranges::kCorrected, chunks are corrected by the calibration's range errors as they come:
 /// published points are where they truly are. Where cameras differ in these the first one's hold;
@@ -29,7 +34,8 @@ class FuserNode : public Node {
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   enum class Ranges { kAsMeasured, kCorrected };
 
-  explicit FuserNode(Ranges ranges = Ranges::kAsMeasured) : ranges_(ranges) {}
+  explicit FuserNode(Ranges ranges = Ranges::kAsMeasured, Use use = Use::kIfSound)
+      : ranges_(ranges), use_(use) {}
 
   std::string name() const override { return "fuser"; }
   std::vector<std::string> Subscriptions() const override {
@@ -38,9 +44,13 @@ class FuserNode : public Node {
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
 
+  /// Each camera that has a calibration has its newest, and one has.
+  bool HasCalibrations() const { return calibrated() && against_.empty(); }
+
  private:
   void OnRig(const RigText& text);
   Messages OnCalibration(const CalibrationMessage& message);
+  void Tell(const std::string& camera, const std::vector<std::string>& against);
   void OnImage(const Image& image);
   void OnPose(const StampedPose& pose);
   Messages OnChunk(const CloudChunk& chunk);
@@ -51,7 +61,10 @@ class FuserNode : public Node {
   std::size_t IndexOf(const std::string& camera) const;
 
   Ranges ranges_;
-  std::optional<Rig> rig_;
+  Use use_;
+  std::optional<Rig> rig_, rig_before_;
+  // What speaks against a camera's newest calibration, by camera.
+  std::map<std::string, std::string> against_;
   std::optional<SweepFuser> fuser_;            // while there is a rig
   RangeCorrection range_correction_;           // none where ranges stay as measured
   std::string ranges_warning_;                 // the last, until all is well again

@@ -22,9 +22,10 @@ bool IsInput(const std::string& channel) {
 
 }  // namespace
 
-Replay::Replay(const std::string& method)
+Replay::Replay(const std::string& method, Use use)
     : detector_(method, DetectorNode::Looks::kNo),
       solver_(OptionsOf(method)),
+      fuser_(FuserNode::Ranges::kAsMeasured, use),
       assembler_runner_(&assembler_, &bus_),
       detector_runner_(&detector_, &bus_),
       solver_runner_(&solver_, &bus_),

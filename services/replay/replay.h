@@ -18,8 +18,8 @@ namespace rgbdt {
 /// bytes at any speed.
 class Replay {
  public:
-  /// Throws InputError for an unknown method.
-  explicit Replay(const std::string& method);
+  /// Throws InputError for an unknown method. `use`: which calibrations are fused by.
+  explicit Replay(const std::string& method, Use use = Use::kIfSound);
 
   /// A message of the log, in the log's order; true: it was of use. All that nodes made live is
   /// left out: they make it again. So is CLOUD in a log with lines, and CALIBRATION in a log of a
@@ -27,6 +27,7 @@ class Replay {
   bool Take(const std::string& channel, const Bytes& bytes);
 
   const SolverNode& solver() const { return solver_; }
+  const FuserNode& fuser() const { return fuser_; }
   /// Assembler, detector, solver, fuser.
   const std::array<NodeRunner*, 4>& runners() const { return runners_; }
   /// For who subscribes to what the nodes publish.

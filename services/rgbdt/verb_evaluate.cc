@@ -15,6 +15,7 @@ namespace {
 
 struct EvaluateFlags {
   std::string dir, calibration, out, truth;
+  bool anyway = false;
 };
 
 // The same camera with the same pose; nothing where there is none.
@@ -62,8 +63,9 @@ void KeepFromSolve(const std::filesystem::path& path, Report* report) {
 int RunEvaluate(const EvaluateFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
-  const Calibration calibration =
-      ReadCalibration(PathOr(flags.calibration, session.root / "calibration.textproto"));
+  const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
+  const Calibration calibration = ReadCalibration(files.calibration);
+  PrintWarnings(RequireSameRig(calibration, session.rig, files.Names(), files.HowToUse()));
   // A calibration that was made elsewhere is judged on what is found without it.
   const bool by_paper = calibration.method == kPaperMethod;
   const SessionDetection detection =
@@ -87,7 +89,8 @@ void AddEvaluate(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "evaluate",
       "Judges a calibration on a session's views, used and held out, and against the truth of a\n"
-      "simulated session. Writes report.json and report.html.\n"
+      "simulated session. Writes report.json and report.html. A calibration that was made with\n"
+      "another rig is refused.\n"
       "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto",
       [flags] { return RunEvaluate(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or a view could not be read");
@@ -95,6 +98,7 @@ void AddEvaluate(CommandLine* program) {
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
+  AddAnyway(verb, &flags->anyway, "the rig is another");
 }
 
 }  // namespace rgbdt

@@ -12,6 +12,7 @@ namespace {
 struct ExportFlags {
   std::string dir, calibration, out, lidar_frame;
   std::vector<std::string> camera_frames;
+  bool anyway = false;
 };
 
 FrameNames FramesOf(const ExportFlags& flags) {
@@ -29,9 +30,10 @@ FrameNames FramesOf(const ExportFlags& flags) {
 
 int RunExport(const ExportFlags& flags) {
   const std::filesystem::path dir = flags.dir;
-  const Rig rig = ReadRig(dir / "rig.textproto");
-  const Calibration calibration =
-      ReadCalibration(PathOr(flags.calibration, dir / "calibration.textproto"));
+  const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
+  const Rig rig = ReadRig(files.rig);
+  const Calibration calibration = ReadCalibration(files.calibration);
+  PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse()));
   const std::filesystem::path out = PathOr(flags.out, dir / "export");
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {
     std::printf("wrote %s: %s\n", file.path.c_str(), file.purpose.c_str());
@@ -46,7 +48,8 @@ void AddExport(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "export",
       "Writes a calibration for other tools: static transforms of ROS as command lines, launch\n"
-      "file and URDF, OpenCV YAML, Kalibr's camchain. Each file says which way it goes.\n"
+      "file and URDF, OpenCV YAML, Kalibr's camchain. Each file says which way it goes. A\n"
+      "calibration that is not to be used, or was made with another rig, is refused.\n"
       "Example: rgbdt export out/demo/session --lidar-frame velodyne \\\n"
       "           --camera-frame rgb=camera_optical_frame",
       [flags] { return RunExport(*flags); });
@@ -58,6 +61,7 @@ void AddExport(CommandLine* program) {
   verb->Option("--camera-frame", &flags->camera_frames,
                "CAMERA=FRAME: what ROS calls a camera's optical frame (x right, y down, z "
                "forward);\nmay be given again; default: CAMERA_optical_frame");
+  AddAnyway(verb, &flags->anyway, "its verdict is `do not use`, or the rig is another");
 }
 
 }  // namespace rgbdt

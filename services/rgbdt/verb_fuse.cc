@@ -21,7 +21,7 @@ namespace {
 
 struct FuseFlags {
   std::string dir, calibration, out, view;
-  bool png = false, correct_ranges = false;
+  bool png = false, correct_ranges = false, anyway = false;
 };
 
 // The view's cloud with its points where they truly are, as the calibration in `file` has it.
@@ -65,9 +65,9 @@ void DrawPictures(const RgbdtCloud& fused, const std::string& title,
 int RunFuse(const FuseFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
-  const std::filesystem::path file =
-      PathOr(flags.calibration, session.root / "calibration.textproto");
-  const Calibration calibration = ReadCalibration(file);
+  const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
+  const Calibration calibration = ReadCalibration(files.calibration);
+  PrintWarnings(RequireSound(calibration, session.rig, files.Names(), files.HowToUse()));
   const std::string view = flags.view.empty() ? session.views.back() : flags.view;
   if (std::find(session.views.begin(), session.views.end(), view) == session.views.end()) {
     throw InputError("session " + session.root.string() + " has no view \"" + view + "\"; it has " +
@@ -75,7 +75,7 @@ int RunFuse(const FuseFlags& flags) {
   }
   View seen = ReadView(session, view);
   if (flags.correct_ranges) {
-    seen.cloud = WithTrueRanges(std::move(seen.cloud), session.rig, calibration, file);
+    seen.cloud = WithTrueRanges(std::move(seen.cloud), session.rig, calibration, files.calibration);
   }
   const RgbdtCloud fused = FuseView(session.rig, calibration, seen);
   if (fused.points.empty()) throw InputError("view " + view + " has no points that returned");
@@ -95,13 +95,14 @@ int RunFuse(const FuseFlags& flags) {
 
 void AddFuse(CommandLine* program) {
   auto flags = std::make_shared<FuseFlags>();
-  CommandLine* verb =
-      program->Verb("fuse",
-                    "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
-                    "colour, temperature\n"
-                    "[K], which cameras saw it. Writes fused.ply and fused.pcd.\n"
-                    "Example: rgbdt fuse out/demo/session --view 0003 --png",
-                    [flags] { return RunFuse(*flags); });
+  CommandLine* verb = program->Verb(
+      "fuse",
+      "Colours a view's cloud with its images: x, y, z [m] in the LIDAR frame, "
+      "colour, temperature\n"
+      "[K], which cameras saw it. Writes fused.ply and fused.pcd. A calibration that\n"
+      "is not to be used, or was made with another rig, is refused.\n"
+      "Example: rgbdt fuse out/demo/session --view 0003 --png",
+      [flags] { return RunFuse(*flags); });
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--view", &flags->view, "which view; default: the last");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
@@ -109,6 +110,7 @@ void AddFuse(CommandLine* program) {
   verb->Flag("--correct-ranges", &flags->correct_ranges,
              "puts points where they truly are, by what the calibration found the LIDAR's ranges\n"
              "and beams to be off by");
+  AddAnyway(verb, &flags->anyway, "its verdict is `do not use`, or the rig is another");
   verb->Flag("--png", &flags->png,
              "also draw the cloud: fused_rgb.png, fused_thermal.png,\n"
              "and both in one, fused.png");

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
@@ -18,6 +19,7 @@ struct ReplayFlags {
   std::string log;
   std::string out = "out/replay";
   std::string method = kAutoMethod;
+  bool anyway = false;
 };
 
 void PrintFused(const Status& fuser) {
@@ -58,14 +60,22 @@ std::int64_t ReplayLog(const std::string& path, Replay* replay) {
   return events;
 }
 
+// A log without a view gives no result, and leaves an earlier one where it is.
+void SetAsideWithTheFirstView(const std::string& out, Replay* replay) {
+  replay->bus().Subscribe("DETECTION", [out, done = false](auto&&...) mutable {
+    if (!std::exchange(done, true)) SetAside(out);
+  });
+}
+
 int RunReplay(const ReplayFlags& flags) {
-  Replay replay(flags.method);
+  Replay replay(flags.method, flags.anyway ? Use::kAnyway : Use::kIfSound);
+  SetAsideWithTheFirstView(flags.out, &replay);
   const std::int64_t events = ReplayLog(flags.log, &replay);
   const auto [assembler, detector, solver, fuser] = replay.runners();
   const std::optional<Report>& report = replay.solver().report();
   if (!report && replay.took_calibration()) {
     PrintFused(fuser->GetStatus());
-    return EndsWith(true);
+    return EndsWith(flags.anyway || replay.fuser().HasCalibrations());
   }
   if (!report) {
     throw InputError(
@@ -90,14 +100,17 @@ void AddReplay(CommandLine* program) {
       "replay",
       "Runs the nodes of the live processes on a log of lcm-logger, in one process, in order, as\n"
       "fast as it goes. The same log gives the same bytes. A log without a session is fused\n"
-      "by the CALIBRATION in it.\n"
+      "by the CALIBRATION in it; one that is not to be used, or was made with another rig, is\n"
+      "refused. Of a session calibration.textproto and report.json are written; those of an\n"
+      "earlier run are kept aside, as calibration.previous.textproto and so on.\n"
       "Example: rgbdt replay out/demo/session.lcm --out out/replay",
       [flags] { return RunReplay(*flags); });
-  verb->Ends(ExitCode::kFailed, "failed, or a camera did not converge");
+  verb->Ends(ExitCode::kFailed, "failed, a camera did not converge, or a calibration was refused");
   AddVerdictEnds(verb);
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");
   verb->Choice("--method", &flags->method, kMethodNames, kMethodHelp);
+  AddAnyway(verb, &flags->anyway, "its verdict is `do not use`, or the rig is another");
 }
 
 }  // namespace rgbdt

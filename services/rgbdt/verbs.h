@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/schema/calibration_use.h"
 #include "services/command_line/command_line.h"
 
 namespace rgbdt {
@@ -35,6 +36,33 @@ inline std::filesystem::path TruthPath(const std::string& given,
                                        const std::filesystem::path& session_root) {
   const std::filesystem::path beside = session_root / "truth.textproto";
   return given.empty() && !std::filesystem::exists(beside) ? "" : PathOr(given, beside);
+}
+
+/// A calibration that a verb uses, and the rig that it is used with.
+struct CalibrationFiles {
+  std::filesystem::path calibration, rig;
+  bool anyway = false;  ///< the user said `--anyway`
+
+  UseNames Names() const { return {calibration.string(), rig.string()}; }
+  Use HowToUse() const { return anyway ? Use::kAnyway : Use::kIfSound; }
+};
+
+/// Of DIR, and the calibration there unless another is given.
+inline CalibrationFiles FilesOf(const std::filesystem::path& dir, const std::string& calibration,
+                                bool anyway) {
+  return {PathOr(calibration, dir / "calibration.textproto"), dir / "rig.textproto", anyway};
+}
+
+/// What is used all the same, on stderr.
+inline void PrintWarnings(const std::vector<std::string>& against) {
+  for (const std::string& line : against) {
+    std::fprintf(stderr, "rgbdt: used anyway: %s\n", line.c_str());
+  }
+}
+
+/// Of a verb that uses a calibration.
+inline void AddAnyway(CommandLine* verb, bool* anyway, const std::string& although) {
+  verb->Flag("--anyway", anyway, "use the calibration although " + although);
 }
 
 /// What `rgbdt intrinsics` does for these cameras of a session, into the rig file that is in use.

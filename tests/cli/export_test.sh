@@ -37,15 +37,20 @@ camera {
 }
 DONE
 
-accepts "exporting" "$bin/rgbdt" export "$session" --lidar-frame velodyne \
+says=("thermal" "not converged: stopped -- at 50 steps" "--anyway")
+refuses "a camera that did not converge" "$bin/rgbdt" export "$session" --out "$scratch/kept"
+accepts "exporting" "$bin/rgbdt" export "$session" --lidar-frame velodyne --anyway \
   --camera-frame rgb=camera_optical_frame --camera-frame thermal=flir/optical
 [ "$(grep -c '^wrote .*: ' "$scratch/output")" = 5 ] || complain "exporting: not a line a file"
-[ "$(wc -l <"$scratch/output")" = 5 ] || complain "exporting: more than a line a file"
+[ "$(grep -c '^rgbdt: used anyway: ' "$scratch/output")" = 1 ] || complain "exporting: no warning"
+[ "$(wc -l <"$scratch/output")" = 6 ] || complain "exporting: more than a line a file"
+sed -i '/^wrote/!d' "$scratch/output"
 while read -r _ file _; do
   [ -s "${file%:}" ] || complain "exporting: ${file%:} is not there"
 done <"$scratch/output"
 python3 "$here/check_exports.py" "$session" >"$scratch/output" 2>&1 || complain "what was exported"
 
+sed -i 's/NOT_CONVERGED/CONVERGED/' "$session/calibration.textproto"
 accepts "exporting with its own names" "$bin/rgbdt" export "$session" --out "$scratch/plain"
 grep -q -- '--frame-id vlp16 --child-frame-id rgb_optical_frame' "$scratch"/plain/*.launch.yaml ||
   complain "names that were not given"

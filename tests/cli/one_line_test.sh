@@ -10,7 +10,7 @@ bad=$scratch/bad
 accepts "a session" "$bin/rgbdt" simulate "$good" --views 3 --seed 3
 cat >"$good/calibration.textproto" <<'DONE'
 method: "auto"
-camera { camera: "rgb" camera_from_lidar { quaternion_wxyz: [0.5, 0.5, -0.5, 0.5] translation_m: [0, 0, 0] } }
+camera { camera: "rgb" status: CONVERGED camera_from_lidar { quaternion_wxyz: [0.5, 0.5, -0.5, 0.5] translation_m: [0, 0, 0] } }
 DONE
 mkdir "$scratch/kept"
 

@@ -50,6 +50,7 @@ CalibrationMessage Calibrated(const std::string& camera) {
   message.method = "paper";
   message.calibration.camera = camera;
   message.calibration.camera_from_lidar = Simulator().truth().camera_from_lidar.at(camera);
+  message.calibration.status = SolveStatus::kConverged;
   return message;
 }
 
@@ -157,14 +158,76 @@ TEST_F(FuserNodeTest, ACalibrationOfAnotherRigIsRefused) {
   EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
 }
 
+RigText RigTextOf(const std::string& text) { return {0, HashOfRigText(text), text}; }
+
+RigText Commented(const Rig& rig) { return RigTextOf("# moved\n" + rig.text); }
+
+// A calibration names its rig by a hash only; of the rig that was heard before, it is known.
+TEST_F(FuserNodeTest, OfTheRigBeforeWhatDiffersIsKnown) {
+  node_.Handle(Commented(TinyRig()));
+  node_.Handle(Calibrated("rgb"));
+  EXPECT_EQ(node_.GetStatus().text, "fusing") << "only a comment differs";
+  Rig other = TinyRig();
+  other.cameras[0].lens.fx += 10;
+  node_.Handle(test::TextOf(TinyRig()));
+  node_.Handle(RigTextOf(PrintRig(other)));
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(Calibrated("rgb")); }),
+              ::testing::AllOf(HasSubstr("camera rgb: pinhole.fx: "), HasSubstr("--anyway")));
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
+}
+
+CalibrationMessage NotToBeUsed() {
+  CalibrationMessage message = Calibrated("rgb");
+  message.utime = kNow;
+  message.calibration.status = SolveStatus::kContradicted;
+  message.calibration.detail = "Likeliest cause: the focal length.";
+  return message;
+}
+
+TEST_F(FuserNodeTest, WhatIsNotToBeUsedIsNotTakenAndSaysWhy) {
+  std::vector<std::string> warnings;
+  node_.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
+  node_.Handle(Plain("rgb", kNow, 100));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(node_.Handle(NotToBeUsed()).empty());
+  EXPECT_EQ(FuseAt(kNow + kSecond).valid[0], 0U);
+  EXPECT_FALSE(node_.HasCalibrations());
+  const auto says = ::testing::AllOf(HasSubstr("camera rgb is not to be used"),
+                                     HasSubstr("the focal length"), HasSubstr("--anyway"));
+  EXPECT_THAT(warnings, ::testing::ElementsAre(says)) << "it comes again every second";
+  EXPECT_THAT(node_.GetStatus().text, ::testing::AllOf(HasSubstr("no calibration yet"), says));
+  // One that is good comes: all is well again.
+  node_.Handle(Calibrated("rgb"));
+  EXPECT_EQ(node_.GetStatus().text, "fusing");
+  EXPECT_TRUE(node_.HasCalibrations());
+  EXPECT_EQ(FuseAt(kNow + kSecond).valid[0], 1U);
+  // It goes on where a later one is not to be used.
+  node_.Handle(NotToBeUsed());
+  EXPECT_EQ(FuseAt(kNow + kSecond).calibration_utime[0], kNow - 10 * kSecond);
+  EXPECT_THAT(node_.GetStatus().text, ::testing::AllOf(HasSubstr("fusing; "), says));
+  EXPECT_FALSE(node_.HasCalibrations());
+}
+
+TEST(FuserNodeAnyway, UsesWhatSpeaksAgainstItself) {
+  FuserNode node(FuserNode::Ranges::kAsMeasured, Use::kAnyway);
+  node.Handle(test::TextOf(TinyRig()));
+  node.Handle(Plain("rgb", kNow, 100));
+  CalibrationMessage message = NotToBeUsed();
+  message.rig_hash = "0123456789abcdef";
+  node.Handle(message);
+  const auto out = Only<RgbdtCloud>(node.Handle(Chunk(kNow + kSecond)));
+  EXPECT_EQ(out.at(0).valid[0], 1U);
+  EXPECT_THAT(
+      node.GetStatus().text,
+      ::testing::AllOf(HasSubstr("fusing; used anyway: the calibration of camera rgb was "
+                                 "made with another rig"),
+                       HasSubstr("; used anyway: the calibration of camera rgb is not to")));
+}
+
 TEST_F(FuserNodeTest, AnotherRigForgetsTheCalibration) {
   node_.Handle(Calibrated("rgb"));
   node_.Handle(test::TextOf(TinyRig()));
   EXPECT_EQ(node_.GetStatus().text, "fusing");
-  RigText other = test::TextOf(TinyRig());
-  other.text += "# moved\n";
-  other.hash = HashOfRigText(other.text);
-  node_.Handle(other);
+  node_.Handle(Commented(TinyRig()));
   EXPECT_THAT(node_.GetStatus().text, HasSubstr("no calibration yet"));
 }
 
@@ -416,10 +479,7 @@ TEST_F(CorrectedRanges, OtherRangeErrorsHoldFromTheNextChunkOn) {
 
 TEST_F(CorrectedRanges, AnotherRigForgetsThem) {
   node_.Handle(Calibrated("rgb", Off()));
-  RigText other = test::TextOf(TinyRig());
-  other.text += "# moved\n";
-  other.hash = HashOfRigText(other.text);
-  node_.Handle(other);
+  node_.Handle(Commented(TinyRig()));
   const auto out = Only<RgbdtCloud>(Sweep());
   EXPECT_EQ(out.at(0).points, ChunkOfRings(kNow, true).cloud.points);
   EXPECT_TRUE(warnings_.empty()) << "there is no calibration any more";

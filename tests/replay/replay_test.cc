@@ -203,6 +203,10 @@ TEST_F(ReplayTest, TheReplayVerbGivesTheSameBytesTwice) {
     EXPECT_THAT(tool.output, ::testing::Not(HasSubstr("missing")));
     EXPECT_EQ(Contents(*dir_ / out / "calibration.textproto"), run_->calibration);
   }
+  const ToolResult again =
+      RunTool("replay " + LogPath().string() + " --out " + (*dir_ / "replay1").string());
+  EXPECT_THAT(again.output, HasSubstr("calibration.previous.textproto, report.previous.json"));
+  EXPECT_EQ(Contents(*dir_ / "replay1/calibration.previous.textproto"), run_->calibration);
 }
 
 // A drive with a calibrated rig: nobody held a session, the calibration is on the bus.
@@ -229,6 +233,23 @@ TEST_F(ReplayTest, ALogWithoutASessionIsFusedByTheCalibrationInIt) {
   EXPECT_THAT(tool.output,
               ::testing::ContainsRegex("fuser: fusing, points [1-9].*, coloured [1-9]"));
   EXPECT_FALSE(std::filesystem::exists(*dir_ / "drive/calibration.textproto")) << tool.output;
+
+  // One that is not to be used is refused, unless the user wants it.
+  for (Recorded* message : {&drive[1], &drive[2]}) {
+    auto calibration = std::get<CalibrationMessage>(
+        Decode("CALIBRATION", message->bytes.data(), message->bytes.size()));
+    calibration.calibration.status = SolveStatus::kContradicted;
+    message->bytes = Encode(calibration);
+  }
+  WriteLog(drive, *dir_ / "drive.lcmlog");
+  tool = RunTool(command);
+  EXPECT_EQ(tool.code, 1) << tool.output;
+  EXPECT_THAT(tool.output, ::testing::AllOf(HasSubstr("camera rgb is not to be used"),
+                                            HasSubstr("camera thermal is not to be used"),
+                                            HasSubstr("coloured 0")));
+  tool = RunTool(command + " --anyway");
+  EXPECT_EQ(tool.code, 0) << tool.output;
+  EXPECT_THAT(tool.output, ::testing::ContainsRegex("used anyway: .*coloured [1-9]"));
 }
 
 TEST_F(ReplayTest, ATruncatedLogGivesWhatItHolds) {

@@ -228,6 +228,19 @@ void FromTarget(const Target& spec, proto::Target* out) {
   out->add_pattern_offset_m(spec.pattern_offset_m.y());
 }
 
+// Of devices only which LIDAR it is counts, and only where both say it.
+void KeepModels(proto::Lidar* a, proto::Lidar* b) {
+  const bool both = a->has_velodyne() && b->has_velodyne();
+  for (proto::Lidar* lidar : {a, b}) {
+    if (!both) {
+      lidar->clear_device();
+    } else {
+      lidar->mutable_velodyne()->clear_port();
+      lidar->mutable_velodyne()->clear_pcap();
+    }
+  }
+}
+
 }  // namespace
 
 proto::Rig text::FromRig(const Rig& rig) {
@@ -282,10 +295,10 @@ std::string PrintRig(const Rig& rig) {
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   proto::Rig was = text::FromRig(a);
   proto::Rig is = text::FromRig(b);
+  KeepModels(was.mutable_lidar(), is.mutable_lidar());
   for (proto::Rig* rig : {&was, &is}) {
     rig->clear_name();
     rig->mutable_lidar()->clear_name();
-    rig->mutable_lidar()->clear_device();
     rig->mutable_lidar()->mutable_turned_scanner()->clear_dynamixel();
     for (proto::Camera& camera : *rig->mutable_camera()) {
       camera.clear_device();
@@ -294,6 +307,8 @@ std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   }
   std::string text;
   google::protobuf::util::MessageDifferencer differencer;
+  // Degrees become radians and back: the last bit is no difference.
+  differencer.set_float_comparison(google::protobuf::util::MessageDifferencer::APPROXIMATE);
   // Cameras are told by their names, whatever their order.
   differencer.TreatAsMap(proto::Rig::descriptor()->FindFieldByName("camera"),
                          proto::Camera::descriptor()->FindFieldByName("name"));

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/calibration_use.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/fuse/fuse.h"
 #include "services/messages/codec.h"
@@ -14,6 +15,8 @@ int main(int argc, char** argv) try {
   const rgbdt::Session session = rgbdt::OpenSession(argc > 1 ? argv[1] : ".");
   const rgbdt::Calibration calibration =
       rgbdt::ReadCalibration(session.root / "calibration.textproto");
+  rgbdt::RequireSound(calibration, session.rig, {"calibration.textproto", "rig.textproto"},
+                      rgbdt::Use::kIfSound);  // throws for one that is not to be used
   for (const std::string& name : session.views) {
     const rgbdt::View view = rgbdt::ReadView(session, name);
     const rgbdt::RgbdtCloud fused = rgbdt::FuseView(session.rig, calibration, view);

@@ -41,6 +41,21 @@ TEST(CalibrationFile, GivesBackEveryBit) {
   EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
 }
 
+TEST(CalibrationFile, KeepsWhatItHoldsFor) {
+  const test::TempDir dir;
+  Calibration calibration = test::MakeReport().ToCalibration();
+  const Rig rig = test::MakeRig();
+  calibration.sensors = SensorsOf(rig);
+  WriteCalibration(dir / "c", calibration);
+  const Calibration back = ReadCalibration(dir / "c");
+  ASSERT_TRUE(back.sensors);
+  EXPECT_EQ(back.sensors->cameras.at(1).lens, rig.cameras[1].lens);
+  EXPECT_EQ(back.sensors->cameras[1].width, rig.cameras[1].width);
+  EXPECT_EQ(back.sensors->lidar.turned_scanner->zero_ticks, rig.lidar.turned_scanner->zero_ticks);
+  EXPECT_EQ(back.sensors->target.width_m, 0) << "it does not depend on the board";
+  EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
+}
+
 TEST(CalibrationFile, SaysWhichWayTheTransformGoes) {
   const std::string text = PrintCalibration(test::MakeReport().ToCalibration());
   EXPECT_THAT(text, StartsWith("# "));

@@ -165,6 +165,19 @@ TEST(RigFile, WhatDiffersBetweenTwoRigsIsNamed) {
   EXPECT_THAT(DifferencesOf(rig, other), ElementsAre(HasSubstr("camera")));
 }
 
+TEST(RigFile, AnotherModelOfLidarIsAnotherLidar) {
+  Rig rig = test::MakeRig();
+  rig.lidar.device = VelodyneDevice{VelodyneDevice::Model::kVlp16, 2368, ""};
+  Rig other = rig;
+  other.lidar.device = VelodyneDevice{VelodyneDevice::Model::kVlp16, 2369, "recorded.pcap"};
+  EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
+  other.lidar.device = VelodyneDevice{VelodyneDevice::Model::kVlp32c, 2368, ""};
+  EXPECT_THAT(DifferencesOf(rig, other),
+              ElementsAre("modified: lidar.velodyne.model: VLP16 -> VLP32C"));
+  other.lidar.device = PcdFolderDevice{};  // of whichever LIDAR
+  EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
+}
+
 TEST(RigFile, KeepsTextAndHash) {
   const Rig rig = ParseRig(kRig, "rig.textproto");
   EXPECT_EQ(rig.text, kRig);

@@ -1,6 +1,7 @@
 #include "calib/present/frames/session_state.h"
 
 #include "calib/camera/camera.h"
+#include "calib/files/schema/calibration_use.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/report/report_content.h"
 #include "calib/solve/colouring.h"
@@ -326,6 +327,14 @@ TEST(SessionFrame, TheWorstCameraCounts) {
   EXPECT_EQ(verdict.at("grade"), "none");
   EXPECT_THAT(verdict.at("headline").get<std::string>(),
               HasSubstr("No calibration yet of thermal; usable: rgb"));
+}
+
+TEST(SessionFrame, AReportOfAnotherRigIsRefusedInAPlainSentence) {
+  const std::string why = "report.json was made with another rig than rig.textproto; fx: 1 -> 2";
+  const json verdict = VerdictOfReport(WithoutPoses(GoodReport({"rgb"}), why));
+  EXPECT_EQ(verdict.at("grade"), "bad");
+  EXPECT_EQ(verdict.at("headline"), "Do not use the calibration of rgb");
+  EXPECT_THAT(verdict.at("reasons").at(0).get<std::string>(), HasSubstr(why));
 }
 
 // A script solves at its end: until then each view's calibration is used, and nobody judged it.

@@ -1,0 +1,127 @@
+#include "calib/files/schema/calibration_use.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr char kAnywayHelps[] = ", or give --anyway to use it all the same";
+
+const CameraSpec* Find(const Rig& rig, const std::string& camera) {
+  const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(),
+                                  [&](const CameraSpec& spec) { return spec.name == camera; });
+  return found == rig.cameras.end() ? nullptr : &*found;
+}
+
+Rig LidarOf(const Rig& sensors) {
+  Rig rig;
+  rig.lidar = sensors.lidar;
+  return rig;
+}
+
+// What its images come as does not move a camera.
+Rig RigOf(const CameraSpec& camera) {
+  Rig rig;
+  rig.cameras = {camera};
+  rig.cameras[0].format = {};
+  return rig;
+}
+
+void Replace(const std::string& from, const std::string& to, std::string* text) {
+  const std::size_t at = text->find(from);
+  if (at != std::string::npos) text->replace(at, from.size(), to);
+}
+
+void AddDifferences(const Rig& was, const Rig& is, std::vector<std::string>* lines) {
+  for (std::string line : DifferencesOf(was, is)) {
+    Replace("modified: ", "", &line);
+    if (!was.cameras.empty()) Replace("camera[0].", "camera " + was.cameras[0].name + ": ", &line);
+    lines->push_back(std::move(line));
+  }
+}
+
+std::string InOneLine(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
+  return text;
+}
+
+std::vector<std::string> ThrowUnlessAnyway(std::vector<std::string> against, Use use) {
+  if (!against.empty() && use == Use::kIfSound) throw InputError(against.front());
+  return against;
+}
+
+}  // namespace
+
+std::vector<std::string> SensorDifferences(const Calibration& calibration, const Rig& rig) {
+  const Rig& was = *calibration.sensors;
+  const Rig is = SensorsOf(rig);
+  std::vector<std::string> lines;
+  AddDifferences(LidarOf(was), LidarOf(is), &lines);
+  for (const CameraCalibration& camera : calibration.cameras) {
+    const CameraSpec* before = Find(was, camera.camera);
+    const CameraSpec* now = Find(is, camera.camera);
+    if (now == nullptr) {
+      lines.push_back("camera " + camera.camera + ": not in the rig");
+    } else if (before != nullptr) {
+      AddDifferences(RigOf(*before), RigOf(*now), &lines);
+    }
+  }
+  return lines;
+}
+
+std::string WhyAnotherRig(const Calibration& calibration, const Rig& rig, const UseNames& names) {
+  if (calibration.rig_hash == rig.hash) return "";
+  std::string differs;
+  if (calibration.sensors) {
+    const std::vector<std::string> lines = SensorDifferences(calibration, rig);
+    if (lines.empty()) return "";
+    differs = "; what differs, calibration -> rig: " + InOneLine(lines);
+  } else if (calibration.rig_hash.empty()) {
+    return "";
+  } else {
+    differs = "; what differs is not known, as only the rigs' hashes are: " + calibration.rig_hash +
+              " -> " + rig.hash;
+  }
+  return names.calibration + " was made with another rig than " + names.rig + differs +
+         ". Calibrate with this rig, or put back the rig that it was made with" + kAnywayHelps;
+}
+
+std::string WhyNotToUse(const CameraCalibration& camera, const std::string& name) {
+  if (camera.converged()) return "";
+  const bool judged = camera.status == SolveStatus::kContradicted && !camera.detail.empty();
+  std::string why = judged ? camera.detail : camera.StatusText();
+  while (!why.empty() && why.back() == '.') why.pop_back();
+  return (name.empty() ? "" : name + ": ") + "the calibration of camera " + camera.camera +
+         " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
+}
+
+std::vector<std::string> RequireSameRig(const Calibration& calibration, const Rig& rig,
+                                        const UseNames& names, Use use) {
+  const std::string why = WhyAnotherRig(calibration, rig, names);
+  return ThrowUnlessAnyway(why.empty() ? std::vector<std::string>() : std::vector{why}, use);
+}
+
+std::vector<std::string> RequireSound(const Calibration& calibration, const Rig& rig,
+                                      const UseNames& names, Use use) {
+  std::vector<std::string> against = RequireSameRig(calibration, rig, names, use);
+  for (const CameraCalibration& camera : calibration.cameras) {
+    const std::string why = WhyNotToUse(camera, names.calibration);
+    if (!why.empty()) against.push_back(why);
+  }
+  return ThrowUnlessAnyway(std::move(against), use);
+}
+
+Report WithoutPoses(Report report, const std::string& why) {
+  for (CameraReport& camera : report.cameras) {
+    camera.calibration.status = SolveStatus::kNotSolved;
+    camera.calibration.detail = why;
+  }
+  return report;
+}
+
+}  // namespace rgbdt
