@@ -7,6 +7,8 @@
 #include <cstring>
 #include <random>
 
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/calibration_use.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/detect_session.h"
@@ -37,6 +39,7 @@ struct Flags {
   std::string listen = kUsual;
   std::string url, session;
   std::vector<std::string> run;
+  bool anyway = false;
 };
 
 // "127.0.0.1:8080", "[::1]:8080", "8080"
@@ -168,7 +171,7 @@ int ShowBus(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
   options.hello["source"] = "live";
   options.hello["title"] = rgbdt::CompleteUrl(flags.url);
-  rgbdt::viewer::LiveNode node;
+  rgbdt::viewer::LiveNode node(flags.anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound);
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
   PrintAddresses(server, options);
@@ -189,6 +192,31 @@ rgbdt::Report ReportOf(const rgbdt::Session& session,
   return rgbdt::Calibrate(session.rig, detections, {});
 }
 
+// Why the report does not belong to the session's rig; empty: it does. What differs is known by the
+// calibration that was written with it.
+std::string WhyRefused(const rgbdt::Session& session, const rgbdt::Report& report) {
+  rgbdt::Calibration calibration = report.ToCalibration();
+  const auto path = session.root / "calibration.textproto";
+  if (std::filesystem::exists(path)) {
+    const rgbdt::Calibration written = rgbdt::ReadCalibration(path);
+    if (written.rig_hash == report.rig_hash) calibration = written;
+  }
+  return rgbdt::WhyAnotherRig(
+      calibration, session.rig,
+      {(session.root / "report.json").string(), (session.root / "rig.textproto").string()});
+}
+
+// How the result came about; of a report that is refused, why it is.
+std::vector<rgbdt::Report> ReportsOf(const rgbdt::Session& session,
+                                     const std::vector<rgbdt::ViewDetection>& detections,
+                                     bool anyway) {
+  const rgbdt::Report report = ReportOf(session, detections);
+  const std::string why = WhyRefused(session, report);
+  if (why.empty()) return rgbdt::CalibrateByViews(session.rig, detections, report);
+  std::fprintf(stderr, "rgbdt-viewer: %s%s\n", anyway ? "shown anyway: " : "", why.c_str());
+  return {anyway ? report : rgbdt::WithoutPoses(report, why)};
+}
+
 int ShowSession(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
   const rgbdt::Session session = rgbdt::OpenSession(flags.session);
@@ -198,8 +226,7 @@ int ShowSession(const Flags& flags) {
       }).views;
   rgbdt::SessionFramesOptions what;
   what.title = flags.session;
-  const auto reports =
-      rgbdt::CalibrateByViews(session.rig, detections, ReportOf(session, detections));
+  const auto reports = ReportsOf(session, detections, flags.anyway);
   const auto frames = rgbdt::SessionFrames({session, detections, reports}, what);
   const Goodbye goodbye;
   options.hello["source"] = "session";
@@ -241,6 +268,7 @@ int main(int argc, char** argv) {
               "address has");
   line.Option("--lcm-url", &flags.url, "the bus; default: LCM_DEFAULT_URL");
   line.Option("--session", &flags.session, "a session directory, in place of the bus");
+  line.Flag("--anyway", &flags.anyway, "show a calibration although it was made with another rig");
   bool run = false;
   line.Flag("--run", &run,
             "run COMMAND with the listening socket handed in (LISTEN_FDS), e.g. where it goes\n"

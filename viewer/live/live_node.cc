@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib/camera/pixels.h"
 #include "calib/files/schema/report_file.h"
@@ -11,6 +12,7 @@
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
 #include "calib/present/layout/frame.h"
+#include "services/nodes/rig_check.h"
 #include "viewer/live/kept_view.h"
 
 namespace rgbdt::viewer {
@@ -90,7 +92,12 @@ void LiveNode::Take(const Message& message) {
 
 void LiveNode::OnRig(const RigText& text) {
   if (rig_ && rig_->hash == text.hash) return;
-  rig_ = std::make_shared<const Rig>(ParseRig(text.text, "RIG message"));
+  rig_before_ =
+      std::exchange(rig_, std::make_shared<const Rig>(ParseRig(text.text, "RIG message")));
+  if (use_ == Use::kIfSound && state_.calibration.rig_hash != text.hash) {
+    state_.calibration = {};  // who made it says it again
+    state_.calibration_utime.clear();
+  }
   target_status_.clear();  // of cameras that this rig may not have
   outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
@@ -226,6 +233,7 @@ void LiveNode::ForgetRejected(const std::string& view) {
 void LiveNode::OnCalibration(const CalibrationMessage& message) {
   const CameraCalibration& camera = message.calibration;
   RequireCamera(camera.camera);
+  if (rig_) RequireRigOf(message, *rig_, rig_before_.get(), use_);
   auto& all = state_.calibration.cameras;
   const auto same = std::find_if(all.begin(), all.end(), [&](const CameraCalibration& c) {
     return c.camera == camera.camera;

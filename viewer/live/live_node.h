@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/schema/calibration_use.h"
 #include "calib/model/rig.h"
 #include "calib/present/frames/session_state.h"
 #include "services/nodes/view_collector.h"
@@ -23,13 +24,16 @@ namespace rgbdt::viewer {
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
 /// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS -> SESSION_REQUEST,
-/// CORNER_SELECTION. Nothing large is encoded here: a post makes its bytes when a browser is about
-/// to get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
-/// publishes what browsers asked for, and posts the session's state where it has changed, at most
-/// ten times a second.
-/// All but OnBrowser belong to the bus' thread, that to the server's.
+/// CORNER_SELECTION. A calibration of another rig is refused. Nothing large is encoded here: a post
+/// makes its bytes when a browser is about to get it. Of each view its images are kept as JPEG, and
+/// some points of its cloud. Advance publishes what browsers asked for, and posts the session's
+/// state where it has changed, at most ten times a second. All but OnBrowser belong to the bus'
+/// thread, that to the server's.
 class LiveNode : public Node {
  public:
+  /// `use`: whether a calibration of another rig than RIG's is shown all the same.
+  explicit LiveNode(Use use = Use::kIfSound) : use_(use) {}
+
   /// Where posts go from now on; it outlives the node. Before the first message.
   void PostTo(Outbox* outbox) { outbox_ = outbox; }
 
@@ -76,7 +80,8 @@ class LiveNode : public Node {
   mutable std::mutex mutex_;  // guards all below
   double now_s_ = 0;          // Advance's
   Utime newest_utime_ = 0;
-  std::shared_ptr<const Rig> rig_;
+  Use use_;
+  std::shared_ptr<const Rig> rig_, rig_before_;
   SessionState state_;
   bool changed_ = true;
   double posted_s_ = -1;

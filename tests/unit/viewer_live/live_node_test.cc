@@ -306,6 +306,27 @@ TEST_F(LiveNodeTest, AnImageThatIsNotTheRigsIsRefused) {
   EXPECT_EQ(posts_.Newest("image/rgb"), nullptr);
 }
 
+TEST_F(LiveNodeTest, ACalibrationOfAnotherRigIsRefused) {
+  CalibrationMessage message;
+  message.utime = test::kStart;
+  message.rig_hash = "0123456789abcdef";
+  message.calibration.camera = "rgb";
+  message.calibration.status = SolveStatus::kConverged;
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(message); }),
+              ::testing::AllOf(HasSubstr("0123456789abcdef"), HasSubstr(TinyRig().hash)));
+  EXPECT_EQ(State().at("cameras")[0].at("calibrated"), false);
+  message.rig_hash = TinyRig().hash;
+  node_.Handle(message);
+  EXPECT_EQ(State().at("cameras")[0].at("calibrated"), true);
+  // A new rig: what was made with the one before is no longer shown.
+  Rig other = TinyRig();
+  other.cameras[0].lens.fx += 10;
+  const std::string text = PrintRig(other);
+  node_.Handle(RigText{0, HashOfRigText(text), text});
+  EXPECT_EQ(State().at("cameras")[0].at("calibrated"), false);
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(message); }), HasSubstr("camera rgb: pinhole.fx: "));
+}
+
 TEST_F(LiveNodeTest, SigmaIsCountedByTheViewsUsed) {
   for (int view = 1; view <= 3; ++view) {
     ViewDetection detection;
@@ -315,6 +336,7 @@ TEST_F(LiveNodeTest, SigmaIsCountedByTheViewsUsed) {
     detection.cloud.candidates.resize(1);
     node_.Handle(detection);
     CalibrationMessage message;
+    message.rig_hash = TinyRig().hash;
     message.utime = test::kStart + view;
     message.calibration.camera = "rgb";
     message.calibration.covariance = Matrix6d::Identity() * 1e-8 / view;

@@ -35,7 +35,10 @@ TEST(Refusal, LiveNode) {
   twins.bad = {RigText{0, "another hash", "cameras { nonsense }"},
                ReportText{0, kStart, "{ \"nonsense\""}};
   twins.Feed({test::TextOf(TinyRig())});
-  for (Message& bad : Messages{wrong_size, stranger, strangers}) {
+  CalibrationMessage of_another_rig;
+  of_another_rig.rig_hash = "another rig's";
+  of_another_rig.calibration.camera = "rgb";
+  for (Message& bad : Messages{wrong_size, stranger, strangers, of_another_rig}) {
     twins.bad.push_back(std::move(bad));
   }
   TargetStatus status;
@@ -45,6 +48,7 @@ TEST(Refusal, LiveNode) {
   of_lidar.text = "too far away";
   CalibrationMessage calibration;
   calibration.utime = kStart;
+  calibration.rig_hash = TinyRig().hash;
   calibration.calibration.camera = "rgb";
   test::World world;
   Messages good = {status, of_lidar, calibration, test::Ready("session")};
