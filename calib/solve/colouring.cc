@@ -64,16 +64,26 @@ std::optional<double> ColouringSigmaAt(const Camera& camera,
   return Root((j * covariance * j.transpose()).trace());
 }
 
-PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration) {
+std::vector<ColouringSigma> ColouringSigmas(const CameraSpec& spec,
+                                            const CameraCalibration& calibration,
+                                            const std::vector<double>& distances_m) {
   const Camera camera(calibration.WithSolvedLens(spec));
+  const PoseAndLensCovariance covariance = calibration.PoseAndLens();
+  std::vector<ColouringSigma> sigmas;
+  for (const double distance_m : distances_m) {
+    sigmas.push_back(ColouringAt(camera, covariance, distance_m));
+  }
+  return sigmas;
+}
+
+PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration) {
   const PoseAndLensCovariance covariance = calibration.PoseAndLens();
   const Eigen::Matrix3d r = calibration.camera_from_lidar.rotation.toRotationMatrix();
   PoseSigma sigma;
   sigma.rotation_deg = Sigmas(covariance.topLeftCorner<3, 3>(), 180 / M_PI);
   sigma.centre_mm = Sigmas(r.transpose() * covariance.block<3, 3>(3, 3) * r, 1000);
-  for (const double distance_m : kColouringDistancesM) {
-    sigma.colouring.push_back(ColouringAt(camera, covariance, distance_m));
-  }
+  sigma.colouring = ColouringSigmas(
+      spec, calibration, {std::begin(kColouringDistancesM), std::end(kColouringDistancesM)});
   return sigma;
 }
 

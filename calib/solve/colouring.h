@@ -23,6 +23,11 @@ std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera);
 /// had is NaN: centre_px where the lens model ends before the image's middle.
 PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration);
 
+/// The colouring of PoseSigma at other distances [m].
+std::vector<ColouringSigma> ColouringSigmas(const CameraSpec& spec,
+                                            const CameraCalibration& calibration,
+                                            const std::vector<double>& distances_m);
+
 /// 1 sigma [px], of pose and lens, of where the colour of a point is taken from, the point being
 /// where `pixel` looks, `distance_m` from the camera. It is the RMS length of the displacement, the
 /// root of the trace of the pixel's covariance: never less than the sigma along any one direction

@@ -7,7 +7,7 @@
 
 namespace rgbdt {
 
-/// The reprojection uncertainty all over one camera's image: four small maps of the image, for
+/// The projection uncertainty all over one camera's image: four small maps of the image, for
 /// points 2, 5, 10 and 50 m away, with one scale and lines of equal sigma [px]
 /// (calib/solve/colouring.h). 8-bit BGR, legible on a phone. Empty where the calibration has no
 /// covariance, or that gives no sigma.
@@ -15,7 +15,7 @@ cv::Mat ColouringPicture(const CameraSpec& spec, const CameraCalibration& calibr
 
 /// How to read it, in words.
 inline constexpr const char* kColouringCaption =
-    "Reprojection uncertainty: 1 sigma, in pixels, of where in the image a point's colour is taken "
+    "Projection uncertainty: 1 sigma, in pixels, of where in the image a point's colour is taken "
     "from, for points 2, 5, 10 and 50 m away. Each map is the camera's image: dark is low, bright "
     "is high, a line joins places of equal uncertainty, and grey is beyond the lens. An error of "
     "the "

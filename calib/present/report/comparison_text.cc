@@ -54,7 +54,7 @@ std::string Words(const PoseComparison& camera, const CalibrationComparison& all
         fmt::format("{}{:+.{}f} +- {:.{}f} {} {}", moved.empty() ? "" : ", ", axis.estimate.value,
                     axis.decimals, axis.estimate.sigma, axis.decimals, axis.unit, axis.name);
   }
-  const bool later = all.utime_a > 0 && all.utime_a < all.utime_b;
+  const bool later = IsDate(all.utime_a) && all.utime_a < all.utime_b;
   return fmt::format(
       "the mount moved by {}{} (chi-square {:.1f} of 6, by chance {})", moved,
       later ? " since " + TimeText(all.utime_a) : "", *camera.chi2,

@@ -13,7 +13,7 @@ namespace {
 
 std::string Intro(const Report& report) {
   std::string intro = "Method: " + report.method + ". Rig: " + report.rig_hash + ".";
-  if (report.utime != 0) intro += " Newest image: " + TimeText(report.utime) + ".";
+  if (IsDate(report.utime)) intro += " Newest image: " + TimeText(report.utime) + ".";
   return intro;
 }
 
@@ -22,6 +22,28 @@ std::string Coordinates(const Eigen::Vector3d& point, int decimals) {
   return "x " + Number(point.x(), decimals) + ", y " + Number(point.y(), decimals) + ", z " +
          Number(point.z(), decimals) + " m";
 }
+
+void AddIfAny(Table table, std::vector<Table>* tables) {
+  if (!table.empty()) tables->push_back(std::move(table));
+}
+
+// What says most of a calibration first.
+CameraContent ContentOf(const CameraReport& camera, const Report& report) {
+  const FitFigure figure =
+      report.method == kPaperMethod ? FitFigure::kDistanceTransform : FitFigure::kSigmas;
+  CameraContent content{
+      camera.calibration.camera, Judge(camera, report.next_view), BothWays(camera.calibration), {}};
+  for (Table& table :
+       std::array{ProjectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
+                  PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
+                  StartsTable(camera, figure), NuisanceTable(camera), LidarTable(camera),
+                  SolveTable(camera)}) {
+    AddIfAny(std::move(table), &content.tables);
+  }
+  return content;
+}
+
+}  // namespace
 
 std::vector<NamedPose> BothWays(const CameraCalibration& calibration) {
   const Rigid3& camera_from_lidar = calibration.camera_from_lidar;
@@ -41,27 +63,6 @@ std::vector<NamedPose> BothWays(const CameraCalibration& calibration) {
        lidar_from_camera}};
 }
 
-void AddIfAny(Table table, std::vector<Table>* tables) {
-  if (!table.empty()) tables->push_back(std::move(table));
-}
-
-// What says most of a calibration first.
-CameraContent ContentOf(const CameraReport& camera, const Report& report) {
-  const FitFigure figure =
-      report.method == kPaperMethod ? FitFigure::kDistanceTransform : FitFigure::kSigmas;
-  CameraContent content{
-      camera.calibration.camera, Judge(camera, report.next_view), BothWays(camera.calibration), {}};
-  for (Table& table : std::array{
-           ReprojectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
-           PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
-           StartsTable(camera), NuisanceTable(camera), LidarTable(camera), SolveTable(camera)}) {
-    AddIfAny(std::move(table), &content.tables);
-  }
-  return content;
-}
-
-}  // namespace
-
 ReportContent ContentOf(const Report& report) {
   ReportContent content;
   content.intro = Intro(report);
@@ -77,8 +78,8 @@ ReportContent ContentOf(const Report& report) {
 NextViewWords WordsOf(const NextView& next) {
   return {next.words,
           "The board's centre is then at " + Coordinates(next.lidar_from_target.translation, 1) +
-              " in the LIDAR's frame. Expected gain: where camera " + next.camera +
-              " is worst, the reprojection uncertainty (1 sigma) falls from " +
+              " in the LIDAR's frame. Where camera " + next.camera +
+              " is worst, the projection uncertainty (1 sigma) is expected to improve from " +
               Number(next.sigma_before_px, 2) + " to " + Number(next.sigma_after_px, 2) + " px."};
 }
 

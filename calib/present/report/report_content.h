@@ -41,6 +41,9 @@ struct ReportContent {
 
 ReportContent ContentOf(const Report& report);
 
+/// camera_from_lidar and its inverse.
+std::vector<NamedPose> BothWays(const CameraCalibration& calibration);
+
 NextViewWords WordsOf(const NextView& next);
 
 }  // namespace rgbdt

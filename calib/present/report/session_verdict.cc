@@ -25,7 +25,7 @@ bool WasJudged(const CameraReport* report) {
 }
 
 // The worst over all cameras [px]; nothing where one has none.
-std::optional<double> ReprojectionUncertainty(const std::vector<JudgedCamera>& cameras) {
+std::optional<double> ProjectionUncertainty(const std::vector<JudgedCamera>& cameras) {
   double worst = 0;
   for (const JudgedCamera& camera : cameras) {
     const ColouringSigma* at = camera.report == nullptr ? nullptr : JudgedColouring(*camera.report);
@@ -40,10 +40,10 @@ std::string AllGood(const std::vector<JudgedCamera>& cameras) {
                           : cameras.size() == 2
                               ? "Both cameras are"
                               : "All " + std::to_string(cameras.size()) + " cameras are";
-  const auto within = ReprojectionUncertainty(cameras);
+  const auto within = ProjectionUncertainty(cameras);
   if (!within) return who + " calibrated";
-  return who + " calibrated: colours sit within " + Number(*within, *within < 0.1 ? 2 : 1) +
-         " px at " + Number(kJudgedAtM, 0) + " m (1 sigma)";
+  return who + " calibrated; projection uncertainty at " + Number(kJudgedAtM, 0) + " m: up to " +
+         Number(*within, *within < 0.1 ? 2 : 1) + " px (1 sigma)";
 }
 
 // "a", "a and b", "a, b and c"

@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "calib/model/linear_algebra.h"
 #include "calib/model/method.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/present/report/said_once.h"
 #include "calib/present/report/verdict.h"
 
@@ -17,6 +17,7 @@ namespace {
 
 constexpr int kLabel = 44;
 constexpr int kColumn = 22;
+constexpr double kShownDistancesM[] = {2, 5, 10};  // of points, for the projection uncertainty
 
 std::string Number(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : "-";
@@ -25,15 +26,6 @@ std::string Number(const std::optional<double>& value, int digits) {
 std::string Error(const std::optional<PoseError>& error) {
   return error ? fmt::format("{:.3f} deg {:.1f} mm", error->rotation_deg, error->translation_mm)
                : "-";
-}
-
-std::string Sigma(const CameraCalibration& calibration) {
-  if (!calibration.covariance) return "-";
-  const auto worst = [](const Eigen::Matrix3d& covariance) {
-    return std::sqrt(EigensystemOf(covariance).values[2]);
-  };
-  return Error(PoseError{worst(calibration.covariance->topLeftCorner<3, 3>()) * 180 / M_PI,
-                         worst(calibration.covariance->bottomRightCorner<3, 3>()) * 1000});
 }
 
 RangeErrors RangeErrorsOf(const CameraReport& camera) {
@@ -57,10 +49,19 @@ std::string Spread(const Offsets& offsets) {
   return fmt::format("{:+.0f} to {:+.0f}", 1e3 * least->offset_m.value, 1e3 * most->offset_m.value);
 }
 
-// In the image's middle and where it is worst.
-std::string ReprojectionSigma(const CameraReport& camera) {
-  const ColouringSigma* at = JudgedColouring(camera);
-  return at == nullptr ? "-" : fmt::format("{:.2f} / {:.2f}", at->centre_px, at->worst_px);
+// At each of the distances, where it is worst in the image.
+std::string ProjectionSigma(const CameraReport& camera) {
+  if (!camera.sigma) return "-";
+  std::string text;
+  for (const double distance_m : kShownDistancesM) {
+    const auto& all = camera.sigma->colouring;
+    const auto at = std::find_if(all.begin(), all.end(), [&](const ColouringSigma& s) {
+      return std::abs(s.distance_m - distance_m) < 1e-6;
+    });
+    if (!text.empty()) text += " / ";
+    text += at == all.end() ? "-" : fmt::format("{:.2f}", at->worst_px);
+  }
+  return text;
 }
 
 // The verdict, and what speaks most against the result.
@@ -142,13 +143,14 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
     return std::any_of(report_.cameras.begin(), report_.cameras.end(), has);
   };
   if (any([](const CameraReport& c) { return c.calibration.covariance.has_value(); })) {
-    row("1 sigma, worst axis", [](const CameraReport& c) { return Sigma(c.calibration); });
+    row("1 sigma, worst axis",
+        [](const CameraReport& c) { return Error(WorstAxisSigma(c.calibration)); });
   }
   if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
-    row("reprojection at 5 m, 1 sigma, mid/worst [px]", ReprojectionSigma);
+    row("projection at 2 / 5 / 10 m, 1 sigma [px]", ProjectionSigma);
   }
   if (any([](const CameraReport& c) { return c.edge_rms_whitened.heldout.has_value(); })) {
-    row("board's edge, held out, in sigmas (1: as stated)",
+    row("outline error, held out [sigma, expected 1]",
         [](const CameraReport& c) { return Number(c.edge_rms_whitened.heldout, 2); });
   }
   if (any([](const CameraReport& c) { return c.halves.has_value(); })) {
@@ -162,9 +164,9 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
     row("distance transform, held out [px]",
         [](const CameraReport& c) { return Number(c.distance_transform_px.heldout, 2); });
   }
-  row("RMS distance to outline, views used [px]",
+  row("outline error, views used, RMS [px]",
       [](const CameraReport& c) { return Number(c.edge_rms_px.train, 2); });
-  row("RMS distance to outline, held out [px]",
+  row("outline error, held out, RMS [px]",
       [](const CameraReport& c) { return Number(c.edge_rms_px.heldout, 2); });
   if (any([](const CameraReport& c) { return c.truth_error.has_value(); })) {
     row("first guess against truth",
@@ -172,17 +174,19 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
     row("result against truth", [](const CameraReport& c) { return Error(c.truth_error); });
   }
   if (any([](const CameraReport& c) { return RangeErrorsOf(c).offset_m.sigma > 0; })) {
-    row("ranges are short by [mm]", [](const CameraReport& c) { return Common(RangeErrorsOf(c)); });
+    row("range offset, all points [mm]",
+        [](const CameraReport& c) { return Common(RangeErrorsOf(c)); });
   }
   if (any([](const CameraReport& c) { return !RangeErrorsOf(c).rings.empty(); })) {
-    row("and rings by [mm]", [](const CameraReport& c) { return Spread(RangeErrorsOf(c).rings); });
+    row("range offset, by ring [mm]",
+        [](const CameraReport& c) { return Spread(RangeErrorsOf(c).rings); });
   }
   if (any([](const CameraReport& c) { return !RangeErrorsOf(c).intensities.empty(); })) {
-    row("and by brightness [mm]",
+    row("range offset, by intensity [mm]",
         [](const CameraReport& c) { return Spread(RangeErrorsOf(c).intensities); });
   }
   if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
-    row("a far start ends off the result by", [](const CameraReport& c) {
+    row("result from a far start differs by", [](const CameraReport& c) {
       return c.other_starts.empty() ? std::string("-") : Error(c.other_starts[0].from_result);
     });
   }

@@ -14,7 +14,7 @@ class Summary {
 
   /// Whether every camera has a pose to use.
   bool converged() const;
-  /// One line: how each camera's solve ended, and its reprojection uncertainty; of the paper's
+  /// One line: how each camera's solve ended, and its projection uncertainty; of the paper's
   /// method the mean distance transform.
   std::string BriefReport() const;
   /// The cameras' verdicts; a table, units in the first column, cameras side by side; what has no

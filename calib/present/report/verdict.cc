@@ -245,19 +245,19 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
 }
 
 void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
-  const std::string uncertain = "The reprojection uncertainty of a point " + Number(kJudgedAtM, 0) +
+  const std::string uncertain = "The projection uncertainty of a point " + Number(kJudgedAtM, 0) +
                                 " m away is " + Number(at.worst_px, 2) +
                                 " px (1 sigma) where it is worst in the image";
   if (at.worst_px > kUncertainPx) {
     judgement->Usable(uncertain + ", more than " + Number(kUncertainPx, 0) +
-                      " px: take more views in that part of the image, some about as far away.");
+                      " px: take more views in that part of the image.");
   } else {
     judgement->AddReason(uncertain + ".");
   }
 }
 
 void JudgeHalves(const Halves& halves, Judgement* judgement) {
-  const std::string differ = "Two halves of the views, each solved by itself, differ by " +
+  const std::string differ = "Two halves of the views, each solved separately, differ by " +
                              PoseErrorText(halves.difference);
   if (halves.chi2 > kUnlikelyChi2) {
     judgement->Doubtful(differ + ", more than their sigmas allow (chi-square " +

@@ -15,7 +15,7 @@ inline constexpr double kUnlikelyChi2 = 22.5;
 /// Of the held-out crossings' RMS in their sigmas: outside of these the sigmas are not as stated.
 inline constexpr double kLeastWhitened = 0.7, kMostWhitened = 1.4;
 
-/// How far away the points are whose reprojection uncertainty a calibration is judged by.
+/// How far away the points are whose projection uncertainty a calibration is judged by.
 inline constexpr double kJudgedAtM = 5;
 
 /// That uncertainty; null: unknown.
@@ -30,7 +30,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 ///    how far; more than a quarter of the views were rejected; views scatter far more than they
 ///    state; halves or held-out views contradict the stated uncertainty.
 ///  - usable: it could be more exact, or better checked: few views, nothing held out, a
-///    reprojection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
+///    projection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
 ///    which the enlarged sigma makes good for; a method that states no uncertainty.
 ///
 /// `next_view` is the report's.

@@ -23,7 +23,13 @@ std::string WithUnit(const std::optional<double>& value, int decimals, const std
   return value ? WithUnit(*value, decimals, unit) : "–";
 }
 
+bool IsDate(Utime utime) {
+  constexpr Utime kFirstDate = 946'684'800 * kMicrosecondsPerSecond;  // 2000-01-01
+  return utime >= kFirstDate;
+}
+
 std::string TimeText(Utime utime) {
+  if (!IsDate(utime)) return Number(ToSeconds(utime), 1) + " s";
   const std::time_t seconds = static_cast<std::time_t>(utime / kMicrosecondsPerSecond);
   std::tm utc{};
   char text[64] = "";

@@ -18,7 +18,10 @@ std::string Number(double value, int decimals);
 std::string WithUnit(double value, int decimals, const std::string& unit);
 std::string WithUnit(const std::optional<double>& value, int decimals, const std::string& unit);
 
-/// "2015-06-01 12:01:53 UTC"
+/// Whether a time is one of the calendar: of a clock that was never set it is not.
+bool IsDate(Utime utime);
+
+/// "2015-06-01 12:01:53 UTC"; of a clock that was never set its seconds, "12.3 s".
 std::string TimeText(Utime utime);
 
 /// "0.012° and 3.4 mm"

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "calib/files/schema/proto_convert.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/model/text.h"
 
 namespace rgbdt::text {
@@ -222,6 +223,10 @@ void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
   const proto::TrainHeldout& whitened = out->edge_rms_whitened();
   if (!whitened.has_train() && !whitened.has_heldout()) out->clear_edge_rms_whitened();
   if (camera.sigma) FromSigma(*camera.sigma, out->mutable_sigma());
+  if (const auto worst = WorstAxisSigma(camera.calibration); worst && camera.sigma) {
+    out->mutable_sigma()->set_worst_rotation_deg(worst->rotation_deg);
+    out->mutable_sigma()->set_worst_centre_mm(worst->translation_mm);
+  }
   for (const Nuisance& nuisance : camera.nuisance) FromNuisance(nuisance, out->add_nuisance());
   for (const Fold& fold : camera.folds) FromFold(fold, out->add_folds());
   if (camera.halves) FromHalves(*camera.halves, out->mutable_halves());

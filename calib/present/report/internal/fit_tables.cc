@@ -45,7 +45,8 @@ ViewQuality QualityOf(const CameraReport& camera, const std::string& view) {
 
 Table FitTable(const CameraReport& camera, FitFigure figure) {
   Table table{"How well it fits",
-              {},
+              {"Outline error: distance of the board's edge in the cloud from its outline in the "
+               "image. In sigmas 1 is expected; above 1 the stated sigmas are too small."},
               {"", "Views used (" + std::to_string(camera.used.size()) + ")",
                "Views held out (" + std::to_string(camera.heldout.size()) + ")"},
               {}};
@@ -54,10 +55,8 @@ Table FitTable(const CameraReport& camera, FitFigure figure) {
     table.rows.push_back(
         {{name}, {WithUnit(value.train, 2, unit)}, {WithUnit(value.heldout, 2, unit)}});
   };
-  add("RMS distance of the LIDAR's board edge from the outline in the image", camera.edge_rms_px,
-      "px");
-  add("The same in sigmas (1 is expected; above 1 the stated sigmas are too small)",
-      camera.edge_rms_whitened, "σ");
+  add("Outline error, RMS", camera.edge_rms_px, "px");
+  add("Outline error in sigmas, RMS", camera.edge_rms_whitened, "σ");
   if (figure == FitFigure::kDistanceTransform) {
     add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
         "px");
@@ -67,12 +66,12 @@ Table FitTable(const CameraReport& camera, FitFigure figure) {
 
 Table ViewsTable(const CameraReport& camera, FitFigure figure) {
   const bool transform = figure == FitFigure::kDistanceTransform;
-  Table table{"Views", camera.warnings, {"View", "Role", "Edge RMS"}, {}};
+  Table table{"Views", camera.warnings, {"View", "Role", "Outline error"}, {}};
   if (transform) table.head.emplace_back("Distance transform");
   const bool sigmas =
       std::any_of(camera.views.begin(), camera.views.end(),
                   [](const ViewQuality& view) { return view.edge_rms_whitened.has_value(); });
-  if (sigmas) table.head.emplace_back("Edge RMS in sigmas");
+  if (sigmas) table.head.emplace_back("Outline error in sigmas");
   if (!camera.rejected.empty()) table.head.emplace_back("Why rejected");
   for (const ViewLine& line : LinesOf(camera)) {
     const ViewQuality quality = QualityOf(camera, line.view);
@@ -103,20 +102,19 @@ Table DetectionTable(const Report& report) {
   return table;
 }
 
-Table StartsTable(const CameraReport& camera) {
-  Table table{"The same solve from other starts",
-              {},
-              {"Start", "Ended", "Distance transform", "Away from the result"},
-              {}};
+Table StartsTable(const CameraReport& camera, FitFigure figure) {
+  const bool transform = figure == FitFigure::kDistanceTransform;
+  Table table{"The same solve from other starts", {}, {"Start", "Ended"}, {}};
+  if (transform) table.head.emplace_back("Distance transform");
+  table.head.emplace_back("Away from the result");
   const bool truth =
       std::any_of(camera.other_starts.begin(), camera.other_starts.end(),
                   [](const StartResult& start) { return start.truth_error.has_value(); });
   if (truth) table.head.emplace_back("Away from the truth");
   for (const StartResult& start : camera.other_starts) {
-    Row& row = table.rows.emplace_back(Row{{start.start},
-                                           {start.calibration.StatusText()},
-                                           {WithUnit(start.distance_transform_px, 2, "px")},
-                                           {rgbdt::PoseErrorText(start.from_result)}});
+    Row& row = table.rows.emplace_back(Row{{start.start}, {start.calibration.StatusText()}});
+    if (transform) row.push_back({WithUnit(start.distance_transform_px, 2, "px")});
+    row.push_back({rgbdt::PoseErrorText(start.from_result)});
     if (truth) row.push_back({PoseErrorText(start.truth_error)});
   }
   return table;

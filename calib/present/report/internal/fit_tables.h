@@ -20,7 +20,7 @@ Table ViewsTable(const CameraReport& camera, FitFigure figure);
 /// What detection found in each view: each camera's image and the cloud apart.
 Table DetectionTable(const Report& report);
 
-Table StartsTable(const CameraReport& camera);
+Table StartsTable(const CameraReport& camera, FitFigure figure);
 Table SolveTable(const CameraReport& camera);
 
 /// What the LIDAR's ranges and beams are off by.

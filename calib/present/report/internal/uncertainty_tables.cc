@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "calib/model/pose_sigma.h"
 #include "calib/present/report/words.h"
 
 namespace rgbdt {
@@ -39,6 +40,15 @@ std::vector<Row> CovarianceRows(const Matrix6d& covariance) {
   return {turned, AxesRow("Translation along the camera's axes", translation, 1, "mm")};
 }
 
+// The figures that the terminal and the viewer's charts have, beside the three axes.
+void AddWorstAxis(const CameraCalibration& calibration, Table* table) {
+  const auto worst = WorstAxisSigma(calibration);
+  if (!worst || table->rows.size() != 2) return;
+  table->head.emplace_back("worst axis");
+  table->rows[0].push_back({WithUnit(worst->rotation_deg, 4, "°")});
+  table->rows[1].push_back({WithUnit(worst->translation_mm, 2, "mm")});
+}
+
 }  // namespace
 
 Table PoseSigmaTable(const CameraReport& camera) {
@@ -51,15 +61,17 @@ Table PoseSigmaTable(const CameraReport& camera) {
   } else if (camera.calibration.covariance) {
     table.rows = CovarianceRows(*camera.calibration.covariance);
   }
+  AddWorstAxis(camera.calibration, &table);
   return table;
 }
 
-Table ReprojectionTable(const CameraReport& camera) {
+Table ProjectionTable(const CameraReport& camera) {
   if (!camera.sigma || camera.sigma->colouring.empty()) return {};
-  Table table{"Reprojection uncertainty (1 sigma)",
-              {"How far off in the image a point's colour is taken from."},
-              {"Point this far from the camera", "In the image's middle", "Where it is worst"},
-              {}};
+  Table table{
+      "Projection uncertainty (1 sigma)",
+      {"1 sigma of the position at which a point is projected into the image."},
+      {"Distance of the point from the camera", "In the image's centre", "Where it is worst"},
+      {}};
   for (const ColouringSigma& at : camera.sigma->colouring) {
     table.rows.push_back({{WithUnit(at.distance_m, 0, "m")},
                           {WithUnit(at.centre_px, 2, "px")},
@@ -70,7 +82,7 @@ Table ReprojectionTable(const CameraReport& camera) {
 
 Table HalvesTable(const CameraReport& camera) {
   if (!camera.halves) return {};
-  return {"Two halves of the views, each solved by itself",
+  return {"Two halves of the views, each solved separately",
           {Chi2Note()},
           {"They differ by", "Chi-square", "Verdict"},
           {{{PoseErrorText(camera.halves->difference)},
@@ -84,7 +96,8 @@ Table FoldsTable(const CameraReport& camera) {
       "Cross-validation: each part of the views left out once",
       {"Solved without these views, then judged on them. Misfit: their chi-square. The solve "
        "should fit them no worse than the first guess from the same views does."},
-      {"Views left out", "Edge RMS", "Misfit", "Misfit of the first guess", "Away from the result"},
+      {"Views left out", "Outline error", "Misfit", "Misfit of the first guess",
+       "Away from the result"},
       {}};
   for (const Fold& fold : camera.folds) {
     table.rows.push_back({{Joined(fold.heldout)},

@@ -8,7 +8,7 @@
 namespace rgbdt {
 
 Table PoseSigmaTable(const CameraReport& camera);
-Table ReprojectionTable(const CameraReport& camera);
+Table ProjectionTable(const CameraReport& camera);
 Table HalvesTable(const CameraReport& camera);
 Table FoldsTable(const CameraReport& camera);
 Table NuisanceTable(const CameraReport& camera);

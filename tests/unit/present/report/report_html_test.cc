@@ -29,7 +29,7 @@ TEST(ReportHtml, StatesItsUncertainty) {
   const std::string page = HtmlOf(test::MakeReport());
   for (const char* part :
        {"Uncertainty of the pose (1 sigma)", "0.0333°", "0.67\u202fmm",
-        "Reprojection uncertainty (1 sigma)", "50\u202fm", "0.60\u202fpx", "0.97\u202fσ",
+        "Projection uncertainty (1 sigma)", "50\u202fm", "0.60\u202fpx", "0.97\u202fσ",
         "1 is expected; above 1 the stated sigmas are too small", "1.06\u202fσ", "0001, 0002",
         "Misfit of the first guess", "<td>5.2</td>", "beam edge, no return", "mrad",
         "rgb to thermal", "<strong class=\"good\">✓ no more than the sigmas allow</strong>",

@@ -34,7 +34,7 @@ std::string LineOf(const std::string& table, const std::string& label) {
   return "";
 }
 
-TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
+TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheProjection) {
   Report report = MakeReport();
   CameraReport& camera = report.cameras[0];
   camera.calibration.covariance = Matrix6d((Vector6d() << 2e-4, 1e-4, 1e-4, 4e-4, 3e-4, 3e-4)
@@ -43,14 +43,14 @@ TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheReprojection) {
                                                .square()
                                                .matrix()
                                                .asDiagonal());
-  camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}}};
+  camera.sigma = PoseSigma{{}, {}, {{2, 0.3, 0.7}, {5, 0.12, 0.61}, {50, 0.1, 0.5}}};
   for (CameraReport& good : report.cameras) {
     good.edge_rms_px = {0.5, 0.5};
     good.used.resize(8);
   }
   const std::string table = FullReport(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
-  EXPECT_THAT(LineOf(table, "reprojection at 5 m, 1 sigma"), HasSubstr("0.12 / 0.61"));
+  EXPECT_THAT(LineOf(table, "projection at 2 / 5 / 10 m, 1 sigma"), HasSubstr("0.70 / 0.61 / -"));
   std::istringstream lines(table.substr(table.find("method ")));  // below the verdicts
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }

@@ -16,6 +16,12 @@ TEST(Words, ANumberStaysWithItsUnit) {
   EXPECT_EQ(Number(std::numeric_limits<double>::infinity(), 1), "–");
 }
 
+TEST(Words, ATimeOfAClockThatWasNeverSetIsNoDate) {
+  EXPECT_EQ(TimeText(1'700'000'000'000'000), "2023-11-14 22:13:20 UTC");
+  EXPECT_EQ(TimeText(12'300'000), "12.3 s");
+  EXPECT_FALSE(IsDate(12'300'000));
+}
+
 TEST(Words, CountsAndLists) {
   EXPECT_EQ(Count(1, "view"), "1 view");
   EXPECT_EQ(Count(0, "view"), "0 views");
