@@ -207,10 +207,19 @@ struct Field {
   }
 };
 
-std::vector<Place> PlacesToTry(const BoardProblem& problem) {
+// Where six rings of a spinning LIDAR lie on the board, each crossing its outline twice; fewer are
+// too few (calib/detect/TARGET.md).
+double FarthestRange(const Target& target, const Exactness& exactness) {
+  constexpr double kCrossings = 12;
+  return exactness.crossings_per_rad * 2 * (target.width_m + target.height_m) / kCrossings;
+}
+
+std::vector<Place> PlacesToTry(const BoardProblem& problem, const Exactness& exactness) {
   const Field field(problem);
+  const double farthest = FarthestRange(problem.target, exactness);
   std::vector<Place> places;
   for (const double range : {1.5, 2.0, 3.0, 4.5, 6.0}) {
+    if (range > farthest && !places.empty()) break;
     const double reach = std::atan(0.5 * problem.target.width_m / range);
     for (const double across : {0.0, 0.5, 1.0}) {
       for (const double up : {0.0, 0.5, 1.0}) {
@@ -275,7 +284,7 @@ std::optional<NextView> FindNextView(const JointResult& result) {
   const double scale = std::sqrt(result.variance_factor);
   const Worst before = WorstOf(problem, covariance);
   std::optional<NextView> best;
-  for (const Place& place : PlacesToTry(problem)) {
+  for (const Place& place : PlacesToTry(problem, exactness)) {
     const auto more = Expected(problem, state, exactness, place.LidarFromTarget());
     if (!more) continue;
     const Worst after = WorstOf(problem, InverseOfSymmetric(Eigen::MatrixXd(information + *more)));

@@ -46,6 +46,28 @@ TEST(FindNextView, WhatItSaysBeforeIsTheWorstSigmaOfTheReport) {
   EXPECT_NEAR(report.next_view->sigma_before_px, worst, 0.05 * worst);
 }
 
+// calib/detect/TARGET.md: six rings, which cross the outline twice each.
+TEST(FindNextView, ProposesNoPlaceWithTooFewRings) {
+  SolveWorldOptions options;
+  options.views = 6;
+  SolveWorld world(options);
+  double farthest = 0;
+  for (std::size_t i = 0; i < world.detections.size(); ++i) {
+    auto& crossings = world.CloudAt(i).crossings;
+    std::vector<Crossing> few;  // so many that 12 are left at 3.2 m
+    const double range = world.CloudAt(i).centre.norm();
+    const auto wanted = static_cast<std::size_t>(12 * 3.2 / range);
+    for (std::size_t k = 0; k < wanted; ++k)
+      few.push_back(crossings[k * crossings.size() / wanted]);
+    crossings = few;
+    farthest = std::max(farthest, range);
+  }
+  ASSERT_GT(farthest, 3.5);
+  const Report report = Calibrate(world.rig, world.detections);
+  ASSERT_TRUE(report.next_view);
+  EXPECT_LE(report.next_view->lidar_from_target.translation.norm(), 3.5);
+}
+
 TEST(FindNextView, OfCamerasThatSeeNothingInCommonThereIsNone) {
   const SolveWorld world;
   const SolveSession session(world);
