@@ -59,6 +59,13 @@ struct SessionRequest {
   bool heldout = false;  ///< capture: keep this view from the solver
 };
 
+/// Which views a person wants to be left out of the calibration: all of them.
+struct LeftOutViews {
+  std::int64_t seq = 0;
+  Utime utime = 0;  ///< newest sensor time that the sender knew; 0 before the first
+  std::vector<std::string> views;
+};
+
 /// Health of a process; sent at 1 Hz and when something happens.
 struct Status {
   std::string process;

@@ -104,6 +104,29 @@ SessionRequest FromWire(const session_request_t& wire) {
   return FieldsFromWire<SessionRequest>(wire);
 }
 
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, left_out_views_t>& wire,
+            StructOf<Copy, LeftOutViews>& left_out) {
+  copy(wire.utime, left_out.utime);
+  copy(wire.seq, left_out.seq);
+  copy.List("num_left_out", wire.num_left_out, wire.left_out, left_out.views);
+}
+
+left_out_views_t ToWire(const LeftOutViews& left_out) {
+  return FieldsToWire<left_out_views_t>(left_out);
+}
+
+void Check(const left_out_views_t& wire) {
+  constexpr int kMostViews = 1000;
+  CheckUtimeOrZero("utime", wire.utime);
+  CheckRange("num_left_out", wire.num_left_out, 0, kMostViews);
+  for (std::size_t i = 0; i < wire.left_out.size(); ++i) {
+    CheckName(At("left_out", i), wire.left_out[i]);
+  }
+}
+
+LeftOutViews FromWire(const left_out_views_t& wire) { return FieldsFromWire<LeftOutViews>(wire); }
+
 // All but the counters.
 template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, status_t>& wire, StructOf<Copy, Status>& status) {

@@ -28,6 +28,7 @@ struct Channel {
   std::string operator()(const SessionCommand&) const { return "SESSION_COMMAND"; }
   std::string operator()(const SessionEvent&) const { return "SESSION_EVENT"; }
   std::string operator()(const SessionRequest&) const { return "SESSION_REQUEST"; }
+  std::string operator()(const LeftOutViews&) const { return "LEFT_OUT_VIEWS"; }
   std::string operator()(const TargetStatus&) const { return "TARGET_STATUS"; }
   std::string operator()(const Status&) const { return "STATUS"; }
   std::string operator()(const ReportText&) const { return "REPORT"; }

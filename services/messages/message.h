@@ -26,7 +26,7 @@ struct CalibrationMessage {
 using Message =
     std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, ViewDetection,
                  CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
-                 SessionRequest, TargetStatus, Status, ReportText>;
+                 SessionRequest, LeftOutViews, TargetStatus, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

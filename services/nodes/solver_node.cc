@@ -1,7 +1,10 @@
 #include "services/nodes/solver_node.h"
 
+#include <utility>
+
 #include "calib/files/schema/report_file.h"
 #include "calib/files/schema/rig_file.h"
+#include "calib/methods/calibrate_without.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/summary.h"
 #include "calib/present/report/verdict.h"
@@ -16,8 +19,7 @@ Messages SolverNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
     if (rig_ && rig_->hash == text->hash) return {};
     rig_ = ParseRig(text->text, "RIG message");
-    detections_.clear();  // they belonged to another rig
-    report_.reset();
+    Forget();  // the views belonged to another rig
     return {};
   }
   if (!rig_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
@@ -30,13 +32,39 @@ Messages SolverNode::Handle(const Message& message) {
     return Calibrations();
   }
   if (const auto* command = std::get_if<SessionCommand>(&message)) return OnCommand(*command);
+  if (const auto* left_out = std::get_if<LeftOutViews>(&message)) return OnLeftOut(*left_out);
   return {};
+}
+
+void SolverNode::Forget() {
+  detections_.clear();
+  left_out_.clear();
+  report_.reset();
+}
+
+// Where the rest cannot be solved for, all stays as it was.
+Messages SolverNode::OnLeftOut(const LeftOutViews& message) {
+  const std::set<std::string> before =
+      std::exchange(left_out_, {message.views.begin(), message.views.end()});
+  if (detections_.empty()) return {};
+  try {
+    report_ = Solve(detections_, true);
+  } catch (...) {
+    left_out_ = before;
+    throw;
+  }
+  Messages out = Calibrations();
+  out.push_back(ReportMessage());
+  return out;
+}
+
+ReportText SolverNode::ReportMessage() const {
+  return {0, report_->utime, ReportToJson(WithVerdicts(*report_))};
 }
 
 Messages SolverNode::OnCommand(const SessionCommand& command) {
   if (command.verb == SessionVerb::kReset) {
-    detections_.clear();
-    report_.reset();
+    Forget();
     return {};
   }
   if (command.verb != SessionVerb::kSolve && command.verb != SessionVerb::kEvaluate) return {};
@@ -51,7 +79,7 @@ Messages SolverNode::OnCommand(const SessionCommand& command) {
   }
   report_ = Solve(detections_, true);
   Messages out = Calibrations();
-  out.push_back(ReportText{0, report_->utime, ReportToJson(WithVerdicts(*report_))});
+  out.push_back(ReportMessage());
   event.text = Summary(*report_).BriefReport();
   out.push_back(std::move(event));
   return out;
@@ -63,7 +91,7 @@ Report SolverNode::Solve(const Detections& detections, bool for_report) const {
   CalibrateOptions options = options_;
   options.wide_start &= for_report;
   options.diagnostics &= for_report;
-  return Calibrate(*rig_, all, options);
+  return CalibrateWithout(*rig_, all, left_out_, options);
 }
 
 Messages SolverNode::Calibrations() const {

@@ -155,6 +155,34 @@ TEST_F(SolverNodeTest, ResetAndAnotherRigForgetAll) {
   EXPECT_FALSE(node_.report().has_value());
 }
 
+TEST_F(SolverNodeTest, ViewsThatAPersonLeavesOutHaveNoPartUntilTheyAreTakenBack) {
+  FeedWorld();
+  const std::string with_all = CalibrationOf(node_);
+  LeftOutViews left_out;
+  left_out.views = {World().views[0].view};
+  const Messages out = node_.Handle(left_out);
+  EXPECT_EQ(Only<CalibrationMessage>(out).size(), 1U);
+  ASSERT_EQ(Only<ReportText>(out).size(), 1U);
+  const Report report = ReportFromJson(Only<ReportText>(out)[0].json);
+  EXPECT_EQ(report.cameras[0].used.size(), 3U);
+  EXPECT_THAT(report.cameras[0].warnings, ::testing::Contains(HasSubstr(left_out.views[0])));
+  EXPECT_NE(CalibrationOf(node_), with_all);
+  node_.Handle(Command(SessionVerb::kSolve));
+  EXPECT_EQ(node_.report()->cameras[0].used.size(), 3U) << "it stays out";
+  node_.Handle(LeftOutViews());
+  EXPECT_EQ(CalibrationOf(node_), with_all);
+}
+
+TEST_F(SolverNodeTest, WhereAllViewsWouldBeLeftOutNothingChanges) {
+  FeedWorld();
+  const std::string before = CalibrationOf(node_);
+  LeftOutViews all;
+  for (const ViewDetection& view : World().views) all.views.push_back(view.view);
+  EXPECT_THAT(ErrorOf([&] { node_.Handle(all); }), HasSubstr("all views are left out"));
+  node_.Handle(Command(SessionVerb::kSolve));
+  EXPECT_EQ(CalibrationOf(node_), before);
+}
+
 TEST_F(SolverNodeTest, ADetectionOfAStrangersCameraIsRefused) {
   ViewDetection stranger = World().views[0];
   stranger.images[0].camera = "front";

@@ -12,6 +12,7 @@
 #include <lcmtypes/rgbdt/corner_selection_t.hpp>
 #include <lcmtypes/rgbdt/encoder_t.hpp>
 #include <lcmtypes/rgbdt/image_t.hpp>
+#include <lcmtypes/rgbdt/left_out_views_t.hpp>
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
@@ -91,6 +92,9 @@ SessionEvent FromWire(const session_event_t& wire);
 session_request_t ToWire(const SessionRequest& request);
 void Check(const session_request_t& wire);
 SessionRequest FromWire(const session_request_t& wire);
+left_out_views_t ToWire(const LeftOutViews& left_out);
+void Check(const left_out_views_t& wire);
+LeftOutViews FromWire(const left_out_views_t& wire);
 status_t ToWire(const Status& status);
 void Check(const status_t& wire);
 Status FromWire(const status_t& wire);

@@ -215,6 +215,14 @@ TEST_F(Invalid, Session) {
   };
   EXPECT_THAT(request([](auto& w) { w.request = 0; }), HasSubstr("request is 0"));
   EXPECT_THAT(request([](auto& w) { w.request = 5; }), HasSubstr("request is 5"));
+  const auto left_out = [&](auto change) {
+    return ErrorAfter<left_out_views_t>(random_.LeftOut(), change);
+  };
+  EXPECT_THAT(left_out([](auto& w) {
+                w.left_out = {"0001", ""};
+                w.num_left_out = 2;
+              }),
+              HasSubstr("left_out[1] is"));
   const auto target = [&](auto change) {
     return ErrorAfter<target_status_t>(random_.TargetSeen(), change);
   };

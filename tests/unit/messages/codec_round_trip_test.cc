@@ -209,6 +209,9 @@ TEST_F(RoundTrip, RequestAndTargetStatus) {
     EXPECT_EQ(a.utime, b.utime);
     EXPECT_EQ(a.request, b.request);
     EXPECT_EQ(a.heldout, b.heldout);
+    const LeftOutViews left_out = random_.LeftOut();
+    EXPECT_EQ(left_out.utime, ThroughTheWire(left_out).utime);
+    EXPECT_EQ(left_out.views, ThroughTheWire(left_out).views);
     const TargetStatus status = random_.TargetSeen();
     const TargetStatus back = ThroughTheWire(status);
     EXPECT_EQ(status.utime, back.utime);

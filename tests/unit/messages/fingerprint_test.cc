@@ -37,6 +37,7 @@ const Fingerprint kFingerprints[] = {
     Of<image_detection_t>(0x2ce9e958f8e31161U),
     Of<image_side_t>(0xd4257e8462efb945U),
     Of<image_t>(0xf724a27bdd3abd9cU),
+    Of<left_out_views_t>(0x0212eab24ee5a3bbU),
     Of<line_scan_t>(0x62ff83194fdec7fcU),
     Of<point_group_t>(0xc71a49ecf463d9bbU),
     Of<pose_t>(0xfd782618dd276dcfU),

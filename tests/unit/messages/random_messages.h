@@ -331,6 +331,13 @@ class RandomMessages {
   SessionRequest Request() {
     return {Seq(), Time(), static_cast<SessionRequestKind>(Int(1, 4)), Coin()};
   }
+  LeftOutViews LeftOut() {
+    LeftOutViews left_out;
+    left_out.seq = Seq();
+    left_out.utime = Time();
+    for (int i = Int(0, 5); i > 0; --i) left_out.views.push_back(Name());
+    return left_out;
+  }
   TargetStatus TargetSeen() {
     TargetStatus status;
     status.seq = Seq();
@@ -347,8 +354,9 @@ class RandomMessages {
 
   /// One of every alternative.
   Messages OneOfEach() {
-    return {Line(), Encoder(), Picture(), Chunk(), Corners(), Seen(),       Calibrated(), Fused(),
-            Pose(), RigFile(), Command(), Event(), Request(), TargetSeen(), Health(),     Report()};
+    return {Line(),       Encoder(), Picture(),    Chunk(),   Corners(), Seen(),
+            Calibrated(), Fused(),   Pose(),       RigFile(), Command(), Event(),
+            Request(),    LeftOut(), TargetSeen(), Health(),  Report()};
   }
 
  private:
