@@ -10,18 +10,17 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/calibration_use.h"
 #include "calib/files/schema/report_file.h"
-#include "calib/methods/calibrate_by_views.h"
+#include "calib/methods/calibrate.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/errors.h"
 #include "calib/model/version.h"
 #include "calib/present/frames/page.h"
-#include "calib/present/layout/frame.h"
-#include "calib/present/session/session_frames.h"
 #include "services/bus/bus.h"
 #include "services/command_line/command_line.h"
 #include "services/drivers/net/network_interfaces.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/process.h"
+#include "viewer/finished/finished_node.h"
 #include "viewer/live/bus_monitor.h"
 #include "viewer/live/live_node.h"
 #include "viewer/server/listening_socket.h"
@@ -29,7 +28,6 @@
 
 namespace {
 
-using rgbdt::viewer::Post;
 using rgbdt::viewer::Server;
 using rgbdt::viewer::ServerOptions;
 
@@ -206,36 +204,24 @@ std::string WhyRefused(const rgbdt::Session& session, const rgbdt::Report& repor
       {(session.root / "report.json").string(), (session.root / "rig.textproto").string()});
 }
 
-// How the result came about; of a report that is refused, why it is.
-std::vector<rgbdt::Report> ReportsOf(const rgbdt::Session& session,
-                                     const std::vector<rgbdt::ViewDetection>& detections,
-                                     bool anyway) {
-  const rgbdt::Report report = ReportOf(session, detections);
-  const std::string why = WhyRefused(session, report);
-  if (why.empty()) return rgbdt::CalibrateByViews(session.rig, detections, report);
-  std::fprintf(stderr, "rgbdt-viewer: %s%s\n", anyway ? "shown anyway: " : "", why.c_str());
-  return {anyway ? report : rgbdt::WithoutPoses(report, why)};
-}
-
 int ShowSession(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
-  const rgbdt::Session session = rgbdt::OpenSession(flags.session);
-  const auto detections =
-      rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
-        std::fprintf(stderr, "%s\n", line.c_str());
-      }).views;
-  rgbdt::SessionFramesOptions what;
-  what.title = flags.session;
-  const auto reports = ReportsOf(session, detections, flags.anyway);
-  const auto frames = rgbdt::SessionFrames({session, detections, reports}, what);
+  rgbdt::Session session = rgbdt::OpenSession(flags.session);
+  auto detections = rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
+                      std::fprintf(stderr, "%s\n", line.c_str());
+                    }).views;
+  rgbdt::Report report = ReportOf(session, detections);
+  const std::string why = WhyRefused(session, report);
+  if (!why.empty()) {
+    std::fprintf(stderr, "rgbdt-viewer: %s%s\n", flags.anyway ? "shown anyway: " : "", why.c_str());
+    if (!flags.anyway) report = rgbdt::WithoutPoses(std::move(report), why);
+  }
+  rgbdt::viewer::FinishedNode node(std::move(session), std::move(detections), report, why);
   const Goodbye goodbye;
   options.hello["source"] = "session";
   options.hello["title"] = flags.session;
-  Server server(options, [](const nlohmann::json&) { return std::vector<Post>(); });
-  for (const auto& frame : frames) {
-    if (frame.topic == "hello") continue;  // the server sends its own
-    server.Send({frame.topic, "", true, false, 0, [bytes = frame.bytes] { return bytes; }});
-  }
+  Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
+  node.PostTo(&server, flags.session);
   PrintAddresses(server, options);
   goodbye.Wait();
   return 0;

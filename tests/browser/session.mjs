@@ -34,8 +34,8 @@ async function takeView(page, number) {
 
 async function thumbsShown(page, views) {
   for (let view = 1; view <= views; ++view) {
-    const images = byId(page, `card-${nameOf(view)}`).locator(".thumb img");
-    await until(`thumbs of view ${view}`, () => images.evaluateAll((all) => all.filter((image) => image.naturalWidth > 0).length),
+    const images = byId(page, `card-${nameOf(view)}`).locator(".thumb img, .thumb canvas[data-points]");
+    await until(`thumbs of view ${view}`, () => images.evaluateAll((all) => all.filter((image) => image.naturalWidth !== 0).length),
       (count) => count === kCameras.length + 1);
   }
 }

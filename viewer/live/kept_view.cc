@@ -18,20 +18,6 @@ SharedBytes Shared(std::string bytes) {
   return std::make_shared<const std::string>(std::move(bytes));
 }
 
-std::shared_ptr<const Cloud> SomePoints(const Cloud& cloud) {
-  auto some = std::make_shared<Cloud>();
-  some->sweep_utime = cloud.sweep_utime;
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / KeptView::kPoints);
-  for (std::size_t i = 0; i < cloud.size(); i += step) {
-    if (!cloud.points[i].allFinite()) continue;
-    some->points.push_back(cloud.points[i]);
-    if (!cloud.intensity.empty()) some->intensity.push_back(cloud.intensity[i]);
-  }
-  some->lines = 1;
-  some->beams = static_cast<int>(some->points.size());
-  return some;
-}
-
 Post Ready(const std::string& topic, SharedBytes bytes, bool kept) {
   Post post;
   post.topic = topic;
@@ -54,7 +40,7 @@ KeptView KeepView(const View& view) {
     kept.pictures[image.camera] = Shared(ImageFrame(image, view.name, false, options));
     kept.thumbs[image.camera] = Shared(ThumbFrame(image, view.name));
   }
-  kept.cloud = SomePoints(view.cloud);
+  kept.cloud = std::make_shared<const Cloud>(SomePoints(view.cloud, KeptView::kPoints));
   return kept;
 }
 

@@ -8,6 +8,7 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/present/frames/cloud_frame.h"
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kBetweenStates = 0.1;  // s
 constexpr std::size_t kMaxViews = 200;
+constexpr char kNoSolver[] = "No rgbdt-solver is running; start one to leave views out.";
 constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
 
 // Without what the page does not show and is large.
@@ -41,9 +43,9 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",           "CLOUD",  ".*_IMAGE",     "CORNER_SELECTION", "DETECTION",
-          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",  "RGBDT_SWEEP",      "SESSION_COMMAND",
-          "TARGET_STATUS", "STATUS", "SESSION_EVENT"};
+  return {"RIG",           "CLOUD",  ".*_IMAGE",      "CORNER_SELECTION", "DETECTION",
+          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",   "RGBDT_SWEEP",      "SESSION_COMMAND",
+          "TARGET_STATUS", "STATUS", "SESSION_EVENT", "LEFT_OUT_VIEWS"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
@@ -85,6 +87,8 @@ void LiveNode::Take(const Message& message) {
     changed_ = true;
   } else if (const auto* target = std::get_if<TargetStatus>(&message)) {
     OnTargetStatus(*target);
+  } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
+    OnLeftOut({left_out->views.begin(), left_out->views.end()});
   } else if (const auto* status = std::get_if<Status>(&message)) {
     watch_.Add(*status, now_s_);
   }
@@ -120,6 +124,7 @@ void LiveNode::OnCommand(const SessionCommand& command) {
   state_ = {};
   state_.mode = before.mode;
   state_.can = before.can;
+  with_all_views_ = {};
   changed_ = true;
 }
 
@@ -210,6 +215,8 @@ void LiveNode::OnDetection(const ViewDetection& detection) {
   if (view == nullptr) return;
   view->heldout = detection.heldout;
   view->detection = Slim(detection);
+  with_all_views_ = {};  // of other views than those that there are now
+  state_.left_out.moved.clear();
   ForgetRejected(detection.view);
   changed_ = true;
   const auto kept = views_.find(detection.view);
@@ -247,19 +254,38 @@ void LiveNode::OnCalibration(const CalibrationMessage& message) {
   state_.calibration.method = message.method;
   state_.calibration.rig_hash = message.rig_hash;
   state_.calibration_utime[camera.camera] = message.utime;
+  TellMoved(camera);
   if (same != all.end()) {
     *same = camera;
   } else if (all.size() < 32) {
     all.push_back(camera);
   }
+  state_.projection[camera.camera] = ProjectionOf(*rig_, camera);
   CountSigma(camera);
   changed_ = true;
   PostLiveOverlay(camera.camera);
 }
 
+// What a person left out; the calibration without it follows.
+void LiveNode::OnLeftOut(const std::set<std::string>& views) {
+  LeftOut& left_out = state_.left_out;
+  if (views == left_out.views) return;
+  if (left_out.views.empty()) with_all_views_ = state_.calibration;
+  left_out.views = views;
+  left_out.moved.clear();
+  changed_ = true;
+}
+
+void LiveNode::TellMoved(const CameraCalibration& camera) {
+  const CameraCalibration* before = with_all_views_.Find(camera.camera);
+  if (state_.left_out.views.empty() || before == nullptr) return;
+  state_.left_out.moved[camera.camera] = ChangeOf(*before, camera);
+}
+
 void LiveNode::CountSigma(const CameraCalibration& calibration) {
-  const auto sigma = SigmaOf(calibration);
+  const auto sigma = WorstAxisSigma(calibration);
   if (!sigma) return;
+  if (!state_.left_out.views.empty()) return;  // the chart is of views as they came
   const auto used = std::count_if(
       state_.views.begin(), state_.views.end(),
       [&](const ViewState& view) { return !view.heldout && IsUsable(view, calibration.camera); });
@@ -365,6 +391,8 @@ Messages LiveNode::Advance(Utime now) {
 
 void LiveNode::PostState() {
   if (watch_.Update(now_s_, &state_)) changed_ = true;
+  const char* why_not = watch_.Running("solver", now_s_) ? "" : kNoSolver;
+  changed_ |= std::exchange(state_.left_out.why_not, why_not) != why_not;
   if (!changed_ || now_s_ - posted_s_ < kBetweenStates) return;
   changed_ = false;
   posted_s_ = now_s_;
@@ -396,6 +424,8 @@ std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
     }
     if (rig_) rig_->Camera(picks.camera);
     messages_.push_back(picks);
+  } else if (type == "leave_out") {
+    AskToLeaveOut(message.at("views").get<std::set<std::string>>());
   } else if (type == "view") {
     const auto view = views_.find(message.at("view"));
     if (view == views_.end())
@@ -403,6 +433,18 @@ std::vector<Post> LiveNode::OnBrowser(const nlohmann::json& message) {
     return PostsOf(*view->second);
   }
   return {};
+}
+
+void LiveNode::AskToLeaveOut(const std::set<std::string>& views) {
+  if (!watch_.Running("solver", now_s_)) throw InputError(kNoSolver);
+  std::size_t found = 0;
+  for (const ViewState& view : state_.views) found += views.count(view.name);
+  if (found < views.size()) throw InputError("a view that is to be left out is not in the session");
+  if (!state_.views.empty() && found == state_.views.size()) {
+    throw InputError("all views would be left out; use one or more");
+  }
+  messages_.push_back(LeftOutViews{0, newest_utime_, {views.begin(), views.end()}});
+  OnLeftOut(views);
 }
 
 std::vector<Post> LiveNode::PostsOf(const KeptView& view) const {

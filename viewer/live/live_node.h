@@ -6,6 +6,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,12 @@ namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS -> SESSION_REQUEST,
-/// CORNER_SELECTION. A calibration of another rig is refused. Nothing large is encoded here: a post
-/// makes its bytes when a browser is about to get it. Of each view its images are kept as JPEG, and
-/// some points of its cloud. Advance publishes what browsers asked for, and posts the session's
-/// state where it has changed, at most ten times a second. All but OnBrowser belong to the bus'
-/// thread, that to the server's.
+/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS, LEFT_OUT_VIEWS ->
+/// SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another rig is refused.
+/// Nothing large is encoded here: a post makes its bytes when a browser is about to get it. Of each
+/// view its images are kept as JPEG, and some points of its cloud. Advance publishes what browsers
+/// asked for, and posts the session's state where it has changed, at most ten times a second. All
+/// but OnBrowser belong to the bus' thread, that to the server's.
 class LiveNode : public Node {
  public:
   /// `use`: whether a calibration of another rig than RIG's is shown all the same.
@@ -66,6 +67,9 @@ class LiveNode : public Node {
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
   void OnTargetStatus(const TargetStatus& status);
+  void OnLeftOut(const std::set<std::string>& views);
+  void AskToLeaveOut(const std::set<std::string>& views);
+  void TellMoved(const CameraCalibration& camera);
   void CompleteView();
   void ShowCapture();
   void PostLiveOverlay(const std::string& camera);
@@ -85,6 +89,7 @@ class LiveNode : public Node {
   SessionState state_;
   bool changed_ = true;
   double posted_s_ = -1;
+  Calibration with_all_views_;  // before the first view was left out
   SessionWatch watch_;
   ViewCollector collector_{0};
   std::map<std::string, std::shared_ptr<KeptView>> views_;

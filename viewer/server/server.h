@@ -46,8 +46,8 @@ struct ScreenTimes {
 /// only. A browser that reads slowly gets less, newest first, and holds up nobody.
 class Server : public Outbox {
  public:
-  /// What a browser asked for, already checked in type and form: "request", "pick", "view",
-  /// "watch". Called on the server's thread; answers with frames for that browser alone. An
+  /// What a browser asked for, already checked in type and form: "request", "pick", "leave_out",
+  /// "view", "watch". Called on the server's thread; answers with frames for that browser alone. An
   /// InputError becomes a notice.
   using OnMessage = std::function<std::vector<Post>(const nlohmann::json& message)>;
 

@@ -67,10 +67,11 @@ nlohmann::json CalibratedOf(const RgbdtCloud& cloud) {
 
 }  // namespace
 
-std::string CloudFrame(const RgbdtCloud& cloud, int part) {
+std::string CloudFrame(const RgbdtCloud& cloud, int part, const std::string& view) {
   const Utime base =
       cloud.size() == 0 ? 0 : *std::min_element(cloud.utime.begin(), cloud.utime.end());
   nlohmann::json header = {{"type", "cloud"},
+                           {"view", view},
                            {"sweep_utime", cloud.sweep_utime},
                            {"whole", cloud.whole_sweep},
                            {"part", part},

@@ -11,6 +11,7 @@ inline constexpr std::size_t kPointBytes = 32;
 
 /// A fused cloud as a CloudFrame, `part` its number in the sweep. Its points come in an order that
 /// scatters them evenly: any first part of the records is an even sample. Deterministic.
-std::string CloudFrame(const RgbdtCloud& cloud, int part);
+/// `view`: of a session, whose cloud it is; empty: the newest sweep.
+std::string CloudFrame(const RgbdtCloud& cloud, int part, const std::string& view = "");
 
 }  // namespace rgbdt

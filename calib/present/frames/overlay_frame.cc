@@ -71,6 +71,20 @@ std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& spec, const Rigid3& ca
   return Scattered(seen, most);
 }
 
+Cloud SomePoints(const Cloud& cloud, std::size_t most) {
+  Cloud some;
+  some.sweep_utime = cloud.sweep_utime;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / most);
+  for (std::size_t i = 0; i < cloud.size(); i += step) {
+    if (!cloud.points[i].allFinite()) continue;
+    some.points.push_back(cloud.points[i]);
+    if (!cloud.intensity.empty()) some.intensity.push_back(cloud.intensity[i]);
+  }
+  some.lines = 1;
+  some.beams = static_cast<int>(some.points.size());
+  return some;
+}
+
 Overlay ViewOverlay(const CameraSpec& camera, const ViewDetection& detection, const Cloud* cloud,
                     const std::optional<Rigid3>& camera_from_lidar) {
   const CameraView view = CameraViewOf(camera.name, detection);

@@ -31,6 +31,10 @@ std::vector<Eigen::Vector3d> LayOnImage(const CameraSpec& spec, const Rigid3& ca
                                         const std::vector<Eigen::Vector3f>& points,
                                         std::size_t most = 20000);
 
+/// Some of the points that returned, `most` or a few more, evenly chosen, with their intensity: to
+/// be kept for overlays. It is no longer organised.
+Cloud SomePoints(const Cloud& cloud, std::size_t most);
+
 /// A view's overlay: what detection found in the image and, with a calibration, the board's edge in
 /// the cloud and the cloud itself, both laid on the image. `camera`: with the lens
 /// that belongs to the pose. `cloud` may be null.

@@ -8,12 +8,15 @@
 #include "calib/present/frames/internal/content_json.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/report/session_verdict.h"
+#include "calib/solve/colouring.h"
 #include "calib/solve/first_guess.h"
 
 namespace rgbdt {
 namespace {
 
 using nlohmann::json;
+
+const std::vector<double> kOfferedDistancesM = {1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100};
 
 const char* NameOf(CameraKind kind) { return kind == CameraKind::kThermal ? "thermal" : "color"; }
 
@@ -157,12 +160,24 @@ json ViewsOf(const SessionState& state, const std::vector<std::string>& cameras)
     }
     views.push_back({{"name", view.name},
                      {"heldout", view.heldout},
+                     {"left_out", state.left_out.views.count(view.name) > 0},
                      {"waits", view.waits},
                      {"board", BoardOf(view, state.calibration)},
                      {"cloud_why_not", view.detection ? view.detection->cloud.why_not : ""},
                      {"cameras", of_cameras}});
   }
   return views;
+}
+
+json LeftOutJson(const LeftOut& left_out) {
+  json moved = json::array();
+  for (const auto& [camera, change] : left_out.moved) {
+    moved.push_back({{"camera", camera},
+                     {"rotation_deg", FiniteOrNull(change.difference.rotation_deg)},
+                     {"centre_mm", FiniteOrNull(change.difference.translation_mm)},
+                     {"sigmas", Optional(change.sigmas)}});
+  }
+  return {{"views", left_out.views}, {"moved", moved}, {"why_not", left_out.why_not}};
 }
 
 // Whether a person's picks would help, and why; empty: not, or there is no image.
@@ -198,8 +213,8 @@ json SigmasOf(const std::vector<SigmaStep>& steps) {
     json cameras = json::array();
     for (const auto& [camera, sigma] : step.cameras) {
       cameras.push_back({{"camera", camera},
-                         {"rotation_deg", FiniteOrNull(sigma.first)},
-                         {"centre_mm", FiniteOrNull(sigma.second)}});
+                         {"rotation_deg", FiniteOrNull(sigma.rotation_deg)},
+                         {"centre_mm", FiniteOrNull(sigma.translation_mm)}});
     }
     out.push_back({{"views", step.views}, {"cameras", cameras}});
   }
@@ -216,6 +231,18 @@ JudgedCamera JudgedOf(const SessionState& state, const std::string& camera) {
   return judged;
 }
 
+json ProjectionJson(const SessionState& state, const std::string& camera) {
+  json out = json::array();
+  const auto known = state.projection.find(camera);
+  if (known == state.projection.end()) return out;
+  for (const ColouringSigma& at : known->second) {
+    out.push_back({{"distance_m", at.distance_m},
+                   {"centre_px", FiniteOrNull(at.centre_px)},
+                   {"worst_px", FiniteOrNull(at.worst_px)}});
+  }
+  return out;
+}
+
 json CameraOf(const SessionState& state, const JudgedCamera& judged) {
   const CameraCalibration* calibration = state.calibration.Find(judged.camera);
   const auto utime = state.calibration_utime.find(judged.camera);
@@ -224,15 +251,19 @@ json CameraOf(const SessionState& state, const JudgedCamera& judged) {
               {"status", calibration == nullptr ? "not calibrated yet" : calibration->StatusText()},
               {"utime", utime == state.calibration_utime.end() ? 0 : utime->second},
               {"camera_from_lidar", nullptr},
+              {"poses", json::array()},
               {"rotation_sigma_deg", nullptr},
               {"centre_sigma_mm", nullptr},
+              {"projection", json::array()},
               {"verdict", VerdictJson(VerdictOf(
                               judged, state.report ? state.report->next_view : std::nullopt))}};
   if (calibration != nullptr) {
     out["camera_from_lidar"] = MatrixOf(calibration->camera_from_lidar);
-    if (const auto sigma = SigmaOf(*calibration)) {
-      out["rotation_sigma_deg"] = sigma->first;
-      out["centre_sigma_mm"] = sigma->second;
+    out["poses"] = PosesJson(BothWays(*calibration));
+    out["projection"] = ProjectionJson(state, judged.camera);
+    if (const auto sigma = WorstAxisSigma(*calibration)) {
+      out["rotation_sigma_deg"] = FiniteOrNull(sigma->rotation_deg);
+      out["centre_sigma_mm"] = FiniteOrNull(sigma->translation_mm);
     }
   } else if (judged.report != nullptr && !judged.report->calibration.detail.empty()) {
     out["status"] = judged.report->calibration.StatusText();
@@ -259,17 +290,6 @@ json NextViewOf(const std::optional<Report>& report) {
 
 }  // namespace
 
-std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration) {
-  if (!calibration.covariance || !calibration.covariance->allFinite()) return std::nullopt;
-  // The centre moves by -R^T times delta's translation (calib/solve/colouring.h): the mean square
-  // over three axes is the same in any frame.
-  const Matrix6d& covariance = *calibration.covariance;
-  const double rotation = covariance.topLeftCorner<3, 3>().trace() / 3;
-  const double centre = covariance.bottomRightCorner<3, 3>().trace() / 3;
-  if (rotation < 0 || centre < 0) return std::nullopt;
-  return std::make_pair(std::sqrt(rotation) * 180 / M_PI, std::sqrt(centre) * 1000);
-}
-
 bool IsUsable(const ViewState& view, const std::string& camera) {
   return view.detection && CameraViewOf(camera, *view.detection).usable();
 }
@@ -289,6 +309,12 @@ std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
     if (chosen.usable()) return chosen.cloud;
   }
   return likeliest;
+}
+
+std::vector<ColouringSigma> ProjectionOf(const Rig& rig, const CameraCalibration& calibration) {
+  const CameraSpec& spec = rig.Camera(calibration.camera);
+  if (!spec.lens.known() || !WorstAxisSigma(calibration)) return {};
+  return ColouringSigmas(spec, calibration, kOfferedDistancesM);
 }
 
 std::string RigFrame(const Rig& rig) {
@@ -330,6 +356,7 @@ std::string SessionFrame(const SessionState& state, const Rig* rig) {
                     {"log", LogOf(state.log)},
                     {"views", ViewsOf(state, cameras)},
                     {"pick_wanted", PickWantedOf(state, cameras)},
+                    {"left_out", LeftOutJson(state.left_out)},
                     {"sigma", SigmasOf(state.sigma)},
                     {"cameras", states},
                     {"verdict", VerdictJson(VerdictOfAll(judged, next_view))},

@@ -2,10 +2,12 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/model/rig.h"
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
@@ -15,7 +17,16 @@ namespace rgbdt {
 /// The uncertainty of the calibration with so many views.
 struct SigmaStep {
   int views = 0;
-  std::map<std::string, std::pair<double, double>> cameras;  ///< rotation [deg], centre [mm]
+  std::map<std::string, PoseError> cameras;  ///< 1 sigma, calib/model/pose_sigma.h
+};
+
+/// Views that a person left out of the solve, and what that did.
+struct LeftOut {
+  std::set<std::string> views;
+  /// By camera: from the result with all views to the one without these. Empty: nothing is left
+  /// out, or it is not known yet.
+  std::map<std::string, PoseChange> moved;
+  std::string why_not;  ///< why no view can be left out, and what to do; empty: it can
 };
 
 /// A view as the page shows it.
@@ -38,14 +49,13 @@ struct SessionState {
   std::string failure;
   std::vector<SessionEvent> log;  ///< newest last
   std::vector<ViewState> views;
+  LeftOut left_out;
   std::vector<SigmaStep> sigma;
   Calibration calibration;  ///< each camera's newest
   std::map<std::string, Utime> calibration_utime;
-  std::optional<Report> report;  ///< the newest
+  std::map<std::string, std::vector<ColouringSigma>> projection;  ///< by camera: ProjectionOf
+  std::optional<Report> report;                                   ///< the newest
 };
-
-/// 1 sigma of a calibration: rotation, RMS of the three axes [deg], and centre, likewise [mm].
-std::optional<std::pair<double, double>> SigmaOf(const CameraCalibration& calibration);
 
 /// Whether a view's detection can be used for this camera: the board was found in its image and in
 /// the cloud.
@@ -55,6 +65,10 @@ bool IsUsable(const ViewState& view, const std::string& camera);
 /// likeliest. Nothing where there is none.
 std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
                                        const Calibration& calibration);
+
+/// 1 sigma of where points are projected, at distances for a person to choose from; empty: not
+/// known.
+std::vector<ColouringSigma> ProjectionOf(const Rig& rig, const CameraCalibration& calibration);
 
 /// A RigFrame.
 std::string RigFrame(const Rig& rig);

@@ -19,7 +19,7 @@ std::string PlainPage(const FinishedSession& finished) {
     if (auto picture = OverlayPicture(finished, camera)) pictures.push_back(std::move(*picture));
     const cv::Mat map = ColouringPicture(finished.session.rig.Camera(camera.camera), camera);
     if (!map.empty()) {
-      pictures.push_back({camera.camera + ": reprojection uncertainty", kColouringCaption, map});
+      pictures.push_back({camera.camera + ": projection uncertainty", kColouringCaption, map});
     }
     const cv::Mat lidar = LidarPicture(report);
     if (!lidar.empty()) {

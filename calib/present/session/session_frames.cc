@@ -6,11 +6,11 @@
 
 #include "calib/fuse/fuse.h"
 #include "calib/model/parallel.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/model/version.h"
 #include "calib/present/frames/cloud_frame.h"
 #include "calib/present/frames/image_frame.h"
 #include "calib/present/frames/overlay_frame.h"
-#include "calib/present/frames/session_state.h"
 #include "calib/present/layout/frame.h"
 #include "calib/present/pictures/colouring_picture.h"
 #include "calib/present/pictures/lidar_picture.h"
@@ -46,7 +46,7 @@ std::vector<ViewState> ViewsOf(const Session& session,
 SigmaStep SigmaStepOf(const Report& report) {
   SigmaStep step;
   for (const CameraReport& camera : report.cameras) {
-    const auto sigma = SigmaOf(camera.calibration);
+    const auto sigma = WorstAxisSigma(camera.calibration);
     if (!sigma || !camera.calibration.solved()) continue;
     step.cameras[camera.calibration.camera] = *sigma;
     step.views = std::max(step.views, static_cast<int>(camera.used.size()));
@@ -63,21 +63,26 @@ std::vector<SigmaStep> SigmaSteps(const std::vector<Report>& reports) {
   return steps;
 }
 
-SessionState StateOf(const Report& report) {
+SessionState StateOf(const FinishedSession& finished) {
+  const Report& report = finished.report();
   SessionState state;
   state.mode = "finished";
   state.report = report;
   state.calibration = report.ToCalibration();
   for (const CameraCalibration& camera : state.calibration.cameras) {
     state.calibration_utime[camera.camera] = report.utime;
+    state.projection[camera.camera] = ProjectionOf(finished.session.rig, camera);
   }
+  state.views = ViewsOf(finished.session, finished.detections);
+  state.sigma = SigmaSteps(finished.reports);
+  state.left_out = finished.left_out;
   return state;
 }
 
 // What one view gives; the pixels and points themselves are not kept.
 struct ViewFrames {
   std::vector<NamedFrame> thumbs, images;
-  std::string cloud;    // the fused one, where it was asked for
+  std::string cloud;    // the fused one
   std::string failure;  // why the view could not be read
 };
 
@@ -87,7 +92,8 @@ class FrameMaker {
              const SessionFramesOptions& options)
       : session_(session), calibration_(calibration), options_(options) {}
 
-  ViewFrames Make(const ViewState& state, bool fuse) const {
+  /// With so many points of its cloud.
+  ViewFrames Make(const ViewState& state, std::size_t points) const {
     ViewFrames out;
     try {
       const View view = ReadView(session_, state.name);
@@ -98,28 +104,11 @@ class FrameMaker {
         out.thumbs.push_back(
             {"thumb/" + view.name + "/", BoardThumbFrame(view.name, *board, view.cloud)});
       }
-      if (fuse) out.cloud = FusedFrame(view);
+      if (points > 0) out.cloud = ViewCloudFrame(session_, calibration_, view, points);
     } catch (const std::exception& e) {
       out.failure = e.what();
     }
     return out;
-  }
-
-  /// The fused cloud, evenly thinned; empty: no point returned.
-  std::string FusedFrame(const View& view) const {
-    RgbdtCloud fused = FuseView(session_.rig, calibration_, view);
-    if (fused.size() == 0) return {};
-    fused.whole_sweep = true;
-    // Where nobody knows the times they are 0, which would stand for "not calibrated".
-    for (std::size_t i = 0; i < fused.cameras.size(); ++i) {
-      if (calibration_.Find(fused.cameras[i]) == nullptr) continue;
-      fused.calibration_utime[i] = std::max<Utime>(1, fused.calibration_utime[i]);
-    }
-    std::string frame = CloudFrame(fused, 0);
-    if (fused.size() > options_.points) {  // a frame may end early, at a whole record
-      frame.resize(frame.size() - (fused.size() - options_.points) * kPointBytes);
-    }
-    return frame;
   }
 
  private:
@@ -151,23 +140,16 @@ class FrameMaker {
 };
 
 // Each view is read once, one a thread at a time: a dense session would not fit into memory.
-std::vector<ViewFrames> MakeAll(const FrameMaker& maker, const std::vector<ViewState>& views) {
+std::vector<ViewFrames> MakeAll(const FrameMaker& maker, const std::vector<ViewState>& views,
+                                const SessionFramesOptions& options) {
   std::vector<ViewFrames> made(views.size());
+  const std::size_t each =
+      std::min(options.points, options.other_points / std::max<std::size_t>(1, views.size()));
   ForEach(static_cast<int>(views.size()), 0, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
-    made[i] = maker.Make(views[i], i + 1 == views.size());
+    made[i] = maker.Make(views[i], i + 1 == views.size() ? options.points : each);
   });
   return made;
-}
-
-// Of the last view that gives one: where the very last did not, the ones before it are read again.
-std::string LastCloud(const FrameMaker& maker, const std::vector<ViewState>& views,
-                      const std::vector<ViewFrames>& made) {
-  for (std::size_t i = views.size(); i-- > 0;) {
-    std::string cloud = i + 1 == views.size() ? made[i].cloud : maker.Make(views[i], true).cloud;
-    if (!cloud.empty()) return cloud;
-  }
-  return {};
 }
 
 // Cameras of which nothing is known in a view that could not be read.
@@ -181,7 +163,7 @@ void TellFailure(const Rig& rig, const std::string& failure, ViewState* view) {
   detection.cloud.why_not = failure;
 }
 
-// The pictures of the reprojection uncertainty and of the LIDAR's own errors, as the images of
+// The pictures of the projection uncertainty and of the LIDAR's own errors, as the images of
 // views "sigma" and "lidar".
 std::vector<NamedFrame> PictureFrames(const Rig& rig, const Report& report) {
   std::vector<NamedFrame> frames;
@@ -215,12 +197,9 @@ void Append(std::vector<NamedFrame> from, std::vector<NamedFrame>* to) {
 std::vector<NamedFrame> SessionFrames(const FinishedSession& finished,
                                       const SessionFramesOptions& options) {
   const Rig& rig = finished.session.rig;
-  SessionState state = StateOf(finished.report());
-  state.views = ViewsOf(finished.session, finished.detections);
-  state.sigma = SigmaSteps(finished.reports);
+  SessionState state = StateOf(finished);
   const FrameMaker maker(finished.session, state.calibration, options);
-  std::vector<ViewFrames> made = MakeAll(maker, state.views);
-  const std::string cloud = LastCloud(maker, state.views, made);
+  std::vector<ViewFrames> made = MakeAll(maker, state.views, options);
   for (std::size_t i = 0; i < made.size(); ++i) {
     if (!made[i].failure.empty()) TellFailure(rig, made[i].failure, &state.views[i]);
   }
@@ -230,8 +209,35 @@ std::vector<NamedFrame> SessionFrames(const FinishedSession& finished,
   for (ViewFrames& view : made) Append(std::move(view.thumbs), &frames);
   for (ViewFrames& view : made) Append(std::move(view.images), &frames);
   Append(PictureFrames(rig, finished.report()), &frames);
-  if (!cloud.empty()) frames.push_back({"sweep/0", cloud});
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (made[i].cloud.empty()) continue;
+    frames.push_back({"cloud/" + state.views[i].name, std::move(made[i].cloud)});
+  }
   return frames;
+}
+
+std::vector<NamedFrame> ResultFrames(const FinishedSession& finished) {
+  const Rig& rig = finished.session.rig;
+  std::vector<NamedFrame> frames = {{"session", SessionFrame(StateOf(finished), &rig)}};
+  Append(PictureFrames(rig, finished.report()), &frames);
+  return frames;
+}
+
+std::string ViewCloudFrame(const Session& session, const Calibration& calibration, const View& view,
+                           std::size_t points) {
+  RgbdtCloud fused = FuseView(session.rig, calibration, view);
+  if (fused.size() == 0) return {};
+  fused.whole_sweep = true;
+  // Where nobody knows the times they are 0, which would stand for "not calibrated".
+  for (std::size_t i = 0; i < fused.cameras.size(); ++i) {
+    if (calibration.Find(fused.cameras[i]) == nullptr) continue;
+    fused.calibration_utime[i] = std::max<Utime>(1, fused.calibration_utime[i]);
+  }
+  std::string frame = CloudFrame(fused, 0, view.name);
+  if (fused.size() > points) {  // a frame may end early, at a whole record
+    frame.resize(frame.size() - (fused.size() - points) * kPointBytes);
+  }
+  return frame;
 }
 
 }  // namespace rgbdt

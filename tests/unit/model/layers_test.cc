@@ -76,7 +76,10 @@ const std::map<std::string, Folders>& Allowed() {
        {"calib/camera", "calib/files/schema", "calib/present/layout", "calib/present/frames",
         "services/messages", "services/bus", "services/runtime", "services/nodes",
         "viewer/server"}},
-      {"viewer", {"calib/*", "services/*", "viewer/server", "viewer/live"}},
+      {"viewer/finished",
+       {"calib/methods", "calib/files/session", "calib/present/frames", "calib/present/session",
+        "viewer/server"}},
+      {"viewer", {"calib/*", "services/*", "viewer/server", "viewer/live", "viewer/finished"}},
   };
   return allowed;
 }

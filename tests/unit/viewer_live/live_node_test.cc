@@ -220,6 +220,55 @@ TEST_F(LiveNodeTest, AResetForgetsTheViews) {
   EXPECT_THAT(posts_.forgotten, Contains("thumb/"));
 }
 
+CalibrationMessage Calibrated(const std::string& camera, double angle, Utime utime) {
+  CalibrationMessage message;
+  message.utime = utime;
+  message.method = "auto";
+  message.calibration.camera = camera;
+  message.calibration.camera_from_lidar = RotationAbout({0, 0, 1}, angle);
+  message.calibration.covariance = Matrix6d::Identity() * 1e-6;
+  message.calibration.status = SolveStatus::kConverged;
+  return message;
+}
+
+TEST_F(LiveNodeTest, AViewIsLeftOutByTheSolverAndThePoseThatFollowsIsComparedToTheOneBefore) {
+  TakeView("0001", test::kStart);
+  TakeView("0002", test::kStart + 20 * kMicrosecondsPerSecond);
+  node_.Handle(Calibrated("rgb", 0, test::kStart));
+  const json ask = {{"type", "leave_out"}, {"views", {"0002"}}};
+  EXPECT_THAT(ErrorOf([&] { node_.OnBrowser(ask); }), HasSubstr("rgbdt-solver"));
+  EXPECT_THAT(State().at("left_out").at("why_not").get<std::string>(), HasSubstr("rgbdt-solver"));
+  node_.Handle(test::Ready("solver"));
+  EXPECT_EQ(State().at("left_out").at("why_not"), "");
+  node_.OnBrowser(ask);
+  const Messages said = node_.Advance(now_ += 200'000);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_THAT(std::get<LeftOutViews>(said[0]).views, ElementsAre("0002"));
+  json state = State();
+  EXPECT_EQ(state.at("views").at(1).at("left_out"), true);
+  EXPECT_THAT(state.at("left_out").at("moved"), IsEmpty()) << "not solved yet";
+  node_.Handle(Calibrated("rgb", 2e-3, test::kStart));
+  state = State();
+  const json& moved = state.at("left_out").at("moved").at(0);
+  EXPECT_EQ(moved.at("camera"), "rgb");
+  EXPECT_NEAR(moved.at("rotation_deg"), 2e-3 * 180 / M_PI, 1e-9);
+  EXPECT_NEAR(moved.at("sigmas"), 2, 1e-3);
+  node_.Handle(LeftOutViews());  // another browser took it back
+  state = State();
+  EXPECT_THAT(state.at("left_out").at("views"), IsEmpty());
+  EXPECT_THAT(state.at("left_out").at("moved"), IsEmpty());
+}
+
+TEST_F(LiveNodeTest, OnlyViewsOfTheSessionAndNotAllOfThemAreLeftOut) {
+  TakeView("0001", test::kStart);
+  node_.Handle(test::Ready("solver"));
+  const auto error = [&](const std::vector<std::string>& views) {
+    return ErrorOf([&] { node_.OnBrowser({{"type", "leave_out"}, {"views", views}}); });
+  };
+  EXPECT_THAT(error({"0009"}), HasSubstr("not in the session"));
+  EXPECT_THAT(error({"0001"}), HasSubstr("all views"));
+}
+
 TEST_F(LiveNodeTest, WhatABrowserAsksForGoesToTheBus) {
   const json request = {{"type", "request"}, {"request", "capture"}, {"heldout", true}};
   EXPECT_THAT(ErrorOf([&] { node_.OnBrowser(request); }), HasSubstr("rgbdt-session"));

@@ -15,6 +15,8 @@ const std::vector<std::string> kGood = {
     R"({"type":"watch","cloud":false,"cameras":[],"overlay_cloud":true,"points":10000000})",
     R"({"type":"ack","id":4294967295})",
     R"({"type":"view","view":"0001"})",
+    R"({"type":"leave_out","views":["0001","0004"]})",
+    R"({"type":"leave_out","views":[]})",
     R"({"type":"request","request":"next_pose","heldout":false})",
     R"({"type":"request","request":"pose_is_set","heldout":false})",
     R"({"type":"request","request":"capture","heldout":true})",
@@ -94,6 +96,17 @@ TEST(Message, WatchOutOfRangeIsRefused) {
   EXPECT_TRUE(refused_with("cameras", {""}));
   EXPECT_TRUE(refused_with("cameras", std::vector<std::string>(65, "rgb")));
   EXPECT_FALSE(refused_with("cameras", std::vector<std::string>(64, "rgb")));
+}
+
+TEST(Message, ViewsToLeaveOutAreNames) {
+  const auto refused_with = [&](const nlohmann::json& views) {
+    return RefusedAs(true, nlohmann::json{{"type", "leave_out"}, {"views", views}}.dump());
+  };
+  EXPECT_TRUE(refused_with("0001"));
+  EXPECT_TRUE(refused_with({"0001", 2}));
+  EXPECT_TRUE(refused_with({""}));
+  EXPECT_TRUE(refused_with(std::vector<std::string>(1001, "0001")));
+  EXPECT_FALSE(refused_with(std::vector<std::string>(1000, "0001")));
 }
 
 TEST(Message, CornersOfAnotherFormAreRefused) {

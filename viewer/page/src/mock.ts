@@ -52,6 +52,10 @@ function answer(message: ToBridge): void {
   if (message.type === "view")
     kCameras.forEach((camera) => void postImage(camera, message.view, boardOfView(Number(message.view) - 1)));
   if (message.type === "request") request(message);
+  if (message.type === "leave_out") {
+    session.leaveOut(message.views);
+    post(session.frame());
+  }
   if (message.type === "pick") {
     session.pick(message.camera, message.image_utime);
     post(session.frame());

@@ -92,10 +92,11 @@ export interface ThumbFrame {
 }
 
 /// Fused points, LIDAR frame: a chunk of the sweep that is being made, or a part of a whole one,
-/// which takes the place of its chunks. The last array is "points": `count` records of
+/// which takes the place of its chunks; or the whole cloud of a session's view. The last array is "points": `count` records of
 /// kPointBytes, see PointView.
 export interface CloudFrame {
   type: "cloud";
+  view: string; // "" for the newest, live
   sweep_utime: number; // the sweep's name
   whole: boolean;
   part: number; // of a whole sweep, from 0; a chunk's number
@@ -132,6 +133,7 @@ export interface ViewCamera {
 export interface View {
   name: string;
   heldout: boolean; // kept to judge the result
+  left_out: boolean; // by a person
   waits: string; // what is still missing; "": complete
   board: { centre_m: Vec3; normal: Vec3; distance_m: number } | null; // in the cloud
   cloud_why_not: string; // why there is none; "": there is one, or nobody looked yet
@@ -144,9 +146,25 @@ export interface CameraState {
   status: string; // how the solve ended, in words
   utime: number; // of the calibration; it changes with each new one
   camera_from_lidar: number[] | null; // 4x4 row by row
-  rotation_sigma_deg: number | null; // 1 sigma, RMS of the three axes
-  centre_sigma_mm: number | null;
+  poses: Pose[]; // camera_from_lidar and its inverse; empty: not calibrated
+  rotation_sigma_deg: number | null; // 1 sigma along the axis that is known least
+  centre_sigma_mm: number | null; // of the camera's centre, likewise
+  projection: ProjectionSigma[]; // by distance; empty: not known
   verdict: Verdict;
+}
+
+/// 1 sigma of where a point, so far from the camera, is projected into the image.
+export interface ProjectionSigma {
+  distance_m: number;
+  centre_px: number | null; // in the image's centre
+  worst_px: number | null; // anywhere in the image
+}
+
+/// Views that a person left out of the result, and what that did.
+export interface LeftOut {
+  views: string[];
+  moved: { camera: string; rotation_deg: number; centre_mm: number; sigmas: number | null }[]; // from the result with all views
+  why_not: string; // why no view can be left out; "": it can
 }
 
 export interface Verdict {
@@ -176,7 +194,6 @@ export interface Pose {
 
 export interface CameraReport {
   camera: string;
-  poses: Pose[];
   tables: Table[];
 }
 
@@ -202,6 +219,7 @@ export interface SessionFrame {
   failure: string; // why the session, or its last step, failed
   log: { utime: number; source: string; kind: "progress" | "done" | "failed"; text: string }[]; // newest last
   views: View[];
+  left_out: LeftOut;
   pick_wanted: { view: string; camera: string; image_utime: number; why: string }[]; // likeliest first
   sigma: { views: number; cameras: { camera: string; rotation_deg: number; centre_mm: number }[] }[];
   cameras: CameraState[];
@@ -256,9 +274,10 @@ export type ToBridge =
   // What is on the screen; replaces what was said before. points: most drawn at once.
   | { type: "watch"; cloud: boolean; cameras: string[]; overlay_cloud: boolean; points: number }
   | { type: "ack"; id: number }
-  | { type: "view"; view: string } // send that view's images and overlays
+  | { type: "view"; view: string } // send that view's images, overlays and cloud
   // Commands; with a token where the bridge listens beyond loopback.
   | { type: "request"; request: RequestName; heldout: boolean }
+  | { type: "leave_out"; views: string[] } // all that are to be left out
   | { type: "pick"; camera: string; image_utime: number; corners: [Vec2, Vec2, Vec2, Vec2] };
 
 export interface Frame {

@@ -1,10 +1,12 @@
 // What browser tests read and do where clicks and `data-testid` do not reach: `window.rgbdt`.
-import { pickAt, sceneNow } from "./cloud/model";
+import { pickAt, sceneNow, shownCloud } from "./cloud/model";
 import type { PointValues } from "./cloud/points";
 import type { ViewName } from "./cloud/viewpoint";
 
 const access = {
   cloud: {
+    /// The session's view whose cloud is shown; "": what came live.
+    view: shownCloud,
     /// Points in the frame drawn last.
     points: (): number => sceneNow()?.points ?? 0,
     /// Points that are shown: while the view moves, fewer are drawn.

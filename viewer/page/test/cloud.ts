@@ -19,7 +19,7 @@ export function part(points: TestPoint[], header: Partial<CloudFrame> = {}): Par
     view.setUint32(record + kPointOffsets.time, offset ?? 0, true);
   });
   const frame = decodeFrame(encodeFrame(1, {
-    type: "cloud", sweep_utime: 1e15, whole: true, part: 0, sweep_end: true, utime: 1e15, cameras: ["rgb", "thermal"],
+    type: "cloud", view: "", sweep_utime: 1e15, whole: true, part: 0, sweep_end: true, utime: 1e15, cameras: ["rgb", "thermal"],
     calibrated: [true, true], map_from_lidar: null, count: points.length, ...header,
   }, { points: new Uint8Array(view.buffer) }));
   return partOf(frame.header as CloudFrame, frame);

@@ -21,7 +21,7 @@ test("what is unknown is null", () => {
 });
 
 test("a thinned frame holds the records that came", () => {
-  const bytes = encodeFrame(1, { type: "cloud", sweep_utime: 0, whole: true, part: 0, sweep_end: true, utime: 0, cameras: [],
+  const bytes = encodeFrame(1, { type: "cloud", view: "", sweep_utime: 0, whole: true, part: 0, sweep_end: true, utime: 0, cameras: [],
     calibrated: [], map_from_lidar: null, count: 4 }, { points: new Uint8Array(4 * 32) });
   expect(decodeFrame(bytes.slice(0, bytes.byteLength - 64)).arrays.get("points")?.length).toBe(64);
 });

@@ -129,7 +129,7 @@ void Browser::Handle(const nlohmann::json& message) {
   if (type == "hello") return OnHello(message);
   if (type == "ack") return OnAck(message);
   if (type == "watch") return OnWatch(message);
-  if ((type == "request" || type == "pick") && !may_command_) {
+  if ((type == "request" || type == "pick" || type == "leave_out") && !may_command_) {
     return Answer({ErrorNotice(kTokenAdvice)});
   }
   Ask(message);

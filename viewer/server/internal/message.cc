@@ -15,6 +15,7 @@ using nlohmann::json;
 constexpr std::int64_t kMaxPoints = 10'000'000;
 constexpr std::int64_t kMaxInteger = std::int64_t{1} << 53;  // a page's numbers are doubles
 constexpr std::size_t kMaxCameras = 64;
+constexpr std::size_t kMaxViews = 1000;
 
 bool IsBool(const json& value) { return value.is_boolean(); }
 
@@ -41,10 +42,13 @@ bool IsName(const json& value) {
   return IsString(value) && !value.get_ref<const std::string&>().empty();
 }
 
-bool IsNames(const json& value) {
-  return value.is_array() && value.size() <= kMaxCameras &&
+bool IsNames(const json& value, std::size_t most) {
+  return value.is_array() && value.size() <= most &&
          std::all_of(value.begin(), value.end(), IsName);
 }
+
+bool IsCameras(const json& value) { return IsNames(value, kMaxCameras); }
+bool IsViews(const json& value) { return IsNames(value, kMaxViews); }
 
 bool IsRequest(const json& value) {
   return value == "next_pose" || value == "pose_is_set" || value == "capture" || value == "finish";
@@ -69,9 +73,13 @@ const std::vector<Field>* FieldsOf(const std::string& type) {
   static const std::map<std::string, std::vector<Field>> kFields = {
       {"hello", {{"token", IsString}}},
       {"watch",
-       {{"cloud", IsBool}, {"cameras", IsNames}, {"overlay_cloud", IsBool}, {"points", IsPoints}}},
+       {{"cloud", IsBool},
+        {"cameras", IsCameras},
+        {"overlay_cloud", IsBool},
+        {"points", IsPoints}}},
       {"ack", {{"id", IsId}}},
       {"view", {{"view", IsString}}},
+      {"leave_out", {{"views", IsViews}}},
       {"request", {{"request", IsRequest}, {"heldout", IsBool}}},
       {"pick", {{"camera", IsName}, {"image_utime", IsUtime}, {"corners", IsCorners}}}};
   const auto found = kFields.find(type);

@@ -14,12 +14,7 @@ json TablesJson(const std::vector<Table>& tables) {
 }
 
 json CameraJson(const CameraContent& camera) {
-  json poses = json::array();
-  for (const NamedPose& pose : camera.poses) {
-    poses.push_back(
-        {{"name", pose.name}, {"sentence", pose.sentence}, {"matrix", MatrixOf(pose.pose)}});
-  }
-  return {{"camera", camera.camera}, {"poses", poses}, {"tables", TablesJson(camera.tables)}};
+  return {{"camera", camera.camera}, {"tables", TablesJson(camera.tables)}};
 }
 
 }  // namespace
@@ -28,6 +23,15 @@ json VerdictJson(const Verdict& verdict) {
   return {{"grade", NameOf(verdict.grade)},
           {"headline", verdict.headline},
           {"reasons", verdict.reasons}};
+}
+
+json PosesJson(const std::vector<NamedPose>& poses) {
+  json out = json::array();
+  for (const NamedPose& pose : poses) {
+    out.push_back(
+        {{"name", pose.name}, {"sentence", pose.sentence}, {"matrix", MatrixOf(pose.pose)}});
+  }
+  return out;
 }
 
 json TableJson(const Table& table) {

@@ -240,10 +240,11 @@ TEST(SessionFrame, HasTheReportsTablesAndPoses) {
     }
   }
   const Rigid3 pose = test::MakeReport().cameras[0].calibration.camera_from_lidar;
-  EXPECT_EQ(camera.at("poses").at(0).at("name"), "camera_from_lidar");
-  EXPECT_EQ(camera.at("poses").at(0).at("matrix"), MatrixOf(pose));
-  EXPECT_EQ(camera.at("poses").at(1).at("name"), "lidar_from_camera");
-  EXPECT_EQ(camera.at("poses").at(1).at("matrix"), MatrixOf(pose.Inverse()));
+  const json& answer = frame.at("cameras").at(0);
+  EXPECT_EQ(answer.at("poses").at(0).at("name"), "camera_from_lidar");
+  EXPECT_EQ(answer.at("poses").at(0).at("matrix"), MatrixOf(pose));
+  EXPECT_EQ(answer.at("poses").at(1).at("name"), "lidar_from_camera");
+  EXPECT_EQ(answer.at("poses").at(1).at("matrix"), MatrixOf(pose.Inverse()));
   const json& detected = report.at("tables").at(0);
   EXPECT_EQ(detected.at("title"), "What was found in each view");
   EXPECT_EQ(detected.at("head"), json({"View", "Image of rgb", "Image of thermal", "Cloud"}));
@@ -251,6 +252,48 @@ TEST(SessionFrame, HasTheReportsTablesAndPoses) {
   EXPECT_EQ(detected.at("rows").at(1).at(3).at("text"), "board found");
   EXPECT_EQ(detected.at("rows").at(2).at(3).at("text"), "no plane");
   EXPECT_EQ(report.at("tables").at(1).at("title"), "Camera against camera");
+}
+
+TEST(SessionFrame, HasTheUncertaintyThatTheTerminalAndTheReportHave) {
+  const Rig rig = test::MakeRig();
+  SessionState state = Finished();
+  CameraCalibration& camera = state.calibration.cameras.at(0);
+  camera.covariance = Matrix6d((Vector6d() << 1e-3, 2e-3, 1e-3, 4e-3, 3e-3, 3e-3)
+                                   .finished()
+                                   .array()
+                                   .square()
+                                   .matrix()
+                                   .asDiagonal());
+  state.projection[camera.camera] = ProjectionOf(rig, camera);
+  const json shown = SessionJson(state, &rig).at("cameras").at(0);
+  EXPECT_NEAR(shown.at("rotation_sigma_deg"), 2e-3 * 180 / M_PI, 1e-9);
+  EXPECT_NEAR(shown.at("centre_sigma_mm"), 4, 1e-9);
+  const PoseSigma sigma = SigmaOf(rig.cameras[0], camera);
+  std::size_t same = 0;
+  for (const json& at : shown.at("projection")) {
+    for (const ColouringSigma& expected : sigma.colouring) {
+      if (at.at("distance_m") != expected.distance_m) continue;
+      EXPECT_NEAR(at.at("worst_px"), expected.worst_px, 1e-9);
+      ++same;
+    }
+  }
+  EXPECT_EQ(same, sigma.colouring.size());
+  camera.covariance.reset();
+  EXPECT_TRUE(ProjectionOf(rig, camera).empty());
+}
+
+TEST(SessionFrame, SaysWhatIsLeftOutAndHowFarThatMovedThePose) {
+  SessionState state = Finished();
+  ASSERT_FALSE(state.views.empty());
+  state.left_out.views = {state.views[0].name};
+  state.left_out.moved["rgb"] = {{0.01, 1.5}, 0.8};
+  state.left_out.moved["thermal"] = {{0.02, 2.5}, std::nullopt};
+  const json frame = SessionJson(state, nullptr);
+  EXPECT_EQ(frame.at("views").at(0).at("left_out"), true);
+  const json& moved = frame.at("left_out").at("moved");
+  EXPECT_EQ(moved.at(0),
+            json({{"camera", "rgb"}, {"rotation_deg", 0.01}, {"centre_mm", 1.5}, {"sigmas", 0.8}}));
+  EXPECT_TRUE(moved.at(1).at("sigmas").is_null());
 }
 
 TEST(SessionFrame, HeldOutViewsAreJudgedCameraByCamera) {
@@ -298,11 +341,11 @@ TEST(SessionFrame, TheVerdictOfAllNamesTheCamerasInPlainWords) {
   const json one = VerdictOfReport(GoodReport({"rgb"}));
   EXPECT_EQ(one.at("grade"), "good");
   EXPECT_EQ(one.at("headline"),
-            "Camera rgb is calibrated: colours sit within 0.6 px at 5 m (1 sigma)");
+            "Camera rgb is calibrated; projection uncertainty at 5 m: up to 0.6 px (1 sigma)");
   Report report = GoodReport({"rgb", "thermal"});
   report.cameras[1].sigma->colouring[1].worst_px = 0.9;
   EXPECT_EQ(VerdictOfReport(report).at("headline"),
-            "Both cameras are calibrated: colours sit within 0.9 px at 5 m (1 sigma)");
+            "Both cameras are calibrated; projection uncertainty at 5 m: up to 0.9 px (1 sigma)");
   report.cameras[0].sigma.reset();
   EXPECT_EQ(VerdictOfReport(report).at("headline"), "Both cameras are calibrated");
   EXPECT_THAT(VerdictOfReport(GoodReport({"a", "b", "c"})).at("headline").get<std::string>(),
@@ -401,25 +444,6 @@ TEST(RigFrame, SaysWhereEachImagesCornersLook) {
   EXPECT_NEAR(pixel->y(), rig.cameras[0].height - 0.5, 1e-6);
   rig.cameras[0].lens = {};
   EXPECT_TRUE(Parse(RigFrame(rig)).header.at("cameras").at(0).at("corners").empty());
-}
-
-TEST(SigmaOf, IsTheRootMeanSquareOfTheReportsThreeAxes) {
-  Matrix6d root;
-  for (int i = 0; i < 36; ++i) root(i / 6, i % 6) = 1e-4 * std::sin(i * i + 1.0);
-  CameraCalibration calibration;
-  calibration.camera_from_lidar = test::MakePose(0.8, {0.1, 0.2, 0.3});
-  EXPECT_FALSE(SigmaOf(calibration));
-  calibration.covariance = root * root.transpose();
-  const PoseSigma axes = rgbdt::SigmaOf(test::MakeRig().cameras[0], calibration);
-  const auto rms = [](const std::array<double, 3>& v) {
-    return std::sqrt((v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3);
-  };
-  const auto sigma = SigmaOf(calibration);
-  ASSERT_TRUE(sigma);
-  EXPECT_NEAR(sigma->first, rms(axes.rotation_deg), 1e-12);
-  EXPECT_NEAR(sigma->second, rms(axes.centre_mm), 1e-12);
-  (*calibration.covariance)(0, 0) = std::nan("");
-  EXPECT_FALSE(SigmaOf(calibration));
 }
 
 }  // namespace

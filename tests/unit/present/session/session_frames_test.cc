@@ -75,7 +75,8 @@ TEST_F(SessionFramesTest, ComeInTheOrderInWhichAPageTakesThem) {
                   "thumb/0003/", "image/0001/rgb", "overlay/0001/rgb", "image/0001/thermal",
                   "overlay/0001/thermal", "image/0002/rgb", "image/0002/thermal", "image/0003/rgb",
                   "overlay/0003/rgb", "image/0003/thermal", "overlay/0003/thermal",
-                  "image/sigma/rgb", "sweep/0"));
+                  "image/sigma/rgb", "cloud/0001", "cloud/0002", "cloud/0003"));
+  EXPECT_EQ(Header(frames, "cloud/0002").at("view"), "0002");
   const json hello = Header(frames, "hello");
   EXPECT_EQ(hello.at("source"), "session");
   EXPECT_EQ(hello.at("title"), "a session");
@@ -103,13 +104,30 @@ TEST_F(SessionFramesTest, TheSameSessionGivesTheSameBytes) {
   }
 }
 
+TEST_F(SessionFramesTest, WithoutPointsThereAreNoClouds) {
+  options_.points = options_.other_points = 0;
+  EXPECT_THAT(Topics(Frames()), testing::Not(testing::Contains(HasSubstr("cloud/"))));
+}
+
+TEST_F(SessionFramesTest, WhatChangesWithTheResultIsTheSessionAndItsPictures) {
+  const std::vector<Report> reports = {test::MakeReport()};
+  LeftOut left_out;
+  left_out.views = {"0002"};
+  const auto frames = ResultFrames({session_, detections_, reports, left_out});
+  EXPECT_THAT(Topics(frames), testing::ElementsAre("session", "image/sigma/rgb"));
+  EXPECT_EQ(Header(frames, "session").at("left_out").at("views"), json({"0002"}));
+}
+
 TEST_F(SessionFramesTest, TheFusedCloudIsThinned) {
   const Cloud cloud = test::MakeCloud();
   std::size_t hits = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) hits += cloud.IsHit(i) ? 1 : 0;
   ASSERT_GT(hits, 5U);
   options_.points = 5;
-  const ParsedFrame frame = Parse(Frames().back().bytes);
+  options_.other_points = 6;  // 2 of each of the three
+  const std::vector<NamedFrame> frames = Frames();
+  EXPECT_EQ(Parse(frames.at(frames.size() - 2).bytes).arrays.at("points").size(), 2U * 32);
+  const ParsedFrame frame = Parse(frames.back().bytes);
   EXPECT_EQ(frame.header.at("count"), hits);
   EXPECT_EQ(frame.header.at("whole"), true);
   EXPECT_EQ(frame.header.at("sweep_end"), true);
@@ -117,7 +135,7 @@ TEST_F(SessionFramesTest, TheFusedCloudIsThinned) {
   EXPECT_EQ(frame.arrays.at("points").size(), 5U * 32);
 }
 
-TEST_F(SessionFramesTest, AViewThatCannotBeReadSaysWhyAndTheCloudIsTheOneBefore) {
+TEST_F(SessionFramesTest, AViewThatCannotBeReadSaysWhyAndTheOthersHaveTheirClouds) {
   std::filesystem::remove(dir_ / "views/0003/cloud.pcd");
   const std::vector<NamedFrame> frames = Frames();
   const json views = Header(frames, "session").at("views");
@@ -127,7 +145,7 @@ TEST_F(SessionFramesTest, AViewThatCannotBeReadSaysWhyAndTheCloudIsTheOneBefore)
   }
   EXPECT_EQ(views.at(1).at("cameras").at(0).at("state"), "waiting");
   EXPECT_THAT(Topics(frames), testing::Not(testing::Contains(HasSubstr("image/0003"))));
-  EXPECT_EQ(frames.back().topic, "sweep/0");
+  EXPECT_EQ(frames.back().topic, "cloud/0002");
 }
 
 }  // namespace

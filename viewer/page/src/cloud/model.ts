@@ -3,13 +3,14 @@
 import { effect } from "@preact/signals";
 import { Matrix4 } from "three";
 import type { CloudFrame, Frame, SessionFrame, RigFrame, Vec3 } from "../protocol";
-import { ack, onCloud, rig, session, watched } from "../store";
+import { shownView } from "../chosen_view";
+import { ack, connection, onCloud, rig, session, watched } from "../store";
 import { kZeroCelsius } from "../format";
 import { liveBudget } from "./budget";
 import { coloursOf } from "./color_maps";
 import { limitsOf } from "./crop";
 import { withPoint } from "./measure";
-import { partOf, valuesOf, type PointValues } from "./points";
+import { partOf, valuesOf, type Part, type PointValues } from "./points";
 import { percentiles } from "./range";
 import { CloudScene } from "./scene";
 import {
@@ -21,9 +22,12 @@ import { Sweeps } from "./sweeps";
 import { VoxelMap } from "./voxel_map";
 
 const kDefaultBudget = 100_000; // until it is known what draws
+const kMostViews = 4; // whose clouds are kept where a bridge can be asked for them again
 
 const sweeps = new Sweeps();
 const map = new VoxelMap(kDefaultBudget, voxel.peek());
+const ofViews = new Map<string, Part>(); // the clouds of a session's views
+let ofView: Part | null = null; // the one that is shown; null: what comes live
 let undrawn: Frame[] = [];
 let visible = false;
 let pose: number[] | null = null; // of the newest frame: map from LIDAR
@@ -37,17 +41,46 @@ function ackAll(): void {
 
 function take(header: CloudFrame, frame: Frame): void {
   const part = partOf(header, frame);
-  sweeps.add(part);
-  if (mode.peek() === "map") map.add(part);
-  [pose, cameras] = [header.map_from_lidar, header.cameras];
-  if (header.ack) undrawn.push(frame);
+  if (header.view !== "") {
+    keepView(header.view, part);
+    if (header.ack) undrawn.push(frame);
+    if (header.view !== shownView.peek()) return ackAll();
+    ofView = part;
+  } else {
+    sweeps.add(part);
+    if (mode.peek() === "map") map.add(part);
+    [pose, cameras] = [header.map_from_lidar, header.cameras];
+    if (header.ack) undrawn.push(frame);
+  }
   if (!visible || !scene || document.hidden) ackAll();
   else show();
 }
 
+function keepView(view: string, part: Part): void {
+  ofViews.delete(view);
+  ofViews.set(view, part);
+  if (connection.peek() === "open" && ofViews.size > kMostViews) ofViews.delete(ofViews.keys().next().value!);
+}
+
+/// Of the view that is shown or, without one, of what came live.
+const shownParts = (): Part[] => (ofView ? [ofView] : sweeps.shown());
+
+/// The view that it is of; "": of none.
+export const shownCloud = (): string => ofView?.header.view ?? "";
+
+/// Until a view's cloud is there, the one before stays.
+function showView(view: string): void {
+  const next = view === "" ? null : ofViews.get(view) ?? ofView;
+  if (next === ofView) return;
+  ofView = next;
+  picked.value = null;
+  ends.value = [];
+  show();
+}
+
 function tell(): void {
   const frame = mode.peek() === "map" ? map.frame : "lidar" as const;
-  const now = { ...stats.peek(), points: scene?.points ?? 0, voxel_m: map.voxel_m, frame, cameras };
+  const now = { ...stats.peek(), points: scene?.points ?? 0, voxel_m: map.voxel_m, frame, cameras: ofView?.cameras ?? cameras };
   if (JSON.stringify(now) !== JSON.stringify(stats.peek())) stats.value = now;
 }
 
@@ -65,7 +98,7 @@ function autoRange(): void {
   if (!which || !ranges.peek()[which].auto) return;
   const inMap = mode.peek() === "map";
   const lidar: Vec3 = inMap && map.frame === "map" && pose ? [pose[3], pose[7], pose[11]] : [0, 0, 0];
-  const ends = percentiles(inMap ? [map] : sweeps.shown(), which, lidar);
+  const ends = percentiles(inMap ? [map] : shownParts(), which, lidar);
   const { low, high } = ranges.peek()[which];
   if (ends && (ends[0] !== low || ends[1] !== high)) setRange(which, { low: ends[0], high: ends[1] });
 }
@@ -75,7 +108,7 @@ function show(): void {
   const inMap = mode.peek() === "map";
   scene.setLidar(inMap && map.frame === "map" ? pose : null);
   if (inMap) scene.showMap(map);
-  else scene.showParts(sweeps.shown(), sweeps.isWhole());
+  else scene.showParts(shownParts(), ofView !== null || sweeps.isWhole());
   autoRange();
   if (scene.extents !== extents.peek()) extents.value = scene.extents;
 }
@@ -161,6 +194,7 @@ export function measureAt(x: number, y: number): void {
 }
 
 onCloud(take);
+effect(() => showView(shownView.value));
 // What there is to be shown depends on the rig.
 effect(() => {
   const offered = coloursOf(rig.value?.cameras ?? null);

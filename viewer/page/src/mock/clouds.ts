@@ -28,7 +28,7 @@ function records(count: number, seconds: number): Uint8Array {
 type Unsent = Omit<CloudFrame, "arrays">;
 function header(sweep_utime: number, count: number): Omit<Unsent, "whole" | "part" | "sweep_end"> {
   return {
-    type: "cloud", sweep_utime, utime: sweep_utime, cameras: kCameras.map(({ name }) => name),
+    type: "cloud", view: "", sweep_utime, utime: sweep_utime, cameras: kCameras.map(({ name }) => name),
     calibrated: kCameras.map(() => true), map_from_lidar: null, count, ack: true,
   };
 }

@@ -25,7 +25,7 @@ function view(index: number): View {
   const board = boardOfView(index);
   const normal: Vec3 = [-Math.cos(board.yaw), Math.sin(board.yaw), 0];
   return {
-    name: viewName(index), heldout: index % 4 === 3, waits: "",
+    name: viewName(index), heldout: index % 4 === 3, left_out: false, waits: "",
     board: { centre_m: board.centre, normal, distance_m: Math.hypot(...board.centre) },
     cloud_why_not: "",
     cameras: kCameras.map((camera) => viewCamera(index, board, camera)),
@@ -37,6 +37,8 @@ function cameraState(views: number, camera: (typeof kCameras)[number]): CameraSt
   return {
     camera: camera.name, calibrated: views > 3, status: views > 3 ? "converged" : "3 views are too few: 4 are needed",
     utime: kStart + views * 60e6, camera_from_lidar: camera_from_lidar(camera),
+    poses: [{ name: "camera_from_lidar", sentence: "Takes a point of the LIDAR frame into the camera's.", matrix: camera_from_lidar(camera) }],
+    projection: [1, 2, 5, 10, 20, 50].map((distance_m) => ({ distance_m, centre_px: 0.2 + 1 / distance_m, worst_px: 0.3 + 2 / distance_m })),
     rotation_sigma_deg: 0.2 / views, centre_sigma_mm: (thermal ? 30 : 12) / views,
     verdict: thermal
       ? { grade: "usable", headline: "Usable: rgb and thermal", reasons: ["the upper left of the image has no view", "held-out edge 1.6 sigma"] }
@@ -47,6 +49,7 @@ function cameraState(views: number, camera: (typeof kCameras)[number]): CameraSt
 export class MockSession {
   private views = Array.from({ length: 6 }, (_, index) => view(index));
   private log: SessionFrame["log"] = [];
+  private out: string[] = [];
   private can: RequestName[] = ["capture", "finish"];
   private busy = "";
 
@@ -64,7 +67,7 @@ export class MockSession {
     const cameras = kCameras.map((camera) => cameraState(this.views.length, camera));
     return {
       type: "session", mode: "by_hand", can: this.busy ? [] : this.can, busy: this.busy, fraction: this.busy ? 0.4 : 0,
-      step: 0, steps: 0, failure: "", log: this.log, views: this.views, pick_wanted: wanted,
+      step: 0, steps: 0, failure: "", log: this.log, views: this.views, left_out: this.leftOut(), pick_wanted: wanted,
       sigma: Array.from({ length: Math.max(0, this.views.length - 3) }, (_, step) => ({
         views: step + 4,
         cameras: cameras.map(({ camera }, i) => ({ camera, rotation_deg: 0.2 / (step + 4), centre_mm: (i ? 30 : 12) / (step + 4) })),
@@ -80,10 +83,21 @@ export class MockSession {
       },
       next_view: {
         words: "Board 4 m away, left and high in the thermal image, turned 30° to the right",
-        gain: "Where camera thermal is worst, the reprojection uncertainty (1 sigma) falls from 1.10 to 0.80 px.",
+        gain: "Where camera thermal is worst, the projection uncertainty (1 sigma) is expected to improve from 1.10 to 0.80 px.",
       },
       report: null,
     };
+  }
+
+  leaveOut(views: string[]): void {
+    this.out = views;
+    this.views = this.views.map((one) => ({ ...one, left_out: views.includes(one.name) }));
+  }
+
+  private leftOut(): SessionFrame["left_out"] {
+    const moved = this.out.length === 0 ? [] : kCameras.map(({ name: camera }) =>
+      ({ camera, rotation_deg: 0.01 * this.out.length, centre_mm: this.out.length, sigmas: 0.5 * this.out.length }));
+    return { views: this.out, moved, why_not: "" };
   }
 
   /// Begins what was asked for; `done` when it would be.

@@ -3,19 +3,18 @@
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { CameraInfo } from "../protocol";
+import { chooseView, hasLive, shownView } from "../chosen_view";
 import { rig, session, watched } from "../store";
 import { CameraPicture } from "./image/camera_picture";
 import { OverlaySwitchboard } from "./image/overlay_switchboard";
 import type { OverlaySwitches } from "./image/overlay_drawing";
-import { useViewRequest } from "./image/view_request";
 import { ViewStrip } from "./image/view_strip";
 import { paramsOf } from "./route";
 import "./panels.css";
 
 // They outlive the panel: who comes back finds what was left.
 const chosen = signal<string[] | null>(null); // cameras; null: nobody chose yet
-const view = signal(""); // "": live
-const switches = signal<OverlaySwitches>({ corners: true, outline: true, edge: true, cloud: false });
+const switches = signal<OverlaySwitches>({ corners: true, outline: true, edge: true, cloud: true });
 
 const kWide = 640; // [CSS px] from which more than one image is shown at first
 
@@ -57,30 +56,25 @@ export function CamerasPanel() {
   const params = paramsOf("cameras");
   const wantedView = params.get("view"), wantedCamera = params.get("camera");
   useEffect(() => {
-    if (wantedView !== null) view.value = wantedView;
+    if (wantedView !== null) chooseView(wantedView);
     if (wantedCamera !== null) chosen.value = [wantedCamera];
   }, [wantedView, wantedCamera]);
 
   const cameras = shownCameras(rig.value?.cameras ?? []);
   const names = cameras.map((each) => each.name);
   const views = session.value?.views ?? [];
-  // A finished session has no live image.
-  const hasLive = session.value?.mode !== "finished";
-  const known = views.some((each) => each.name === view.value);
-  const shownView = known ? view.value : hasLive ? "" : views[0]?.name ?? "";
-  useViewRequest(shownView);
-  useWatched(shownView === "" && hasLive ? names : [], shownView === "" && hasLive && switches.value.cloud);
+  const view = shownView.value, live = view === "" && hasLive.value;
+  useWatched(live ? names : [], live && switches.value.cloud);
 
   if (!rig.value) return <p class="empty">No rig description received yet.</p>;
   return (
     <section class="panel cameras" aria-label="Cameras">
       <CameraButtons cameras={rig.value.cameras} shown={names} />
-      <ViewStrip views={views} chosen={shownView} hasLive={hasLive} camera={names[0] ?? ""}
-        choose={(name) => { view.value = name; }} />
+      <ViewStrip views={views} chosen={view} hasLive={hasLive.value} camera={names[0] ?? ""} choose={chooseView} />
       <OverlaySwitchboard switches={switches.value} set={(next) => { switches.value = next; }} />
       <div class={`pictures ${cameras.length > 1 ? "several" : ""}`}>
         {cameras.map((camera) => (
-          <CameraPicture key={camera.name} camera={camera} view={shownView} switches={switches.value} />
+          <CameraPicture key={camera.name} camera={camera} view={view} switches={switches.value} />
         ))}
       </div>
     </section>

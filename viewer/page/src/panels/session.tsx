@@ -1,6 +1,7 @@
 // The session: what is to be done now, what came of it, and the result's uncertainty.
-import type { CameraState, SessionFrame } from "../protocol";
+import type { SessionFrame } from "../protocol";
 import { rig, session, targetStatus } from "../store";
+import { Answer } from "./session/answer";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
 import { EventLog } from "./session/event_log";
@@ -8,7 +9,7 @@ import { ReportSection, ReportPictures } from "./session/report";
 import { TableView } from "./session/table";
 import { TargetStatusLine } from "./session/target_status_line";
 import { SigmaCharts } from "./session/uncertainty";
-import { Progress, VerdictCard } from "./session/verdict";
+import { Progress } from "./session/verdict";
 import { ViewCards } from "./session/view_cards";
 import "./panels.css";
 
@@ -18,16 +19,6 @@ function NextView({ next }: { next: NonNullable<SessionFrame["next_view"]> }) {
       <h3>Next board position</h3>
       <p class="next-words">{next.words}</p>
       <p class="muted">{next.gain}</p>
-    </div>
-  );
-}
-
-function CameraVerdicts({ cameras }: { cameras: CameraState[] }) {
-  return (
-    <div class="verdicts">
-      {cameras.map((camera) => (
-        <VerdictCard key={camera.camera} title={camera.camera} verdict={camera.verdict} testid={`verdict-${camera.camera}`} />
-      ))}
     </div>
   );
 }
@@ -52,16 +43,7 @@ export function SessionPanel() {
   if (!state) return <p class="empty">No session data yet.</p>;
   return (
     <div class="panel session">
-      <section class="card" aria-label="Assessment">
-        <h2>Assessment</h2>
-        <VerdictCard verdict={state.verdict} testid="verdict" />
-        {state.cameras.length > 1 && (
-          <details>
-            <summary>Camera by camera</summary>
-            <CameraVerdicts cameras={state.cameras} />
-          </details>
-        )}
-      </section>
+      <Answer session={state} />
       {!isEmpty(state) && <Now session={state} />}
       <section class="card" aria-label="Uncertainty">
         <h2>Uncertainty</h2>

@@ -6,12 +6,13 @@ import {
   colour, crop, cutaway, dark, lighting, measuring, mode, pointSize, section, showCameras, showGrid, stats, voxel, type Mode,
 } from "../../cloud/settings";
 import { fixed, grouped } from "../../format";
-import { hello, rig } from "../../store";
+import { chooseView, hasLive, shownView } from "../../chosen_view";
+import { hello, rig, session } from "../../store";
 import { CropPanel, MeasurePanel, SectionPanel, toggleCrop, toggleMeasure, toggleSection } from "./tools";
 
 const kModes: { id: Mode; name: string }[] = [{ id: "sweep", name: "Sweep" }, { id: "map", name: "Map" }];
 
-/// A finished session has one sweep, of which there is no map to be made.
+/// A finished session has a sweep a view, of which there is no map to be made.
 function ModeButtons() {
   if (hello.value?.source === "session") return null;
   return (
@@ -21,6 +22,17 @@ function ModeButtons() {
           onClick={() => { mode.value = id; }}>{name}</button>
       ))}
     </div>
+  );
+}
+
+/// Whose cloud is shown, of a session's views.
+function ViewChoice() {
+  const views = session.value?.views ?? [];
+  if (hasLive.value || views.length < 2) return null;
+  return (
+    <select aria-label="View" data-testid="cloud-view" value={shownView.value} onChange={(event) => chooseView(event.currentTarget.value)}>
+      {views.map(({ name }) => <option key={name} value={name}>view {name}</option>)}
+    </select>
   );
 }
 
@@ -120,6 +132,7 @@ export function Controls() {
     <div class="cloud-controls" data-testid="cloud-controls">
       <div class="row">
         <ModeButtons />
+        <ViewChoice />
         <ColourChoice />
         <Tools />
         <More />

@@ -1,9 +1,17 @@
 // All values of the picked point.
 import type { PointValues } from "../../cloud/points";
 import { picked, stats } from "../../cloud/settings";
+import { rig } from "../../store";
 import { celsius, fixed, metres, utc } from "../../format";
 
+/// What the rig has no sensor for is left out.
 function rows(point: PointValues): [string, string][] {
+  const has = (kind: string) => rig.value?.cameras.some((camera) => camera.kind === kind) ?? true;
+  const unknown = [...(has("color") ? [] : ["RGB"]), ...(has("thermal") ? [] : ["temperature", "thermal counts"])];
+  return allRows(point).filter(([name]) => !unknown.includes(name));
+}
+
+function allRows(point: PointValues): [string, string][] {
   const [x, y, z] = point.position;
   const sigma = point.sigma_k === null ? "" : ` ± ${fixed(point.sigma_k, 2, "K")}`;
   return [

@@ -33,11 +33,13 @@ function Matrix({ pose: { name, sentence, matrix }, testid }: { pose: Pose; test
   );
 }
 
-/// Both ways, each with the sentence that says which way it is.
-export function PoseCard({ camera, poses }: { camera: string; poses: Pose[] }) {
+/// camera_from_lidar, and folded its inverse, each with the sentence that says which way it is.
+export function PoseCard({ camera, poses: [first, ...others] }: { camera: string; poses: Pose[] }) {
+  const matrix = (pose: Pose) => <Matrix key={pose.name} pose={pose} testid={`pose-${camera}-${pose.name}`} />;
   return (
     <div class="matrices">
-      {poses.map((pose) => <Matrix key={pose.name} pose={pose} testid={`pose-${camera}-${pose.name}`} />)}
+      {first && matrix(first)}
+      {others.length > 0 && <details><summary>The inverse</summary>{others.map(matrix)}</details>}
     </div>
   );
 }

@@ -1,14 +1,12 @@
 // The report of a solve: its words and tables come from the bridge, as calib/present/report has them.
 import type { CameraReport, Report } from "../../protocol";
 import { images } from "../../store";
-import { PoseCard } from "./pose_card";
 import { TableView } from "./table";
 
 function CameraSection({ report, open }: { report: CameraReport; open: boolean }) {
   return (
     <details class="card" open={open} data-testid={`report-${report.camera}`}>
       <summary>{report.camera}</summary>
-      <PoseCard camera={report.camera} poses={report.poses} />
       {report.tables.map((table) => <TableView key={table.title} table={table} />)}
     </details>
   );
