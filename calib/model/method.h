@@ -17,8 +17,8 @@ inline constexpr const char* kPaperMethod = "paper";
 /// For command lines: their names, and what stands beside these.
 inline const std::vector<std::string> kMethodNames = {kAutoMethod, kPlaneMethod, kPaperMethod};
 inline constexpr const char* kMethodHelp =
-    "auto, the board finds itself; plane, the same boards by their planes alone (Unnikrishnan and\n"
-    "Hebert 2005); paper, the reference (Krishnan et al. 2015)";
+    "auto, the board is detected automatically; plane, the same boards by their planes alone\n"
+    "(Unnikrishnan and Hebert 2005); paper, the reference (Krishnan et al. 2015)";
 
 /// Throws InputError with the names that there are.
 void RequireMethod(const std::string& method);

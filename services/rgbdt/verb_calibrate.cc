@@ -173,7 +173,7 @@ void AddCalibrate(CommandLine* program) {
              "auto: take the LIDAR's ranges to be off by any constant, whatever the rig file\n"
              "says of them (lidar.range_offset_sigma_m)");
   verb->Flag("--separate", &flags->separate,
-             "auto: solve each camera by itself, not all in one problem");
+             "auto: solve cameras separately, not all in one problem");
   verb->Flag("--smooth-field", &flags->options.smooth_field,
              "paper: extend the distance field beyond the images' borders, so that points\n"
              "outside are drawn back; otherwise half of them must lie inside");

@@ -250,7 +250,7 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
   ASSERT_EQ(detection.images.size(), 2U);
   for (const ImageDetection& image : detection.images) {
     ASSERT_TRUE(image.usable()) << image.camera << ": " << image.why_not;
-    EXPECT_FALSE(image.edges->picked) << "the board finds itself";
+    EXPECT_FALSE(image.edges->picked) << "the board is detected automatically";
   }
   ASSERT_FALSE(detection.cloud.candidates.empty()) << detection.cloud.why_not;
   EXPECT_EQ(BytesOf(detect({{picks}, images, {command}, cloud})), BytesOf(expected));
