@@ -50,7 +50,7 @@ grep -q "0.10 / 0.38" "$scratch/output" || complain "the table lacks the sigma o
 grep -q "next view: Hold the board 6 m ahead." "$scratch/output" || complain "no next view"
 tells "the same poses" "$scratch/report.json" "$all"
 # In the plain page, or in the viewer's.
-grep -Eq 'rgb: reprojection uncertainty|data-topic="image/sigma/rgb"' "$scratch/report.html" ||
+grep -Eq 'rgb: projection uncertainty|data-topic="image/sigma/rgb"' "$scratch/report.html" ||
   complain "no picture of the sigma"
 
 # One camera moved: what was said of it, and of both together, is said of another pose.
