@@ -74,7 +74,7 @@ const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
       {"centre", {"image centre", "lens"}},
       {"distortion", {"distortion", "lens"}},
       {"model", {"distortion", "lens"}},
-      {"exchanged", {"fx and cx", "fy and cy"}},
+      {"exchanged", {"fx and cx", "fy and cy", "lens"}},
       {"squares", {"squares", "cloud's scale"}},
       {"scale", {"cloud's scale", "squares", kSizeInCloud}},
       {"board", {"board's size", kSizeInCloud}},
@@ -82,6 +82,15 @@ const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
       {"place", {"pattern's place"}},
       {"pairs", {kPairing}}};
   return kNames;
+}
+
+// More than half of a camera's views, with these words in the reason.
+bool MostAreRejected(const CameraReport& camera, const std::string& words) {
+  const auto rejected = std::count_if(
+      camera.rejected.begin(), camera.rejected.end(),
+      [&](const RejectedView& view) { return view.why.find(words) != std::string::npos; });
+  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
+  return 2 * static_cast<std::size_t>(rejected) > views;
 }
 
 }  // namespace
@@ -131,12 +140,10 @@ std::vector<std::string> CausesRead(const CameraReport& camera) {
   constexpr std::size_t kRead = 2;
   if (camera.contradiction.rfind("Images and clouds are", 0) == 0) return {kPairing};
   std::vector<std::string> read;
-  const auto sized =
-      std::count_if(camera.rejected.begin(), camera.rejected.end(), [](const RejectedView& view) {
-        return view.why.find("no board of the target's size in the cloud") != std::string::npos;
-      });
-  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
-  if (2 * static_cast<std::size_t>(sized) > views) read.emplace_back(kSizeInCloud);
+  if (MostAreRejected(camera, "no board of the target's size in the cloud")) {
+    read.emplace_back(kSizeInCloud);
+  }
+  if (MostAreRejected(camera, "check the lens in the rig")) read.emplace_back("lens");
   const Verdict verdict = Judge(camera);
   for (const std::string& reason : verdict.reasons) {
     for (const Cause& cause : camera.causes) {

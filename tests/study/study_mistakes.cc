@@ -43,7 +43,8 @@ ViewDetection SeenBy(const Rig& rig, const Cloud& cloud, ViewDetection view) {
     ImageEdges& edges = *image.edges;
     const auto pose = PoseFromCorners(Camera(rig.Camera(image.camera)), rig.target, edges.corners);
     if (!pose) {
-      image.why_not = "the board's corners fit no pose";
+      image.why_not =
+          "the checkerboard's corners do not fit a flat board; check the lens in the rig";
       continue;
     }
     const bool half_turn_known = edges.pose->half_turn_known;
