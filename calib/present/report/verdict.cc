@@ -22,6 +22,8 @@ constexpr double kUncertainPx = 1;
 // enlarged sigma makes good for it; above the second nobody knows what the views have wrong.
 constexpr double kMuchScatter = 2.5, kMostScatter = 6;
 constexpr double kUnlikely = 1e-3;
+// Of held-out views' RMS [sigma]: beyond it most views contradict the pose, whatever noise does.
+constexpr double kWrongWhitened = 5;
 // Of views left out, over what is expected: by chance the mean over eight views stays below this.
 constexpr double kMostMisfit = 2;
 // Of what was given wrong, in sigmas of the pose that it moves.
@@ -285,7 +287,9 @@ void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
   const double most = kMostWhitened * std::sqrt(camera.variance_factor);
   const std::string miss = "On the held-out views the beams miss the board's edge by " +
                            Number(*rms, 2) + " sigmas (RMS; expected: 1): they are ";
-  if (*rms > most && *MedianWhitened(camera) > most) {
+  if (*MedianWhitened(camera) > kWrongWhitened * std::sqrt(camera.variance_factor)) {
+    judgement->Bad(miss + "not where this pose puts them.");
+  } else if (*rms > most && *MedianWhitened(camera) > most) {
     judgement->Doubtful(miss +
                         "less exact than stated, and the stated uncertainty cannot be trusted.");
   } else if (*rms > most) {

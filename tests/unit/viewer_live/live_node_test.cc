@@ -223,6 +223,7 @@ TEST_F(LiveNodeTest, AResetForgetsTheViews) {
 CalibrationMessage Calibrated(const std::string& camera, double angle, Utime utime) {
   CalibrationMessage message;
   message.utime = utime;
+  message.rig_hash = TinyRig().hash;
   message.method = "auto";
   message.calibration.camera = camera;
   message.calibration.camera_from_lidar = RotationAbout({0, 0, 1}, angle);

@@ -88,6 +88,9 @@ TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("more exact than stated")));
   EXPECT_EQ(grade(1.41), Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("less exact than stated")));
+  EXPECT_EQ(grade(4.9), Grade::kDoubtful);
+  EXPECT_EQ(grade(5.1), Grade::kBad);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("not where this pose puts them")));
   camera.variance_factor = 4;  // the stated uncertainty was enlarged for it
   EXPECT_EQ(grade(2.7), Grade::kGood);
   EXPECT_EQ(grade(2.9), Grade::kDoubtful);
