@@ -37,8 +37,9 @@ mkdir "$scratch/out"
 echo "what an earlier run found" >"$scratch/out/calibration.textproto"
 says=("degenerate: only one view" "calibration.textproto was not written")
 refuses "too few views" "$bin/rgbdt" calibrate "$good" --out "$scratch/out"
-grep -q "an earlier run" "$scratch/out/calibration.textproto" ||
-  complain "a guess took the place of a calibration"
+grep -q "an earlier run" "$scratch/out/calibration.previous.textproto" ||
+  complain "what an earlier run found was not kept"
+[ ! -e "$scratch/out/calibration.textproto" ] || complain "a guess took the place of a calibration"
 
 : >"$scratch/file"
 says=("$scratch/file")

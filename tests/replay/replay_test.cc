@@ -11,6 +11,7 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/detect_view.h"
+#include "calib/present/report/verdict.h"
 #include "services/messages/codec.h"
 #include "tests/log_writer.h"
 #include "tests/nodes/nodes_testing.h"
@@ -187,8 +188,8 @@ TEST_F(ReplayTest, TheSessionDirectoryGivesTheSameBitForBit) {
   for (const std::string& name : session.views) {
     detections.push_back(DetectView(session.rig, ReadView(session, name)));
   }
-  EXPECT_EQ(PrintCalibration(Calibrate(session.rig, detections).ToCalibration()),
-            run_->calibration);
+  const Report report = Calibrate(session.rig, detections);
+  EXPECT_EQ(PrintCalibration(JudgedCalibration(report, session.rig)), run_->calibration);
   const ToolResult tool =
       RunTool("calibrate " + (*dir_ / "session").string() + " --out " + (*dir_ / "again").string());
   EXPECT_EQ(tool.code, 0) << tool.output;

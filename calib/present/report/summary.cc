@@ -70,7 +70,9 @@ std::string VerdictLines(const CameraReport& camera, const std::optional<NextVie
   std::string lines = fmt::format("{}: {}", camera.calibration.camera, verdict.headline);
   if (verdict.grade == Grade::kGood || verdict.reasons.empty()) return lines + "\n";
   lines += " " + verdict.reasons.front() + "\n";
-  if (verdict.grade < Grade::kDoubtful || verdict.reasons.size() < 2) return lines;
+  // Without a pose the reasons are those of the rejected views, which are told below.
+  const bool told = camera.calibration.status == SolveStatus::kNotSolved;
+  if (told || verdict.grade < Grade::kDoubtful || verdict.reasons.size() < 2) return lines;
   return lines + "  " + verdict.reasons[1] + "\n";
 }
 
