@@ -14,7 +14,7 @@ import "./panels.css";
 
 // They outlive the panel: who comes back finds what was left.
 const chosen = signal<string[] | null>(null); // cameras; null: nobody chose yet
-const switches = signal<OverlaySwitches>({ corners: true, outline: true, edge: true, cloud: true });
+const switched = signal<Partial<OverlaySwitches>>({}); // what somebody switched
 
 const kWide = 640; // [CSS px] from which more than one image is shown at first
 
@@ -33,6 +33,18 @@ function useWatched(cameras: string[], cloud: boolean): void {
     watched.value = { ...watched.peek(), cameras, overlay_cloud: cloud };
   }, [key, cloud]);
   useEffect(() => () => { watched.value = { ...watched.peek(), cameras: [], overlay_cloud: false }; }, []);
+}
+
+/// On live images the cloud costs the bridge a core's time for each of them: only who asks gets it.
+function switchesOf(live: boolean): OverlaySwitches {
+  return { corners: true, outline: true, edge: true, cloud: !live, ...switched.value };
+}
+
+/// Of `next` only what differs from what is shown was switched; the rest keeps following its default.
+function switchTo(next: OverlaySwitches, shown: OverlaySwitches): void {
+  const keys = Object.keys(next) as (keyof OverlaySwitches)[];
+  const changed = keys.filter((key) => next[key] !== shown[key]).map((key) => [key, next[key]]);
+  switched.value = { ...switched.value, ...Object.fromEntries(changed) };
 }
 
 function CameraButtons({ cameras, shown }: { cameras: CameraInfo[]; shown: string[] }) {
@@ -64,17 +76,18 @@ export function CamerasPanel() {
   const names = cameras.map((each) => each.name);
   const views = session.value?.views ?? [];
   const view = shownView.value, live = view === "" && hasLive.value;
-  useWatched(live ? names : [], live && switches.value.cloud);
+  const switches = switchesOf(live);
+  useWatched(live ? names : [], live && switches.cloud);
 
   if (!rig.value) return <p class="empty">No rig description received yet.</p>;
   return (
     <section class="panel cameras" aria-label="Cameras">
       <CameraButtons cameras={rig.value.cameras} shown={names} />
       <ViewStrip views={views} chosen={view} hasLive={hasLive.value} camera={names[0] ?? ""} choose={chooseView} />
-      <OverlaySwitchboard switches={switches.value} set={(next) => { switches.value = next; }} />
+      <OverlaySwitchboard switches={switches} set={(next) => switchTo(next, switches)} />
       <div class={`pictures ${cameras.length > 1 ? "several" : ""}`}>
         {cameras.map((camera) => (
-          <CameraPicture key={camera.name} camera={camera} view={view} switches={switches.value} />
+          <CameraPicture key={camera.name} camera={camera} view={view} switches={switches} />
         ))}
       </div>
     </section>
