@@ -15,7 +15,8 @@ CalibrateOptions OptionsOf(const std::string& method) {
 bool IsInput(const std::string& channel) {
   static const std::string kImage = "_IMAGE";
   return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
-         channel == "CORNER_SELECTION" || channel == "SESSION_COMMAND" || channel == "POSE" ||
+         channel == "CORNER_SELECTION" || channel == "LEFT_OUT_VIEWS" ||
+         channel == "SESSION_COMMAND" || channel == "POSE" ||
          (channel.size() > kImage.size() &&
           channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
 }

@@ -182,6 +182,15 @@ TEST_F(ReplayTest, ReorderedLinesAloneGiveTheSameBitForBit) {
   EXPECT_EQ(test::CalibrationOf(replay.solver()), run_->calibration);
 }
 
+TEST_F(ReplayTest, ViewsThatAPersonLeftOutAreLeftOutAgain) {
+  Replay replay(kAutoMethod);
+  test::Feed(run_->recording, &replay);
+  ASSERT_THAT(replay.solver().report()->cameras[0].used, ::testing::Contains("0001"));
+  EXPECT_TRUE(replay.Take("LEFT_OUT_VIEWS", Encode(LeftOutViews{0, 0, {"0001"}})));
+  EXPECT_THAT(replay.solver().report()->cameras[0].used,
+              ::testing::Not(::testing::Contains("0001")));
+}
+
 TEST_F(ReplayTest, TheSessionDirectoryGivesTheSameBitForBit) {
   const Session session = OpenSession(*dir_ / "session");
   std::vector<ViewDetection> detections;
