@@ -129,6 +129,10 @@ struct ViewQuality {
   double distance_transform_px = 0;
   double edge_rms_px = 0;
   std::optional<double> edge_rms_whitened;  ///< in sigmas; absent: the method has no crossings
+  std::optional<double> edge_rms_mm{};      ///< the same on the board; absent likewise
+  /// Of the board's points from the plane where image and calibration put it, what the LIDAR's
+  /// ranges were found to be off by taken off; absent likewise.
+  std::optional<double> plane_rms_mm{};
 };
 
 /// 1 sigma of where a point's colour is taken from.
@@ -193,6 +197,8 @@ struct CameraReport {
   TrainHeldout distance_transform_px;  ///< mean distance-transform value (the paper's quality)
   TrainHeldout edge_rms_px;            ///< RMS distance to the fitted outline
   TrainHeldout edge_rms_whitened;      ///< RMS of the crossings' distances, each in its sigmas
+  TrainHeldout edge_rms_mm;            ///< the same on the board
+  TrainHeldout plane_rms_mm;           ///< RMS distance of the board's points from its plane
   std::vector<ViewQuality> views;
   std::vector<StartResult> other_starts;
   std::optional<PoseSigma> sigma;  ///< absent: the method has no covariance

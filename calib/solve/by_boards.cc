@@ -172,7 +172,8 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
 
 EdgeModel EdgesOf(const JointResult& result) {
   const BoardProblem& problem = result.joint.problem;
-  return {problem.target, result.solution.state.shared, problem.priors};
+  const BoardState& state = result.solution.state;
+  return {problem.target, state.shared, problem.priors, problem.ranges, state.range_terms};
 }
 
 // Metres more along each boundary point's beam, where the ranges were found to be off.
@@ -302,7 +303,9 @@ std::vector<GuessedCamera> GuessOrSayWhyNot(const Target& target, const Calibrat
       (*cameras)[c] = PosedAgain(std::move((*cameras)[c]), *why.lens, target);
       guessed[c] = std::move(GuessCameras(options, {(*cameras)[c]}).front());
     }
-    guessed[c].views.report.contradiction = why.contradiction;
+    CameraReport& report = guessed[c].views.report;
+    report.contradiction = why.contradiction;
+    if (why.other_model) report.causes = {*why.other_model};
   }
   return guessed;
 }

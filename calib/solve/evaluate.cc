@@ -47,7 +47,38 @@ Sums Judge(const Camera& camera, const CameraView& view, const Rigid3& camera_fr
 }
 
 ViewQuality QualityOf(const CameraView& view, const Sums& sums) {
-  return {view.view, view.heldout, sums.MeanTransform(), sums.Rms(), std::nullopt};
+  ViewQuality quality;
+  quality.view = view.view;
+  quality.heldout = view.heldout;
+  quality.distance_transform_px = sums.MeanTransform();
+  quality.edge_rms_px = sums.Rms();
+  return quality;
+}
+
+// Sum of the squared distances of a board's points from its plane.
+void AddPoints(const EdgeModel& model, const CloudEdges& cloud, const Rigid3& lidar_from_target,
+               EdgeMisfit* misfit) {
+  if (!(cloud.raw_scatter(3, 3) > 0)) return;
+  const PlaneResidual r =
+      ResidualOf(cloud, lidar_from_target, model.shared[kRangeOffset], model.shared[kBeamsMeet]);
+  if (cloud.groups.empty()) {
+    misfit->plane_squared_m2 += r.x.dot(cloud.raw_scatter * r.x);
+    misfit->points += cloud.raw_scatter(3, 3);
+  }
+  for (const PointGroup& group : cloud.groups) {
+    double offset_m = 0;
+    for (const auto& [term, part] : model.ranges.PartsOf(group)) {
+      offset_m += part * model.range_terms[term];
+    }
+    const Eigen::Vector4d x = r.x + offset_m * r.by.col(3);
+    misfit->plane_squared_m2 += x.dot(group.scatter * x);
+    misfit->points += group.scatter(3, 3);
+  }
+}
+
+// Nothing of nothing.
+std::optional<double> Rms(double squared, double count) {
+  return count > 0 ? std::optional(std::sqrt(squared / count)) : std::nullopt;
 }
 
 }  // namespace
@@ -88,6 +119,18 @@ CameraReport JudgeCamera(const CameraSpec& spec, const std::vector<const CameraV
   return report;
 }
 
+void EdgeMisfit::Add(const EdgeMisfit& other) {
+  squared += other.squared;
+  squared_m2 += other.squared_m2;
+  count += other.count;
+  plane_squared_m2 += other.plane_squared_m2;
+  points += other.points;
+}
+
+std::optional<double> EdgeMisfit::RmsWhitened() const { return Rms(squared, count); }
+std::optional<double> EdgeMisfit::RmsMm() const { return Rms(1e6 * squared_m2, count); }
+std::optional<double> EdgeMisfit::PlaneRmsMm() const { return Rms(1e6 * plane_squared_m2, points); }
+
 EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
                          const CameraCalibration& calibration) {
   EdgeMisfit misfit;
@@ -113,8 +156,10 @@ EdgeMisfit MisfitOfEdges(const EdgeModel& model, const CameraView& view,
     const double variance = r.sigma_m * r.sigma_m + side * side +
                             (r.by_target * in_target * r.by_target.transpose()).value();
     misfit.squared += r.beyond_m * r.beyond_m / variance;
+    misfit.squared_m2 += r.beyond_m * r.beyond_m;
     misfit.count += 1;
   }
+  AddPoints(model, *view.cloud, lidar_from_target, &misfit);
   return misfit;
 }
 
@@ -124,20 +169,17 @@ CameraReport JudgeEdges(const EdgeModel& model, const std::vector<const CameraVi
   EdgeMisfit heldout;
   for (const CameraView* view : usable) {
     const EdgeMisfit one = MisfitOfEdges(model, *view, report.calibration);
-    if (one.count == 0) continue;
-    EdgeMisfit& sum = view->heldout ? heldout : train;
-    sum.squared += one.squared;
-    sum.count += one.count;
+    (view->heldout ? heldout : train).Add(one);
     for (ViewQuality& quality : report.views) {
-      if (quality.view == view->view) {
-        quality.edge_rms_whitened = std::sqrt(one.squared / one.count);
-      }
+      if (quality.view != view->view) continue;
+      quality.edge_rms_whitened = one.RmsWhitened();
+      quality.edge_rms_mm = one.RmsMm();
+      quality.plane_rms_mm = one.PlaneRmsMm();
     }
   }
-  if (train.count > 0) report.edge_rms_whitened.train = std::sqrt(train.squared / train.count);
-  if (heldout.count > 0) {
-    report.edge_rms_whitened.heldout = std::sqrt(heldout.squared / heldout.count);
-  }
+  report.edge_rms_whitened = {train.RmsWhitened(), heldout.RmsWhitened()};
+  report.edge_rms_mm = {train.RmsMm(), heldout.RmsMm()};
+  report.plane_rms_mm = {train.PlaneRmsMm(), heldout.PlaneRmsMm()};
   return report;
 }
 

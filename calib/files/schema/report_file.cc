@@ -23,6 +23,7 @@ namespace {
 
 using text::FromPoseError;
 using text::Place;
+using text::SetFinite;
 using text::ToPoseError;
 
 void FromViews(const CameraReport& camera, proto::CameraReport* out) {
@@ -45,9 +46,9 @@ void FromViews(const CameraReport& camera, proto::CameraReport* out) {
     quality->set_heldout(view.heldout);
     quality->set_distance_transform_px(view.distance_transform_px);
     quality->set_edge_rms_px(view.edge_rms_px);
-    if (view.edge_rms_whitened && std::isfinite(*view.edge_rms_whitened)) {
-      quality->set_edge_rms_whitened(*view.edge_rms_whitened);
-    }
+    SetFinite(view.edge_rms_whitened, &proto::ViewQuality::set_edge_rms_whitened, quality);
+    SetFinite(view.edge_rms_mm, &proto::ViewQuality::set_edge_rms_mm, quality);
+    SetFinite(view.plane_rms_mm, &proto::ViewQuality::set_plane_rms_mm, quality);
   }
 }
 
@@ -60,11 +61,11 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
     camera->rejected.push_back({view.view(), view.why()});
   }
   for (const proto::ViewQuality& view : message.view_quality()) {
-    camera->views.push_back({view.view(), view.heldout(), view.distance_transform_px(),
-                             view.edge_rms_px(), std::nullopt});
-    if (view.has_edge_rms_whitened()) {
-      camera->views.back().edge_rms_whitened = view.edge_rms_whitened();
-    }
+    ViewQuality& quality = camera->views.emplace_back(ViewQuality{
+        view.view(), view.heldout(), view.distance_transform_px(), view.edge_rms_px(), {}});
+    if (view.has_edge_rms_whitened()) quality.edge_rms_whitened = view.edge_rms_whitened();
+    if (view.has_edge_rms_mm()) quality.edge_rms_mm = view.edge_rms_mm();
+    if (view.has_plane_rms_mm()) quality.plane_rms_mm = view.plane_rms_mm();
   }
 }
 

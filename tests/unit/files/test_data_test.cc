@@ -63,8 +63,7 @@ CameraReport MakeCameraReport(const std::string& name) {
   camera.rejected = {{"0006", "the board is not in view"}};
   camera.distance_transform_px = {1.25, 1.0 / 3};
   camera.edge_rms_px = {0.5, 0.625};
-  camera.views = {{"0001", false, 1.5, 0.5, std::nullopt},
-                  {"0003", true, 1.0 / 3, 0.625, std::nullopt}};
+  camera.views = {{"0001", false, 1.5, 0.5, {}}, {"0003", true, 1.0 / 3, 0.625, {}}};
   StartResult start;
   start.start = "30 deg about x, 40 deg about z";
   start.calibration = {name, MakePose(0.5, {0, 0, 1}), std::nullopt, SolveStatus::kNotConverged,
@@ -82,6 +81,10 @@ CameraReport MakeCameraReport(const std::string& name) {
 void AddUncertainty(CameraReport* camera) {
   camera->views[1].edge_rms_whitened = 1.0625;
   camera->edge_rms_whitened = {0.96875, 1.0 / 0.95};
+  camera->views[1].edge_rms_mm = 1.0 / 11;
+  camera->views[1].plane_rms_mm = 1.0 / 13;
+  camera->edge_rms_mm = {7.5, 1.0 / 17};
+  camera->plane_rms_mm = {8.5, 1.0 / 19};
   PoseSigma sigma;
   sigma.rotation_deg = {0.01, 0.02, 1.0 / 30};
   sigma.centre_mm = {0.4, 0.5, 2.0 / 3};

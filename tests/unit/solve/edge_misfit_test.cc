@@ -25,6 +25,31 @@ TEST(EdgeRmsWhitened, IsAboutOneOnViewsHeldOut) {
   }
 }
 
+// Moved by 30 mm towards the camera's right or away from it: sides show the one, the plane the
+// other.
+TEST(EdgeRmsMm, IsTheDistanceOnTheBoard) {
+  SolveWorldOptions options = HalfHeldOut();
+  options.draw_nuisances = false;
+  const SolveWorld world(options);
+  const Calibration right = Calibrate(world.rig, world.detections).ToCalibration();
+  const auto moved = [&](const Eigen::Vector3d& by) {
+    Calibration calibration = right;
+    calibration.cameras[0].camera_from_lidar.translation += by;
+    return Evaluate(world.rig, world.detections, calibration).cameras[0];
+  };
+  const CameraReport still = moved({0, 0, 0});
+  const CameraReport aside = moved({0.03, 0, 0});
+  const CameraReport away = moved({0, 0, 0.03});
+  EXPECT_LT(still.plane_rms_mm.heldout.value(), 15);
+  EXPECT_GT(away.plane_rms_mm.heldout.value(), 20);
+  EXPECT_LT(away.plane_rms_mm.heldout.value(), 40);
+  EXPECT_GT(aside.edge_rms_mm.heldout.value(), still.edge_rms_mm.heldout.value() + 5);
+  EXPECT_LT(aside.edge_rms_mm.heldout.value(), 40);
+  for (const ViewQuality& view : still.views) {
+    EXPECT_TRUE(view.edge_rms_mm && view.plane_rms_mm) << view.view;
+  }
+}
+
 TEST(EdgeRmsWhitened, GrowsWhereTheCalibrationIsWrong) {
   SolveWorldOptions options = HalfHeldOut();
   options.draw_nuisances = false;

@@ -1,6 +1,5 @@
 #include "calib/files/schema/internal/report_parts.h"
 
-#include <cmath>
 #include <limits>
 
 #include "calib/files/schema/proto_convert.h"
@@ -9,11 +8,6 @@
 
 namespace rgbdt::text {
 namespace {
-
-template <typename Message>
-void SetFinite(double value, void (Message::*set)(double), Message* out) {
-  if (std::isfinite(value)) (out->*set)(value);
-}
 
 double OrNan(bool known, double value) {
   return known ? value : std::numeric_limits<double>::quiet_NaN();
@@ -207,8 +201,8 @@ RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place) 
 }
 
 void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out) {
-  if (figure.train) SetFinite(*figure.train, &proto::TrainHeldout::set_train, out);
-  if (figure.heldout) SetFinite(*figure.heldout, &proto::TrainHeldout::set_heldout, out);
+  SetFinite(figure.train, &proto::TrainHeldout::set_train, out);
+  SetFinite(figure.heldout, &proto::TrainHeldout::set_heldout, out);
 }
 
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure) {
@@ -218,10 +212,22 @@ TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure) {
   return out;
 }
 
+namespace {
+
+// Absent where neither is known.
+void FromKnown(const TrainHeldout& figure, proto::TrainHeldout* (proto::CameraReport::*figure_of)(),
+               proto::CameraReport* out) {
+  proto::TrainHeldout message;
+  FromTrainHeldout(figure, &message);
+  if (message.has_train() || message.has_heldout()) *(out->*figure_of)() = message;
+}
+
+}  // namespace
+
 void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
-  FromTrainHeldout(camera.edge_rms_whitened, out->mutable_edge_rms_whitened());
-  const proto::TrainHeldout& whitened = out->edge_rms_whitened();
-  if (!whitened.has_train() && !whitened.has_heldout()) out->clear_edge_rms_whitened();
+  FromKnown(camera.edge_rms_whitened, &proto::CameraReport::mutable_edge_rms_whitened, out);
+  FromKnown(camera.edge_rms_mm, &proto::CameraReport::mutable_edge_rms_mm, out);
+  FromKnown(camera.plane_rms_mm, &proto::CameraReport::mutable_plane_rms_mm, out);
   if (camera.sigma) FromSigma(*camera.sigma, out->mutable_sigma());
   if (const auto worst = WorstAxisSigma(camera.calibration); worst && camera.sigma) {
     out->mutable_sigma()->set_worst_rotation_deg(worst->rotation_deg);
@@ -234,6 +240,8 @@ void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
 
 void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera) {
   camera->edge_rms_whitened = ToTrainHeldout(message.edge_rms_whitened());
+  camera->edge_rms_mm = ToTrainHeldout(message.edge_rms_mm());
+  camera->plane_rms_mm = ToTrainHeldout(message.plane_rms_mm());
   if (message.has_sigma()) camera->sigma = ToSigma(message.sigma(), place.In("sigma"));
   for (const proto::Nuisance& nuisance : message.nuisance()) {
     camera->nuisance.push_back({nuisance.name(), nuisance.unit(), ToEstimate(nuisance.estimate())});

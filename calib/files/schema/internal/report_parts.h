@@ -3,11 +3,19 @@
 // The pieces of a report, to and from its message. JSON knows no NaN: a number
 // that is not finite is left out, and what is not there is read as NaN.
 
+#include <cmath>
+#include <optional>
+
 #include "calib/files/schema/report.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/calibration.h"
 
 namespace rgbdt::text {
+
+template <typename Message>
+void SetFinite(const std::optional<double>& value, void (Message::*set)(double), Message* out) {
+  if (value && std::isfinite(*value)) (out->*set)(*value);
+}
 
 void FromPoseError(const PoseError& error, proto::PoseError* out);
 PoseError ToPoseError(const proto::PoseError& error);
@@ -21,7 +29,8 @@ RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place);
 void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);
 
-/// The uncertainty of a camera's pose: edge_rms_whitened, sigma, nuisance, folds and halves.
+/// The uncertainty of a camera's pose: edge_rms_whitened, _mm, plane_rms_mm, sigma, nuisance, folds
+/// and halves.
 void FromUncertainty(const CameraReport& camera, proto::CameraReport* out);
 /// Throws InputError where a list of numbers has another length than it should.
 void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera);

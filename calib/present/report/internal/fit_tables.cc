@@ -46,7 +46,10 @@ ViewQuality QualityOf(const CameraReport& camera, const std::string& view) {
 Table FitTable(const CameraReport& camera, FitFigure figure) {
   Table table{"How well it fits",
               {"Outline error: distance of the board's edge in the cloud from its outline in the "
-               "image. In sigmas 1 is expected; above 1 the stated sigmas are too small."},
+               "image. In sigmas 1 is expected; above 1 the stated sigmas are too small. In "
+               "millimetres it is measured on the board, from halfway between the last beam on it "
+               "and the first beyond. Distance from the plane: of the board's points from where "
+               "the image puts the board."},
               {"", "Views used (" + std::to_string(camera.used.size()) + ")",
                "Views held out (" + std::to_string(camera.heldout.size()) + ")"},
               {}};
@@ -57,6 +60,8 @@ Table FitTable(const CameraReport& camera, FitFigure figure) {
   };
   add("Outline error, RMS", camera.edge_rms_px, "px");
   add("Outline error in sigmas, RMS", camera.edge_rms_whitened, "σ");
+  add("Outline error on the board, RMS", camera.edge_rms_mm, "mm");
+  add("Points' distance from the board's plane, RMS", camera.plane_rms_mm, "mm");
   if (figure == FitFigure::kDistanceTransform) {
     add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
         "px");
@@ -71,14 +76,22 @@ Table ViewsTable(const CameraReport& camera, FitFigure figure) {
   const bool sigmas =
       std::any_of(camera.views.begin(), camera.views.end(),
                   [](const ViewQuality& view) { return view.edge_rms_whitened.has_value(); });
-  if (sigmas) table.head.emplace_back("Outline error in sigmas");
+  if (sigmas) {
+    table.head.emplace_back("Outline error in sigmas");
+    table.head.emplace_back("On the board");
+    table.head.emplace_back("Points from its plane");
+  }
   if (!camera.rejected.empty()) table.head.emplace_back("Why rejected");
   for (const ViewLine& line : LinesOf(camera)) {
     const ViewQuality quality = QualityOf(camera, line.view);
     Row& row = table.rows.emplace_back(
         Row{{line.view}, {line.role}, {WithUnit(quality.edge_rms_px, 2, "px")}});
     if (transform) row.push_back({WithUnit(quality.distance_transform_px, 2, "px")});
-    if (sigmas) row.push_back({WithUnit(quality.edge_rms_whitened, 2, "σ")});
+    if (sigmas) {
+      row.push_back({WithUnit(quality.edge_rms_whitened, 2, "σ")});
+      row.push_back({WithUnit(quality.edge_rms_mm, 1, "mm")});
+      row.push_back({WithUnit(quality.plane_rms_mm, 1, "mm")});
+    }
     if (!camera.rejected.empty()) row.push_back({line.why});
   }
   return table;

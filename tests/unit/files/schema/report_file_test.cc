@@ -65,6 +65,11 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   EXPECT_EQ(b.edge_rms_whitened.heldout, a.edge_rms_whitened.heldout);
   EXPECT_FALSE(b.views[0].edge_rms_whitened);
   EXPECT_EQ(b.views[1].edge_rms_whitened, a.views[1].edge_rms_whitened);
+  EXPECT_FALSE(b.views[0].edge_rms_mm || b.views[0].plane_rms_mm);
+  EXPECT_EQ(b.views[1].edge_rms_mm, 1.0 / 11);
+  EXPECT_EQ(b.views[1].plane_rms_mm, 1.0 / 13);
+  EXPECT_EQ(b.edge_rms_mm.heldout, 1.0 / 17);
+  EXPECT_EQ(b.plane_rms_mm.heldout, 1.0 / 19);
   ASSERT_TRUE(b.sigma);
   EXPECT_EQ(b.sigma->rotation_deg, a.sigma->rotation_deg);
   EXPECT_EQ(b.sigma->centre_mm, a.sigma->centre_mm);
