@@ -8,6 +8,7 @@
 #include "calib/camera/pixel_by_point.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -357,6 +358,25 @@ std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& ta
     out->second_pose_chi2 = (BoundedCost(second, sigma) - fits[0].cost) / (sigma * sigma);
   }
   return out;
+}
+
+std::string WhyNoFlatBoard(const Camera& camera) {
+  std::string why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+  const Lens& lens = camera.lens();
+  // A centre lies near the image's middle, a focal length hardly ever is half of the image.
+  const auto near_middle = [](double value, int size) {
+    return std::abs(value - 0.5 * size) < 0.125 * size;
+  };
+  const auto add = [&](const char* axis, double focal, double centre, int size) {
+    if (near_middle(centre, size) || !near_middle(focal, size)) return;
+    why += Format(
+        ": c%s = %.0f is far from the middle of the image, %dx%d; were f%s and c%s "
+        "exchanged?",
+        axis, centre, camera.width(), camera.height(), axis, axis);
+  };
+  add("x", lens.fx, lens.cx, camera.width());
+  add("y", lens.fy, lens.cy, camera.height());
+  return why;
 }
 
 }  // namespace rgbdt

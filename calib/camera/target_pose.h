@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calib/camera/camera.h"
@@ -45,5 +46,9 @@ bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corne
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
                                           const std::vector<Eigen::Vector2d>& corners,
                                           double most_off = 0.2);
+
+/// Why corners that were found are no flat board's, and what to look at: the lens, of which is said
+/// what cannot be right.
+std::string WhyNoFlatBoard(const Camera& camera);
 
 }  // namespace rgbdt

@@ -1,7 +1,12 @@
+#include <glog/logging.h>
+
 #include "services/command_line/command_line.h"
 #include "services/rgbdt/verbs.h"
 
 int main(int argc, char** argv) {
+  // Ceres warns of each step that fails, silent or not; what came of the solve stands in its
+  // result.
+  FLAGS_minloglevel = google::GLOG_ERROR;
   rgbdt::CommandLine line(
       "rgbdt",
       "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"

@@ -73,7 +73,7 @@ const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
       {"fx", {"fx against fy", "focal length", "lens"}},
       {"centre", {"image centre", "lens"}},
       {"distortion", {"distortion", "lens"}},
-      {"model", {"distortion", "lens"}},
+      {"model", {"lens model", "distortion", "lens"}},
       {"exchanged", {"fx and cx", "fy and cy", "lens"}},
       {"squares", {"squares", "cloud's scale"}},
       {"scale", {"cloud's scale", "squares", kSizeInCloud}},

@@ -41,10 +41,11 @@ ViewDetection SeenBy(const Rig& rig, const Cloud& cloud, ViewDetection view) {
   for (ImageDetection& image : view.images) {
     if (!image.edges || !image.edges->pose) continue;
     ImageEdges& edges = *image.edges;
-    const auto pose = PoseFromCorners(Camera(rig.Camera(image.camera)), rig.target, edges.corners);
+    const Camera camera(rig.Camera(image.camera));
+    const auto pose = PoseFromCorners(camera, rig.target, edges.corners);
     if (!pose) {
-      image.why_not =
-          "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+      image.why_not = WhyNoFlatBoard(camera);
+      image.edges.reset();
       continue;
     }
     const bool half_turn_known = edges.pose->half_turn_known;

@@ -250,7 +250,7 @@ Located FromCheckerboard(const Image& image, const cv::Mat& grey, const Camera& 
   const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &located.inner);
   located.pose = PoseFromCorners(camera, target, located.inner);
   if (!located.pose) {
-    located.why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+    located.why = WhyNoFlatBoard(camera);
     return located;
   }
   located.pose->pose.half_turn_known = known;

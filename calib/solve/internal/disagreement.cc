@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "calib/camera/intrinsics.h"
 #include "calib/model/text.h"
+#include "calib/solve/internal/lens_by_images.h"
 
 namespace rgbdt {
 namespace {
@@ -17,24 +17,6 @@ constexpr std::size_t kLeastViews =
 // Three quarters.
 bool MostAgree(int agreeing, std::size_t views) {
   return 4 * static_cast<std::size_t>(std::max(0, agreeing)) >= 3 * views;
-}
-
-std::optional<Lens> LensByItsViews(const Target& target, const CameraViews& views) {
-  if (!target.HasPattern()) return std::nullopt;
-  IntrinsicsInput input;
-  input.choice = views.spec->lens.model == Lens::Model::kFisheye ? LensChoice::kFisheye
-                                                                 : LensChoice::kPinhole5;
-  input.width = views.spec->width;
-  input.height = views.spec->height;
-  input.target = target;
-  for (const CameraView& view : views.all) {
-    if (view.image == nullptr || view.image->corners.empty()) continue;
-    if (!std::all_of(view.image->corners.begin(), view.image->corners.end(), &IsSeen)) continue;
-    input.views.push_back({view.view, view.image->corners});
-  }
-  if (input.views.size() < kLeastViews) return std::nullopt;
-  const IntrinsicsResult result = CalibrateIntrinsics(input);
-  return result.converged ? std::optional(result.lens) : std::nullopt;
 }
 
 // Each image beside the cloud of the view `apart` farther on.
@@ -85,12 +67,14 @@ Disagreement WhyViewsDisagree(const Target& target, const CalibrateOptions& opti
     why.contradiction = PairsAreOff(views, apart, other.agreeing, used.size());
   }
   if (!why.contradiction.empty()) return why;
-  const auto lens = LensByItsViews(target, views);
+  const auto lens = FindLensByImages(target, views);
   if (!lens) return why;
-  const CameraViews posed = PosedAgain(views, *lens, target);
+  why.other_model = OtherModel(*lens, *views.spec);
+  if (!lens->result.converged) return why;
+  const CameraViews posed = PosedAgain(views, lens->result.lens, target);
   const FirstGuess other = GuessFromBoards(posed.Used(), options.first_guess);
   if (other.camera_from_lidar && other.agreeing > agreeing && other.agreeing >= options.min_views) {
-    why.lens = lens;
+    why.lens = lens->result.lens;
   }
   return why;
 }

@@ -14,6 +14,7 @@ namespace rgbdt {
 struct Disagreement {
   std::optional<Lens> lens;   ///< by the views' own corners: with it far more of them agree
   std::string contradiction;  ///< images stand beside other views' clouds; empty: they do not
+  std::optional<Cause> other_model;  ///< the images want another model of lens
 };
 
 /// Where less than three quarters of the views, of which both image and cloud show the board, agree

@@ -10,6 +10,7 @@
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
+#include "calib/solve/internal/lens_by_images.h"
 
 namespace rgbdt {
 namespace {
@@ -236,7 +237,17 @@ class Tester {
       return {std::move(all)};
     }
     return {FocalCause(part(focal)), AspectCause(part(aspect)), CentreCause(part(centre)),
-            DistortionCause(part(distortion)), std::move(all)};
+            ModelOrDistortion(DistortionCause(part(distortion))), std::move(all)};
+  }
+
+  // That the model is the wrong one, where the images want the other: it says more.
+  Cause ModelOrDistortion(Cause distortion) const {
+    const auto lens = FindLensByImages(Board(), result_.joint.cameras[lens_].views);
+    const auto model = lens ? OtherModel(*lens, Spec()) : std::nullopt;
+    if (!model) return distortion;
+    distortion.name = model->name;
+    distortion.words = model->words;
+    return distortion;
   }
 
   // "fx and cx", "fy and cy", or nothing.

@@ -191,5 +191,14 @@ TEST(TargetPose, WhatNoFlatBoardMakesHasNoPose) {
   EXPECT_FALSE(PoseFromCorners(camera, Board(), scattered).has_value());
 }
 
+TEST(WhyNoFlatBoard, SaysWhatOfTheLensCannotBeRight) {
+  CameraSpec spec = Pinhole();
+  EXPECT_THAT(WhyNoFlatBoard(Camera(spec)), testing::Not(testing::HasSubstr("exchanged")));
+  std::swap(spec.lens.fy, spec.lens.cy);
+  const std::string why = WhyNoFlatBoard(Camera(spec));
+  EXPECT_THAT(why, testing::HasSubstr("were fy and cy exchanged?"));
+  EXPECT_THAT(why, testing::Not(testing::HasSubstr("fx")));
+}
+
 }  // namespace
 }  // namespace rgbdt

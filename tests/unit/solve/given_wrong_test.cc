@@ -189,5 +189,19 @@ TEST(WhyViewsDisagree, ALensThatIsFarOffIsFoundByTheViewsThemselves) {
   EXPECT_THAT(report.cameras[0].contradiction, "");
 }
 
+// With the right model, a wrong focal length is not taken for a wrong model.
+TEST(GivenWrong, ALensOfTheRightModelIsNotSaidToBeOfTheOther) {
+  SolveWorld world(Views(12));
+  for (CameraSpec& camera : world.rig.cameras) {
+    camera.lens_uncertainty.reset();
+    camera.lens.fx *= 1.1;
+    camera.lens.fy *= 1.1;
+  }
+  for (const CameraReport& camera : Believed(world).cameras) {
+    ASSERT_NE(Find(camera, "focal length"), nullptr);
+    EXPECT_EQ(Find(camera, "lens model"), nullptr);
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt

@@ -267,10 +267,7 @@ PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, co
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
   const auto pose = Settle(repaired, saturated_from, camera, target, &measured);
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
-  if (!pose) {
-    return {std::nullopt,
-            "the checkerboard's corners do not fit a flat board; check the lens in the rig"};
-  }
+  if (!pose) return {std::nullopt, WhyNoFlatBoard(camera)};
   if (pose->second_pose_chi2 < kLeastChi2) {
     return {std::nullopt, "too little of the board can be made out to tell which way it leans"};
   }
