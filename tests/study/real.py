@@ -14,8 +14,10 @@ import trials  # noqa: E402
 from trials import column, figure, mean, median, pick
 
 UNLIKELY = 22.5  # chi-square of six: beyond it once in a thousand times
-CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens", "in_order": "in_order"}
+CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens",
+         "random_own_lens": "halves_own_lens", "in_order": "in_order"}
 DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
+COLUMNS = (*(key for key, _ in DIFFERENCES), "px")
 SINGLE = ("used", "sigma_deg", "sigma_mm", "variance_factor", "edge_plane_deg", "edge_plane_mm",
           "edge_plane_chi2", "lens_deg", "lens_mm", "lens_chi2", "range_sd_ratio")
 
@@ -27,6 +29,7 @@ class Rig:
         self.name = name
         self.splits = pick(trials.read(parts, f"real-{name}"), part=f"real-{name}")
         self.rings = pick(trials.read(parts, f"rings-{name}"), part=f"rings-{name}")
+        self.views = pick(trials.read(parts, f"views-{name}"), part=f"views-{name}")
         with open(parts / f"facts-{name}.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.facts = {row["fact"]: (float(row["value"]), row["unit"]) for row in rows}
@@ -52,6 +55,7 @@ def figures_of_rig(rig):
             continue
         for key, unit in DIFFERENCES:
             yield figure(f"{rig.name}_{name}_{unit}", median(column(own, key)), unit)
+        yield figure(f"{rig.name}_{name}_px", median(column(own, "px")), "px")
         if case == "in_order":
             yield figure(f"{rig.name}_{name}_chi2", own[0]["chi2"])
         else:
@@ -91,20 +95,22 @@ def targets_of(rigs):
 def line_of(rig, case):
     own = rig.solved(case)
     line = [rig.name, CASES[case].replace("_", " "), f"{len(own)}"]
-    for key, _ in DIFFERENCES:
+    for key in COLUMNS:
         line += [median(column(own, key)), median(column(own, f"sigma_{key}"))] if own else ["-", "-"]
     return line + ([median(column(own, "chi2")), mean(column(own, "inside95"))] if own else ["-", "-"])
 
 
 def table(rigs):
     text = "Medians of differences, each beside the sigma stated of it\n"
-    head = ("rig", "what", "pairs", "deg", "sigma", "mm", "sigma", "chi2 of 6", "inside 95%")
+    head = ("rig", "what", "pairs", "deg", "sigma", "mm", "sigma", "px at 5 m", "sigma",
+            "chi2 of 6", "inside 95%")
     lines = [line_of(rig, case) for rig in rigs for case in CASES]
     for rig in rigs:
         for what, label in (("edge_plane", "edges, planes"), ("lens", "given, own lens")):
             values = [rig.fact(f"{what}_{key}") for key in ("deg", "mm", "chi2")]
             if None not in values:
-                lines.append([rig.name, label, "1", values[0], "-", values[1], "-", values[2], "-"])
+                lines.append([rig.name, label, "1", values[0], "-", values[1], "-", "-", "-", values[2],
+                              "-"])
     text += trials.grid(head, lines)
     for rig in rigs:
         text += (f"\n{rig.name}: {rig.fact('found'):.0f} of {rig.fact('recorded'):.0f} views found, "
@@ -138,12 +144,39 @@ def draw_rings(axes, rig):
              title=f"{rig.name}: mean of a ring's points in a view")
 
 
+def draw_lens(axes, rig):
+    """How far halves are turned apart, against how far their lenses' centres are."""
+    own = rig.solved("random")
+    for axis, colour in (("pitch", "tab:blue"), ("yaw", "tab:orange")):
+        axes.scatter(column(own, f"lens_{axis}_deg"), column(own, f"{axis}_deg"), s=10, c=colour,
+                     alpha=0.6, label=axis)
+    most = max(map(abs, (*axes.get_xlim(), *axes.get_ylim())))
+    axes.plot([-most, most], [-most, most], c="k", lw=0.8, label="the lens alone")
+    axes.set(xlabel="lenses' centres apart, as an angle [deg]", ylabel="poses apart [deg]",
+             title=f"{rig.name}: halves, pose against lens")
+    axes.legend(fontsize=8)
+
+
+def draw_views(axes, rig):
+    """The board in each cloud against where its image has it."""
+    for axis, colour in (("about x", "tab:blue"), ("about y", "tab:orange"), ("about z", "tab:green")):
+        own = pick(rig.views, axis=axis)
+        axes.errorbar(range(len(own)), column(own, "value"), column(own, "sigma"), fmt="o", ms=3,
+                      lw=0.8, c=colour, label=axis)
+    axes.axhline(0, c="k", lw=0.8)
+    axes.legend(fontsize=8)
+    axes.set(xlabel="view", ylabel="cloud against image [mrad], 1 sigma",
+             title=f"{rig.name}: the board turned about its axes")
+
+
 def draw(rigs, path):
-    plot, axes = plt.subplots(len(rigs), 3, figsize=(15, 4.5 * len(rigs)), squeeze=False)
+    plot, axes = plt.subplots(len(rigs), 5, figsize=(25, 4.5 * len(rigs)), squeeze=False)
     for row, rig in zip(axes, rigs):
         for axis, (key, unit) in zip(row, DIFFERENCES):
             draw_differences(axis, rig, key, unit)
         draw_rings(row[2], rig)
+        draw_lens(row[3], rig)
+        draw_views(row[4], rig)
     plot.tight_layout()
     plot.savefig(path, dpi=120)
 

@@ -1,14 +1,19 @@
 // How a recorded session agrees with itself: there is no truth.
-//   study_real SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV
+//   study_real SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV
 // SESSION: a session directory of one camera; each view is detected once, held out or not.
 // SPLITS_CSV: random halves of the views, solved apart, a line each, with the lens as the rig file
-// has it and with it taken for exact; and the first half of the recording against the last
+// has it, with it taken for exact, and with the one that all views' images give, as it is with
+// `rgbdt intrinsics` run first (both halves then have its error in common); and the first half of
+// the recording against the last
 // ("in_order"), as two sessions. FACTS_CSV: name, value, unit. Edges alone against planes alone:
 // the same solve without the boards' points, and without crossings and sides in the images; both
-// have the corners, whose noise they share. The given lens against the session's own: found from
+// have the corners, whose noise they share, or of a plain board the sides in the images, by which
+// alone these know it. The given lens against the session's own: found from
 // the same images as `rgbdt intrinsics` does. RINGS_CSV: how far each ring's points on a board lie
 // behind its plane, along their beams, before and after the cloud is corrected by what the solve
-// found; range_sd_ratio: the RMS of all of them after over before.
+// found; range_sd_ratio: the RMS of all of them after over before. VIEWS_CSV: by how much the board
+// in each view's cloud is displaced from where its image and the result put it, about and along the
+// target's axes, with the sigma that image and cloud state.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -28,8 +33,10 @@
 #include "calib/model/linear_algebra.h"
 #include "calib/model/range_errors.h"
 #include "calib/present/report/verdict.h"
+#include "calib/solve/compare.h"
 #include "calib/solve/guess_cameras.h"
 #include "calib/solve/internal/joint_solve.h"
+#include "calib/solve/internal/view_equations.h"
 #include "tests/study/study_main.h"
 
 namespace rgbdt::study {
@@ -107,9 +114,10 @@ std::optional<Pose> SolveLoose(const Rig& rig, const Detections& views) {
               Matrix6d(CovarianceOf(result, 0).topLeftCorner<6, 6>())};
 }
 
-Detections WithoutEdges(Detections views) {
+Detections WithoutEdges(const Target& target, Detections views) {
   for (ViewDetection& view : views) {
     for (CloudEdges& board : view.cloud.candidates) board.crossings.clear();
+    if (!target.HasPattern()) continue;
     for (ImageDetection& image : view.images) {
       if (image.edges) image.edges->sides = {};
     }
@@ -151,7 +159,8 @@ class Splits {
  public:
   Splits(const std::string& path, const Detections& views) : csv_(path), views_(views) {
     csv_ << "case,split,rotation_deg,translation_mm,chi2,inside95,sigma_rotation_deg,"
-            "sigma_translation_mm,doubtful\n";
+            "sigma_translation_mm,px,sigma_px,pitch_deg,yaw_deg,lens_pitch_deg,lens_yaw_deg,"
+            "doubtful\n";
   }
 
   void Random(const std::string& name, const Rig& rig, int count, std::uint64_t seed) {
@@ -194,10 +203,24 @@ class Splits {
            << (chi2 <= kInside95) << ','
            << std::sqrt(covariance.topLeftCorner<3, 3>().trace()) / kDegree << ','
            << 1e3 * std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+      AddPixels(rig.cameras.at(0), a.calibration, b.calibration);
     } else {
-      csv_ << ",,,,,,";
+      csv_ << ",,,,,,,,,,,,";
     }
     csv_ << ',' << (std::max(Judge(a).grade, Judge(b).grade) > Grade::kUsable) << '\n';
+  }
+
+  // Where the two, each with its lens, project what is 5 m away; about the camera's x and y, how
+  // far they are turned, and how far their lenses' centres lie apart, as an angle.
+  void AddPixels(const CameraSpec& spec, const CameraCalibration& a, const CameraCalibration& b) {
+    const PoseComparison apart = Compare(a, b, &spec);
+    const PixelShift& at_5m = apart.pixels.at(1);
+    const Lens of_a = a.WithSolvedLens(spec).lens;
+    const Lens of_b = b.WithSolvedLens(spec).lens;
+    csv_ << ',' << at_5m.rms_px << ',' << at_5m.sigma_px.value_or(NAN) << ','
+         << apart.rotation_deg[0].value << ',' << apart.rotation_deg[1].value << ','
+         << (of_b.cy - of_a.cy) / of_a.fy / kDegree << ','
+         << (of_a.cx - of_b.cx) / of_a.fx / kDegree;
   }
 
   std::ofstream csv_;
@@ -249,7 +272,7 @@ void AddWhole(const Recorded& recorded, const CameraReport& whole, Facts* facts)
 
 void AddComparisons(const Recorded& recorded, const CameraReport& whole, Facts* facts) {
   const auto edges = SolveLoose(recorded.rig, WithoutPlanes(recorded.views));
-  const auto planes = SolveLoose(recorded.rig, WithoutEdges(recorded.views));
+  const auto planes = SolveLoose(recorded.rig, WithoutEdges(recorded.rig.target, recorded.views));
   if (edges && planes) {
     facts->AddApart("edge_plane", *edges, *planes,
                     Matrix6d(edges->covariance + planes->covariance));
@@ -326,6 +349,60 @@ bool WriteRings(const Recorded& recorded, const RangeErrors& errors, const std::
   return static_cast<bool>(csv.flush());
 }
 
+// A board's pose by what a view has of it in this problem, all that views share as the solution has
+// it.
+struct BoardPose {
+  Rigid3 lidar_from_target;
+  Matrix6d covariance;  // of a right delta
+};
+
+BoardPose BoardBy(const BoardProblem& problem, BoardState state, std::size_t view) {
+  constexpr int kRounds = 20;
+  Matrix6d covariance;
+  for (int round = 0; round < kRounds; ++round) {
+    const ViewEquations equations(problem, state, view);
+    const ViewEquations::OwnMatrix h = equations.h().topLeftCorner<kOwnUnknowns, kOwnUnknowns>();
+    const Eigen::VectorXd step =
+        SolveSymmetric(Eigen::MatrixXd(h), Eigen::VectorXd(equations.g().head<kOwnUnknowns>()));
+    Rigid3& board = state.lidar_from_target[view];
+    board = board * Exp(Vector6d(step.head<6>()));
+    for (std::size_t side = 0; side < 4; ++side) {
+      state.side_shift[view][side] += step[6 + static_cast<Eigen::Index>(side)];
+    }
+    covariance = InverseOfSymmetric(Eigen::MatrixXd(h)).topLeftCorner<6, 6>();
+  }
+  return {state.lidar_from_target[view], covariance};
+}
+
+// The board as each view's cloud alone has it against how its image alone has it.
+bool WriteViews(const Recorded& recorded, const std::string& path) {
+  constexpr const char* kAxes[] = {"about x", "about y", "about z",
+                                   "along x", "along y", "along z"};
+  std::ofstream csv(path);
+  csv << "view,axis,value,sigma\n";
+  std::vector<GuessedCamera> cameras = Guessed(recorded.rig, recorded.views);
+  if (!cameras.at(0).guess.camera_from_lidar) return static_cast<bool>(csv.flush());
+  const JointResult result = SolveJointly(MakeJointProblem(
+      recorded.rig.target, std::move(cameras), recorded.rig.lidar.range_offset_sigma_m));
+  BoardProblem by_cloud = result.joint.problem;
+  BoardProblem by_image = result.joint.problem;
+  for (BoardView& view : by_cloud.views) view.images.clear();
+  for (BoardView& view : by_image.views) {
+    view.cloud.crossings.clear();
+    view.cloud.scatter_sigma_m = 0;
+  }
+  for (std::size_t v = 0; v < by_cloud.views.size(); ++v) {
+    const BoardPose cloud = BoardBy(by_cloud, result.solution.state, v);
+    const BoardPose image = BoardBy(by_image, result.solution.state, v);
+    const Vector6d off = Log(image.lidar_from_target.Inverse() * cloud.lidar_from_target);
+    for (int k = 0; k < 6; ++k) {
+      csv << by_cloud.views[v].name << ',' << kAxes[k] << ',' << 1e3 * off[k] << ','
+          << 1e3 * std::sqrt(cloud.covariance(k, k) + image.covariance(k, k)) << '\n';
+    }
+  }
+  return static_cast<bool>(csv.flush());
+}
+
 // Only what was found; all views are counted.
 Recorded FoundOf(Recorded recorded, Facts* facts) {
   facts->Add("recorded", static_cast<double>(recorded.views.size()));
@@ -351,9 +428,13 @@ void Run(const std::vector<std::string>& arguments) {
   Splits splits(arguments[3], recorded.views);
   splits.Random("random", recorded.rig, count, seed);
   splits.Random("random_exact_lens", exact, count, seed);
+  if (const auto own = WithOwnLens(recorded.rig, recorded.views)) {
+    splits.Random("random_own_lens", *own, count, seed);
+  }
   splits.Recorded(recorded.rig);
   const RangeErrors errors = whole.calibration.range_errors.value_or(RangeErrors{});
-  const bool written = WriteRings(recorded, errors, arguments[5], &facts);
+  const bool written =
+      WriteRings(recorded, errors, arguments[5], &facts) && WriteViews(recorded, arguments[6]);
   if (!written || !splits.Close() || !facts.Close()) {
     throw std::runtime_error("cannot write " + arguments[3]);
   }
@@ -364,6 +445,7 @@ void Run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   return rgbdt::study::StudyMain(
-      {"study_real", "SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV", 6, 6, rgbdt::study::Run},
+      {"study_real", "SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV", 7, 7,
+       rgbdt::study::Run},
       argc, argv);
 }
