@@ -67,6 +67,16 @@ cp -r "$scratch/two" "$scratch/kept"
 says=("earlier session")
 refuses "a session that is there" "${session[@]}" "${both[@]}" "${lenses[@]}" --out "$scratch/kept/two"
 
+# Inner corners given for squares in a rig file, once the session is there.
+cp -r "$scratch/two" "$scratch/corners"
+sed -i 's/squares_x: 11/squares_x: 10/; s/squares_y: 8/squares_y: 7/' "$scratch/corners/rig.textproto"
+code=0
+"$bin/rgbdt" calibrate "$scratch/corners" >"$scratch/output" 2>&1 || code=$?
+[ "$code" -eq 1 ] || complain "inner corners for squares: exit code $code"
+for word in "11 x 8 squares" "count squares, not inner corners"; do
+  grep '^rgb: Do not use it' "$scratch/output" | grep -qF -- "$word" || complain "inner corners for squares: no word of '$word'"
+done
+
 # A camchain whose cameras stand in another order: their topics tell.
 accepts "a camchain" "${session[@]}" "${both[@]}" --lens "$scratch/camchain.yaml" --out "$scratch/chain"
 cmp -s "$scratch/two/rig.textproto" "$scratch/chain/rig.textproto" || complain "a camchain: another rig"

@@ -229,8 +229,10 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
       if (next_view) judgement->Bad("Next: " + next_view->words);
       break;
     case SolveStatus::kNotSolved:
+      // Where no view is left, why they were rejected says more.
+      if (camera.used.empty()) JudgeRejections(camera, judgement);
       judgement->Bad("There was no solve" + (detail.empty() ? "." : ": " + detail));
-      JudgeRejections(camera, judgement);
+      if (!camera.used.empty()) JudgeRejections(camera, judgement);
       break;
     case SolveStatus::kContradicted:
       judgement->Bad("Status of the solve: " + calibration.StatusText());

@@ -8,6 +8,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 SolveWorldOptions Drawn(std::uint32_t seed) {
   SolveWorldOptions options = Views(10);
@@ -200,6 +201,31 @@ TEST(GivenWrong, ALensOfTheRightModelIsNotSaidToBeOfTheOther) {
   for (const CameraReport& camera : Believed(world).cameras) {
     ASSERT_NE(Find(camera, "focal length"), nullptr);
     EXPECT_EQ(Find(camera, "lens model"), nullptr);
+  }
+}
+
+// Clouds without rings, whose boards alone tell: x right, y down, z forward.
+TEST(GuessCameras, CloudsInACamerasAxesAreNamed) {
+  SolveWorld world(Views(8));
+  for (const CameraReport& camera : Calibrate(world.rig, world.detections, Brief()).cameras) {
+    EXPECT_THAT(camera.warnings, Not(testing::Contains(HasSubstr("a camera's (x right"))));
+  }
+  Rigid3 turned;
+  turned.rotation = Eigen::Matrix3d((Eigen::Matrix3d() << 0, -1, 0, 0, 0, -1, 1, 0, 0).finished());
+  Eigen::Matrix4d q = Eigen::Matrix4d::Identity();
+  q.topLeftCorner<3, 3>() = turned.rotation.toRotationMatrix();
+  for (std::size_t v = 0; v < world.detections.size(); ++v) {
+    CloudEdges& cloud = world.CloudAt(v);
+    cloud.centre = turned * cloud.centre;
+    cloud.normal = turned * cloud.normal;
+    cloud.pose->sensor_from_target = turned * cloud.pose->sensor_from_target;
+    for (Eigen::Vector3d& point : cloud.boundary) point = turned * point;
+    for (Crossing& crossing : cloud.crossings) crossing.point = turned * crossing.point;
+    cloud.scatter = q * cloud.scatter * q.transpose();
+    cloud.raw_scatter = q * cloud.raw_scatter * q.transpose();
+  }
+  for (const CameraReport& camera : Calibrate(world.rig, world.detections, Brief()).cameras) {
+    EXPECT_THAT(camera.warnings, testing::Contains(HasSubstr("a camera's (x right")));
   }
 }
 
