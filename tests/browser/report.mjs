@@ -7,6 +7,8 @@ const kCameras = ["rgb", "thermal"], kViews = 6, kHeldout = "0003", kHeldoutPx =
 
 /// What it shows of the session, in words and numbers.
 async function look(page, name) {
+  await until("the result first", () => byId(page, "panel-session").count(), (count) => count === 1);
+  await openTab(page, "cloud");
   // While parts of the cloud come, not all of it is drawn.
   const drawn = () => page.evaluate(() => ({ points: window.rgbdt.cloud.points(), total: window.rgbdt.cloud.total() }));
   await until("the cloud", drawn, ({ points, total }) => points > 10_000 && points === total);

@@ -11,14 +11,15 @@ const kTabs = [
 ] as const;
 export type Tab = (typeof kTabs)[number]["id"];
 
-/// A finished session has no bus, and corners picked in it would change nothing.
-export const tabs = computed(() => {
-  const over = connection.value === "embedded" || hello.value?.source === "session";
-  return kTabs.filter(({ id }) => !over || (id !== "pick" && id !== "bus"));
-});
+/// A session that is finished: a report, or a directory.
+const over = computed(() => connection.value === "embedded" || hello.value?.source === "session");
 
-const wanted = signal<Tab>("cloud");
-export const tab = computed<Tab>(() => (tabs.value.some(({ id }) => id === wanted.value) ? wanted.value : "cloud"));
+/// A finished session has no bus, and corners picked in it would change nothing.
+export const tabs = computed(() => kTabs.filter(({ id }) => !over.value || (id !== "pick" && id !== "bus")));
+
+const wanted = signal<Tab | null>(null); // null: nobody has asked for one yet
+/// Of a finished session the result comes first; live, what the sensors see.
+export const tab = computed<Tab>(() => tabs.value.find(({ id }) => id === wanted.value)?.id ?? (over.value ? "session" : "cloud"));
 
 function readAddress(): void {
   const named = kTabs.find(({ id }) => location.hash.split("?")[0] === `#/${id}`);
