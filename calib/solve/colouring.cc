@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "calib/camera/pixel_by_point.h"
 
@@ -19,20 +20,29 @@ std::array<double, 3> Sigmas(const Eigen::Matrix3d& covariance, double scale) {
           scale * Root(covariance(2, 2))};
 }
 
-double WorstPx(const Camera& camera, const PoseAndLensCovariance& covariance, double distance_m) {
-  double worst = kNan;
+// At all pixels of the grid that look anywhere.
+std::vector<ColouringVariance> AllOver(const Camera& camera,
+                                       const PoseAndLensCovariance& covariance) {
+  std::vector<ColouringVariance> all;
   for (const Eigen::Vector2d& pixel : ImageGrid(camera)) {
-    const auto sigma = ColouringSigmaAt(camera, covariance, pixel, distance_m);
-    if (sigma) worst = std::fmax(worst, *sigma);  // of a NaN and a number, the number
+    if (const auto variance = ColouringVarianceOf(camera, covariance, pixel)) {
+      all.push_back(*variance);
+    }
   }
-  return worst;
+  return all;
 }
 
-ColouringSigma ColouringAt(const Camera& camera, const PoseAndLensCovariance& covariance,
-                           double distance_m) {
-  const Eigen::Vector2d middle(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
-  return {distance_m, ColouringSigmaAt(camera, covariance, middle, distance_m).value_or(kNan),
-          WorstPx(camera, covariance, distance_m)};
+// The index of the largest at a distance; of a NaN and a number, the number.
+std::optional<std::size_t> WorstOf(const std::vector<ColouringVariance>& all, double distance_m) {
+  std::optional<std::size_t> worst;
+  double most = -1;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double sigma = all[i].SigmaAt(distance_m);
+    if (!(sigma > most)) continue;
+    most = sigma;
+    worst = i;
+  }
+  return worst;
 }
 
 }  // namespace
@@ -51,29 +61,49 @@ std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera) {
   return grid;
 }
 
+double ColouringVariance::SigmaAt(double distance_m) const {
+  return Root(lasting + per_m / distance_m + per_m2 / (distance_m * distance_m));
+}
+
+std::optional<ColouringVariance> ColouringVarianceOf(const Camera& camera,
+                                                     const PoseAndLensCovariance& covariance,
+                                                     const Eigen::Vector2d& pixel) {
+  const auto direction = camera.Unproject(pixel);
+  if (!direction) return std::nullopt;
+  const PixelDerivatives by = PixelByPointAndLens(camera.lens(), *direction);
+  const Eigen::Matrix<double, 2, 3> by_point = by.leftCols<3>();  // of a point one metre away
+  using Derivatives = Eigen::Matrix<double, 2, kPoseAndLens>;
+  Derivatives lasting = Derivatives::Zero();
+  Derivatives per_m = Derivatives::Zero();
+  lasting.leftCols<3>() = -by_point * CrossMatrix(*direction);
+  lasting.rightCols<kLensNumbers>() = by.rightCols<kLensNumbers>();
+  per_m.middleCols<3>(3) = by_point;
+  return ColouringVariance{(lasting * covariance * lasting.transpose()).trace(),
+                           2 * (lasting * covariance * per_m.transpose()).trace(),
+                           (per_m * covariance * per_m.transpose()).trace()};
+}
+
 std::optional<double> ColouringSigmaAt(const Camera& camera,
                                        const PoseAndLensCovariance& covariance,
                                        const Eigen::Vector2d& pixel, double distance_m) {
-  const auto direction = camera.Unproject(pixel);
-  if (!direction) return std::nullopt;
-  const Eigen::Vector3d point = distance_m * *direction;
-  const PixelDerivatives by = PixelByPointAndLens(camera.lens(), point);
-  const Eigen::Matrix<double, 2, 3> by_point = by.leftCols<3>();
-  Eigen::Matrix<double, 2, kPoseAndLens> j;
-  j << -by_point * CrossMatrix(point), by_point, by.rightCols<kLensNumbers>();
-  return Root((j * covariance * j.transpose()).trace());
+  const auto variance = ColouringVarianceOf(camera, covariance, pixel);
+  return variance ? std::optional(variance->SigmaAt(distance_m)) : std::nullopt;
 }
 
-std::vector<ColouringSigma> ColouringSigmas(const CameraSpec& spec,
-                                            const CameraCalibration& calibration,
-                                            const std::vector<double>& distances_m) {
-  const Camera camera(calibration.WithSolvedLens(spec));
-  const PoseAndLensCovariance covariance = calibration.PoseAndLens();
-  std::vector<ColouringSigma> sigmas;
-  for (const double distance_m : distances_m) {
-    sigmas.push_back(ColouringAt(camera, covariance, distance_m));
+std::vector<ColouringVariance> WorstColouring(const CameraSpec& spec,
+                                              const CameraCalibration& calibration) {
+  constexpr double kNearestM = 0.3, kFarthestM = 300;
+  constexpr int kSteps = 300;
+  const auto all = AllOver(Camera(calibration.WithSolvedLens(spec)), calibration.PoseAndLens());
+  std::set<std::size_t> worst;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    const auto at = WorstOf(all, kNearestM * std::pow(kFarthestM / kNearestM, share));
+    if (at) worst.insert(*at);
   }
-  return sigmas;
+  std::vector<ColouringVariance> out;
+  for (const std::size_t i : worst) out.push_back(all[i]);
+  return out;
 }
 
 PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration) {
@@ -82,8 +112,15 @@ PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration) 
   PoseSigma sigma;
   sigma.rotation_deg = Sigmas(covariance.topLeftCorner<3, 3>(), 180 / M_PI);
   sigma.centre_mm = Sigmas(r.transpose() * covariance.block<3, 3>(3, 3) * r, 1000);
-  sigma.colouring = ColouringSigmas(
-      spec, calibration, {std::begin(kColouringDistancesM), std::end(kColouringDistancesM)});
+  const Camera camera(calibration.WithSolvedLens(spec));
+  const auto all = AllOver(camera, covariance);
+  const Eigen::Vector2d middle(0.5 * (camera.width() - 1), 0.5 * (camera.height() - 1));
+  for (const double distance_m : kColouringDistancesM) {
+    const auto worst = WorstOf(all, distance_m);
+    sigma.colouring.push_back(
+        {distance_m, ColouringSigmaAt(camera, covariance, middle, distance_m).value_or(kNan),
+         worst ? all[*worst].SigmaAt(distance_m) : kNan});
+  }
   return sigma;
 }
 

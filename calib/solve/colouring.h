@@ -23,10 +23,24 @@ std::vector<Eigen::Vector2d> ImageGrid(const Camera& camera);
 /// had is NaN: centre_px where the lens model ends before the image's middle.
 PoseSigma SigmaOf(const CameraSpec& spec, const CameraCalibration& calibration);
 
-/// The colouring of PoseSigma at other distances [m].
-std::vector<ColouringSigma> ColouringSigmas(const CameraSpec& spec,
-                                            const CameraCalibration& calibration,
-                                            const std::vector<double>& distances_m);
+/// The square of ColouringSigmaAt [px^2] at any distance d [m] from the camera:
+/// lasting + per_m / d + per_m2 / d^2. The pose's rotation and the lens move a pixel alike however
+/// far the point is, its translation moves it by the inverse of the distance.
+struct ColouringVariance {
+  double lasting = 0, per_m = 0, per_m2 = 0;
+
+  double SigmaAt(double distance_m) const;
+};
+
+/// Of the pixel's point at any distance; nothing where no direction maps to the pixel.
+std::optional<ColouringVariance> ColouringVarianceOf(const Camera& camera,
+                                                     const PoseAndLensCovariance& covariance,
+                                                     const Eigen::Vector2d& pixel);
+
+/// Of those pixels of the image that are worst at some distance from 0.3 to 300 m: the largest of
+/// their sigmas at a distance is PoseSigma's `worst_px` there.
+std::vector<ColouringVariance> WorstColouring(const CameraSpec& spec,
+                                              const CameraCalibration& calibration);
 
 /// 1 sigma [px], of pose and lens, of where the colour of a point is taken from, the point being
 /// where `pixel` looks, `distance_m` from the camera. It is the RMS length of the displacement, the

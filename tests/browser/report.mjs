@@ -25,6 +25,14 @@ async function look(page, name) {
     await until("the cloud on the images", laid, (points) => points.length === kCameras.length && points.every((count) => count > 1000));
     require(await card.locator(".residual-bar").count() === kCameras.length, "a view has no bar of its residual");
   }
+  // The uncertainty at any distance: at 5 m it is what the line for 5 m says.
+  await byId(page, "projection-distance").fill("5");
+  const cells = async (row) => (await row.locator("td").allInnerTexts()).join(" ");
+  const at5m = await cells(byId(page, "answer-uncertainty").locator("tr", { hasText: "projection at 5 m, up to" }));
+  await until("the uncertainty at 5 m", () => cells(byId(page, "projection-chosen")), (shown) => shown === at5m);
+  require(/^\d+\.\d+.px/.test(at5m), `the projection uncertainty at 5 m is ${at5m}`);
+  await byId(page, "projection-distance").fill("0.7");
+  await until("more uncertainty nearby", () => cells(byId(page, "projection-chosen")), (shown) => shown !== at5m);
   await shot(page, `${name}-session`);
 
   const answers = await byId(page, "answer-uncertainty").innerText();

@@ -16,8 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<double> kOfferedDistancesM = {1, 1.5, 2, 3, 4, 5, 7, 10, 15, 20, 30, 50, 100};
-
 const char* NameOf(CameraKind kind) { return kind == CameraKind::kThermal ? "thermal" : "color"; }
 
 // Where the image's corners look, going round; empty where the lens does not tell.
@@ -235,10 +233,8 @@ json ProjectionJson(const SessionState& state, const std::string& camera) {
   json out = json::array();
   const auto known = state.projection.find(camera);
   if (known == state.projection.end()) return out;
-  for (const ColouringSigma& at : known->second) {
-    out.push_back({{"distance_m", at.distance_m},
-                   {"centre_px", FiniteOrNull(at.centre_px)},
-                   {"worst_px", FiniteOrNull(at.worst_px)}});
+  for (const ColouringVariance& at : known->second) {
+    out.push_back({at.lasting, at.per_m, at.per_m2});
   }
   return out;
 }
@@ -311,10 +307,10 @@ std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
   return likeliest;
 }
 
-std::vector<ColouringSigma> ProjectionOf(const Rig& rig, const CameraCalibration& calibration) {
+std::vector<ColouringVariance> ProjectionOf(const Rig& rig, const CameraCalibration& calibration) {
   const CameraSpec& spec = rig.Camera(calibration.camera);
   if (!spec.lens.known() || !WorstAxisSigma(calibration)) return {};
-  return ColouringSigmas(spec, calibration, kOfferedDistancesM);
+  return WorstColouring(spec, calibration);
 }
 
 std::string RigFrame(const Rig& rig) {

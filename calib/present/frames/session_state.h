@@ -11,6 +11,7 @@
 #include "calib/model/rig.h"
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
+#include "calib/solve/colouring.h"
 
 namespace rgbdt {
 
@@ -53,8 +54,8 @@ struct SessionState {
   std::vector<SigmaStep> sigma;
   Calibration calibration;  ///< each camera's newest
   std::map<std::string, Utime> calibration_utime;
-  std::map<std::string, std::vector<ColouringSigma>> projection;  ///< by camera: ProjectionOf
-  std::optional<Report> report;                                   ///< the newest
+  std::map<std::string, std::vector<ColouringVariance>> projection;  ///< by camera: ProjectionOf
+  std::optional<Report> report;                                      ///< the newest
 };
 
 /// Whether a view's detection can be used for this camera: the board was found in its image and in
@@ -66,9 +67,8 @@ bool IsUsable(const ViewState& view, const std::string& camera);
 std::optional<CloudEdges> BoardInCloud(const ViewDetection& detection,
                                        const Calibration& calibration);
 
-/// 1 sigma of where points are projected, at distances for a person to choose from; empty: not
-/// known.
-std::vector<ColouringSigma> ProjectionOf(const Rig& rig, const CameraCalibration& calibration);
+/// How uncertain it is where points are projected, at any distance; empty: not known.
+std::vector<ColouringVariance> ProjectionOf(const Rig& rig, const CameraCalibration& calibration);
 
 /// A RigFrame.
 std::string RigFrame(const Rig& rig);

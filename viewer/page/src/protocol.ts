@@ -149,16 +149,13 @@ export interface CameraState {
   poses: Pose[]; // camera_from_lidar and its inverse; empty: not calibrated
   rotation_sigma_deg: number | null; // 1 sigma along the axis that is known least
   centre_sigma_mm: number | null; // of the camera's centre, likewise
-  projection: ProjectionSigma[]; // by distance; empty: not known
+  projection: ProjectionVariance[]; // of the image's worst pixels; empty: not known
   verdict: Verdict;
 }
 
-/// 1 sigma of where a point, so far from the camera, is projected into the image.
-export interface ProjectionSigma {
-  distance_m: number;
-  centre_px: number | null; // in the image's centre
-  worst_px: number | null; // anywhere in the image
-}
+/// How uncertain it is where a point is projected, in one pixel: its variance [px^2] is
+/// v[0] + v[1] / d + v[2] / d^2, d the point's distance from the camera [m].
+export type ProjectionVariance = [number, number, number];
 
 /// Views that a person left out of the result, and what that did.
 export interface LeftOut {

@@ -38,7 +38,7 @@ function cameraState(views: number, camera: (typeof kCameras)[number]): CameraSt
     camera: camera.name, calibrated: views > 3, status: views > 3 ? "converged" : "3 views are too few: 4 are needed",
     utime: kStart + views * 60e6, camera_from_lidar: camera_from_lidar(camera),
     poses: [{ name: "camera_from_lidar", sentence: "Takes a point of the LIDAR frame into the camera's.", matrix: camera_from_lidar(camera) }],
-    projection: [1, 2, 5, 10, 20, 50].map((distance_m) => ({ distance_m, centre_px: 0.2 + 1 / distance_m, worst_px: 0.3 + 2 / distance_m })),
+    projection: [[0.09, 1.2, 4], [0.16, 0.8, 2]],
     rotation_sigma_deg: 0.2 / views, centre_sigma_mm: (thermal ? 30 : 12) / views,
     verdict: thermal
       ? { grade: "usable", headline: "Usable: rgb and thermal", reasons: ["the upper left of the image has no view", "held-out edge 1.6 sigma"] }

@@ -8,28 +8,32 @@ import { PoseCard } from "./pose_card";
 import { gradeClass, kGradeIcon, VerdictCard } from "./verdict";
 
 const kDistancesM = [2, 5, 10];
+const kNearestM = 0.3; // nearer than that there is no pose of interest
 const chosenDistance = signal(20); // [m], beside those
 
 /// The projection uncertainty (1 sigma, where it is worst in the image) so far away, in words.
 export function projectionAt({ projection }: CameraState, distance_m: number): string {
-  return px(projection.find((each) => each.distance_m === distance_m)?.worst_px);
+  const variances = projection.map(([lasting, per_m, per_m2]) => lasting + per_m / distance_m + per_m2 / distance_m ** 2);
+  return px(variances.length > 0 ? Math.sqrt(Math.max(0, ...variances)) : null);
 }
 
-function DistanceChoice({ cameras }: { cameras: CameraState[] }) {
-  const offered = [...new Set(cameras.flatMap(({ projection }) => projection.map(({ distance_m }) => distance_m)))]
-    .filter((each) => !kDistancesM.includes(each)).sort((a, b) => a - b);
+function DistanceChoice() {
   return (
-    <select aria-label="Distance of the point from the camera" data-testid="projection-distance" value={chosenDistance.value}
-      onChange={(event) => { chosenDistance.value = Number(event.currentTarget.value); }}>
-      {offered.map((each) => <option key={each} value={each}>{metres(each, each % 1 ? 1 : 0)}</option>)}
-    </select>
+    <>
+      <input type="number" min={kNearestM} step="any" value={chosenDistance.value} data-testid="projection-distance"
+        aria-label="Distance of the point from the camera, m"
+        onInput={(event) => {
+          const typed = event.currentTarget.valueAsNumber; // NaN while nothing is there
+          if (typed >= kNearestM) chosenDistance.value = typed;
+        }} />{" m"}
+    </>
   );
 }
 
-interface LineProps { cameras: CameraState[]; name: ComponentChildren; value(camera: CameraState): string }
+interface LineProps { cameras: CameraState[]; name: ComponentChildren; value(camera: CameraState): string; testid?: string }
 
-function Line({ cameras, name, value }: LineProps) {
-  return <tr><th scope="row">{name}</th>{cameras.map((camera) => <td key={camera.camera}>{value(camera)}</td>)}</tr>;
+function Line({ cameras, name, value, testid }: LineProps) {
+  return <tr data-testid={testid}><th scope="row">{name}</th>{cameras.map((camera) => <td key={camera.camera}>{value(camera)}</td>)}</tr>;
 }
 
 function Uncertainty({ cameras }: { cameras: CameraState[] }) {
@@ -43,8 +47,8 @@ function Uncertainty({ cameras }: { cameras: CameraState[] }) {
           {kDistancesM.map((each) => (
             <Line key={each} cameras={cameras} name={`projection at ${metres(each, 0)}, up to`} value={(camera) => projectionAt(camera, each)} />
           ))}
-          <Line cameras={cameras} name={<>projection at <DistanceChoice cameras={cameras} />, up to</>}
-            value={(camera) => projectionAt(camera, chosenDistance.value)} />
+          <Line cameras={cameras} name={<>projection at <DistanceChoice />, up to</>}
+            value={(camera) => projectionAt(camera, chosenDistance.value)} testid="projection-chosen" />
         </tbody>
       </table>
     </div>
