@@ -1,13 +1,16 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calib/methods/calibrate_by_views.h"
 #include "calib/methods/calibrate_sessions.h"
+#include "calib/methods/calibrate_without.h"
 #include "calib/methods/detect_session.h"
 #include "calib/model/beam_priors.h"
 #include "calib/model/errors.h"
@@ -20,6 +23,7 @@ namespace {
 
 struct CalibrateFlags {
   std::vector<std::string> dirs;
+  std::vector<std::string> without;
   std::string out, truth;
   CalibrateOptions options;
   bool separate = false;
@@ -39,24 +43,35 @@ SessionDetection Detect(const Session& session, const std::string& method) {
   return detection;
 }
 
-// Writes and prints one result.
+// The views that a person names, which must be there.
+std::set<std::string> LeftOutOf(const CalibrateFlags& flags, const Session& session) {
+  for (const std::string& view : flags.without) {
+    if (std::find(session.views.begin(), session.views.end(), view) == session.views.end()) {
+      throw UsageError("--without " + view + ": there is no such view in " + session.Title());
+    }
+  }
+  return {flags.without.begin(), flags.without.end()};
+}
+
+// Writes and prints one result, made without the views that are left out.
 ExitCode Finish(const Place& place, const Session& session, const SessionDetection& detection,
-                Report report) {
+                Report report, const std::set<std::string>& left_out = {}) {
   const std::string wrote = WriteIfSolved(place.out, session.rig, report);
   if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
-  WriteReportFiles(place.out, {session, detection.views, reports});
+  WriteReportFiles(place.out, {session, detection.views, reports, {left_out, {}, ""}});
   PrintReport(report, wrote, detection.unreadable);
   return WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report));
 }
 
 ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
+  const std::set<std::string> left_out = LeftOutOf(flags, session);
   SetAside(PathOr(flags.out, session.root));
   const SessionDetection detection = Detect(session, flags.options.method);
-  const ExitCode end =
-      Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session,
-             detection, Calibrate(session.rig, detection.views, flags.options));
+  const ExitCode end = Finish(
+      {PathOr(flags.out, session.root), TruthPath(flags.truth, session.root)}, session, detection,
+      CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
   PrintUnreadable(detection.unreadable);
   return end;
 }
@@ -131,6 +146,9 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
 
 int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
+  if (!flags.without.empty() && flags.dirs.size() > 1) {
+    throw UsageError("--without is for one session; each has its own views");
+  }
   if (flags.mounts_moved && flags.dirs.size() < 2) {
     throw UsageError("--mounts-moved is for several sessions; name two or more");
   }
@@ -177,6 +195,9 @@ void AddCalibrate(CommandLine* program) {
   verb->Flag("--smooth-field", &flags->options.smooth_field,
              "paper: extend the distance field beyond the images' borders, so that points\n"
              "outside are drawn back; otherwise half of them must lie inside");
+  verb->Option("--without", &flags->without,
+               "leave this view out; may be given again. rgbdt-viewer --session DIR shows what\n"
+               "leaving views out changes");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
 }
 

@@ -69,6 +69,7 @@ async function checkLeavingOut(page) {
   console.log(`left out after ${Date.now() - asked} ms: ${(await byId(page, "moved-rgb").innerText())}`);
   require(/rgb: \d+\.\d+°, \d+\.\d.mm \(\d+\.\d+.sigmas\)/.test(await byId(page, "moved-rgb").innerText()), "it does not say by how much the pose moved");
   require(await pose() !== before, "the pose is the same without the view");
+  require(/rgbdt calibrate \S+ --without 0002/.test(await byId(page, "left-out").innerText()), "it does not say how to keep the result");
   await shot(page, "left-out");
   await button.click();
   await until("the view to be used again", () => role.innerText(), (words) => words === "used");

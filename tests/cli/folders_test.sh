@@ -67,6 +67,12 @@ cp -r "$scratch/two" "$scratch/kept"
 says=("earlier session")
 refuses "a session that is there" "${session[@]}" "${both[@]}" "${lenses[@]}" --out "$scratch/kept/two"
 
+# Without a view: said in the report, and the page in it says that it is so.
+accepts "without a view" "$bin/rgbdt" calibrate "$scratch/two" --without scan-4 --without scan-5 --out "$scratch/without"
+grep -qF "Left out by hand: scan-4, scan-5" "$scratch/without/report.json" || complain "without a view: not in the report"
+! grep -q '"scan-4"' "$scratch/without/report.json" || complain "without a view: it still has a part in it"
+misuses "a view that is not there" "$bin/rgbdt" calibrate "$scratch/two" --without scan-44
+
 # Inner corners given for squares in a rig file, once the session is there.
 cp -r "$scratch/two" "$scratch/corners"
 sed -i 's/squares_x: 11/squares_x: 10/; s/squares_y: 8/squares_y: 7/' "$scratch/corners/rig.textproto"

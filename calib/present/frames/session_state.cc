@@ -124,6 +124,7 @@ json ViewCameraOf(const ViewState& view, const std::string& camera, const Camera
               {"state", "waiting"},     {"why", ""},
               {"picked", false},        {"outline", json::array()},
               {"edge_rms_px", nullptr}, {"edge_rms_sigmas", nullptr},
+              {"edge_rms_mm", nullptr}, {"plane_rms_mm", nullptr},
               {"image_why_not", ""}};
   const ImageDetection* image = DetectionOf(view, camera);
   if (image == nullptr) return out;
@@ -136,6 +137,8 @@ json ViewCameraOf(const ViewState& view, const std::string& camera, const Camera
   if (const ViewQuality* quality = QualityOf(report, view.name)) {
     out["edge_rms_px"] = FiniteOrNull(quality->edge_rms_px);
     out["edge_rms_sigmas"] = Optional(quality->edge_rms_whitened);
+    out["edge_rms_mm"] = Optional(quality->edge_rms_mm);
+    out["plane_rms_mm"] = Optional(quality->plane_rms_mm);
   }
   return out;
 }

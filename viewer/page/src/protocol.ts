@@ -128,6 +128,8 @@ export interface ViewCamera {
   outline: Vec2[]; // the four corners found [px]; empty: none
   edge_rms_px: number | null; // cloud's edge against the outline
   edge_rms_sigmas: number | null;
+  edge_rms_mm: number | null; // on the board
+  plane_rms_mm: number | null; // of the board's points from its plane
 }
 
 export interface View {

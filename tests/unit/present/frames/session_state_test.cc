@@ -208,6 +208,9 @@ TEST(SessionFrame, AFinishedOneHasFiguresVerdictsAndTheReport) {
   EXPECT_EQ(views[0].at("cameras").at(0).at("edge_rms_px"), 0.5);
   EXPECT_TRUE(views[0].at("cameras").at(0).at("edge_rms_sigmas").is_null());
   EXPECT_EQ(views[1].at("cameras").at(0).at("edge_rms_sigmas"), 1.0625);
+  EXPECT_TRUE(views[0].at("cameras").at(0).at("edge_rms_mm").is_null());
+  EXPECT_EQ(views[1].at("cameras").at(0).at("edge_rms_mm"), 1.0 / 11);
+  EXPECT_EQ(views[1].at("cameras").at(0).at("plane_rms_mm"), 1.0 / 13);
   // Found, but the solver left it out.
   EXPECT_EQ(views[2].at("cameras").at(0).at("state"), "rejected");
   EXPECT_EQ(views[2].at("cameras").at(0).at("why"), "the board is not in view");

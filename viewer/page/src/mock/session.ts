@@ -16,6 +16,7 @@ function viewCamera(index: number, board: Board, camera: (typeof kCameras)[numbe
     why, image_why_not: why,
     picked: camera.kind === "thermal" && index === 1, outline: rejected ? [] : outlineOf(camera, board),
     edge_rms_px: rejected ? null : 0.4 + 0.13 * index, edge_rms_sigmas: rejected ? null : 0.9 + 0.15 * index,
+    edge_rms_mm: rejected ? null : 2.1 + 0.4 * index, plane_rms_mm: rejected ? null : 8.3,
   };
 }
 

@@ -1,6 +1,6 @@
 import { describe, expect, test } from "vitest";
 import type { Hello, LeftOut, SessionFrame, View, ViewCamera } from "../../src/protocol";
-import { movedWords, toggled, whyNotLeaveOut } from "../../src/panels/session/leave_out";
+import { howToKeep, movedWords, toggled, whyNotLeaveOut } from "../../src/panels/session/leave_out";
 import { barLength, expectedPx } from "../../src/panels/session/residual_bar";
 import { stampOf } from "../../src/chosen_view";
 
@@ -19,6 +19,13 @@ describe("leaving a view out", () => {
     expect(whyNotLeaveOut(session(leftOut([], "by paper")), "open", hello)).toBe("by paper");
     expect(whyNotLeaveOut(session(leftOut([])), "open", { ...hello, may_command: false, why_not: "no token" })).toBe("no token");
     expect(whyNotLeaveOut(session(leftOut([])), "embedded", hello)).toContain("rgbdt-viewer --session out/monday");
+  });
+
+  test("is kept by a command, and a report says that it was made so", () => {
+    const without = session(leftOut(["0002", "0004"]));
+    expect(howToKeep(without, "open", { ...hello, source: "session" })).toContain("rgbdt calibrate out/monday --without 0002 --without 0004");
+    expect(howToKeep(without, "open", { ...hello, source: "live" })).toBe("Nothing is saved.");
+    expect(howToKeep(without, "embedded", hello)).toContain("made without");
   });
 
   test("is told in degrees, millimetres and sigmas", () => {

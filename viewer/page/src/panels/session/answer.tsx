@@ -5,6 +5,7 @@ import type { CameraState, SessionFrame } from "../../protocol";
 import { degrees, metres, millimetres, px } from "../words";
 import { LeftOutNote } from "./left_out";
 import { PoseCard } from "./pose_card";
+import { RefusedNote } from "./refused";
 import { gradeClass, kGradeIcon, VerdictCard } from "./verdict";
 
 const kDistancesM = [2, 5, 10];
@@ -81,6 +82,7 @@ export function Answer({ session }: { session: SessionFrame }) {
     <section class="card" aria-label="Assessment">
       <h2>Assessment</h2>
       <VerdictCard verdict={session.verdict} testid="verdict" />
+      <RefusedNote session={session} />
       <LeftOutNote session={session} />
       {solved.length > 0 && <Uncertainty cameras={solved} />}
       <div class="camera-answers">

@@ -3,7 +3,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { SessionFrame, View } from "../../protocol";
 import { connection, hello, notices, send } from "../../store";
-import { movedWords, toggled, whyNotLeaveOut } from "./leave_out";
+import { howToKeep, movedWords, toggled, whyNotLeaveOut } from "./leave_out";
 
 /// On top of the result: without which views it is, and how far that moved it.
 export function LeftOutNote({ session }: { session: SessionFrame }) {
@@ -11,11 +11,11 @@ export function LeftOutNote({ session }: { session: SessionFrame }) {
   if (views.length === 0) return null;
   return (
     <div class="left-out" data-testid="left-out">
-      <p><strong>Without {views.length === 1 ? "view" : "views"} {views.join(", ")}.</strong> Nothing is saved.
+      <p><strong>Without {views.length === 1 ? "view" : "views"} {views.join(", ")}.</strong> {howToKeep(session, connection.value, hello.value)}
         {moved.length > 0 && " Change of the pose from the result with all views (in sigmas of that result):"}</p>
       {moved.length > 0 && <ul class="plain">{moved.map((each) => <li key={each.camera} data-testid={`moved-${each.camera}`}>{movedWords(each)}</li>)}</ul>}
-      <button type="button" data-testid="take-all-back" disabled={whyNotLeaveOut(session, connection.value, hello.value) !== ""}
-        onClick={() => send({ type: "leave_out", views: [] })}>Use all views again</button>
+      {connection.value !== "embedded" && <button type="button" data-testid="take-all-back" disabled={whyNotLeaveOut(session, connection.value, hello.value) !== ""}
+        onClick={() => send({ type: "leave_out", views: [] })}>Use all views again</button>}
     </div>
   );
 }

@@ -1,6 +1,6 @@
 // How far a view's board edge lies from the outline, as a bar, with what is expected (1 sigma).
 import type { SessionFrame, ViewCamera } from "../../protocol";
-import { px, sigmas } from "../words";
+import { millimetres, px, sigmas } from "../words";
 
 const kLeastPx = 1; // what a whole bar stands for at least
 
@@ -24,7 +24,12 @@ export function ResidualBar({ own, length, testid }: { own: ViewCamera; length: 
   if (own.edge_rms_px === null) return null;
   const expected = expectedPx(own);
   const percent = (value: number): string => `${(100 * Math.min(1, value / length)).toFixed(1)}%`;
-  const words = [`outline error ${px(own.edge_rms_px)}`, own.edge_rms_sigmas === null ? "" : sigmas(own.edge_rms_sigmas)];
+  const words = [
+    `outline error ${px(own.edge_rms_px)}`,
+    own.edge_rms_mm === null ? "" : millimetres(own.edge_rms_mm, 1),
+    own.edge_rms_sigmas === null ? "" : sigmas(own.edge_rms_sigmas),
+    own.plane_rms_mm === null ? "" : `points ${millimetres(own.plane_rms_mm, 1)} from the plane`,
+  ];
   return (
     <div class="residual" data-testid={testid}>
       <div class="residual-track" aria-hidden="true">
