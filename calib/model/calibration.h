@@ -159,7 +159,7 @@ struct Fold {
   double expected_misfit = 6;     ///< of `misfit`, by the noise of views and of the fold's pose
 };
 
-/// Two halves of the views, each solved apart.
+/// Two parts of the data, each solved apart: halves of the views, or edges and planes.
 struct Halves {
   PoseError difference;
   double chi2 = 0;  ///< by the stated covariances, six degrees of freedom
@@ -205,6 +205,9 @@ struct CameraReport {
   std::vector<Nuisance> nuisance;
   std::vector<Fold> folds;
   std::optional<Halves> halves;
+  /// By the boards' edges alone against by their planes alone. Both have the images' corners, and
+  /// the lens, which counts twice in chi2: a large one is sure.
+  std::optional<Halves> edges_planes;
   std::optional<ViewScatter> view_scatter;  ///< absent: too few views, or no covariance
   /// By which the covariance was enlarged, as views may scatter more than stated (`view_scatter`).
   double variance_factor = 1;

@@ -41,6 +41,7 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->folds = before.folds;
   camera->warnings = before.warnings;
   camera->halves = before.halves;
+  camera->edges_planes = before.edges_planes;
   camera->solve_s = before.solve_s;
 }
 

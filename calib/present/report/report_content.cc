@@ -34,7 +34,7 @@ CameraContent ContentOf(const CameraReport& camera, const Report& report) {
   CameraContent content{
       camera.calibration.camera, Judge(camera, report.next_view), BothWays(camera.calibration), {}};
   for (Table& table :
-       std::array{ProjectionTable(camera), FitTable(camera, figure), HalvesTable(camera),
+       std::array{ProjectionTable(camera), FitTable(camera, figure), PartsTable(camera),
                   PoseSigmaTable(camera), ViewsTable(camera, figure), FoldsTable(camera),
                   StartsTable(camera, figure), NuisanceTable(camera), LidarTable(camera),
                   SolveTable(camera)}) {

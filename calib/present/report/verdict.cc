@@ -273,6 +273,15 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
   }
 }
 
+void JudgeEdgesAndPlanes(const Halves& apart, Judgement* judgement) {
+  if (!(apart.chi2 > kUnlikelyChi2)) return;
+  judgement->Usable("The boards' edges alone and their planes alone put the camera " +
+                    PoseErrorText(apart.difference) +
+                    " apart, more than their sigmas allow (chi-square " + Number(apart.chi2, 1) +
+                    "): the LIDAR's beams or ranges are off in a way that is not known, and the "
+                    "result may be off by more than stated.");
+}
+
 // Of the held-out views' own RMS [sigma]: a single one that is wrong does not count.
 std::optional<double> MedianWhitened(const CameraReport& camera) {
   std::vector<double> rms;
@@ -318,6 +327,7 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
   JudgeFit(camera, &judgement);
   JudgeWhitened(camera, &judgement);
   if (camera.halves) JudgeHalves(*camera.halves, &judgement);
+  if (camera.edges_planes) JudgeEdgesAndPlanes(*camera.edges_planes, &judgement);
   if (const auto* at = JudgedColouring(camera)) JudgeColouring(*at, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {

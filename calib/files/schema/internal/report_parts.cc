@@ -236,6 +236,7 @@ void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
   for (const Nuisance& nuisance : camera.nuisance) FromNuisance(nuisance, out->add_nuisance());
   for (const Fold& fold : camera.folds) FromFold(fold, out->add_folds());
   if (camera.halves) FromHalves(*camera.halves, out->mutable_halves());
+  if (camera.edges_planes) FromHalves(*camera.edges_planes, out->mutable_edges_planes());
 }
 
 void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera) {
@@ -248,6 +249,7 @@ void ToUncertainty(const proto::CameraReport& message, const Place& place, Camer
   }
   for (const proto::Fold& fold : message.folds()) camera->folds.push_back(ToFold(fold));
   if (message.has_halves()) camera->halves = ToHalves(message.halves());
+  if (message.has_edges_planes()) camera->edges_planes = ToHalves(message.edges_planes());
 }
 
 void FromRigWide(const Report& report, proto::Report* out) {

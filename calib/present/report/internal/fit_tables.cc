@@ -61,7 +61,7 @@ Table FitTable(const CameraReport& camera, FitFigure figure) {
   add("Outline error, RMS", camera.edge_rms_px, "px");
   add("Outline error in sigmas, RMS", camera.edge_rms_whitened, "σ");
   add("Outline error on the board, RMS", camera.edge_rms_mm, "mm");
-  add("Points' distance from the board's plane, RMS", camera.plane_rms_mm, "mm");
+  add("Distance of points from the board's plane, RMS", camera.plane_rms_mm, "mm");
   if (figure == FitFigure::kDistanceTransform) {
     add("Mean distance-transform value (the 2015 paper's quality)", camera.distance_transform_px,
         "px");

@@ -80,14 +80,22 @@ Table ProjectionTable(const CameraReport& camera) {
   return table;
 }
 
-Table HalvesTable(const CameraReport& camera) {
-  if (!camera.halves) return {};
-  return {"Two halves of the views, each solved separately",
-          {Chi2Note()},
-          {"They differ by", "Chi-square", "Verdict"},
-          {{{PoseErrorText(camera.halves->difference)},
-            {Number(camera.halves->chi2, 1)},
-            Agreement(camera.halves->chi2)}}};
+Table PartsTable(const CameraReport& camera) {
+  Table table{"Parts of the data, each solved separately",
+              {Chi2Note()},
+              {"", "They differ by", "Chi-square", "Verdict"},
+              {}};
+  const auto add = [&](const char* name, const std::optional<Halves>& apart) {
+    if (!apart) return;
+    table.rows.push_back({{name},
+                          {PoseErrorText(apart->difference)},
+                          {Number(apart->chi2, 1)},
+                          Agreement(apart->chi2)});
+  };
+  add("Two halves of the views", camera.halves);
+  add("Edges of the boards against their planes", camera.edges_planes);
+  if (table.rows.empty()) return {};
+  return table;
 }
 
 Table FoldsTable(const CameraReport& camera) {

@@ -9,7 +9,7 @@ namespace rgbdt {
 
 Table PoseSigmaTable(const CameraReport& camera);
 Table ProjectionTable(const CameraReport& camera);
-Table HalvesTable(const CameraReport& camera);
+Table PartsTable(const CameraReport& camera);
 Table FoldsTable(const CameraReport& camera);
 Table NuisanceTable(const CameraReport& camera);
 

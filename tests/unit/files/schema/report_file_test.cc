@@ -93,6 +93,9 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   ASSERT_TRUE(b.halves);
   EXPECT_EQ(b.halves->difference.translation_mm, 1.0 / 3);
   EXPECT_EQ(b.halves->chi2, 5.25);
+  ASSERT_TRUE(b.edges_planes);
+  EXPECT_EQ(b.edges_planes->difference.translation_mm, 1.0 / 7);
+  EXPECT_EQ(b.edges_planes->chi2, 6.75);
 }
 
 TEST(ReportFile, GivesBackWhatItSaysOfTheWholeRig) {
