@@ -264,6 +264,8 @@ struct Report {
 struct Truth {
   std::map<std::string, Rigid3> camera_from_lidar;
   std::map<std::string, Rigid3> lidar_from_target;  ///< by view
+  /// By view, of a rig that drives; not in files.
+  std::map<std::string, Rigid3> world_from_lidar{};
 };
 
 /// Error of `estimate` against `truth`, both camera_from_lidar.

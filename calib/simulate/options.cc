@@ -183,6 +183,9 @@ void Options::Check() const {
   simulate::Check(board);
   simulate::Check(pose);
   clutter.Check();
+  natural.Check();
+  kCheck.Require(!natural.on || scene != Scene::kNight, "natural.on", 1, "0 in the scene `night`");
+  kCheck.Require(!natural.on || !clutter.any(), "natural.on", 1, "0 where there is clutter");
   simulate::Check(holder);
   kCheck.Between(world.ground_z_m, -5, -0.5, "world.ground_z_m");
   kCheck.Between(world.person_temperature_k, 250, 350, "world.person_temperature_k");

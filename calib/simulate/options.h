@@ -9,6 +9,7 @@
 #include "calib/model/rig.h"
 #include "calib/simulate/clutter_options.h"
 #include "calib/simulate/lidar_options.h"
+#include "calib/simulate/natural_options.h"
 
 namespace rgbdt::simulate {
 
@@ -145,6 +146,7 @@ struct Options {
   HolderOptions holder;
   SceneOptions world;
   ClutterOptions clutter;
+  NaturalOptions natural;
   double guess_rotation_rad = 2 * kDegree;  ///< hand-measured rotation is wrong by up to this
   double guess_translation_m = 0.05;        ///< hand-measured camera centre: wrong by up to this
   double pick_sigma_px = 1.5;               ///< of a picked corner, along x and along y

@@ -8,6 +8,7 @@
 #include "calib/simulate/internal/board_poses.h"
 #include "calib/simulate/internal/camera_renderer.h"
 #include "calib/simulate/internal/hidden_outline.h"
+#include "calib/simulate/internal/natural_scene.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/scanner.h"
@@ -30,11 +31,13 @@ struct Simulator::Impl {
   const World& world() const { return view ? *view : empty; }
   CameraRenderer& Camera(const std::string& name);
   void MakeHeat();
+  void DriveTo(int index);
+  void ShowBoard(int index, const std::string& view_name);
 
   Options options;
   std::shared_ptr<const SceneModel> scene;
   World empty;
-  std::optional<World> view;  ///< with the board; absent before the first view
+  std::optional<World> view;  ///< with the board; absent before the first view and without a board
   Scanner scanner;
   std::vector<CameraRenderer> cameras;
   Rig rig;
@@ -77,20 +80,39 @@ Simulator::~Simulator() = default;
 const Rig& Simulator::rig() const { return impl_->rig; }
 const Truth& Simulator::truth() const { return impl_->truth; }
 
+/// Takes the rig to where it stands in a natural scene's view.
+void Simulator::Impl::DriveTo(int index) {
+  view.reset();
+  scene = std::make_shared<SceneModel>(MakeNaturalScene(options, index));
+  empty = World(scene, std::nullopt, options);
+  for (CameraRenderer& camera : cameras) {
+    camera.RenderEmpty(empty);
+    camera.ShowEmpty(empty);
+  }
+}
+
+void Simulator::Impl::ShowBoard(int index, const std::string& view_name) {
+  const Rigid3 pose = BoardPose(options, empty, scanner, cameras, index);
+  const HeatMap heat = DrawHeat(options.board, scene->board_heat, options.seed, index);
+  view.emplace(scene, Board(options.board, pose, heat), options);
+  MakeHeat();
+  for (CameraRenderer& camera : cameras) {
+    if (!camera.has_empty()) camera.RenderEmpty(empty);
+    camera.Render(*view);
+  }
+  truth.lidar_from_target[view_name] = pose;
+}
+
 void Simulator::ShowView(int index, const std::string& view_name) {
   if (index < 0) {
     throw InputError("simulator: view index is " + std::to_string(index) + "; expected 0 or more");
   }
-  Impl& sim = *impl_;
-  const Rigid3 pose = BoardPose(sim.options, sim.empty, sim.scanner, sim.cameras, index);
-  const HeatMap heat = DrawHeat(sim.options.board, sim.scene->board_heat, sim.options.seed, index);
-  sim.view.emplace(sim.scene, Board(sim.options.board, pose, heat), sim.options);
-  sim.MakeHeat();
-  for (CameraRenderer& camera : sim.cameras) {
-    if (!camera.has_empty()) camera.RenderEmpty(sim.empty);
-    camera.Render(*sim.view);
+  const NaturalOptions& natural = impl_->options.natural;
+  if (natural.on) {
+    impl_->DriveTo(index);
+    impl_->truth.world_from_lidar[view_name] = *impl_->scene->world_from_lidar;
   }
-  sim.truth.lidar_from_target[view_name] = pose;
+  if (!natural.on || natural.board) impl_->ShowBoard(index, view_name);
 }
 
 int Simulator::sweep_lines() const { return impl_->scanner.sweep_lines(); }
@@ -139,6 +161,10 @@ Image Simulator::TakeImage(const std::string& camera, Utime utime) const {
 
 CornerSelection Simulator::PickCorners(const std::string& camera, Utime image_utime) const {
   const CameraRenderer& renderer = impl_->Camera(camera);
+  const NaturalOptions& natural = impl_->options.natural;
+  if (natural.on && !natural.board) {
+    throw InputError("simulator: the scene has no board to pick corners of; set natural.board");
+  }
   if (!impl_->view) {
     throw InputError("simulator: no board to pick corners of; call ShowView first");
   }

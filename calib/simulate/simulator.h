@@ -22,11 +22,12 @@ class Simulator {
   /// What the user would know: lenses, the hand-measured (wrong) guesses, the target. `text` and
   /// `hash` are empty.
   const Rig& rig() const;
-  /// camera_from_lidar of each camera, lidar_from_target of every view shown so far.
+  /// camera_from_lidar of each camera; of every view shown so far lidar_from_target (where there is
+  /// a board) and world_from_lidar (of natural scenes).
   const Truth& truth() const;
 
   /// Puts the board at view `index` (0, 1, ...; the pose is a function of seed and index) and
-  /// renders what the cameras see, once.
+  /// renders what the cameras see, once. In natural scenes the rig drives there, too.
   void ShowView(int index, const std::string& view_name);
 
   /// A sweep: `sweep_lines()` lines, line i begins at sweep_utime + i * line_period().
@@ -40,7 +41,8 @@ class Simulator {
   /// The encoder at a time; sweep_utime 0: standing still between sweeps.
   EncoderReading Encoder(Utime utime, Utime sweep_utime) const;
   Image TakeImage(const std::string& camera, Utime utime) const;
-  /// What a person would click: the true outline corners + 1.5 px of noise.
+  /// What a person would click: the true outline corners + 1.5 px of noise. Throws InputError where
+  /// there is no board.
   CornerSelection PickCorners(const std::string& camera, Utime image_utime) const;
 
  private:

@@ -20,7 +20,7 @@ struct SimulateFlags {
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
   int rings = 0;
-  bool full_turn = false, scanner_error = false, imperfect = false;
+  bool full_turn = false, scanner_error = false, imperfect = false, board = false;
   simulate::Options options;
 };
 
@@ -36,6 +36,18 @@ void SetScanner(const SimulateFlags& flags, simulate::Options* options) {
   options->scanner.guess_tilt_rad = Eigen::Vector3d(0.5, 0.5, -0.5) * simulate::kDegree;
 }
 
+// Natural scenes have no board unless asked for, and nobody picks corners of none.
+void SetScene(SimulateFlags* flags) {
+  simulate::NaturalOptions& natural = flags->options.natural;
+  if (flags->board && !natural.on) throw UsageError("--board goes with --natural: others have one");
+  if (!natural.on) return;
+  if (flags->options.scene == simulate::Scene::kNight) {
+    throw UsageError("--natural is outdoor or indoor; leave --scene night out");
+  }
+  natural.board = flags->board;
+  if (!natural.board) flags->picked.clear();
+}
+
 // The LIDAR's cloud from this time on; `now` becomes when it ends.
 Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Utime* now) {
   const Utime begin = *now;
@@ -47,10 +59,11 @@ Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Ut
   return TakeSweep(simulator, begin);
 }
 
-int RunSimulate(const SimulateFlags& flags) {
+int RunSimulate(SimulateFlags flags) {
   if (flags.views < 1 || flags.views > 9999) {
     throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
+  SetScene(&flags);
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
   SetScanner(flags, &options);
@@ -82,8 +95,11 @@ int RunSimulate(const SimulateFlags& flags) {
     WriteTruth(std::filesystem::path(flags.dir) / "truth.textproto", simulator.truth(), off_by);
   }
   if (!off_by.empty()) std::printf("drawn, and noted in truth.textproto:\n%s", off_by.c_str());
-  std::printf("wrote %s: rig.textproto, %d views, truth.textproto\nnext: rgbdt calibrate %s\n",
-              flags.dir.c_str(), flags.views, flags.dir.c_str());
+  std::printf("wrote %s: rig.textproto, %d views, truth.textproto\n", flags.dir.c_str(),
+              flags.views);
+  if (!options.natural.on || options.natural.board) {
+    std::printf("next: rgbdt calibrate %s\n", flags.dir.c_str());
+  }
   return EndsWith(true);
 }
 
@@ -110,6 +126,11 @@ void AddSimulate(CommandLine* program) {
   verb->Flag("--imperfect", &flags->imperfect,
              "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
              "ring, of dark surfaces), where beams meet, how wide they are");
+  verb->Flag(
+      "--natural", &flags->options.natural.on,
+      "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "
+      "the rig drives on between views");
+  verb->Flag("--board", &flags->board, "with --natural: the board stands there, too");
   verb->Option("--picked", &flags->picked, "cameras whose corners a person picks");
 }
 

@@ -23,6 +23,8 @@ void Store(const Eigen::Vector3d& value, int row, int column, cv::Mat* values) {
 /// Radiance of the brightest white of the board; without a board, of a white sheet 3 m ahead.
 double BrightestWhite(const World& world) {
   unsigned shadows = 0;
+  const std::optional<double>& white = world.scene().white;
+  if (!world.board() && white) return *white;
   if (!world.board()) return 0.7 * Irradiance(world, {3, 0, 0}, {-1, 0, 0}, &shadows).maxCoeff();
   const Board& board = *world.board();
   const Eigen::Vector3d normal = board.lidar_from_target().rotation * Eigen::Vector3d(0, 0, -1);
@@ -35,7 +37,7 @@ double BrightestWhite(const World& world) {
           Irradiance(world, board.lidar_from_target() * place, normal, &shadows).maxCoeff());
     }
   }
-  return brightest * board.options().white_reflectivity;
+  return std::max(brightest * board.options().white_reflectivity, white.value_or(0));
 }
 
 /// Row and column of a pixel in the 2 x 2 cell R G / G B -> channel of blue green red.
@@ -91,18 +93,22 @@ void CameraRenderer::ShadeRow(const World& world, int row, const std::vector<std
 void CameraRenderer::RefineRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                                const std::vector<std::uint64_t>& patches, cv::Mat* values) const {
   const Eigen::Vector3d origin = CentreInLidar();
-  const int n = supersampling_;
+  constexpr int kLeafySupersampling = 3;
   for (int column = 0; column < camera_.width; ++column) {
     const std::uint64_t own = patches[Index(column, row)];
     bool edge = false;
+    bool leafy = false;
     bool changed = moving == nullptr;
     for (int r = std::max(0, row - 1); r <= std::min(camera_.height - 1, row + 1); ++r) {
       for (int c = std::max(0, column - 1); c <= std::min(camera_.width - 1, column + 1); ++c) {
         edge |= patches[Index(c, r)] != own;
+        leafy |= (patches[Index(c, r)] & kLeafyPatch) != 0;
         changed |= moving != nullptr && (*moving)[Index(c, r)] != 0;
       }
     }
     if (!edge || !changed) continue;
+    // Edges are everywhere among leaves, and few rays place them well enough.
+    const int n = leafy ? std::min(supersampling_, kLeafySupersampling) : supersampling_;
     Eigen::Vector3d sum(0, 0, 0);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {

@@ -19,7 +19,7 @@ constexpr double kWallHeight = 2.4;
 constexpr double kGap = 0.15;           ///< between things [m]
 constexpr double kFree = 17 * kDegree;  ///< a board at medium range, to either side of its middle
 
-Material Paint(double reflectivity) {
+Material Grey(double reflectivity) {
   Material material;
   material.albedo.setConstant(reflectivity);
   material.reflectivity = reflectivity;
@@ -29,7 +29,7 @@ Material Paint(double reflectivity) {
 /// A wall of this width whose face is x = 0.
 SceneObject Wall(double width) {
   return {"clutter wall", MakeBox({0, -0.5 * width, 0}, {0.1, 0.5 * width, kWallHeight}),
-          Paint(0.6)};
+          Grey(0.6)};
 }
 
 /// An upright rectangle in x = 0, its middle at this height.
@@ -141,7 +141,7 @@ ClutterThing MakeSecondBoard(const Options& options, const SceneModel& scene,
       std::make_shared<Board>(options.board, lidar_from_thing * thing_from_target, heat);
   ClutterThing thing;
   thing.parts.push_back({"second board", board->Shape(), {}, board});
-  Material stand = Paint(options.board.stand_reflectivity);
+  Material stand = Grey(options.board.stand_reflectivity);
   for (const Mesh& part : board->Stand(options.world.ground_z_m)) {
     thing.parts.push_back({"second stand", part, stand});
   }
@@ -204,7 +204,7 @@ ClutterThing MakeDoor(const ClutterOptions& options) {
   hinge.translation = {-0.05, -0.5 * width, 0.02};  // the leaf opens towards the LIDAR
   ClutterThing thing{"door", {Wall(width + 1)}, {}};
   const Mesh leaf = Transformed(hinge, MakeBox({-0.04, 0, 0}, {0, width, height}));
-  thing.parts.push_back({"door leaf", leaf, Paint(0.45)});
+  thing.parts.push_back({"door leaf", leaf, Grey(0.45)});
   for (const double y : {0.05, 0.95}) {
     for (const double z : {0.05, 0.95}) {
       thing.seen.push_back(hinge * Vector3d(-0.04, y * width, z * height));
@@ -220,7 +220,7 @@ ClutterThing MakePoster(const ClutterOptions& options) {
   const Mesh sheet =
       MakeBox({-0.001, -half.x(), middle - half.y()}, {0, half.x(), middle + half.y()});
   return {"poster",
-          {Wall(options.poster_m.x() + 1), {"poster", sheet, Paint(0.25)}},
+          {Wall(options.poster_m.x() + 1), {"poster", sheet, Grey(0.25)}},
           Corners(options.poster_m, middle)};
 }
 
@@ -230,11 +230,11 @@ ClutterThing MakeTable(const ClutterOptions& options) {
   const double top = options.table_height_m;
   ClutterThing thing{"table", {}, {}};
   thing.parts.push_back(
-      {"table top", MakeBox({0, -half, top - 0.03}, {depth, half, top}), Paint(0.5)});
+      {"table top", MakeBox({0, -half, top - 0.03}, {depth, half, top}), Grey(0.5)});
   for (const double x : {0.05, depth - 0.05}) {
     for (const double y : {0.05 - half, half - 0.05}) {
       thing.parts.push_back(
-          {"table leg", MakeRod({x, y, 0}, {x, y, top - 0.03}, 0.025, 0.025), Paint(0.35)});
+          {"table leg", MakeRod({x, y, 0}, {x, y, top - 0.03}, 0.025, 0.025), Grey(0.35)});
       thing.seen.emplace_back(x, y, top);
     }
   }
@@ -247,9 +247,9 @@ ClutterThing MakePanel(const ClutterOptions& options) {
   const Mesh sheet =
       MakeBox({0, -half.x(), middle - half.y()}, {0.02, half.x(), middle + half.y()});
   return {"panel",
-          {{"panel", sheet, Paint(0.75)},
-           {"panel pole", MakeBox({0.03, -0.02, 0}, {0.07, 0.02, middle}), Paint(0.3)},
-           {"panel foot", MakeRod({0.05, 0, 0}, {0.05, 0, 0.04}, 0.22, 0.2), Paint(0.3)}},
+          {{"panel", sheet, Grey(0.75)},
+           {"panel pole", MakeBox({0.03, -0.02, 0}, {0.07, 0.02, middle}), Grey(0.3)},
+           {"panel foot", MakeRod({0.05, 0, 0}, {0.05, 0, 0.04}, 0.22, 0.2), Grey(0.3)}},
           Corners(options.panel_m, middle)};
 }
 

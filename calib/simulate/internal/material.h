@@ -26,6 +26,9 @@ struct Material {
   double temperature_k = 295;
   double emissivity = 0.95;
   Texture texture;
+  double sun_k = 0;    ///< [K] what sun from straight above it adds, once it has shone for long
+  double mirror = 0;   ///< share of the sky's light that it mirrors
+  bool leafy = false;  ///< of many small sheets: rendered with fewer rays a pixel
 };
 
 /// A material at a place: its texture applied. `footprint_m` is how far two pixels lie apart there;

@@ -1,24 +1,14 @@
 #include "calib/simulate/internal/scene.h"
 
 #include "calib/simulate/internal/clutter.h"
+#include "calib/simulate/internal/natural_scene.h"
 #include "calib/simulate/internal/people.h"
+#include "calib/simulate/internal/things.h"
 
 namespace rgbdt::simulate {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d Rgb(double red, double green, double blue) { return {blue, green, red}; }
-
-Material Paint(const Vector3d& albedo, double reflectivity, double temperature_k,
-               const Texture& texture = {}) {
-  Material material;
-  material.albedo = albedo;
-  material.reflectivity = reflectivity;
-  material.temperature_k = temperature_k;
-  material.texture = texture;
-  return material;
-}
 
 void AddTree(double x, double y, double ground, double height, double temperature,
              SceneModel* scene) {
@@ -181,6 +171,7 @@ void AddLamp(double range, SceneModel* scene) {
 }  // namespace
 
 SceneModel MakeScene(const Options& options) {
+  if (options.natural.on) return MakeNaturalScene(options, 0);
   const double ground = options.world.ground_z_m;
   const double person = options.world.person_temperature_k;
   SceneModel scene;

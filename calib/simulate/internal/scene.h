@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,12 +52,19 @@ struct SceneModel {
   Sky sky;
   double reflected_temperature_k = 280;  ///< what surfaces mirror
   double air_k = 295;                    ///< what the stand takes on
+  /// Towards the sun that has warmed what it shone on (unit): warmth stays a while in a place that
+  /// has come to lie in the shadow.
+  Eigen::Vector3d warming_sun{0, 0, 1};
+  /// Radiance that exposure is set by, besides the board's; absent: by a white sheet ahead.
+  std::optional<double> white;
+  /// Where the rig stands; absent: at the world's origin. Textures and sky lie in the world.
+  std::optional<Rigid3> world_from_lidar;
   BoardHeat board_heat;
 };
 
 /// Ground, wall, boxes, trees and a warm person; or a room. All of it lies farther from the LIDAR
 /// than the board stands by default, but for the ground, what is beside the field of view, and
-/// clutter.
+/// clutter. Of natural scenes: what the first view shows.
 SceneModel MakeScene(const Options& options);
 
 }  // namespace rgbdt::simulate

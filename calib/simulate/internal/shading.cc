@@ -64,9 +64,32 @@ double Footprint(const Hit& hit, const Eigen::Vector3d& direction, double pixel_
   return hit.range * pixel_rad / std::max(0.1, std::abs(hit.normal.dot(direction)));
 }
 
-std::uint64_t PatchNumber(const World& world, const Hit& hit, int board_patch, unsigned shadows) {
+std::uint64_t PatchNumber(const World& world, const Hit& hit, const Surface& surface,
+                          unsigned shadows) {
   return (static_cast<std::uint64_t>(world.Face(hit)) << 32) |
-         (static_cast<std::uint64_t>(board_patch + 1) << 8) | shadows;
+         (static_cast<std::uint64_t>(surface.patch + 1) << 8) | shadows |
+         (surface.material.leafy ? kLeafyPatch : 0);
+}
+
+/// What glass shows: the sky, or what is dark under it.
+Eigen::Vector3d Mirrored(const World& world, const Eigen::Vector3d& direction,
+                         const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d away = world.InWorld(direction - 2 * direction.dot(normal) * normal);
+  return SkyRadiance(world.scene().sky, away) * SmoothStep(-0.05, 0.25, away.z());
+}
+
+/// What the sun has added to the warmth of a place [K].
+double SunWarmth(const World& world, const Material& material, const Eigen::Vector3d& point,
+                 const Eigen::Vector3d& normal, unsigned* shadows) {
+  const Eigen::Vector3d& sun = world.scene().warming_sun;
+  const double cosine = sun.dot(normal);
+  if (material.sun_k == 0 || cosine <= 0) return 0;
+  constexpr double kFar = 1e4;
+  if (world.caster().Blocked(Lifted(point, normal), sun, kFar)) {
+    *shadows = 1;
+    return 0;
+  }
+  return material.sun_k * cosine;
 }
 
 }  // namespace
@@ -106,7 +129,7 @@ Seen SeeColor(const World& world, const Eigen::Vector3d& origin, const Eigen::Ve
   Seen seen;
   seen.range = hit.range;
   if (!hit.hit()) {
-    seen.value = SkyRadiance(world.scene().sky, direction);
+    seen.value = SkyRadiance(world.scene().sky, world.InWorld(direction));
     return seen;
   }
   const Eigen::Vector3d point = PointOn(origin, direction, hit);
@@ -114,7 +137,10 @@ Seen SeeColor(const World& world, const Eigen::Vector3d& origin, const Eigen::Ve
   unsigned shadows = 0;
   const Eigen::Vector3d light = Irradiance(world, point, hit.normal, &shadows);
   seen.value = surface.material.albedo.cwiseProduct(light);
-  seen.patch = PatchNumber(world, hit, surface.patch, shadows);
+  if (surface.material.mirror > 0) {
+    seen.value += surface.material.mirror * Mirrored(world, direction, hit.normal);
+  }
+  seen.patch = PatchNumber(world, hit, surface, shadows);
   return seen;
 }
 
@@ -125,15 +151,18 @@ Seen SeeHeat(const World& world, const Eigen::Vector3d& origin, const Eigen::Vec
   Seen seen;
   seen.range = hit.range;
   if (!hit.hit()) {
-    const double up = std::sqrt(std::clamp(direction.z(), 0.0, 1.0));
+    const double up = std::sqrt(std::clamp(world.InWorld(direction).z(), 0.0, 1.0));
     seen.value[0] = sky.horizon_k + (sky.zenith_k - sky.horizon_k) * up;
     return seen;
   }
   const Eigen::Vector3d point = PointOn(origin, direction, hit);
   const Surface surface = world.At(hit, point, Footprint(hit, direction, pixel_rad));
-  seen.value[0] = ApparentTemperature(surface.material.temperature_k, surface.material.emissivity,
-                                      world.scene().reflected_temperature_k);
-  seen.patch = PatchNumber(world, hit, surface.patch, 0);
+  unsigned shadows = 0;
+  const double warmth = SunWarmth(world, surface.material, point, hit.normal, &shadows);
+  seen.value[0] =
+      ApparentTemperature(surface.material.temperature_k + warmth, surface.material.emissivity,
+                          world.scene().reflected_temperature_k);
+  seen.patch = PatchNumber(world, hit, surface, shadows);
   return seen;
 }
 

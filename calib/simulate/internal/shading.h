@@ -7,6 +7,9 @@
 
 namespace rgbdt::simulate {
 
+/// Set in the patch of leafy material.
+inline constexpr std::uint64_t kLeafyPatch = std::uint64_t{1} << 31;
+
 /// What one ray brings back.
 struct Seen {
   Eigen::Vector3d value{0, 0, 0};  ///< colour: radiance, blue green red; thermal: [K] in the first

@@ -67,7 +67,16 @@ bool World::MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& 
 int World::Face(const Hit& hit) const {
   if (!hit.hit()) return 0;
   const bool round = meshes_[static_cast<std::size_t>(hit.object)].round();
+  if (!IsBoard(hit) && Object(hit).material.leafy) {
+    // Thousands of faces: eight numbers an object do not hold them.
+    return 1 + hit.object * 8 + ((hit.triangle / 2 % (1 << 14)) << 16);
+  }
   return 1 + hit.object * 8 + (round ? 0 : hit.triangle / 2);
+}
+
+Eigen::Vector3d World::InWorld(const Eigen::Vector3d& direction) const {
+  const std::optional<Rigid3>& place = scene_->world_from_lidar;
+  return place ? Eigen::Vector3d(place->rotation * direction) : direction;
 }
 
 const SceneObject& World::Object(const Hit& hit) const {
@@ -82,7 +91,9 @@ Surface World::At(const Hit& hit, const Eigen::Vector3d& point, double footprint
   } else if (Object(hit).pattern) {
     surface.material = Object(hit).pattern->At(point, &surface.patch);
   } else {
-    surface.material = Textured(Object(hit).material, point, hit.normal, footprint_m);
+    const std::optional<Rigid3>& place = scene_->world_from_lidar;
+    surface.material = Textured(Object(hit).material, place ? *place * point : point,
+                                InWorld(hit.normal), footprint_m);
   }
   return surface;
 }

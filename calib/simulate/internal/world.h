@@ -34,6 +34,8 @@ class World {
   bool MayMeetMoving(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   /// What the ray met, of the scene or of what holds the board. Not for the board itself.
   const SceneObject& Object(const Hit& hit) const;
+  /// A direction of the LIDAR frame in the world's, where sky and textures lie.
+  Eigen::Vector3d InWorld(const Eigen::Vector3d& direction) const;
   /// Number of an object's face: neighbouring pixels that differ in it have an edge between them.
   int Face(const Hit& hit) const;
 
