@@ -90,9 +90,33 @@ void CameraRenderer::ShadeRow(const World& world, int row, const std::vector<std
   }
 }
 
+Eigen::Vector3d CameraRenderer::Refined(const World& world, int column, int row, int n) const {
+  const Eigen::Vector3d origin = CentreInLidar();
+  const bool few_first = world.scene().many_edges;
+  Eigen::Vector3d sum(0, 0, 0);
+  std::uint64_t patch = 0;
+  bool edge = false;
+  for (int k = 0; k < n * n; ++k) {
+    // With few rays first, these are spread over the pixel: no two in a row or a column of n.
+    const int i = few_first ? k % n : k / n;
+    const int j = few_first ? (i * (1 + n % 2) + k / n) % n : k % n;
+    // All n^2 columns and n^2 rows of the fine grid hold one ray each (canonical stratified
+    // arrangement), so an upright edge is placed to 1/n^2 of a pixel.
+    const Eigen::Vector2d pixel(column - 0.5 + (i + (j + 0.5) / n) / n,
+                                row - 0.5 + (j + (i + 0.5) / n) / n);
+    const Eigen::Vector3d direction = Direction(lens_.Undistort(pixel, lens_.At(column, row)));
+    const Seen seen = color() ? SeeColor(world, origin, direction, pixel_rad_)
+                              : SeeHeat(world, origin, direction, pixel_rad_);
+    sum += seen.value;
+    edge |= k > 0 && seen.patch != patch;
+    patch = seen.patch;
+    if (few_first && k + 1 == n && !edge) return sum / n;
+  }
+  return sum / (n * n);
+}
+
 void CameraRenderer::RefineRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                                const std::vector<std::uint64_t>& patches, cv::Mat* values) const {
-  const Eigen::Vector3d origin = CentreInLidar();
   constexpr int kLeafySupersampling = 3;
   for (int column = 0; column < camera_.width; ++column) {
     const std::uint64_t own = patches[Index(column, row)];
@@ -109,20 +133,7 @@ void CameraRenderer::RefineRow(const World& world, int row, const std::vector<st
     if (!edge || !changed) continue;
     // Edges are everywhere among leaves, and few rays place them well enough.
     const int n = leafy ? std::min(supersampling_, kLeafySupersampling) : supersampling_;
-    Eigen::Vector3d sum(0, 0, 0);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        // All n^2 columns and n^2 rows of the fine grid hold one ray each (canonical stratified
-        // arrangement), so an upright edge is placed to 1/n^2 of a pixel.
-        const Eigen::Vector2d pixel(column - 0.5 + (i + (j + 0.5) / n) / n,
-                                    row - 0.5 + (j + (i + 0.5) / n) / n);
-        const Eigen::Vector3d direction = Direction(lens_.Undistort(pixel, lens_.At(column, row)));
-        sum += (color() ? SeeColor(world, origin, direction, pixel_rad_)
-                        : SeeHeat(world, origin, direction, pixel_rad_))
-                   .value;
-      }
-    }
-    Store(sum / (n * n), row, column, values);
+    Store(Refined(world, column, row, n), row, column, values);
   }
 }
 

@@ -45,6 +45,9 @@ class CameraRenderer {
                 std::vector<float>* ranges) const;
   void RefineRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                  const std::vector<std::uint64_t>& patches, cv::Mat* values) const;
+  /// The mean of n x n rays through a pixel. Where the scene has many edges and the first n rays
+  /// find none in this pixel, the mean of these.
+  Eigen::Vector3d Refined(const World& world, int column, int row, int n) const;
   void MarkMoving(const World& world, int row, std::vector<std::uint8_t>* moving) const;
   void Develop(const World& world, const cv::Mat& values);
   void Kill(std::uint64_t seed, double full_scale, cv::Mat* pixels) const;

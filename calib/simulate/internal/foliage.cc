@@ -84,8 +84,8 @@ Thing MakeTree(Dice* draw, const Warmth& warmth, double height_m, double leaves)
                           height_m * (out == 0 ? 0.82 : draw->Between(0.6, 0.72)));
     tree.Add("branch", MakeRod({0, 0, fork - 0.1}, middle, 0.5 * thick, 0.15 * thick), bark);
     const double radius = height_m * draw->Between(0.13, 0.16);
-    Join(MakeLeaves(draw, middle, {radius, radius, 0.9 * radius}, Count(320, leaves),
-                    0.045 * height_m),
+    Join(MakeLeaves(draw, middle, {radius, radius, 0.9 * radius}, Count(240, leaves),
+                    0.042 * height_m),
          &crown);
   }
   tree.AddWarm("leaves", crown, LeafMaterial(draw, warmth));

@@ -39,7 +39,7 @@ void MakeOutdoors(const Options& options, double x_m, SceneModel* scene) {
   scene->air_k = 297;
   scene->reflected_temperature_k = 275;
   scene->board_heat = {307, 6, 4, 3};
-  scene->white = 0.62;
+  scene->white = 0.5;
   scene->objects = MakeStreet(options, {297, 9}, x_m).parts();
   AddSunAndSky(options, scene);
 }
@@ -47,7 +47,7 @@ void MakeOutdoors(const Options& options, double x_m, SceneModel* scene) {
 void MakeIndoors(const Options& options, SceneModel* scene) {
   scene->air_k = scene->reflected_temperature_k = 294;
   scene->board_heat = {299, 3, 1.5, 1.2};
-  scene->white = 0.45;
+  scene->white = 0.36;
   scene->objects = MakeRoom(options, {294, 0}, &scene->lights).parts();
   scene->ambient = Rgb(0.26, 0.25, 0.24);
   // What windows show.
@@ -57,7 +57,7 @@ void MakeIndoors(const Options& options, SceneModel* scene) {
 
 /// Whether a column of this radius [m] and a person's height meets nothing.
 bool IsFree(const std::vector<Bounds>& bounds, double x, double y, double ground) {
-  constexpr double kRadius = 0.45;
+  constexpr double kRadius = 0.4;
   return std::none_of(bounds.begin(), bounds.end(), [&](const Bounds& e) {
     return e.low.z() < ground + 1.9 && e.high.z() > ground + 0.12 && e.low.x() - kRadius < x &&
            e.high.x() + kRadius > x && e.low.y() - kRadius < y && e.high.y() + kRadius > y;
@@ -82,10 +82,12 @@ void AddWalkers(const Options& options, const Rigid3& world_from_lidar, int inde
   const Bounds inside = Inside(options, bounds);
   for (int person = 0; person < options.natural.people; ++person) {
     Dice draw(options.seed, index, "walker " + std::to_string(person));
-    for (int attempt = 0; attempt < 60; ++attempt) {
+    for (int attempt = 0; attempt < 200; ++attempt) {
       // Every other one walks near by.
       const double range = draw.Between(2.8, person % 2 == 0 || !outdoors ? 6 : 16);
       const double azimuth = draw.Between(-38, 38) * kDegree;
+      // Where the board has to find a place.
+      if (options.natural.board && range < 7 && std::abs(azimuth) < 17 * kDegree) continue;
       const Vector3d place =
           world_from_lidar * Vector3d(range * std::cos(azimuth), range * std::sin(azimuth), 0);
       if (place.x() < inside.low.x() || place.x() > inside.high.x() || place.y() < inside.low.y() ||
@@ -131,6 +133,7 @@ SceneModel MakeNaturalScene(const Options& options, int index) {
   if (options.world.reflected_temperature_k != 0) {
     scene.reflected_temperature_k = options.world.reflected_temperature_k;
   }
+  scene.many_edges = true;
   AddWalkers(options, world_from_lidar, index, &scene.objects);
   MoveIntoLidar(world_from_lidar, &scene);
   return scene;

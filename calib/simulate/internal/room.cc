@@ -45,14 +45,15 @@ std::vector<RoomWall> WallsOf(const Plan& plan) {
           {Standing(plan.low.x(), middle.y(), plan.floor, M_PI / 2), size.y()}};
 }
 
-Plan DrawPlan(Dice* draw, double ground) {
+Plan DrawPlan(const Options& options, Dice* draw) {
   Plan plan;
   plan.low = {draw->Between(-4.2, -3), draw->Between(-4.6, -3)};
   plan.high = {draw->Between(5.2, 8.5), draw->Between(3, 4.6)};
-  plan.floor = ground;
-  plan.ceiling = ground + draw->Between(2.6, 3.3);
+  plan.floor = options.world.ground_z_m;
+  plan.ceiling = plan.floor + draw->Between(2.6, 3.3);
   const double free = kRoomFree + 0.35;
   plan.taken.push_back({{-free, -free}, {free + 0.3, free}});
+  if (options.natural.board) plan.taken.push_back({{free, -1.2}, {4.4, 1.2}});
   return plan;
 }
 
@@ -176,27 +177,35 @@ void PutOnFloor(const Furniture& f, Dice* draw, Plan* plan, Thing* room) {
   }
 }
 
+Furniture DrawForWall(Dice* draw, const Warmth& warmth) {
+  switch (draw->Below(4)) {
+    case 0:
+      return MakeCupboard(draw, warmth);
+    case 1:
+      return MakeRadiator(draw, warmth);
+    case 2:
+      return MakeSofa(draw, warmth);
+    default:
+      return MakeShelf(draw, warmth);
+  }
+}
+
 void Furnish(const Options& options, Dice* draw, Plan* plan, Thing* room) {
-  const Warmth& warmth = room->warmth();
   const double leaves = options.natural.leaves;
   const std::vector<RoomWall> walls = WallsOf(*plan);
+  // Nothing is quite as warm as the air.
+  const auto warmth = [&] { return Warmth{room->warmth().air_k + draw->Between(-1.6, 1.6), 0}; };
   for (int i = 0; i < 11; ++i) {
     // The far wall is in all views.
     const RoomWall& wall = walls[static_cast<std::size_t>(i < 3 ? 0 : draw->Below(4))];
-    const int kind = draw->Below(4);
-    PutAtWall(wall,
-              kind == 0   ? MakeCupboard(draw, warmth)
-              : kind == 1 ? MakeRadiator(draw, warmth)
-              : kind == 2 ? MakeSofa(draw, warmth)
-                          : MakeShelf(draw, warmth),
-              draw, plan, room);
+    PutAtWall(wall, DrawForWall(draw, warmth()), draw, plan, room);
   }
-  for (int i = 0; i < 3; ++i)
-    PutOnFloor(MakeTableWithThings(draw, warmth, leaves), draw, plan, room);
-  for (int i = 0; i < 4; ++i) PutOnFloor(MakeChair(draw, warmth), draw, plan, room);
-  for (int i = 0; i < 3; ++i) PutOnFloor(MakePottedPlant(draw, warmth, leaves), draw, plan, room);
-  for (int i = 0; i < 3; ++i) PutOnFloor(MakeBoxes(draw, warmth), draw, plan, room);
-  PutOnFloor(MakeFloorLamp(warmth), draw, plan, room);
+  const auto put = [&](const Furniture& f) { PutOnFloor(f, draw, plan, room); };
+  for (int i = 0; i < 3; ++i) put(MakeTableWithThings(draw, warmth(), leaves));
+  for (int i = 0; i < 4; ++i) put(MakeChair(draw, warmth()));
+  for (int i = 0; i < 3; ++i) put(MakePottedPlant(draw, warmth(), leaves));
+  for (int i = 0; i < 3; ++i) put(MakeBoxes(draw, warmth()));
+  put(MakeFloorLamp(warmth()));
 }
 
 /// Where the sun comes in: bright and warm, and no edge in range.
@@ -233,7 +242,7 @@ void AddLamps(const Plan& plan, Dice* draw, std::vector<Light>* lights) {
 
 Thing MakeRoom(const Options& options, const Warmth& warmth, std::vector<Light>* lights) {
   Dice draw(options.seed, 0, "room");
-  Plan plan = DrawPlan(&draw, options.world.ground_z_m);
+  Plan plan = DrawPlan(options, &draw);
   Thing room(warmth);
   AddShell(plan, &draw, &room);
   const std::vector<RoomWall> walls = WallsOf(plan);

@@ -57,6 +57,8 @@ struct SceneModel {
   Eigen::Vector3d warming_sun{0, 0, 1};
   /// Radiance that exposure is set by, besides the board's; absent: by a white sheet ahead.
   std::optional<double> white;
+  /// Pixels beside an edge, through which none runs, are rendered with fewer rays.
+  bool many_edges = false;
   /// Where the rig stands; absent: at the world's origin. Textures and sky lie in the world.
   std::optional<Rigid3> world_from_lidar;
   BoardHeat board_heat;

@@ -84,7 +84,8 @@ void AddKerbside(const Side& side, int cell, Dice* draw) {
   }
 }
 
-void AddSideOfCell(const Side& side, int cell, Dice* draw) {
+void AddSideOfCell(Side side, int cell, Dice* draw) {
+  side.warmth.air_k += draw->Between(-1.5, 1.5);
   if (draw->Chance(0.68)) {
     const double width = draw->Chance(0.6) ? kCell : kCell - 1.5;
     side.Put(Standing(0, side.facade, 0, 0), MakeHouse(draw, side.warmth, width));

@@ -49,6 +49,16 @@ TEST(Options, BadOnesAreNamed) {
       {"clutter.panel_m", [](Options* o) { o->clutter.panel_m.y() = 9; }},
       {"clutter.far_m", [](Options* o) { o->clutter.far_m = 2; }},
       {"clutter.door_ajar_rad", [](Options* o) { o->clutter.door_ajar_rad = -0.1; }},
+      {"natural.step_m", [](Options* o) { o->natural.step_m = -0.5; }},
+      {"natural.turn_rad", [](Options* o) { o->natural.turn_rad = 5; }},
+      {"natural.people", [](Options* o) { o->natural.people = -1; }},
+      {"natural.leaves", [](Options* o) { o->natural.leaves = -1; }},
+      {"natural.on",
+       [](Options* o) {
+         o->natural.on = true;
+         o->scene = Scene::kNight;
+       }},
+      {"natural.on", [](Options* o) { o->natural.on = o->clutter.door = true; }},
       {"spinning.range_sigma_m",
        [](Options* o) {
          UseLidar(16, o);

@@ -7,6 +7,7 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/errors.h"
+#include "calib/simulate/internal/natural_scene.h"
 #include "tests/unit/simulate/simulate_testing.h"
 
 namespace rgbdt::simulate {
@@ -262,6 +263,93 @@ TEST(Simulator, MayHaveASpinningLidar) {
     }
   }
   EXPECT_THROW(Simulator(SmallOptions()).Revolution(0), InputError);
+}
+
+Options NaturalOptionsOf(Scene scene) {
+  Options options = SmallOptions(scene);
+  options.natural.on = true;
+  return options;
+}
+
+TEST(Simulator, NaturalScenesRepeatThemselves) {
+  Options options = NaturalOptionsOf(Scene::kOutdoor);
+  options.threads = 1;
+  Simulator first(options);
+  first.ShowView(0, "a");
+  const Image before = first.TakeImage("rgb", kStart);
+  first.ShowView(3, "b");
+  options.threads = 3;
+  Simulator second(options);
+  second.ShowView(3, "b");
+  for (const char* camera : {"rgb", "thermal"}) {
+    EXPECT_TRUE(SamePixels(first.TakeImage(camera, kStart).pixels,
+                           second.TakeImage(camera, kStart).pixels));
+  }
+  EXPECT_FALSE(SamePixels(before.pixels, first.TakeImage("rgb", kStart).pixels));
+  EXPECT_TRUE(SameBits(first.Line(kStart, 150).range, second.Line(kStart, 150).range));
+}
+
+TEST(Simulator, NaturalScenesHaveNoBoardUnlessAskedFor) {
+  Options options = NaturalOptionsOf(Scene::kIndoor);
+  Simulator bare(options);
+  bare.ShowView(0, "a");
+  bare.ShowView(1, "b");
+  EXPECT_TRUE(bare.truth().lidar_from_target.empty());
+  EXPECT_NE(bare.truth().world_from_lidar.at("a").translation,
+            bare.truth().world_from_lidar.at("b").translation);
+  EXPECT_THROW(bare.PickCorners("rgb", kStart), InputError);
+  options.natural.board = true;
+  for (const Scene scene : {Scene::kOutdoor, Scene::kIndoor}) {
+    options.scene = scene;
+    Simulator with_board(options);
+    for (const int view : {0, 1, 2, 3}) {
+      ASSERT_NO_THROW(with_board.ShowView(view, "b")) << "view " << view;
+      EXPECT_EQ(with_board.truth().lidar_from_target.count("b"), 1U);
+      EXPECT_NO_THROW(with_board.PickCorners("rgb", kStart));
+    }
+  }
+}
+
+/// Points that the LIDAR has on people, by the true pose in the thermal image: as warm as people.
+TEST(Simulator, NaturalScenesAreSeenFromTheTruePoses) {
+  Options options = NaturalOptionsOf(Scene::kIndoor);
+  options.natural.people = 6;
+  UseLidar(64, &options);
+  Simulator simulator(options);
+  int met[2] = {0, 0}, count = 0;
+  for (const int view : {0, 4}) {
+    simulator.ShowView(view, "v");
+    const auto scene = std::make_shared<SceneModel>(MakeNaturalScene(options, view));
+    const World world(scene, std::nullopt, options);
+    const Image image = simulator.TakeImage("thermal", kStart);
+    const Cloud cloud = simulator.Revolution(kStart);
+    const Rigid3& camera_from_lidar = simulator.truth().camera_from_lidar.at("thermal");
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!cloud.IsHit(i)) continue;
+      const Eigen::Vector3d point = cloud.points[i].cast<double>();
+      const Hit hit = world.caster().Cast({0, 0, 0}, point.normalized());
+      if (!hit.hit() || world.Object(hit).name != "torso") continue;
+      // The truth, and a pose that is off by 0.3 m to the side.
+      const Eigen::Vector3d seen = camera_from_lidar * point;
+      const std::vector<cv::Point2d> pixels =
+          OpenCvPixels(options.cameras[1].lens,
+                       {{seen.x(), seen.y(), seen.z()}, {seen.x() + 0.3, seen.y(), seen.z()}});
+      if (seen.z() < 0.5 || !cv::Rect(2, 2, 156, 116).contains(cv::Point(pixels[0])) ||
+          !cv::Rect(2, 2, 156, 116).contains(cv::Point(pixels[1]))) {
+        continue;
+      }
+      ++count;
+      for (int k = 0; k < 2; ++k) {
+        const auto counts =
+            image.pixels.at<std::uint16_t>(cv::Point(static_cast<int>(std::lround(pixels[k].x)),
+                                                     static_cast<int>(std::lround(pixels[k].y))));
+        met[k] += counts * 0.02 + 233.15 > 302 ? 1 : 0;
+      }
+    }
+  }
+  ASSERT_GT(count, 100);
+  EXPECT_GT(met[0], 0.85 * count);
+  EXPECT_LT(met[1], 0.6 * count);
 }
 
 }  // namespace
