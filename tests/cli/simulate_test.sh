@@ -35,4 +35,21 @@ holds "imperfect" "$session/truth.textproto" "^# beams meet at a radius of [0-9.
 ! cmp -s "$session/views/0001/cloud.pcd" "$scratch/vlp16/views/0001/cloud.pcd" ||
   complain "the imperfect rig's cloud is that of the exact one"
 
+for kind in "turned outdoor" "32 indoor"; do
+  read -r lidar scene <<<"$kind"
+  session=$scratch/natural_$scene
+  accepts "a natural session $scene" "$bin/rgbdt" simulate "$session" --views 2 --natural \
+    --scene "$scene" --lidar "$lidar"
+  for file in cloud.pcd rgb.png thermal.png view.textproto; do
+    [ -s "$session/views/0002/$file" ] || complain "natural $scene: no $file"
+    ! cmp -s "$session/views/0001/$file" "$session/views/0002/$file" ||
+      complain "natural $scene: both views have the same $file"
+  done
+  grep -q camera_from_lidar "$session/truth.textproto" || complain "natural $scene: no truth"
+  ! grep -rq "lidar_from_target\|pick" "$session" --include=*.textproto --exclude=rig.textproto ||
+    complain "natural $scene: it has a board"
+done
+misuses "a natural night" "$bin/rgbdt" simulate "$scratch/refused" --natural --scene night
+misuses "--board alone" "$bin/rgbdt" simulate "$scratch/refused" --board
+
 verdict

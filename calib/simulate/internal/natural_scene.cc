@@ -27,7 +27,7 @@ void AddSunAndSky(const Options& options, SceneModel* scene) {
   sun.color = Rgb(0.86, 0.80, 0.70);
   scene->lights.push_back(sun);
   scene->warming_sun = towards(-3 * kDegree);  // a quarter of an hour ago
-  scene->ambient = Rgb(0.24, 0.28, 0.35);
+  scene->ambient = Rgb(0.29, 0.33, 0.40);
   scene->sky.zenith = Rgb(0.14, 0.28, 0.52);
   scene->sky.horizon = Rgb(0.44, 0.52, 0.60);
   scene->sky.cloud = draw.Between(0.05, 0.35);
@@ -39,7 +39,7 @@ void MakeOutdoors(const Options& options, double x_m, SceneModel* scene) {
   scene->air_k = 297;
   scene->reflected_temperature_k = 275;
   scene->board_heat = {307, 6, 4, 3};
-  scene->white = 0.5;
+  scene->white = 0.45;
   scene->objects = MakeStreet(options, {297, 9}, x_m).parts();
   AddSunAndSky(options, scene);
 }
@@ -47,7 +47,7 @@ void MakeOutdoors(const Options& options, double x_m, SceneModel* scene) {
 void MakeIndoors(const Options& options, SceneModel* scene) {
   scene->air_k = scene->reflected_temperature_k = 294;
   scene->board_heat = {299, 3, 1.5, 1.2};
-  scene->white = 0.36;
+  scene->white = 0.42;
   scene->objects = MakeRoom(options, {294, 0}, &scene->lights).parts();
   scene->ambient = Rgb(0.26, 0.25, 0.24);
   // What windows show.
