@@ -46,7 +46,7 @@ for kind in "turned outdoor" "32 indoor"; do
       complain "natural $scene: both views have the same $file"
   done
   grep -q camera_from_lidar "$session/truth.textproto" || complain "natural $scene: no truth"
-  ! grep -rq "lidar_from_target\|pick" "$session" --include=*.textproto --exclude=rig.textproto ||
+  ! grep -rqE "^ *(lidar_from_target|picked) *\{" "$session" --include=*.textproto --exclude=rig.textproto ||
     complain "natural $scene: it has a board"
 done
 misuses "a natural night" "$bin/rgbdt" simulate "$scratch/refused" --natural --scene night
