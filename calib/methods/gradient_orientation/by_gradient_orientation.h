@@ -19,6 +19,8 @@ namespace rgbdt {
 // plane through them instead of their weighted sum: rings are farther apart than beams of a ring,
 // of which all of the 8 nearest would be. Image gradients are Sobel's of an image smoothed to what
 // the LIDAR resolves (sigma: half of the angle between its beams), read between pixels.
+// Gradients of the range are the weaker feature: the ground has them everywhere, its image not. On
+// synthetic scenes they ended 1 to 3 degrees off.
 
 struct GradientOrientationOptions {
   /// Absent: intensity where every cloud has it, or else range.

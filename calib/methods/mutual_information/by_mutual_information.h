@@ -17,10 +17,12 @@ namespace rgbdt {
 // image is read between its pixels, a grey value shared between two bins: numeric gradients need
 // that. The six unknowns weigh alike in units of a degree and 50 mm. The ascent is done twice, with
 // differences of half a unit, which look over small bumps, and then of a tenth. Points hidden from
-// the camera count, as in the papers, with the grey value of what hides them.
+// the camera count, as in the papers, with the grey value of what hides them: that biases results
+// along the line from LIDAR to camera, by some 0.2 degrees and 10 mm on small synthetic scenes, a
+// turn and a shift that make up for each other at the distance of what is near.
 
 struct MutualInformationOptions {
-  std::size_t most_points = 20000;             ///< of a shot; evenly left out beyond
+  std::size_t most_points = 10000;             ///< of a shot; evenly left out beyond
   std::size_t least_points = 300;              ///< in all images, at the result
   int bins = 64;                               ///< of reflectivity and of grey values
   PoseSteps unit{0.017453292519943295, 0.05};  ///< `mi`: of the unknowns
@@ -60,8 +62,9 @@ class ReflectivityAgainstGrey {
 
 /// `mi`: Pandey, McBride, Savarese and Eustice (2012, 2015): the pose at which mutual information
 /// is largest, by gradient ascent from `start`. The covariance is absent: the papers' bound, the
-/// inverse of points times the measure's second derivatives, takes points as independent, and is
-/// far below the errors that are met. Not converged, with a reason: clouds without
+/// inverse of points times the measure's second derivatives, takes points as independent; on
+/// synthetic scenes it stated 0.01 degrees and 1 mm where errors were 0.2 degrees and 10 mm (a
+/// chi-square of 350 to 1700, of 6). Not converged, with a reason: clouds without
 /// intensities, few points in the images, an ascent that goes astray, no peak. Throws InputError
 /// for images that are not the camera's.
 SceneFit AlignByMutualInformation(const CameraSpec& camera, const std::vector<Shot>& shots,

@@ -34,6 +34,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"calib/methods/mutual_information", {"calib/camera", "calib/methods/scene"}},
       {"calib/methods/gradient_orientation",
        {"calib/camera", "calib/detect/cloud", "calib/methods/scene"}},
+      {"calib/methods/edge_grid", {"calib/camera", "calib/detect/cloud", "calib/methods/scene"}},
       {"calib/methods",
        {"calib/camera", "calib/detect", "calib/detect/image", "calib/detect/cloud", "calib/solve",
         "calib/methods/paper", "calib/methods/plane", "calib/files/session"}},

@@ -73,23 +73,4 @@ AscentResult Ascend(const PoseObjective& objective, const Rigid3& start,
   return Ascent(objective, start, options).Run();
 }
 
-Matrix6d HessianOf(const PoseObjective& objective, const Rigid3& pose, const PoseSteps& steps) {
-  const auto value = [&](const Vector6d& count) { return objective(Moved(pose, count, steps)); };
-  const double here = objective(pose);
-  Matrix6d hessian;
-  for (int i = 0; i < 6; ++i) {
-    const Vector6d a = Vector6d::Unit(i);
-    hessian(i, i) = value(a) + value(-a) - 2 * here;
-    for (int j = 0; j < i; ++j) {
-      const Vector6d b = Vector6d::Unit(j);
-      hessian(i, j) = (value(a + b) + value(-a - b) - value(a - b) - value(b - a)) / 4;
-      hessian(j, i) = hessian(i, j);
-    }
-  }
-  Vector6d scale;
-  scale << Eigen::Vector3d::Constant(1 / steps.rotation_rad),
-      Eigen::Vector3d::Constant(1 / steps.translation_m);
-  return scale.asDiagonal() * hessian * scale.asDiagonal();
-}
-
 }  // namespace rgbdt

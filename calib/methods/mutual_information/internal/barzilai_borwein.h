@@ -26,7 +26,4 @@ struct AscentResult {
 AscentResult Ascend(const PoseObjective& objective, const Rigid3& start,
                     const AscentOptions& options);
 
-/// Second derivatives of the objective by delta [1/rad^2, 1/(rad m), 1/m^2], central differences.
-Matrix6d HessianOf(const PoseObjective& objective, const Rigid3& pose, const PoseSteps& steps);
-
 }  // namespace rgbdt
