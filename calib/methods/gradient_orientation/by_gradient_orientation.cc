@@ -47,8 +47,9 @@ GradientAlignment::GradientAlignment(const CameraSpec& camera, const std::vector
     : camera_(camera) {
   const CloudFeature feature = FeatureOf(shots, options.feature);
   const std::vector<cv::Mat> grey = GreyValues(camera, shots);
+  const std::size_t most = options.most_points / std::max<std::size_t>(1, shots.size());
   for (std::size_t s = 0; s < shots.size(); ++s) {
-    shots_.push_back(Prepare(shots[s], grey[s], near, feature, options.most_points));
+    shots_.push_back(Prepare(shots[s], grey[s], near, feature, most));
   }
 }
 

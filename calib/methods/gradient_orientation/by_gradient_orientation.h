@@ -25,7 +25,7 @@ namespace rgbdt {
 struct GradientOrientationOptions {
   /// Absent: intensity where every cloud has it, or else range.
   std::optional<CloudFeature> feature;
-  std::size_t most_points = 10000;  ///< of a shot; evenly left out beyond
+  std::size_t most_points = 40000;  ///< of all shots, an equal part of each
   std::size_t least_points = 300;   ///< with a gradient, in all images, at the result
   SwarmOptions swarm;
   PoseSteps probe{0.017453292519943295, 0.05};  ///< for `least_worse`

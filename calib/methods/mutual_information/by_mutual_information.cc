@@ -97,11 +97,12 @@ ReflectivityAgainstGrey::ReflectivityAgainstGrey(const CameraSpec& camera,
                                                  const MutualInformationOptions& options)
     : camera_(camera), bins_(options.bins) {
   const std::vector<cv::Mat> grey = GreyValues(camera, shots);
+  const std::size_t most = options.most_points / std::max<std::size_t>(1, shots.size());
   for (std::size_t s = 0; s < shots.size(); ++s) {
     const Cloud& cloud = *shots[s].cloud;
     Values values;
     values.grey = grey[s];
-    for (const std::size_t i : PointsNearImage(camera_, near, cloud.points, options.most_points)) {
+    for (const std::size_t i : PointsNearImage(camera_, near, cloud.points, most)) {
       values.points.push_back(cloud.points[i]);
       values.reflectivity.push_back(cloud.intensity[i]);
     }

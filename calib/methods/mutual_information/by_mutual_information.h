@@ -22,7 +22,7 @@ namespace rgbdt {
 // turn and a shift that make up for each other at the distance of what is near.
 
 struct MutualInformationOptions {
-  std::size_t most_points = 10000;             ///< of a shot; evenly left out beyond
+  std::size_t most_points = 20000;             ///< of all shots, an equal part of each
   std::size_t least_points = 300;              ///< in all images, at the result
   int bins = 64;                               ///< of reflectivity and of grey values
   PoseSteps unit{0.017453292519943295, 0.05};  ///< `mi`: of the unknowns

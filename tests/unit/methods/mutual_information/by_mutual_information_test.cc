@@ -25,7 +25,10 @@ TEST(AlignByMutualInformation, EndsNearerThanItBegan) {
   const SceneWorld world(4);
   const Rigid3& truth = world.Truth(0);
   const Rigid3 start = GuessOff(truth, 1 * kDegree, 0.03, 5);
-  const SceneFit fit = AlignByMutualInformation(world.rig().cameras[0], world.Shots(0), start);
+  MutualInformationOptions options;
+  options.most_points = 10000;
+  const SceneFit fit =
+      AlignByMutualInformation(world.rig().cameras[0], world.Shots(0), start, options);
   EXPECT_TRUE(fit.converged) << fit.why_not;
   EXPECT_LT(RotationDistance(fit.camera_from_lidar, truth), 0.4 * kDegree);
 }
@@ -35,7 +38,7 @@ TEST(AlignByNormalisedMutualInformation, EndsNearerThanItBegan) {
   const Rigid3& truth = world.Truth(0);
   const Rigid3 start = GuessOff(truth, 1 * kDegree, 0.03, 5);
   MutualInformationOptions options;
-  options.most_points = 4000;
+  options.most_points = 10000;
   options.swarm.rounds = 40;
   const SceneFit fit =
       AlignByNormalisedMutualInformation(world.rig().cameras[0], world.Shots(0), start, options);
