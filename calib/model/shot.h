@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib/model/cloud.h"
+#include "calib/model/image.h"
+#include "calib/model/rigid3.h"
+
+namespace rgbdt {
+
+/// A sweep and one camera's image of the same moment: what methods without a target are made from.
+/// The rig stood still meanwhile, or motion was taken out. Both outlive the shot.
+struct Shot {
+  std::string view;  ///< for messages
+  const Cloud* cloud = nullptr;
+  const Image* image = nullptr;
+};
+
+/// A pose that was found without a target.
+struct SceneFit {
+  Rigid3 camera_from_lidar;
+  std::optional<Matrix6d> covariance;  ///< of delta (rigid3.h), camera axes; absent: not estimated
+  bool converged = false;
+  std::string why_not;  ///< where it did not converge: why, and what to do
+};
+
+}  // namespace rgbdt
