@@ -183,6 +183,15 @@ struct StartResult {
   std::optional<PoseError> truth_error;
 };
 
+/// What a scene without a target says of a pose.
+struct SceneCheck {
+  double edges = 0;  ///< depth edges of the clouds that lie in the images
+  double shown = 0;  ///< of these, the share that the images show, in expectation
+  /// On sweeps that the solver never saw: mean log-likelihood of a depth edge, over that of one the
+  /// image shows nothing of; absent: none were left out.
+  std::optional<double> heldout_start{}, heldout_result{};
+};
+
 struct CameraReport {
   CameraCalibration calibration;
   std::optional<Rigid3> first_guess;  ///< camera_from_lidar that the solve began from
@@ -208,6 +217,7 @@ struct CameraReport {
   /// By the boards' edges alone against by their planes alone. Both have the images' corners, and
   /// the lens, which counts twice in chi2: a large one is sure.
   std::optional<Halves> edges_planes;
+  std::optional<SceneCheck> scene;          ///< absent: it was made with a target
   std::optional<ViewScatter> view_scatter;  ///< absent: too few views, or no covariance
   /// By which the covariance was enlarged, as views may scatter more than stated (`view_scatter`).
   double variance_factor = 1;

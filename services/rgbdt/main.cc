@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   rgbdt::AddSession(&line);
   rgbdt::AddCalibrate(&line);
   rgbdt::AddEvaluate(&line);
+  rgbdt::AddRefine(&line);
   rgbdt::AddCompare(&line);
   rgbdt::AddFuse(&line);
 #ifdef RGBDT_HAS_SIMULATOR

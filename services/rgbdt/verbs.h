@@ -13,6 +13,7 @@ namespace rgbdt {
 /// Each adds a verb to the program. Bad input is thrown as InputError; the command line prints it.
 void AddCalibrate(CommandLine* program);
 void AddEvaluate(CommandLine* program);
+void AddRefine(CommandLine* program);
 void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
 void AddSession(CommandLine* program);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/files/schema/rig_file.h"
@@ -29,9 +30,10 @@ struct Detected {
   std::vector<ViewDetection> views;
 };
 
-/// Nothing where the data is absent.
+/// Nothing where the data is absent. `views`: what was read, too.
 inline std::optional<Detected> DetectReal(const std::string& method,
-                                          const std::string& folder = "acfr_vlp16") {
+                                          const std::string& folder = "acfr_vlp16",
+                                          std::vector<View>* views = nullptr) {
   const char* real = std::getenv("RGBDT_REAL_DATA");
   const fs::path source = fs::path(real == nullptr ? "" : real) / folder;
   if (real == nullptr || !fs::exists(source)) return std::nullopt;
@@ -44,8 +46,9 @@ inline std::optional<Detected> DetectReal(const std::string& method,
   if (std::system(command.c_str()) != 0) throw std::runtime_error(command + " failed");
   Detected detected{OpenSession(dir), {}};
   for (const std::string& view : detected.session.views) {
-    detected.views.push_back(
-        DetectView(detected.session.rig, ReadView(detected.session, view), method));
+    View read = ReadView(detected.session, view);
+    detected.views.push_back(DetectView(detected.session.rig, read, method));
+    if (views != nullptr) views->push_back(std::move(read));
   }
   fs::remove_all(dir);
   return detected;

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "calib/methods/edge_grid/depth_edges.h"
+#include "calib/methods/edge_grid/depth_jumps.h"
 #include "calib/methods/edge_grid/edge_field.h"
 #include "calib/methods/scene/seen_points.h"
 #include "calib/model/errors.h"
@@ -59,9 +59,9 @@ EdgesOnEdges::EdgesOnEdges(const CameraSpec& camera, const std::vector<Shot>& sh
     : camera_(camera) {
   const std::vector<cv::Mat> grey = GreyValues(camera, shots);
   for (std::size_t s = 0; s < shots.size(); ++s) {
-    const std::vector<DepthEdge> all = DepthEdgesOf(*shots[s].cloud, options.least_step_m);
+    const std::vector<DepthJump> all = DepthJumpsOf(*shots[s].cloud, options.least_step_m);
     std::vector<Eigen::Vector3f> points;
-    for (const DepthEdge& edge : all) points.push_back(edge.point);
+    for (const DepthJump& edge : all) points.push_back(edge.point);
     Edges edges;
     for (const std::size_t i : PointsNearImage(camera_, near, points, options.most_points)) {
       edges.points.push_back(points[i]);

@@ -16,6 +16,8 @@ constexpr std::size_t kFewViews = 5;
 // Held-out views always fit a little worse; beyond this the solve is overfitted.
 constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
+// Of what edges alone and planes alone say: so far apart nobody knows which of them is right.
+constexpr double kFarApartDeg = 1, kFarApartMm = 100;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
 // Of the views' scatter over what is stated (variance): above the first it is said, and the
@@ -157,7 +159,24 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   }
 }
 
+void JudgeScene(const SceneCheck& scene, Judgement* judgement) {
+  judgement->AddReason("Images show " + Number(100 * scene.shown, 0) + "% of the " +
+                       Number(scene.edges, 0) + " depth edges of the clouds.");
+  if (!scene.heldout_start || !scene.heldout_result) {
+    judgement->Usable(
+        "It was not checked: no sweep was left out, or none of those shows depth edges.");
+    return;
+  }
+  judgement->AddReason(
+      "On sweeps that the solver never saw, edges are met " +
+      std::string(*scene.heldout_result < *scene.heldout_start ? "worse than"
+                                                               : "at least as well as") +
+      " by the start (log-likelihood of an edge " + Number(*scene.heldout_result, 3) +
+      ", by the start " + Number(*scene.heldout_start, 3) + ").");
+}
+
 void JudgeFit(const CameraReport& camera, Judgement* judgement) {
+  if (camera.scene) return JudgeScene(*camera.scene, judgement);
   const TrainHeldout& rms = camera.edge_rms_px;
   if (!rms.heldout) {
     judgement->Usable("It was not checked: no view that was kept from the solver could be used.");
@@ -275,11 +294,18 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
 
 void JudgeEdgesAndPlanes(const Halves& apart, Judgement* judgement) {
   if (!(apart.chi2 > kUnlikelyChi2)) return;
-  judgement->Usable("The boards' edges alone and their planes alone put the camera " +
-                    PoseErrorText(apart.difference) +
-                    " apart, more than their sigmas allow (chi-square " + Number(apart.chi2, 1) +
-                    "): the LIDAR's beams or ranges are off in a way that is not known, and the "
-                    "result may be off by more than stated.");
+  const std::string why =
+      "The boards' edges alone and their planes alone put the camera " +
+      PoseErrorText(apart.difference) + " apart, more than their sigmas allow (chi-square " +
+      Number(apart.chi2, 1) +
+      "): the LIDAR's beams or ranges, the lens or the board's size are off in a way that is not "
+      "known, and the result may be off by more than stated.";
+  if (apart.difference.rotation_deg > kFarApartDeg ||
+      apart.difference.translation_mm > kFarApartMm) {
+    judgement->Doubtful(why);
+  } else {
+    judgement->Usable(why);
+  }
 }
 
 // Of the held-out views' own RMS [sigma]: a single one that is wrong does not count.

@@ -224,6 +224,24 @@ void FromKnown(const TrainHeldout& figure, proto::TrainHeldout* (proto::CameraRe
 
 }  // namespace
 
+namespace {
+
+void FromScene(const SceneCheck& check, proto::SceneCheck* out) {
+  out->set_edges(check.edges);
+  out->set_shown(check.shown);
+  SetFinite(check.heldout_start, &proto::SceneCheck::set_heldout_start, out);
+  SetFinite(check.heldout_result, &proto::SceneCheck::set_heldout_result, out);
+}
+
+SceneCheck ToScene(const proto::SceneCheck& message) {
+  SceneCheck check{message.edges(), message.shown(), {}, {}};
+  if (message.has_heldout_start()) check.heldout_start = message.heldout_start();
+  if (message.has_heldout_result()) check.heldout_result = message.heldout_result();
+  return check;
+}
+
+}  // namespace
+
 void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
   FromKnown(camera.edge_rms_whitened, &proto::CameraReport::mutable_edge_rms_whitened, out);
   FromKnown(camera.edge_rms_mm, &proto::CameraReport::mutable_edge_rms_mm, out);
@@ -237,6 +255,7 @@ void FromUncertainty(const CameraReport& camera, proto::CameraReport* out) {
   for (const Fold& fold : camera.folds) FromFold(fold, out->add_folds());
   if (camera.halves) FromHalves(*camera.halves, out->mutable_halves());
   if (camera.edges_planes) FromHalves(*camera.edges_planes, out->mutable_edges_planes());
+  if (camera.scene) FromScene(*camera.scene, out->mutable_scene());
 }
 
 void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera) {
@@ -250,6 +269,7 @@ void ToUncertainty(const proto::CameraReport& message, const Place& place, Camer
   for (const proto::Fold& fold : message.folds()) camera->folds.push_back(ToFold(fold));
   if (message.has_halves()) camera->halves = ToHalves(message.halves());
   if (message.has_edges_planes()) camera->edges_planes = ToHalves(message.edges_planes());
+  if (message.has_scene()) camera->scene = ToScene(message.scene());
 }
 
 void FromRigWide(const Report& report, proto::Report* out) {

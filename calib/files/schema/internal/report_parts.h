@@ -30,7 +30,7 @@ void FromTrainHeldout(const TrainHeldout& figure, proto::TrainHeldout* out);
 TrainHeldout ToTrainHeldout(const proto::TrainHeldout& figure);
 
 /// The uncertainty of a camera's pose: edge_rms_whitened, _mm, plane_rms_mm, sigma, nuisance,
-/// folds, halves and edges_planes.
+/// folds, halves, edges_planes and scene.
 void FromUncertainty(const CameraReport& camera, proto::CameraReport* out);
 /// Throws InputError where a list of numbers has another length than it should.
 void ToUncertainty(const proto::CameraReport& message, const Place& place, CameraReport* camera);

@@ -96,6 +96,19 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   ASSERT_TRUE(b.edges_planes);
   EXPECT_EQ(b.edges_planes->difference.translation_mm, 1.0 / 7);
   EXPECT_EQ(b.edges_planes->chi2, 6.75);
+  EXPECT_FALSE(b.scene);
+}
+
+TEST(ReportFile, GivesBackWhatASceneWithoutATargetSaid) {
+  Report report = test::MakeReport();
+  report.cameras[0].scene = SceneCheck{4321, 1.0 / 6, 1.0 / 21, std::nullopt};
+  const Report back = ReportFromJson(ReportToJson(report));
+  ASSERT_TRUE(back.cameras[0].scene);
+  const SceneCheck& scene = *back.cameras[0].scene;
+  EXPECT_EQ(scene.edges, 4321);
+  EXPECT_EQ(scene.shown, 1.0 / 6);
+  EXPECT_EQ(scene.heldout_start, 1.0 / 21);
+  EXPECT_FALSE(scene.heldout_result);
 }
 
 TEST(ReportFile, GivesBackWhatItSaysOfTheWholeRig) {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "calib/methods/edge_grid/depth_edges.h"
+#include "calib/methods/edge_grid/depth_jumps.h"
 #include "calib/methods/edge_grid/edge_field.h"
 #include "tests/unit/matchers.h"
 
@@ -26,34 +26,34 @@ Cloud RingsOf(const std::vector<double>& ranges) {
   return cloud;
 }
 
-TEST(DepthEdgesOf, TheNearSideOfAStepAlone) {
+TEST(DepthJumpsOf, TheNearSideOfAStepAlone) {
   const Cloud cloud = RingsOf({3, 3, 3, 5.25, 5.25, 5.25});
-  const std::vector<DepthEdge> edges = DepthEdgesOf(cloud, 0.3);
+  const std::vector<DepthJump> edges = DepthJumpsOf(cloud, 0.3);
   ASSERT_EQ(edges.size(), 2);  // one a ring
   EXPECT_THAT(edges[0].point, EigenNear(cloud.points[2], 1e-6F));
   EXPECT_NEAR(edges[0].weight, 1.5, 1e-5);  // (5.25 - 3)^0.5
 }
 
-TEST(DepthEdgesOf, SmallStepsAreNoise) {
+TEST(DepthJumpsOf, SmallStepsAreNoise) {
   const Cloud cloud = RingsOf({3, 3, 3.25, 3.25, 3.25});
-  EXPECT_TRUE(DepthEdgesOf(cloud, 0.3).empty());
-  EXPECT_EQ(DepthEdgesOf(cloud, 0.2).size(), 2);
+  EXPECT_TRUE(DepthJumpsOf(cloud, 0.3).empty());
+  EXPECT_EQ(DepthJumpsOf(cloud, 0.2).size(), 2);
 }
 
-TEST(DepthEdgesOf, ABeamThatReturnedNothingIsAsFarAsTheFarthest) {
+TEST(DepthJumpsOf, ABeamThatReturnedNothingIsAsFarAsTheFarthest) {
   Cloud cloud = RingsOf({3, 3, NAN, NAN, 3, 12, 12});
-  const std::vector<DepthEdge> edges = DepthEdgesOf(cloud, 0.3);
+  const std::vector<DepthJump> edges = DepthJumpsOf(cloud, 0.3);
   ASSERT_EQ(edges.size(), 4);
   EXPECT_THAT(edges[0].point, EigenNear(cloud.points[1], 1e-6F));
   EXPECT_NEAR(edges[0].weight, 3, 1e-5);  // (12 - 3)^0.5
   EXPECT_THAT(edges[1].point, EigenNear(cloud.points[4], 1e-6F));
-  EXPECT_TRUE(DepthEdgesOf(RingsOf({3, 3, NAN, NAN, 3, 3}), 0.3).empty());
+  EXPECT_TRUE(DepthJumpsOf(RingsOf({3, 3, NAN, NAN, 3, 3}), 0.3).empty());
 }
 
-TEST(DepthEdgesOf, OfNothingIsNothing) { EXPECT_TRUE(DepthEdgesOf(Cloud(), 0.3).empty()); }
+TEST(DepthJumpsOf, OfNothingIsNothing) { EXPECT_TRUE(DepthJumpsOf(Cloud(), 0.3).empty()); }
 
 // As a turned scanner's: each line goes up, the next one stands beside it.
-TEST(DepthEdgesOf, OfUprightLinesTheLinesBesideCount) {
+TEST(DepthJumpsOf, OfUprightLinesTheLinesBesideCount) {
   Cloud cloud;
   cloud.lines = 4;
   cloud.beams = 6;
@@ -65,7 +65,7 @@ TEST(DepthEdgesOf, OfUprightLinesTheLinesBesideCount) {
       cloud.directions.push_back(ray.cast<float>());
     }
   }
-  const std::vector<DepthEdge> edges = DepthEdgesOf(cloud, 0.3);
+  const std::vector<DepthJump> edges = DepthJumpsOf(cloud, 0.3);
   ASSERT_EQ(edges.size(), 6);  // the second line
   for (std::size_t b = 0; b < 6; ++b) {
     EXPECT_EQ(edges[b].point, cloud.points[6 + b]);

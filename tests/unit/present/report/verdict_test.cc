@@ -68,6 +68,29 @@ TEST(Verdict, HalvesThatDifferTooMuchContradictTheStatedUncertainty) {
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("uncertainty cannot be trusted")));
 }
 
+TEST(Verdict, EdgesAndPlanesThatDisagreeAreToldAndByFarAreDoubtful) {
+  CameraReport camera = Good();
+  camera.edges_planes = Halves{{0.6, 20}, 22.4};
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.edges_planes->chi2 = 30;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("The boards' edges alone"));
+  camera.edges_planes->difference = {0.6, 110};
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+  camera.edges_planes->difference = {1.1, 20};
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+}
+
+TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
+  CameraReport camera = Good();
+  camera.edge_rms_px = {};
+  camera.scene = SceneCheck{1000, 0.4, 0.1, 0.2};
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.scene->heldout_result.reset();
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It was not checked"));
+}
+
 TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
   CameraReport camera = Good();
   camera.halves->chi2 = std::numeric_limits<double>::quiet_NaN();

@@ -1,4 +1,4 @@
-#include "calib/methods/edge_grid/depth_edges.h"
+#include "calib/methods/edge_grid/depth_jumps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,14 +50,14 @@ double RiseAlong(const RangeGrid& grid, int rows, int columns) {
 
 }  // namespace
 
-std::vector<DepthEdge> DepthEdgesOf(const Cloud& cloud, double least_m) {
+std::vector<DepthJump> DepthJumpsOf(const Cloud& cloud, double least_m) {
   const RangeGrid grid(cloud);
   if (grid.hits() == 0) return {};
   const double farthest = FarthestIn(grid);
   const bool across_rows = RiseAlong(grid, 1, 0) < RiseAlong(grid, 0, 1);
   const int dr = across_rows ? 1 : 0;
   const int dc = 1 - dr;
-  std::vector<DepthEdge> edges;
+  std::vector<DepthJump> edges;
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
       const std::size_t cell = grid.Cell(row, column);

@@ -8,7 +8,7 @@
 namespace rgbdt {
 
 /// A point that stands before another one beside it.
-struct DepthEdge {
+struct DepthJump {
   Eigen::Vector3f point;  ///< LIDAR frame [m]
   float weight = 0;       ///< X of the paper [m^0.5]
 };
@@ -20,6 +20,6 @@ struct DepthEdge {
 /// that was fired and returned nothing stands for something as far as the cloud's farthest point:
 /// what stands before the sky has the clearest edges in an image, and without it the objective's
 /// peak is elsewhere.
-std::vector<DepthEdge> DepthEdgesOf(const Cloud& cloud, double least_m);
+std::vector<DepthJump> DepthJumpsOf(const Cloud& cloud, double least_m);
 
 }  // namespace rgbdt

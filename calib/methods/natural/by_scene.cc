@@ -1,0 +1,366 @@
+#include "calib/methods/natural/by_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "calib/model/linear_algebra.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr double kCoarsestSigmaPx = 5;  // of a level's pixels
+constexpr int kFineReachPx = 8;
+// Sigma of an image edge about its rim: what lies outside of these is chance that was learned.
+constexpr double kLeastEdgePx = 0.6, kMostEdgePx = 2.5;
+// Variance over what is stated, of poses in simulated streets and rooms (`scripts/study natural`):
+// what an image shows of a rim is off in ways that no shift of the rim tells.
+constexpr double kUnmodelled = 1.6;
+constexpr double kLeastStepRad = 0.01, kMostStepRad = 0.035;  // between turned starts
+constexpr std::size_t kTried = 8, kKept = 4;  // of poses that are looked at side by side
+
+// Information of numbers of which those with a variance of zero are exact.
+LensCovariance InformationOf(const LensCovariance& covariance) {
+  constexpr double kExact = 1e18;
+  LensCovariance with = covariance;
+  for (Eigen::Index k = 0; k < kLensNumbers; ++k) {
+    if (with(k, k) <= 0) with(k, k) = 1 / kExact;
+    with(k, k) *= 1 + 1e-9;  // those that are made of each other are still inverted
+  }
+  return InverseOfSymmetric(with);
+}
+
+class Solver {
+ public:
+  Solver(const SceneProblem& problem, const Rigid3& start, const NaturalOptions& options)
+      : problem_(problem) {
+    start_.camera_from_lidar = start;
+    start_.lens = problem.spec().lens;
+    prior_.setZero();
+    prior_.topLeftCorner<6, 6>() = InverseOfSymmetric(options.StartCovariance());
+    prior_.diagonal().segment<kDepthEdgeKinds>(kShiftAt).setConstant(
+        1 / std::pow(options.shift_sigma_rad, 2));
+    prior_(kBeamAt, kBeamAt) = 1 / std::pow(options.beam_sigma_rad, 2);
+    prior_.bottomRightCorner<kLensNumbers, kLensNumbers>() =
+        InformationOf(problem.spec().LensUncertaintyOrUsual().covariance);
+  }
+
+  const SceneMatrix& prior() const { return prior_; }
+  const SceneState& start() const { return start_; }
+
+  SceneVector OffPrior(const SceneState& state) const {
+    SceneVector off;
+    off.head<6>() = Log(state.camera_from_lidar * start_.camera_from_lidar.Inverse());
+    for (std::size_t k = 0; k < state.shift_rad.size(); ++k) {
+      off[kShiftAt + static_cast<Eigen::Index>(k)] = state.shift_rad[k];
+    }
+    off[kBeamAt] = state.beam_rad - start_.beam_rad;
+    off.tail<kLensNumbers>() = NumbersOf(state.lens) - NumbersOf(start_.lens);
+    return off;
+  }
+
+  // Rounds of a look that narrows, until steps are small.
+  SceneState Rounds(SceneState state, SceneLook* look, int most, bool learn) const {
+    for (int i = 0; i < most; ++i) {
+      const SceneSums sums = problem_.SumsAt(state, *look);
+      if (!(sums.matched > 0)) return state;
+      const SceneMatrix h = sums.information + prior_;
+      const SceneVector g = sums.gradient - prior_ * OffPrior(state);
+      const SceneVector step = SolveSymmetric(h, g);
+      if (!step.allFinite()) return state;
+      state = state.Moved(step);
+      look->matched = std::clamp(sums.matched / sums.edges, 0.05, 0.95);
+      if (learn) {
+        look->sigma_px = std::clamp(std::sqrt(std::max(0.0, sums.squares / sums.matched)),
+                                    kLeastEdgePx, kMostEdgePx);
+      }
+      if (step.dot(h * step) < 1e-4) break;
+    }
+    return state;
+  }
+
+ private:
+  const SceneProblem& problem_;
+  SceneState start_;
+  SceneMatrix prior_;
+};
+
+// How far the start may be off in the image [px].
+double StartSigmaPx(const CameraSpec& camera, const NaturalOptions& options) {
+  constexpr double kUsualRangeM = 5;
+  const Vector6d variance = options.StartCovariance().diagonal();
+  return camera.lens.fx * std::sqrt(variance.head<3>().maxCoeff() +
+                                    variance.tail<3>().maxCoeff() / std::pow(kUsualRangeM, 2));
+}
+
+int LevelsFor(double off_px) {
+  const double steps = std::log2(std::max(1.0, off_px / kCoarsestSigmaPx));
+  return std::clamp(1 + static_cast<int>(std::ceil(steps)), 1, 7);
+}
+
+// Every how manieth edge gives so many in all.
+std::size_t StrideFor(const SceneProblem& problem, std::size_t edges) {
+  return std::max<std::size_t>(1, problem.edges() / edges);
+}
+
+// From coarse pictures to fine ones, from level `first` down to `last`, the look narrowing.
+SceneState CoarseToFine(const Solver& solver, SceneState state, double off_px, int first, int last,
+                        SceneLook* look) {
+  double sigma = off_px;  // [px of the image]
+  for (int level = first; level >= last; --level) {
+    const double pixels = std::ldexp(1.0, level);
+    const double least = level == 0 ? 1.0 : 1.5;
+    double s = std::clamp(sigma / pixels, least, kCoarsestSigmaPx);
+    for (;; s = std::max(least, 0.6 * s)) {
+      look->level = level;
+      look->sigma_px = s;
+      look->reach_px = static_cast<int>(std::ceil(3 * s)) + 2;
+      state = solver.Rounds(state, look, 4, false);
+      if (s <= least) break;
+    }
+    sigma = least * pixels;
+  }
+  return state;
+}
+
+double Fitness(const SceneSums& sums) {
+  return sums.edges > 0 ? sums.log_likelihood / sums.edges : 0;
+}
+
+struct Candidate {
+  SceneState state;
+  double fitness = 0;
+};
+
+void SortByFitness(std::vector<Candidate>* candidates) {
+  std::stable_sort(candidates->begin(), candidates->end(),
+                   [](const auto& a, const auto& b) { return a.fitness > b.fitness; });
+}
+
+// The start turned by rotation vectors on a grid, those that fit best in coarse pictures first.
+std::vector<Candidate> TurnedStarts(const SceneProblem& problem, const SceneState& start,
+                                    double most_rad, double step_rad) {
+  const double off_px = 0.6 * step_rad * problem.spec().lens.fx;
+  SceneLook look;
+  look.stride = StrideFor(problem, 2000);
+  look.level = std::min(problem.levels(), LevelsFor(off_px)) - 1;
+  look.sigma_px = std::max(2.0, off_px / std::ldexp(1.0, look.level));
+  look.reach_px = static_cast<int>(std::ceil(2 * look.sigma_px)) + 1;
+  std::vector<Candidate> starts;
+  const int most = static_cast<int>(std::ceil(most_rad / step_rad));
+  for (int x = -most; x <= most; ++x) {
+    for (int y = -most; y <= most; ++y) {
+      for (int z = -most; z <= most; ++z) {
+        Vector6d delta = Vector6d::Zero();
+        delta.head<3>() = step_rad * Eigen::Vector3d(x, y, z);
+        if (delta.norm() > most_rad + 0.5 * step_rad) continue;
+        SceneState state = start;
+        state.camera_from_lidar = Exp(delta) * start.camera_from_lidar;
+        starts.push_back({state, Fitness(problem.SumsAt(state, look))});
+      }
+    }
+  }
+  SortByFitness(&starts);
+  return starts;
+}
+
+// The same, and moved to either side along each direction of the pose by what moves the edges about
+// so many pixels of the level (RMS): far along directions that the scene hardly tells.
+std::vector<SceneState> WithNeighbours(const SceneState& state, const SceneSums& sums,
+                                       const SceneLook& look, const Vector6d& start_sigma) {
+  std::vector<SceneState> out{state};
+  if (!(sums.matched > 0)) return out;
+  const Matrix6d information =
+      start_sigma.asDiagonal() * sums.information.topLeftCorner<6, 6>() * start_sigma.asDiagonal();
+  const auto system = EigensystemOf(Matrix6d(information + Matrix6d::Identity()));
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const double per_pixel = std::sqrt(sums.matched / system.values[k]) / look.sigma_px;
+    for (const double pixels : {-2.0, -1.0, 1.0, 2.0}) {
+      const double size = std::clamp(pixels * per_pixel, -1.5, 1.5);
+      const Vector6d delta = start_sigma.cwiseProduct(size * system.vectors.col(k));
+      SceneState moved = state;
+      moved.camera_from_lidar = Exp(delta) * state.camera_from_lidar;
+      out.push_back(moved);
+    }
+  }
+  return out;
+}
+
+// Brought down from coarse pictures to middling ones by some of the edges, several at a time: where
+// pictures are coarse the wrong one may fit as well as the right one. The best first.
+std::vector<Candidate> Narrowed(const SceneProblem& problem, const Solver& solver,
+                                std::vector<Candidate> states, int first,
+                                const Vector6d& start_sigma) {
+  const int last = std::min(1, first);
+  for (int level = first; level >= last; --level) {
+    SceneLook look;
+    look.stride = StrideFor(problem, 3000);
+    look.level = level;
+    look.sigma_px = 1.5;
+    look.reach_px = 7;
+    std::vector<Candidate> wider;
+    for (const Candidate& candidate : states) {
+      const SceneSums sums = problem.SumsAt(candidate.state, look);
+      for (const SceneState& state : WithNeighbours(candidate.state, sums, look, start_sigma)) {
+        wider.push_back({state, Fitness(problem.SumsAt(state, look))});
+      }
+    }
+    SortByFitness(&wider);
+    if (wider.size() > kTried) wider.resize(kTried);
+    for (Candidate& candidate : wider) {
+      SceneLook solving = look;
+      candidate.state = solver.Rounds(candidate.state, &solving, 6, false);
+      candidate.fitness = Fitness(problem.SumsAt(candidate.state, look));
+    }
+    SortByFitness(&wider);
+    if (wider.size() > kKept) wider.resize(kKept);
+    states = std::move(wider);
+  }
+  return states;
+}
+
+// The observed information, in no direction less than a tenth of the expected one: where edges are
+// ambiguous throughout it may be negative, which is no information.
+SceneMatrix ToldOf(const SceneMatrix& expected, const SceneMatrix& observed) {
+  const auto system = EigensystemOf(expected);
+  const SceneVector root = system.values.cwiseMax(1e-12).cwiseSqrt();
+  const SceneMatrix whiten = system.vectors * root.cwiseInverse().asDiagonal();
+  const auto share = EigensystemOf(SceneMatrix(whiten.transpose() * observed * whiten));
+  const SceneMatrix back = system.vectors * root.asDiagonal() * share.vectors;
+  return back * share.values.cwiseMax(0.1).cwiseMin(1).asDiagonal() * back.transpose();
+}
+
+// Each thing left out (jackknife, by a Newton step); and by how much things' own gradients are
+// larger than stated: of one whose residuals are as stated, g' (H_g + R)^-1 g is on average
+// tr (H_g + R)^-1 H_g, whatever R.
+SceneMatrix CovarianceOf(const SceneSums& sums, const SceneMatrix& information,
+                         const SceneMatrix& told, double* factor) {
+  SceneMatrix jackknife = SceneMatrix::Zero();
+  double squares = 0;
+  double expected = 0;
+  const auto count = static_cast<double>(sums.parts.size());
+  for (const auto& [own, gradient] : sums.parts) {
+    const SceneVector moved = SolveSymmetric(SceneMatrix(information - own), gradient);
+    jackknife += moved * moved.transpose();
+    const SceneMatrix with = own + information / count;
+    squares += gradient.dot(SolveSymmetric(with, gradient));
+    expected += SolveSymmetric(with, own).trace();
+  }
+  *factor = expected > 0 ? std::max(1.0, squares / expected) : 1;
+  return kUnmodelled * (jackknife + *factor * InverseOfSymmetric(told));
+}
+
+std::vector<SceneAlignment::Direction> DirectionsOf(const Matrix6d& covariance,
+                                                    const Matrix6d& start_covariance) {
+  const Vector6d sigma = start_covariance.diagonal().cwiseSqrt();
+  const Matrix6d scaled =
+      sigma.cwiseInverse().asDiagonal() * covariance * sigma.cwiseInverse().asDiagonal();
+  const auto system = EigensystemOf(scaled);
+  std::vector<SceneAlignment::Direction> directions;
+  for (Eigen::Index k = 5; k >= 0; --k) {
+    directions.push_back(
+        {sigma.cwiseProduct(system.vectors.col(k)), std::sqrt(std::max(0.0, system.values[k]))});
+  }
+  return directions;
+}
+
+// Why the result is not to be used; empty: it is.
+std::string WhyNot(const SceneAlignment& found, const Rigid3& start,
+                   const NaturalOptions& options) {
+  constexpr double kFewestThings = 2, kFewestEdges = 30, kLeastShown = 0.08, kMostSigmas = 6;
+  if (found.sums.matched < kFewestEdges || found.sums.things < kFewestThings) {
+    return "the images show too few of the cloud's depth edges (" +
+           std::to_string(static_cast<int>(found.sums.matched)) +
+           "): point the camera at things that stand free, 3 to 10 m away, and take more sweeps";
+  }
+  if (found.sums.matched < kLeastShown * found.sums.edges) {
+    return "the images show only " +
+           std::to_string(static_cast<int>(100 * found.sums.matched / found.sums.edges)) +
+           "% of the cloud's depth edges: the start is too far off (--search looks farther), the "
+           "lens is wrong, or images and clouds are not of the same moment";
+  }
+  const Vector6d off = Log(found.state.camera_from_lidar * start.Inverse());
+  const double sigmas = std::sqrt(off.dot(SolveSymmetric(options.StartCovariance(), off)));
+  if (sigmas > kMostSigmas) {
+    return "it ended " + std::to_string(static_cast<int>(sigmas)) +
+           " sigma of the start away from it: the start is worse than stated (--search looks "
+           "farther), or the solve is lost";
+  }
+  return "";
+}
+
+// Whether another pose, elsewhere, fits about as well as the best; empty: none does.
+std::string WhyAmbiguous(const std::vector<Candidate>& sorted) {
+  constexpr double kApartRad = 0.01;  // nearer ones are the same
+  constexpr double kClearly = 0.03;   // log-likelihood of an edge: less is chance
+  for (const Candidate& other : sorted) {
+    if (other.fitness < sorted[0].fitness - kClearly) break;
+    const double apart =
+        RotationDistance(other.state.camera_from_lidar, sorted[0].state.camera_from_lidar);
+    if (apart < kApartRad) continue;
+    return "two poses, " + std::to_string(static_cast<int>(1e3 * apart)) +
+           " mrad apart, fit about as well: take more sweeps, in other places";
+  }
+  return "";
+}
+
+}  // namespace
+
+Matrix6d NaturalOptions::StartCovariance() const {
+  if (start_covariance) return *start_covariance;
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(rotation_sigma_rad),
+      Eigen::Vector3d::Constant(translation_sigma_m);
+  return Matrix6d(sigma.cwiseAbs2().asDiagonal());
+}
+
+SceneProblem MakeSceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
+                              const NaturalOptions& options) {
+  return {camera, shots, options.edges, options.most_edges,
+          LevelsFor(StartSigmaPx(camera, options))};
+}
+
+SceneAlignment AlignToScene(const SceneProblem& problem, const Rigid3& start,
+                            const NaturalOptions& options) {
+  const double off_px = StartSigmaPx(problem.spec(), options);
+  const Solver solver(problem, start, options);
+  const Vector6d start_sigma = options.StartCovariance().diagonal().cwiseSqrt();
+  const double turned = start_sigma.head<3>().maxCoeff();
+  std::vector<Candidate> starts{{solver.start(), 0}};
+  int first = 0;
+  if (off_px > kCoarsestSigmaPx) {
+    const double step = std::clamp(turned, kLeastStepRad, kMostStepRad);
+    first = std::min(problem.levels(), LevelsFor(step * problem.spec().lens.fx)) - 1;
+    const std::vector<Candidate> turns = TurnedStarts(problem, solver.start(), 2 * turned, step);
+    starts.insert(starts.end(), turns.begin(),
+                  turns.begin() + static_cast<std::ptrdiff_t>(std::min(kTried, turns.size())));
+  }
+  starts = Narrowed(problem, solver, std::move(starts), first, start_sigma);
+  SceneAlignment out;
+  out.state = CoarseToFine(solver, starts[0].state, 3, 0, 0, &out.look);
+  out.look.reach_px = kFineReachPx;
+  out.state = solver.Rounds(out.state, &out.look, 20, true);
+  out.sums = problem.SumsAt(out.state, out.look);
+  SceneLook observed = out.look;
+  observed.observed = true;
+  const SceneMatrix told = ToldOf(out.sums.information + solver.prior(),
+                                  problem.SumsAt(out.state, observed).information + solver.prior());
+  out.covariance =
+      CovarianceOf(out.sums, out.sums.information + solver.prior(), told, &out.scatter_factor);
+  out.fit.camera_from_lidar = out.state.camera_from_lidar;
+  out.fit.covariance = Matrix6d(out.covariance.topLeftCorner<6, 6>());
+  out.directions = DirectionsOf(*out.fit.covariance, options.StartCovariance());
+  out.fit.why_not = WhyNot(out, start, options);
+  if (out.fit.why_not.empty()) out.fit.why_not = WhyAmbiguous(starts);
+  out.fit.converged = out.fit.why_not.empty();
+  return out;
+}
+
+double SceneFitness(const SceneProblem& problem, const SceneAlignment& alignment,
+                    const Rigid3& camera_from_lidar) {
+  SceneState state = alignment.state;
+  state.camera_from_lidar = camera_from_lidar;
+  return Fitness(problem.SumsAt(state, alignment.look));
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,312 @@
+#include "calib/methods/natural/scene_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "calib/camera/camera.h"
+#include "calib/camera/pixel_by_point.h"
+#include "calib/camera/pixels.h"
+
+namespace rgbdt {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// A rim as the camera sees it.
+struct Projected {
+  Vector2d pixel;
+  Eigen::Matrix<double, 2, kSceneUnknowns> by_unknowns;  // [px of the image]
+  Vector2d across;                                       // half of the beams' distance [px]
+  Vector2d normal;                                       // unit, across the rim
+  Vector2d by_shift;                                     // of a shift outwards [px/rad]
+};
+
+std::optional<Projected> Project(const Camera& camera, const SceneState& state,
+                                 const DepthEdge& rim) {
+  const Matrix3d turn = state.camera_from_lidar.rotation.toRotationMatrix();
+  const auto kind = static_cast<std::size_t>(rim.kind);
+  const double out = state.shift_rad[kind] - rim.reach * state.beam_rad;
+  const Vector3d aside = rim.across - rim.across.dot(rim.along) * rim.along;
+  const Vector3d outwards = rim.point.norm() * aside.normalized();
+  const Vector3d point = turn * (rim.point + out * outwards) + state.camera_from_lidar.translation;
+  const auto pixel = camera.Project(point);
+  if (!pixel || !camera.Contains(*pixel)) return std::nullopt;
+  Projected seen;
+  seen.pixel = *pixel;
+  const PixelDerivatives by_all = PixelByPointAndLens(camera.lens(), point);
+  const Eigen::Matrix<double, 2, 3> by_point = by_all.leftCols<3>();
+  seen.by_unknowns.setZero();
+  seen.by_unknowns.leftCols<3>() = -by_point * CrossMatrix(point);
+  seen.by_unknowns.middleCols<3>(3) = by_point;
+  seen.by_shift = by_point * (turn * outwards);
+  seen.by_unknowns.col(kShiftAt + static_cast<Eigen::Index>(kind)) = seen.by_shift;
+  seen.by_unknowns.col(kBeamAt) = -rim.reach * seen.by_shift;
+  seen.by_unknowns.rightCols<kLensNumbers>() = by_all.rightCols<kLensNumbers>();
+  seen.across = by_point * (turn * rim.across);
+  const Vector2d along = by_point * (turn * rim.along);
+  const double length = along.norm();
+  if (!(length > 0)) return std::nullopt;
+  seen.normal = Vector2d(-along.y(), along.x()) / length;
+  return seen;
+}
+
+std::vector<DepthEdge> Thinned(std::vector<DepthEdge> edges, std::size_t most) {
+  if (edges.size() <= most) return edges;
+  std::vector<DepthEdge> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(edges[i * edges.size() / most]);
+  return kept;
+}
+
+/// Rims by their numbers; a rig that stands still sees the same ones in all shots.
+class RimNumbers {
+ public:
+  /// Of each edge of a shot.
+  std::vector<int> Of(const std::vector<DepthEdge>& edges) {
+    std::map<int, Sums> own;
+    for (const DepthEdge& edge : edges) own[edge.rim].Add(edge);
+    std::map<int, int> numbers, things;
+    const std::size_t before = known_.size();
+    for (const auto& [number, sums] : own) numbers[number] = Known(sums.Rim(), before);
+    // A thing is called as the first of its rims.
+    for (const DepthEdge& edge : edges) {
+      SceneRim& rim = known_[static_cast<std::size_t>(numbers[edge.rim])];
+      if (rim.thing < 0) rim.thing = things.emplace(edge.thing, numbers[edge.rim]).first->second;
+      things.emplace(edge.thing, rim.thing);
+    }
+    std::vector<int> out;
+    out.reserve(edges.size());
+    for (const DepthEdge& edge : edges) out.push_back(numbers[edge.rim]);
+    return out;
+  }
+  std::vector<SceneRim> Take() { return std::move(known_); }
+
+ private:
+  struct Sums {
+    Vector3d middle = Vector3d::Zero(), across = Vector3d::Zero();
+    double aside_rad = 0, count = 0;
+    std::set<int> places;
+
+    void Add(const DepthEdge& edge) {
+      middle += edge.point;
+      across += edge.across;
+      const Vector3d aside = edge.across - edge.across.dot(edge.along) * edge.along;
+      aside_rad += aside.norm() / edge.point.norm();
+      places.insert(edge.place);
+      ++count;
+    }
+    // A rim that runs through many places between beams averages its edges' errors.
+    SceneRim Rim() const {
+      const double places_n = static_cast<double>(places.size());
+      return {middle / count, across / count, aside_rad / count / std::sqrt(3.0) / places_n, -1};
+    }
+  };
+
+  // Its number among those of earlier shots, or a new one.
+  int Known(const SceneRim& rim, std::size_t before) {
+    const double near = 0.05 + 0.02 * rim.middle.norm();
+    for (std::size_t i = 0; i < before; ++i) {
+      if ((known_[i].middle - rim.middle).norm() < near && known_[i].across.dot(rim.across) > 0) {
+        return static_cast<int>(i);
+      }
+    }
+    known_.push_back(rim);
+    return static_cast<int>(known_.size() - 1);
+  }
+
+  std::vector<SceneRim> known_;
+};
+
+/// What one rim adds: the equations with its own shift as a further unknown.
+struct RimSums {
+  SceneMatrix information = SceneMatrix::Zero();
+  SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
+  double shift_information = 0, shift_gradient = 0;
+};
+
+/// What a thing's rims add: the equations with the thing's shift as a further unknown.
+struct ThingSums {
+  SceneMatrix information = SceneMatrix::Zero();
+  SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
+  double shift_information = 0, shift_gradient = 0;
+};
+
+/// Part of the surroundings in which something lies. A thing is seen from view to view in about the
+/// same one, and what an image shows of it is wrong in all of them alike.
+std::pair<int, int> PlaceOf(const Vector3d& point) {
+  constexpr double kWideRad = 0.12;
+  return {static_cast<int>(std::floor(std::atan2(point.y(), point.x()) / kWideRad)),
+          static_cast<int>(std::floor(std::asin(point.z() / point.norm()) / kWideRad))};
+}
+
+/// The shifts eliminated (Schur): each rim's about its thing's, then each thing's.
+void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& known,
+               const SceneLook& look, SceneSums* sums) {
+  std::vector<ThingSums> things(known.size());
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    const RimSums& rim = rims[i];
+    if (!(rim.shift_information > 0)) continue;
+    const double own = std::pow(known[i].common_rad, 2) + std::pow(look.rim_sigma_rad, 2);
+    const double information = rim.shift_information + 1 / own;
+    const double kept = 1 / own / information;
+    ThingSums& thing = things[static_cast<std::size_t>(known[i].thing)];
+    thing.information +=
+        rim.information - rim.with_shift * rim.with_shift.transpose() / information;
+    thing.gradient += rim.gradient - rim.with_shift * (rim.shift_gradient / information);
+    thing.with_shift += kept * rim.with_shift;
+    thing.shift_information += kept * rim.shift_information;
+    thing.shift_gradient += kept * rim.shift_gradient;
+  }
+  const double prior = 1 / std::pow(look.thing_sigma_rad, 2);
+  std::map<std::pair<int, int>, std::pair<SceneMatrix, SceneVector>> places;
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    const ThingSums& thing = things[i];
+    if (!(thing.shift_information > 0)) continue;
+    const double information = thing.shift_information + prior;
+    const SceneVector gradient =
+        thing.gradient - thing.with_shift * (thing.shift_gradient / information);
+    const SceneMatrix own =
+        thing.information - thing.with_shift * thing.with_shift.transpose() / information;
+    sums->information += own;
+    auto& place =
+        places.try_emplace(PlaceOf(known[i].middle), SceneMatrix::Zero(), SceneVector::Zero())
+            .first->second;
+    place.first += own;
+    place.second += gradient;
+    sums->gradient += gradient;
+    sums->things += thing.shift_information / information;
+  }
+  for (auto& [where, part] : places) sums->parts.push_back(std::move(part));
+}
+
+class Summing {
+ public:
+  Summing(const SceneLook& look, double pixels) : look_(look), pixels_(pixels) {}
+
+  void Add(const Projected& seen, const std::vector<ImageRim>& met, int reach, RimSums* own,
+           SceneSums* sums) const {
+    // Densities over the line that was looked along [1/px of the level].
+    const double nothing = (1 - look_.matched) / (2 * reach);
+    double strengths = 0.5;
+    for (const ImageRim& rim : met) strengths += rim.strength;
+    double total = nothing;
+    std::vector<Term>& terms = terms_;
+    terms.clear();
+    for (const ImageRim& rim : met) {
+      Term term;
+      term.residual = rim.offset * rim.normal.dot(seen.normal);
+      const double spread = rim.normal.dot(seen.across) / pixels_;
+      term.spread = spread * spread / 3;
+      term.variance = look_.sigma_px * look_.sigma_px + term.spread;
+      term.density = look_.matched * rim.strength / strengths *
+                     std::exp(-0.5 * term.residual * term.residual / term.variance) /
+                     std::sqrt(2 * M_PI * term.variance);
+      term.normal = rim.normal;
+      total += term.density;
+      terms.push_back(term);
+    }
+    sums->edges += 1;
+    sums->log_likelihood += std::log(total / nothing * (1 - look_.matched));
+    SceneVector mean = SceneVector::Zero();  // of the score: of what each of them would pull with
+    double mean_by_shift = 0;
+    for (const Term& term : terms) {
+      const double share = term.density / total;
+      if (share < 1e-4) continue;
+      const double weight = share / term.variance;
+      const SceneVector by = (term.normal.transpose() * seen.by_unknowns).transpose() / pixels_;
+      const double by_shift = term.normal.dot(seen.by_shift) / pixels_;
+      // Which of them it is, if any, is not known: by so much less is told (Louis 1982).
+      const double told =
+          look_.observed ? weight * (1 - term.residual * term.residual / term.variance) : weight;
+      own->information += told * by * by.transpose();
+      own->with_shift += told * by_shift * by;
+      own->shift_information += told * by_shift * by_shift;
+      mean += weight * term.residual * by;
+      mean_by_shift += weight * term.residual * by_shift;
+      sums->squares += share * (term.residual * term.residual - term.spread);
+      sums->matched += share;
+    }
+    own->gradient += mean;
+    own->shift_gradient += mean_by_shift;
+    if (!look_.observed) return;
+    own->information += mean * mean.transpose();
+    own->with_shift += mean_by_shift * mean;
+    own->shift_information += mean_by_shift * mean_by_shift;
+  }
+
+ private:
+  struct Term {
+    double residual, spread, variance, density;
+    Vector2d normal;
+  };
+  const SceneLook& look_;
+  double pixels_;
+  mutable std::vector<Term> terms_;
+};
+
+}  // namespace
+
+SceneState SceneState::Moved(const SceneVector& x) const {
+  SceneState moved = *this;
+  moved.camera_from_lidar = Exp(x.head<6>()) * camera_from_lidar;
+  for (std::size_t k = 0; k < shift_rad.size(); ++k) {
+    moved.shift_rad[k] += x[kShiftAt + static_cast<Eigen::Index>(k)];
+  }
+  moved.beam_rad += x[kBeamAt];
+  moved.lens = WithNumbers(lens, NumbersOf(lens) + x.tail<kLensNumbers>());
+  return moved;
+}
+
+SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
+                           const DepthEdgeOptions& edges, std::size_t most_edges, int levels)
+    : spec_(camera), levels_(levels) {
+  RimNumbers numbers;
+  for (const Shot& shot : shots) {
+    CheckImage(camera, *shot.image);
+    Part part;
+    part.edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
+    part.rims = numbers.Of(part.edges);
+    const cv::Mat grey = ToGrey(*shot.image);
+    for (int level = 0; level < levels; ++level) part.pictures.emplace_back(grey, level);
+    parts_.push_back(std::move(part));
+  }
+  rims_ = numbers.Take();
+}
+
+std::size_t SceneProblem::edges() const {
+  std::size_t sum = 0;
+  for (const Part& part : parts_) sum += part.edges.size();
+  return sum;
+}
+
+SceneSums SceneProblem::SumsAt(const SceneState& state, const SceneLook& look) const {
+  constexpr double kMostSpreadPx = 6;  // of the level: beams too far apart to tell anything
+  CameraSpec spec = spec_;
+  spec.lens = state.lens;
+  const Camera camera(spec);
+  SceneSums sums;
+  std::vector<RimSums> rims(rims_.size());
+  std::vector<ImageRim> met;
+  for (const Part& part : parts_) {
+    const ImageRims& picture = part.pictures[static_cast<std::size_t>(look.level)];
+    const Summing summing(look, picture.pixels());
+    for (std::size_t i = 0; i < part.edges.size(); i += look.stride) {
+      const auto seen = Project(camera, state, part.edges[i]);
+      if (!seen) continue;
+      const double spread = std::abs(seen->normal.dot(seen->across)) / picture.pixels();
+      if (spread > kMostSpreadPx) continue;
+      const int reach = look.reach_px + static_cast<int>(std::ceil(spread));
+      picture.Meet(picture.ToLevel(seen->pixel), seen->normal, reach, &met);
+      summing.Add(*seen, met, reach, &rims[static_cast<std::size_t>(part.rims[i])], &sums);
+    }
+  }
+  Eliminate(rims, rims_, look, &sums);
+  return sums;
+}
+
+}  // namespace rgbdt

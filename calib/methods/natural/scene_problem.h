@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "calib/methods/natural/depth_edges.h"
+#include "calib/methods/natural/image_rims.h"
+#include "calib/model/lens.h"
+#include "calib/model/rig.h"
+#include "calib/model/rigid3.h"
+#include "calib/model/shot.h"
+
+namespace rgbdt {
+
+/// What is solved for: delta (rigid3.h); for each kind of depth edge, by how much the rim lies
+/// farther out than halfway between its beams [rad]; half the beam's width [rad], which DepthEdge
+/// counts its reach in; and the lens's numbers (lens.h).
+inline constexpr int kShiftAt = 6, kBeamAt = kShiftAt + kDepthEdgeKinds, kLensAt = kBeamAt + 1;
+inline constexpr int kSceneUnknowns = kLensAt + kLensNumbers;
+using SceneVector = Eigen::Matrix<double, kSceneUnknowns, 1>;
+using SceneMatrix = Eigen::Matrix<double, kSceneUnknowns, kSceneUnknowns>;
+
+struct SceneState {
+  Rigid3 camera_from_lidar;
+  std::array<double, kDepthEdgeKinds> shift_rad{};
+  double beam_rad = 1.2e-3;
+  Lens lens;
+
+  SceneState Moved(const SceneVector& x) const;
+};
+
+/// How the image is looked at in one round.
+struct SceneLook {
+  int level = 0;  ///< of the pictures
+  /// Of a thing's shift beside its kind's, and of a single rim's beside its thing's: which of two
+  /// surfaces a beam returns that meets both depends on how bright they are.
+  double thing_sigma_rad = 0.4e-3, rim_sigma_rad = 0.4e-3;
+  std::size_t stride = 1;  ///< every how manieth edge is looked at
+  double sigma_px = 1;     ///< of an image edge about the rim it belongs to [px of the level]
+  int reach_px = 8;        ///< how far edges are looked for [px of the level]
+  /// Information as it is observed: less where it is not known which edge belongs to a rim. For
+  /// covariances; steps take the expected one, which is positive.
+  bool observed = false;
+  double matched = 0.5;  ///< share of the rims that the image shows as an edge
+};
+
+/// The normal equations of one round, the shifts of things and rims eliminated, and what the round
+/// tells of the data.
+struct SceneSums {
+  SceneMatrix information = SceneMatrix::Zero();  ///< of the unknowns
+  SceneVector gradient = SceneVector::Zero();     ///< information * step = gradient
+  double log_likelihood = 0;  ///< over that of edges which the image shows nothing of
+  double edges = 0;           ///< that lie in the image
+  double matched = 0;         ///< of these, how many are shown, in expectation
+  double squares = 0;  ///< of their residuals, less what beams' spacing makes [px^2 of the level]
+  /// By place of the surroundings: its part of information and gradient.
+  std::vector<std::pair<SceneMatrix, SceneVector>> parts;
+  double things = 0;  ///< that tell, in expectation
+};
+
+/// A rim of a thing.
+struct SceneRim {
+  Eigen::Vector3d middle;  ///< of its edges, LIDAR frame [m]
+  Eigen::Vector3d across;  ///< of its edges, outwards [m]
+  double common_rad = 0;   ///< 1 sigma of what its edges' places between their beams have in common
+  int thing = 0;           ///< the same number for rims of the same thing
+};
+
+/// Rims of sweeps and the images that they are laid on. A rim of the cloud is met by one of the
+/// image's edges nearby, or by none: a mixture of normal distributions about each of them and of
+/// an even one. (Levinson and Thrun 2013 and Krishnan et al. 2015 let every rim count for the edges
+/// about it; with the mixture a residual has a sigma, and what is not shown does not pull.)
+class SceneProblem {
+ public:
+  /// Edges are found in each cloud, `most_edges` of them are kept, evenly; pictures have `levels`.
+  SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
+               const DepthEdgeOptions& edges, std::size_t most_edges, int levels);
+
+  const CameraSpec& spec() const { return spec_; }
+  int levels() const { return levels_; }
+  std::size_t edges() const;
+  SceneSums SumsAt(const SceneState& state, const SceneLook& look) const;
+
+ private:
+  struct Part {
+    std::vector<DepthEdge> edges;
+    std::vector<int> rims;            // by edge: the same number for the same rim, in all shots
+    std::vector<ImageRims> pictures;  // by level
+  };
+
+  CameraSpec spec_;
+  int levels_ = 0;
+  std::vector<Part> parts_;
+  std::vector<SceneRim> rims_;
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/files/schema/calibration_file.h"
+#include "calib/methods/refine.h"
+#include "calib/model/errors.h"
+#include "calib/present/session/report_files.h"
+#include "services/rgbdt/print_report.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+struct RefineFlags {
+  std::string dir, calibration, prior, out, truth;
+  bool search = false, anyway = false;
+  RefineOptions options;
+};
+
+struct ReadViews {
+  std::vector<View> views;
+  std::vector<std::string> unreadable;
+};
+
+ReadViews ReadAll(const Session& session) {
+  ReadViews read;
+  for (std::size_t i = 0; i < session.views.size(); ++i) {
+    const std::string& name = session.views[i];
+    try {
+      read.views.push_back(ReadView(session, name));
+    } catch (const InputError& e) {
+      read.unreadable.push_back("view " + name + ": " + e.what());
+    }
+    PrintProgress("[" + std::to_string(i + 1) + "/" + std::to_string(session.views.size()) +
+                  "] view " + name + " read");
+  }
+  return read;
+}
+
+// From where it starts: a calibration that belongs to the rig, or nothing but the rig's guesses.
+Calibration StartOf(const RefineFlags& flags, const Session& session) {
+  const std::string& given = flags.prior.empty() ? flags.calibration : flags.prior;
+  const std::filesystem::path path = PathOr(given, session.root / "calibration.textproto");
+  if (given.empty() && !std::filesystem::exists(path)) return {};
+  Calibration start = ReadCalibration(path);
+  const CalibrationFiles files = FilesOf(session.root, path.string(), flags.anyway);
+  PrintWarnings(RequireSameRig(start, session.rig, files.Names(), files.HowToUse()));
+  return start;
+}
+
+// Nobody looked for a board.
+std::vector<ViewDetection> WithoutBoards(const Report& report) {
+  std::vector<ViewDetection> detections;
+  for (const DetectedView& seen : report.detections) {
+    ViewDetection& view = detections.emplace_back();
+    view.view = seen.view;
+    view.heldout = seen.heldout;
+    for (const auto& image : seen.images) {
+      ImageDetection& one = view.images.emplace_back();
+      one.camera = image.camera;
+      one.why_not = image.why_not;
+    }
+    view.cloud.why_not = seen.cloud_why_not;
+  }
+  return detections;
+}
+
+int RunRefine(RefineFlags flags) {
+  constexpr double kDegree = M_PI / 180;
+  if (flags.search) {  // about each axis, so that 10 degrees and 0.2 m are well within it
+    flags.options.natural.rotation_sigma_rad = 6 * kDegree;
+    flags.options.natural.translation_sigma_m = 0.12;
+  }
+  flags.options.join_start = !flags.prior.empty();
+  flags.options.Check();
+  const Session session = OpenSession(flags.dir);
+  const std::filesystem::path out = PathOr(flags.out, session.root / "refined");
+  const Calibration start = StartOf(flags, session);
+  const ReadViews read = ReadAll(session);
+  RequireReadable(session, read.unreadable);
+  PrintProgress("solving ...");
+  std::filesystem::create_directories(out);
+  SetAside(out);
+  Report report = Refine(session.rig, read.views, start, flags.options);
+  const std::string wrote = WriteIfSolved(out, session.rig, report);
+  const auto truth = TruthPath(flags.truth, session.root);
+  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
+  WriteReportFiles(out, {session, WithoutBoards(report), {report}});
+  PrintReport(report, wrote, read.unreadable);
+  PrintUnreadable(read.unreadable);
+  return static_cast<int>(WorseOf(EndsIf(read.unreadable.empty()), EndOf(report)));
+}
+
+}  // namespace
+
+void AddRefine(CommandLine* program) {
+  auto flags = std::make_shared<RefineFlags>();
+  CommandLine* verb = program->Verb(
+      "refine",
+      "Refines a calibration without a target, by the edges of whatever stands about: where a\n"
+      "nearer thing ends before a farther one. DIR is a session directory of any scenes; every\n"
+      "third view is left out to judge the result, and nothing that fits those worse than the\n"
+      "start does is written. Writes calibration.textproto, report.json and report.html.\n"
+      "Examples: rgbdt refine out/drive --calibration out/demo/calibration.textproto\n"
+      "          rgbdt refine out/drive --search        # from a rough guess in the rig file",
+      [flags] { return RunRefine(*flags); });
+  verb->Ends(ExitCode::kFailed,
+             "failed, or not all of it: a camera did not converge, or a view could not be read");
+  AddVerdictEnds(verb);
+  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
+  verb->Option("--calibration", &flags->calibration,
+               "where to start; default: DIR/calibration.textproto or, without, the rig file's\n"
+               "camera_from_lidar_guess. Its error may be some 2 degrees and 50 mm");
+  verb->Option("--prior", &flags->prior,
+               "natural: start from this calibration and join what it knows of itself with what\n"
+               "the scene says, by their covariances; it must not be made from the same views");
+  verb->Flag("--search", &flags->search,
+             "natural: look farther, for a start that is off by up to 10 degrees and 0.2 m");
+  verb->Choice("--method", &flags->options.method, kRefineMethodNames,
+               "natural, this project's own; published ones to compare with: mi, nmi, mutual\n"
+               "information (Pandey 2012, Taylor 2012); gom, gradient orientation (Taylor 2013);\n"
+               "edge-grid, depth discontinuities (Levinson and Thrun 2013)");
+  verb->Option("--out", &flags->out, "where to write; default: DIR/refined");
+  verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
+  AddAnyway(verb, &flags->anyway, "the rig is another");
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# `rgbdt refine`: a room without a board, from the rig file's guess.
+# Usage: refine_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+mkdir "$scratch/kept"
+accepts "a room" "$bin/rgbdt" simulate "$scratch/room" --natural --scene indoor --views 3 --seed 12
+
+accepts "refining the guess" "$bin/rgbdt" refine "$scratch/room"
+for file in calibration.textproto report.json report.html; do
+  [ -s "$scratch/room/refined/$file" ] || complain "refine wrote no $file"
+done
+[ ! -e "$scratch/room/calibration.textproto" ] || complain "refine wrote into the session itself"
+# Nearer to the truth than the guess by far, and judged on the sweep that was left out.
+python3 - "$scratch/room/refined/report.json" <<'END' || complain "the refined calibration is not near the truth"
+import json, sys
+report = json.load(open(sys.argv[1]))
+assert report["method"] == "natural", report["method"]
+for name, camera in report["cameras"].items():
+    before, after = (camera[key]["rotation_deg"] for key in ("first_guess_error", "truth_error"))
+    assert camera["status"] == "CONVERGED", (name, camera["status"])
+    assert after < 0.1 and after < 0.2 * before, (name, before, after)
+    assert camera["scene"]["heldout_result"] > camera["scene"]["heldout_start"], (name, camera["scene"])
+END
+
+# From that result, in turn; what it knew of itself is joined.
+accepts "a prior" "$bin/rgbdt" refine "$scratch/room" \
+  --prior "$scratch/room/refined/calibration.textproto" --out "$scratch/joined"
+[ -s "$scratch/joined/calibration.textproto" ] || complain "no calibration with --prior"
+
+# Images that show other places than the clouds: no calibration that calls itself converged.
+cp -r "$scratch/room" "$scratch/mixed"
+rm -r "$scratch/mixed/refined"
+mv "$scratch/mixed/views/0001/cloud.pcd" "$scratch/other.pcd"
+mv "$scratch/mixed/views/0002/cloud.pcd" "$scratch/mixed/views/0001/cloud.pcd"
+mv "$scratch/other.pcd" "$scratch/mixed/views/0002/cloud.pcd"
+"$bin/rgbdt" refine "$scratch/mixed" >"$scratch/output" 2>&1 || true
+python3 - "$scratch/mixed/refined/report.json" <<'END' || complain "clouds of other places give a calibration"
+import json, sys
+for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
+    # The two views stand close together: what comes out is right, or is called what it is.
+    wrong = camera["truth_error"]["rotation_deg"] > 0.5
+    assert camera["status"] != "CONVERGED" or not wrong, (name, camera["truth_error"])
+END
+
+misuses "a method that is not there" "$bin/rgbdt" refine "$scratch/room" --method magic
+says=("there is no session directory")
+refuses "a session that is not there" "$bin/rgbdt" refine "$scratch/none"
+
+verdict

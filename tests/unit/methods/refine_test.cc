@@ -1,0 +1,126 @@
+#include "calib/methods/refine.h"
+
+#include <gmock/gmock.h>
+
+#include "calib/model/errors.h"
+#include "calib/model/linear_algebra.h"
+#include "tests/unit/methods/scene/scene_world.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kDegree = simulate::kDegree;
+
+/// A furnished room, looked at by small cameras from a rig that drives on.
+simulate::Options SmallRoom() {
+  simulate::Options options = SmallScene();
+  options.scene = simulate::Scene::kIndoor;
+  options.natural.on = true;
+  return options;
+}
+
+std::vector<View> ViewsOf(const SceneWorld& world) {
+  std::vector<View> views;
+  const std::size_t cameras = world.rig().cameras.size();
+  for (std::size_t v = 0; v < world.clouds.size(); ++v) {
+    View& view = views.emplace_back();
+    view.name = std::to_string(v);
+    view.heldout = v % 3 == 2;
+    view.cloud = world.clouds[v];
+    for (std::size_t c = 0; c < cameras; ++c) view.images.push_back(world.images[v * cameras + c]);
+  }
+  return views;
+}
+
+Calibration StartOff(const SceneWorld& world, double rotation_rad, double translation_m) {
+  Calibration start;
+  for (std::size_t c = 0; c < world.rig().cameras.size(); ++c) {
+    CameraCalibration& camera = start.cameras.emplace_back();
+    camera.camera = world.rig().cameras[c].name;
+    camera.camera_from_lidar =
+        GuessOff(world.Truth(c), rotation_rad, translation_m, static_cast<unsigned>(7 + c));
+    camera.status = SolveStatus::kConverged;
+  }
+  return start;
+}
+
+const SceneWorld& Room() {
+  static const SceneWorld world(4, SmallRoom());
+  return world;
+}
+
+TEST(Refine, EndsAtTheTruthAndKnowsHowNear) {
+  const SceneWorld& world = Room();
+  const Report report = Refine(world.rig(), ViewsOf(world), StartOff(world, 1.5 * kDegree, 0.04));
+  ASSERT_EQ(report.cameras.size(), 2U);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraReport& camera = report.cameras[c];
+    ASSERT_EQ(camera.calibration.status, SolveStatus::kConverged) << camera.calibration.detail;
+    const PoseError error = ErrorOf(camera.calibration.camera_from_lidar, world.Truth(c));
+    // A pixel is 0.21 degrees here; beams are half a degree apart.
+    EXPECT_LT(error.rotation_deg, 0.2);
+    EXPECT_LT(error.translation_mm, 15);
+    const Vector6d off = Log(world.Truth(c) * camera.calibration.camera_from_lidar.Inverse());
+    EXPECT_LT(off.dot(SolveSymmetric(*camera.calibration.covariance, off)), 35);
+    ASSERT_TRUE(camera.scene && camera.scene->heldout_result);
+    EXPECT_GT(*camera.scene->heldout_result, *camera.scene->heldout_start);
+    EXPECT_EQ(camera.heldout.size(), 1U);
+  }
+}
+
+TEST(Refine, KeepsTheStartWhereTheResultFitsSweepsLeftOutWorse) {
+  const SceneWorld& world = Room();
+  std::vector<View> views = ViewsOf(world);
+  // The solver's images show other places than its clouds; those left out are right.
+  std::swap(views[0].images, views[1].images);
+  std::swap(views[1].images, views[3].images);
+  const Calibration start = StartOff(world, 0, 0);
+  const Report report = Refine(world.rig(), views, start);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraCalibration& found = report.cameras[c].calibration;
+    if (found.status == SolveStatus::kConverged) {  // then it is none the worse
+      EXPECT_GE(*report.cameras[c].scene->heldout_result, *report.cameras[c].scene->heldout_start);
+      continue;
+    }
+    if (found.status == SolveStatus::kFirstGuessKept) {
+      EXPECT_LT(RotationDistance(found.camera_from_lidar, world.Truth(c)), 1e-9);
+      EXPECT_THAT(found.detail, HasSubstr("the start fits better"));
+      continue;
+    }
+    EXPECT_EQ(found.status, SolveStatus::kNotConverged);
+    EXPECT_FALSE(found.detail.empty());
+  }
+}
+
+TEST(Refine, SaysThatNothingIsToBeSeen) {
+  const SceneWorld& world = Room();
+  std::vector<View> views = ViewsOf(world);
+  for (View& view : views) {
+    for (Image& image : view.images) image.pixels.setTo(100);
+  }
+  const Report report = Refine(world.rig(), views, StartOff(world, 1 * kDegree, 0.02));
+  for (const CameraReport& camera : report.cameras) {
+    EXPECT_EQ(camera.calibration.status, SolveStatus::kNotConverged);
+    EXPECT_THAT(camera.calibration.detail, HasSubstr("too few of the cloud's depth edges"));
+  }
+}
+
+TEST(Refine, WithoutAStartThereIsNoPose) {
+  const SceneWorld& world = Room();
+  Rig rig = world.rig();
+  for (CameraSpec& camera : rig.cameras) camera.camera_from_lidar_guess.reset();
+  const Report report = Refine(rig, ViewsOf(world), {});
+  EXPECT_EQ(report.cameras[0].calibration.status, SolveStatus::kNotSolved);
+  EXPECT_THAT(report.cameras[0].calibration.detail, HasSubstr("nothing to start from"));
+}
+
+TEST(Refine, AnUnknownMethodIsNamed) {
+  RefineOptions options;
+  options.method = "magic";
+  EXPECT_THROW(Refine(Room().rig(), {}, {}, options), InputError);
+}
+
+}  // namespace
+}  // namespace rgbdt
