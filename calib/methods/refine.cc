@@ -57,6 +57,9 @@ SceneAlignment Align(const CameraSpec& spec, const std::vector<Shot>& shots, con
             : options.method == "nmi" ? AlignByNormalisedMutualInformation(spec, shots, start)
             : options.method == "gom" ? AlignByGradientOrientation(spec, shots, start)
                                       : AlignByEdgeGrid(spec, shots, start);
+  out.state.camera_from_lidar = out.fit.camera_from_lidar;
+  out.sums = SceneProblem(spec, shots, options.natural.edges, options.natural.most_edges, 1)
+                 .SumsAt(out.state, out.look);
   return out;
 }
 
@@ -82,9 +85,10 @@ void SayWhatIsUntold(const SceneAlignment& found, const NaturalOptions& options,
   }
 }
 
-// The lens that belongs to the pose, with the covariance that both have together.
-std::optional<SolvedLens> LensOf(const SceneAlignment& found) {
-  if (found.covariance.isZero(0)) return std::nullopt;
+// The lens that natural found, with the covariance that pose and lens have together; absent: it was
+// taken for exact, or the method does not look for it.
+std::optional<SolvedLens> LensOf(const SceneAlignment& found, const CameraSpec& spec) {
+  if (found.covariance.isZero(0) || spec.LensUncertaintyOrUsual().exact()) return std::nullopt;
   SolvedLens lens{found.state.lens, {}};
   lens.covariance.leftCols<6>() = found.covariance.block<kLensNumbers, 6>(kLensAt, 0);
   lens.covariance.rightCols<kLensNumbers>() =
@@ -101,10 +105,9 @@ SceneCheck CheckOf(const CameraSpec& spec, const CameraShots& shots, const Scene
   if (shots.heldout.empty()) return check;
   const SceneProblem heldout(spec, shots.heldout, options.edges, options.most_edges, 1);
   if (heldout.edges() == 0) return check;
-  SceneAlignment before = found;  // each with what its own pose makes of beam and lens
-  before.state.beam_rad = SceneState().beam_rad;
-  before.state.shift_rad = {};
+  SceneAlignment before = found;  // the beam is the LIDAR's; the lens belongs to the pose
   before.state.lens = spec.lens;
+  if (!(heldout.SumsAt(found.state, found.look).edges > 0)) return check;
   check.heldout_start = SceneFitness(heldout, before, start);
   check.heldout_result = SceneFitness(heldout, found, found.fit.camera_from_lidar);
   return check;
@@ -141,24 +144,31 @@ CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& v
   SceneAlignment found = Align(spec, shots.used, *pose, options);
   report.solve_s = watch.Seconds();
   report.scene = CheckOf(spec, shots, found, *pose, options.natural);
+  CameraCalibration& result = report.calibration;
+  if (given != nullptr) {  // which belong to the pose, as long as nothing else was found
+    result.lens = given->lens;
+    result.range_errors = given->range_errors;
+  }
   if (!found.fit.converged) {
-    report.calibration.camera_from_lidar = found.fit.camera_from_lidar;
-    report.calibration.status = SolveStatus::kNotConverged;
-    report.calibration.detail = found.fit.why_not;
+    result.status = SolveStatus::kNotConverged;
+    result.detail = found.fit.why_not;
     return report;
   }
   if (IsWorse(*report.scene)) {
-    report.calibration.status = SolveStatus::kFirstGuessKept;
-    report.calibration.detail = "on sweeps that were left out the start fits better; it is kept";
-    if (given != nullptr) {
-      report.calibration.covariance = given->covariance;
-      report.calibration.lens = given->lens;
+    const std::string kept = "on sweeps that were left out the start fits better; it is kept";
+    if (given != nullptr && given->converged()) {
+      result = *given;
+      result.status = SolveStatus::kFirstGuessKept;
+      result.detail = kept;
+    } else {
+      result.status = SolveStatus::kNotConverged;
+      result.detail = kept + ", and it is no calibration";
     }
   } else {
-    report.calibration.camera_from_lidar = found.fit.camera_from_lidar;
-    report.calibration.status = SolveStatus::kConverged;
-    report.calibration.covariance = found.fit.covariance;
-    report.calibration.lens = LensOf(found);
+    result.camera_from_lidar = found.fit.camera_from_lidar;
+    result.status = SolveStatus::kConverged;
+    result.covariance = found.fit.covariance;
+    if (const auto lens = LensOf(found, spec)) result.lens = lens;
     report.variance_factor = found.scatter_factor;
     SayWhatIsUntold(found, options.natural, &report);
   }
@@ -196,7 +206,14 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
   for (const CameraSpec& camera : rig.cameras) {
     RefineOptions own = options;
     const CameraCalibration* given = start.Find(camera.name);
-    if (own.join_start && given != nullptr) own.natural.start_covariance = given->covariance;
+    if (own.join_start && given != nullptr) {
+      if (!given->converged() || !given->covariance) {
+        throw InputError("camera " + camera.name +
+                         ": the prior is no calibration with a covariance; start from it without "
+                         "joining it (--calibration)");
+      }
+      own.natural.start_covariance = given->PoseAndLens();
+    }
     report.cameras.push_back(RefineCamera(camera, views, start, own));
   }
   return report;

@@ -104,8 +104,8 @@ void AddRefine(CommandLine* program) {
       "refine",
       "Refines a calibration without a target, by the edges of whatever stands about: where a\n"
       "nearer thing ends before a farther one. DIR is a session directory of any scenes; every\n"
-      "third view is left out to judge the result, and nothing that fits those worse than the\n"
-      "start does is written. Writes calibration.textproto, report.json and report.html.\n"
+      "third view is left out to judge the result: what fits those worse than the start is not\n"
+      "taken. Writes calibration.textproto, report.json and report.html.\n"
       "Examples: rgbdt refine out/drive --calibration out/demo/calibration.textproto\n"
       "          rgbdt refine out/drive --search        # from a rough guess in the rig file",
       [flags] { return RunRefine(*flags); });

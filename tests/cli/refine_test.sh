@@ -5,7 +5,6 @@ set -euo pipefail
 # shellcheck source=tests/cli/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-mkdir "$scratch/kept"
 accepts "a room" "$bin/rgbdt" simulate "$scratch/room" --natural --scene indoor --views 3 --seed 12
 
 accepts "refining the guess" "$bin/rgbdt" refine "$scratch/room"

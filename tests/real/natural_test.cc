@@ -15,7 +15,8 @@ void MaskBoards(const ViewDetection& detection, Cloud* cloud) {
   for (const CloudEdges& board : detection.cloud.candidates) {
     const Eigen::Vector3f middle = board.centre.cast<float>();
     for (Eigen::Vector3f& point : cloud->points) {
-      if ((point - middle).norm() < kMaskedM) point.setConstant(std::nanf(""));
+      // Nearer than all else, and too near to be an edge's own side: no edge arises from it.
+      if ((point - middle).norm() < kMaskedM) point = 0.4F * point.normalized();
     }
   }
 }
@@ -46,9 +47,9 @@ void ComesBack(const std::string& folder) {
   }
 }
 
-TEST(Natural, TheRoomAboutAVlp16TellsThePose) { ComesBack("acfr_vlp16"); }
+TEST(Natural, TheRoomAboutAVlp16TellsThePoseOrThatItCannot) { ComesBack("acfr_vlp16"); }
 
-TEST(Natural, TheYardAboutAnOusterTellsThePose) { ComesBack("acfr_os64"); }
+TEST(Natural, TheYardAboutAnOusterTellsThePoseOrThatItCannot) { ComesBack("acfr_os64"); }
 
 }  // namespace
 }  // namespace rgbdt

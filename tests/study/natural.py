@@ -21,6 +21,7 @@ TARGETS = {
     "natural_nees_mean": ("in", 5, 8),
     "natural_silent_failures": ("<=", 0),
     "natural_search_success": (">=", 0.95),
+    "natural_search_wrong": ("<=", 0),
 }
 SEARCHED_DEG = 0.3
 
@@ -31,8 +32,8 @@ def kind_of(row):
 
 
 def is_silent(row):
-    """Worse than the start, and called converged."""
-    return row["converged"] and row["rotation_deg"] > row["start_deg"]
+    """Called converged, and off by more than 4 stated sigma."""
+    return bool(row["converged"]) and row["chi2"] > trials.FOUR_SIGMA
 
 
 def figures_of(rows):

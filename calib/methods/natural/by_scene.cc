@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
+#include "calib/model/calibration.h"
 #include "calib/model/linear_algebra.h"
 
 namespace rgbdt {
@@ -20,14 +22,14 @@ constexpr double kLeastStepRad = 0.01, kMostStepRad = 0.035;  // between turned 
 constexpr std::size_t kTried = 8, kKept = 4;  // of poses that are looked at side by side
 
 // Information of numbers of which those with a variance of zero are exact.
-LensCovariance InformationOf(const LensCovariance& covariance) {
-  constexpr double kExact = 1e18;
-  LensCovariance with = covariance;
-  for (Eigen::Index k = 0; k < kLensNumbers; ++k) {
-    if (with(k, k) <= 0) with(k, k) = 1 / kExact;
-    with(k, k) *= 1 + 1e-9;  // those that are made of each other are still inverted
+template <int N>
+Eigen::Matrix<double, N, N> InformationOf(Eigen::Matrix<double, N, N> covariance) {
+  constexpr double kExact = 1e12;
+  for (Eigen::Index k = 0; k < N; ++k) {
+    if (covariance(k, k) <= 0) covariance(k, k) = 1 / kExact;
+    covariance(k, k) *= 1 + 1e-9;  // those that are made of each other are still inverted
   }
-  return InverseOfSymmetric(with);
+  return InverseOfSymmetric(covariance);
 }
 
 class Solver {
@@ -37,12 +39,19 @@ class Solver {
     start_.camera_from_lidar = start;
     start_.lens = problem.spec().lens;
     prior_.setZero();
-    prior_.topLeftCorner<6, 6>() = InverseOfSymmetric(options.StartCovariance());
+    PoseAndLensCovariance known = WithExactLens(options.StartCovariance());
+    known.bottomRightCorner<kLensNumbers, kLensNumbers>() =
+        problem.spec().LensUncertaintyOrUsual().covariance;
+    const PoseAndLensCovariance information =
+        InformationOf<kPoseAndLens>(options.start_covariance.value_or(known));
+    prior_.topLeftCorner<6, 6>() = information.topLeftCorner<6, 6>();
+    prior_.topRightCorner<6, kLensNumbers>() = information.topRightCorner<6, kLensNumbers>();
+    prior_.bottomLeftCorner<kLensNumbers, 6>() = information.bottomLeftCorner<kLensNumbers, 6>();
+    prior_.bottomRightCorner<kLensNumbers, kLensNumbers>() =
+        information.bottomRightCorner<kLensNumbers, kLensNumbers>();
     prior_.diagonal().segment<kDepthEdgeKinds>(kShiftAt).setConstant(
         1 / std::pow(options.shift_sigma_rad, 2));
     prior_(kBeamAt, kBeamAt) = 1 / std::pow(options.beam_sigma_rad, 2);
-    prior_.bottomRightCorner<kLensNumbers, kLensNumbers>() =
-        InformationOf(problem.spec().LensUncertaintyOrUsual().covariance);
   }
 
   const SceneMatrix& prior() const { return prior_; }
@@ -147,7 +156,8 @@ std::vector<Candidate> TurnedStarts(const SceneProblem& problem, const SceneStat
   look.sigma_px = std::max(2.0, off_px / std::ldexp(1.0, look.level));
   look.reach_px = static_cast<int>(std::ceil(2 * look.sigma_px)) + 1;
   std::vector<Candidate> starts;
-  const int most = static_cast<int>(std::ceil(most_rad / step_rad));
+  // Farther than this nobody looks: it would take for ever.
+  const int most = std::min(7, static_cast<int>(std::ceil(most_rad / step_rad)));
   for (int x = -most; x <= most; ++x) {
     for (int y = -most; y <= most; ++y) {
       for (int z = -most; z <= most; ++z) {
@@ -162,6 +172,27 @@ std::vector<Candidate> TurnedStarts(const SceneProblem& problem, const SceneStat
   }
   SortByFitness(&starts);
   return starts;
+}
+
+bool AreApart(const SceneState& a, const SceneState& b, double rotation_rad, double centre_m) {
+  return RotationDistance(a.camera_from_lidar, b.camera_from_lidar) > rotation_rad ||
+         CentreDistance(a.camera_from_lidar, b.camera_from_lidar) > centre_m;
+}
+
+// The best ones that lie apart from each other, `most` at most.
+std::vector<Candidate> BestApart(std::vector<Candidate> candidates, std::size_t most,
+                                 double rotation_rad) {
+  constexpr double kUsualRangeM = 3;
+  SortByFitness(&candidates);
+  std::vector<Candidate> kept;
+  for (const Candidate& one : candidates) {
+    if (kept.size() == most) break;
+    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const Candidate& better) {
+      return AreApart(one.state, better.state, rotation_rad, kUsualRangeM * rotation_rad);
+    });
+    if (is_new) kept.push_back(one);
+  }
+  return kept;
 }
 
 // The same, and moved to either side along each direction of the pose by what moves the edges about
@@ -205,16 +236,14 @@ std::vector<Candidate> Narrowed(const SceneProblem& problem, const Solver& solve
         wider.push_back({state, Fitness(problem.SumsAt(state, look))});
       }
     }
-    SortByFitness(&wider);
-    if (wider.size() > kTried) wider.resize(kTried);
+    const double pixel_rad = std::ldexp(1.0, level) / problem.spec().lens.fx;
+    wider = BestApart(std::move(wider), kTried, 0.7 * pixel_rad);
     for (Candidate& candidate : wider) {
       SceneLook solving = look;
       candidate.state = solver.Rounds(candidate.state, &solving, 6, false);
       candidate.fitness = Fitness(problem.SumsAt(candidate.state, look));
     }
-    SortByFitness(&wider);
-    if (wider.size() > kKept) wider.resize(kKept);
-    states = std::move(wider);
+    states = BestApart(std::move(wider), kKept, 0.7 * pixel_rad);
   }
   return states;
 }
@@ -267,7 +296,7 @@ std::vector<SceneAlignment::Direction> DirectionsOf(const Matrix6d& covariance,
 // Why the result is not to be used; empty: it is.
 std::string WhyNot(const SceneAlignment& found, const Rigid3& start,
                    const NaturalOptions& options) {
-  constexpr double kFewestThings = 2, kFewestEdges = 30, kLeastShown = 0.08, kMostSigmas = 6;
+  constexpr double kFewestThings = 2, kFewestEdges = 30, kLeastShown = 0.15, kMostSigmas = 6;
   if (found.sums.matched < kFewestEdges || found.sums.things < kFewestThings) {
     return "the images show too few of the cloud's depth edges (" +
            std::to_string(static_cast<int>(found.sums.matched)) +
@@ -291,15 +320,17 @@ std::string WhyNot(const SceneAlignment& found, const Rigid3& start,
 
 // Whether another pose, elsewhere, fits about as well as the best; empty: none does.
 std::string WhyAmbiguous(const std::vector<Candidate>& sorted) {
-  constexpr double kApartRad = 0.01;  // nearer ones are the same
-  constexpr double kClearly = 0.03;   // log-likelihood of an edge: less is chance
+  constexpr double kApartRad = 0.01, kApartM = 0.06;  // nearer ones are the same
+  constexpr double kClearly = 0.03;                   // log-likelihood of an edge: less is chance
   for (const Candidate& other : sorted) {
     if (other.fitness < sorted[0].fitness - kClearly) break;
-    const double apart =
-        RotationDistance(other.state.camera_from_lidar, sorted[0].state.camera_from_lidar);
-    if (apart < kApartRad) continue;
-    return "two poses, " + std::to_string(static_cast<int>(1e3 * apart)) +
-           " mrad apart, fit about as well: take more sweeps, in other places";
+    if (!AreApart(other.state, sorted[0].state, kApartRad, kApartM)) continue;
+    const PoseError apart =
+        ErrorOf(other.state.camera_from_lidar, sorted[0].state.camera_from_lidar);
+    char words[80];
+    std::snprintf(words, sizeof(words), "two poses, %.1f deg and %.0f mm apart", apart.rotation_deg,
+                  apart.translation_mm);
+    return std::string(words) + ", fit about as well: take more sweeps, in other places";
   }
   return "";
 }
@@ -307,7 +338,7 @@ std::string WhyAmbiguous(const std::vector<Candidate>& sorted) {
 }  // namespace
 
 Matrix6d NaturalOptions::StartCovariance() const {
-  if (start_covariance) return *start_covariance;
+  if (start_covariance) return Matrix6d(start_covariance->topLeftCorner<6, 6>());
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(rotation_sigma_rad),
       Eigen::Vector3d::Constant(translation_sigma_m);

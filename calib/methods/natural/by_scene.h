@@ -14,8 +14,9 @@ namespace rgbdt {
 struct NaturalOptions {
   double rotation_sigma_rad = 0.035;  ///< of the start, about each of the camera's axes
   double translation_sigma_m = 0.06;  ///< of the start, along each
-  /// Of the start's delta (rigid3.h), where it is known; then those two are not used.
-  std::optional<Matrix6d> start_covariance{};
+  /// Of the start's delta (rigid3.h) and its lens's numbers together, where it is known; then those
+  /// two, and what the camera states of its lens, are not used.
+  std::optional<PoseAndLensCovariance> start_covariance{};
   double shift_sigma_rad = 0.4e-3;  ///< of where a rim lies between its beams, of each kind
   double beam_sigma_rad = 0.6e-3;   ///< of half the beam's width
   DepthEdgeOptions edges;

@@ -127,10 +127,12 @@ struct RimSums {
   SceneMatrix information = SceneMatrix::Zero();
   SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
   double shift_information = 0, shift_gradient = 0;
+  bool shown = false;  ///< the image may show some of it
 };
 
 /// What a thing's rims add: the equations with the thing's shift as a further unknown.
 struct ThingSums {
+  bool shown = false;
   SceneMatrix information = SceneMatrix::Zero();
   SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
   double shift_information = 0, shift_gradient = 0;
@@ -150,9 +152,10 @@ void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& kn
   std::vector<ThingSums> things(known.size());
   for (std::size_t i = 0; i < rims.size(); ++i) {
     const RimSums& rim = rims[i];
-    if (!(rim.shift_information > 0)) continue;
+    if (!rim.shown) continue;
     const double own = std::pow(known[i].common_rad, 2) + std::pow(look.rim_sigma_rad, 2);
     const double information = rim.shift_information + 1 / own;
+    if (!(information > 0)) continue;
     const double kept = 1 / own / information;
     ThingSums& thing = things[static_cast<std::size_t>(known[i].thing)];
     thing.information +=
@@ -161,13 +164,14 @@ void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& kn
     thing.with_shift += kept * rim.with_shift;
     thing.shift_information += kept * rim.shift_information;
     thing.shift_gradient += kept * rim.shift_gradient;
+    thing.shown = true;
   }
   const double prior = 1 / std::pow(look.thing_sigma_rad, 2);
   std::map<std::pair<int, int>, std::pair<SceneMatrix, SceneVector>> places;
   for (std::size_t i = 0; i < things.size(); ++i) {
     const ThingSums& thing = things[i];
-    if (!(thing.shift_information > 0)) continue;
     const double information = thing.shift_information + prior;
+    if (!thing.shown || !(information > 0)) continue;
     const SceneVector gradient =
         thing.gradient - thing.with_shift * (thing.shift_gradient / information);
     const SceneMatrix own =
@@ -230,6 +234,7 @@ class Summing {
       mean_by_shift += weight * term.residual * by_shift;
       sums->squares += share * (term.residual * term.residual - term.spread);
       sums->matched += share;
+      own->shown = true;
     }
     own->gradient += mean;
     own->shift_gradient += mean_by_shift;
@@ -264,7 +269,9 @@ SceneState SceneState::Moved(const SceneVector& x) const {
 
 SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
                            const DepthEdgeOptions& edges, std::size_t most_edges, int levels)
-    : spec_(camera), levels_(levels) {
+    : spec_(camera) {
+  // A level's picture has sixteen pixels at least, and whole blocks of the image's.
+  while (levels_ < levels && (std::min(camera.width, camera.height) >> levels_) >= 16) ++levels_;
   RimNumbers numbers;
   for (const Shot& shot : shots) {
     CheckImage(camera, *shot.image);
@@ -272,7 +279,7 @@ SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& sh
     part.edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
     part.rims = numbers.Of(part.edges);
     const cv::Mat grey = ToGrey(*shot.image);
-    for (int level = 0; level < levels; ++level) part.pictures.emplace_back(grey, level);
+    for (int level = 0; level < levels_; ++level) part.pictures.emplace_back(grey, level);
     parts_.push_back(std::move(part));
   }
   rims_ = numbers.Take();

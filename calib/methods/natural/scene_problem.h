@@ -91,7 +91,7 @@ class SceneProblem {
   };
 
   CameraSpec spec_;
-  int levels_ = 0;
+  int levels_ = 1;
   std::vector<Part> parts_;
   std::vector<SceneRim> rims_;
 };

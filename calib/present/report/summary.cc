@@ -65,15 +65,23 @@ std::string ProjectionSigma(const CameraReport& camera) {
 }
 
 // The verdict, and what speaks most against the result.
-std::string VerdictLines(const CameraReport& camera, const std::optional<NextView>& next_view) {
-  const Verdict verdict = Judge(camera, next_view);
+std::string VerdictLines(const CameraReport& camera, const std::optional<NextView>& next_view,
+                         const std::vector<std::string>& told) {
+  Verdict verdict = Judge(camera, next_view);
+  const auto is_told = [&](const std::string& reason) {
+    return std::any_of(told.begin(), told.end(), [&](const std::string& why) {
+      return reason.find(why) != std::string::npos;
+    });
+  };
+  auto& reasons = verdict.reasons;
+  reasons.erase(std::remove_if(reasons.begin(), reasons.end(), is_told), reasons.end());
   std::string lines = fmt::format("{}: {}", camera.calibration.camera, verdict.headline);
-  if (verdict.grade == Grade::kGood || verdict.reasons.empty()) return lines + "\n";
-  lines += " " + verdict.reasons.front() + "\n";
+  if (verdict.grade == Grade::kGood || reasons.empty()) return lines + "\n";
+  lines += " " + reasons.front() + "\n";
   // Without a pose the reasons are those of the rejected views, which are told below.
-  const bool told = camera.calibration.status == SolveStatus::kNotSolved;
-  if (told || verdict.grade < Grade::kDoubtful || verdict.reasons.size() < 2) return lines;
-  return lines + "  " + verdict.reasons[1] + "\n";
+  const bool below = camera.calibration.status == SolveStatus::kNotSolved;
+  if (below || verdict.grade < Grade::kDoubtful || reasons.size() < 2) return lines;
+  return lines + "  " + reasons[1] + "\n";
 }
 
 // What the cameras' columns have no room for.
@@ -124,7 +132,7 @@ std::string Summary::BriefReport() const {
 std::string Summary::FullReport(const std::vector<std::string>& told) const {
   std::string text;
   for (const CameraReport& camera : report_.cameras) {
-    text += VerdictLines(camera, report_.next_view);
+    text += VerdictLines(camera, report_.next_view, told);
   }
   const auto row = [&](const std::string& label,
                        const std::function<std::string(const CameraReport&)>& cell) {

@@ -167,12 +167,12 @@ void JudgeScene(const SceneCheck& scene, Judgement* judgement) {
         "It was not checked: no sweep was left out, or none of those shows depth edges.");
     return;
   }
+  if (*scene.heldout_result < *scene.heldout_start) return;  // the status says it
   judgement->AddReason(
-      "On sweeps that the solver never saw, edges are met " +
-      std::string(*scene.heldout_result < *scene.heldout_start ? "worse than"
-                                                               : "at least as well as") +
-      " by the start (log-likelihood of an edge " + Number(*scene.heldout_result, 3) +
-      ", by the start " + Number(*scene.heldout_start, 3) + ").");
+      "On sweeps that the solver never saw, edges are met at least as well as by the start "
+      "(log-likelihood of an edge " +
+      Number(*scene.heldout_result, 3) + ", by the start " + Number(*scene.heldout_start, 3) +
+      ").");
 }
 
 void JudgeFit(const CameraReport& camera, Judgement* judgement) {
