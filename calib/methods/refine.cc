@@ -41,6 +41,7 @@ CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views, s
 
 std::vector<std::string> NamesOf(const std::vector<Shot>& shots) {
   std::vector<std::string> names;
+  names.reserve(shots.size());
   for (const Shot& shot : shots) names.push_back(shot.view);
   return names;
 }

@@ -112,24 +112,16 @@ std::size_t StrideFor(const SceneProblem& problem, std::size_t edges) {
   return std::max<std::size_t>(1, problem.edges() / edges);
 }
 
-// From coarse pictures to fine ones, from level `first` down to `last`, the look narrowing.
-SceneState CoarseToFine(const Solver& solver, SceneState state, double off_px, int first, int last,
-                        SceneLook* look) {
-  double sigma = off_px;  // [px of the image]
-  for (int level = first; level >= last; --level) {
-    const double pixels = std::ldexp(1.0, level);
-    const double least = level == 0 ? 1.0 : 1.5;
-    double s = std::clamp(sigma / pixels, least, kCoarsestSigmaPx);
-    for (;; s = std::max(least, 0.6 * s)) {
-      look->level = level;
-      look->sigma_px = s;
-      look->reach_px = static_cast<int>(std::ceil(3 * s)) + 2;
-      state = solver.Rounds(state, look, 4, false);
-      if (s <= least) break;
-    }
-    sigma = least * pixels;
+// In the whole image, the look narrowing; `look`: the last one, with what the data say of edges.
+SceneState AtFullResolution(const Solver& solver, SceneState state, SceneLook* look) {
+  for (const double sigma_px : {3.0, 1.8, 1.0}) {
+    look->level = 0;
+    look->sigma_px = sigma_px;
+    look->reach_px = static_cast<int>(std::ceil(3 * sigma_px)) + 2;
+    state = solver.Rounds(state, look, 4, false);
   }
-  return state;
+  look->reach_px = kFineReachPx;
+  return solver.Rounds(state, look, 20, true);
 }
 
 double Fitness(const SceneSums& sums) {
@@ -368,9 +360,7 @@ SceneAlignment AlignToScene(const SceneProblem& problem, const Rigid3& start,
   }
   starts = Narrowed(problem, solver, std::move(starts), first, start_sigma);
   SceneAlignment out;
-  out.state = CoarseToFine(solver, starts[0].state, 3, 0, 0, &out.look);
-  out.look.reach_px = kFineReachPx;
-  out.state = solver.Rounds(out.state, &out.look, 20, true);
+  out.state = AtFullResolution(solver, starts[0].state, &out.look);
   out.sums = problem.SumsAt(out.state, out.look);
   SceneLook observed = out.look;
   observed.observed = true;
