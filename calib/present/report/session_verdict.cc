@@ -21,7 +21,8 @@ std::string ViewsToTake(int found) {
 }
 
 bool WasJudged(const CameraReport* report) {
-  return report != nullptr && (report->edge_rms_px.train || report->edge_rms_px.heldout);
+  return report != nullptr &&
+         (report->edge_rms_px.train || report->edge_rms_px.heldout || report->scene);
 }
 
 // The worst over all cameras [px]; nothing where one has none.

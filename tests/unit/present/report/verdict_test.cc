@@ -1,5 +1,6 @@
 #include "calib/present/report/verdict.h"
 
+#include "calib/present/report/session_verdict.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -89,6 +90,8 @@ TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
   camera.scene->heldout_result.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It was not checked"));
+  // The page says the same.
+  EXPECT_EQ(VerdictOf({"rgb", true, 0, &camera}, std::nullopt).grade, Grade::kUsable);
 }
 
 TEST(Verdict, HalvesWithoutAChiSquareClaimNothing) {
