@@ -17,10 +17,17 @@ int main(int argc, char** argv) {
   bool anyway = false;
   line.Flag("--anyway", &anyway,
             "use calibrations although their verdict is `do not use`, or the rig is another");
+  bool follow = false;
+  line.Flag(
+      "--follow-monitor", &follow,
+      "carries a camera that has moved along with what rgbdt-monitor says of its mount, within\n"
+      "the rig file's follow { rotation_deg translation_mm } (1 degree, 30 mm); each change is\n"
+      "said");
   return line.Run(argc, argv, [&] {
     rgbdt::FuserNode node(correct_ranges ? rgbdt::FuserNode::Ranges::kCorrected
                                          : rgbdt::FuserNode::Ranges::kAsMeasured,
-                          anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound);
+                          anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound,
+                          follow ? rgbdt::FuserNode::Follow::kYes : rgbdt::FuserNode::Follow::kNo);
     return rgbdt::RunOnLcm(node, url);
   });
 }

@@ -7,6 +7,7 @@
 #include "calib/methods/edge_grid/by_edge_grid.h"
 #include "calib/methods/gradient_orientation/by_gradient_orientation.h"
 #include "calib/methods/mutual_information/by_mutual_information.h"
+#include "calib/methods/natural/direction_words.h"
 #include "calib/model/errors.h"
 #include "calib/model/stopwatch.h"
 #include "calib/solve/colouring.h"
@@ -64,25 +65,15 @@ SceneAlignment Align(const CameraSpec& spec, const std::vector<Shot>& shots, con
   return out;
 }
 
-// "a turn about the camera's y": what most of a direction is.
-std::string WordsOf(const Vector6d& direction, const Vector6d& start_sigma) {
-  const char* const words[] = {
-      "a turn about the camera's x (pitch)", "a turn about the camera's y (yaw)",
-      "a turn about the camera's z (roll)",  "a move along the camera's x (right)",
-      "a move along the camera's y (down)",  "a move along the camera's z (forward)"};
-  Eigen::Index most = 0;
-  direction.cwiseQuotient(start_sigma).cwiseAbs().maxCoeff(&most);
-  return words[most];
-}
-
 void SayWhatIsUntold(const SceneAlignment& found, const NaturalOptions& options,
                      CameraReport* report) {
   const Vector6d sigma = options.StartCovariance().diagonal().cwiseSqrt();
   for (const SceneAlignment::Direction& direction : found.directions) {
     if (direction.ratio < kUntold) break;
+    const Eigen::Index number = MainNumber(direction.delta, sigma);
     report->warnings.push_back(
-        "the scene hardly tells " + WordsOf(direction.delta, sigma) +
-        ": it stays about where it was; take sweeps with edges across that direction, nearer by");
+        "the scene hardly tells " + DirectionWords(number) +
+        ": it stays about where it was; take sweeps that show " + NeededFor(number));
   }
 }
 

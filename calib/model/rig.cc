@@ -85,6 +85,12 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
           std::to_string(camera.readout_s), "0 to 60 seconds");
   Require(camera.rolling_s >= 0 && camera.rolling_s <= 1, field + "rolling_s",
           std::to_string(camera.rolling_s), "0 to 1 second");
+  Require(camera.follow.rotation_rad >= 0 && camera.follow.rotation_rad <= M_PI,
+          field + "follow.rotation_deg", std::to_string(camera.follow.rotation_rad * 180 / M_PI),
+          "0 to 180");
+  Require(camera.follow.translation_m >= 0 && camera.follow.translation_m <= 10,
+          field + "follow.translation_mm", std::to_string(1e3 * camera.follow.translation_m),
+          "0 to 10000");
   const double emissivity = camera.radiometry.emissivity;
   Require(emissivity > 0 && emissivity <= 1, field + "radiometry.emissivity",
           std::to_string(emissivity), "more than 0, at most 1");

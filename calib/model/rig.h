@@ -23,6 +23,12 @@ enum class LensNeed {
   kMayBeUnknown,  ///< they are still to be found
 };
 
+/// How far a fuser that follows the monitor may carry a camera away from its calibration.
+struct FollowLimits {
+  double rotation_rad = 0.0174533;
+  double translation_m = 0.03;  ///< of the camera's centre
+};
+
 struct CameraSpec {
   std::string name;  ///< lower case; the channel is its upper case + "_IMAGE"
   CameraKind kind = CameraKind::kColor;
@@ -38,6 +44,7 @@ struct CameraSpec {
   double netd_k = 0;  ///< thermal: noise-equivalent temperature difference [K]; 0: unknown
   std::optional<Rigid3> camera_from_lidar_guess;  ///< measured by hand
   std::optional<CameraDevice> device;             ///< for rgbdt-camera
+  FollowLimits follow;
 
   /// What the rig file states, or else UsualLensUncertainty.
   LensUncertainty LensUncertaintyOrUsual() const;

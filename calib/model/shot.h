@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,10 @@ struct Shot {
   const Cloud* cloud = nullptr;
   const Image* image = nullptr;
 };
+
+/// Parts of an image by which it is said where something was seen: so many columns and rows.
+inline constexpr int kPartColumns = 4, kPartRows = 3;
+inline constexpr std::size_t kImageParts = std::size_t{kPartColumns} * kPartRows;
 
 /// A pose that was found without a target.
 struct SceneFit {

@@ -100,6 +100,10 @@ void CheckNotNegative(std::string_view field, double value) {
   if (!std::isfinite(value) || value < 0) Fail(field, value, "a finite number from 0 on");
 }
 
+void CheckShare(std::string_view field, double value) {
+  if (!(value >= 0 && value <= 1)) Fail(field, value, "0 to 1");
+}
+
 void CheckFinite(std::string_view field, const double* values, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     if (!std::isfinite(values[i])) Fail(At(field, i), values[i], "a finite number");

@@ -38,6 +38,7 @@ void CheckSeq(std::int64_t seq);                             ///< 0 to 2^53
 void CheckRange(std::string_view field, std::int64_t value, std::int64_t low, std::int64_t high);
 void CheckFinite(std::string_view field, double value);
 void CheckNotNegative(std::string_view field, double value);  ///< finite and >= 0
+void CheckShare(std::string_view field, double value);        ///< 0 to 1
 void CheckFinite(std::string_view field, const double* values, std::size_t size);
 
 /// Every value is good(value); `good` decides about NaN, too. One pass without branches, as the

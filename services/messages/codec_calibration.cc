@@ -135,6 +135,48 @@ CalibrationMessage FromWire(const calibration_t& wire) {
 }
 
 template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, mount_check_t>& wire,
+            StructOf<Copy, MountCheck>& check) {
+  copy(wire.utime, check.utime);
+  copy(wire.seq, check.seq);
+  copy(wire.camera, check.camera);
+  copy(wire.calibration_utime, check.calibration_utime);
+  copy(wire.sweeps, check.sweeps);
+  copy(wire.mount_state, check.state);
+  copy.Optional(wire.has_holds, wire.holds, check.holds);
+  copy.Pose(wire.quaternion_wxyz, wire.translation_m, check.camera_from_lidar);
+  copy(wire.moved, check.moved);
+  copy(wire.covariance, check.covariance);
+  copy(wire.told, check.told);
+  copy(wire.edges, check.edges);
+  copy(wire.shown, check.shown);
+  copy(wire.told_where, check.where);
+  copy(wire.text, check.text);
+}
+
+mount_check_t ToWire(const MountCheck& check) { return FieldsToWire<mount_check_t>(check); }
+
+void Check(const mount_check_t& wire) {
+  CheckUtime("utime", wire.utime);
+  CheckCameraName("camera", wire.camera);
+  CheckUtimeOrZero("calibration_utime", wire.calibration_utime);
+  CheckRange("sweeps", wire.sweeps, 0, kMaxLines);
+  CheckRange("mount_state", wire.mount_state, mount_check_t::CANNOT_TELL, mount_check_t::LOST);
+  if (wire.has_holds != 0) CheckShare("holds", wire.holds);
+  CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
+  CheckFinite("translation_m", wire.translation_m, 3);
+  CheckFinite("moved", wire.moved, 6);
+  CheckCovariance("covariance", wire.covariance[0], 6);
+  for (const double told : wire.told) CheckShare("told", told);
+  CheckNotNegative("edges", wire.edges);
+  CheckShare("shown", wire.shown);
+  for (const double where : wire.told_where) CheckShare("told_where", where);
+  CheckText("text", wire.text);
+}
+
+MountCheck FromWire(const mount_check_t& wire) { return FieldsFromWire<MountCheck>(wire); }
+
+template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, pose_t>& wire, StructOf<Copy, StampedPose>& pose) {
   copy(wire.utime, pose.utime);
   copy(wire.seq, pose.seq);

@@ -30,6 +30,7 @@ struct Channel {
   std::string operator()(const SessionRequest&) const { return "SESSION_REQUEST"; }
   std::string operator()(const LeftOutViews&) const { return "LEFT_OUT_VIEWS"; }
   std::string operator()(const TargetStatus&) const { return "TARGET_STATUS"; }
+  std::string operator()(const MountCheck&) const { return "MOUNT_CHECK"; }
   std::string operator()(const Status&) const { return "STATUS"; }
   std::string operator()(const ReportText&) const { return "REPORT"; }
 };

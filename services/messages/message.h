@@ -7,6 +7,7 @@
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
+#include "calib/model/mount_check.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
@@ -26,7 +27,7 @@ struct CalibrationMessage {
 using Message =
     std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, ViewDetection,
                  CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
-                 SessionRequest, LeftOutViews, TargetStatus, Status, ReportText>;
+                 SessionRequest, LeftOutViews, TargetStatus, MountCheck, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

@@ -18,6 +18,12 @@ Messages MessagesOf(std::vector<RgbdtCloud> clouds) {
 
 }  // namespace
 
+std::vector<std::string> FuserNode::Subscriptions() const {
+  std::vector<std::string> channels = {"RIG", "CLOUD", ".*_IMAGE", "CALIBRATION", "POSE"};
+  if (follow_ == Follow::kYes) channels.emplace_back("MOUNT_CHECK");
+  return channels;
+}
+
 Messages FuserNode::Handle(const Message& message) {
   if (const auto* text = std::get_if<RigText>(&message)) {
     OnRig(*text);
@@ -28,6 +34,7 @@ Messages FuserNode::Handle(const Message& message) {
   if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
     return OnCalibration(*calibration);
   }
+  if (const auto* check = std::get_if<MountCheck>(&message)) return OnMountCheck(*check);
   if (const auto* image = std::get_if<Image>(&message)) {
     OnImage(*image);
   } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
@@ -42,6 +49,7 @@ void FuserNode::OnRig(const RigText& text) {
   fuser_ = SweepFuser(rig.cameras, rig.lidar.range_sigma_m);
   rig_before_ = std::exchange(rig_, std::move(rig));
   against_.clear();
+  follower_.Clear();
   UpdateRangeCorrection();
   newest_image_.clear();
 }
@@ -104,10 +112,21 @@ Messages FuserNode::OnCalibration(const CalibrationMessage& message) {
   if (!why.empty()) against.push_back(why);
   Tell(message.calibration.camera, against);
   if (!why.empty() && use_ == Use::kIfSound) return {};
+  if (!follower_.Take(message.calibration, message.utime)) return {};
   std::vector<RgbdtCloud> parts =
       fuser_->SetCalibration(camera, message.calibration, message.utime);
   UpdateRangeCorrection();
   return MessagesOf(std::move(parts));
+}
+
+Messages FuserNode::OnMountCheck(const MountCheck& check) {
+  const std::size_t camera = IndexOf(check.camera);
+  if (follow_ == Follow::kNo) return {};
+  std::string said;
+  const auto step = follower_.Follow(fuser_->camera(camera).spec(), check, &said);
+  if (!said.empty()) Warn(said);
+  if (!step) return {};
+  return MessagesOf(fuser_->SetCalibration(camera, step->calibration, step->utime));
 }
 
 bool FuserNode::calibrated() const {
@@ -174,6 +193,9 @@ Status FuserNode::GetStatus() const {
                 : range_correction_.errors ? "fusing, ranges corrected"
                                            : "fusing";
   for (const auto& [camera, why] : against_) status.text += "; " + why;
+  if (const std::string followed = follower_.Text(); !followed.empty()) {
+    status.text += "; " + followed;
+  }
   const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
   status.counters = {{"points", counts.points},
                      {"coloured", counts.coloured},

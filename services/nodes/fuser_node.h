@@ -9,6 +9,7 @@
 #include "calib/fuse/range_correction.h"
 #include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
+#include "services/nodes/mount_follower.h"
 #include "services/runtime/node.h"
 
 namespace rgbdt {
@@ -29,18 +30,21 @@ namespace rgbdt {
 /// With Ranges::kCorrected, chunks are corrected by the calibration's range errors as they come:
 /// published points are where they truly are. Where cameras differ in these the first one's hold;
 /// where there are none, chunks stay as measured. A warning tells either, once, at a sweep's end.
+///
+/// With Follow::kYes a camera whose mount moved is carried along by MOUNT_CHECK (MountFollower);
+/// points then carry the check's time in place of the calibration's. Each change is a warning.
 class FuserNode : public Node {
  public:
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   enum class Ranges { kAsMeasured, kCorrected };
+  enum class Follow { kNo, kYes };
 
-  explicit FuserNode(Ranges ranges = Ranges::kAsMeasured, Use use = Use::kIfSound)
-      : ranges_(ranges), use_(use) {}
+  explicit FuserNode(Ranges ranges = Ranges::kAsMeasured, Use use = Use::kIfSound,
+                     Follow follow = Follow::kNo)
+      : ranges_(ranges), use_(use), follow_(follow) {}
 
   std::string name() const override { return "fuser"; }
-  std::vector<std::string> Subscriptions() const override {
-    return {"RIG", "CLOUD", ".*_IMAGE", "CALIBRATION", "POSE"};
-  }
+  std::vector<std::string> Subscriptions() const override;
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
 
@@ -51,6 +55,7 @@ class FuserNode : public Node {
   void OnRig(const RigText& text);
   Messages OnCalibration(const CalibrationMessage& message);
   void Tell(const std::string& camera, const std::vector<std::string>& against);
+  Messages OnMountCheck(const MountCheck& check);
   void OnImage(const Image& image);
   void OnPose(const StampedPose& pose);
   Messages OnChunk(const CloudChunk& chunk);
@@ -62,6 +67,8 @@ class FuserNode : public Node {
 
   Ranges ranges_;
   Use use_;
+  Follow follow_;
+  MountFollower follower_;
   std::optional<Rig> rig_, rig_before_;
   // What speaks against a camera's newest calibration, by camera.
   std::map<std::string, std::string> against_;

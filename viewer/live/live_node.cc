@@ -45,7 +45,7 @@ SessionRequestKind RequestOf(const std::string& name) {
 std::vector<std::string> LiveNode::Subscriptions() const {
   return {"RIG",           "CLOUD",  ".*_IMAGE",      "CORNER_SELECTION", "DETECTION",
           "CALIBRATION",   "REPORT", "RGBDT_CLOUD",   "RGBDT_SWEEP",      "SESSION_COMMAND",
-          "TARGET_STATUS", "STATUS", "SESSION_EVENT", "LEFT_OUT_VIEWS"};
+          "TARGET_STATUS", "STATUS", "SESSION_EVENT", "LEFT_OUT_VIEWS",   "MOUNT_CHECK"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
@@ -87,6 +87,8 @@ void LiveNode::Take(const Message& message) {
     changed_ = true;
   } else if (const auto* target = std::get_if<TargetStatus>(&message)) {
     OnTargetStatus(*target);
+  } else if (const auto* mount = std::get_if<MountCheck>(&message)) {
+    OnMountCheck(*mount);
   } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
     OnLeftOut({left_out->views.begin(), left_out->views.end()});
   } else if (const auto* status = std::get_if<Status>(&message)) {
@@ -103,6 +105,7 @@ void LiveNode::OnRig(const RigText& text) {
     state_.calibration_utime.clear();
   }
   target_status_.clear();  // of cameras that this rig may not have
+  mounts_.Clear();
   outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
 }
@@ -358,6 +361,12 @@ void LiveNode::OnTargetStatus(const TargetStatus& status) {
   if (rig_ && !status.camera.empty()) PostLiveOverlay(status.camera);
 }
 
+void LiveNode::OnMountCheck(const MountCheck& check) {
+  RequireCamera(check.camera);
+  mounts_.Add(check);
+  mounts_changed_ = true;
+}
+
 void LiveNode::PostTargetStatus() {
   nlohmann::json sensors = nlohmann::json::array();
   for (const auto& [camera, seen] : target_status_) {
@@ -382,6 +391,11 @@ Messages LiveNode::Advance(Utime now) {
   const std::lock_guard<std::mutex> lock(mutex_);
   now_s_ = ToSeconds(now);
   PostState();
+  if (mounts_changed_ && mounts_due_.IsDue(now)) {
+    mounts_changed_ = false;
+    outbox_->Send(
+        {"mounts", "", true, false, 0, [frame = mounts_.Frame()] { return JsonFrame(frame); }});
+  }
   if (!bus.is_null()) {
     bus["processes"] = watch_.Processes(now_s_);
     outbox_->Send({"bus", "", true, false, 0, [bus] { return JsonFrame(bus); }});

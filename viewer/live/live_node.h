@@ -17,6 +17,7 @@
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
 #include "viewer/live/kept_view.h"
+#include "viewer/live/mount_history.h"
 #include "viewer/live/session_watch.h"
 #include "viewer/server/outbox.h"
 
@@ -24,8 +25,8 @@ namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, STATUS, LEFT_OUT_VIEWS ->
-/// SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another rig is refused.
+/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, MOUNT_CHECK, STATUS, LEFT_OUT_VIEWS
+/// -> SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another rig is refused.
 /// Nothing large is encoded here: a post makes its bytes when a browser is about to get it. Of each
 /// view its images are kept as JPEG, and some points of its cloud. Advance publishes what browsers
 /// asked for, and posts the session's state where it has changed, at most ten times a second. All
@@ -67,6 +68,7 @@ class LiveNode : public Node {
   void OnCalibration(const CalibrationMessage& message);
   void OnFused(const RgbdtCloud& cloud);
   void OnTargetStatus(const TargetStatus& status);
+  void OnMountCheck(const MountCheck& check);
   void OnLeftOut(const std::set<std::string>& views);
   void AskToLeaveOut(const std::set<std::string>& views);
   void TellMoved(const CameraCalibration& camera);
@@ -98,7 +100,10 @@ class LiveNode : public Node {
     double at_s;
   };
   std::map<std::string, Seen> target_status_;  // by camera; "": the LIDAR
-  Utime sweep_utime_ = 0;                      // of the newest whole sweep
+  MountHistory mounts_;
+  bool mounts_changed_ = false;
+  Periodic mounts_due_{kMicrosecondsPerSecond};
+  Utime sweep_utime_ = 0;  // of the newest whole sweep
   int sweep_part_ = 0;
   std::vector<Eigen::Vector3f> sweep_points_;  // as far as it has come
   std::shared_ptr<const std::vector<Eigen::Vector3f>> whole_sweep_;

@@ -95,6 +95,13 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed le
     spec.camera_from_lidar_guess =
         text::ToRigid3(camera.camera_from_lidar_guess(), place.In("camera_from_lidar_guess"));
   }
+  if (camera.has_follow()) {
+    const Place at = place.In("follow");
+    text::RequireFinite(camera.follow().rotation_deg(), at, "rotation_deg");
+    text::RequireFinite(camera.follow().translation_mm(), at, "translation_mm");
+    spec.follow = {camera.follow().rotation_deg() / kDegreesPerRadian,
+                   camera.follow().translation_mm() * 1e-3};
+  }
   if (camera.has_device()) spec.device = text::ToDevice(camera.device(), place.In("device"));
   return spec;
 }
@@ -192,6 +199,12 @@ void FromCamera(const CameraSpec& spec, proto::Camera* out) {
   out->set_netd_k(spec.netd_k);
   if (spec.camera_from_lidar_guess) {
     text::FromRigid3(*spec.camera_from_lidar_guess, out->mutable_camera_from_lidar_guess());
+  }
+  const FollowLimits usual;
+  if (spec.follow.rotation_rad != usual.rotation_rad ||
+      spec.follow.translation_m != usual.translation_m) {
+    out->mutable_follow()->set_rotation_deg(spec.follow.rotation_rad * kDegreesPerRadian);
+    out->mutable_follow()->set_translation_mm(spec.follow.translation_m * 1e3);
   }
   if (spec.device) text::FromDevice(*spec.device, out->mutable_device());
 }

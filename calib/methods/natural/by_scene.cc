@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "calib/model/calibration.h"
@@ -54,6 +55,7 @@ class Solver {
     prior_(kBeamAt, kBeamAt) = 1 / std::pow(options.beam_sigma_rad, 2);
   }
 
+  const SceneProblem& problem() const { return problem_; }
   const SceneMatrix& prior() const { return prior_; }
   const SceneState& start() const { return start_; }
 
@@ -327,6 +329,28 @@ std::string WhyAmbiguous(const std::vector<Candidate>& sorted) {
   return "";
 }
 
+// The result there; `ambiguous`: why it may be another one, or empty.
+SceneAlignment AlignmentAt(const Solver& solver, const SceneState& state, const SceneLook& look,
+                           const NaturalOptions& options, const std::string& ambiguous) {
+  SceneAlignment out;
+  out.state = state;
+  out.look = look;
+  out.sums = solver.problem().SumsAt(state, look);
+  SceneLook observed = look;
+  observed.observed = true;
+  const SceneMatrix expected = out.sums.information + solver.prior();
+  const SceneMatrix told =
+      ToldOf(expected, solver.problem().SumsAt(state, observed).information + solver.prior());
+  out.covariance = CovarianceOf(out.sums, expected, told, &out.scatter_factor);
+  out.fit.camera_from_lidar = state.camera_from_lidar;
+  out.fit.covariance = Matrix6d(out.covariance.topLeftCorner<6, 6>());
+  out.directions = DirectionsOf(*out.fit.covariance, options.StartCovariance());
+  out.fit.why_not = WhyNot(out, solver.start().camera_from_lidar, options);
+  if (out.fit.why_not.empty()) out.fit.why_not = ambiguous;
+  out.fit.converged = out.fit.why_not.empty();
+  return out;
+}
+
 }  // namespace
 
 Matrix6d NaturalOptions::StartCovariance() const {
@@ -359,22 +383,35 @@ SceneAlignment AlignToScene(const SceneProblem& problem, const Rigid3& start,
                   turns.begin() + static_cast<std::ptrdiff_t>(std::min(kTried, turns.size())));
   }
   starts = Narrowed(problem, solver, std::move(starts), first, start_sigma);
-  SceneAlignment out;
-  out.state = AtFullResolution(solver, starts[0].state, &out.look);
-  out.sums = problem.SumsAt(out.state, out.look);
-  SceneLook observed = out.look;
-  observed.observed = true;
-  const SceneMatrix told = ToldOf(out.sums.information + solver.prior(),
-                                  problem.SumsAt(out.state, observed).information + solver.prior());
-  out.covariance =
-      CovarianceOf(out.sums, out.sums.information + solver.prior(), told, &out.scatter_factor);
-  out.fit.camera_from_lidar = out.state.camera_from_lidar;
-  out.fit.covariance = Matrix6d(out.covariance.topLeftCorner<6, 6>());
-  out.directions = DirectionsOf(*out.fit.covariance, options.StartCovariance());
-  out.fit.why_not = WhyNot(out, start, options);
-  if (out.fit.why_not.empty()) out.fit.why_not = WhyAmbiguous(starts);
-  out.fit.converged = out.fit.why_not.empty();
-  return out;
+  SceneLook look;
+  const SceneState state = AtFullResolution(solver, starts[0].state, &look);
+  return AlignmentAt(solver, state, look, options, WhyAmbiguous(starts));
+}
+
+SceneAlignment AlignNear(const SceneProblem& problem, const Rigid3& start,
+                         const NaturalOptions& options, const std::vector<Rigid3>& near) {
+  const Solver solver(problem, start, options);
+  SceneState best;
+  SceneLook best_look;
+  double best_fitness = -std::numeric_limits<double>::infinity();
+  for (const Rigid3& pose : near) {
+    SceneState state = solver.start();
+    state.camera_from_lidar = pose;
+    SceneLook look;
+    for (int level = std::min(3, problem.levels()) - 1; level > 0; --level) {
+      look.level = level;
+      look.sigma_px = 1.5;
+      look.reach_px = 7;
+      state = solver.Rounds(state, &look, 3, false);
+    }
+    state = AtFullResolution(solver, state, &look);
+    const double fitness = Fitness(problem.SumsAt(state, look));
+    if (fitness <= best_fitness) continue;
+    best = state;
+    best_look = look;
+    best_fitness = fitness;
+  }
+  return AlignmentAt(solver, best, best_look, options, "");
 }
 
 double SceneFitness(const SceneProblem& problem, const SceneAlignment& alignment,

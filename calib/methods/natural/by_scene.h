@@ -57,6 +57,11 @@ SceneProblem MakeSceneProblem(const CameraSpec& camera, const std::vector<Shot>&
 SceneAlignment AlignToScene(const SceneProblem& problem, const Rigid3& start,
                             const NaturalOptions& options = {});
 
+/// The same for a pose that is watched: from poses that are some ten pixels off at most, of which
+/// one is in `near`, without looking to all sides. The one that fits best counts.
+SceneAlignment AlignNear(const SceneProblem& problem, const Rigid3& start,
+                         const NaturalOptions& options, const std::vector<Rigid3>& near);
+
 /// How well a pose fits: the mean log-likelihood of the depth edges of other shots over that of
 /// edges that the image shows nothing of, with the look, the beam and the lens of an alignment. Of
 /// none: 0.

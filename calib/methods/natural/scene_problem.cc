@@ -190,7 +190,8 @@ void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& kn
 
 class Summing {
  public:
-  Summing(const SceneLook& look, double pixels) : look_(look), pixels_(pixels) {}
+  Summing(const SceneLook& look, double pixels, const CameraSpec& spec)
+      : look_(look), pixels_(pixels), columns_(spec.width), rows_(spec.height) {}
 
   void Add(const Projected& seen, const std::vector<ImageRim>& met, int reach, RimSums* own,
            SceneSums* sums) const {
@@ -218,6 +219,7 @@ class Summing {
     sums->log_likelihood += std::log(total / nothing * (1 - look_.matched));
     SceneVector mean = SceneVector::Zero();  // of the score: of what each of them would pull with
     double mean_by_shift = 0;
+    double matched = 0;
     for (const Term& term : terms) {
       const double share = term.density / total;
       if (share < 1e-4) continue;
@@ -233,9 +235,11 @@ class Summing {
       mean += weight * term.residual * by;
       mean_by_shift += weight * term.residual * by_shift;
       sums->squares += share * (term.residual * term.residual - term.spread);
-      sums->matched += share;
+      matched += share;
       own->shown = true;
     }
+    sums->matched += matched;
+    sums->where[PartOf(seen.pixel)] += matched;
     own->gradient += mean;
     own->shift_gradient += mean_by_shift;
     if (!look_.observed) return;
@@ -249,8 +253,17 @@ class Summing {
     double residual, spread, variance, density;
     Vector2d normal;
   };
+  std::size_t PartOf(const Vector2d& pixel) const {
+    const auto part = [](double at, int size, int parts) {
+      return std::clamp(static_cast<int>((at + 0.5) / size * parts), 0, parts - 1);
+    };
+    return static_cast<std::size_t>(part(pixel.y(), rows_, kPartRows) * kPartColumns +
+                                    part(pixel.x(), columns_, kPartColumns));
+  }
+
   const SceneLook& look_;
   double pixels_;
+  int columns_, rows_;
   mutable std::vector<Term> terms_;
 };
 
@@ -267,27 +280,54 @@ SceneState SceneState::Moved(const SceneVector& x) const {
   return moved;
 }
 
-SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
-                           const DepthEdgeOptions& edges, std::size_t most_edges, int levels)
-    : spec_(camera) {
-  // A level's picture has sixteen pixels at least, and whole blocks of the image's.
-  while (levels_ < levels && (std::min(camera.width, camera.height) >> levels_) >= 16) ++levels_;
-  RimNumbers numbers;
+std::shared_ptr<const SceneShot> PrepareShot(const CameraSpec& camera, const Shot& shot,
+                                             const DepthEdgeOptions& edges, std::size_t most_edges,
+                                             int levels) {
+  CheckImage(camera, *shot.image);
+  auto ready = std::make_shared<SceneShot>();
+  ready->edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
+  const cv::Mat grey = ToGrey(*shot.image);
+  for (int level = 0; level < levels; ++level) {
+    if (level > 0 && (std::min(camera.width, camera.height) >> level) < 16) break;
+    ready->pictures.emplace_back(grey, level);
+  }
+  return ready;
+}
+
+namespace {
+
+std::vector<std::shared_ptr<const SceneShot>> Prepared(const CameraSpec& camera,
+                                                       const std::vector<Shot>& shots,
+                                                       const DepthEdgeOptions& edges,
+                                                       std::size_t most_edges, int levels) {
+  std::vector<std::shared_ptr<const SceneShot>> ready;
+  ready.reserve(shots.size());
   for (const Shot& shot : shots) {
-    CheckImage(camera, *shot.image);
-    Part part;
-    part.edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
-    part.rims = numbers.Of(part.edges);
-    const cv::Mat grey = ToGrey(*shot.image);
-    for (int level = 0; level < levels_; ++level) part.pictures.emplace_back(grey, level);
-    parts_.push_back(std::move(part));
+    ready.push_back(PrepareShot(camera, shot, edges, most_edges, levels));
+  }
+  return ready;
+}
+
+}  // namespace
+
+SceneProblem::SceneProblem(const CameraSpec& camera,
+                           const std::vector<std::shared_ptr<const SceneShot>>& shots)
+    : spec_(camera) {
+  RimNumbers numbers;
+  for (const auto& shot : shots) {
+    parts_.push_back({shot, numbers.Of(shot->edges)});
+    levels_ = static_cast<int>(shot->pictures.size());
   }
   rims_ = numbers.Take();
 }
 
+SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
+                           const DepthEdgeOptions& edges, std::size_t most_edges, int levels)
+    : SceneProblem(camera, Prepared(camera, shots, edges, most_edges, levels)) {}
+
 std::size_t SceneProblem::edges() const {
   std::size_t sum = 0;
-  for (const Part& part : parts_) sum += part.edges.size();
+  for (const Part& part : parts_) sum += part.shot->edges.size();
   return sum;
 }
 
@@ -300,10 +340,10 @@ SceneSums SceneProblem::SumsAt(const SceneState& state, const SceneLook& look) c
   std::vector<RimSums> rims(rims_.size());
   std::vector<ImageRim> met;
   for (const Part& part : parts_) {
-    const ImageRims& picture = part.pictures[static_cast<std::size_t>(look.level)];
-    const Summing summing(look, picture.pixels());
-    for (std::size_t i = 0; i < part.edges.size(); i += look.stride) {
-      const auto seen = Project(camera, state, part.edges[i]);
+    const ImageRims& picture = part.shot->pictures[static_cast<std::size_t>(look.level)];
+    const Summing summing(look, picture.pixels(), spec);
+    for (std::size_t i = 0; i < part.shot->edges.size(); i += look.stride) {
+      const auto seen = Project(camera, state, part.shot->edges[i]);
       if (!seen) continue;
       const double spread = std::abs(seen->normal.dot(seen->across)) / picture.pixels();
       if (spread > kMostSpreadPx) continue;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -51,9 +52,10 @@ struct SceneLook {
 struct SceneSums {
   SceneMatrix information = SceneMatrix::Zero();  ///< of the unknowns
   SceneVector gradient = SceneVector::Zero();     ///< information * step = gradient
-  double log_likelihood = 0;  ///< over that of edges which the image shows nothing of
-  double edges = 0;           ///< that lie in the image
-  double matched = 0;         ///< of these, how many are shown, in expectation
+  double log_likelihood = 0;                ///< over that of edges which the image shows nothing of
+  double edges = 0;                         ///< that lie in the image
+  double matched = 0;                       ///< of these, how many are shown, in expectation
+  std::array<double, kImageParts> where{};  ///< of those that are shown, by part of the image
   double squares = 0;  ///< of their residuals, less what beams' spacing makes [px^2 of the level]
   /// By place of the surroundings: its part of information and gradient.
   std::vector<std::pair<SceneMatrix, SceneVector>> parts;
@@ -68,13 +70,28 @@ struct SceneRim {
   int thing = 0;           ///< the same number for rims of the same thing
 };
 
+/// What of a shot does not depend on the pose: the cloud's depth edges and the image's, by level.
+struct SceneShot {
+  std::vector<DepthEdge> edges;
+  std::vector<ImageRims> pictures;
+};
+
+/// Edges are found in the cloud, `most_edges` of them are kept, evenly. There are `levels`
+/// pictures, or as many as have sixteen pixels at least each way.
+std::shared_ptr<const SceneShot> PrepareShot(const CameraSpec& camera, const Shot& shot,
+                                             const DepthEdgeOptions& edges, std::size_t most_edges,
+                                             int levels);
+
 /// Rims of sweeps and the images that they are laid on. A rim of the cloud is met by one of the
 /// image's edges nearby, or by none: a mixture of normal distributions about each of them and of
 /// an even one. (Levinson and Thrun 2013 and Krishnan et al. 2015 let every rim count for the edges
 /// about it; with the mixture a residual has a sigma, and what is not shown does not pull.)
 class SceneProblem {
  public:
-  /// Edges are found in each cloud, `most_edges` of them are kept, evenly; pictures have `levels`.
+  /// Of shots that were made ready with the same number of levels.
+  SceneProblem(const CameraSpec& camera,
+               const std::vector<std::shared_ptr<const SceneShot>>& shots);
+  /// Of shots as they come (PrepareShot).
   SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
                const DepthEdgeOptions& edges, std::size_t most_edges, int levels);
 
@@ -85,9 +102,8 @@ class SceneProblem {
 
  private:
   struct Part {
-    std::vector<DepthEdge> edges;
-    std::vector<int> rims;            // by edge: the same number for the same rim, in all shots
-    std::vector<ImageRims> pictures;  // by level
+    std::shared_ptr<const SceneShot> shot;
+    std::vector<int> rims;  // by edge: the same number for the same rim, in all shots
   };
 
   CameraSpec spec_;

@@ -14,6 +14,7 @@
 #include <lcmtypes/rgbdt/image_t.hpp>
 #include <lcmtypes/rgbdt/left_out_views_t.hpp>
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
+#include <lcmtypes/rgbdt/mount_check_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
@@ -75,6 +76,9 @@ RangeErrors FromWire(const range_errors_t& wire);
 calibration_t ToWire(const CalibrationMessage& message);
 void Check(const calibration_t& wire);
 CalibrationMessage FromWire(const calibration_t& wire);
+mount_check_t ToWire(const MountCheck& check);
+void Check(const mount_check_t& wire);
+MountCheck FromWire(const mount_check_t& wire);
 pose_t ToWire(const StampedPose& pose);
 void Check(const pose_t& wire);
 StampedPose FromWire(const pose_t& wire);

@@ -228,6 +228,20 @@ TEST_F(Invalid, Session) {
   };
   EXPECT_THAT(target([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
   EXPECT_THAT(target([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
+  const auto watched = [&](auto change) {
+    return ErrorAfter<mount_check_t>(random_.Watched(), change);
+  };
+  EXPECT_THAT(watched([](auto& w) { w.mount_state = 0; }), HasSubstr("mount_state is 0"));
+  EXPECT_THAT(watched([](auto& w) { w.mount_state = 5; }), HasSubstr("mount_state is 5"));
+  EXPECT_THAT(watched([](auto& w) {
+                w.has_holds = 1;
+                w.holds = 1.5;
+              }),
+              HasSubstr("holds is 1.5"));
+  EXPECT_THAT(watched([](auto& w) { w.told[2] = -0.5; }), HasSubstr("told is -0.5"));
+  EXPECT_THAT(watched([](auto& w) { w.shown = NAN; }), HasSubstr("shown is"));
+  EXPECT_THAT(watched([](auto& w) { w.moved[4] = INFINITY; }), HasSubstr("moved[4] is"));
+  EXPECT_THAT(watched([](auto& w) { w.covariance[1][1] = -1; }), HasSubstr("covariance"));
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));

@@ -224,6 +224,27 @@ TEST_F(RoundTrip, RequestAndTargetStatus) {
   }
 }
 
+TEST_F(RoundTrip, MountCheck) {
+  for (int round = 0; round < kRounds; ++round) {
+    const MountCheck a = random_.Watched();
+    const MountCheck b = ThroughTheWire(a);
+    EXPECT_EQ(a.utime, b.utime);
+    EXPECT_EQ(a.camera, b.camera);
+    EXPECT_EQ(a.calibration_utime, b.calibration_utime);
+    EXPECT_EQ(a.sweeps, b.sweeps);
+    EXPECT_EQ(a.state, b.state);
+    EXPECT_EQ(a.holds, b.holds);
+    EXPECT_EQ(a.camera_from_lidar.translation, b.camera_from_lidar.translation);
+    EXPECT_EQ(a.moved, b.moved);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.told, b.told);
+    EXPECT_EQ(a.edges, b.edges);
+    EXPECT_EQ(a.shown, b.shown);
+    EXPECT_EQ(a.where, b.where);
+    EXPECT_EQ(a.text, b.text);
+  }
+}
+
 TEST_F(RoundTrip, Status) {
   for (int round = 0; round < kRounds; ++round) {
     const Status a = random_.Health();

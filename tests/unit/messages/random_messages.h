@@ -350,13 +350,33 @@ class RandomMessages {
     status.centre = Rows<Eigen::Vector3d>(1)[0];
     return status;
   }
+  MountCheck Watched() {
+    MountCheck check;
+    check.seq = Seq();
+    check.utime = Time();
+    check.camera = Name();
+    check.calibration_utime = Time();
+    check.sweeps = static_cast<int>(Int(0, 20));
+    check.state = static_cast<MountState>(Int(1, 4));
+    if (Coin()) check.holds = 0.125;
+    check.camera_from_lidar = Pose().map_from_lidar;
+    check.moved = Vector6d::LinSpaced(-0.25, 0.5);
+    check.covariance = Matrix6d(Vector6d::Constant(0.5).asDiagonal());
+    check.told = {0, 0.25, 0.5, 0.75, 1, 0.125};
+    check.edges = 250;
+    check.shown = 0.5;
+    check.where[3] = 0.75;
+    check.where[8] = 0.25;
+    check.text = Text();
+    return check;
+  }
   ReportText Report() { return {Seq(), Time(), "{\"method\": \"paper\"}"}; }
 
   /// One of every alternative.
   Messages OneOfEach() {
     return {Line(),       Encoder(), Picture(),    Chunk(),   Corners(), Seen(),
             Calibrated(), Fused(),   Pose(),       RigFile(), Command(), Event(),
-            Request(),    LeftOut(), TargetSeen(), Health(),  Report()};
+            Request(),    LeftOut(), TargetSeen(), Watched(), Health(),  Report()};
   }
 
  private:

@@ -41,6 +41,7 @@ const std::map<std::string, Folders>& Allowed() {
         "calib/methods/paper", "calib/methods/plane", "calib/methods/natural",
         "calib/methods/mutual_information", "calib/methods/gradient_orientation",
         "calib/methods/edge_grid", "calib/files/session"}},
+      {"calib/monitor", {"calib/camera", "calib/methods/natural"}},
       {"calib/fuse", {"calib/camera"}},
       {"calib/map", {}},
       {"calib/terrain", {}},

@@ -427,5 +427,41 @@ TEST_F(LiveNodeTest, TargetStatusSaysWhoSeesTheBoard) {
   EXPECT_EQ(sensors[1].at("text"), "3.1 m away");
 }
 
+TEST_F(LiveNodeTest, MountsHaveALampAndAHistory) {
+  MountCheck check;
+  check.camera = "thermal";
+  check.utime = test::kStart;
+  check.text = "2 of 3 sweeps seen";
+  node_.Handle(check);  // of which nothing is told yet
+  for (int i = 1; i <= 3; ++i) {
+    check.utime = test::kStart + i * kMicrosecondsPerSecond;
+    check.state = i < 3 ? MountState::kHolds : MountState::kMoved;
+    check.holds = i < 3 ? 0.99 : 0.001;
+    check.moved[1] = 0.001 * i;
+    check.text = "turned";
+    node_.Handle(check);
+  }
+  node_.Advance(0);
+  const json cameras = posts_.Header("mounts").at("cameras");
+  ASSERT_EQ(cameras.size(), 1U);
+  EXPECT_EQ(cameras[0].at("camera"), "thermal");
+  EXPECT_EQ(cameras[0].at("state"), "moved");
+  EXPECT_EQ(cameras[0].at("holds"), 0.001);
+  EXPECT_EQ(cameras[0].at("text"), "turned");
+  ASSERT_EQ(cameras[0].at("steps").size(), 3U);
+  EXPECT_NEAR(cameras[0].at("steps")[2].at("rotation_deg"), 0.003 * 180 / M_PI, 1e-9);
+  // The clock is set back: what came before is no history of this.
+  check.utime = test::kStart;
+  check.holds.reset();
+  check.state = MountState::kCannotTell;
+  node_.Handle(check);
+  node_.Advance(2 * kMicrosecondsPerSecond);
+  const json after = posts_.Header("mounts").at("cameras")[0];
+  EXPECT_TRUE(after.at("holds").is_null());
+  EXPECT_TRUE(after.at("steps").empty());
+  check.camera = "stranger";
+  EXPECT_THROW(node_.Handle(check), InputError);
+}
+
 }  // namespace
 }  // namespace rgbdt::viewer

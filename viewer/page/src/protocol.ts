@@ -234,6 +234,20 @@ export interface TargetStatusFrame {
   sensors: { sensor: string; kind: "color" | "thermal" | "lidar"; seen: boolean; text: string; utime: number; age_s: number }[];
 }
 
+/// What rgbdt-monitor says of each camera's mount: whether its calibration still holds.
+export interface MountsFrame {
+  type: "mounts";
+  cameras: {
+    camera: string;
+    state: "cannot_tell" | "holds" | "moved" | "lost";
+    holds: number | null; // probability; null: nothing is told
+    text: string;
+    utime: number;
+    where: number[]; // of the edges that told, the share in each part of the image, 3 rows of 4
+    steps: { utime: number; rotation_deg: number; sigma_deg: number; translation_mm: number }[]; // moved by; newest last
+  }[];
+}
+
 export interface BusFrame {
   type: "bus";
   channels: {
@@ -266,7 +280,7 @@ export interface NoticeFrame {
 
 export type Header =
   | Hello | RigFrame | ImageFrame | OverlayFrame | ThumbFrame | CloudFrame | SessionFrame
-  | TargetStatusFrame | BusFrame | NoticeFrame;
+  | TargetStatusFrame | MountsFrame | BusFrame | NoticeFrame;
 
 export type ToBridge =
   | { type: "hello"; token: string } // first of all

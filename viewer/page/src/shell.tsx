@@ -7,7 +7,8 @@ import { CloudPanel } from "./panels/cloud";
 import { PickPanel } from "./panels/pick";
 import { SessionPanel } from "./panels/session";
 import { goTo, tab, tabs, type Tab } from "./route";
-import { connection, hello, session, type Connection } from "./store";
+import { MountLamps } from "./panels/session/mounts";
+import { connection, hello, mounts, session, type Connection } from "./store";
 import { switchTheme, theme } from "./theme";
 import { Toasts } from "./toasts";
 import { wide } from "./wide";
@@ -48,6 +49,7 @@ function Head() {
           {kGradeWords[verdict.grade]}
         </span>
       )}
+      {mounts.value && <MountLamps frame={mounts.value} />}
       <span class={`badge ${grade}`} data-testid="connection">{text}</span>
       <button aria-label={`Use ${other} colours`} title={`Use ${other} colours`} data-testid="theme" onClick={switchTheme}>
         {theme.value === "dark" ? "☀" : "☾"}

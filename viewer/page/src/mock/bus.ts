@@ -1,4 +1,4 @@
-import type { BusFrame, TargetStatusFrame } from "../protocol";
+import type { BusFrame, MountsFrame, TargetStatusFrame } from "../protocol";
 
 const wave = (base: number, seconds: number): number => base * (1 + 0.05 * Math.sin(seconds) + 0.03 * (Math.random() - 0.5));
 
@@ -27,6 +27,25 @@ export function busFrame(seconds: number): BusFrame {
     ],
     browsers: [{ address: "127.0.0.1:40112", waiting: 0, thinned: 12, share: 0.8 }],
     screen_ms: { p50: wave(60, seconds), p95: wave(110, seconds), count: 200 },
+  };
+}
+
+export function mountsFrame(seconds: number): MountsFrame {
+  const now = Date.now() * 1000;
+  const drift = (name: string, scale: number) => Array.from({ length: 60 }, (_, i) => ({
+    utime: now - (59 - i) * 2e6,
+    rotation_deg: scale * Math.abs(Math.sin((seconds + i) / 20)) + 0.01,
+    sigma_deg: 0.03, translation_mm: name === "rgb" ? 2 : 5,
+  }));
+  return {
+    type: "mounts",
+    cameras: [
+      { camera: "rgb", state: "holds", holds: 0.9996, text: "holds, as far as 5 sweeps tell", utime: now,
+        where: [0.2, 0.1, 0.1, 0, 0.2, 0.1, 0.1, 0, 0.1, 0.1, 0, 0], steps: drift("rgb", 0.03) },
+      { camera: "thermal", state: "moved", holds: 0.0002, utime: now,
+        text: "moved by 0.42 +- 0.05 deg, mostly a turn about the camera's y (yaw), and by 3 +- 4 mm: fasten the mount, then calibrate again or run `rgbdt refine`",
+        where: [0, 0.1, 0.1, 0, 0.2, 0.3, 0.3, 0, 0, 0, 0, 0], steps: drift("thermal", 0.42) },
+    ],
   };
 }
 

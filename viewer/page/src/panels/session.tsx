@@ -1,10 +1,11 @@
 // The session: what is to be done now, what came of it, and the result's uncertainty.
 import type { SessionFrame } from "../protocol";
-import { rig, session, targetStatus } from "../store";
+import { mounts, rig, session, targetStatus } from "../store";
 import { Answer } from "./session/answer";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
 import { EventLog } from "./session/event_log";
+import { Mounts } from "./session/mounts";
 import { ReportSection, ReportPictures } from "./session/report";
 import { TableView } from "./session/table";
 import { TargetStatusLine } from "./session/target_status_line";
@@ -45,6 +46,7 @@ export function SessionPanel() {
     <div class="panel session">
       <Answer session={state} />
       {!isEmpty(state) && <Now session={state} />}
+      {mounts.value && <Mounts frame={mounts.value} />}
       <section class="card" aria-label="Uncertainty">
         <h2>Uncertainty</h2>
         <SigmaCharts sigma={state.sigma} />

@@ -1,0 +1,50 @@
+#include <filesystem>
+#include <optional>
+
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/model/time.h"
+#include "services/command_line/command_line.h"
+#include "services/nodes/monitor_node.h"
+#include "services/runtime/process.h"
+
+namespace {
+
+std::optional<rgbdt::GivenCalibration> ReadGiven(const std::string& session) {
+  if (session.empty()) return std::nullopt;
+  const std::filesystem::path folder(session);
+  rgbdt::GivenCalibration given{rgbdt::ReadRig((folder / "rig.textproto").string()),
+                                rgbdt::ReadCalibration(folder / "calibration.textproto")};
+  rgbdt::RequireSound(
+      given.calibration, given.rig,
+      {(folder / "calibration.textproto").string(), (folder / "rig.textproto").string()},
+      rgbdt::Use::kIfSound);
+  return given;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  rgbdt::CommandLine line(
+      "rgbdt-monitor",
+      "Watches whether each camera still sits where its calibration says, by whatever stands\n"
+      "about, without a target: MOUNT_CHECK, in its status and on the viewer's page. With SESSION\n"
+      "it sends that session's rig and calibration, too: LIDAR, cameras, monitor, fuser and "
+      "viewer\n"
+      "are then all that a drive needs.\n"
+      "Example: rgbdt-monitor out/session --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
+  std::string url, session;
+  line.Option("SESSION", &session,
+              "folder with rig.textproto and calibration.textproto to send; default: both come\n"
+              "over the bus");
+  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  double every_s = 2;
+  line.Within("--every", &every_s, 0, 3600,
+              "seconds between the sweeps that are looked at; 0: all of them");
+  return line.Run(argc, argv, [&] {
+    rgbdt::MonitorOptions options;
+    options.every = rgbdt::FromSeconds(every_s);
+    rgbdt::MonitorNode node(options, ReadGiven(session));
+    return rgbdt::RunOnLcm(node, url);
+  });
+}
