@@ -10,6 +10,7 @@
 #include "calib/methods/refine.h"
 #include "calib/model/errors.h"
 #include "calib/present/session/report_files.h"
+#include "services/replay/drive_session.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
 
@@ -17,6 +18,7 @@ namespace rgbdt {
 namespace {
 
 struct RefineFlags {
+  double every_s = 2;
   std::string dir, calibration, prior, out, truth;
   bool search = false, anyway = false;
   RefineOptions options;
@@ -70,6 +72,30 @@ std::vector<ViewDetection> WithoutBoards(const Report& report) {
   return detections;
 }
 
+// Of a log, the session that is cut out of it.
+Session SessionOf(const RefineFlags& flags) {
+  if (!std::filesystem::is_regular_file(flags.dir)) return OpenSession(flags.dir);
+  const std::filesystem::path drive = PathOr(flags.out, "out/refine") / "drive";
+  if (std::filesystem::exists(drive)) {
+    throw InputError(drive.string() +
+                     " is there already, of an earlier run: refine that folder, remove it, or "
+                     "choose another --out");
+  }
+  CutOptions options;
+  options.every = FromSeconds(flags.every_s);
+  int percent = -1;
+  const CutDrive cut = CutIntoSession(flags.dir, drive, options, [&](double fraction) {
+    const int now = static_cast<int>(100 * fraction);
+    if (now / 10 != percent / 10) PrintProgress("reading the log: " + std::to_string(now) + "%");
+    percent = now;
+  });
+  for (const std::string& problem : cut.problems) {
+    std::fprintf(stderr, "%s: %s\n", flags.dir.c_str(), problem.c_str());
+  }
+  PrintProgress(std::to_string(cut.sweeps) + " sweeps of the log, as a session: " + drive.string());
+  return OpenSession(drive);
+}
+
 int RunRefine(RefineFlags flags) {
   constexpr double kDegree = M_PI / 180;
   if (flags.search) {  // about each axis, so that 10 degrees and 0.2 m are well within it
@@ -78,8 +104,10 @@ int RunRefine(RefineFlags flags) {
   }
   flags.options.join_start = !flags.prior.empty();
   flags.options.Check();
-  const Session session = OpenSession(flags.dir);
-  const std::filesystem::path out = PathOr(flags.out, session.root / "refined");
+  const Session session = SessionOf(flags);
+  const bool is_log = std::filesystem::is_regular_file(flags.dir);
+  const std::filesystem::path out =
+      PathOr(flags.out, is_log ? session.root.parent_path() : session.root / "refined");
   const Calibration start = StartOf(flags, session);
   const ReadViews read = ReadAll(session);
   RequireReadable(session, read.unreadable);
@@ -103,16 +131,21 @@ void AddRefine(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "refine",
       "Refines a calibration without a target, by the edges of whatever stands about: where a\n"
-      "nearer thing ends before a farther one. DIR is a session directory of any scenes; every\n"
-      "third view is left out to judge the result: what fits those worse than the start is not\n"
-      "taken. Writes calibration.textproto, report.json and report.html.\n"
+      "nearer thing ends before a farther one. DIR is a session directory of any scenes, or a log\n"
+      "of a drive (lcm-logger), out of which one is cut; every third view is left out to judge "
+      "the\n"
+      "result: what fits those worse than the start is not taken. Writes calibration.textproto,\n"
+      "report.json and report.html.\n"
       "Examples: rgbdt refine out/drive --calibration out/demo/calibration.textproto\n"
-      "          rgbdt refine out/drive --search        # from a rough guess in the rig file",
+      "          rgbdt refine out/drive --search        # from a rough guess in the rig file\n"
+      "          rgbdt refine drive.lcmlog --out out/refine",
       [flags] { return RunRefine(*flags); });
   verb->Ends(ExitCode::kFailed,
              "failed, or not all of it: a camera did not converge, or a view could not be read");
   AddVerdictEnds(verb);
-  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/)");
+  verb->Required("DIR", &flags->dir, "session directory (rig.textproto, views/), or a log");
+  verb->Within("--every", &flags->every_s, 0, 3600,
+               "of a log's sweeps, one in so many seconds is taken, 60 at most");
   verb->Option("--calibration", &flags->calibration,
                "where to start; default: DIR/calibration.textproto or, without, the rig file's\n"
                "camera_from_lidar_guess. Its error may be some 2 degrees and 50 mm");
@@ -125,7 +158,7 @@ void AddRefine(CommandLine* program) {
                "natural, this project's own; published ones to compare with: mi, nmi, mutual\n"
                "information (Pandey 2012, Taylor 2012); gom, gradient orientation (Taylor 2013);\n"
                "edge-grid, depth discontinuities (Levinson and Thrun 2013)");
-  verb->Option("--out", &flags->out, "where to write; default: DIR/refined");
+  verb->Option("--out", &flags->out, "where to write; default: DIR/refined, of a log out/refine");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
   AddAnyway(verb, &flags->anyway, "the rig is another");
 }

@@ -44,6 +44,23 @@ for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
     assert camera["status"] != "CONVERGED" or not wrong, (name, camera["truth_error"])
 END
 
+# Out of a log of a drive, from the true calibration turned by what the guess is off.
+"$bin/drive_test_log" "$scratch/room" 1 "$scratch/drive.lcmlog" "$scratch/true.textproto"
+accepts "a log" "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/from_log" \
+  --truth "$scratch/room/truth.textproto"
+for file in calibration.textproto report.json drive/rig.textproto drive/views/0003-thermal/cloud.pcd; do
+  [ -s "$scratch/from_log/$file" ] || complain "refine of a log wrote no $file"
+done
+python3 - "$scratch/from_log/report.json" <<'END' || complain "the log's calibration is not near the truth"
+import json, sys
+for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
+    assert camera["status"] == "CONVERGED", (name, camera["status"])
+    assert camera["truth_error"]["rotation_deg"] < 0.1, (name, camera["truth_error"])
+    assert camera["heldout"] == ["0003-" + name], (name, camera["heldout"])
+END
+says=("is there already")
+refuses "a drive that was cut before" "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/from_log"
+
 misuses "a method that is not there" "$bin/rgbdt" refine "$scratch/room" --method magic
 says=("there is no session directory")
 refuses "a session that is not there" "$bin/rgbdt" refine "$scratch/none"

@@ -1,10 +1,10 @@
 // A mount watched while the rig drives: standing still, knocked, drifting.
 //   study_monitor SESSION MODE RUNS SEED SIZE_DEG CSV
 // SESSION: a session directory with truth.textproto, its views in the order of driving. MODE: still
-// (one run: all views), knock (SIZE_DEG and 5 mm, in directions drawn from SEED, before the sixth
-// of ten sweeps), drift (of yaw, SIZE_DEG a sweep). The calibration at hand is off by what it
-// states: 1 sigma 0.02 deg and 1 mm. That a LIDAR was knocked is put into its clouds. A line of CSV
-// for each sweep and camera.
+// (all views), knock (SIZE_DEG and 5 mm, in directions drawn from SEED, before the sixth of ten
+// sweeps), random (the same, as the watch takes mounts to move), drift (of yaw, SIZE_DEG a sweep).
+// The calibration at hand is off by what it states: 1 sigma 0.02 deg and 1 mm. That a LIDAR was
+// knocked is put into its clouds. A line of CSV for each sweep and camera.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -80,7 +80,7 @@ void Run(const std::vector<std::string>& a) {
   const Session session = OpenSession(a[0]);
   const Truth truth = ReadTruth(session.root / "truth.textproto");
   const Case own{session.root.filename().string(), a[1], std::stod(a[4])};
-  const bool knocks = own.mode == "knock";
+  const bool knocks = own.mode == "knock" || own.mode == "random";
   std::mt19937_64 random(std::stoull(a[3]));
   Recorder recorder(a[5]);
   std::vector<View> views;
@@ -100,6 +100,11 @@ void Run(const std::vector<std::string>& a) {
       Vector6d knock;
       knock << own.size_deg * kDegree * Normals(&random).normalized(),
           5e-3 * Normals(&random).normalized();
+      if (own.mode == "random") {
+        const WatchOptions usual;
+        const std::size_t size = random() % usual.moved_rad.size();
+        knock << usual.moved_rad[size] * Normals(&random), usual.moved_m[size] * Normals(&random);
+      }
       const std::size_t most = views.size() - kBefore - kAfter;
       const std::size_t first =
           knocks ? std::min(most,

@@ -19,8 +19,8 @@ METHOD_COLOURS = {
 # Chi-square of six degrees of freedom that is as unlikely as 4 sigma of one.
 FOUR_SIGMA = 28.9
 # Columns; all others are numbers, and what is not to be had is empty.
-TEXT = {"axis", "camera", "case", "first", "grade", "how", "judged", "method", "mistake", "place", "reason",
-        "scene", "second", "sensor", "start", "status", "view"}
+TEXT = {"axis", "camera", "case", "first", "grade", "how", "judged", "method", "mistake", "mode",
+        "place", "reason", "scene", "second", "sensor", "session", "start", "status", "view"}
 
 
 def read(parts, *prefixes):

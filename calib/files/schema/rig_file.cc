@@ -316,6 +316,7 @@ std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
     for (proto::Camera& camera : *rig->mutable_camera()) {
       camera.clear_device();
       camera.clear_camera_from_lidar_guess();
+      camera.clear_follow();
     }
   }
   std::string text;

@@ -142,6 +142,19 @@ TEST(RigFile, GivesBackEveryFieldBitForBit) {
   EXPECT_THAT(PrintRig(rig), HasSubstr("ticks_per_degree: 1400\n"));
 }
 
+TEST(RigFile, HowFarTheMonitorIsFollowed) {
+  Rig rig = test::MakeRig();
+  EXPECT_EQ(PrintRig(rig).find("follow"), std::string::npos) << "as usual";
+  rig.cameras[0].follow = {0.0125, 0.25};
+  const Rig back = ParseRig(PrintRig(rig), "printed");
+  EXPECT_DOUBLE_EQ(back.cameras[0].follow.rotation_rad, 0.0125);
+  EXPECT_DOUBLE_EQ(back.cameras[0].follow.translation_m, 0.25);
+  EXPECT_DOUBLE_EQ(back.cameras[1].follow.translation_m, FollowLimits().translation_m);
+  EXPECT_THAT(DifferencesOf(test::MakeRig(), rig), IsEmpty()) << "no calibration depends on it";
+  rig.cameras[0].follow.rotation_rad = -1;
+  EXPECT_THROW(rig.Check(), InputError);
+}
+
 TEST(RigFile, WhatDiffersBetweenTwoRigsIsNamed) {
   const Rig rig = test::MakeRig();
   Rig other = rig;

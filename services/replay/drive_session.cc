@@ -1,0 +1,212 @@
+#include "services/replay/drive_session.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
+#include "services/bus/log.h"
+#include "services/messages/codec.h"
+#include "services/nodes/assembler_node.h"
+#include "services/nodes/shot_collector.h"
+
+namespace rgbdt {
+namespace {
+
+class Cutter {
+ public:
+  Cutter(std::filesystem::path dir, const CutOptions& options)
+      : dir_(std::move(dir)), options_(options) {}
+
+  void Take(const Message& message) {
+    if (const auto* text = std::get_if<RigText>(&message)) {
+      OnRig(*text);
+    } else if (!rig_) {
+      return;  // it comes once a second
+    } else if (const auto* image = std::get_if<Image>(&message)) {
+      shots_.Add(*image);
+    } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
+      shots_.Add(*pose);
+    } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
+      OnCalibration(*calibration);
+    } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
+      if (!has_lines_) OnChunk(*chunk);
+    } else if (std::holds_alternative<LineScan>(message) ||
+               std::holds_alternative<EncoderReading>(message)) {
+      has_lines_ |= std::holds_alternative<LineScan>(message);
+      Assemble(message);
+    }
+  }
+
+  // Numbers the sweeps that are left, and writes what belongs to all of them.
+  CutDrive Finish(const std::string& log) {
+    if (!rig_) throw InputError(log + ": no RIG in this log; record that channel, too");
+    if (taken_.empty()) {
+      throw InputError(log + ": no sweep with an image of its time; of " + std::to_string(sweeps_) +
+                       " sweeps none could be used. CLOUD (or LINE_SCAN and ENCODER) and the "
+                       "cameras' images are needed, and POSE where it is there must tell where the "
+                       "rig was");
+    }
+    if (!calibration_.cameras.empty()) {
+      calibration_.sensors = SensorsOf(*rig_);
+      WriteCalibration(dir_ / "calibration.textproto", calibration_);
+    }
+    CutDrive cut;
+    cut.sweeps = taken_.size();
+    for (const Taken& taken : taken_) cut.views += taken.cameras.size();
+    return cut;
+  }
+
+ private:
+  struct Taken {
+    int number = 0;
+    std::vector<std::string> cameras;
+  };
+
+  void OnRig(const RigText& text) {
+    assembler_.Handle(text);
+    if (rig_ && rig_->hash == text.hash) return;
+    if (rig_) throw InputError("another RIG; what follows it is another drive and is left out");
+    rig_ = ParseRig(text.text, "RIG");
+    WriteRig(dir_, *rig_);
+  }
+
+  void OnCalibration(const CalibrationMessage& message) {
+    if (message.rig_hash != rig_->hash) return;
+    calibration_.method = message.method;
+    calibration_.rig_hash = message.rig_hash;
+    calibration_.utime = std::max(calibration_.utime, message.utime);
+    for (CameraCalibration& camera : calibration_.cameras) {
+      if (camera.camera != message.calibration.camera) continue;
+      camera = message.calibration;
+      return;
+    }
+    calibration_.cameras.push_back(message.calibration);
+  }
+
+  void Assemble(const Message& message) {
+    for (const Message& chunk : assembler_.Handle(message)) {
+      if (const auto* cloud = std::get_if<CloudChunk>(&chunk)) OnChunk(*cloud);
+    }
+  }
+
+  void OnChunk(const CloudChunk& chunk) {
+    const Utime name = chunk.cloud.sweep_utime;
+    if (!shots_.Add(chunk)) return;
+    ++sweeps_;
+    if (last_ != 0 && name < last_ + options_.every) return;
+    const std::optional<Cloud> sweep = shots_.Complete(name);
+    if (sweep && Write(*sweep)) last_ = name;
+    if (taken_.size() > options_.most_sweeps) Thin();
+  }
+
+  Rigid3 PoseOf(const CameraSpec& camera) const {
+    const CameraCalibration* found = calibration_.Find(camera.name);
+    if (found != nullptr) return found->camera_from_lidar;
+    return camera.camera_from_lidar_guess.value_or(Rigid3());
+  }
+
+  static std::string NameOf(int number, const std::string& camera) {
+    char digits[16];
+    std::snprintf(digits, sizeof(digits), "%04d", number);
+    return digits + ("-" + camera);
+  }
+
+  bool Write(const Cloud& sweep) {
+    Taken taken;
+    taken.number = ++number_;
+    for (const CameraSpec& camera : rig_->cameras) {
+      std::optional<TakenShot> shot = shots_.ShotOf(sweep, camera, PoseOf(camera));
+      if (!shot) continue;
+      View view;
+      view.name = NameOf(taken.number, camera.name);
+      view.heldout = taken.number % 3 == 0;
+      view.cloud = std::move(shot->cloud);
+      view.images.push_back(std::move(shot->image));
+      WriteView(dir_, view);
+      taken.cameras.push_back(camera.name);
+    }
+    if (taken.cameras.empty()) {
+      --number_;
+      return false;
+    }
+    taken_.push_back(std::move(taken));
+    return true;
+  }
+
+  // Every second one goes. Of those that stay every third is held out still: 1 3 5 7 9 11.
+  void Thin() {
+    std::deque<Taken> kept;
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      if (i % 2 == 0) {
+        kept.push_back(taken_[i]);
+        continue;
+      }
+      for (const std::string& camera : taken_[i].cameras) {
+        std::filesystem::remove_all(dir_ / "views" / NameOf(taken_[i].number, camera));
+      }
+    }
+    taken_ = std::move(kept);
+    options_.every *= 2;
+  }
+
+  std::filesystem::path dir_;
+  CutOptions options_;
+  std::optional<Rig> rig_;
+  AssemblerNode assembler_;
+  ShotCollector shots_;
+  Calibration calibration_;
+  bool has_lines_ = false;
+  Utime last_ = 0;
+  std::size_t sweeps_ = 0;
+  int number_ = 0;
+  std::deque<Taken> taken_;
+};
+
+bool IsOfUse(const std::string& channel) {
+  static const std::string kImage = "_IMAGE";
+  return channel == "RIG" || channel == "CLOUD" || channel == "LINE_SCAN" || channel == "ENCODER" ||
+         channel == "POSE" || channel == "CALIBRATION" ||
+         (channel.size() > kImage.size() &&
+          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
+}
+
+}  // namespace
+
+CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir,
+                        const CutOptions& options, const std::function<void(double)>& progress) {
+  LogReader reader(log);
+  Cutter cutter(dir, options);
+  std::size_t dropped = 0;
+  std::string last_problem;
+  while (const auto event = reader.Next()) {
+    if (!IsOfUse(event->channel)) continue;
+    try {
+      cutter.Take(Decode(event->channel, event->bytes.data(), event->bytes.size()));
+    } catch (const InputError& error) {  // as a process does: dropped and counted
+      ++dropped;
+      last_problem = event->channel + ": " + error.what();
+    }
+    if (progress) {
+      progress(static_cast<double>(reader.position()) /
+               static_cast<double>(std::max<std::int64_t>(1, reader.size())));
+    }
+  }
+  CutDrive cut = cutter.Finish(log);
+  if (dropped > 0) {
+    cut.problems.push_back(std::to_string(dropped) +
+                           " messages dropped; the last: " + last_problem);
+  }
+  if (reader.unreadable_bytes() > 0) {
+    cut.problems.push_back(std::to_string(reader.unreadable_bytes()) +
+                           " bytes belong to no whole message; was the logger killed?");
+  }
+  return cut;
+}
+
+}  // namespace rgbdt
