@@ -36,6 +36,8 @@ class Cutter {
       OnCalibration(*calibration);
     } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
       if (!has_lines_) OnChunk(*chunk);
+    } else if (!rig_->lidar.turned_scanner) {
+      return;
     } else if (std::holds_alternative<LineScan>(message) ||
                std::holds_alternative<EncoderReading>(message)) {
       has_lines_ |= std::holds_alternative<LineScan>(message);
@@ -69,10 +71,10 @@ class Cutter {
   };
 
   void OnRig(const RigText& text) {
-    assembler_.Handle(text);
     if (rig_ && rig_->hash == text.hash) return;
-    if (rig_) throw InputError("another RIG; what follows it is another drive and is left out");
+    if (rig_) throw InputError("another RIG than the first one; it is left out");
     rig_ = ParseRig(text.text, "RIG");
+    if (rig_->lidar.turned_scanner) assembler_.Handle(text);
     WriteRig(dir_, *rig_);
   }
 
