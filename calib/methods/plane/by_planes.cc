@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
-#include "calib/model/stopwatch.h"
-#include "calib/solve/closure.h"
+#include "calib/solve/calibrate_alone.h"
 
 namespace rgbdt {
 namespace {
@@ -41,6 +40,19 @@ Sums SumsAt(const std::vector<const CameraView*>& used, const Rigid3& camera_fro
   return sums;
 }
 
+// The step of Gauss and Newton, halved until the squares do not grow: far from the solution it may
+// be too long.
+Rigid3 Stepped(const std::vector<const CameraView*>& used, const Rigid3& pose, double squares,
+               Vector6d step) {
+  constexpr int kHalvings = 8;
+  for (int i = 0; i < kHalvings; ++i) {
+    const Rigid3 next = Exp(step) * pose;
+    if (!(SumsAt(used, next).squares > squares)) return next;
+    step /= 2;
+  }
+  return Exp(step) * pose;
+}
+
 }  // namespace
 
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start) {
@@ -52,8 +64,11 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
     const Sums sums = SumsAt(used, result.camera_from_lidar);
     const Vector6d step = SolveSymmetric(sums.h, sums.g);
     if (!step.allFinite()) break;
-    result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
     converged = step.norm() < 1e-10;
+    constexpr double kShort = 1e-4;  // where halves are not needed, and rounding could ask for them
+    result.camera_from_lidar = step.norm() < kShort
+                                   ? Exp(step) * result.camera_from_lidar
+                                   : Stepped(used, result.camera_from_lidar, sums.squares, step);
   }
   const Sums sums = SumsAt(used, result.camera_from_lidar);
   const Vector6d eigenvalues = EigensystemOf(sums.h).values;
@@ -71,22 +86,9 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
 
 CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
-  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
-  const EdgeModel edges{target, BoardPriors().Means(), {}};
-  for (auto& [views, guess] : guessed) {
-    if (!guess.camera_from_lidar) continue;
-    const Stopwatch watch;
-    CameraReport& report = views.report;
-    report.calibration = SolvePlanes(views.Used(), *guess.camera_from_lidar);
-    report.calibration.camera = views.spec->name;
-    report.solve_s += watch.Seconds();
-    report.calibration = WithDegeneracy(views);
-    report = JudgeViews(edges, views);
-  }
-  CalibratedCameras out;
-  if (options.diagnostics) out.closure = CloseLoops(guessed);
-  out.cameras = WithoutGuesses(std::move(guessed));
-  return out;
+  return CalibrateAlone(
+      target, options, std::move(cameras),
+      [](CameraViews* views, const Rigid3& guess) { return SolvePlanes(views->Used(), guess); });
 }
 
 }  // namespace rgbdt
