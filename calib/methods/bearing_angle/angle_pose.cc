@@ -93,8 +93,8 @@ std::optional<double> DistanceOf(const Points& points, const Points& directions,
 
 }  // namespace
 
-std::optional<Rigid3> PoseFromDirections(const Points& points, const Points& directions) {
-  if (points.size() < 4) return std::nullopt;
+std::optional<Rigid3> PoseFromAngles(const Points& points, const Points& directions) {
+  if (points.size() < 5) return std::nullopt;
   std::vector<std::size_t> told;
   std::vector<double> distance;
   for (std::size_t i = 0; i < points.size(); ++i) {

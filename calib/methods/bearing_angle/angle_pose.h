@@ -13,8 +13,8 @@ namespace rgbdt {
 /// polynomial of the fourth degree in its squared distance from the camera; all of them together
 /// are linear in (1, x, .., x^4), and their null vector tells x. With all distances known the pose
 /// is the motion between two sets of points. `points`: LIDAR frame [m]; `directions`: unit, camera
-/// axes; as many, four or more. Nothing where they do not tell a pose.
-std::optional<Rigid3> PoseFromDirections(const std::vector<Eigen::Vector3d>& points,
-                                         const std::vector<Eigen::Vector3d>& directions);
+/// axes; as many, five or more. Nothing where they do not tell a pose.
+std::optional<Rigid3> PoseFromAngles(const std::vector<Eigen::Vector3d>& points,
+                                     const std::vector<Eigen::Vector3d>& directions);
 
 }  // namespace rgbdt

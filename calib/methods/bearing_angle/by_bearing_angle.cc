@@ -29,7 +29,7 @@ std::optional<Rigid3> LinearPose(const Camera& camera, const Picks& picks, std::
     points.push_back(pick.point);
     directions.push_back(*direction);
   }
-  return PoseFromDirections(points, directions);
+  return PoseFromAngles(points, directions);
 }
 
 struct Sums {
@@ -105,8 +105,8 @@ CameraCalibration Failed(SolveStatus status, std::string why, const Rigid3& pose
 
 void BearingAngleOptions::Check() const {
   const OptionCheck check("bearing angle");
-  check.AtLeast(static_cast<int>(least_points), 4, "least_points");
-  check.AtLeast(static_cast<int>(most_linear), 4, "most_linear");
+  check.AtLeast(static_cast<int>(least_points), 5, "least_points");
+  check.AtLeast(static_cast<int>(most_linear), 5, "most_linear");
   check.Positive(most_spacings, "most_spacings");
 }
 

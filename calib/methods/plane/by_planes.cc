@@ -1,5 +1,6 @@
 #include "calib/methods/plane/by_planes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -40,35 +41,48 @@ Sums SumsAt(const std::vector<const CameraView*>& used, const Rigid3& camera_fro
   return sums;
 }
 
-// The step of Gauss and Newton, halved until the squares do not grow: far from the solution it may
-// be too long.
-Rigid3 Stepped(const std::vector<const CameraView*>& used, const Rigid3& pose, double squares,
-               Vector6d step) {
-  constexpr int kHalvings = 8;
-  for (int i = 0; i < kHalvings; ++i) {
-    const Rigid3 next = Exp(step) * pose;
-    if (!(SumsAt(used, next).squares > squares)) return next;
-    step /= 2;
+// The steps of Gauss and Newton; where one would let the squares grow, as it may far from the
+// solution, damped after Levenberg and Marquardt until it does not.
+class Steps {
+ public:
+  Vector6d From(const std::vector<const CameraView*>& used, const Rigid3& pose) {
+    constexpr double kLeast = 1e-6;
+    constexpr double kMost = 1e6;
+    constexpr double kShort = 1e-4;  // rounding could ask for damping below
+    const Sums sums = SumsAt(used, pose);
+    Vector6d step = Damped(sums);
+    while (step.norm() > kShort && damping_ < kMost &&
+           SumsAt(used, Exp(step) * pose).squares > sums.squares) {
+      damping_ = std::max(kLeast, 10 * damping_);
+      step = Damped(sums);
+    }
+    damping_ = damping_ > kLeast ? damping_ / 10 : 0;
+    return step;
   }
-  return Exp(step) * pose;
-}
+
+ private:
+  Vector6d Damped(const Sums& sums) const {
+    Matrix6d h = sums.h;
+    h.diagonal() *= 1 + damping_;
+    return SolveSymmetric(h, sums.g);
+  }
+
+  double damping_ = 0;
+};
 
 }  // namespace
 
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start) {
-  constexpr int kIterations = 50;
+  constexpr int kIterations = 200;
   CameraCalibration result;
   result.camera_from_lidar = start;
   bool converged = false;
+  Steps steps;
   for (int i = 0; i < kIterations && !converged; ++i) {
-    const Sums sums = SumsAt(used, result.camera_from_lidar);
-    const Vector6d step = SolveSymmetric(sums.h, sums.g);
+    const Vector6d step = steps.From(used, result.camera_from_lidar);
     if (!step.allFinite()) break;
+    result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
     converged = step.norm() < 1e-10;
-    constexpr double kShort = 1e-4;  // where halves are not needed, and rounding could ask for them
-    result.camera_from_lidar = step.norm() < kShort
-                                   ? Exp(step) * result.camera_from_lidar
-                                   : Stepped(used, result.camera_from_lidar, sums.squares, step);
   }
   const Sums sums = SumsAt(used, result.camera_from_lidar);
   const Vector6d eigenvalues = EigensystemOf(sums.h).values;

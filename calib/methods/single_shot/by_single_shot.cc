@@ -37,6 +37,7 @@ struct Shot {
 
 // A pose, what lies on what there, and the pose refined from that.
 struct Pose {
+  Rigid3 start;  // camera_from_lidar, by a triple
   PlaneMatch match;
   CameraCalibration calibration;
 };
@@ -63,7 +64,7 @@ CameraCalibration SolveMatched(const Shot& shot, const PlaneMatch& match) {
 
 // Pieces matched anew from where points on planes lead, until they stay.
 Pose RefinedFrom(const Shot& shot, PlaneMatch match, const SingleShotOptions& options) {
-  Pose pose{std::move(match), {}};
+  Pose pose{match.camera_from_lidar, std::move(match), {}};
   for (int round = 0; round < options.rounds; ++round) {
     pose.calibration = SolveMatched(shot, pose.match);
     if (!pose.calibration.converged()) break;
@@ -183,7 +184,7 @@ CameraCalibration SolveSingleShot(CameraViews* views, int min_views,
         Format("two poses fit alike: %zu and %zu of %zu boards lie on planes of the cloud",
                BoardsOn(poses[0].match), BoardsOn(rival->match), shot.boards.size()));
   }
-  views->report.first_guess = poses[0].match.camera_from_lidar;
+  views->report.first_guess = poses[0].start;
   TakePieces(shot, poses[0], options.matching, views);
   const std::vector<const CameraView*> used = views->Used();
   if (used.size() < least) {

@@ -27,8 +27,12 @@ CloudEdges PatchOf(const PlaneRegion& region) {
   PlaneSums sums;
   for (const Eigen::Vector3f& point : region.points) sums.Add(point.cast<double>());
   const Plane plane = sums.Fit();
+  const PlaneFrame frame(plane, sums.Mean());
+  const std::vector<cv::Point2f> flat = Flattened(region, frame);
+  const cv::RotatedRect box = cv::minAreaRect(flat);
   CloudEdges patch;
-  patch.centre = sums.Mean();
+  // Not the points' mean: they lie closer together where the piece is nearer.
+  patch.centre = frame.Solid({box.center.x, box.center.y});
   patch.normal = plane.normal;
   patch.points = sums.count();
   patch.scatter_sigma_m = sums.Rms(plane);
@@ -38,16 +42,14 @@ CloudEdges PatchOf(const PlaneRegion& region) {
     patch.scatter += q * q.transpose();
   }
   patch.raw_scatter = patch.scatter;
-  const PlaneFrame frame(plane, patch.centre);
-  const std::vector<cv::Point2f> flat = Flattened(region, frame);
-  const cv::RotatedRect box = cv::minAreaRect(flat);
   patch.width_m = std::max(box.size.width, box.size.height);
   patch.height_m = std::min(box.size.width, box.size.height);
   patch.spacing_m = std::sqrt(patch.width_m * patch.height_m / patch.points);
   std::vector<cv::Point2f> hull;
   cv::convexHull(flat, hull);
-  for (const cv::Point2f& corner : hull)
+  for (const cv::Point2f& corner : hull) {
     patch.boundary.push_back(frame.Solid({corner.x, corner.y}));
+  }
   return patch;
 }
 

@@ -10,7 +10,7 @@ namespace rgbdt {
 
 // The paper grows segments over normals of each point's neighbours and drops those much smaller or
 // larger than a board. Here regions grow as for the detection of boards (plane_regions.h); the
-// sizes kept are ours.
+// sizes kept are ours. A piece's centre is that of the smallest rectangle about it.
 
 struct PatchOptions {
   double range_sigma_m = 0.01;
