@@ -47,9 +47,12 @@ class Trials {
 
   void Run(const std::string& method) {
     if (Has(kRefineMethodNames, method)) {
-      FromEachGuess(method, [&](const Rig& rig) { return Refined(rig, method); });
+      FromEachGuess(method, [&](const Rig& rig, const GuessSize& size) {
+        return Refined(rig, method, size);
+      });
     } else if (method == kPaperMethod) {
-      FromEachGuess(method, [&](const Rig& rig) { return Calibrated(rig, method); });
+      FromEachGuess(method,
+                    [&](const Rig& rig, const GuessSize&) { return Calibrated(rig, method); });
     } else {
       Write(method, {}, 0, Calibrated(session_.rig, method));
     }
@@ -72,7 +75,7 @@ class Trials {
               OffBy(truth_.camera_from_lidar.at(camera.name), size.degrees * kDegree,
                     size.millimetres * 1e-3, &random);
         }
-        Write(method, size, start, solve(rig));
+        Write(method, size, start, solve(rig, size));
       }
     }
   }
@@ -88,12 +91,16 @@ class Trials {
     return Calibrate(rig, detection.views, options);
   }
 
-  Report Refined(const Rig& rig, const std::string& method) {
+  Report Refined(const Rig& rig, const std::string& method, const GuessSize& size) {
     if (views_.empty()) {
       for (const std::string& name : session_.views) views_.push_back(ReadView(session_, name));
     }
     RefineOptions options;
     options.method = method;
+    if (size.degrees > 3) {  // as `rgbdt refine --search` does; natural's alone
+      options.natural.rotation_sigma_rad = 6 * kDegree;
+      options.natural.translation_sigma_m = 0.12;
+    }
     return Refine(rig, views_, {}, options);
   }
 
