@@ -43,7 +43,7 @@ std::vector<CornerPick> CornerPicks(const std::vector<const CameraView*>& used,
 /// (angle_pose.h), then least squares of the distances in the image. The covariance is the usual
 /// one, by the residuals. Not solved: too few correspondences, or no linear pose from them. Not
 /// converged: residuals far above a beam's spacing.
-CameraCalibration SolveCornerPicks(const CameraSpec& camera, const std::vector<CornerPick>& picks,
+CameraCalibration SolveCornerPicks(const CameraSpec& spec, const std::vector<CornerPick>& picks,
                                    const BearingAngleOptions& options = {});
 
 /// "bearing-angle": see Calibrate.
