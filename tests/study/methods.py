@@ -126,9 +126,10 @@ def draw(rows, path):
                 continue
             colour = plt.get_cmap("tab20")(2 * k % 20 + (k >= 10))
             curve(axes[0], own, lambda r: middle(r, "rotation_deg"), method, colour, markers[k])
-            curve(axes[1], own, lambda r: share(r, is_right), method, colour, markers[k])
+            # Shares are often alike: each method a little beside, so that none hides another.
+            curve(axes[1], own, lambda r, k=k: share(r, is_right) + 0.008 * (k - 5), method, colour, markers[k])
         axes[0].set(xscale="log", yscale="log", ylabel=f"{camera}: median error of what converged [deg]")
-        axes[1].set(ylabel=f"{camera}: share right", ylim=(-0.04, 1.04))
+        axes[1].set(ylabel=f"{camera}: share right", ylim=(-0.07, 1.07))
         trials.plain_log(axes[0].yaxis)
     for axis in grid[1]:
         axis.set_xlabel("first guess off by [deg] (and 25 mm a degree); dashed: needs none")
