@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   std::string url;
   line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
   std::string method = rgbdt::kAutoMethod;
-  line.Choice("--method", &method, rgbdt::kMethodNames, rgbdt::kMethodHelp);
+  line.Choice("--method", &method, rgbdt::kBusMethodNames, rgbdt::kBusMethodHelp);
   return line.Run(argc, argv, [&] {
     rgbdt::DetectorNode node(method);
     return rgbdt::RunOnLcm(node, url);

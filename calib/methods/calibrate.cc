@@ -2,10 +2,13 @@
 
 #include <utility>
 
+#include "calib/methods/bearing_angle/by_bearing_angle.h"
 #include "calib/methods/internal/guess_check.h"
 #include "calib/methods/internal/report_parts.h"
+#include "calib/methods/line_scan/by_line_scan.h"
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
+#include "calib/methods/single_shot/by_single_shot.h"
 #include "calib/solve/by_boards.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/evaluate.h"
@@ -21,6 +24,16 @@ CameraViews WithGuessChecked(CameraViews camera) {
   return camera;
 }
 
+CalibratedCameras CalibrateCameras(const Target& target, const CalibrateOptions& options,
+                                   std::vector<CameraViews> cameras) {
+  const auto by = options.method == kPlaneMethod          ? CalibrateByPlanes
+                  : options.method == kLineScanMethod     ? CalibrateByLineScan
+                  : options.method == kBearingAngleMethod ? CalibrateByBearingAngle
+                  : options.method == kSingleShotMethod   ? CalibrateBySingleShot
+                                                          : CalibrateByBoards;
+  return by(target, options, std::move(cameras));
+}
+
 }  // namespace
 
 Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
@@ -32,10 +45,7 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
-    CalibratedCameras calibrated =
-        options.method == kPlaneMethod
-            ? CalibrateByPlanes(rig.target, with_rig, std::move(cameras))
-            : CalibrateByBoards(rig.target, with_rig, std::move(cameras));
+    CalibratedCameras calibrated = CalibrateCameras(rig.target, with_rig, std::move(cameras));
     cameras = std::move(calibrated.cameras);
     for (CameraViews& camera : cameras) camera = WithGuessChecked(std::move(camera));
     report.closure = std::move(calibrated.closure);

@@ -16,7 +16,9 @@ namespace rgbdt {
 /// the others are left out by name, and the result has a covariance. Where views left out in turn
 /// fit it worse than the first guess by more than chance, the first guess is kept and the status
 /// says so. "plane": each
-/// camera by the boards' planes alone (by_planes.h). "paper" starts from the hand-measured guess;
+/// camera by the boards' planes alone (by_planes.h). "line-scan", "bearing-angle", "single-shot":
+/// published methods to compare with (line_scan/, bearing_angle/, single_shot/), whose detections
+/// must be made by the same method. "paper" starts from the hand-measured guess;
 /// with wide_start it solves a second time from a start turned away by wide_roll and wide_yaw and
 /// reports where that ends. The order of the detections does not matter. A camera without enough
 /// views gets its guess and a status that says so; one whose views leave its pose loose a status

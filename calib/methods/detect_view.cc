@@ -5,9 +5,13 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/cloud/range_grid.h"
 #include "calib/detect/image/image_edges.h"
 #include "calib/detect/image/stillness.h"
+#include "calib/methods/bearing_angle/board_corners.h"
+#include "calib/methods/line_scan/board_lines.h"
 #include "calib/methods/paper/cloud_edges.h"
+#include "calib/methods/single_shot/planar_patches.h"
 #include "calib/model/errors.h"
 #include "calib/model/stopwatch.h"
 
@@ -118,17 +122,46 @@ void DetectCloudAnywhere(const Rig& rig, const Cloud& cloud, CloudDetection* det
   if (detection->candidates.empty()) detection->why_not = boards.why;
 }
 
+// The same boards, with what a method takes of them.
+void TakeLines(const Rig& rig, const Cloud& cloud, CloudDetection* detection) {
+  for (CloudEdges& board : detection->candidates) {
+    board.groups = LinesOnBoard(cloud, board, rig.target, rig.lidar.range_sigma_m);
+  }
+}
+
+void TakeCorners(const Rig& rig, const Cloud& cloud, CloudDetection* detection) {
+  BoardCornerOptions options;
+  options.range_sigma_m = rig.lidar.range_sigma_m;
+  const RangeGrid grid(cloud);
+  for (CloudEdges& board : detection->candidates) {
+    board.corners = PickBoardCorners(grid, board, rig.target, options);
+  }
+}
+
+void DetectPatches(const Rig& rig, const Cloud& cloud, CloudDetection* detection) {
+  PatchOptions options;
+  options.range_sigma_m = rig.lidar.range_sigma_m;
+  detection->candidates = PlanarPatches(cloud, rig.target, options);
+  if (detection->candidates.empty()) {
+    detection->why_not = "no plane about as large as the target in the cloud";
+  }
+}
+
 CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
-                           const std::vector<ImageDetection>& images, bool by_paper) {
+                           const std::vector<ImageDetection>& images, const std::string& method) {
   CloudDetection detection;
   detection.why_not = WhySweepIsTorn(cloud);
   if (!detection.why_not.empty()) return detection;
   const Stopwatch watch;
-  if (by_paper) {
+  if (method == kPaperMethod) {
     DetectCloudByGuesses(rig, cloud, images, &detection);
+  } else if (method == kSingleShotMethod) {
+    DetectPatches(rig, cloud, &detection);
   } else {
     DetectCloudAnywhere(rig, cloud, &detection);
   }
+  if (method == kLineScanMethod) TakeLines(rig, cloud, &detection);
+  if (method == kBearingAngleMethod) TakeCorners(rig, cloud, &detection);
   detection.detect_s = watch.Seconds();
   return detection;
 }
@@ -148,7 +181,7 @@ ViewDetection DetectView(const Rig& rig, const View& view, const std::string& me
   for (const CameraSpec& camera : rig.cameras) {
     detection.images.push_back(DetectImage(camera, rig.target, view, by_paper));
   }
-  detection.cloud = DetectCloud(rig, view.cloud, detection.images, by_paper);
+  detection.cloud = DetectCloud(rig, view.cloud, detection.images, method);
   return detection;
 }
 

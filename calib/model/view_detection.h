@@ -115,7 +115,11 @@ struct CloudEdges {
   /// The same of the points where they were measured.
   Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();
   double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
-  /// The same points told apart by what shares an error; empty: by the paper's method.
+  /// By bearing-angle alone: the outline's corners, picked among the points, in the order of the
+  /// pose's target (Target::OutlineCorners); NaN where none could be picked. Not on the bus.
+  std::vector<Eigen::Vector3d> corners;
+  /// The same points told apart by what shares an error; empty: by the paper's method. By
+  /// line-scan: one group a line, where its points were measured.
   std::vector<PointGroup> groups;
   double group_sigma_m = 0;  ///< of a point's distance from the plane, about its group's mean
 };

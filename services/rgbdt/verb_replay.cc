@@ -109,7 +109,7 @@ void AddReplay(CommandLine* program) {
   AddVerdictEnds(verb);
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");
-  verb->Choice("--method", &flags->method, kMethodNames, kMethodHelp);
+  verb->Choice("--method", &flags->method, kBusMethodNames, kBusMethodHelp);
   AddAnyway(verb, &flags->anyway, "its verdict is `do not use`, or the rig is another");
 }
 

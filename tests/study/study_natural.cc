@@ -16,27 +16,13 @@
 #include "calib/methods/natural/by_scene.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/model/stopwatch.h"
+#include "tests/study/starts.h"
 #include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-
-Eigen::Vector3d Direction(std::mt19937_64* random) {
-  const auto even = [&] { return static_cast<double>((*random)() >> 11) * 0x1p-52 - 1; };
-  for (;;) {
-    const Eigen::Vector3d v(even(), even(), even());
-    if (v.norm() > 0.1 && v.norm() <= 1) return v.normalized();
-  }
-}
-
-Rigid3 OffBy(const Rigid3& truth, double rotation_rad, double translation_m,
-             std::mt19937_64* random) {
-  Vector6d delta;
-  delta << rotation_rad * Direction(random), translation_m * Direction(random);
-  return Exp(delta) * truth;
-}
 
 void Run(const std::vector<std::string>& a) {
   const Session session = OpenSession(a[0]);

@@ -1,11 +1,11 @@
 #include "calib/methods/plane/by_planes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
-#include "calib/model/stopwatch.h"
-#include "calib/solve/closure.h"
+#include "calib/solve/calibrate_alone.h"
 
 namespace rgbdt {
 namespace {
@@ -41,16 +41,45 @@ Sums SumsAt(const std::vector<const CameraView*>& used, const Rigid3& camera_fro
   return sums;
 }
 
+// The steps of Gauss and Newton; where one would let the squares grow, as it may far from the
+// solution, damped after Levenberg and Marquardt until it does not.
+class Steps {
+ public:
+  Vector6d From(const std::vector<const CameraView*>& used, const Rigid3& pose) {
+    constexpr double kLeast = 1e-6;
+    constexpr double kMost = 1e6;
+    constexpr double kShort = 1e-4;  // rounding could ask for damping below
+    const Sums sums = SumsAt(used, pose);
+    Vector6d step = Damped(sums);
+    while (step.norm() > kShort && damping_ < kMost &&
+           SumsAt(used, Exp(step) * pose).squares > sums.squares) {
+      damping_ = std::max(kLeast, 10 * damping_);
+      step = Damped(sums);
+    }
+    damping_ = damping_ > kLeast ? damping_ / 10 : 0;
+    return step;
+  }
+
+ private:
+  Vector6d Damped(const Sums& sums) const {
+    Matrix6d h = sums.h;
+    h.diagonal() *= 1 + damping_;
+    return SolveSymmetric(h, sums.g);
+  }
+
+  double damping_ = 0;
+};
+
 }  // namespace
 
 CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const Rigid3& start) {
-  constexpr int kIterations = 50;
+  constexpr int kIterations = 200;
   CameraCalibration result;
   result.camera_from_lidar = start;
   bool converged = false;
+  Steps steps;
   for (int i = 0; i < kIterations && !converged; ++i) {
-    const Sums sums = SumsAt(used, result.camera_from_lidar);
-    const Vector6d step = SolveSymmetric(sums.h, sums.g);
+    const Vector6d step = steps.From(used, result.camera_from_lidar);
     if (!step.allFinite()) break;
     result.camera_from_lidar = Exp(step) * result.camera_from_lidar;
     converged = step.norm() < 1e-10;
@@ -71,22 +100,9 @@ CameraCalibration SolvePlanes(const std::vector<const CameraView*>& used, const 
 
 CalibratedCameras CalibrateByPlanes(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
-  std::vector<GuessedCamera> guessed = GuessCameras(options, std::move(cameras));
-  const EdgeModel edges{target, BoardPriors().Means(), {}};
-  for (auto& [views, guess] : guessed) {
-    if (!guess.camera_from_lidar) continue;
-    const Stopwatch watch;
-    CameraReport& report = views.report;
-    report.calibration = SolvePlanes(views.Used(), *guess.camera_from_lidar);
-    report.calibration.camera = views.spec->name;
-    report.solve_s += watch.Seconds();
-    report.calibration = WithDegeneracy(views);
-    report = JudgeViews(edges, views);
-  }
-  CalibratedCameras out;
-  if (options.diagnostics) out.closure = CloseLoops(guessed);
-  out.cameras = WithoutGuesses(std::move(guessed));
-  return out;
+  return CalibrateAlone(
+      target, options, std::move(cameras),
+      [](CameraViews* views, const Rigid3& guess) { return SolvePlanes(views->Used(), guess); });
 }
 
 }  // namespace rgbdt

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
@@ -107,6 +109,61 @@ TEST_F(Detect, PicksThatAreNoQuadrangleAreRefusedWithTheReason) {
   same.corners[1] = same.corners[0];
   EXPECT_THAT(DetectImageEdges(ImageOf("thermal"), camera, made_->rig.target, &same).why,
               HasSubstr("same point"));
+}
+
+// The candidate that is the board; null: there is none.
+const CloudEdges* BoardAmong(const CloudDetection& cloud, const Rigid3& lidar_from_target) {
+  for (const CloudEdges& candidate : cloud.candidates) {
+    if ((candidate.centre - lidar_from_target.translation).norm() < 0.1) return &candidate;
+  }
+  return nullptr;
+}
+
+TEST_F(Detect, LinesOfTheScannerLieOnTheBoard) {
+  const Rigid3 lidar_from_target = made_->truth.lidar_from_target.at("0001");
+  const ViewDetection detection = DetectView(made_->rig, made_->view, kLineScanMethod);
+  const CloudEdges* board = BoardAmong(detection.cloud, lidar_from_target);
+  ASSERT_NE(board, nullptr) << detection.cloud.why_not;
+  const Eigen::Vector3d normal = lidar_from_target.rotation * Eigen::Vector3d::UnitZ();
+  std::set<int> lines;
+  for (const PointGroup& line : board->groups) {
+    EXPECT_GE(line.ring, 0);
+    EXPECT_TRUE(lines.insert(line.ring).second) << line.ring << " stands there twice";
+    const double points = line.scatter(3, 3);
+    const Eigen::Vector3d mean = board->centre + line.scatter.col(3).head<3>() / points;
+    // Range noise of 10 mm, and half of that for where the plane is: 4 sigma.
+    EXPECT_LT(std::abs(normal.dot(mean - lidar_from_target.translation)),
+              4 * std::hypot(0.01 / std::sqrt(points), 0.005));
+  }
+  EXPECT_GT(lines.size(), 20U);
+}
+
+TEST_F(Detect, OutlineCornersArePickedWithinABeamsSpacing) {
+  const Rigid3 lidar_from_target = made_->truth.lidar_from_target.at("0001");
+  const ViewDetection detection = DetectView(made_->rig, made_->view, kBearingAngleMethod);
+  const CloudEdges* board = BoardAmong(detection.cloud, lidar_from_target);
+  ASSERT_NE(board, nullptr) << detection.cloud.why_not;
+  ASSERT_EQ(board->corners.size(), 4U);
+  const bool turned = RotationDistance(board->pose->sensor_from_target, lidar_from_target) > 1;
+  const auto truth = made_->rig.target.OutlineCorners();
+  for (std::size_t k = 0; k < 4; ++k) {
+    ASSERT_TRUE(board->corners[k].allFinite()) << k;
+    const Eigen::Vector3d off =
+        lidar_from_target.Inverse() * board->corners[k] - truth[(k + (turned ? 2 : 0)) % 4];
+    // A spacing along each axis, and the beam's own width; 4 sigma of the range across.
+    EXPECT_LT(off.head<2>().norm(), std::sqrt(2.0) * board->spacing_m + 0.02) << k;
+    EXPECT_LT(std::abs(off.z()), 0.04) << k;
+  }
+}
+
+TEST_F(Detect, TheBoardIsAmongThePlanesOfItsSize) {
+  const Rigid3 lidar_from_target = made_->truth.lidar_from_target.at("0001");
+  const ViewDetection detection = DetectView(made_->rig, made_->view, kSingleShotMethod);
+  const CloudEdges* board = BoardAmong(detection.cloud, lidar_from_target);
+  ASSERT_NE(board, nullptr) << detection.cloud.why_not;
+  EXPECT_FALSE(board->pose);
+  EXPECT_GT(std::abs(board->normal.dot(lidar_from_target.rotation * Eigen::Vector3d::UnitZ())),
+            std::cos(0.02));
 }
 
 TEST_F(Detect, BoundaryPointsLieOnTheBoardsEdge) {
