@@ -71,9 +71,9 @@ void SayWhatIsUntold(const SceneAlignment& found, const NaturalOptions& options,
   for (const SceneAlignment::Direction& direction : found.directions) {
     if (direction.ratio < kUntold) break;
     const Eigen::Index number = MainNumber(direction.delta, sigma);
-    report->warnings.push_back(
-        "the scene hardly tells " + DirectionWords(number) +
-        ": it stays about where it was; take sweeps that show " + NeededFor(number));
+    report->warnings.push_back("the scene hardly tells " + DirectionWords(number) +
+                               ": it stays about where it was; take sweeps that show " +
+                               NeededFor(number));
   }
 }
 
