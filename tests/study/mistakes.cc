@@ -119,6 +119,11 @@ Cloud WithMistake(const Mistake& mistake, Cloud cloud) {
   return cloud;
 }
 
+bool IsOfTheCloud(const Mistake& mistake) {
+  static const std::set<std::string> kNames = {"board", "size", "scale"};
+  return kNames.count(mistake.name) > 0;
+}
+
 int ViewsApart(const Mistake& mistake) { return mistake.name == "pairs" ? mistake.size : 0; }
 
 std::vector<ViewDetection> PairedApart(std::vector<ViewDetection> views, int apart) {
