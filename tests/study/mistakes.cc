@@ -148,6 +148,7 @@ std::vector<std::string> CausesRead(const CameraReport& camera) {
   if (MostAreRejected(camera, "no board of the target's size in the cloud")) {
     read.emplace_back(kSizeInCloud);
   }
+  if (MostAreRejected(camera, "measure it (width_m, height_m)")) read.emplace_back("board's size");
   if (MostAreRejected(camera, "check the lens in the rig")) read.emplace_back("lens");
   const Verdict verdict = Judge(camera);
   for (const std::string& reason : verdict.reasons) {
