@@ -361,7 +361,13 @@ std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& ta
 }
 
 std::string WhyNoFlatBoard(const Camera& camera) {
-  std::string why = "the checkerboard's corners do not fit a flat board; check the lens in the rig";
+  const std::string lens = WhyLensIsUnlikely(camera);
+  return "the checkerboard's corners do not fit a flat board; check the lens in the rig" +
+         (lens.empty() ? "" : ": " + lens);
+}
+
+std::string WhyLensIsUnlikely(const Camera& camera) {
+  std::string why;
   const Lens& lens = camera.lens();
   // A centre lies near the image's middle, a focal length hardly ever is half of the image.
   const auto near_middle = [](double value, int size) {
@@ -369,8 +375,9 @@ std::string WhyNoFlatBoard(const Camera& camera) {
   };
   const auto add = [&](const char* axis, double focal, double centre, int size) {
     if (near_middle(centre, size) || !near_middle(focal, size)) return;
+    if (!why.empty()) why += "; ";
     why += Format(
-        ": c%s = %.0f is far from the middle of the image, %dx%d; were f%s and c%s "
+        "c%s = %.0f is far from the middle of the image, %dx%d; were f%s and c%s "
         "exchanged?",
         axis, centre, camera.width(), camera.height(), axis, axis);
   };

@@ -51,4 +51,7 @@ std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& ta
 /// what cannot be right.
 std::string WhyNoFlatBoard(const Camera& camera);
 
+/// What of the given lens cannot be right, in words; empty: nothing is known against it.
+std::string WhyLensIsUnlikely(const Camera& camera);
+
 }  // namespace rgbdt

@@ -165,7 +165,6 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
     report.warnings.push_back(RangesAreOff(report.calibration.range_errors->offset_m,
                                            *result.refuted_range_offset_sigma_m));
   }
-  report.causes = GivenWrong(result, camera);
   report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
   return report;
 }
@@ -187,8 +186,32 @@ CameraViews WithRangeOffset(CameraViews camera) {
   return camera;
 }
 
+// Edges and planes are two measurements of one pose: where they contradict each other, nobody knows
+// which is off. The result lies between them; its covariance is enlarged until they agree (Birge
+// 1932), after it was judged whether the views determine the pose at all.
+CameraReport EnlargedWhereEdgesAndPlanesDiffer(CameraReport report) {
+  constexpr double kFreedom = 6;
+  constexpr double kUnlikely = 22.5;  // of six degrees of freedom: once in a thousand times
+  CameraCalibration& calibration = report.calibration;
+  if (!report.edges_planes || !calibration.covariance) return report;
+  if (!(report.edges_planes->chi2 > kUnlikely)) return report;
+  const double factor = report.edges_planes->chi2 / kFreedom;
+  report.edges_planes->chi2 = kFreedom;
+  report.warnings.push_back(
+      Format("edges alone and planes alone contradict each other (chi-square %.1f, %.0f expected): "
+             "the stated sigma was enlarged %.1f times, until they agree",
+             factor * kFreedom, kFreedom, std::sqrt(factor)));
+  *calibration.covariance *= factor;
+  if (calibration.lens) calibration.lens->covariance *= factor;
+  for (Cause& cause : report.causes) {
+    if (cause.moves_sigma) *cause.moves_sigma /= std::sqrt(factor);
+  }
+  return report;
+}
+
 CameraViews Judged(const EdgeModel& edges, CameraViews camera) {
   camera.report.calibration = WithDegeneracy(camera);
+  camera.report = EnlargedWhereEdgesAndPlanesDiffer(std::move(camera.report));
   camera = WithRangeOffset(std::move(camera));
   camera.report = JudgeViews(edges, camera);
   return camera;
@@ -255,8 +278,11 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   const Stopwatch watch;
   JointResult result = SolveWithLensFound(target, options, std::move(cameras), detected);
   const double seconds = watch.Seconds();
+  std::vector<std::vector<Cause>> causes = GivenWrong(result);
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
-    result.joint.cameras[c].views.report = WithSolution(result, c, seconds);
+    CameraReport& report = result.joint.cameras[c].views.report;
+    report = WithSolution(result, c, seconds);
+    report.causes = std::move(causes[c]);
   }
   SolvedGroup solved;
   solved.changes = ChangesOf(result);
@@ -305,7 +331,7 @@ std::vector<GuessedCamera> GuessOrSayWhyNot(const Target& target, const Calibrat
     }
     CameraReport& report = guessed[c].views.report;
     report.contradiction = why.contradiction;
-    if (why.other_model) report.causes = {*why.other_model};
+    report.causes = why.causes;
   }
   return guessed;
 }

@@ -119,6 +119,11 @@ Cloud WithMistake(const Mistake& mistake, Cloud cloud) {
   return cloud;
 }
 
+bool IsOfTheCloud(const Mistake& mistake) {
+  static const std::set<std::string> kNames = {"board", "size", "scale"};
+  return kNames.count(mistake.name) > 0;
+}
+
 int ViewsApart(const Mistake& mistake) { return mistake.name == "pairs" ? mistake.size : 0; }
 
 std::vector<ViewDetection> PairedApart(std::vector<ViewDetection> views, int apart) {
@@ -143,6 +148,7 @@ std::vector<std::string> CausesRead(const CameraReport& camera) {
   if (MostAreRejected(camera, "no board of the target's size in the cloud")) {
     read.emplace_back(kSizeInCloud);
   }
+  if (MostAreRejected(camera, "measure it (width_m, height_m)")) read.emplace_back("board's size");
   if (MostAreRejected(camera, "check the lens in the rig")) read.emplace_back("lens");
   const Verdict verdict = Judge(camera);
   for (const std::string& reason : verdict.reasons) {

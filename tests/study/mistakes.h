@@ -26,6 +26,9 @@ Rig WithMistake(const Mistake& mistake, Rig rig);
 /// A view's cloud with the mistake in it: scaled.
 Cloud WithMistake(const Mistake& mistake, Cloud cloud);
 
+/// Whether it changes what is found of a board in a cloud: its size, or the cloud.
+bool IsOfTheCloud(const Mistake& mistake);
+
 /// By how many views images and clouds are apart.
 int ViewsApart(const Mistake& mistake);
 

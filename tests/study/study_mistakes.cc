@@ -3,14 +3,15 @@
 //   study_mistakes recorded SESSION CSV
 // sampled: sessions of the noise model (sampled_sessions.h), 10 views and 4 held out; the views'
 // boards are found anew in their clouds and posed anew by what the rig says. recorded: a session
-// directory; images and clouds are looked at anew. MISTAKE: those only; "none" is the right rig. A
-// line of CSV for each session, mistake and camera: chi2 is the result's against the truth or,
+// directory; images and clouds are looked at anew. MISTAKE: those, and "none", the right rig, only.
+// A line of CSV for each session, mistake and camera: chi2 is the result's against the truth or,
 // recorded, against that of the right rig.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -37,7 +38,9 @@ constexpr int kViews = 10, kHeldout = 4;
 using Poses = std::map<std::string, CameraCalibration>;  // what is right, by camera
 
 // As a detector would have it that believes this rig: corners and sides are where they are.
-ViewDetection SeenBy(const Rig& rig, const Cloud& cloud, ViewDetection view) {
+// `right`: what the right rig's has of the cloud, which is the same unless board or cloud differ.
+ViewDetection SeenBy(const Rig& rig, const Cloud* cloud, const CloudDetection& right,
+                     ViewDetection view) {
   for (ImageDetection& image : view.images) {
     if (!image.edges || !image.edges->pose) continue;
     ImageEdges& edges = *image.edges;
@@ -53,9 +56,11 @@ ViewDetection SeenBy(const Rig& rig, const Cloud& cloud, ViewDetection view) {
     edges.pose->half_turn_known = half_turn_known;
     edges.corner_sigma_px = pose->inflation * pose->corner_sigma_px;
   }
+  view.cloud = right;
+  if (cloud == nullptr) return view;
   BoardInCloudOptions detector;
   detector.range_sigma_m = rig.lidar.range_sigma_m;
-  BoardsInCloud boards = FindBoards(cloud, rig.target, detector);
+  BoardsInCloud boards = FindBoards(*cloud, rig.target, detector);
   view.cloud = {std::move(boards.candidates), std::move(boards.why), 0};
   return view;
 }
@@ -132,13 +137,18 @@ void RunSampled(const std::string& sensor, int sessions, std::uint64_t seed,
     for (const auto& [camera, pose] : session->truth.camera_from_lidar) {
       right[camera].camera_from_lidar = pose;
     }
+    std::vector<CloudDetection> clouds(session->views.size());  // by the right rig
     for (const Mistake& mistake : AllMistakes(session->rig.target)) {
-      if (!only.empty() && only.count(mistake.name) == 0) continue;
+      if (!only.empty() && mistake.name != "none" && only.count(mistake.name) == 0) continue;
       const Rig rig = WithMistake(mistake, session->rig);
       std::vector<ViewDetection> views;
       for (std::size_t v = 0; v < session->views.size(); ++v) {
-        views.push_back(
-            SeenBy(rig, WithMistake(mistake, session->views[v].cloud), session->detections[v]));
+        std::optional<Cloud> cloud;
+        if (mistake.name == "none" || IsOfTheCloud(mistake)) {
+          cloud = WithMistake(mistake, session->views[v].cloud);
+        }
+        views.push_back(SeenBy(rig, cloud ? &*cloud : nullptr, clouds[v], session->detections[v]));
+        if (mistake.name == "none") clouds[v] = views.back().cloud;
       }
       table.Add(i, mistake, Calibrate(rig, PairedApart(std::move(views), ViewsApart(mistake))),
                 right);

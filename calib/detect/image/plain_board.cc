@@ -83,6 +83,38 @@ std::string WhyNotSeen(const Sides& sides) {
   return unseen == sides.end() ? "" : "a side of the board cannot be measured: " + unseen->why;
 }
 
+// A quadrangle's longer side over its shorter one, were it a rectangle (Zhang and He 2007): four
+// directions d fix the corners' depths by l1 d1 - l2 d2 + l3 d3 - l4 d4 = 0.
+double LongerOverShorter(const Quadrangle& quadrangle) {
+  const auto& d = quadrangle.corners;
+  Eigen::Matrix3d others;
+  others << d[1], -d[2], d[3];
+  const Eigen::Vector3d depths = others.fullPivLu().solve(d[0]);
+  const double a = (depths[0] * d[1] - d[0]).norm();
+  const double b = (depths[2] * d[3] - d[0]).norm();
+  return std::max(a, b) / std::min(a, b);
+}
+
+double LongerOverShorter(const Target& target) {
+  return std::max(target.width_m, target.height_m) / std::min(target.width_m, target.height_m);
+}
+
+// Of another shape, its shorter side kept.
+Target Shaped(Target target, double longer_over_shorter) {
+  const bool wide = target.width_m >= target.height_m;
+  (wide ? target.width_m : target.height_m) =
+      longer_over_shorter * (wide ? target.height_m : target.width_m);
+  return target;
+}
+
+// Whether a quadrangle of another shape may be the board all the same, given wrong; farther off it
+// is some other thing.
+bool NearlyTheTargets(double shape, double targets) {
+  constexpr double kLeast = 1.03, kMost = 1.25;
+  const double off = std::max(shape, targets) / std::min(shape, targets);
+  return off > kLeast && off < kMost;
+}
+
 double SigmaOf(const Sides& sides) {
   double sum = 0;
   for (const ImageSide& side : sides) sum += 0.5 * side.covariance.trace();
@@ -162,6 +194,30 @@ class Measurement {
   BoardSidesOptions options_;
 };
 
+// Where all that is wrong with an outline is its shape: width and height may be given wrong, or fx
+// and fy, which stretch an image alike.
+std::string WhyOfOtherShape(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
+                            const Target& target, const std::vector<Quadrangle>& quadrangles) {
+  const double targets = LongerOverShorter(target);
+  for (const Quadrangle& quadrangle : quadrangles) {
+    const double shape = LongerOverShorter(quadrangle);
+    if (!NearlyTheTargets(shape, targets)) continue;
+    const Target shaped = Shaped(target, shape);
+    if (!Measurement(grey, clipped, camera, shaped).From(quadrangle).board) continue;
+    return Format(
+        "an outline does not have the target's size: its sides are as %.2f to 1, by the rig file "
+        "as %.2f to 1; if it is the board, measure it (width_m, height_m) and check the lens in "
+        "the rig (fx against fy)",
+        shape, targets);
+  }
+  return "";
+}
+
+std::string WhyLensMatters(const Camera& camera) {
+  const std::string why = WhyLensIsUnlikely(camera);
+  return why.empty() ? "" : "; check the lens in the rig: " + why;
+}
+
 }  // namespace
 
 PlainBoardResult FindPlainBoard(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
@@ -174,12 +230,16 @@ PlainBoardResult FindPlainBoard(const cv::Mat& grey, const cv::Mat& clipped, con
                           "no quadrangle in the image; are all four sides of the board in view, at "
                           "least in part, before something brighter or darker?"};
   bool first = true;
-  for (const Quadrangle& quadrangle : FindQuadrangles(repaired, camera)) {
+  const std::vector<Quadrangle> quadrangles = FindQuadrangles(repaired, camera);
+  for (const Quadrangle& quadrangle : quadrangles) {
     PlainBoardResult one = measurement.From(quadrangle);
     if (one.board) return one;
     if (first) result.why = one.why;
     first = false;
   }
+  const std::string other = WhyOfOtherShape(repaired, clipped, camera, target, quadrangles);
+  if (!other.empty()) result.why = other;
+  result.why += WhyLensMatters(camera);
   return result;
 }
 

@@ -31,9 +31,9 @@ struct PlainBoardResult {
 ///   2. one that the target's size and the lens explain, from most seen to least, gives a pose
 ///   3. each side is fitted to the image's gradient (FitBoardSides), and the pose to the sides
 /// Refused with the reason: a size that does not fit, less than three sides' worth of outline, or a
-/// tilt that could as well be the mirrored one. A door or a sheet may fit as well: the views
-/// together tell, by where the LIDAR sees the board.
-/// `clipped` is what Clipped() says of the image.
+/// tilt that could as well be the mirrored one. Where an outline would fit but for its shape, or
+/// the lens cannot be right, that is said. A door or a sheet may fit as well: the views together
+/// tell, by where the LIDAR sees the board. `clipped` is what Clipped() says of the image.
 PlainBoardResult FindPlainBoard(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
                                 const Target& target);
 

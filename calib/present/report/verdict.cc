@@ -292,16 +292,25 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
   }
 }
 
+// Where the solver found that their own sigmas do not allow it, it enlarged the stated one.
 void JudgeEdgesAndPlanes(const Halves& apart, Judgement* judgement) {
-  if (!(apart.chi2 > kUnlikelyChi2)) return;
-  const std::string why =
-      "The boards' edges alone and their planes alone put the camera " +
-      PoseErrorText(apart.difference) + " apart, more than their sigmas allow (chi-square " +
-      Number(apart.chi2, 1) +
-      "): the LIDAR's beams or ranges, the lens or the board's size are off in a way that is not "
-      "known, and the result may be off by more than stated.";
-  if (apart.difference.rotation_deg > kFarApartDeg ||
-      apart.difference.translation_mm > kFarApartMm) {
+  const bool far =
+      apart.difference.rotation_deg > kFarApartDeg || apart.difference.translation_mm > kFarApartMm;
+  const bool allowed = !(apart.chi2 > kUnlikelyChi2);
+  if (allowed && !far) return;
+  const std::string put = "The boards' edges alone and their planes alone put the camera " +
+                          PoseErrorText(apart.difference) + " apart, ";
+  const std::string off =
+      "the LIDAR's beams or ranges, the lens or the board's size are off in a way that is not "
+      "known";
+  if (allowed) {
+    judgement->Usable(put + "and the stated sigma is large enough to allow it: " + off + ".");
+    return;
+  }
+  const std::string why = put + "more than their sigmas allow (chi-square " +
+                          Number(apart.chi2, 1) + "): " + off +
+                          ", and the result may be off by more than stated.";
+  if (far) {
     judgement->Doubtful(why);
   } else {
     judgement->Usable(why);

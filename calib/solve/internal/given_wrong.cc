@@ -60,8 +60,11 @@ Cause CauseOf(std::string name, std::string words, const Off& off) {
 
 class Tester {
  public:
-  Tester(const JointResult& result, std::size_t camera)
-      : result_(result), problem_(result.joint.problem), places_(problem_), camera_(camera) {
+  explicit Tester(const JointResult& result)
+      : result_(result),
+        problem_(result.joint.problem),
+        places_(problem_),
+        models_(problem_.cameras.size()) {
     const Index size = places_.Count();
     information_ = Eigen::MatrixXd::Zero(size, size);
     gradient_ = Eigen::VectorXd::Zero(size);
@@ -72,7 +75,8 @@ class Tester {
     with_priors_ = gradient_ + PriorInformation(problem_, result.solution.state).gradient;
   }
 
-  std::vector<Cause> All() {
+  std::vector<Cause> Of(std::size_t camera) {
+    camera_ = camera;
     std::vector<Cause> causes;
     const auto add = [&](std::optional<Cause> cause) {
       if (cause && std::isfinite(cause->Sigmas())) causes.push_back(std::move(*cause));
@@ -160,7 +164,7 @@ class Tester {
                    off);
   }
 
-  std::vector<Cause> OfLens() const {
+  std::vector<Cause> OfLens() {
     const LensOff& off = result_.lenses_off[lens_];
     if (off.contradicts()) return OfRefutedLens(off);
     std::vector<Cause> causes;
@@ -208,7 +212,7 @@ class Tester {
 
   // The lens that was found against the one that was given, part by part. The result has it, so
   // that it does not move any more.
-  std::vector<Cause> OfRefutedLens(const LensOff& lens) const {
+  std::vector<Cause> OfRefutedLens(const LensOff& lens) {
     const auto part = [&](const Eigen::MatrixXd& by_numbers) {
       return Off{by_numbers * lens.off, by_numbers * lens.covariance * by_numbers.transpose(), 0.0};
     };
@@ -240,14 +244,25 @@ class Tester {
             ModelOrDistortion(DistortionCause(part(distortion))), std::move(all)};
   }
 
-  // That the model is the wrong one, where the images want the other: it says more.
-  Cause ModelOrDistortion(Cause distortion) const {
-    const auto lens = FindLensByImages(Board(), result_.joint.cameras[lens_].views);
-    const auto model = lens ? OtherModel(*lens, Spec()) : std::nullopt;
+  // That the model is the wrong one, where the images want the other: it says more. One of another
+  // model bends otherwise: where the distortion is as given, the model is, too.
+  Cause ModelOrDistortion(Cause distortion) {
+    if (!(distortion.Sigmas() >= kGivenWrongSigmas)) return distortion;
+    const auto& model = ModelByImages();
     if (!model) return distortion;
     distortion.name = model->name;
     distortion.words = model->words;
     return distortion;
+  }
+
+  // Of one lens for all cameras' reports: it takes longer than all else here.
+  const std::optional<Cause>& ModelByImages() {
+    auto& model = models_[lens_];
+    if (!model) {
+      const auto lens = FindLensByImages(Board(), result_.joint.cameras[lens_].views);
+      model = lens ? OtherModel(*lens, Spec()) : std::nullopt;
+    }
+    return *model;
   }
 
   // "fx and cx", "fy and cy", or nothing.
@@ -383,16 +398,20 @@ class Tester {
   const JointResult& result_;
   const BoardProblem& problem_;
   SharedPlaces places_;
-  std::size_t camera_;    // whose pose it is about
-  std::size_t lens_ = 0;  // whose lens is looked at
+  std::size_t camera_ = 0;                                   // whose pose it is about
+  std::size_t lens_ = 0;                                     // whose lens is looked at
+  std::vector<std::optional<std::optional<Cause>>> models_;  // by lens, where it was looked for
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_, with_priors_;
 };
 
 }  // namespace
 
-std::vector<Cause> GivenWrong(const JointResult& result, std::size_t camera) {
-  return Tester(result, camera).All();
+std::vector<std::vector<Cause>> GivenWrong(const JointResult& result) {
+  Tester tester(result);
+  std::vector<std::vector<Cause>> causes;
+  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) causes.push_back(tester.Of(c));
+  return causes;
 }
 
 }  // namespace rgbdt

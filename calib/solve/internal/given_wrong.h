@@ -7,7 +7,7 @@
 
 namespace rgbdt {
 
-/// What may have been given wrong to a solve, as one camera's report has it, the likeliest first:
+/// What may have been given wrong to a solve, as each camera's report has it, the likeliest first:
 /// its lens, and those of other cameras that are surely off; the squares; the board's size and its
 /// pattern's place; the cloud's scale.
 ///
@@ -22,6 +22,6 @@ namespace rgbdt {
 ///
 /// Where a lens was refuted, the solution has the one that the views found: its differences from
 /// the given one stand in the lens's place.
-std::vector<Cause> GivenWrong(const JointResult& result, std::size_t camera);
+std::vector<std::vector<Cause>> GivenWrong(const JointResult& result);
 
 }  // namespace rgbdt

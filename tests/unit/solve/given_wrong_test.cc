@@ -177,6 +177,46 @@ TEST(WhyViewsDisagree, ImagesBesideTheNextViewsCloudsAreNamed) {
   }
 }
 
+// Six pairs are left that may agree, two of them held out.
+TEST(WhyViewsDisagree, OfFewViewsThoseHeldOutTellThePairsToo) {
+  SolveWorld world(Views(8));
+  const std::vector<ViewDetection> right = world.detections;
+  world.detections.resize(7);
+  for (std::size_t v = 0; v < 7; ++v) world.detections[v].cloud = right[v + 1].cloud;
+  world.detections[2].heldout = world.detections[5].heldout = true;
+  for (const CameraReport& camera : Calibrate(world.rig, world.detections, Brief()).cameras) {
+    EXPECT_THAT(camera.contradiction, HasSubstr("Images and clouds are 1 apart"));
+  }
+}
+
+// So large a mistake that no two views agree: the distances between boards tell it.
+TEST(WhyViewsDisagree, ACloudOrSquaresOfAnotherScaleAreNamed) {
+  for (const bool cloud : {true, false}) {
+    SolveWorld world(Views(10));
+    Target& target = world.rig.target;
+    for (std::size_t v = 0; v < world.detections.size(); ++v) {
+      if (cloud) {
+        CloudEdges& edges = world.CloudAt(v);
+        edges.centre *= 1.2;
+        edges.pose->sensor_from_target.translation *= 1.2;
+        for (Eigen::Vector3d& point : edges.boundary) point *= 1.2;
+        edges.width_m = 1.2 * target.width_m;
+        edges.height_m = 1.2 * target.height_m;
+      } else {
+        world.CloudAt(v).width_m = target.width_m;
+      }
+    }
+    if (!cloud) target.square_m /= 1.2;
+    for (const CameraReport& camera : Believed(world).cameras) {
+      EXPECT_FALSE(camera.calibration.solved());
+      ASSERT_EQ(camera.causes.size(), 2U);
+      EXPECT_EQ(camera.causes[0].name, cloud ? "cloud's scale" : "squares");
+      EXPECT_EQ(camera.causes[1].name, cloud ? "squares" : "focal length");
+      EXPECT_THAT(camera.causes[0].words, HasSubstr("farther apart in the clouds"));
+    }
+  }
+}
+
 TEST(WhyViewsDisagree, ALensThatIsFarOffIsFoundByTheViewsThemselves) {
   SolveWorld world(Views(14));
   CameraSpec& camera = world.rig.cameras[0];

@@ -94,5 +94,33 @@ TEST(PlainBoard, WhatHasNotItsSizeIsRefused) {
   EXPECT_THAT(found.why, testing::HasSubstr("size"));
 }
 
+// Of a board, or of an image by a lens, that is stretched.
+TEST(PlainBoard, ABoardOfAnotherShapeThanGivenIsSaidToBe) {
+  const Camera camera(Spec());
+  const cv::Mat image = Picture(camera, Square(), At(10, 25, 0, 2.6), 200);
+  Target wider = Square();
+  wider.width_m = 1.1;
+  CameraSpec stretched = Spec();
+  stretched.lens.fx *= 1.1;
+  for (const auto& [lens, target] : {std::pair(Spec(), wider), std::pair(stretched, Square())}) {
+    const PlainBoardResult found = Find(Camera(lens), target, image);
+    EXPECT_FALSE(found.board);
+    EXPECT_THAT(found.why, testing::AllOf(testing::HasSubstr("width_m, height_m"),
+                                          testing::HasSubstr("fx against fy")));
+  }
+  EXPECT_THAT(Find(camera, wider, image).why,
+              testing::HasSubstr("1.00 to 1, by the rig file as 1.10 to 1"));
+}
+
+TEST(PlainBoard, ALensThatCannotBeRightIsNamed) {
+  CameraSpec spec = Spec();
+  spec.lens.fx = spec.lens.fy = 2000;
+  const cv::Mat image = Picture(Camera(spec), Square(), At(10, 25, 0, 5), 200);
+  ASSERT_TRUE(Find(Camera(spec), Square(), image).board);
+  std::swap(spec.lens.fx, spec.lens.cx);
+  EXPECT_THAT(Find(Camera(spec), Square(), image).why,
+              testing::HasSubstr("were fx and cx exchanged?"));
+}
+
 }  // namespace
 }  // namespace rgbdt

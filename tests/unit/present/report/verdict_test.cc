@@ -82,6 +82,13 @@ TEST(Verdict, EdgesAndPlanesThatDisagreeAreToldAndByFarAreDoubtful) {
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
 }
 
+TEST(Verdict, ASigmaThatHasTheDistanceOfEdgesAndPlanesInItIsUsable) {
+  CameraReport camera = Good();
+  camera.edges_planes = Halves{{2.5, 200}, 6};
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("stated sigma is large enough to allow it"));
+}
+
 TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
   CameraReport camera = Good();
   camera.edge_rms_px = {};
