@@ -162,7 +162,10 @@ struct Fold {
 /// Two parts of the data, each solved apart: halves of the views, or edges and planes.
 struct Halves {
   PoseError difference;
-  double chi2 = 0;  ///< by the stated covariances, six degrees of freedom
+  double chi2 = 0;  ///< by what each part states, six degrees of freedom
+  /// By so much the result's sigma was enlarged, so that it allows the difference. Absent: it is as
+  /// the parts state it.
+  std::optional<double> sigma_enlarged{};
 };
 
 /// How far results move as views are left out, over what the views' own sigmas say.

@@ -196,7 +196,7 @@ CameraReport EnlargedWhereEdgesAndPlanesDiffer(CameraReport report) {
   if (!report.edges_planes || !calibration.covariance) return report;
   if (!(report.edges_planes->chi2 > kUnlikely)) return report;
   const double factor = report.edges_planes->chi2 / kFreedom;
-  report.edges_planes->chi2 = kFreedom;
+  report.edges_planes->sigma_enlarged = std::sqrt(factor);
   report.warnings.push_back(
       Format("edges alone and planes alone contradict each other (chi-square %.1f, %.0f expected): "
              "the stated sigma was enlarged %.1f times, until they agree",

@@ -296,8 +296,9 @@ void JudgeHalves(const Halves& halves, Judgement* judgement) {
 void JudgeEdgesAndPlanes(const Halves& apart, Judgement* judgement) {
   const bool far =
       apart.difference.rotation_deg > kFarApartDeg || apart.difference.translation_mm > kFarApartMm;
-  const bool allowed = !(apart.chi2 > kUnlikelyChi2);
-  if (allowed && !far) return;
+  const bool agree = !(apart.chi2 > kUnlikelyChi2);
+  const bool allowed = agree || apart.sigma_enlarged.has_value();
+  if (agree && !far) return;
   const std::string put = "The boards' edges alone and their planes alone put the camera " +
                           PoseErrorText(apart.difference) + " apart, ";
   const std::string off =

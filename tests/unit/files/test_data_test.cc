@@ -95,7 +95,7 @@ void AddUncertainty(CameraReport* camera) {
   camera->folds = {{{"0001", "0002"}, 1.01, 1.02, 1.03, {0.004, 0.104}},
                    {{"0004"}, 0.91, 1.0 / 9, 0.93, {0.005, 0.105}}};
   camera->halves = Halves{{0.013, 1.0 / 3}, 5.25};
-  camera->edges_planes = Halves{{0.017, 1.0 / 7}, 6.75};
+  camera->edges_planes = Halves{{0.017, 1.0 / 7}, 6.75, 1.5};
 }
 
 }  // namespace

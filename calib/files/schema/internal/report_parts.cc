@@ -84,10 +84,13 @@ void FromNuisance(const Nuisance& nuisance, proto::Nuisance* out) {
 void FromHalves(const Halves& halves, proto::Halves* out) {
   FromPoseError(halves.difference, out->mutable_difference());
   SetFinite(halves.chi2, &proto::Halves::set_chi2, out);
+  if (halves.sigma_enlarged) out->set_sigma_enlarged(*halves.sigma_enlarged);
 }
 
 Halves ToHalves(const proto::Halves& message) {
-  return {ToPoseError(message.difference()), OrNan(message.has_chi2(), message.chi2())};
+  Halves halves{ToPoseError(message.difference()), OrNan(message.has_chi2(), message.chi2())};
+  if (message.has_sigma_enlarged()) halves.sigma_enlarged = message.sigma_enlarged();
+  return halves;
 }
 
 void FromClosure(const Closure& closure, proto::Closure* out) {

@@ -96,6 +96,8 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   ASSERT_TRUE(b.edges_planes);
   EXPECT_EQ(b.edges_planes->difference.translation_mm, 1.0 / 7);
   EXPECT_EQ(b.edges_planes->chi2, 6.75);
+  EXPECT_EQ(b.edges_planes->sigma_enlarged, 1.5);
+  EXPECT_FALSE(b.halves->sigma_enlarged);
   EXPECT_FALSE(b.scene);
 }
 

@@ -84,7 +84,7 @@ TEST(Verdict, EdgesAndPlanesThatDisagreeAreToldAndByFarAreDoubtful) {
 
 TEST(Verdict, ASigmaThatHasTheDistanceOfEdgesAndPlanesInItIsUsable) {
   CameraReport camera = Good();
-  camera.edges_planes = Halves{{2.5, 200}, 6};
+  camera.edges_planes = Halves{{2.5, 200}, 60, 3.2};
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("stated sigma is large enough to allow it"));
 }
