@@ -21,6 +21,8 @@ constexpr double kDropped = 0.6;          // of the share of edges that images u
 constexpr double kUsualRad = 0.1 * kDegree, kUsualM = 0.005;
 constexpr double kLeastRad = 0.005 * kDegree, kLeastM = 0.0005;
 // How far one looks that is lost, and how much better it must then fit [log-likelihood of an edge].
+// It takes a second: less and less often, where it finds nothing.
+constexpr std::size_t kMostBetweenSearches = 80;  // sweeps
 constexpr double kSearchedRad = 2 * kDegree, kSearchedM = 0.06, kClearly = 0.03;
 
 Vector6d Sigmas(double rotation_rad, double translation_m) {
@@ -118,7 +120,7 @@ void MountWatch::SetCalibration(const CameraCalibration& calibration, Utime utim
   newest_ = pose;
   usual_shown_ = 0;
   moved_ = false;
-  since_search_ = options_.sweeps;
+  since_search_ = search_after_ = options_.sweeps;
 }
 
 // What is known of pose and lens where the mount has moved by about so much.
@@ -152,8 +154,9 @@ bool MountWatch::Dropped(const SceneAlignment& found) const {
 // A large knock: to all sides. Nothing where no other pose fits clearly better.
 std::optional<SceneAlignment> MountWatch::Search(const SceneProblem& problem,
                                                  const SceneAlignment& near) {
-  if (since_search_ < options_.sweeps) return std::nullopt;
+  if (since_search_ < search_after_) return std::nullopt;
   since_search_ = 0;
+  search_after_ = std::min(2 * search_after_, kMostBetweenSearches);
   NaturalOptions options;
   options.start_covariance = Moved(kSearchedRad, kSearchedM);
   SceneAlignment wide = AlignToScene(problem, calibration_->camera_from_lidar, options);
@@ -226,10 +229,18 @@ MountCheck MountWatch::Add(const Shot& shot) {
   Fill(found, &check);
   if (!found.fit.converged) {
     check.state = dropped ? MountState::kLost : MountState::kCannotTell;
-    check.text = dropped ? "does not fit any more, and no pose nearby does: " + found.fit.why_not
-                         : found.fit.why_not;
+    // What follows there is for who refines.
+    const std::string why = found.fit.why_not.substr(0, found.fit.why_not.find(": "));
+    check.text = dropped
+                     ? "does not fit any more, and no pose nearby does (" + why +
+                           "): look at the live image with the cloud on it"
+                     : "cannot tell (" + why +
+                           "): point the camera at things that stand free, "
+                           "3 to 10 m away; where this stays so, look at the live image with the "
+                           "cloud on it";
     return check;
   }
+  search_after_ = options_.sweeps;
   Decide(found, &check);
   if (check.state == MountState::kHolds) {
     usual_shown_ += (check.shown - usual_shown_) / (usual_shown_ > 0 ? 10 : 1);

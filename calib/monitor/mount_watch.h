@@ -66,7 +66,7 @@ class MountWatch {
   Rigid3 newest_;           // where it was found last
   double usual_shown_ = 0;  // share of edges that images showed while it held; 0: not known
   bool moved_ = false;
-  std::size_t since_search_ = 0;
+  std::size_t since_search_ = 0, search_after_ = 0;  // sweeps
 };
 
 }  // namespace rgbdt

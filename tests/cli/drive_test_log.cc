@@ -31,6 +31,7 @@ class Drive {
     for (Utime& time : view.cloud.utime) time += later;
     for (Image& image : view.images) {
       image.utime += later;
+      if (image.format == PixelFormat::kBgr8) image.format = PixelFormat::kJpeg;  // it fits the bus
       Write(image);
     }
     for (const CloudChunk& chunk : SplitSweep(view.cloud)) Write(chunk);
