@@ -100,7 +100,11 @@ void FuserNode::Tell(const std::string& camera, const std::vector<std::string>& 
   }
   const std::string prefix = use_ == Use::kAnyway ? "used anyway: " : "";
   std::string text;
-  for (const std::string& why : against) text += (text.empty() ? "" : "; ") + prefix + why;
+  for (const std::string& why : against) {
+    if (!text.empty()) text += "; ";
+    text += prefix;
+    text += why;
+  }
   if (std::exchange(against_[camera], text) != text) Warn(text);
 }
 

@@ -26,26 +26,12 @@ class Cutter {
   void Take(const Message& message) {
     if (const auto* text = std::get_if<RigText>(&message)) {
       OnRig(*text);
-    } else if (!rig_) {
-      return;  // it comes once a second
-    } else if (const auto* image = std::get_if<Image>(&message)) {
-      shots_.Add(*image);
-    } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
-      shots_.Add(*pose);
-    } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
-      OnCalibration(*calibration);
-    } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
-      if (!has_lines_) OnChunk(*chunk);
-    } else if (!rig_->lidar.turned_scanner) {
-      return;
-    } else if (std::holds_alternative<LineScan>(message) ||
-               std::holds_alternative<EncoderReading>(message)) {
-      has_lines_ |= std::holds_alternative<LineScan>(message);
-      Assemble(message);
+    } else if (rig_) {  // it comes once a second
+      TakeOfRig(message);
     }
   }
 
-  // Numbers the sweeps that are left, and writes what belongs to all of them.
+  // Writes what belongs to all of the sweeps.
   CutDrive Finish(const std::string& log) {
     if (!rig_) throw InputError(log + ": no RIG in this log; record that channel, too");
     if (taken_.empty()) {
@@ -69,6 +55,21 @@ class Cutter {
     int number = 0;
     std::vector<std::string> cameras;
   };
+
+  void TakeOfRig(const Message& message) {
+    if (const auto* image = std::get_if<Image>(&message)) {
+      shots_.Add(*image);
+    } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
+      shots_.Add(*pose);
+    } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
+      OnCalibration(*calibration);
+    } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
+      if (!has_lines_) OnChunk(*chunk);
+    } else if (rig_->lidar.turned_scanner) {
+      has_lines_ |= std::holds_alternative<LineScan>(message);
+      Assemble(message);
+    }
+  }
 
   void OnRig(const RigText& text) {
     if (rig_ && rig_->hash == text.hash) return;
