@@ -185,6 +185,7 @@ void MountWatch::Decide(const SceneAlignment& found, MountCheck* check) {
   numbers.mean.head<6>() = Log(found.fit.camera_from_lidar * calibrated.Inverse());
   numbers.mean.tail<kLensNumbers>() = NumbersOf(found.state.lens) - NumbersOf(spec_.lens);
   std::vector<double> moved;
+  moved.reserve(options_.moved_rad.size());
   for (std::size_t i = 0; i < options_.moved_rad.size(); ++i) {
     moved.push_back(LogOdds(numbers, Moved(options_.moved_rad[i], options_.moved_m[i])));
   }
