@@ -117,6 +117,30 @@ TEST(Refine, WhatTheStartKnowsIsJoined) {
   }
 }
 
+// Known to be turned about y, be it wrong; not known about x.
+TEST(Refine, WhatTheStartKnowsStaysAndWhatItDoesNotIsFound) {
+  const SceneWorld& world = Room();
+  Calibration start = StartOff(world, 0, 0);
+  for (CameraCalibration& camera : start.cameras) {
+    camera.camera_from_lidar = RotationAbout(Eigen::Vector3d::UnitY(), 0.2 * kDegree) *
+                               RotationAbout(Eigen::Vector3d::UnitX(), 0.8 * kDegree) *
+                               camera.camera_from_lidar;
+    Vector6d sigma;
+    sigma << 1 * kDegree, 1e-5, 1 * kDegree, 1e-3, 1e-3, 1e-3;
+    camera.covariance = Matrix6d(sigma.cwiseAbs2().asDiagonal());
+  }
+  RefineOptions options;
+  options.join_start = true;
+  const Report report = Refine(world.rig(), ViewsOf(world), start, options);
+  for (std::size_t c = 0; c < 2; ++c) {
+    const CameraCalibration& found = report.cameras[c].calibration;
+    ASSERT_EQ(found.status, SolveStatus::kConverged) << found.detail;
+    const Vector6d off = Log(found.camera_from_lidar * world.Truth(c).Inverse());
+    EXPECT_NEAR(off[1], 0.2 * kDegree, 0.02 * kDegree);
+    EXPECT_LT(std::abs(off[0]), 0.2 * kDegree);
+  }
+}
+
 TEST(Refine, SaysThatNothingIsToBeSeen) {
   const SceneWorld& world = Room();
   std::vector<View> views = ViewsOf(world);
