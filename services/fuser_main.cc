@@ -20,9 +20,9 @@ int main(int argc, char** argv) {
   bool follow = false;
   line.Flag(
       "--follow-monitor", &follow,
-      "carries a camera that has moved along with what rgbdt-monitor says of its mount, within\n"
-      "the rig file's follow { rotation_deg translation_mm } (1 degree, 30 mm); each change is\n"
-      "said");
+      "carries a camera that has moved along with what rgbdt-monitor says of its mount, as far\n"
+      "as the rig file's follow lets it (1 degree and 30 mm, where it does not say); each\n"
+      "change is said");
   return line.Run(argc, argv, [&] {
     rgbdt::FuserNode node(correct_ranges ? rgbdt::FuserNode::Ranges::kCorrected
                                          : rgbdt::FuserNode::Ranges::kAsMeasured,
