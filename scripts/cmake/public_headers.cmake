@@ -6,6 +6,8 @@ function(rgbdt_component_of_folder folder result)
   set(component)
   if(folder MATCHES "^calib/(methods|present|simulate)")
     set(component ${CMAKE_MATCH_1})
+  elseif(folder STREQUAL calib/monitor)
+    set(component methods)  # it watches by one of them
   elseif(folder STREQUAL services/simulator)
     set(component simulate)
   elseif(folder MATCHES "^calib/")

@@ -1,5 +1,5 @@
 // Writes an LCM log of a drive without captures, from a session of the simulator's: RIG, and view
-// by view images, then the sweep in chunks, 2.5 s after the view before; all views ROUNDS times.
+// by view images, then the sweep in chunks, 20 s after the view before; all views ROUNDS times.
 // Beside it the true calibration. Usage: drive_test_log SESSION ROUNDS LOG CALIBRATION
 #include <cstdio>
 #include <map>
@@ -15,7 +15,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kBetween = 2'500'000, kReplayed = 500'000;
+constexpr Utime kBetween = 20'000'000, kReplayed = 500'000;
 
 class Drive {
  public:
