@@ -29,6 +29,17 @@ Utime WhenSeen(const Cloud& sweep, const CameraSpec& spec, const Rigid3& camera_
   return *middle;
 }
 
+// How long before the sweep's first point or after its last one; 0: while it was swept.
+Utime FromSweep(const Cloud& sweep, Utime utime) {
+  Utime first = sweep.sweep_utime, last = first;
+  if (!sweep.utime.empty()) {
+    const auto [least, most] = std::minmax_element(sweep.utime.begin(), sweep.utime.end());
+    first = *least;
+    last = *most;
+  }
+  return std::max<Utime>({0, first - utime, utime - last});
+}
+
 Utime Apart(Utime a, Utime b) { return a < b ? b - a : a - b; }
 
 }  // namespace
@@ -65,7 +76,7 @@ std::optional<TakenShot> ShotCollector::ShotOf(const Cloud& sweep, const CameraS
   const auto nearest = std::min_element(
       found->second.begin(), found->second.end(),
       [&](const Image& a, const Image& b) { return Apart(a.utime, seen) < Apart(b.utime, seen); });
-  if (nearest == found->second.end() || Apart(nearest->utime, seen) > kFarthest) {
+  if (nearest == found->second.end() || FromSweep(sweep, nearest->utime) > kFarthest) {
     return std::nullopt;
   }
   std::optional<Cloud> still = AsSeenAt(sweep, poses_, nearest->utime);

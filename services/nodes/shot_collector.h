@@ -31,7 +31,7 @@ class ShotCollector {
  public:
   static constexpr std::size_t kKept = 32;
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
-  static constexpr Utime kFarthest = 3 * kMicrosecondsPerSecond;  ///< of an image from its sweep
+  static constexpr Utime kFarthest = 3 * kMicrosecondsPerSecond;  ///< before a sweep or after it
 
   void Add(const Image& image);
   PoseTrack::Added Add(const StampedPose& pose) { return poses_.Add(pose); }
