@@ -29,14 +29,11 @@ Utime WhenSeen(const Cloud& sweep, const CameraSpec& spec, const Rigid3& camera_
   return *middle;
 }
 
-// How long before the sweep's first point or after its last one; 0: while it was swept.
+// How long before the sweep began or after its last point; 0: while it was swept.
 Utime FromSweep(const Cloud& sweep, Utime utime) {
-  Utime first = sweep.sweep_utime, last = first;
-  if (!sweep.utime.empty()) {
-    const auto [least, most] = std::minmax_element(sweep.utime.begin(), sweep.utime.end());
-    first = *least;
-    last = *most;
-  }
+  const Utime first = sweep.sweep_utime;
+  const Utime last =
+      sweep.utime.empty() ? first : *std::max_element(sweep.utime.begin(), sweep.utime.end());
   return std::max<Utime>({0, first - utime, utime - last});
 }
 
