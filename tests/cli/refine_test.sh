@@ -56,7 +56,7 @@ import json, sys
 for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
     assert camera["status"] == "CONVERGED", (name, camera["status"])
     assert camera["truth_error"]["rotation_deg"] < 0.1, (name, camera["truth_error"])
-    assert camera["heldout"] == ["0003-" + name], (name, camera["heldout"])
+    assert camera["views"]["heldout"] == ["0003-" + name], (name, camera["views"])
 END
 says=("is there already")
 refuses "a drive that was cut before" "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/from_log"
