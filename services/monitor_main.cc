@@ -13,13 +13,11 @@ namespace {
 std::optional<rgbdt::GivenCalibration> ReadGiven(const std::string& session) {
   if (session.empty()) return std::nullopt;
   const std::filesystem::path folder(session);
-  rgbdt::GivenCalibration given{rgbdt::ReadRig((folder / "rig.textproto").string()),
-                                rgbdt::ReadCalibration(folder / "calibration.textproto")};
-  rgbdt::RequireSound(
-      given.calibration, given.rig,
-      {(folder / "calibration.textproto").string(), (folder / "rig.textproto").string()},
-      rgbdt::Use::kIfSound);
-  return given;
+  const std::filesystem::path rig = folder / "rig.textproto";
+  const std::filesystem::path calibration = folder / "calibration.textproto";
+  return rgbdt::GivenCalibration{rgbdt::ReadRig(rig),
+                                 rgbdt::ReadCalibration(calibration),
+                                 {calibration.string(), rig.string()}};
 }
 
 }  // namespace

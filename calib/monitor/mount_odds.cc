@@ -32,7 +32,7 @@ MatrixXd Picked(const MatrixXd& all, const std::vector<Index>& which) {
   return own;
 }
 
-// In coordinates in which the prior is the identity: columns are those of `back`.
+// Coordinates in which the prior is the identity.
 struct Whitened {
   MatrixXd by;  // x_white = by * x
   explicit Whitened(const MatrixXd& prior) {

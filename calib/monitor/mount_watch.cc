@@ -45,6 +45,14 @@ double ShownOf(const SceneAlignment& found) {
   return found.sums.edges > 0 ? found.sums.matched / found.sums.edges : 0;
 }
 
+void FillWhatIsSeen(const SceneAlignment& found, MountCheck* check) {
+  check->edges = found.sums.edges;
+  check->shown = ShownOf(found);
+  for (std::size_t i = 0; i < check->where.size() && found.sums.matched > 0; ++i) {
+    check->where[i] = found.sums.where[i] / found.sums.matched;
+  }
+}
+
 template <typename... Values>
 std::string Printed(const char* format, Values... values) {
   char text[200];
@@ -138,12 +146,13 @@ PoseAndLensCovariance MountWatch::Moved(double rotation_rad, double translation_
   return known;
 }
 
-SceneAlignment MountWatch::Align(const SceneProblem& problem) {
+MountWatch::Found MountWatch::Align(const SceneProblem& problem) const {
   NaturalOptions options;
   options.start_covariance = Moved(options_.moved_rad.back(), options_.moved_m.back());
   std::vector<Rigid3> near{calibration_->camera_from_lidar};
   if (moved_) near.push_back(newest_);
-  return AlignNear(problem, calibration_->camera_from_lidar, options, near);
+  return {AlignNear(problem, calibration_->camera_from_lidar, options, near),
+          *options.start_covariance};
 }
 
 // Whether the images show far less than they used to.
@@ -152,8 +161,8 @@ bool MountWatch::Dropped(const SceneAlignment& found) const {
 }
 
 // A large knock: to all sides. Nothing where no other pose fits clearly better.
-std::optional<SceneAlignment> MountWatch::Search(const SceneProblem& problem,
-                                                 const SceneAlignment& near) {
+std::optional<MountWatch::Found> MountWatch::Search(const SceneProblem& problem,
+                                                    const SceneAlignment& near) {
   if (since_search_ < search_after_) return std::nullopt;
   since_search_ = 0;
   search_after_ = std::min(2 * search_after_, kMostBetweenSearches);
@@ -164,22 +173,15 @@ std::optional<SceneAlignment> MountWatch::Search(const SceneProblem& problem,
   const double better = SceneFitness(problem, wide, wide.fit.camera_from_lidar) -
                         SceneFitness(problem, wide, near.fit.camera_from_lidar);
   if (better < kClearly) return std::nullopt;
-  return wide;
+  return Found{std::move(wide), *options.start_covariance};
 }
 
-void MountWatch::Fill(const SceneAlignment& found, MountCheck* check) {
-  check->edges = found.sums.edges;
-  check->shown = ShownOf(found);
-  for (std::size_t i = 0; i < check->where.size() && found.sums.matched > 0; ++i) {
-    check->where[i] = found.sums.where[i] / found.sums.matched;
-  }
-}
-
-// The odds of the two hypotheses, and what follows.
-void MountWatch::Decide(const SceneAlignment& found, MountCheck* check) {
+// The odds of the two hypotheses, and what follows. `prior`: what the alignment began from.
+void MountWatch::Decide(const SceneAlignment& found, const PoseAndLensCovariance& prior,
+                        MountCheck* check) {
   const Rigid3& calibrated = calibration_->camera_from_lidar;
   BeforeAndAfter numbers;
-  numbers.prior = Moved(options_.moved_rad.back(), options_.moved_m.back());
+  numbers.prior = prior;
   numbers.covariance = PoseAndLensOf(found);
   numbers.mean.resize(kPoseAndLens);
   numbers.mean.head<6>() = Log(found.fit.camera_from_lidar * calibrated.Inverse());
@@ -222,12 +224,15 @@ MountCheck MountWatch::Add(const Shot& shot) {
   }
   ++since_search_;
   const SceneProblem problem(spec_, {shots_.begin(), shots_.end()});
-  SceneAlignment found = Align(problem);
+  auto [found, prior] = Align(problem);
   const bool dropped = Dropped(found);
   if (!found.fit.converged || dropped) {
-    if (auto wide = Search(problem, found)) found = std::move(*wide);
+    if (auto wide = Search(problem, found)) {
+      found = std::move(wide->alignment);
+      prior = wide->prior;
+    }
   }
-  Fill(found, &check);
+  FillWhatIsSeen(found, &check);
   if (!found.fit.converged) {
     check.state = dropped ? MountState::kLost : MountState::kCannotTell;
     // What follows there is for who refines.
@@ -242,7 +247,7 @@ MountCheck MountWatch::Add(const Shot& shot) {
     return check;
   }
   search_after_ = options_.sweeps;
-  Decide(found, &check);
+  Decide(found, prior, &check);
   if (check.state == MountState::kHolds) {
     usual_shown_ += (check.shown - usual_shown_) / (usual_shown_ > 0 ? 10 : 1);
   }

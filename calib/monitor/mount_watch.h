@@ -51,10 +51,13 @@ class MountWatch {
   MountCheck Add(const Shot& shot);
 
  private:
-  void Fill(const SceneAlignment& found, MountCheck* check);
-  void Decide(const SceneAlignment& found, MountCheck* check);
-  SceneAlignment Align(const SceneProblem& problem);
-  std::optional<SceneAlignment> Search(const SceneProblem& problem, const SceneAlignment& near);
+  struct Found {
+    SceneAlignment alignment;
+    PoseAndLensCovariance prior;  // that it was solved with
+  };
+  void Decide(const SceneAlignment& found, const PoseAndLensCovariance& prior, MountCheck* check);
+  Found Align(const SceneProblem& problem) const;
+  std::optional<Found> Search(const SceneProblem& problem, const SceneAlignment& near);
   PoseAndLensCovariance Moved(double rotation_rad, double translation_m) const;
   bool Dropped(const SceneAlignment& found) const;
 

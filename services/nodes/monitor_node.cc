@@ -18,7 +18,7 @@ MonitorNode::MonitorNode(const MonitorOptions& options, std::optional<GivenCalib
                      " s; expected 0 or more");
   }
   if (given_) {
-    RequireSound(given_->calibration, given_->rig, {"the calibration", "the rig"}, Use::kIfSound);
+    RequireSound(given_->calibration, given_->rig, given_->names, Use::kIfSound);
   }
 }
 
@@ -85,8 +85,7 @@ Messages MonitorNode::Look(const Cloud& sweep) {
   Messages said;
   for (auto& [camera, watch] : watches_) {
     const std::optional<TakenShot> shot =
-        shots_.ShotOf(sweep, watch.calibration()->WithSolvedLens(watch.spec()),
-                      watch.calibration()->camera_from_lidar);
+        shots_.ShotOf(sweep, watch.spec(), watch.calibration()->camera_from_lidar);
     if (!shot) {
       ++without_image_;
       continue;

@@ -23,6 +23,7 @@ struct MonitorOptions {
 struct GivenCalibration {
   Rig rig;
   Calibration calibration;
+  UseNames names{"the calibration", "the rig"};
 };
 
 /// CLOUD + `<CAMERA>_IMAGE` + CALIBRATION + POSE -> MOUNT_CHECK, one for each calibrated camera and

@@ -31,11 +31,7 @@ void MountHistory::Add(const MountCheck& check) {
   if (!camera.steps.empty() && check.utime < camera.steps.back().utime) camera.steps.clear();
   camera.newest = check;
   if (!check.holds) return;  // nothing was told
-  const Eigen::Vector3d turn = check.moved.head<3>();
-  camera.steps.push_back(
-      {check.utime, turn.norm() * kDegreesPerRadian,
-       std::sqrt(check.covariance.topLeftCorner<3, 3>().trace() / 3) * kDegreesPerRadian,
-       1e3 * check.moved.tail<3>().norm()});
+  camera.steps.push_back({check.utime, check.moved.head<3>().norm() * kDegreesPerRadian});
   if (camera.steps.size() > kKept) camera.steps.pop_front();
 }
 
@@ -44,10 +40,7 @@ nlohmann::json MountHistory::Frame() const {
   for (const auto& [name, camera] : cameras_) {
     nlohmann::json steps = nlohmann::json::array();
     for (const Step& step : camera.steps) {
-      steps.push_back({{"utime", step.utime},
-                       {"rotation_deg", step.rotation_deg},
-                       {"sigma_deg", step.sigma_deg},
-                       {"translation_mm", step.translation_mm}});
+      steps.push_back({{"utime", step.utime}, {"rotation_deg", step.rotation_deg}});
     }
     nlohmann::json one = {{"camera", name},
                           {"state", NameOf(camera.newest.state)},

@@ -26,7 +26,7 @@ class MountHistory {
  private:
   struct Step {
     Utime utime = 0;
-    double rotation_deg = 0, sigma_deg = 0, translation_mm = 0;
+    double rotation_deg = 0;
   };
   struct Camera {
     MountCheck newest;

@@ -244,7 +244,7 @@ export interface MountsFrame {
     text: string;
     utime: number;
     where: number[]; // of the edges that told, the share in each part of the image, 3 rows of 4
-    steps: { utime: number; rotation_deg: number; sigma_deg: number; translation_mm: number }[]; // moved by; newest last
+    steps: { utime: number; rotation_deg: number }[]; // moved by; newest last
   }[];
 }
 

@@ -32,19 +32,18 @@ export function busFrame(seconds: number): BusFrame {
 
 export function mountsFrame(seconds: number): MountsFrame {
   const now = Date.now() * 1000;
-  const drift = (name: string, scale: number) => Array.from({ length: 60 }, (_, i) => ({
+  const drift = (scale: number) => Array.from({ length: 60 }, (_, i) => ({
     utime: now - (59 - i) * 2e6,
     rotation_deg: scale * Math.abs(Math.sin((seconds + i) / 20)) + 0.01,
-    sigma_deg: 0.03, translation_mm: name === "rgb" ? 2 : 5,
   }));
   return {
     type: "mounts",
     cameras: [
       { camera: "rgb", state: "holds", holds: 0.9996, text: "holds, as far as 5 sweeps tell", utime: now,
-        where: [0.2, 0.1, 0.1, 0, 0.2, 0.1, 0.1, 0, 0.1, 0.1, 0, 0], steps: drift("rgb", 0.03) },
+        where: [0.2, 0.1, 0.1, 0, 0.2, 0.1, 0.1, 0, 0.1, 0.1, 0, 0], steps: drift(0.03) },
       { camera: "thermal", state: "moved", holds: 0.0002, utime: now,
         text: "moved by 0.42 +- 0.05 deg, mostly a turn about the camera's y (yaw), and by 3 +- 4 mm: fasten the mount, then calibrate again or run `rgbdt refine`",
-        where: [0, 0.1, 0.1, 0, 0.2, 0.3, 0.3, 0, 0, 0, 0, 0], steps: drift("thermal", 0.42) },
+        where: [0, 0.1, 0.1, 0, 0.2, 0.3, 0.3, 0, 0, 0, 0, 0], steps: drift(0.42) },
     ],
   };
 }
