@@ -79,6 +79,30 @@ TEST(MountWatch, AKnockIsNoticedAndMeasured) {
   }
 }
 
+// The LIDAR is turned about the camera's y, by 19 pixels: its clouds are, too.
+TEST(MountWatch, ALargeKnockIsFound) {
+  const Rigid3& truth = Room().Truth(0);
+  const Rigid3 turn = RotationAbout(Eigen::Vector3d::UnitY(), 4 * kDegree);
+  const Rigid3 knock = truth.Inverse() * turn.Inverse() * truth;
+  const CameraSpec& spec = Room().rig().cameras[0];
+  MountWatch watch(spec);
+  watch.SetCalibration(CalibratedAt(truth, spec.name), 1);
+  const std::vector<Shot> shots = Room().Shots(0);
+  for (const Shot& shot : shots) watch.Add(shot);
+  MountCheck check;
+  for (const Shot& shot : shots) {
+    Cloud knocked = *shot.cloud;
+    for (auto& point : knocked.points) point = (knock * point.cast<double>().eval()).cast<float>();
+    for (auto& direction : knocked.directions) {
+      direction = (knock.rotation * direction.cast<double>()).cast<float>();
+    }
+    check = watch.Add({shot.view, &knocked, shot.image});
+  }
+  ASSERT_EQ(check.state, MountState::kMoved) << check.text;
+  EXPECT_LT(*check.holds, 1e-6);
+  EXPECT_LT(ErrorOf(check.camera_from_lidar, turn * truth).rotation_deg, 0.3);
+}
+
 TEST(MountWatch, AnImageOfNothingTellsNothing) {
   const CameraSpec& spec = Room().rig().cameras[0];
   MountWatch watch(spec);
