@@ -130,12 +130,14 @@ Status MonitorNode::GetStatus() const {
   } else if (newest_.empty() && unwatched_.empty()) {
     status.text = "waits for a sweep (CLOUD) and an image of its time";
   }
-  for (const auto& [camera, check] : newest_) {
-    status.text += (status.text.empty() ? "" : "; ") + camera + " " + check.text;
-  }
-  for (const auto& [camera, why] : unwatched_) {
-    status.text += (status.text.empty() ? "" : "; ") + camera + " is not watched: " + why;
-  }
+  const auto add = [&](const std::string& camera, const char* between, const std::string& what) {
+    if (!status.text.empty()) status.text += "; ";
+    status.text += camera;
+    status.text += between;
+    status.text += what;
+  };
+  for (const auto& [camera, check] : newest_) add(camera, " ", check.text);
+  for (const auto& [camera, why] : unwatched_) add(camera, " is not watched: ", why);
   status.counters = {{"sweeps", sweeps_},
                      {"looked at", looks_},
                      {"without an image or a pose of their time", without_image_},

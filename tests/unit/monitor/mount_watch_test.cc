@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <opencv2/core.hpp>
+
 #include "calib/model/errors.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
