@@ -16,6 +16,7 @@ namespace rgbdt {
 namespace {
 
 constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
+const char* const kAllIsOnDisk = "rgbdt calibrate DIR takes all views that are on disk";
 constexpr double kPatience = 1e9;  // s, with a person who carries the board
 
 std::string ViewName(int number) {
@@ -71,6 +72,9 @@ Messages SessionNode::Handle(const Message& message) {
 void SessionNode::Take(const Message& message) {
   if (const auto* status = std::get_if<Status>(&message)) {
     statuses_[status->process] = *status;
+    if (status->process == "solver" && solver_views_.LostBy(*status)) {
+      RestoreSolver("rgbdt-solver was started anew and has lost its views");
+    }
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
     OnEvent(*event);
   } else if (const auto* request = std::get_if<SessionRequest>(&message)) {
@@ -84,6 +88,10 @@ void SessionNode::Take(const Message& message) {
     rig_.Camera(picks->camera);
     OnPicks(*picks);
     collector_.Add(*picks);
+  } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
+    if (IsCaptured(detection->view)) solver_views_.Add(*detection);
+  } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
+    if (started_) solver_views_.Set(*left_out);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = ReportFromJson(report->json, "REPORT message");
   }
@@ -150,7 +158,9 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   }
   if (!waiting_ || event.command != command_) return;
   if (event.kind == EventKind::kFailed) {
-    Fail(event.source + ": " + event.text);
+    const std::string why = event.source + ": " + event.text;
+    if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
+    Fail(why);
     return;
   }
   if (event.kind == EventKind::kProgress) {
@@ -181,16 +191,18 @@ void SessionNode::SaveView() {
 Messages SessionNode::Advance(Utime now) {
   now_ = now;
   if (!began_) began_ = now;
-  Messages out;
+  Messages out, next;
   if (rig_repeat_.IsDue(now)) out.push_back(RigText{0, rig_.hash, rig_.text});
   try {
     AskWhetherBoardStands();
-    for (Message& message : GoOn()) out.push_back(std::move(message));
+    next = GoOn();
   } catch (const std::exception& e) {  // a file that cannot be written, a person who is gone
     Fail(e.what());
   }
-  std::move(events_.begin(), events_.end(), std::back_inserter(out));
-  events_.clear();
+  for (Messages* messages : {&again_, &next, &events_}) {
+    std::move(messages->begin(), messages->end(), std::back_inserter(out));
+    messages->clear();
+  }
   return out;
 }
 
@@ -199,6 +211,7 @@ Messages SessionNode::GoOn() {
   if (!started_) return Start();
   if (!waiting_) return Begin();
   if (!StepDone()) {
+    if (!waiting_ || finished_) return {};  // it failed
     const bool waits = step().kind == SessionStep::Kind::kWait;
     if (!waits && ToSeconds(now_ - step_began_) > step().timeout_s) {
       Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
@@ -220,6 +233,7 @@ Messages SessionNode::Start() {
   SetEarlierResultsAside();
   WriteRig(directory_, rig_);
   started_ = true;
+  solver_views_.Clear();
   Messages out = Send(SessionVerb::kReset);
   if (by_request_) {
     PublishEvent(EventKind::kDone, "ready", 1);
@@ -232,7 +246,10 @@ Messages SessionNode::Start() {
 void SessionNode::EndStep() {
   waiting_ = false;
   const bool saved = step().kind == SessionStep::Kind::kSave;
-  if (step().kind == SessionStep::Kind::kCapture) view_taken_ = true;
+  if (step().kind == SessionStep::Kind::kCapture) {
+    view_taken_ = true;
+    solver_views_.Require(view_);
+  }
   if (++index_ < script_.steps.size()) return;
   finished_ = !by_request_ || saved;
   PublishEvent(EventKind::kDone, saved ? "saved to " + directory_.string() : last_answer_, 1);
@@ -291,6 +308,7 @@ Messages SessionNode::Send(SessionVerb verb) {
     command.heldout = step().heldout;
     command.picked_cameras = step().picked_cameras;
   }
+  newest_command_ = command;
   return {command};
 }
 
@@ -302,9 +320,35 @@ bool SessionNode::StepDone() {
       return true;
     case SessionStep::Kind::kCapture:
       return answered_ && view_saved_;
+    case SessionStep::Kind::kSolve:
+    case SessionStep::Kind::kEvaluate:
+      return answered_ && SolverTookAll();
     default:
       return answered_;
   }
+}
+
+// One that was started anew answers from what it has heard since.
+bool SessionNode::SolverTookAll() {
+  const std::string missing = solver_views_.MissingIn(report_);
+  if (missing.empty()) return true;
+  const std::string why = "rgbdt-solver's report lacks view " + missing;
+  if (!RestoreSolver(why)) Fail(why + "; " + kAllIsOnDisk);
+  return false;
+}
+
+// False: nothing to give it, or it was of no use.
+bool SessionNode::RestoreSolver(const std::string& why) {
+  Messages again = solver_views_.Again();
+  if (again.empty()) return false;
+  if (waiting_ && AnsweredBy(step().kind) == "solver") {
+    answered_ = false;
+    step_began_ = now_;
+    again.emplace_back(newest_command_);
+  }
+  again_ = std::move(again);
+  Warn(why + "; all views are sent to it again");
+  return true;
 }
 
 // So that what an earlier run found is not taken for this session's.
@@ -316,6 +360,12 @@ void SessionNode::SetEarlierResultsAside() {
 void SessionNode::Save() {
   if (!report_) {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
+    return;
+  }
+  const std::string missing = solver_views_.MissingIn(report_);
+  if (!missing.empty()) {
+    Fail("the newest report lacks view " + missing + "; put solve after the last capture; " +
+         kAllIsOnDisk);
     return;
   }
   const Calibration calibration = JudgedCalibration(*report_, rig_);
@@ -377,6 +427,11 @@ void SessionNode::ReportProgress(const std::string& text, double fraction) {
 void SessionNode::Announce(const std::string& text) {
   ReportProgress(text, 0);
   PublishEvent(EventKind::kProgress, WithView(text), 0);
+}
+
+bool SessionNode::IsCaptured(const std::string& view) const {
+  return std::any_of(captures_.begin(), captures_.end(),
+                     [&](const auto& capture) { return capture.second == view; });
 }
 
 bool SessionNode::WaitsForPose() const {

@@ -9,6 +9,7 @@
 #include "calib/files/schema/session_script.h"
 #include "calib/model/calibration.h"
 #include "calib/model/rig.h"
+#include "services/nodes/solver_views.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
@@ -25,18 +26,24 @@ struct SessionProgress {
 
 /// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
 /// answering events, writes the session directory. STATUS, SESSION_EVENT, SESSION_REQUEST, CLOUD,
-/// `<CAMERA>_IMAGE`, CORNER_SELECTION, REPORT -> RIG, SESSION_COMMAND, SESSION_EVENT (how far it
-/// is). It begins when assembler, detector, solver, fuser and the processes of the rig file's
-/// devices are ready (STATUS). next_pose and sweep end with anybody's done, capture with the
-/// detector's and the view on disk, solve and evaluate with the solver's. save writes the report,
-/// and the calibration of the cameras that were solved; results of an earlier run in the directory
-/// are kept aside (SetResultsAside), once the session begins. A failed event, no answer in the
-/// step's time, a camera that could not be solved, or a file that cannot be written ends the
-/// session with the reason; one that a person leads publishes the reason and goes on. Each capture
-/// that a person asks for is followed by solve and evaluate, so that there always is a report.
-/// Corners that a person picks in an image of a view that is on disk are written to it, and once
-/// the detector has detected it again, a session that a person leads solves again. Advance's time
-/// serves time-outs and waits, and RIG once a second.
+/// `<CAMERA>_IMAGE`, CORNER_SELECTION, DETECTION, REPORT, LEFT_OUT_VIEWS -> RIG, SESSION_COMMAND,
+/// SESSION_EVENT (how far it is), and the DETECTIONs once more. It begins when assembler, detector,
+/// solver, fuser and the processes of the rig file's devices are ready (STATUS). next_pose and
+/// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
+/// evaluate with the solver's. save writes the report, and the calibration of the cameras that were
+/// solved; results of an earlier run in the directory are kept aside (SetResultsAside), once the
+/// session begins. A failed event, no answer in the step's time, a camera that could not be solved,
+/// or a file that cannot be written ends the session with the reason; one that a person leads
+/// publishes the reason and goes on. Each capture that a person asks for is followed by solve and
+/// evaluate, so that there always is a report. Corners that a person picks in an image of a view
+/// that is on disk are written to it, and once the detector has detected it again, a session that a
+/// person leads solves again.
+///
+/// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
+/// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
+/// once more, and is asked again what it was asked. A report without a captured view, but for those
+/// that a person left out, is neither an answer nor saved. Advance's time serves time-outs and
+/// waits, and RIG once a second.
 class SessionNode : public Node {
  public:
   using OnProgress = std::function<void(const SessionProgress&)>;
@@ -53,9 +60,10 @@ class SessionNode : public Node {
 
   std::string name() const override { return "session"; }
   std::vector<std::string> Subscriptions() const override {
-    return {"STATUS",   "SESSION_EVENT",    "SESSION_REQUEST", "CLOUD",
-            ".*_IMAGE", "CORNER_SELECTION", "REPORT"};
+    return {"STATUS",           "SESSION_EVENT", "SESSION_REQUEST", "CLOUD",         ".*_IMAGE",
+            "CORNER_SELECTION", "DETECTION",     "REPORT",          "LEFT_OUT_VIEWS"};
   }
+  std::vector<std::string> Repeats() const override { return {"DETECTION", "LEFT_OUT_VIEWS"}; }
   Messages Handle(const Message& message) override;
   /// Goes on as far as possible.
   Messages Advance(Utime now) override;
@@ -71,12 +79,15 @@ class SessionNode : public Node {
   Messages GoOn();
   Messages Start();
   bool WaitsForPose() const;
+  bool IsCaptured(const std::string& view) const;
   void PoseIsSet();
   void AskWhetherBoardStands();
   Messages Begin();
   Messages BeginCapture();
   Messages Send(SessionVerb verb);
   bool StepDone();
+  bool SolverTookAll();
+  bool RestoreSolver(const std::string& why);
   void Take(const Message& message);
   void OnRequest(const SessionRequest& request);
   void OnPicks(const CornerSelection& picks);
@@ -113,6 +124,7 @@ class SessionNode : public Node {
   bool waiting_ = false;  // the step at hand was begun
   std::size_t index_ = 0;
   std::int64_t command_ = 0;
+  SessionCommand newest_command_;
   bool answered_ = false;
   int view_number_ = 0;
   std::string view_;
@@ -121,6 +133,8 @@ class SessionNode : public Node {
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, std::string> captures_;                 // view by its capture's command
   Messages events_;                                              // not yet published
+  SolverViews solver_views_;
+  Messages again_;  // for the solver, not yet published
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;

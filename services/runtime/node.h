@@ -24,6 +24,10 @@ class Node {
   /// Channels to subscribe to, as regular expressions: "CLOUD", ".*_IMAGE".
   virtual std::vector<std::string> Subscriptions() const = 0;
 
+  /// Channels, by name, on which it repeats what others said: such a message goes out as it came,
+  /// with its sender's number, so that it is nobody's gap.
+  virtual std::vector<std::string> Repeats() const { return {}; }
+
   /// Takes one message. Throws InputError for one that cannot be used: the caller drops it, counts
   /// it and names it in the status. The node is then as if the message had never come. What follows
   /// from a message and is not its sender's fault is a warning.

@@ -37,6 +37,7 @@ void AddCounters(const std::string& what, const std::map<std::string, std::int64
 }  // namespace
 
 NodeRunner::NodeRunner(Node* node, Bus* bus) : node_(node), bus_(bus) {
+  for (const std::string& channel : node_->Repeats()) repeats_.insert(channel);
   node_->SetWarningHandler([this](const std::string& warning) { NameProblem(warning); });
   for (const std::string& channel : node_->Subscriptions()) {
     bus_->Subscribe(channel, [this](const std::string& name, const std::uint8_t* data,
@@ -78,6 +79,10 @@ void NodeRunner::Publish(Messages messages) {
 void NodeRunner::PublishOne(Message message) {
   const std::string channel = ChannelOf(message);
   Guard("publishing " + channel, [&] {
+    if (repeats_.count(channel) != 0) {
+      bus_->Publish(channel, Encode(message));
+      return;
+    }
     const std::string key = SequenceOf(message);
     SetSeq(next_seq_[key], &message);
     const Bytes bytes = Encode(message);

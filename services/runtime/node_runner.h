@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 
 #include "services/bus/bus.h"
@@ -17,7 +18,8 @@ namespace rgbdt {
 /// none leaves Advance: what cannot be sent is dropped, counted and named likewise.
 ///
 /// Numbers (sequence.h) are kept by channel, on STATUS, SESSION_EVENT and POSE by channel and
-/// sender, since several processes speak there. Late and repeated messages are handed over as they
+/// sender, since several processes speak there. What a node repeats (Node::Repeats) keeps its
+/// sender's number. Late and repeated messages are handed over as they
 /// come: what their order means only the node knows. A message that cannot be decoded is dropped
 /// and also leaves a gap, as its number is unknown.
 class NodeRunner {
@@ -60,6 +62,7 @@ class NodeRunner {
 
   Node* node_;
   Bus* bus_;
+  std::set<std::string> repeats_;  // Node::Repeats
   ProblemHandler problem_handler_;
   Periodic status_{kMicrosecondsPerSecond};
   std::map<std::string, std::int64_t> next_seq_;      // of what is published, by sequence

@@ -43,4 +43,9 @@ stop() {  # SIGNAL NAME...: each must end with exit code 0
   for name in "$@"; do wait_for "$name" || fail "$name ended with exit code $? by SIG$signal"; done
 }
 
+kill_process() {  # NAME
+  kill -KILL "${pids[$1]}"
+  wait_for "$1" || true
+}
+
 helper() { "$bin/live_helper" "$@"; }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A session of the real processes on LCM with garbage on the bus; then its log's inputs again into
-# fresh services: the same calibration. Run by scripts/in-namespace. Usage: session_test.sh BIN_DIR
+# A session of the real processes on LCM with garbage on the bus and a solver that is killed; then
+# its log's inputs again into fresh services: the same calibration. Run by scripts/in-namespace. Usage: session_test.sh BIN_DIR
 set -euo pipefail
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -46,7 +46,16 @@ start session "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/
   --out "$session"
 helper ready session || fail "rgbdt-session did not come up"
 helper garbage "${services[@]}" simulator session || fail "garbage was not named"
+# Below the log's inputs go to a solver that is not killed: the calibration has to be the same.
+until [ -s "$session/views/0002/view.textproto" ]; do
+  kill -0 "${pids[session]}" || fail "the session ended before its second view"
+  sleep 0.05
+done
+kill_process solver
+start solver "$bin/rgbdt-solver"
 wait_for session || fail "the session ended with exit code $?"
+grep -q 'rgbdt-solver .*; all views are sent to it again' "$scratch/session.log" ||
+  fail "the session did not notice that its solver was killed"
 for file in rig.textproto calibration.textproto report.json views/0005/view.textproto \
   views/0005/cloud.pcd views/0005/rgb.png views/0005/thermal.png; do
   [ -s "$session/$file" ] || fail "the session left no $file"

@@ -303,6 +303,29 @@ TEST_F(SessionNodeTest, TooFewViewsForACalibrationFailWithTheReason) {
   EXPECT_FALSE(std::filesystem::exists(dir_ / "session/calibration.textproto"));
 }
 
+TEST_F(SessionNodeTest, AReportWithoutACapturedViewIsNotSaved) {
+  world_.forgotten = "0001";
+  Start(Script(kOneView));
+  EverybodyReady();
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("solve"), HasSubstr("lacks view 0001"),
+                                      HasSubstr("rgbdt calibrate DIR")));
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "session/calibration.textproto"));
+  const auto asked = std::count_if(
+      world_.commands.begin(), world_.commands.end(),
+      [](const SessionCommand& command) { return command.verb == SessionVerb::kSolve; });
+  EXPECT_EQ(asked, 1 + SolverViews::kMaxTries);
+}
+
+TEST_F(SessionNodeTest, AViewAfterTheLastSolveIsNotLeftOutUnsaid) {
+  Start(Script({Kind::kNextPose, Kind::kSweep, Kind::kCapture, Kind::kSolve, Kind::kNextPose,
+                Kind::kSweep, Kind::kCapture, Kind::kSave}));
+  EverybodyReady();
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("save"), HasSubstr("lacks view 0002"),
+                                      HasSubstr("put solve after the last capture")));
+}
+
 TEST_F(SessionNodeTest, AViewThatCannotBeWrittenEndsTheSession) {
   Start(Script(kOneView));
   EverybodyReady();

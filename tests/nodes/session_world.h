@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,11 @@ class World {
         break;
     }
     Report report;
+    for (const std::string& view : views) {
+      if (view == forgotten) continue;
+      report.detections.emplace_back();
+      report.detections.back().view = view;
+    }
     for (const CameraSpec& camera : TinyRig().cameras) {
       report.cameras.emplace_back();
       report.cameras.back().calibration.camera = camera.name;
@@ -109,7 +115,9 @@ class World {
   std::optional<SessionVerb> silent_at, failing_at;
   bool images = true;
   bool solved = true;
+  std::string forgotten;  // a view that the solver does not have
   std::vector<SessionCommand> commands;
+  std::set<std::string> views;  // that were captured
 
  private:
   Messages Sweep(const SessionCommand& command) const {
@@ -125,8 +133,9 @@ class World {
     done.sweep_utime = now;
     return {chunk, done};
   }
-  Messages Capture(const SessionCommand& command) const {
+  Messages Capture(const SessionCommand& command) {
     Messages out;
+    views.insert(command.view);
     for (const CameraSpec& camera : TinyRig().cameras) {
       if (images) out.push_back(Blank(camera, now));
     }
@@ -138,6 +147,10 @@ class World {
       out.push_back(picks);
     }
     out.push_back(Event(command, "simulator"));  // its images are taken: not what is waited for
+    ViewDetection detection;
+    detection.view = command.view;
+    detection.sweep_utime = command.sweep_utime;
+    out.push_back(detection);
     out.push_back(Event(command, "detector"));
     return out;
   }

@@ -22,6 +22,7 @@ class ScriptedNode : public Node {
   std::vector<std::string> Subscriptions() const override {
     return {"ENCODER", "CALIBRATION", "STATUS", "SESSION_EVENT", ".*_IMAGE"};
   }
+  std::vector<std::string> Repeats() const override { return {"CALIBRATION"}; }
   Messages Handle(const Message& message) override {
     handled.push_back(ChannelOf(message));
     const auto* reading = std::get_if<EncoderReading>(&message);
@@ -30,6 +31,7 @@ class ScriptedNode : public Node {
     if (reading->ticks == -2) throw std::runtime_error("out of range");
     if (reading->ticks == -3) throw 3;
     if (reading->ticks == -4) return {Pose(NAN), Pose(1)};
+    if (reading->ticks == -5) return {Said(41), Said(42)};
     return Messages(static_cast<std::size_t>(reading->ticks), Pose(1));
   }
   Messages Advance(Utime now) override {
@@ -52,6 +54,13 @@ class ScriptedNode : public Node {
     return pose;
   }
 
+  static CalibrationMessage Said(std::int64_t seq) {
+    CalibrationMessage message;
+    message.seq = seq;
+    message.calibration.camera = "rgb";
+    return message;
+  }
+
   std::vector<std::string> handled;
   bool advance_throws = false;
 };
@@ -60,7 +69,7 @@ class NodeRunnerTest : public ::testing::Test {
  protected:
   NodeRunnerTest() {
     runner_.SetProblemHandler([&](const std::string& problem) { problems_.push_back(problem); });
-    bus_.Subscribe("POSE|RIG|STATUS",
+    bus_.Subscribe("POSE|RIG|STATUS|CALIBRATION",
                    [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
                      published_.push_back(Decode(channel, data, size));
                    });
@@ -93,6 +102,14 @@ TEST_F(NodeRunnerTest, PublishesAnswersNumberedFromZero) {
   ASSERT_EQ(published_.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(SeqOf(published_[i]), static_cast<int>(i));
   EXPECT_EQ(runner_.received(), 2);
+  EXPECT_EQ(runner_.dropped(), 0);
+}
+
+TEST_F(NodeRunnerTest, WhatItRepeatsKeepsItsSendersNumber) {
+  SendReading(0, -5);
+  SendReading(1, -5);
+  ASSERT_EQ(published_.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(SeqOf(published_[i]), 41 + static_cast<int>(i % 2));
   EXPECT_EQ(runner_.dropped(), 0);
 }
 

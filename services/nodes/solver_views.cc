@@ -1,0 +1,50 @@
+#include "services/nodes/solver_views.h"
+
+#include <algorithm>
+
+namespace rgbdt {
+namespace {
+
+std::size_t ViewsOf(const Status& status) {
+  for (const auto& [name, value] : status.counters) {
+    if (name == "views") return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
+  }
+  return 0;
+}
+
+}  // namespace
+
+// A STATUS may have left before the newest detection came: what counts is what was there one STATUS
+// earlier.
+bool SolverViews::LostBy(const Status& solver) {
+  const std::size_t views = ViewsOf(solver);
+  const bool lost = solver.ready && views < due_;
+  if (views >= detections_.size()) tries_ = 0;
+  due_ = detections_.size();
+  return lost;
+}
+
+std::string SolverViews::MissingIn(const std::optional<Report>& report) const {
+  std::set<std::string> missing = required_;
+  if (report) {
+    for (const DetectedView& view : report->detections) missing.erase(view.view);
+  }
+  if (left_out_) {
+    for (const std::string& view : left_out_->views) missing.erase(view);
+  }
+  std::string names;
+  for (const std::string& view : missing) names += (names.empty() ? "" : ", ") + view;
+  return names;
+}
+
+// First the detections: a solver refuses to leave out all that it has.
+Messages SolverViews::Again() {
+  if (detections_.empty() || tries_ >= kMaxTries) return {};
+  ++tries_;
+  Messages again;
+  for (const auto& [view, detection] : detections_) again.emplace_back(detection);
+  if (left_out_) again.emplace_back(*left_out_);
+  return again;
+}
+
+}  // namespace rgbdt
