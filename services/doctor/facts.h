@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calib/model/rig.h"
-#include "services/doctor/bus_url.h"
+#include "services/bus/bus_url.h"
 #include "services/doctor/system.h"
 #include "services/drivers/camera/gvcp_discovery.h"
 #include "services/drivers/net/network_interfaces.h"

@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 
 namespace rgbdt {
 namespace {

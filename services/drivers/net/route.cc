@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 #include "services/drivers/net/network_interfaces.h"
 
 namespace rgbdt {

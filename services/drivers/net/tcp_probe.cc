@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -4,7 +4,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 
 namespace rgbdt {
 namespace {

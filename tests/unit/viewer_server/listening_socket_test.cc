@@ -11,7 +11,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
-#include "services/drivers/net/descriptor.h"
+#include "services/bus/descriptor.h"
 #include "test_browser.h"
 #include "viewer/server/internal/acceptor.h"
 

@@ -1,14 +1,14 @@
-#include "services/doctor/bus_url.h"
+#include "services/bus/bus_url.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
 
 #include <sstream>
-
-#include "services/drivers/net/network_interfaces.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr char kScheme[] = "udpm://";
-constexpr std::uint32_t kMulticast = 0xe0000000, kMulticastMask = 0xf0000000;
 
 // A whole number from `low` to `high`; else what is wrong goes to `error`.
 std::int64_t Number(const std::string& text, const std::string& name, std::int64_t low,
@@ -25,8 +25,10 @@ std::int64_t Number(const std::string& text, const std::string& name, std::int64
 void ReadPlace(const std::string& place, BusUrl* url) {
   const std::size_t colon = place.find(':');
   const std::string group = place.substr(0, colon);
-  if (!ParseAddress(group.empty() ? "239.255.76.67" : group, &url->group) ||
-      (url->group & kMulticastMask) != kMulticast) {
+  in_addr address{};
+  const char* text = group.empty() ? "239.255.76.67" : group.c_str();
+  if (inet_pton(AF_INET, text, &address) == 1) url->group = ntohl(address.s_addr);
+  if (!IN_MULTICAST(url->group)) {
     url->error = "\"" + group + "\" is no multicast address; expected 239.x.x.x";
   } else if (colon != std::string::npos) {
     url->port =

@@ -1,4 +1,4 @@
-#include "services/doctor/bus_url.h"
+#include "services/bus/bus_url.h"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(DoctorBusUrl, ReadsWhatLcmReads) {
+TEST(BusUrl, ReadsWhatLcmReads) {
   const BusUrl url = ParseBusUrl("udpm://239.1.2.3:8000?ttl=2&recv_buf_size=1000");
   EXPECT_EQ(url.error, "");
   EXPECT_EQ(url.group, 0xef010203u);
@@ -16,7 +16,7 @@ TEST(DoctorBusUrl, ReadsWhatLcmReads) {
   EXPECT_EQ(url.buffer_bytes, 1000);
 }
 
-TEST(DoctorBusUrl, HasLcmsDefaults) {
+TEST(BusUrl, HasLcmsDefaults) {
   for (const char* text : {"udpm://", "udpm://?", "udpm://239.255.76.67", "udpm://:7667"}) {
     const BusUrl url = ParseBusUrl(text);
     EXPECT_EQ(url.error, "") << text;
@@ -27,7 +27,7 @@ TEST(DoctorBusUrl, HasLcmsDefaults) {
   }
 }
 
-TEST(DoctorBusUrl, NamesWhatIsWrong) {
+TEST(BusUrl, NamesWhatIsWrong) {
   const auto error = [](const std::string& text) { return ParseBusUrl(text).error; };
   EXPECT_THAT(error(""), HasSubstr("udpm://"));
   EXPECT_THAT(error("239.255.76.67:7667"), HasSubstr("udpm://"));
