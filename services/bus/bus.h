@@ -9,6 +9,12 @@
 
 namespace rgbdt {
 
+/// Datagrams that were no messages, or contradicted each other. They were dropped.
+struct Malformed {
+  std::int64_t count = 0;
+  std::string newest;  ///< "10.0.0.2:40000: a fragment beyond its message's end"
+};
+
 /// A publish-subscribe bus of named channels.
 class Bus {
  public:
@@ -19,6 +25,7 @@ class Bus {
   virtual void Publish(const std::string& channel, const Bytes& bytes) = 0;
   /// `channel_regex` must match the whole channel name. Throws InputError if it is none.
   virtual void Subscribe(const std::string& channel_regex, Handler handler) = 0;
+  virtual Malformed malformed() const { return {}; }
 };
 
 /// Delivers within one process, in the order published: a message published by a handler waits
@@ -40,7 +47,9 @@ class MemoryBus : public Bus {
 };
 
 /// LCM. An empty URL means LCM_DEFAULT_URL or LCM's default, with a receive buffer of 32 MiB asked
-/// for where the URL says none. Exceptions of handlers never reach C code.
+/// for where the URL says none. What a udpm bus carries is received by code of our own, as LCM's
+/// believes whatever a datagram says; LCM sends, and reads file:// URLs. With ttl=0 the bus hears
+/// this machine only. Exceptions of handlers never reach C code.
 class LcmBus : public Bus {
  public:
   /// Throws InputError: which URL, why, and what to do.
@@ -48,6 +57,7 @@ class LcmBus : public Bus {
   ~LcmBus() override;
   void Publish(const std::string& channel, const Bytes& bytes) override;
   void Subscribe(const std::string& channel_regex, Handler handler) override;
+  Malformed malformed() const override;
   /// Waits up to `timeout_ms` for messages and delivers what is there, but for no longer than some
   /// 100 ms, so that the caller's clock keeps running under load. False: none came.
   bool Run(int timeout_ms);

@@ -8,6 +8,8 @@
 
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
+#include "services/bus/internal/datagram.h"
+#include "services/bus/internal/source.h"
 #include "services/bus/multicast.h"
 
 namespace rgbdt {
@@ -44,47 +46,52 @@ std::string CompleteUrl(const std::string& url) {
 }
 
 struct LcmBus::Impl {
-  struct Subscriber {
-    Impl* bus;
-    Handler handler;
-  };
+  ~Impl() {
+    source.reset();
+    if (lcm != nullptr) lcm_destroy(lcm);
+  }
 
-  // Called by C code, which an exception must not meet: it would abort the next lcm_handle().
-  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
-    auto* subscriber = static_cast<Subscriber*>(user);
-    try {
-      subscriber->handler(channel, static_cast<const std::uint8_t*>(buffer->data),
-                          buffer->data_size);
-    } catch (...) {
-      ++subscriber->bus->handler_failures;
+  void OpenSource() {
+    if (lcm == nullptr) return;
+    if (url.compare(0, 7, "udpm://") != 0) {
+      source = MakeLcmSource(lcm);
+      return;
     }
+    source = MakeUdpSource(url, [this] {
+      const std::string test = "lcm self test";
+      lcm_publish(lcm, kSelfTestChannel, test.data(), static_cast<unsigned>(test.size()));
+    });
   }
 
   bool Readable(int timeout_ms) const {
-    pollfd descriptor{lcm_get_fileno(lcm), POLLIN, 0};
+    pollfd descriptor{source->descriptor(), POLLIN, 0};
     return poll(&descriptor, 1, timeout_ms) > 0;
   }
 
   lcm_t* lcm = nullptr;
+  std::unique_ptr<Source> source;
   std::string url;
   bool ended = false;
   std::int64_t handler_failures = 0;
-  std::vector<std::unique_ptr<Subscriber>> subscribers;
 };
 
 LcmBus::LcmBus(const std::string& url) : impl_(std::make_unique<Impl>()) {
   impl_->url = CompleteUrl(url);
   impl_->lcm = lcm_create(impl_->url.c_str());
-  // The descriptor exists once LCM's own test message has come back.
-  if (impl_->lcm != nullptr && lcm_get_fileno(impl_->lcm) >= 0) return;
-  if (impl_->lcm != nullptr) lcm_destroy(impl_->lcm);
-  throw InputError("cannot open the bus " + impl_->url + ": " + WhyNoBus(impl_->url));
+  std::string why;
+  try {
+    impl_->OpenSource();
+    if (impl_->source == nullptr) why = WhyNoBus(impl_->url);
+  } catch (const InputError& e) {
+    why = e.what();
+  }
+  if (!why.empty()) throw InputError("cannot open the bus " + impl_->url + ": " + why);
 }
 
-LcmBus::~LcmBus() { lcm_destroy(impl_->lcm); }
+LcmBus::~LcmBus() = default;
 
 void LcmBus::Publish(const std::string& channel, const Bytes& bytes) {
-  if (channel.size() > LCM_MAX_CHANNEL_NAME_LENGTH) {
+  if (channel.size() > kMaxChannelBytes) {
     throw InputError("channel " + channel + " has more than 63 characters");
   }
   errno = 0;
@@ -96,24 +103,25 @@ void LcmBus::Publish(const std::string& channel, const Bytes& bytes) {
 }
 
 void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
-  auto subscriber = std::make_unique<Impl::Subscriber>();
-  subscriber->bus = impl_.get();
-  subscriber->handler = std::move(handler);
-  // LCM puts ^ and $ around what it gets, so "A|B" alone would hear "A2" and "2B".
-  lcm_subscription_t* subscription = lcm_subscribe(
-      impl_->lcm, ("(?:" + channel_regex + ")").c_str(), &Impl::OnMessage, subscriber.get());
-  if (subscription == nullptr) {
-    throw InputError("\"" + channel_regex + "\" is no regular expression");
-  }
-  lcm_subscription_set_queue_capacity(subscription, QueueFor(channel_regex));
-  impl_->subscribers.push_back(std::move(subscriber));
+  // Called by C code, too, which an exception must not meet: it would abort the next lcm_handle().
+  const auto guarded = [bus = impl_.get(), handler = std::move(handler)](
+                           const std::string& channel, const std::uint8_t* data, std::size_t size) {
+    try {
+      handler(channel, data, size);
+    } catch (...) {
+      ++bus->handler_failures;
+    }
+  };
+  impl_->source->Subscribe(channel_regex, QueueFor(channel_regex), guarded);
 }
+
+Malformed LcmBus::malformed() const { return impl_->source->malformed(); }
 
 bool LcmBus::Run(int timeout_ms) {
   if (impl_->ended || !impl_->Readable(timeout_ms)) return false;
   const Clock::time_point end = Clock::now() + kMaxDelivery;
   do {
-    if (lcm_handle(impl_->lcm) != 0) impl_->ended = true;
+    if (!impl_->source->Deliver()) impl_->ended = true;
   } while (!impl_->ended && Clock::now() < end && impl_->Readable(0));
   return true;
 }

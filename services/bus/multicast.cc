@@ -3,29 +3,17 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "services/bus/bus.h"
+#include "services/bus/descriptor.h"
 
 namespace rgbdt {
 namespace {
 
-class UdpSocket {
- public:
-  UdpSocket() : descriptor_(socket(AF_INET, SOCK_DGRAM, 0)) {}
-  ~UdpSocket() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
+Descriptor UdpSocket() { return Descriptor(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)); }
 
 // The address of udpm://239.255.76.67:7667?ttl=0; LCM's default where the URL gives none.
 std::string AddressOf(const std::string& url) {
@@ -36,7 +24,7 @@ std::string AddressOf(const std::string& url) {
 
 // Why no datagram can go to the address; 0: one can.
 int RouteError(const in_addr& address) {
-  const UdpSocket udp;
+  const Descriptor udp = UdpSocket();
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(7667);
@@ -60,7 +48,7 @@ std::string WhyNoBus(const std::string& url) {
     return "no multicast route (" + std::string(std::strerror(error)) +
            "); to stay within this machine: " + commands;
   }
-  return "LCM refuses it, or its own test message did not come back (see above): a wrong port, a "
+  return "LCM refuses it (see above), or its test message did not come back: a wrong port, a "
          "firewall, or an interface without multicast; to stay within this machine: " +
          commands;
 }
@@ -68,7 +56,7 @@ std::string WhyNoBus(const std::string& url) {
 // What the kernel grants is asked of a socket: in a network namespace there is no
 // /proc/sys/net/core/rmem_max to read, and its limit holds all the same.
 std::string ReceiveBufferAdvice() {
-  const UdpSocket udp;
+  const Descriptor udp = UdpSocket();
   const int wanted = kReceiveBufferBytes;
   int granted = 0;
   socklen_t size = sizeof granted;

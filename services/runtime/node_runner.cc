@@ -94,6 +94,7 @@ void NodeRunner::PublishOne(Message message) {
 void NodeRunner::Advance(Utime now) {
   Guard("advancing", [&] { Publish(node_->Advance(now)); });
   if (!status_.IsDue(now)) return;
+  NameMalformed();
   Guard("status", [&] { PublishOne(GetStatus()); });
 }
 
@@ -108,6 +109,9 @@ Status NodeRunner::GetStatus() const {
   if (late_ != 0) status.counters.emplace_back("late", late_);
   if (duplicates_ != 0) status.counters.emplace_back("duplicates", duplicates_);
   if (restarts_ != 0) status.counters.emplace_back("restarts", restarts_);
+  if (const std::int64_t count = bus_->malformed().count; count != 0) {
+    status.counters.emplace_back("malformed", count);
+  }
   AddCounters("dropped", dropped_by_channel_, &status);
   AddCounters("gaps", gaps_by_channel_, &status);
   return status;
@@ -129,6 +133,13 @@ void NodeRunner::Drop(const std::string& channel, const std::string& what) {
     ++dropped_by_channel_[channel];
   }
   NameProblem(channel + ": " + what);
+}
+
+void NodeRunner::NameMalformed() {
+  const Malformed malformed = bus_->malformed();
+  if (malformed.count == malformed_named_) return;
+  malformed_named_ = malformed.count;
+  NameProblem("a malformed datagram from " + malformed.newest);
 }
 
 void NodeRunner::NameProblem(const std::string& problem) {

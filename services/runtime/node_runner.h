@@ -37,8 +37,8 @@ class NodeRunner {
   void Advance(Utime now);
 
   /// The node's own, with the runner's name, time, newest problem and counters: "received",
-  /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "dropped CLOUD",
-  /// "gaps CLOUD".
+  /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "malformed" (what
+  /// reached the bus and was no message), "dropped CLOUD", "gaps CLOUD".
   Status GetStatus() const;
 
   /// Called with each problem, the node's warnings among them, e.g. "CLOUD: num_points is -1".
@@ -59,6 +59,7 @@ class NodeRunner {
   void Guard(const std::string& channel, const std::function<void()>& action);
   void Drop(const std::string& channel, const std::string& what);
   void NameProblem(const std::string& problem);
+  void NameMalformed();
 
   Node* node_;
   Bus* bus_;
@@ -72,6 +73,7 @@ class NodeRunner {
   Utime newest_utime_ = 0;
   std::int64_t received_ = 0, dropped_ = 0, gaps_ = 0;
   std::int64_t late_ = 0, duplicates_ = 0, restarts_ = 0;
+  std::int64_t malformed_named_ = 0;
 };
 
 }  // namespace rgbdt

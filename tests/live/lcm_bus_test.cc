@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "services/bus/bus.h"
 #include "services/messages/codec.h"
 #include "services/runtime/node_runner.h"
+#include "tests/datagrams.h"
 
 // Runs in a network namespace of its own with a multicast route (scripts/in-namespace). Waits for
 // what is to happen, up to a limit that only a failure meets.
@@ -110,16 +110,16 @@ TEST_F(LcmBusTest, ExpressionsMatchTheWholeName) {
   EXPECT_THROW(receiver_.Subscribe("(", {}), InputError);
 }
 
-void SendDatagram(const Bytes& bytes) {
-  const int udp = socket(AF_INET, SOCK_DGRAM, 0);
+void SendDatagram(const Bytes& bytes, const char* address = "239.255.76.67") {
+  static const int udp =
+      socket(AF_INET, SOCK_DGRAM, 0);  // one sender, whose fragments belong together
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_port = htons(static_cast<std::uint16_t>(Port()));
-  inet_pton(AF_INET, "239.255.76.67", &to.sin_addr);
+  inet_pton(AF_INET, address, &to.sin_addr);
   EXPECT_EQ(
       sendto(udp, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to),
       static_cast<ssize_t>(bytes.size()));
-  close(udp);
 }
 
 class CountingNode : public Node {
@@ -153,6 +153,43 @@ TEST_F(LcmBusTest, GarbageIsSurvivedAndCounted) {
   sender_.Publish("ENCODER", Encode(EncoderReading{1, 0, 0, 0}));
   EXPECT_TRUE(RunUntil(&receiver_, [&] { return node.handled == 1; }));
   EXPECT_EQ(runner.dropped(), 100);
+  EXPECT_GE(receiver_.malformed().count, 9);  // empty, XXXX, and fragments without a header
+  runner.Advance(1);
+  const Status status = runner.GetStatus();
+  EXPECT_EQ(status.last_problem.substr(0, 26), "a malformed datagram from ");
+  EXPECT_THAT(status.counters, ::testing::Contains(std::make_pair(std::string("malformed"),
+                                                                  receiver_.malformed().count)));
+}
+
+// Each of them, and between them messages, which arrive whole.
+TEST_F(LcmBusTest, MalformedDatagramsAreCountedAndNamed) {
+  int received = 0;
+  receiver_.Subscribe("A", [&](const std::string&, const std::uint8_t* data, std::size_t size) {
+    EXPECT_EQ(Bytes(data, data + size), size > 200 ? Numbered(received, 200'000) : Bytes(100, 7));
+    received += size > 200 ? 1 : 0;
+  });
+  std::int64_t sent = 0;
+  for (const test::Attack& attack : test::Attacks("A")) {
+    for (const Bytes& datagram : attack.datagrams) SendDatagram(datagram);
+    sender_.Publish("A", Numbered(static_cast<int>(sent++), 200'000));
+    ASSERT_TRUE(RunUntil(&receiver_, [&] { return received == sent; })) << attack.why;
+    EXPECT_EQ(receiver_.malformed().count, sent) << attack.why;
+    EXPECT_THAT(receiver_.malformed().newest, ::testing::HasSubstr(attack.why));
+  }
+}
+
+TEST_F(LcmBusTest, WhatIsSentToTheMachineAndNotToTheGroupIsNotHeard) {
+  int received = 0;
+  receiver_.Subscribe("A",
+                      [&](const std::string&, const std::uint8_t*, std::size_t) { ++received; });
+  for (const test::Attack& attack : test::Attacks("A")) {
+    for (const Bytes& datagram : attack.datagrams) SendDatagram(datagram, "127.0.0.1");
+  }
+  SendDatagram(test::ShortDatagram(1, std::string("A\0", 2), {1}), "127.0.0.1");
+  sender_.Publish("A", Bytes{1});
+  EXPECT_TRUE(RunUntil(&receiver_, [&] { return received > 0; }));
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(receiver_.malformed().count, 0);
 }
 
 TEST_F(LcmBusTest, PublishingWhatLcmCannotCarryThrows) {

@@ -1,5 +1,9 @@
 // What the live tests' scripts need of the bus. See usage().
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <chrono>
 #include <cstdio>
 #include <functional>
@@ -14,6 +18,7 @@
 #include "services/bus/log.h"
 #include "services/bus/sequence.h"
 #include "services/messages/codec.h"
+#include "tests/datagrams.h"
 #include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
@@ -32,6 +37,11 @@ int Usage() {
       "  calibration VIEWS      until the solver has them of two cameras; prints what it found\n"
       "  gaps LOG               messages that a log lacks, by channel; exit code 3 if any\n"
       "  print FILE             prints a calibration.textproto in the same way\n"
+      "  attack ADDRESS PORT CHANNEL...  sends each malformed datagram that there is there; "
+      "prints\n"
+      "                         how many\n"
+      "  malformed PROCESS...   how many its status tells, once it has come\n"
+      "  hears_malformed CHANNEL  until one came to a bus on which this channel is heard\n"
       "  hears CHANNEL COUNT    until so many messages came there, each as it has to be\n"
       "Gives up after 90 s with exit code 1.\n",
       stderr);
@@ -219,12 +229,58 @@ int Hears(const Arguments& arguments) {
   return 0;
 }
 
+// Needs no bus: the attacker may be another machine.
+int AttackBus(const Arguments& arguments) {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(arguments.at(1))));
+  if (inet_pton(AF_INET, arguments.at(0).c_str(), &to.sin_addr) != 1) return Usage();
+  const int udp = socket(AF_INET, SOCK_DGRAM, 0);
+  int sent = 0;
+  for (std::size_t i = 2; i < arguments.size(); ++i) {
+    for (const test::Attack& attack : test::Attacks(arguments[i])) {
+      for (const Bytes& datagram : attack.datagrams) {
+        if (sendto(udp, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                   sizeof to) < 0) {
+          throw InputError("cannot send to " + arguments[0]);
+        }
+      }
+      ++sent;
+    }
+  }
+  std::printf("%d\n", sent);
+  return 0;
+}
+
+int PrintMalformed(const Arguments& processes) {
+  Listener listener;
+  for (const std::string& process : processes) {
+    listener.RunUntil([&] { return listener.statuses.count(process) != 0; },
+                      "a status of " + process);
+    std::printf("%s %lld\n", process.c_str(),
+                static_cast<long long>(listener.Counter(process, "malformed")));
+  }
+  return 0;
+}
+
+int HearsMalformed(const Arguments& arguments) {
+  Listener listener;
+  listener.bus.Subscribe(arguments.at(0),
+                         [](const std::string&, const std::uint8_t*, std::size_t) {});
+  listener.RunUntil([&] { return listener.bus.malformed().count > 0; }, "a malformed datagram");
+  std::printf("%s\n", listener.bus.malformed().newest.c_str());
+  return 0;
+}
+
 int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
   if (verb == "garbage") return Garbage(arguments);
   if (verb == "calibration") return PrintLive(arguments);
   if (verb == "gaps") return PrintGaps(arguments);
   if (verb == "print") return PrintFile(arguments);
+  if (verb == "attack") return AttackBus(arguments);
+  if (verb == "malformed") return PrintMalformed(arguments);
+  if (verb == "hears_malformed") return HearsMalformed(arguments);
   if (verb == "hears") return Hears(arguments);
   return Usage();
 }

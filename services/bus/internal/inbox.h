@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "services/bus/bus.h"
+#include "services/bus/descriptor.h"
+#include "services/bus/internal/reassembly.h"
+
+namespace rgbdt {
+
+/// Messages on their way from the thread that receives them to the one that handles them, in the
+/// order in which they came. A subscriber whose queue is full misses the newest.
+class Inbox {
+ public:
+  Inbox();  ///< throws InputError where the kernel gives no descriptor
+
+  // Of any thread.
+  bool IsWanted(const std::string& channel);
+  void Add(WholeMessage message);
+  void AddMalformed(const std::string& what);
+  Malformed malformed() const;
+
+  // Of the thread that handles.
+  /// Throws InputError where `channel_regex` is none.
+  void Subscribe(const std::string& channel_regex, std::size_t capacity, Bus::Handler handler);
+  int descriptor() const { return waits_.get(); }  ///< readable while a message waits
+  void DeliverOne();
+
+ private:
+  struct Subscriber {
+    std::regex regex;
+    std::size_t capacity;
+    Bus::Handler handler;
+    std::size_t waiting;
+  };
+  struct Waiting {
+    WholeMessage message;
+    std::vector<Subscriber*> to;
+  };
+
+  const std::vector<Subscriber*>& Hearing(const std::string& channel);
+
+  mutable std::mutex mutex_;  // of all below but the handlers
+  Descriptor waits_;
+  std::deque<Subscriber> subscribers_;  // their addresses stay
+  std::map<std::string, std::vector<Subscriber*>> hearing_;
+  std::deque<Waiting> waiting_;
+  Malformed malformed_;
+};
+
+}  // namespace rgbdt

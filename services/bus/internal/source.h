@@ -1,0 +1,40 @@
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "services/bus/bus.h"
+
+namespace rgbdt {
+
+/// What LCM sends to itself to see whether a bus works.
+inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
+
+/// Where an LcmBus hears from. Handlers throw nothing.
+class Source {
+ public:
+  virtual ~Source() = default;
+  /// At most `capacity` messages wait for it. Throws InputError where `channel_regex` is none.
+  virtual void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) = 0;
+  /// Readable while a message waits.
+  virtual int descriptor() const = 0;
+  /// Hands on the message that waits. False: nothing will come any more.
+  virtual bool Deliver() = 0;
+  virtual Malformed malformed() const { return {}; }
+};
+
+/// What `lcm` hears itself: a log file. Null where it hears nothing.
+std::unique_ptr<Source> MakeLcmSource(lcm_t* lcm);
+
+/// The bus of a udpm URL, received by a thread of its own. LCM's own receiver believes what a
+/// datagram says of itself, and two of them end the process; this one holds each to its bytes. It
+/// hears the group only, not what is sent to the machine; with ttl 0 nothing from other machines.
+/// `send_test` sends a message on kSelfTestChannel; null where none comes back within 10 s. Throws
+/// InputError where the kernel refuses the socket.
+std::unique_ptr<Source> MakeUdpSource(const std::string& url,
+                                      const std::function<void()>& send_test);
+
+}  // namespace rgbdt

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Malformed datagrams to the processes on a bus of ttl=0: from this machine, to its addresses and to
+# the group, and from another machine. Each process goes on and tells what reached it. Run by
+# scripts/in-namespace. Usage: malformed_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/live/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+PATH=$PATH:/usr/sbin:/sbin
+group=${LCM_DEFAULT_URL#udpm://}
+port=${group#*:}
+port=${port%%\?*}
+group=${group%%:*}
+processes=(assembler detector solver fuser monitor mapper session viewer simulator)
+channels=(CLOUD LINE_SCAN DETECTION CALIBRATION RGBDT_CLOUD STATUS SESSION_COMMAND rgb_IMAGE)
+addresses=(127.0.0.1)
+
+all_go_on() {  # AFTER WHAT
+  local process code
+  for process in "${processes[@]}"; do
+    kill -0 "${pids[$process]}" 2>/dev/null && continue
+    code=0
+    wait_for "$process" || code=$?
+    fail "after $1 rgbdt-$process ended with exit code $code"
+  done
+}
+
+told() { helper malformed "$1" | sed 's/.* //'; }  # PROCESS
+
+none_told() {  # AFTER WHAT: nothing of it reached any of them
+  local process
+  for process in "${processes[@]}"; do
+    [ "$(told "$process")" = 0 ] || fail "$1 reached rgbdt-$process"
+  done
+}
+
+# Another machine, whose cable the bus's group leads to, and a process of ttl=1, which hears it.
+other_machine=
+if [ "${RGBDT_IN_NAMESPACE-}" = namespace ]; then
+  start machine unshare --net sleep 300
+  other_machine=/proc/${pids[machine]}/ns/net
+  for _ in $(seq 100); do
+    [ "$(readlink "$other_machine")" = "$(readlink /proc/self/ns/net)" ] || break
+    sleep 0.05
+  done
+  at_other() { nsenter "--net=$other_machine" "$@"; }
+  ip link add cable type veth peer name cable netns "${pids[machine]}"
+  ip address add 10.79.0.1/24 dev cable
+  ip link set cable up
+  at_other ip address add 10.79.0.2/24 dev cable
+  at_other ip link set cable up
+  at_other ip route add 239.0.0.0/8 dev cable
+  ip route replace 239.0.0.0/8 dev cable
+  addresses+=(10.79.0.1)
+  start listener env "LCM_DEFAULT_URL=${LCM_DEFAULT_URL/ttl=0/ttl=1}" \
+    "$bin/live_helper" hears_malformed CLOUD
+fi
+
+start simulator "$bin/rgbdt-simulator" --rig "$scratch/rig.textproto"
+helper ready simulator || fail "rgbdt-simulator did not come up"
+start session "$bin/rgbdt-session" --rig "$scratch/rig.textproto" --out "$scratch/session"
+start viewer "$bin/rgbdt-viewer" --listen 127.0.0.1:0
+start mapper "$bin/rgbdt-mapper" --out "$scratch/map.ply"
+for process in assembler detector solver fuser monitor; do
+  start "$process" "$bin/rgbdt-$process"
+done
+helper ready "${processes[@]}" || fail "not every process came up"
+
+for address in "${addresses[@]}"; do
+  helper attack "$address" "$port" "${channels[@]}" >/dev/null
+  sleep 0.2
+  all_go_on "datagrams to $address"
+  none_told "what was sent to $address"
+done
+
+if [ -n "$other_machine" ]; then
+  for address in 10.79.0.1 "$group"; do
+    at_other "$bin/live_helper" attack "$address" "$port" "${channels[@]}" >/dev/null
+    sleep 0.2
+    all_go_on "datagrams from another machine to $address"
+  done
+  none_told "what another machine sent"
+  wait_for listener || fail "not even a bus of ttl=1 heard the other machine"
+fi
+
+sent=$(helper attack "$group" "$port" "${channels[@]}")
+sleep 0.2
+all_go_on "datagrams to the group"
+for process in "${processes[@]}"; do
+  count=$(told "$process")  # 16 kinds by 8 channels, and more on channels that it hears
+  [ "$count" -ge 128 ] || fail "rgbdt-$process tells of $count malformed datagrams of $sent"
+  echo "$process: $count of $sent"
+done
+grep -q 'viewer: a malformed datagram from ' "$scratch/viewer.log" ||
+  fail "the viewer's log does not name them"
+stop TERM assembler detector solver fuser monitor mapper viewer simulator
+kill -TERM "${pids[session]}"
+wait_for session || [ $? = 1 ] || fail "rgbdt-session did not end as it does when stopped"
+echo "passed"
