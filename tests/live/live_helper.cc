@@ -40,7 +40,7 @@ int Usage() {
       "  attack ADDRESS PORT CHANNEL...  sends each malformed datagram that there is there; "
       "prints\n"
       "                         how many\n"
-      "  malformed PROCESS...   how many its status tells, once it has come\n"
+      "  malformed LEAST PROCESS...  until their statuses tell of so many; prints how many\n"
       "  hears_malformed CHANNEL  until one came to a bus on which this channel is heard\n"
       "  hears CHANNEL COUNT    until so many messages came there, each as it has to be\n"
       "Gives up after 90 s with exit code 1.\n",
@@ -252,11 +252,20 @@ int AttackBus(const Arguments& arguments) {
   return 0;
 }
 
-int PrintMalformed(const Arguments& processes) {
+int PrintMalformed(const Arguments& arguments) {
+  const std::int64_t least = std::stoll(arguments.at(0));
+  const Arguments processes(arguments.begin() + 1, arguments.end());
   Listener listener;
+  // The first one that comes may have been made before what was sent arrived.
+  for (int i = 0; i < 2; ++i) {
+    listener.statuses.clear();
+    for (const std::string& process : processes) {
+      listener.RunUntil([&] { return listener.Counter(process, "malformed") >= least; },
+                        "a status of " + process + " that tells of " + arguments[0] +
+                            " malformed datagrams or more");
+    }
+  }
   for (const std::string& process : processes) {
-    listener.RunUntil([&] { return listener.statuses.count(process) != 0; },
-                      "a status of " + process);
     std::printf("%s %lld\n", process.c_str(),
                 static_cast<long long>(listener.Counter(process, "malformed")));
   }
