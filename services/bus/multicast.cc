@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "services/bus/bus.h"
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "services/bus/bus_url.h"
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "services/bus/bus.h"
-#include "services/bus/descriptor.h"
 #include "services/bus/internal/reassembly.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 

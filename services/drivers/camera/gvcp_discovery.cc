@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

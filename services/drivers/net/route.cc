@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/bus/descriptor.h"
 #include "services/drivers/net/network_interfaces.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

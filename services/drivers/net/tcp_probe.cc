@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

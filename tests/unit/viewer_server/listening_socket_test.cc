@@ -11,7 +11,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
-#include "services/bus/descriptor.h"
+#include "services/posix/descriptor.h"
 #include "test_browser.h"
 #include "viewer/server/internal/acceptor.h"
 
