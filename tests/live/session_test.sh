@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A session of the real processes on LCM with garbage on the bus and a solver that is killed; then
-# its log's inputs again into fresh services: the same calibration. Run by scripts/in-namespace. Usage: session_test.sh BIN_DIR
+# its log's inputs again into fresh services: the same calibration. Run by scripts/in-namespace.
+# Usage: session_test.sh BIN_DIR
 set -euo pipefail
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"

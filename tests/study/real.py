@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import trials  # noqa: E402
 from trials import column, figure, mean, median, pick
 
+UNLIKELY = 22.5  # chi-square of six: beyond it once in a thousand times
 CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens",
          "random_own_lens": "halves_own_lens", "in_order": "in_order"}
 DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
@@ -40,21 +41,11 @@ class Rig:
         return [r for r in pick(self.splits, case=case) if r["chi2"] is not None]
 
     def silent_failures(self):
-        """Results more than 4 stated sigma apart, as trials.silent_failures counts, of which none
-        said that it may be wrong. Edges and planes apart: not where the result's sigma is enlarged
-        for it."""
-        count = sum(not r["doubtful"] and is_apart(r)
+        """Results farther apart than chance does, of which none said that it may be wrong."""
+        count = sum(r["chi2"] > UNLIKELY and not r["doubtful"]
                     for case in CASES for r in self.solved(case) if case != "random_exact_lens")
-        apart = [self.fact("lens_chi2")]
-        if not self.fact("edges_planes_enlarged"):
-            apart.append(self.fact("edge_plane_chi2"))
-        return count + (not self.fact("doubtful")) * sum(c is not None and c > trials.FOUR_SIGMA for c in apart)
-
-
-def is_apart(row):
-    return (row["chi2"] > trials.FOUR_SIGMA
-            or row["rotation_deg"] > 4 * row["sigma_rotation_deg"]
-            or row["translation_mm"] > 4 * row["sigma_translation_mm"])
+        apart = [self.fact(f"{what}_chi2") for what in ("edge_plane", "lens")]
+        return count + (not self.fact("doubtful")) * sum(c is not None and c > UNLIKELY for c in apart)
 
 
 def figures_of_rig(rig):

@@ -73,9 +73,9 @@ bool IsFound(const ViewDetection& view) {
   return view.images.at(0).usable() && !view.cloud.candidates.empty();
 }
 
-CameraReport Solve(const Rig& rig, const Detections& views, bool diagnostics = false) {
+CameraReport Solve(const Rig& rig, const Detections& views) {
   CalibrateOptions options;
-  options.diagnostics = diagnostics;
+  options.diagnostics = false;
   return Calibrate(rig, views, options).cameras.at(0);
 }
 
@@ -262,8 +262,6 @@ void AddWhole(const Recorded& recorded, const CameraReport& whole, Facts* facts)
   facts->Add("converged", whole.calibration.converged() ? 1 : 0);
   facts->Add("doubtful", Judge(whole).grade > Grade::kUsable ? 1 : 0);
   facts->Add("variance_factor", whole.variance_factor);
-  const bool enlarged = whole.edges_planes && whole.edges_planes->sigma_enlarged;
-  facts->Add("edges_planes_enlarged", enlarged ? 1 : 0);
   if (const auto pose = PoseOf(whole)) {
     const Vector6d sigma = pose->covariance.diagonal().cwiseSqrt();
     facts->Add("sigma_deg", sigma.head<3>().maxCoeff() / kDegree, "deg");
@@ -420,7 +418,7 @@ Recorded FoundOf(Recorded recorded, Facts* facts) {
 void Run(const std::vector<std::string>& arguments) {
   Facts facts(arguments[4]);
   const Recorded recorded = FoundOf(Record(arguments[0]), &facts);
-  const CameraReport whole = Solve(recorded.rig, recorded.views, true);
+  const CameraReport whole = Solve(recorded.rig, recorded.views);
   AddWhole(recorded, whole, &facts);
   AddComparisons(recorded, whole, &facts);
   const int count = std::stoi(arguments[1]);
