@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -34,6 +35,46 @@ class Descriptor {
 
  private:
   int fd_;
+};
+
+/// One that is open for reading.
+class RegularFile {
+ public:
+  // Without O_NONBLOCK a pipe that nobody writes to is waited for.
+  explicit RegularFile(const std::filesystem::path& path)
+      : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    if (file_.get() < 0) Fail("read", path, errno);
+    struct stat status {};
+    if (::fstat(file_.get(), &status) != 0) Fail("read", path, errno);
+    if (S_ISDIR(status.st_mode)) Fail("read", path, EISDIR);
+    if (!S_ISREG(status.st_mode)) {
+      throw InputError("cannot read " + path.string() +
+                       ": it is a pipe, a socket or a device; expected a file");
+    }
+    size_ = static_cast<std::uintmax_t>(status.st_size);
+  }
+
+  std::uintmax_t size() const { return size_; }
+
+  std::string Read(std::uintmax_t most_bytes) const {
+    std::string bytes;
+    std::string buffer(1 << 16, '\0');
+    bytes.reserve(static_cast<std::size_t>(std::min(size_, most_bytes)));
+    while (bytes.size() < most_bytes) {
+      const auto wanted = std::min<std::uintmax_t>(buffer.size(), most_bytes - bytes.size());
+      const ssize_t n = ::read(file_.get(), buffer.data(), static_cast<std::size_t>(wanted));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) Fail("read", path_, errno);
+      if (n == 0) break;
+      bytes.append(buffer, 0, static_cast<std::size_t>(n));
+    }
+    return bytes;
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  Descriptor file_;
+  std::uintmax_t size_ = 0;
 };
 
 // Returns 0 or errno.
@@ -86,22 +127,19 @@ void WriteFileAtomically(const std::filesystem::path& path, const std::string& b
   SyncFolder(folder);
 }
 
-std::string ReadWholeFile(const std::filesystem::path& path) {
-  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) Fail("read", path, errno);
-  struct stat status {};
-  if (::fstat(file.get(), &status) != 0) Fail("read", path, errno);
-  if (S_ISDIR(status.st_mode)) Fail("read", path, EISDIR);
-  std::string bytes;
-  bytes.reserve(static_cast<std::size_t>(status.st_size));
-  std::string buffer(1 << 16, '\0');
-  while (true) {
-    const ssize_t n = ::read(file.get(), buffer.data(), buffer.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) Fail("read", path, errno);
-    if (n == 0) return bytes;
-    bytes.append(buffer, 0, static_cast<std::size_t>(n));
+std::string ReadWholeFile(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  const RegularFile file(path);
+  if (file.size() > most_bytes) {
+    throw InputError("cannot read " + path.string() + ": it has " + std::to_string(file.size()) +
+                     " bytes; expected at most " + std::to_string(most_bytes));
   }
+  // Files of the kernel's own say that they are empty.
+  const bool sized = file.size() > 0;
+  return file.Read(sized ? file.size() : most_bytes);
+}
+
+std::string ReadFileHead(const std::filesystem::path& path, std::size_t head_bytes) {
+  return RegularFile(path).Read(head_bytes);
 }
 
 }  // namespace rgbdt

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -10,7 +12,15 @@ namespace rgbdt {
 /// InputError with the path and the system's reason.
 void WriteFileAtomically(const std::filesystem::path& path, const std::string& bytes);
 
-/// The file's bytes. Throws InputError with the path and the system's reason.
-std::string ReadWholeFile(const std::filesystem::path& path);
+/// Files larger than this are refused before they are read, whatever they hold.
+inline constexpr std::uintmax_t kMostTextBytes = std::uintmax_t{256} << 20;
+inline constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{512} << 20;
+inline constexpr std::uintmax_t kMostPointsBytes = std::uintmax_t{4} << 30;
+
+/// The bytes of a regular file of at most `most_bytes`, or its first ones alone. Never
+/// waits, as for a pipe that nobody writes to. Throws InputError with the path and the reason.
+std::string ReadWholeFile(const std::filesystem::path& path,
+                          std::uintmax_t most_bytes = kMostTextBytes);
+std::string ReadFileHead(const std::filesystem::path& path, std::size_t head_bytes);
 
 }  // namespace rgbdt

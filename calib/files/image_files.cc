@@ -50,7 +50,7 @@ std::string Encode(const std::string& extension, const cv::Mat& pixels,
 }  // namespace
 
 cv::Mat DecodeImageFile(const std::filesystem::path& path) {
-  const std::string bytes = ReadWholeFile(path);
+  const std::string bytes = ReadWholeFile(path, kMostImageBytes);
   return DecodeImage(bytes.data(), bytes.size(), path.string());
 }
 

@@ -4,12 +4,17 @@
 #include <cstdint>
 #include <exception>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "calib/model/errors.h"
 
 namespace rgbdt {
 namespace {
+
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 27;
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
 std::uint32_t BigEndian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -40,8 +45,7 @@ std::uint32_t Crc(const char* bytes, std::size_t size) {
 // Whether a PNG is all there and undamaged; true for other formats. Looked at before decoding,
 // because libpng would complain on stderr.
 bool IsWholeIfPng(std::string_view bytes) {
-  const std::string_view signature = "\x89PNG\r\n\x1a\n";
-  if (bytes.compare(0, 8, signature) != 0) return true;
+  if (bytes.compare(0, 8, kPngSignature) != 0) return true;
   std::size_t at = 8;
   while (bytes.size() - at >= 12) {
     const std::size_t length = BigEndian(bytes, at);
@@ -53,10 +57,42 @@ bool IsWholeIfPng(std::string_view bytes) {
   return false;
 }
 
+struct Size {
+  std::int64_t width, height;
+};
+
+// Of a JPEG's frame header (ITU-T T.81, B.2.2); nothing where there is none.
+std::optional<Size> JpegSize(std::string_view bytes) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  for (std::size_t i = 2; i + 9 <= bytes.size() && at(i) == 0xFF;) {
+    const int marker = at(i + 1);
+    const bool tables = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
+    if (marker >= 0xC0 && marker <= 0xCF && !tables) {
+      return Size{256 * at(i + 7) + at(i + 8), 256 * at(i + 5) + at(i + 6)};
+    }
+    i += 2 + 256 * std::size_t{at(i + 2)} + at(i + 3);
+  }
+  return std::nullopt;
+}
+
+// What a PNG or JPEG says before it is unpacked, which may take a thousand times its bytes.
+std::optional<Size> SizeSaidBy(std::string_view bytes) {
+  if (bytes.compare(0, 8, kPngSignature) == 0 && bytes.size() >= 24) {
+    return Size{BigEndian(bytes, 16), BigEndian(bytes, 20)};
+  }
+  return bytes.compare(0, 3, "\xFF\xD8\xFF") == 0 ? JpegSize(bytes) : std::nullopt;
+}
+
 }  // namespace
 
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
   if (size == 0) throw InputError(where + " is empty; expected an image");
+  const auto said = SizeSaidBy({static_cast<const char*>(bytes), size});
+  if (said && said->width * said->height > kMostPixels) {
+    throw InputError(where + " is an image of " + std::to_string(said->width) + "x" +
+                     std::to_string(said->height) + " pixels; expected at most " +
+                     std::to_string(kMostPixels));
+  }
   cv::Mat image;
   std::string reason = "damaged, cut short or of an unknown format";
   try {

@@ -7,8 +7,9 @@
 namespace rgbdt {
 
 /// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
-/// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be decoded
-/// and for a PNG that is cut short or damaged.
+/// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be
+/// decoded, for a PNG that is cut short or damaged, and for a PNG or JPEG of more than 2^27 pixels,
+/// which is not unpacked.
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where);
 
 }  // namespace rgbdt

@@ -136,7 +136,7 @@ RgbdtCloud Assemble(const std::vector<std::string>& comments, const records::Tab
 }  // namespace
 
 RgbdtCloud ReadFused(const std::filesystem::path& path) {
-  return ParseFused(ReadWholeFile(path), path.string());
+  return ParseFused(ReadWholeFile(path, kMostPointsBytes), path.string());
 }
 
 RgbdtCloud ParseFused(const std::string& bytes, const std::string& where) {

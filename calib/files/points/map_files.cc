@@ -153,7 +153,7 @@ void WriteMapPly(const std::filesystem::path& path, const MapCloud& map) {
 }
 
 MapCloud ReadMapPly(const std::filesystem::path& path) {
-  return ParseMapPly(ReadWholeFile(path), path.string());
+  return ParseMapPly(ReadWholeFile(path, kMostPointsBytes), path.string());
 }
 
 MapCloud ParseMapPly(const std::string& bytes, const std::string& where) {
@@ -165,7 +165,7 @@ MapCloud ParseMapPly(const std::string& bytes, const std::string& where) {
 }
 
 MapCloud ReadMapOrCloud(const std::filesystem::path& path) {
-  const std::string bytes = ReadWholeFile(path);
+  const std::string bytes = ReadWholeFile(path, kMostPointsBytes);
   const std::string where = path.string();
   if (bytes.rfind("ply", 0) == 0) {
     const ply::File file = ply::Parse(bytes, where);

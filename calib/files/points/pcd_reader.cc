@@ -89,7 +89,9 @@ bool HasVector(const records::Table& table, const std::string& prefix) {
 }  // namespace
 
 Cloud ReadPcd(const std::filesystem::path& path, Utime sweep_utime) {
-  return ParsePcd(ReadWholeFile(path), path.string(), sweep_utime);
+  constexpr std::size_t kHeadBytes = 64 * 1024;
+  pcd::CheckSweepHead(ReadFileHead(path, kHeadBytes), path.string());
+  return ParsePcd(ReadWholeFile(path, kMostPointsBytes), path.string(), sweep_utime);
 }
 
 Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_utime) {

@@ -65,5 +65,28 @@ TEST(AtomicFile, ErrorsNameThePathAndTheReason) {
   EXPECT_THAT(test::ErrorOf([&] { ReadWholeFile(dir.path()); }), HasSubstr("directory"));
 }
 
+TEST(ReadWholeFile, RefusesWhatIsTooLargeBeforeItIsRead) {
+  const test::TempDir dir;
+  WriteFileAtomically(dir / "sparse", "head");
+  fs::resize_file(dir / "sparse", std::uintmax_t{10} << 30);  // holes: takes no room on the disk
+  const std::string error = test::ErrorOf([&] { ReadWholeFile(dir / "sparse", kMostPointsBytes); });
+  EXPECT_THAT(error, HasSubstr((dir / "sparse").string()));
+  EXPECT_THAT(error, HasSubstr("10737418240 bytes; expected at most 4294967296"));
+  EXPECT_EQ(ReadFileHead(dir / "sparse", 4), "head");
+}
+
+TEST(ReadWholeFile, DoesNotWaitForAPipeThatNobodyWritesTo) {
+  const test::TempDir dir;
+  ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
+  for (const fs::path& path : {dir / "pipe", fs::path("/dev/zero")}) {
+    EXPECT_THAT(test::ErrorOf([&] { ReadWholeFile(path); }),
+                AllOf(HasSubstr(path.string()), HasSubstr("expected a file")));
+  }
+}
+
+TEST(ReadWholeFile, ReadsWhatTheKernelSaysIsEmpty) {
+  EXPECT_THAT(ReadWholeFile("/proc/self/status"), HasSubstr("Pid:"));
+}
+
 }  // namespace
 }  // namespace rgbdt

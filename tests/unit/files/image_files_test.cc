@@ -92,5 +92,20 @@ TEST(ImageFiles, AForgedSizeIsAnError) {
               HasSubstr("huge.png"));
 }
 
+// A few hundred kilobytes that unpack to gigabytes.
+TEST(ImageFiles, WhatUnpacksToTooManyPixelsIsRefusedByItsHeader) {
+  const cv::Mat black = cv::Mat::zeros(12'000, 12'000, CV_8UC1);
+  const std::string png = EncodePng(black, 9);
+  ASSERT_LT(png.size(), 1'000'000u);
+  EXPECT_THAT(test::ErrorOf([&] { DecodeImage(png.data(), png.size(), "bomb.png"); }),
+              AllOf(HasSubstr("bomb.png"), HasSubstr("12000x12000"), HasSubstr("134217728")));
+  std::string jpeg = EncodeJpeg(cv::Mat::zeros(64, 48, CV_8UC1), 90);
+  const std::size_t frame = jpeg.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  for (std::size_t i = 5; i < 9; ++i) jpeg[frame + i] = '\x7f';  // height and width
+  EXPECT_THAT(test::ErrorOf([&] { DecodeImage(jpeg.data(), jpeg.size(), "bomb.jpg"); }),
+              AllOf(HasSubstr("bomb.jpg"), HasSubstr("32639x32639")));
+}
+
 }  // namespace
 }  // namespace rgbdt

@@ -182,6 +182,13 @@ records::Table Read(const Header& header, std::string_view bytes, const std::str
 
 }  // namespace
 
+void CheckSweepHead(std::string_view head, const std::string& where) {
+  const std::size_t points = HeaderParser(head, where).Parse().points();
+  if (points <= kMostSweepPoints) return;
+  throw InputError(where + ": PCD header: a sweep of " + std::to_string(points) +
+                   " points; expected at most " + std::to_string(kMostSweepPoints));
+}
+
 File Parse(std::string_view bytes, const std::string& where) {
   Header header = HeaderParser(bytes, where).Parse();
   records::Table table = Read(header, bytes, where);

@@ -25,6 +25,11 @@ struct File {
   records::Table table;
 };
 
+/// Whether a file that begins with `head` can be a sweep: throws InputError naming `where` for a
+/// header that is none or claims more points than kMostSweepPoints. For before it is read.
+inline constexpr std::size_t kMostSweepPoints = 20'000'000;
+void CheckSweepHead(std::string_view head, const std::string& where);
+
 /// The bytes must outlive what is returned. Throws InputError naming `where`, and the line or byte;
 /// allocates only in proportion to the bytes that there are: a header may claim anything.
 File Parse(std::string_view bytes, const std::string& where);

@@ -287,5 +287,15 @@ TEST(CloudFiles, RealClouds) {
   EXPECT_FALSE(cloud.organised);
 }
 
+TEST(CloudFiles, ASweepThatCannotBeOneIsRefusedByItsHeader) {
+  const test::TempDir dir;
+  std::string pcd = Ascii("x y z", "F F F", 100'000, 2'000, "");
+  pcd.replace(pcd.find("ascii"), 5, "binary");
+  WriteFileAtomically(dir / "forged.pcd", pcd);
+  std::filesystem::resize_file(dir / "forged.pcd", pcd.size() + std::size_t{12} * 200'000'000);
+  EXPECT_THAT(test::ErrorOf([&] { ReadPcd(dir / "forged.pcd", 0); }),
+              AllOf(HasSubstr("forged.pcd"), HasSubstr("200000000 points; expected at most")));
+}
+
 }  // namespace
 }  // namespace rgbdt
