@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <iterator>
 
-#include "calib/camera/pixels.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
@@ -16,8 +15,6 @@ namespace rgbdt {
 namespace {
 
 constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
-const char* const kAllIsOnDisk = "rgbdt calibrate DIR takes all views that are on disk";
-constexpr double kPatience = 1e9;  // s, with a person who carries the board
 
 std::string ViewName(int number) {
   char name[16];
@@ -67,112 +64,6 @@ Messages SessionNode::Handle(const Message& message) {
   }
   SaveView();
   return {};
-}
-
-void SessionNode::Take(const Message& message) {
-  if (const auto* status = std::get_if<Status>(&message)) {
-    statuses_[status->process] = *status;
-    if (status->process == "solver" && solver_views_.LostBy(*status)) {
-      RestoreSolver("rgbdt-solver was started anew and has lost its views");
-    }
-  } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
-    OnEvent(*event);
-  } else if (const auto* request = std::get_if<SessionRequest>(&message)) {
-    OnRequest(*request);
-  } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
-    collector_.Add(*chunk);
-  } else if (const auto* image = std::get_if<Image>(&message)) {
-    CheckImage(rig_.Camera(image->camera), *image);
-    collector_.Add(*image);
-  } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
-    rig_.Camera(picks->camera);
-    OnPicks(*picks);
-    collector_.Add(*picks);
-  } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
-    if (IsCaptured(detection->view)) solver_views_.Add(*detection);
-  } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
-    if (started_) solver_views_.Set(*left_out);
-  } else if (const auto* report = std::get_if<ReportText>(&message)) {
-    report_ = ReportFromJson(report->json, "REPORT message");
-  }
-}
-
-void SessionNode::OnRequest(const SessionRequest& request) {
-  if (request.request == SessionRequestKind::kPoseIsSet) {
-    PoseIsSet();
-    return;
-  }
-  if (!by_request_) throw InputError("a script leads this session; what is asked for is not done");
-  if (!started_) throw InputError("the session waits for: " + WhoIsNotReady());
-  if (!idle()) throw InputError("the session is busy; ask again when it is done");
-  failure_.clear();
-  switch (request.request) {
-    case SessionRequestKind::kNextPose:
-      Append(SessionStep::Kind::kNextPose);
-      break;
-    case SessionRequestKind::kCapture:
-      Append(SessionStep::Kind::kSweep);
-      Append(SessionStep::Kind::kCapture, request.heldout);
-      Append(SessionStep::Kind::kSolve);
-      Append(SessionStep::Kind::kEvaluate);
-      break;
-    case SessionRequestKind::kFinish:
-      Append(SessionStep::Kind::kEvaluate);
-      Append(SessionStep::Kind::kSave);
-      break;
-    case SessionRequestKind::kPoseIsSet:
-      break;
-  }
-}
-
-void SessionNode::Append(SessionStep::Kind kind, bool heldout) {
-  SessionStep step;
-  step.kind = kind;
-  step.heldout = heldout;
-  if (kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
-  script_.steps.push_back(std::move(step));
-}
-
-// Corners for a view that is on disk: it is written once more, with them.
-void SessionNode::OnPicks(const CornerSelection& picks) {
-  const auto found = images_.find({picks.camera, picks.image_utime});
-  if (found == images_.end()) return;
-  View view = ReadView({directory_, rig_, {found->second}}, found->second);
-  auto& all = view.picks;
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](const CornerSelection& p) { return p.camera == picks.camera; }),
-            all.end());
-  all.push_back(picks);
-  WriteView(directory_, view);
-}
-
-void SessionNode::OnEvent(const SessionEvent& event) {
-  if (event.source == name()) return;
-  const auto capture = captures_.find(event.command);
-  if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
-    PublishEvent(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
-    if (!by_request_ || finished_ || event.kind != EventKind::kDone) return;
-    Append(SessionStep::Kind::kSolve);
-    Append(SessionStep::Kind::kEvaluate);
-    return;
-  }
-  if (!waiting_ || event.command != command_) return;
-  if (event.kind == EventKind::kFailed) {
-    const std::string why = event.source + ": " + event.text;
-    if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
-    Fail(why);
-    return;
-  }
-  if (event.kind == EventKind::kProgress) {
-    ReportProgress(event.text, event.fraction);
-    return;
-  }
-  const std::string wanted = AnsweredBy(step().kind);
-  if (!wanted.empty() && event.source != wanted) return;
-  answered_ = true;
-  last_answer_ = event.text;
-  if (event.sweep_utime != 0) sweep_utime_ = event.sweep_utime;
-  ReportProgress(event.text, 1);
 }
 
 void SessionNode::SaveView() {
@@ -328,29 +219,6 @@ bool SessionNode::StepDone() {
   }
 }
 
-// One that was started anew answers from what it has heard since.
-bool SessionNode::SolverTookAll() {
-  const std::string missing = solver_views_.MissingIn(report_);
-  if (missing.empty()) return true;
-  const std::string why = "rgbdt-solver's report lacks view " + missing;
-  if (!RestoreSolver(why)) Fail(why + "; " + kAllIsOnDisk);
-  return false;
-}
-
-// False: nothing to give it, or it was of no use.
-bool SessionNode::RestoreSolver(const std::string& why) {
-  Messages again = solver_views_.Again();
-  if (again.empty()) return false;
-  if (waiting_ && AnsweredBy(step().kind) == "solver") {
-    answered_ = false;
-    step_began_ = now_;
-    again.emplace_back(newest_command_);
-  }
-  again_ = std::move(again);
-  Warn(why + "; all views are sent to it again");
-  return true;
-}
-
 // So that what an earlier run found is not taken for this session's.
 void SessionNode::SetEarlierResultsAside() {
   const std::string kept = SetResultsAside(directory_);
@@ -429,59 +297,8 @@ void SessionNode::Announce(const std::string& text) {
   PublishEvent(EventKind::kProgress, WithView(text), 0);
 }
 
-bool SessionNode::IsCaptured(const std::string& view) const {
-  return std::any_of(captures_.begin(), captures_.end(),
-                     [&](const auto& capture) { return capture.second == view; });
-}
-
-bool SessionNode::WaitsForPose() const {
-  return waiting_ && !answered_ && step().kind == SessionStep::Kind::kNextPose;
-}
-
-void SessionNode::PoseIsSet() {
-  if (WaitsForPose()) answered_ = true;
-}
-
 void SessionNode::AskWhetherBoardStands() {
   if (board_stands_ && WaitsForPose() && board_stands_()) PoseIsSet();
-}
-
-// Processes without which a session leads nowhere.
-std::vector<std::string> SessionNode::Needed() const {
-  std::vector<std::string> needed = {"assembler", "detector", "solver", "fuser"};
-  for (const CameraSpec& camera : rig_.cameras) {
-    if (camera.device) needed.push_back("camera-" + camera.name);
-  }
-  if (rig_.lidar.device.index() != 0) needed.emplace_back("lidar");
-  if (rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor) needed.emplace_back("motor");
-  return needed;
-}
-
-std::string SessionNode::WhoIsNotReady() const {
-  std::string who;
-  for (const std::string& process : Needed()) {
-    const auto found = statuses_.find(process);
-    if (found != statuses_.end() && found->second.ready) continue;
-    who += (who.empty() ? "" : ", ") + std::string("rgbdt-") + process +
-           (found == statuses_.end() ? " (not heard)" : " (" + found->second.text + ")");
-  }
-  return who;
-}
-
-std::string SessionNode::WhatIsMissing() const {
-  const std::string wanted = AnsweredBy(step().kind);
-  if (answered_) return "this process still lacks " + collector_.Missing(rig_);
-  const auto found = statuses_.find(wanted);
-  if (step().kind == SessionStep::Kind::kNextPose) {
-    return "nobody said that the board stands; where you carry it: rgbdt-session --by-hand";
-  }
-  if (wanted.empty()) {
-    return "is rgbdt-motor, rgbdt-lidar (or rgbdt-simulator) running, whichever turns or sweeps?";
-  }
-  if (found == statuses_.end()) return "rgbdt-" + wanted + " was not heard; is it running?";
-  return "rgbdt-" + wanted + " says: " + found->second.text +
-         (found->second.last_problem.empty() ? ""
-                                             : "; last problem: " + found->second.last_problem);
 }
 
 Status SessionNode::GetStatus() const {
