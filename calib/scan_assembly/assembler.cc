@@ -1,6 +1,7 @@
 #include "calib/scan_assembly/assembler.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -84,6 +85,33 @@ bool Assembler::FollowsAllBefore(const LineScan& line) const {
          line.seq == sweep_->first_seq + sweep_->lines;
 }
 
+// How many of a sweep's lines were lost before the first that is there, as where this was started
+// in the midst of it: as many as fit in since the sweep's start, and no more than numbers are
+// missing since `before`, the newest line from before the sweep.
+std::int64_t Assembler::LinesLostBefore(const LineScan& first, Utime sweep_utime,
+                                        const std::optional<Place>& before) const {
+  constexpr double kJitter = 0.1;  // of a line's time, in periods
+  const double periods =
+      static_cast<double>(first.utime - sweep_utime) / LinePeriodAt(first, before);
+  const auto fit = static_cast<std::int64_t>(std::floor(periods + kJitter));
+  const bool counted = before && before->utime < sweep_utime && before->seq < first.seq;
+  return std::max<std::int64_t>(0, counted ? std::min(fit, first.seq - before->seq - 1) : fit);
+}
+
+// From a line to the next [us]: by the lines beside it, or else as long as its beams take.
+double Assembler::LinePeriodAt(const LineScan& line, const std::optional<Place>& before) const {
+  const auto period = [](const Place& from, const Place& to) {
+    const double lines = static_cast<double>(to.seq - from.seq);
+    return std::max(1.0, static_cast<double>(to.utime - from.utime) / lines);
+  };
+  const Place here{line.utime, line.seq};
+  for (const auto& [utime, next] : waiting_) {
+    if (next.seq > line.seq) return period(here, {utime, next.seq});
+  }
+  if (before && before->seq < line.seq) return period(*before, here);
+  return period(here, {EndOf(line), line.seq + 1});
+}
+
 Assembler::Chunks Assembler::Drain() {
   Chunks out;
   while (!waiting_.empty() && IsReady(waiting_.begin()->second)) {
@@ -98,6 +126,7 @@ Assembler::Chunks Assembler::Drain() {
 }
 
 void Assembler::AddToSweep(const LineScan& line, Chunks* out) {
+  const std::optional<Place> before = newest_;
   if (!newest_ || line.utime > newest_->utime) newest_ = Place{line.utime, line.seq};
   const Utime sweep_utime = SweepOf(line);
   if (sweep_utime == 0) return;
@@ -106,7 +135,9 @@ void Assembler::AddToSweep(const LineScan& line, Chunks* out) {
     return;
   }
   if (sweep_ && sweep_->utime != sweep_utime) EndSweep(out);
-  if (!sweep_) sweep_ = Sweep{sweep_utime, line.seq, {}, 0};
+  if (!sweep_) {
+    sweep_ = Sweep{sweep_utime, line.seq - LinesLostBefore(line, sweep_utime, before), {}, 0};
+  }
   if (!FitsSweep(line)) {
     ++counts_.lines_lost;
     return;

@@ -17,12 +17,14 @@ namespace rgbdt {
 /// longer. A line's place in the sweep is its number minus that of the sweep's first line, so lines
 /// may arrive kGrace out of order, among themselves or against the readings, and the cloud is the
 /// same, bit for bit. The sweep ends with the first reading kGrace after the encoder stopped naming
-/// it, or with a line of another sweep: then an empty chunk with `sweep_end`. Lines between a
-/// sweep's first and last that never came, or whose angles are not known (readings missing for more
-/// than kMaxGap), are counted in `lines_lost`. Refused with an InputError, which changes nothing: a
-/// reading that is not after the one before it, a line seen before, one whose sweep has ended, one
-/// more than kKept older than the newest reading. A clock set back by more than kClockReset begins
-/// anew. Between sweeps (sweep_utime 0) lines make no cloud.
+/// it, or with a line of another sweep: then an empty chunk with `sweep_end`. Lines up to
+/// a sweep's last that never came, or whose angles are not known (readings missing for more than
+/// kMaxGap), are counted in `lines_lost`: those before its first, too, as where this was started in
+/// the midst of the sweep, by the time since the sweep's start and the numbers that are missing.
+/// Refused with an InputError, which changes nothing: a reading that is not after the one before
+/// it, a line seen before, one whose sweep has ended, one more than kKept older than the newest
+/// reading. A clock set back by more than kClockReset begins anew. Between sweeps (sweep_utime 0)
+/// lines make no cloud.
 class Assembler {
  public:
   static constexpr std::size_t kMaxWaiting = 1000;               ///< lines
@@ -71,6 +73,9 @@ class Assembler {
   Utime SweepOf(const LineScan& line) const;
   bool IsReady(const LineScan& line) const;
   bool FollowsAllBefore(const LineScan& line) const;
+  std::int64_t LinesLostBefore(const LineScan& first, Utime sweep_utime,
+                               const std::optional<Place>& before) const;
+  double LinePeriodAt(const LineScan& line, const std::optional<Place>& before) const;
   Chunks Drain();
   void AddToSweep(const LineScan& line, Chunks* out);
   void EndSweep(Chunks* out);

@@ -95,23 +95,56 @@ void Append(const std::vector<T>& from, std::vector<T>* to) {
   to->insert(to->end(), from.begin(), from.end());
 }
 
-// Lines that never came, before `next`: nothing is known of them, not even their directions.
-void AppendLostLines(int count, const Cloud& next, Cloud* sweep) {
+// Lines that never came, beside those of `neighbour`, the first of which, or the last, is nearest:
+// nothing is known of them, not even their directions.
+void AppendLostLines(int count, const Cloud& neighbour, bool nearest_is_last, Cloud* sweep) {
   if (count <= 0 || !sweep->organised) return;
   const std::size_t n = static_cast<std::size_t>(count) * static_cast<std::size_t>(sweep->beams);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const Eigen::Vector3f unknown = Eigen::Vector3f::Constant(nan);
+  const auto nearest = [&](const auto& values) {
+    return nearest_is_last ? values.back() : values.front();
+  };
+  const auto fill = [](std::size_t size, const auto& value, auto* values) {
+    values->insert(values->end(), size, value);
+  };
   sweep->lines += count;
-  sweep->points.insert(sweep->points.end(), n, unknown);
-  if (!next.directions.empty()) sweep->directions.insert(sweep->directions.end(), n, unknown);
-  if (!next.origins.empty()) {
-    sweep->origins.insert(sweep->origins.end(), static_cast<std::size_t>(count), next.origins[0]);
+  fill(n, unknown, &sweep->points);
+  if (!neighbour.directions.empty()) fill(n, unknown, &sweep->directions);
+  if (!neighbour.origins.empty()) {
+    fill(static_cast<std::size_t>(count), nearest(neighbour.origins), &sweep->origins);
   }
-  if (!next.intensity.empty()) sweep->intensity.insert(sweep->intensity.end(), n, nan);
-  if (!next.utime.empty()) sweep->utime.insert(sweep->utime.end(), n, next.utime[0]);
-  for (std::size_t i = 0; i < n && !next.ring.empty(); ++i) {
-    sweep->ring.push_back(next.ring[i % static_cast<std::size_t>(sweep->beams)]);
+  if (!neighbour.intensity.empty()) fill(n, nan, &sweep->intensity);
+  if (!neighbour.utime.empty()) fill(n, nearest(neighbour.utime), &sweep->utime);
+  for (std::size_t i = 0; i < n && !neighbour.ring.empty(); ++i) {
+    sweep->ring.push_back(neighbour.ring[i % static_cast<std::size_t>(sweep->beams)]);
   }
+}
+
+// The parts that hold lines, in the order of their lines.
+std::vector<const Cloud*> PartsOf(const std::vector<CloudChunk>& chunks) {
+  std::vector<const Cloud*> parts;
+  for (const CloudChunk& chunk : chunks) {
+    if (!chunk.cloud.points.empty()) parts.push_back(&chunk.cloud);
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Cloud* a, const Cloud* b) { return a->first_line < b->first_line; });
+  return parts;
+}
+
+// As the chunk that ends the sweep tells; 0: it does not.
+int LinesTold(const std::vector<CloudChunk>& chunks) {
+  int lines = 0;
+  for (const CloudChunk& chunk : chunks) lines = std::max(lines, chunk.sweep_lines);
+  return lines;
+}
+
+void RequireBounded(std::int64_t lines, const Cloud& sweep) {
+  constexpr std::int64_t kMaxPoints = 100'000'000;
+  if (lines * sweep.beams <= kMaxPoints) return;
+  throw InputError("a sweep reaches to line " + std::to_string(lines) + " of " +
+                   std::to_string(sweep.beams) + " beams: more than " + std::to_string(kMaxPoints) +
+                   " points");
 }
 
 }  // namespace
@@ -133,30 +166,19 @@ void RequireJoinable(const Cloud& a, const Cloud& b) {
 }
 
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
-  std::vector<const Cloud*> parts;
-  for (const CloudChunk& chunk : chunks) {
-    if (!chunk.cloud.points.empty()) parts.push_back(&chunk.cloud);
-  }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Cloud* a, const Cloud* b) { return a->first_line < b->first_line; });
+  const std::vector<const Cloud*> parts = PartsOf(chunks);
   Cloud sweep;
+  if (parts.empty()) return sweep;
+  sweep.sweep_utime = parts.front()->sweep_utime;
+  sweep.beams = parts.front()->beams;
+  sweep.organised = parts.front()->organised;
+  int reach = 0;
   for (const Cloud* part : parts) {
-    if (sweep.lines == 0) {
-      sweep.sweep_utime = part->sweep_utime;
-      sweep.first_line = part->first_line;
-      sweep.beams = part->beams;
-      sweep.organised = part->organised;
-    }
     RequireJoinable(*parts.front(), *part);
-    const int place = part->first_line - sweep.first_line;
-    if (place < sweep.lines) continue;  // the same lines again
-    constexpr std::int64_t kMaxPoints = 100'000'000;
-    if (static_cast<std::int64_t>(place + part->lines) * sweep.beams > kMaxPoints) {
-      throw InputError("a sweep's chunk begins at line " + std::to_string(part->first_line) +
-                       " of " + std::to_string(sweep.beams) + " beams: more than " +
-                       std::to_string(kMaxPoints) + " points");
-    }
-    AppendLostLines(place - sweep.lines, *part, &sweep);
+    if (part->first_line < reach) continue;  // the same lines again
+    RequireBounded(std::int64_t{part->first_line} + part->lines, sweep);
+    AppendLostLines(part->first_line - reach, *part, false, &sweep);
+    reach = part->first_line + part->lines;
     sweep.lines += part->lines;
     Append(part->points, &sweep.points);
     Append(part->directions, &sweep.directions);
@@ -165,11 +187,25 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
     Append(part->utime, &sweep.utime);
     Append(part->ring, &sweep.ring);
   }
+  const int lines = LinesTold(chunks);
+  RequireBounded(lines, sweep);
+  AppendLostLines(lines - reach, *parts.back(), true, &sweep);
   if (!sweep.organised) {
     sweep.lines = 1;
     sweep.beams = static_cast<int>(sweep.points.size());
   }
   return sweep;
+}
+
+int MissingLines(const std::vector<CloudChunk>& chunks) {
+  int missing = 0;
+  int reach = 0;
+  for (const Cloud* part : PartsOf(chunks)) {
+    if (part->first_line < reach) continue;  // as where they are joined
+    missing += part->first_line - reach;
+    reach = part->first_line + part->lines;
+  }
+  return missing + std::max(0, LinesTold(chunks) - reach);
 }
 
 }  // namespace rgbdt

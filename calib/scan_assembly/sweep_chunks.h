@@ -15,9 +15,14 @@ std::vector<CloudChunk> SplitSweep(const Cloud& sweep);
 /// vectors they fill.
 void RequireJoinable(const Cloud& a, const Cloud& b);
 
-/// Puts chunks back together, in the order of their lines; a chunk that came twice counts once.
-/// Lines that never came become lines of NaN without known directions, so neighbours in the cloud
-/// are neighbours in the sweep. Throws InputError where they are not joinable.
+/// Puts chunks back together, in the order of their lines; a chunk that came twice counts once. The
+/// sweep is its lines from 0 to the last that came or, where its end tells more, `sweep_lines`. Of
+/// an organised sweep those that never came become lines of NaN without known directions, so
+/// neighbours in the cloud are neighbours in the sweep. Throws InputError where chunks are not
+/// joinable, or for more than 100 million points.
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
+
+/// How many of those lines never came, of an unorganised sweep's stretches, too.
+int MissingLines(const std::vector<CloudChunk>& chunks);
 
 }  // namespace rgbdt

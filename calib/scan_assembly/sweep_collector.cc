@@ -8,20 +8,33 @@
 #include "calib/scan_assembly/sweep_chunks.h"
 
 namespace rgbdt {
+namespace {
+
+int LinesToldBy(const CloudChunk& chunk) {
+  const Cloud& cloud = chunk.cloud;
+  return std::max(chunk.sweep_lines, cloud.size() == 0 ? 0 : cloud.first_line + cloud.lines);
+}
+
+}  // namespace
 
 void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
   const std::string name = "sweep " + std::to_string(chunk.cloud.sweep_utime);
   if (sweep.chunks.size() >= kMaxChunks) {
     throw InputError(name + " has more than " + std::to_string(kMaxChunks) + " chunks");
   }
-  const std::size_t reach = static_cast<std::size_t>(chunk.cloud.first_line + chunk.cloud.lines) *
-                            static_cast<std::size_t>(chunk.cloud.beams);
+  const auto first = std::find_if(sweep.chunks.begin(), sweep.chunks.end(),
+                                  [](const CloudChunk& c) { return c.cloud.size() != 0; });
+  const bool is_first = first == sweep.chunks.end();
+  const Cloud& like = is_first || chunk.cloud.size() != 0 ? chunk.cloud : first->cloud;
+  // An unorganised sweep is not filled up where lines are lost.
+  const int lines = like.organised ? std::max(sweep.lines, LinesToldBy(chunk))
+                                   : chunk.cloud.first_line + chunk.cloud.lines;
+  const int beams = like.organised ? like.beams : chunk.cloud.beams;
+  const std::size_t reach = static_cast<std::size_t>(lines) * static_cast<std::size_t>(beams);
   if (std::max(reach, sweep.points + chunk.cloud.size()) > kMaxPoints) {
     throw InputError(name + " has more than " + std::to_string(kMaxPoints) + " points");
   }
-  const auto first = std::find_if(sweep.chunks.begin(), sweep.chunks.end(),
-                                  [](const CloudChunk& c) { return c.cloud.size() != 0; });
-  if (first == sweep.chunks.end() || chunk.cloud.size() == 0) return;
+  if (is_first || chunk.cloud.size() == 0) return;
   RequireJoinable(first->cloud, chunk.cloud);
 }
 
@@ -31,6 +44,7 @@ void SweepCollector::Add(CloudChunk chunk) {
   Check(found == sweeps_.end() ? kNone : found->second, chunk);
   Sweep& sweep = sweeps_[chunk.cloud.sweep_utime];
   sweep.points += chunk.cloud.size();
+  sweep.lines = std::max(sweep.lines, LinesToldBy(chunk));
   sweep.ended |= chunk.sweep_end;
   sweep.chunks.push_back(std::move(chunk));
   ForgetOldest();
@@ -62,6 +76,17 @@ std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
   Cloud cloud = JoinChunks(sweeps_.at(sweep_utime).chunks);
   cloud.sweep_utime = sweep_utime;
   return cloud;
+}
+
+std::string SweepCollector::WhyTorn(Utime sweep_utime) const {
+  if (!Ended(sweep_utime)) return "";
+  const Sweep& sweep = sweeps_.at(sweep_utime);
+  const int missing = MissingLines(sweep.chunks);
+  if (missing <= kMaxMissing * sweep.lines) return "";
+  return "sweep " + std::to_string(sweep_utime) + " is not whole: " + std::to_string(missing) +
+         " of its " + std::to_string(sweep.lines) +
+         " lines never came (rgbdt-assembler or this process was started anew, or messages were "
+         "lost: gaps in STATUS)";
 }
 
 }  // namespace rgbdt

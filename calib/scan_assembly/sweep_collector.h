@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calib/model/cloud.h"
@@ -18,11 +19,16 @@ class SweepCollector {
   static constexpr std::size_t kKeptPoints = 6'000'000;
   static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
+  static constexpr double kMaxMissing = 0.01;           ///< of its lines: gaps look like edges
 
   /// Throws InputError for a chunk that cannot be joined to those of its sweep.
   void Add(CloudChunk chunk);
-  /// The complete sweep, or nothing while its end has not come.
+  /// The sweep, or nothing while its end has not come. Lines that never came, at its head and tail,
+  /// too, are there as lines of which nothing is known (JoinChunks).
   std::optional<Cloud> Complete(Utime sweep_utime) const;
+  /// Why a sweep that has ended is not to be used: more than kMaxMissing of its lines never came.
+  /// Empty: it is whole, or it has not ended.
+  std::string WhyTorn(Utime sweep_utime) const;
   bool Ended(Utime sweep_utime) const;
   /// Name of the newest sweep that is complete; 0: none is.
   Utime NewestEnded() const;
@@ -32,6 +38,7 @@ class SweepCollector {
   struct Sweep {
     std::vector<CloudChunk> chunks;
     std::size_t points = 0;
+    int lines = 0;  // that it must have, as far as its chunks have told
     bool ended = false;
   };
   static void Check(const Sweep& sweep, const CloudChunk& chunk);

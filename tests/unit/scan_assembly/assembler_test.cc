@@ -265,6 +265,61 @@ TEST_F(AssemblerTest, FirstLinesReorderedKeepTheirPlaces) {
   EXPECT_EQ(BytesOfAll(AddAll(&fresh, messages)), expected);
 }
 
+// What came before is unknown: lines keep the places that they have in the whole sweep.
+TEST_F(AssemblerTest, StartedInTheMidstOfASweepItKnowsWhatItMissed) {
+  const auto whole = BytesOfAll(Feed(SweepInOrder(kSweep, 70)));
+  for (const int missed : {1, 2, 12, kLines - 1}) {
+    Inputs rest;
+    for (const Input& message : SweepInOrder(kSweep, 70)) {
+      if (UtimeOf(message) >= Line(missed).utime) rest.push_back(message);
+    }
+    Assembler fresh(MakeScanner());
+    const auto chunks = AddAll(&fresh, rest);
+    ASSERT_EQ(chunks.size(), static_cast<std::size_t>(kLines - missed) + 1);
+    for (int i = missed; i < kLines; ++i) {
+      const std::size_t at = static_cast<std::size_t>(i - missed);
+      const bool same = BytesOf(chunks[at]) == whole[static_cast<std::size_t>(i)];
+      // The last line alone does not tell how far apart lines are: its beams take 32 of 40 ms.
+      EXPECT_EQ(same, missed < kLines - 1) << missed << " " << i;
+    }
+    EXPECT_GE(chunks.back().lines_lost, missed);
+    EXPECT_EQ(chunks.back().lines_lost, chunks.back().sweep_lines - (kLines - missed));
+    EXPECT_EQ(fresh.counts().lines_lost, chunks.back().lines_lost);
+  }
+}
+
+TEST_F(AssemblerTest, FirstLinesThatWereLostOnTheWayAreCountedByTheirNumbers) {
+  Feed(SweepInOrder());
+  const Utime second = kSweep + 5 * kMicrosecondsPerSecond;
+  Inputs messages = SweepInOrder(second, kLines);
+  for (const int lost : {0, 1}) {
+    messages.erase(messages.begin() +
+                   static_cast<std::ptrdiff_t>(PlaceOfLine(messages, kLines + lost)));
+  }
+  const auto chunks = Feed(messages);
+  EXPECT_EQ(chunks.front().cloud.first_line, 2);
+  EXPECT_EQ(chunks.back().lines_lost, 2);
+}
+
+// A scanner that runs on between sweeps: its first line lies anywhere after the sweep's start.
+TEST_F(AssemblerTest, ALineShortlyBeforeTheSweepIsNoLineThatItLacks) {
+  Inputs messages;
+  for (Utime t = kSweep - 300 * kMs; t <= kSweepEnd + 300 * kMs; t += 10 * kMs) {
+    const Utime since = t - (kSweep - 300 * kMs);
+    if (since % kLinePeriod == 20 * kMs) {
+      LineScan line = Line(static_cast<int>(since / kLinePeriod));
+      line.utime = t - 1 - kLinePeriod;  // 1 us before the sweep, then 39.999 ms after its start
+      messages.push_back(line);
+    }
+    messages.push_back(Reading(t));
+  }
+  const auto chunks = Feed(messages);
+  ASSERT_GT(chunks.size(), 20U);
+  EXPECT_EQ(chunks.front().cloud.first_line, 0);
+  EXPECT_EQ(chunks.front().cloud.utime.front(), kSweep + kLinePeriod - 1);
+  EXPECT_EQ(chunks.back().lines_lost, 0);
+}
+
 TEST_F(AssemblerTest, AReadingOutOfOrderIsRefusedAndTheSweepGoesOn) {
   Inputs messages = SweepInOrder();
   // Two readings in the middle of the sweep change places: the older then comes too late.

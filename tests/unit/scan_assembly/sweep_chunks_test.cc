@@ -152,6 +152,58 @@ TEST(JoinChunks, MissingLinesKeepTheirPlaceAndAreKnownToBeLost) {
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(sweep.ring[i], i % 3);
 }
 
+// As where a process was started in the midst of the sweep, or the last chunk before the end is
+// lost.
+TEST(JoinChunks, LinesMissingAtHeadAndTailAreThereAndKnownToBeLost) {
+  CloudChunk end;
+  end.sweep_end = true;
+  end.sweep_lines = 6;
+  const std::vector<CloudChunk> chunks = {ChunkOf(2, 2, 3), end};
+  const Cloud sweep = JoinChunks(chunks);
+  EXPECT_EQ(sweep.first_line, 0);
+  EXPECT_EQ(sweep.lines, 6);
+  EXPECT_EQ(LostLines(sweep), 4);
+  EXPECT_EQ(MissingLines(chunks), 4);
+  ASSERT_EQ(sweep.points.size(), 18U);
+  ASSERT_EQ(sweep.directions.size(), 18U);
+  ASSERT_EQ(sweep.intensity.size(), 18U);
+  ASSERT_EQ(sweep.ring.size(), 18U);
+  ASSERT_EQ(sweep.utime.size(), 18U);
+  ASSERT_EQ(sweep.origins.size(), 6U);
+  for (std::size_t i = 0; i < 18; ++i) {
+    const std::size_t line = i / 3;
+    EXPECT_EQ(sweep.IsHit(i), line == 2 || line == 3) << i;
+    EXPECT_EQ(sweep.ring[i], i % 3);
+    if (sweep.IsHit(i)) {
+      EXPECT_EQ(sweep.points[i].x(), static_cast<float>(line));
+      EXPECT_EQ(sweep.utime[i], static_cast<Utime>(1000 * line + i % 3));
+    }
+  }
+  EXPECT_EQ(sweep.utime.front(), 2000) << "the nearest that is known";
+  EXPECT_EQ(sweep.utime.back(), 3002);
+}
+
+TEST(MissingLines, CountsWhatNeverCameOfAnySweep) {
+  EXPECT_EQ(MissingLines({}), 0);
+  EXPECT_EQ(MissingLines({ChunkOf(0, 2, 3), ChunkOf(2, 3, 3)}), 0);
+  EXPECT_EQ(MissingLines({ChunkOf(4, 2, 3), ChunkOf(1, 2, 3), ChunkOf(4, 2, 3)}), 2);
+  std::vector<CloudChunk> stretches = SplitSweep(Made(1, 200'001, false));
+  EXPECT_EQ(MissingLines(stretches), 0);
+  ASSERT_GT(stretches.size(), 2U);
+  stretches.erase(stretches.begin());
+  EXPECT_EQ(MissingLines(stretches), 1);
+  EXPECT_FALSE(JoinChunks(stretches).organised);
+}
+
+TEST(JoinChunks, AnEndThatTellsOfMorePointsThanAllowedIsAnError) {
+  CloudChunk end;
+  end.sweep_lines = 1'000'000;
+  EXPECT_THAT(InputErrorOf([&] {
+                JoinChunks({ChunkOf(0, 1, 101), end});
+              }),
+              HasSubstr("reaches to line 1000000 of 101 beams"));
+}
+
 TEST(JoinChunks, AChunkThatCameTwiceCountsOnce) {
   const Cloud sweep = JoinChunks({ChunkOf(0, 2, 3), ChunkOf(2, 1, 3), ChunkOf(0, 2, 3)});
   EXPECT_THAT(LinesOf(sweep), ElementsAre(0, 1, 2));

@@ -81,5 +81,45 @@ TEST(SweepCollectorTest, RefusesWhatDoesNotFitTheSweep) {
   EXPECT_EQ(sweeps.Complete(kSweep)->lines, 2);
 }
 
+// Also where the end comes first.
+TEST(SweepCollectorTest, AnEndThatTellsOfMoreThanFitsIsRefused) {
+  SweepCollector sweeps;
+  sweeps.Add(Chunk(kSweep, 0, 1, 1000));
+  EXPECT_THAT(InputErrorOf([&] { sweeps.Add(End(kSweep, 8'001)); }),
+              HasSubstr("more than 8000000 points"));
+  EXPECT_FALSE(sweeps.Ended(kSweep));
+  sweeps.Add(End(kSweep, 8'000));
+  EXPECT_EQ(sweeps.Complete(kSweep)->lines, 8'000);
+  sweeps.Add(End(kSweep + 1, 8'001));
+  EXPECT_THAT(InputErrorOf([&] { sweeps.Add(Chunk(kSweep + 1, 0, 1, 1000)); }),
+              HasSubstr("more than 8000000 points"));
+}
+
+TEST(SweepCollectorTest, ASweepThatLacksMoreThanOneLineInAHundredIsTorn) {
+  struct Case {
+    int first, last, lines;
+    std::string says;
+  };
+  const std::vector<Case> cases = {{0, 199, 200, ""},
+                                   {2, 199, 200, ""},
+                                   {0, 197, 200, ""},
+                                   {3, 199, 200, "3 of its 200 lines"},
+                                   {0, 196, 200, "3 of its 200 lines"},
+                                   {1, 197, 200, "3 of its 200 lines"},
+                                   {0, 0, 0, ""}};
+  for (const Case& one : cases) {
+    SweepCollector sweeps;
+    for (int line = one.first; line <= one.last; ++line) sweeps.Add(Chunk(kSweep, line));
+    EXPECT_EQ(sweeps.WhyTorn(kSweep), "") << "it has not ended";
+    sweeps.Add(End(kSweep, one.lines));
+    EXPECT_EQ(sweeps.WhyTorn(kSweep).empty(), one.says.empty()) << one.first << " " << one.last;
+    EXPECT_THAT(sweeps.WhyTorn(kSweep), HasSubstr(one.says));
+    EXPECT_EQ(sweeps.Complete(kSweep)->lines, std::max(one.lines, 1));
+  }
+  SweepCollector nothing_came;
+  nothing_came.Add(End(kSweep, 5));
+  EXPECT_THAT(nothing_came.WhyTorn(kSweep), HasSubstr("5 of its 5 lines"));
+}
+
 }  // namespace
 }  // namespace rgbdt
