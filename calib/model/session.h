@@ -40,7 +40,7 @@ struct SessionEvent {
   std::string source;  ///< process
   EventKind kind = EventKind::kDone;
   std::string text;       ///< for a person; with kFailed what, where and what to do
-  Utime sweep_utime = 0;  ///< sweep done: its name
+  Utime sweep_utime = 0;  ///< sweep done: its name; capture failed: the sweep that is not whole
   double fraction = 0;    ///< progress, 0 to 1
 };
 

@@ -61,6 +61,14 @@ Messages DetectorNode::DetectIfComplete() {
   event.source = name();
   const std::optional<View> view = view_.Take(*rig_);
   if (!view) return {};
+  const std::string torn = view_.sweeps().WhyTorn(view->cloud.sweep_utime);
+  if (!torn.empty()) {
+    ++torn_sweeps_;
+    event.kind = EventKind::kFailed;
+    event.sweep_utime = view->cloud.sweep_utime;
+    event.text = torn;
+    return {event};
+  }
   ++views_;
   kept_.push_back({*view, event});
   if (kept_.size() > kKeptViews) kept_.pop_front();
@@ -143,7 +151,8 @@ Status DetectorNode::GetStatus() const {
                     : "view " + view_.capture().view + " waits for " + view_.Missing(*rig_);
   status.counters = {{"views", views_},
                      {"images without board", images_without_board_},
-                     {"clouds without board", clouds_without_board_}};
+                     {"clouds without board", clouds_without_board_},
+                     {"sweeps not whole", torn_sweeps_}};
   return status;
 }
 

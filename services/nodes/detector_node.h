@@ -14,13 +14,14 @@
 namespace rgbdt {
 
 /// CLOUD + `<CAMERA>_IMAGE` + CORNER_SELECTION + SESSION_COMMAND capture -> DETECTION, one a view,
-/// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A view that
-/// never becomes complete is dropped when the next capture or a reset comes; the status says what
-/// it waits for. Another rig forgets everything. Corners that a person picks in an image of one of
-/// the newest kKeptViews views have that view detected once more, with them: its DETECTION comes
-/// again, and the event of its capture. Once a second, where it `looks`, it sends whether a sensor
-/// sees the board now (TARGET_STATUS): one sensor at a time, the next in turn that has something
-/// new.
+/// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A view whose
+/// sweep is not whole (SweepCollector::WhyTorn) is not looked at: failed, with the sweep's utime. A
+/// view that never becomes complete is dropped when the next capture or a reset comes; the status
+/// says what it waits for. Another rig forgets everything. Corners that a person picks in an image
+/// of one of the newest kKeptViews views have that view detected once more, with them: its
+/// DETECTION comes again, and the event of its capture. Once a second, where it `looks`, it sends
+/// whether a sensor sees the board now (TARGET_STATUS): one sensor at a time, the next in turn that
+/// has something new.
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;
@@ -55,6 +56,7 @@ class DetectorNode : public Node {
   std::int64_t views_ = 0;
   std::int64_t images_without_board_ = 0;
   std::int64_t clouds_without_board_ = 0;
+  std::int64_t torn_sweeps_ = 0;
 
   struct Kept {
     View view;

@@ -101,7 +101,11 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   if (event.kind == EventKind::kFailed) {
     const std::string why = event.source + ": " + event.text;
     if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
-    Fail(why);
+    if (event.source == "detector" && event.sweep_utime != 0) {
+      TakeAgain(why);
+    } else {
+      Fail(why);
+    }
     return;
   }
   if (event.kind == EventKind::kProgress) {

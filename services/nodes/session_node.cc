@@ -68,8 +68,14 @@ Messages SessionNode::Handle(const Message& message) {
 
 void SessionNode::SaveView() {
   if (finished_ || !collector_.active()) return;
+  const bool is_newest = collector_.capture().command == command_;
   const auto view = collector_.Take(rig_);
   if (!view) return;
+  const std::string torn = collector_.sweeps().WhyTorn(view->cloud.sweep_utime);
+  if (!torn.empty()) {
+    if (waiting_ && is_newest) TakeAgain(torn);
+    return;
+  }
   try {
     WriteView(directory_, *view);
     view_saved_ = true;
@@ -139,6 +145,7 @@ void SessionNode::EndStep() {
   const bool saved = step().kind == SessionStep::Kind::kSave;
   if (step().kind == SessionStep::Kind::kCapture) {
     view_taken_ = true;
+    retakes_ = 0;
     solver_views_.Require(view_);
   }
   if (++index_ < script_.steps.size()) return;
@@ -177,6 +184,29 @@ Messages SessionNode::Begin() {
       return {};
   }
   return {};
+}
+
+// The sweep before the capture at hand, and the capture, once more.
+void SessionNode::TakeAgain(const std::string& why) {
+  collector_.GiveUp();
+  captures_.erase(command_);
+  std::size_t sweep = index_;
+  while (sweep > 0 && (sweep == index_ || script_.steps[sweep].kind == SessionStep::Kind::kWait)) {
+    --sweep;
+  }
+  const bool can = script_.steps[sweep].kind == SessionStep::Kind::kSweep;
+  if (!can || retakes_ == kMaxRetakes) {
+    Fail(why + (can ? "; given up after " + std::to_string(kMaxRetakes + 1) + " sweeps"
+                    : "; put sweep before capture, so that it can be taken again"));
+    return;
+  }
+  for (auto image = images_.begin(); image != images_.end();) {
+    image = image->second == view_ ? images_.erase(image) : std::next(image);
+  }
+  ++retakes_;
+  index_ = sweep;
+  waiting_ = false;
+  Tell("view " + view_ + ": " + why + "; the sweep is taken again");
 }
 
 Messages SessionNode::BeginCapture() {
@@ -260,11 +290,18 @@ void SessionNode::Fail(const std::string& why) {
              (view_.empty() ? "" : ", view " + view_) + ": " + why;
   PublishEvent(EventKind::kFailed, failure_, 1);
   finished_ = !leads;
+  retakes_ = 0;
   if (!leads) return;
   // What was to follow is dropped; the person decides.
   index_ = script_.steps.size();
   waiting_ = false;
   view_taken_ = true;
+}
+
+// For who watches this process, and for the page.
+void SessionNode::Tell(const std::string& text) {
+  Warn(text);
+  PublishEvent(idle() ? EventKind::kDone : EventKind::kProgress, text, 0);
 }
 
 void SessionNode::PublishEvent(EventKind kind, const std::string& text, double fraction) {

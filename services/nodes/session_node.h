@@ -39,6 +39,9 @@ struct SessionProgress {
 /// that is on disk are written to it, and once the detector has detected it again, a session that a
 /// person leads solves again.
 ///
+/// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
+/// sweep and all, kMaxRetakes times at most; then it has failed.
+///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
 /// once more, and is asked again what it was asked. A report without a captured view, but for those
@@ -46,6 +49,8 @@ struct SessionProgress {
 /// waits, and RIG once a second.
 class SessionNode : public Node {
  public:
+  static constexpr int kMaxRetakes = 2;
+
   using OnProgress = std::function<void(const SessionProgress&)>;
   /// Whether the person who carries the board has put it where the next view wants it; asked in
   /// each Advance until it has. What it throws ends the session.
@@ -93,6 +98,8 @@ class SessionNode : public Node {
   void OnPicks(const CornerSelection& picks);
   void OnEvent(const SessionEvent& event);
   void SaveView();
+  void TakeAgain(const std::string& why);
+  void Tell(const std::string& text);
   void Save();
   void SetEarlierResultsAside();
   void Fail(const std::string& why);
@@ -138,6 +145,7 @@ class SessionNode : public Node {
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;
+  int retakes_ = 0;  // of the capture at hand
   std::optional<Report> report_;
   bool finished_ = false;
   std::string failure_;

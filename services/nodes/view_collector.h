@@ -39,6 +39,8 @@ class ViewCollector {
   void Add(const CornerSelection& picks);
   /// A new capture replaces one that never became complete.
   void Begin(const SessionCommand& capture);
+  /// The capture at hand, if any, is of no use any more.
+  void GiveUp() { capture_.reset(); }
   /// Forgets everything but the newest images.
   void Reset();
 

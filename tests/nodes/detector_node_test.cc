@@ -154,6 +154,30 @@ TEST_F(DetectorNodeTest, PicksInAnImageOfAViewHaveItDetectedAgain) {
   EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is forgotten";
 }
 
+// As where this process or the assembler was started in the midst of the sweep.
+TEST_F(DetectorNodeTest, AViewWhoseSweepLacksItsFirstLinesHasFailed) {
+  Messages sweep = EmptySweep();
+  std::get<CloudChunk>(sweep[0]).cloud.first_line = 3;
+  std::get<CloudChunk>(sweep[1]).sweep_lines = 4;
+  test::HandleAll(&node_, sweep);
+  node_.Handle(Capture());
+  const Messages out = test::HandleAll(&node_, {Blank("rgb"), Blank("thermal")});
+  ASSERT_EQ(out.size(), 1U) << "no DETECTION";
+  const auto& event = std::get<SessionEvent>(out[0]);
+  EXPECT_EQ(event.command, 7);
+  EXPECT_EQ(event.kind, EventKind::kFailed);
+  EXPECT_EQ(event.sweep_utime, kSweep);
+  EXPECT_THAT(event.text, HasSubstr("3 of its 4 lines never came"));
+  EXPECT_EQ(Counter(node_.GetStatus(), "sweeps not whole"), 1);
+  EXPECT_EQ(Counter(node_.GetStatus(), "views"), 0);
+  EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
+  CornerSelection picks;
+  picks.camera = "thermal";
+  picks.image_utime = kCommand;
+  picks.corners = {{{5, 5}, {50, 5}, {50, 40}, {5, 40}}};
+  EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is not kept";
+}
+
 TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
   EXPECT_TRUE(node_.Advance(0).empty());
   test::HandleAll(&node_, EmptySweep());

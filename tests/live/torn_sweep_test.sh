@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# A session whose assembler, and later its detector, is killed in the midst of a sweep: each time
+# the sweep is taken again, and the calibration agrees with that of an undisturbed session. Run by
+# scripts/in-namespace. Usage: torn_sweep_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/live/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+views=4
+services=(assembler detector solver fuser)
+
+write_script() {
+  local view
+  for view in $(seq "$views"); do
+    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
+  done
+  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
+}
+
+start_session() {  # NAME SPEED: processes of its own
+  local process
+  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process"; done
+  start simulator "$bin/rgbdt-simulator" --speed "$2" --rig "$scratch/rig.textproto"
+  helper ready "${services[@]}" simulator || fail "not every process came up"
+  start "$1" "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/rig.textproto" \
+    --out "$scratch/$1"
+}
+
+end_session() {  # NAME
+  wait_for "$1" || fail "the session ended with exit code $?"
+  stop TERM "${services[@]}" simulator
+}
+
+until_told() {  # NAME WORDS: as the session's progress has it
+  until grep -qs "$2" "$scratch/$1.log"; do
+    kill -0 "${pids[$1]}" || fail "the session ended before it said: $2"
+    sleep 0.05
+  done
+}
+
+kill_in_sweep_of() {  # VIEW PROCESS: and starts it anew, before the sweep has ended
+  until_told disturbed "view $1: sweeping, 25%"
+  kill_process "$2"
+  start "$2" "$bin/rgbdt-$2"
+  until_told disturbed "view $1: .* lines never came .*; the sweep is taken again"
+}
+
+write_script >"$scratch/session.textproto"
+echo "== undisturbed"
+start_session undisturbed 6
+end_session undisturbed
+if grep 'the sweep is taken again' "$scratch/undisturbed.log"; then fail "for no reason"; fi
+
+# Slow enough that a process that is started anew has the rig long before the sweep ends.
+echo "== disturbed"
+start_session disturbed 2
+kill_in_sweep_of 0002 assembler
+kill_in_sweep_of 0003 detector
+end_session disturbed
+grep 'the sweep is taken again' "$scratch/disturbed.log"
+[ "$(grep -c 'the sweep is taken again' "$scratch/disturbed.log")" = 2 ] ||
+  fail "other sweeps were taken again, too"
+for view in 0001 0002 0003 0004; do
+  [ -s "$scratch/disturbed/views/$view/view.textproto" ] || fail "view $view is missing"
+done
+"$bin/rgbdt" compare "$scratch/undisturbed" "$scratch/disturbed" ||
+  fail "the calibrations contradict each other"
+echo "passed"

@@ -1,0 +1,180 @@
+// Sweeps of which lines never came: they are taken again.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calib/files/session/session_dir.h"
+#include "services/nodes/session_node.h"
+#include "tests/nodes/session_world.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using test::Only;
+using test::TinyRig;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Kind = SessionStep::Kind;
+using Verb = SessionVerb;
+
+// The sweep's end tells of a line more than came.
+Messages Torn(Messages answer) {
+  for (Message& message : answer) {
+    if (auto* chunk = std::get_if<CloudChunk>(&message)) {
+      chunk->cloud.first_line = 1;
+      chunk->sweep_lines = 2;
+    }
+  }
+  return answer;
+}
+
+// As the detector answers where its sweep is not whole.
+Messages RefusedByDetector(const Messages& answer, Utime sweep_utime) {
+  Messages out;
+  for (Message message : answer) {
+    if (std::holds_alternative<ViewDetection>(message)) continue;
+    if (auto* event = std::get_if<SessionEvent>(&message); event && event->source == "detector") {
+      event->kind = EventKind::kFailed;
+      event->sweep_utime = sweep_utime;
+      event->text = "the sweep is not whole";
+    }
+    out.push_back(std::move(message));
+  }
+  return out;
+}
+
+class TornSweepTest : public ::testing::Test {
+ protected:
+  enum class Where { kNowhere, kDetector, kSession };
+
+  void Lead(std::unique_ptr<SessionNode> node) {
+    node_ = std::move(node);
+    node_->SetWarningHandler([&](const std::string& warning) { warnings_.push_back(warning); });
+    for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+      node_->Handle(test::Ready(process));
+    }
+  }
+  void ByScript(const std::vector<Kind>& kinds) {
+    Lead(std::make_unique<SessionNode>(test::Script(kinds), TinyRig(), dir_ / "session",
+                                       SessionNode::OnProgress()));
+  }
+  // The first `torn` sweeps are torn; half a minute, or until the session ends.
+  void Run(Where where, int torn) {
+    for (int turn = 0; turn < 300 && !node_->finished(); ++turn) {
+      const Messages said = test::AdvanceTo(now_s_ += 0.1, node_.get());
+      for (const SessionEvent& event : Only<SessionEvent>(said)) events_.push_back(event);
+      for (const SessionCommand& command : Only<SessionCommand>(said)) {
+        Messages answer = world_.Answer(command);
+        const bool this_one = command.verb == Verb::kSweep ? sweeps_++ < torn : sweeps_ <= torn;
+        if (where == Where::kSession && this_one && command.verb == Verb::kSweep) {
+          answer = Torn(std::move(answer));
+        }
+        if (where == Where::kDetector && this_one && command.verb == Verb::kCapture) {
+          answer = RefusedByDetector(answer, command.sweep_utime);
+        }
+        test::HandleAll(node_.get(), answer);
+      }
+    }
+  }
+  std::vector<Verb> Verbs() const {
+    std::vector<Verb> verbs;
+    for (const SessionCommand& command : world_.commands) verbs.push_back(command.verb);
+    return verbs;
+  }
+
+  const std::vector<Kind> one_view_ = {Kind::kNextPose, Kind::kSweep,    Kind::kCapture,
+                                       Kind::kSolve,    Kind::kEvaluate, Kind::kSave};
+  test::TempDir dir_;
+  test::World world_;
+  std::unique_ptr<SessionNode> node_;
+  double now_s_ = 0;
+  int sweeps_ = 0;
+  std::vector<SessionEvent> events_;
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(TornSweepTest, SweepAndCaptureAreRepeatedWhoeverLacksLines) {
+  for (const Where where : {Where::kDetector, Where::kSession}) {
+    std::filesystem::remove_all(dir_ / "session");
+    world_ = test::World();
+    warnings_.clear();
+    sweeps_ = 0;
+    ByScript(one_view_);
+    Run(where, SessionNode::kMaxRetakes);
+    EXPECT_TRUE(node_->finished());
+    EXPECT_EQ(node_->failure(), "");
+    EXPECT_THAT(Verbs(), ElementsAre(Verb::kReset, Verb::kNextPose, Verb::kSweep, Verb::kCapture,
+                                     Verb::kSweep, Verb::kCapture, Verb::kSweep, Verb::kCapture,
+                                     Verb::kSolve, Verb::kEvaluate));
+    const Session session = OpenSession(dir_ / "session");
+    ASSERT_THAT(session.views, ElementsAre("0001"));
+    const View view = ReadView(session, "0001");
+    EXPECT_EQ(view.cloud.sweep_utime, world_.commands[7].sweep_utime);
+    EXPECT_EQ(view.cloud.lines, 1);
+    EXPECT_THAT(warnings_, ::testing::Each(AllOf(HasSubstr("view 0001"), HasSubstr("is not whole"),
+                                                 HasSubstr("the sweep is taken again"))));
+    EXPECT_EQ(warnings_.size(), 2U);
+  }
+}
+
+TEST_F(TornSweepTest, AfterThreeItSaysWhyItGivesUp) {
+  for (const Where where : {Where::kDetector, Where::kSession}) {
+    std::filesystem::remove_all(dir_ / "session");
+    world_ = test::World();
+    sweeps_ = 0;
+    ByScript(one_view_);
+    Run(where, 100);
+    EXPECT_TRUE(node_->finished());
+    EXPECT_THAT(node_->failure(),
+                AllOf(HasSubstr("step 3 of 6, capture, view 0001"), HasSubstr("is not whole"),
+                      HasSubstr("given up after 3 sweeps")));
+    EXPECT_EQ(sweeps_, 3);
+  }
+}
+
+TEST_F(TornSweepTest, EachViewHasItsOwnTries) {
+  std::vector<Kind> two_views = {Kind::kNextPose, Kind::kSweep, Kind::kWait, Kind::kCapture};
+  two_views.insert(two_views.end(), one_view_.begin(), one_view_.end());
+  ByScript(two_views);
+  Run(Where::kDetector, SessionNode::kMaxRetakes);
+  EXPECT_EQ(node_->failure(), "");
+  EXPECT_EQ(sweeps_, 4);
+  EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001", "0002"));
+}
+
+TEST_F(TornSweepTest, ASweepThatIsNotRightBeforeTheCaptureIsNotGuessed) {
+  ByScript({Kind::kSweep, Kind::kSolve, Kind::kCapture});
+  Run(Where::kDetector, 1);
+  EXPECT_THAT(node_->failure(), HasSubstr("put sweep before capture"));
+  EXPECT_EQ(sweeps_, 1);
+}
+
+TEST_F(TornSweepTest, APersonIsAskedNothingUntilItIsGivenUp) {
+  Lead(std::make_unique<SessionNode>(TinyRig(), dir_ / "session", SessionNode::OnProgress()));
+  Run(Where::kNowhere, 0);
+  SessionRequest request;
+  request.request = SessionRequestKind::kCapture;
+  node_->Handle(request);
+  Run(Where::kSession, 1);
+  EXPECT_THAT(Verbs(), ElementsAre(Verb::kReset, Verb::kSweep, Verb::kCapture, Verb::kSweep,
+                                   Verb::kCapture, Verb::kSolve, Verb::kEvaluate));
+  EXPECT_EQ(events_.back().kind, EventKind::kDone);
+  EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001"));
+  EXPECT_TRUE(std::any_of(events_.begin(), events_.end(), [](const SessionEvent& event) {
+    return event.text.find("the sweep is taken again") != std::string::npos;
+  })) << "the page hears of it";
+
+  node_->Handle(request);
+  Run(Where::kSession, 100);
+  EXPECT_EQ(events_.back().kind, EventKind::kFailed);
+  EXPECT_THAT(events_.back().text, HasSubstr("given up"));
+  EXPECT_FALSE(node_->finished());
+  node_->Handle(request);
+  Run(Where::kNowhere, 0);
+  EXPECT_EQ(node_->failure(), "");
+  EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001", "0003"));
+}
+
+}  // namespace
+}  // namespace rgbdt
