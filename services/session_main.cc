@@ -1,5 +1,10 @@
+#include <unistd.h>
+
+#include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <random>
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
@@ -17,13 +22,27 @@ struct Flags {
   bool by_hand = false;
 };
 
+constexpr rgbdt::Utime kListen = 2 * rgbdt::kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
+
+rgbdt::SessionIdentity Identity(const std::string& out) {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) host = {'?'};
+  std::random_device lot;
+  rgbdt::SessionIdentity identity;
+  identity.id = std::uniform_int_distribution<std::int64_t>(0, identity.kIds - 1)(lot);
+  identity.place = host.data() + (":" + std::filesystem::absolute(out).lexically_normal().string());
+  identity.listen = kListen;
+  return identity;
+}
+
 std::unique_ptr<rgbdt::SessionNode> ByScript(const Flags& flags) {
   const rgbdt::SessionScript script = rgbdt::ReadSessionScript(flags.script, flags.rig);
   rgbdt::SessionNode::BoardStands board_stands;
   if (flags.by_hand)
     board_stands = [person = rgbdt::Person()]() mutable { return person.BoardStands(); };
   return std::make_unique<rgbdt::SessionNode>(script, rgbdt::ReadRig(script.rig), flags.out,
-                                              rgbdt::ProgressPrinter(), board_stands);
+                                              rgbdt::ProgressPrinter(), board_stands,
+                                              Identity(flags.out));
 }
 
 std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
@@ -33,7 +52,7 @@ std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
   std::printf("The viewer's page leads this session: rgbdt-viewer prints its address.\n");
   std::fflush(stdout);
   return std::make_unique<rgbdt::SessionNode>(rgbdt::ReadRig(flags.rig), flags.out,
-                                              rgbdt::ProgressPrinter());
+                                              rgbdt::ProgressPrinter(), Identity(flags.out));
 }
 
 int Run(const Flags& flags) {

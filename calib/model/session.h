@@ -21,7 +21,7 @@ enum class SessionVerb {
 
 /// What the session asks of everybody. Who is concerned answers with events of the same command.
 struct SessionCommand {
-  std::int64_t command = 0;  ///< its number: unique and growing within a session
+  std::int64_t command = 0;  ///< its number: growing within a session, whose id is its high bits
   std::int64_t seq = 0;
   Utime utime = 0;  ///< newest sensor time that the session knew; 0 before the first
   SessionVerb verb = SessionVerb::kReset;

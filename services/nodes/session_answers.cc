@@ -12,10 +12,7 @@ namespace rgbdt {
 
 void SessionNode::Take(const Message& message) {
   if (const auto* status = std::get_if<Status>(&message)) {
-    statuses_[status->process] = *status;
-    if (status->process == "solver" && solver_views_.LostBy(*status)) {
-      RestoreSolver("rgbdt-solver was started anew and has lost its views");
-    }
+    OnStatus(*status);
   } else if (const auto* event = std::get_if<SessionEvent>(&message)) {
     OnEvent(*event);
   } else if (const auto* request = std::get_if<SessionRequest>(&message)) {
@@ -30,11 +27,29 @@ void SessionNode::Take(const Message& message) {
     OnPicks(*picks);
     collector_.Add(*picks);
   } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
-    if (IsCaptured(detection->view)) solver_views_.Add(*detection);
+    if (IsCaptured(*detection)) solver_views_.Add(*detection);
   } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
     if (started_) solver_views_.Set(*left_out);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = ReportFromJson(report->json, "REPORT message");
+  }
+}
+
+bool SessionNode::Listens() const {
+  return identity_.listen > 0 && (!began_ || now_ - *began_ < identity_.listen);
+}
+
+void SessionNode::OnStatus(const Status& status) {
+  statuses_[status.process] = status;
+  if (status.process == "solver" && solver_views_.LostBy(status)) {
+    RestoreSolver("rgbdt-solver was started anew and has lost its views");
+  }
+  if (finished_) return;
+  if (!Listens()) {
+    if (const auto warning = others_.Warning(status)) Tell(*warning);
+  } else if (const auto why = others_.WhyGiveWay(status)) {
+    failure_ = "start: " + *why;
+    finished_ = true;  // no event: the page would take it for one of the other session
   }
 }
 
@@ -44,6 +59,7 @@ void SessionNode::OnRequest(const SessionRequest& request) {
     return;
   }
   if (!by_request_) throw InputError("a script leads this session; what is asked for is not done");
+  if (Listens()) throw InputError("the session has not begun: it listens for another one");
   if (!started_) throw InputError("the session waits for: " + WhoIsNotReady());
   if (!idle()) throw InputError("the session is busy; ask again when it is done");
   failure_.clear();
@@ -91,7 +107,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   if (event.source == name()) return;
   const auto capture = captures_.find(event.command);
   if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
-    PublishEvent(event.kind, "view " + capture->second + ", once more: " + event.text, 1);
+    PublishEvent(event.kind, "view " + capture->second.view + ", once more: " + event.text, 1);
     if (!by_request_ || finished_ || event.kind != EventKind::kDone) return;
     Append(SessionStep::Kind::kSolve);
     Append(SessionStep::Kind::kEvaluate);
@@ -143,9 +159,12 @@ bool SessionNode::RestoreSolver(const std::string& why) {
   return true;
 }
 
-bool SessionNode::IsCaptured(const std::string& view) const {
-  return std::any_of(captures_.begin(), captures_.end(),
-                     [&](const auto& capture) { return capture.second == view; });
+// By this session: another one's views are called the same.
+bool SessionNode::IsCaptured(const ViewDetection& detection) const {
+  return std::any_of(captures_.begin(), captures_.end(), [&](const auto& capture) {
+    return capture.second.view == detection.view &&
+           capture.second.sweep_utime == detection.sweep_utime;
+  });
 }
 
 bool SessionNode::WaitsForPose() const {

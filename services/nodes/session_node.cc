@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
+#include <utility>
 
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
@@ -35,12 +36,13 @@ void RequireNoViews(const std::filesystem::path& directory) {
 }  // namespace
 
 SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path directory,
-                         OnProgress progress, BoardStands board_stands)
+                         OnProgress progress, BoardStands board_stands, SessionIdentity identity)
     : script_(std::move(script)),
       rig_(std::move(rig)),
       directory_(std::move(directory)),
       progress_(std::move(progress)),
-      board_stands_(std::move(board_stands)) {
+      board_stands_(std::move(board_stands)),
+      identity_(std::move(identity)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
   RequireNoViews(directory_);
   for (SessionStep& step : script_.steps) {
@@ -48,11 +50,13 @@ SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path di
   }
 }
 
-SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress)
+SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress,
+                         SessionIdentity identity)
     : by_request_(true),
       rig_(std::move(rig)),
       directory_(std::move(directory)),
-      progress_(std::move(progress)) {
+      progress_(std::move(progress)),
+      identity_(std::move(identity)) {
   RequireNoViews(directory_);
 }
 
@@ -88,6 +92,7 @@ void SessionNode::SaveView() {
 Messages SessionNode::Advance(Utime now) {
   now_ = now;
   if (!began_) began_ = now;
+  if (Listens() || (finished_ && !started_)) return std::exchange(events_, {});
   Messages out, next;
   if (rig_repeat_.IsDue(now)) out.push_back(RigText{0, rig_.hash, rig_.text});
   try {
@@ -213,8 +218,8 @@ Messages SessionNode::BeginCapture() {
   view_saved_ = false;
   Announce("looking for the board");
   Messages out = Send(SessionVerb::kCapture);
-  captures_[command_] = view_;
-  collector_.Begin(std::get<SessionCommand>(out.front()));
+  captures_[command_] = std::get<SessionCommand>(out.front());
+  collector_.Begin(captures_[command_]);
   return out;
 }
 
@@ -348,11 +353,14 @@ Status SessionNode::GetStatus() const {
     status.counters.emplace_back("step", static_cast<std::int64_t>(index_) + 1);
     status.counters.emplace_back("steps", static_cast<std::int64_t>(script_.steps.size()));
   }
+  OtherSessions::Tell(identity_.id, Listens(), finished_, &status);
   status.text = finished_   ? (failure_.empty() ? "finished" : "failed: " + failure_)
+                : Listens() ? "listens whether another session is on the bus"
                 : !started_ ? "waits for: " + WhoIsNotReady()
                 : idle()    ? "waits for a person to ask for something (SESSION_REQUEST)"
                             : "step " + std::to_string(index_ + 1) + " of " +
                                std::to_string(script_.steps.size());
+  if (!identity_.place.empty()) status.text += "; writes " + identity_.place;
   return status;
 }
 

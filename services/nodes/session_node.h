@@ -9,6 +9,7 @@
 #include "calib/files/schema/session_script.h"
 #include "calib/model/calibration.h"
 #include "calib/model/rig.h"
+#include "services/nodes/other_sessions.h"
 #include "services/nodes/solver_views.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
@@ -39,6 +40,11 @@ struct SessionProgress {
 /// that is on disk are written to it, and once the detector has detected it again, a session that a
 /// person leads solves again.
 ///
+/// Two sessions on one bus would erase each other's views. For as long as its identity says it
+/// listens and sends nothing but its STATUS; hears it another one, it ends with the reason, and
+/// nothing is written (OtherSessions). Later it warns of another one, on the page, too. What
+/// answers another session's commands is ignored.
+///
 /// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
 /// sweep and all, kMaxRetakes times at most; then it has failed.
 ///
@@ -59,9 +65,10 @@ class SessionNode : public Node {
   /// Throws InputError where the script makes no sense, and where `directory` holds views already:
   /// two sessions' views must not mix. With `board_stands` a pose may take as long as it does.
   SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress,
-              BoardStands board_stands = {});
+              BoardStands board_stands = {}, SessionIdentity identity = {});
   /// A session that a person leads, by SESSION_REQUEST.
-  SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress);
+  SessionNode(Rig rig, std::filesystem::path directory, OnProgress progress,
+              SessionIdentity identity = {});
 
   std::string name() const override { return "session"; }
   std::vector<std::string> Subscriptions() const override {
@@ -84,7 +91,7 @@ class SessionNode : public Node {
   Messages GoOn();
   Messages Start();
   bool WaitsForPose() const;
-  bool IsCaptured(const std::string& view) const;
+  bool IsCaptured(const ViewDetection& detection) const;
   void PoseIsSet();
   void AskWhetherBoardStands();
   Messages Begin();
@@ -94,6 +101,8 @@ class SessionNode : public Node {
   bool SolverTookAll();
   bool RestoreSolver(const std::string& why);
   void Take(const Message& message);
+  void OnStatus(const Status& status);
+  bool Listens() const;
   void OnRequest(const SessionRequest& request);
   void OnPicks(const CornerSelection& picks);
   void OnEvent(const SessionEvent& event);
@@ -120,6 +129,8 @@ class SessionNode : public Node {
   std::filesystem::path directory_;
   OnProgress progress_;
   BoardStands board_stands_;
+  SessionIdentity identity_;
+  OtherSessions others_{identity_.id};
   Periodic rig_repeat_{kMicrosecondsPerSecond};
 
   std::map<std::string, Status> statuses_;
@@ -130,7 +141,7 @@ class SessionNode : public Node {
   bool started_ = false;  // everybody was ready
   bool waiting_ = false;  // the step at hand was begun
   std::size_t index_ = 0;
-  std::int64_t command_ = 0;
+  std::int64_t command_ = identity_.FirstCommand();
   SessionCommand newest_command_;
   bool answered_ = false;
   int view_number_ = 0;
@@ -138,7 +149,7 @@ class SessionNode : public Node {
   bool view_taken_ = false;  // captured: the next sweep is another view's
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
-  std::map<std::int64_t, std::string> captures_;                 // view by its capture's command
+  std::map<std::int64_t, SessionCommand> captures_;              // by their numbers
   Messages events_;                                              // not yet published
   SolverViews solver_views_;
   Messages again_;  // for the solver, not yet published

@@ -150,6 +150,7 @@ class World {
     ViewDetection detection;
     detection.view = command.view;
     detection.sweep_utime = command.sweep_utime;
+    detection.cloud.why_not = "made up";
     out.push_back(detection);
     out.push_back(Event(command, "detector"));
     return out;

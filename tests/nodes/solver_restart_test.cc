@@ -119,6 +119,7 @@ class RestartWorld {
     Send(test::Blank(OneCamera().cameras[0], world_.now));
     ViewDetection detection = Boards().views.at(static_cast<std::size_t>(captures_));
     detection.view = command.view;
+    detection.sweep_utime = command.sweep_utime;
     detection.seq = captures_++;
     detection.images[0].utime = world_.now;
     detection.cloud.candidates[0].normal = {-1, 0, 0};
