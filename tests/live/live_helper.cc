@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ int Usage() {
   std::fputs(
       "usage: live_helper VERB ...\n"
       "  ready PROCESS...       until the bus carries a status of each\n"
+      "  ask next_pose|capture|finish  of the session, as the page does, and waits until it is "
+      "done with "
+      "it;\n"
+      "                         prints what it says; exit code 3: it failed\n"
       "  garbage PROCESS...     publishes garbage on every channel until each names some\n"
       "  calibration VIEWS      until the solver has them of two cameras; prints what it found\n"
       "  gaps LOG               messages that a log lacks, by channel; exit code 3 if any\n"
@@ -91,6 +96,28 @@ int Ready(const Arguments& processes) {
                       "a status of " + process);
   }
   return 0;
+}
+
+int Ask(const Arguments& words) {
+  Listener listener;
+  listener.RunUntil([&] { return listener.Counter("session", "busy") == 0; }, "an idle session");
+  std::optional<SessionEvent> answer;
+  listener.bus.Subscribe(
+      "SESSION_EVENT", [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        const auto event = std::get<SessionEvent>(Decode(channel, data, size));
+        const bool ends = event.source == "session" && event.kind != EventKind::kProgress;
+        if (ends && !answer) answer = event;
+      });
+  SessionRequest request;
+  const std::map<std::string, SessionRequestKind> kinds = {
+      {"next_pose", SessionRequestKind::kNextPose},
+      {"capture", SessionRequestKind::kCapture},
+      {"finish", SessionRequestKind::kFinish}};
+  request.request = kinds.at(words.at(0));
+  listener.bus.Publish(ChannelOf(request), Encode(request));
+  listener.RunUntil([&] { return answer.has_value(); }, "the session's answer");
+  std::printf("%s\n", answer->text.c_str());
+  return answer->kind == EventKind::kFailed ? 3 : 0;
 }
 
 /// Every channel's messages cut short, torn and drawn by lot.
@@ -283,6 +310,7 @@ int HearsMalformed(const Arguments& arguments) {
 
 int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
+  if (verb == "ask") return Ask(arguments);
   if (verb == "garbage") return Garbage(arguments);
   if (verb == "calibration") return PrintLive(arguments);
   if (verb == "gaps") return PrintGaps(arguments);

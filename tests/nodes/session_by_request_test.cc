@@ -16,6 +16,7 @@ using test::Counter;
 using test::ErrorOf;
 using test::Only;
 using test::TinyRig;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -94,6 +95,29 @@ TEST_F(SessionByRequestTest, FinishSavesAndEnds) {
   EXPECT_EQ(node_.failure(), "");
   EXPECT_EQ(ReadCalibration(dir_ / "session/calibration.textproto").rig_hash, TinyRig().hash);
   EXPECT_THAT(events_.back().text, HasSubstr("saved to"));
+}
+
+// As on a full disk. The views stay, and once there is room finish is asked for again.
+TEST_F(SessionByRequestTest, AFinishThatCannotBeWrittenIsSaidAndMayBeRepeated) {
+  EverybodyReady();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  for (const char* file : {"calibration.textproto", "report.json"}) {
+    std::filesystem::create_directories(dir_ / "session" / file / "in the way");
+    Ask(SessionRequestKind::kFinish);
+    Run();
+    EXPECT_FALSE(node_.finished());
+    EXPECT_EQ(events_.back().kind, EventKind::kFailed);
+    EXPECT_THAT(events_.back().text, AllOf(HasSubstr("save"), HasSubstr(file)));
+    EXPECT_EQ(Counter(node_.GetStatus(), "busy"), 0);
+    EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001"));
+    std::filesystem::remove_all(dir_ / "session" / file);
+  }
+  Ask(SessionRequestKind::kFinish);
+  Run();
+  EXPECT_TRUE(node_.finished());
+  EXPECT_EQ(node_.failure(), "");
+  EXPECT_EQ(ReadCalibration(dir_ / "session/calibration.textproto").rig_hash, TinyRig().hash);
 }
 
 TEST_F(SessionByRequestTest, AFailureIsSaidAndThePersonGoesOn) {
