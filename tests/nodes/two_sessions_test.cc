@@ -21,7 +21,6 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 using Kind = SessionStep::Kind;
 using Verb = SessionVerb;
 
