@@ -21,7 +21,7 @@ Cloud Lines(const Cloud& sweep, int first, int count) {
   const std::size_t end = from + static_cast<std::size_t>(count) * beams;
   Cloud part;
   part.sweep_utime = sweep.sweep_utime;
-  part.first_line = sweep.first_line + first;
+  part.first_line = first;
   part.lines = count;
   part.beams = sweep.beams;
   part.organised = sweep.organised;

@@ -7,8 +7,9 @@
 namespace rgbdt {
 
 /// A whole sweep as the CLOUD messages that it travels in: so many lines a chunk that none is
-/// large (a lost datagram loses a message), the last with `sweep_end`. An unorganised cloud is cut
-/// into stretches of equal length, the last filled up with points that nothing is known of.
+/// large (a lost datagram loses a message), the last with `sweep_end`. Its lines are numbered from
+/// 0, whatever its `first_line`: nothing is missing. An unorganised cloud is cut into stretches of
+/// equal length, the last filled up with points that nothing is known of.
 std::vector<CloudChunk> SplitSweep(const Cloud& sweep);
 
 /// Throws InputError where two chunks of a sweep differ in beams per line or in which of a cloud's

@@ -44,6 +44,14 @@ TEST(SplitSweep, NoChunkIsLargeAndTogetherTheyAreTheSweep) {
   }
 }
 
+// As a file holds it that was cut out of a larger sweep.
+TEST(SplitSweep, ASweepLacksNoLinesBeforeItsFirst) {
+  Cloud cut = Made(4, 3, true);
+  cut.first_line = 7;
+  EXPECT_EQ(MissingLines(SplitSweep(cut)), 0);
+  EXPECT_EQ(JoinChunks(SplitSweep(cut)).points, cut.points);
+}
+
 TEST(SplitSweep, ACloudWithoutOrderIsCutToo) {
   const Cloud sweep = Made(1, 200'001, false);
   const auto chunks = SplitSweep(sweep);
