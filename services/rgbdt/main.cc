@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
       "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic");
   rgbdt::AddSession(&line);
+  rgbdt::AddImport(&line);
   rgbdt::AddCalibrate(&line);
   rgbdt::AddEvaluate(&line);
   rgbdt::AddRefine(&line);

@@ -35,14 +35,6 @@ std::pair<std::string, std::string> SplitName(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-// "[NAME=]FILE[:PART]"
-Folders::LensFile LensFileOf(const std::string& text) {
-  const auto [name, path] = SplitName(text);
-  const std::size_t colon = path.rfind(':');
-  if (fs::exists(path) || colon == std::string::npos) return {name, path, ""};
-  return {name, path.substr(0, colon), path.substr(colon + 1)};
-}
-
 Folders FoldersOf(const FolderFlags& flags) {
   if (flags.pinhole && flags.fisheye) {
     throw InputError("--pinhole and --fisheye are both given; a lens is one of the two");
@@ -134,19 +126,29 @@ int RunSession(const FolderFlags& flags) {
   WriteSession(flags.out, session);
   std::printf("wrote %s: rig.textproto, %zu views; images and clouds stay where they are\n",
               flags.out.c_str(), session.views.size());
-  const std::vector<std::string> unknown = session.WithoutLens();
-  if (!unknown.empty() && !FindLenses(flags.out, unknown)) {
-    std::printf(
-        "next: take more views and make the session anew, or write the lens into "
-        "%s/rig.textproto\n",
-        flags.out.c_str());
-    return 1;
-  }
-  std::printf("next: rgbdt calibrate %s\n", flags.out.c_str());
-  return 0;
+  return FinishSession(flags.out, session.WithoutLens());
 }
 
 }  // namespace
+
+Folders::LensFile LensFileOf(const std::string& text) {
+  const auto [name, path] = SplitName(text);
+  const std::size_t colon = path.rfind(':');
+  if (fs::exists(path) || colon == std::string::npos) return {name, path, ""};
+  return {name, path.substr(0, colon), path.substr(colon + 1)};
+}
+
+int FinishSession(const std::string& session_dir, const std::vector<std::string>& unknown) {
+  if (!unknown.empty() && !FindLenses(session_dir, unknown)) {
+    std::printf(
+        "next: take more views and make the session anew, or write the lens into "
+        "%s/rig.textproto\n",
+        session_dir.c_str());
+    return 1;
+  }
+  std::printf("next: rgbdt calibrate %s\n", session_dir.c_str());
+  return 0;
+}
 
 void AddSession(CommandLine* program) {
   auto flags = std::make_shared<FolderFlags>();

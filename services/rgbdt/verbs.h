@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/import/folders.h"
 #include "calib/files/schema/calibration_use.h"
 #include "services/command_line/command_line.h"
 
@@ -17,6 +18,7 @@ void AddRefine(CommandLine* program);
 void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
 void AddSession(CommandLine* program);
+void AddImport(CommandLine* program);
 void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);
 void AddIntrinsics(CommandLine* program);
@@ -69,6 +71,13 @@ inline void AddAnyway(CommandLine* verb, bool* anyway, const std::string& althou
 /// What `rgbdt intrinsics` does for these cameras of a session, into the rig file that is in use.
 /// False: a lens was not found.
 bool FindLenses(const std::string& session_dir, const std::vector<std::string>& cameras);
+
+/// "[NAME=]FILE[:PART]" of `--lens`.
+Folders::LensFile LensFileOf(const std::string& text);
+
+/// How `session` and `import` end once the session is written: the lenses of these cameras are
+/// found from its images, and what to do next is said. Gives the exit code.
+int FinishSession(const std::string& session_dir, const std::vector<std::string>& unknown);
 
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }

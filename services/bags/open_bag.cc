@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <set>
+#include <string_view>
+#include <tuple>
+
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "services/bags/bag_reader.h"
+#include "services/bags/internal/bag_file.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+using bags::BagFile;
+
+bool EndsIn(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::unique_ptr<BagReader> OpenFile(const fs::path& path) {
+  const BagFile file(path);
+  char first[16] = {};
+  const std::string_view begin(first, file.Read(0, first, sizeof(first)));
+  const auto begins = [&](std::string_view text) { return begin.substr(0, text.size()) == text; };
+  if (begins("\x89MCAP0\r\n")) return bags::OpenMcap(path);
+  if (begins(std::string_view("SQLite format 3\0", 16))) return bags::OpenSqlite(path);
+  if (begins("#ROSBAG V2.0\n")) return bags::OpenRos1(path);
+  if (begins("#ROSBAG V")) {
+    throw InputError(path.string() +
+                     ": is a ROS 1 bag of an older version; `rosbag fix` makes it 2.0");
+  }
+  if (begins("\x28\xb5\x2f\xfd")) {
+    throw InputError(path.string() + ": is packed as a whole; unpack it first: unzstd " +
+                     path.string());
+  }
+  throw InputError(path.string() +
+                   ": is no bag; expected MCAP, a ROS 2 bag (.db3) or a ROS 1 bag (.bag)");
+}
+
+// A folder's bags, as ROS 2 records one: NAME_0.mcap, NAME_1.mcap, ...
+std::vector<fs::path> FilesOf(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return {path};
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    const bool is_bag = EndsIn(name, ".mcap") || EndsIn(name, ".db3") || EndsIn(name, ".bag") ||
+                        EndsIn(name, ".mcap.zstd") || EndsIn(name, ".db3.zstd");
+    if (is_bag) names.push_back(name);
+  }
+  if (error) throw InputError("cannot read " + path.string() + ": " + error.message());
+  if (names.empty()) {
+    throw InputError(path.string() + ": holds no bag; expected .mcap, .db3 or .bag files");
+  }
+  std::sort(names.begin(), names.end(), NaturalLess);
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(path / name);
+  return files;
+}
+
+// One file after the other as one bag.
+class SplitReader : public BagReader {
+ public:
+  explicit SplitReader(const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) {
+      parts_.push_back({OpenFile(file), {}});
+      size_ += parts_.back().reader->size();
+    }
+  }
+
+  bool Next(BagMessage* message) override {
+    for (; current_ < parts_.size(); ++current_) {
+      BagReader& reader = *parts_[current_].reader;
+      const bool found = reader.Next(message);
+      MapTopics();
+      if (found) {
+        ToBag(message);
+        return true;
+      }
+      problems_.insert(problems_.end(), reader.problems().begin(), reader.problems().end());
+      before_ += reader.size();
+      reader.Rest();
+    }
+    return false;
+  }
+
+  BagMessage Read(const BagPlace& place) override {
+    const auto part = static_cast<std::size_t>(place.file);
+    if (current_ < parts_.size() && part != current_) parts_[current_].reader->Rest();
+    current_ = part;
+    BagMessage message = parts_.at(part).reader->Read(place);
+    ToBag(&message);
+    return message;
+  }
+
+  void Rest() override {
+    for (const Part& part : parts_) part.reader->Rest();
+  }
+  const std::vector<BagTopic>& topics() const override { return topics_.topics(); }
+  const std::vector<std::string>& problems() const override { return problems_; }
+  std::int64_t position() const override {
+    return current_ < parts_.size() ? before_ + parts_[current_].reader->position() : size_;
+  }
+  std::int64_t size() const override { return size_; }
+  std::string format() const override { return parts_[0].reader->format(); }
+
+ private:
+  struct Part {
+    std::unique_ptr<BagReader> reader;
+    std::vector<std::size_t> topic_of;  // ours, of each of its topics
+  };
+
+  void MapTopics() {
+    Part& part = parts_[current_];
+    while (part.topic_of.size() < part.reader->topics().size()) {
+      const BagTopic& topic = part.reader->topics()[part.topic_of.size()];
+      part.topic_of.push_back(topics_.Add(topic.name, topic.type, topic.encoding));
+    }
+  }
+
+  void ToBag(BagMessage* message) const {
+    message->topic = parts_[current_].topic_of[message->topic];
+    message->place.file = static_cast<std::int32_t>(current_);
+  }
+
+  std::vector<Part> parts_;
+  std::size_t current_ = 0;
+  std::int64_t before_ = 0, size_ = 0;
+  bags::TopicList topics_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace
+
+bool operator<(const BagPlace& a, const BagPlace& b) {
+  return std::tie(a.file, a.at, a.within) < std::tie(b.file, b.at, b.within);
+}
+
+std::unique_ptr<BagReader> OpenBag(const fs::path& path) {
+  const std::vector<fs::path> files = FilesOf(path);
+  if (files.size() == 1) return OpenFile(files[0]);
+  return std::make_unique<SplitReader>(files);
+}
+
+}  // namespace rgbdt

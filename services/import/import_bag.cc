@@ -1,0 +1,231 @@
+#include "services/import/import_bag.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "calib/files/image_files.h"
+#include "calib/files/session/session_dir.h"
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "services/import/sensor_data.h"
+#include "services/import/transforms.h"
+
+namespace rgbdt {
+namespace {
+
+std::string Where(const BagSurvey::Topic& topic, Utime utime) {
+  return topic.topic.name + " at utime " + std::to_string(utime);
+}
+
+bool SaysThermal(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
+}
+
+CameraKind KindOf(const TopicChoice::Camera& camera, PixelFormat format) {
+  if (format == PixelFormat::kMono16) return CameraKind::kThermal;
+  if (!SaysThermal(camera.name) && !SaysThermal(camera.images->topic.name)) {
+    return CameraKind::kColor;
+  }
+  if (format == PixelFormat::kMono8) return CameraKind::kThermal;
+  throw InputError(camera.images->topic.name +
+                   ": a thermal camera by its name, but its images are coloured pictures; expected "
+                   "its raw counts (mono16 or mono8), or another name: --image NAME=" +
+                   camera.images->topic.name);
+}
+
+Image Decode(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
+  const BagMessage message = bag->Read(stamped.place);
+  const std::string where = Where(topic, stamped.utime);
+  try {
+    Image image = topic.data == BagData::kImage
+                      ? ToImage(ros::DecodeImage(message, topic.topic.encoding), where)
+                      : ToImage(ros::DecodeCompressedImage(message, topic.topic.encoding), where);
+    image.utime = stamped.utime;
+    return image;
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    throw InputError(what.rfind(where, 0) == 0 ? what : where + ": " + what);
+  }
+}
+
+Cloud DecodeCloud(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
+  const BagMessage message = bag->Read(stamped.place);
+  ros::PointCloud cloud = ros::DecodePointCloud(message, topic.topic.encoding);
+  cloud.header.utime = stamped.utime;
+  return ToCloud(cloud, Where(topic, stamped.utime));
+}
+
+const Folders::LensFile* LensFor(const RigWishes& wishes, const TopicChoice& choice,
+                                 std::size_t index) {
+  std::vector<const Folders::LensFile*> in_order;
+  for (const Folders::LensFile& lens : wishes.lenses) {
+    if (lens.camera == choice.cameras[index].name) return &lens;
+    if (lens.camera.empty()) in_order.push_back(&lens);
+  }
+  if (index < in_order.size()) return in_order[index];
+  return in_order.size() == 1 ? in_order[0] : nullptr;
+}
+
+void CheckLensNames(const RigWishes& wishes, const TopicChoice& choice) {
+  std::string names;
+  for (const TopicChoice::Camera& camera : choice.cameras) {
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  for (const Folders::LensFile& lens : wishes.lenses) {
+    const bool known = std::any_of(choice.cameras.begin(), choice.cameras.end(),
+                                   [&](const auto& camera) { return camera.name == lens.camera; });
+    if (lens.camera.empty() || known) continue;
+    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " +
+                     names);
+  }
+}
+
+std::string ModelName(Lens::Model model) {
+  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
+}
+
+// A file that was given, else the bag's CameraInfo.
+std::optional<FileLens> FindLens(const TopicChoice& choice, const RigWishes& wishes,
+                                 std::size_t index) {
+  const TopicChoice::Camera& camera = choice.cameras[index];
+  const Folders::LensFile* file = LensFor(wishes, choice, index);
+  LensWanted wanted{file != nullptr ? file->file : std::filesystem::path(),
+                    file != nullptr ? file->entry : "",
+                    camera.name,
+                    static_cast<int>(index),
+                    static_cast<int>(choice.cameras.size()),
+                    wishes.model};
+  if (file != nullptr) return ReadLensFile(wanted);
+  if (camera.info == nullptr) return std::nullopt;
+  wanted.file = camera.info->topic.name;
+  return ToLens(*camera.info->info, wanted);
+}
+
+// Gives what there is to say of it.
+std::string SetLens(const TopicChoice& choice, const RigWishes& wishes, std::size_t index,
+                    CameraSpec* spec) {
+  const std::optional<FileLens> found = FindLens(choice, wishes, index);
+  if (found) {
+    CheckLensSize(*found, spec->name, spec->width, spec->height);
+    spec->lens = found->lens;
+    return ModelName(spec->lens.model) + " lens of " + found->where;
+  }
+  if (!wishes.model || !wishes.board.HasPattern()) {
+    throw InputError("camera \"" + spec->name + "\" has no lens: the bag has no CameraInfo of it" +
+                     (choice.cameras[index].info != nullptr ? " that is calibrated" : "") +
+                     "; give --lens FILE" +
+                     (wishes.board.HasPattern()
+                          ? ", or say --pinhole or --fisheye and it is found from the images"
+                          : ""));
+  }
+  spec->lens.model = *wishes.model;
+  return ModelName(spec->lens.model) + " lens, not known yet";
+}
+
+// By tf_static, and a line about it.
+std::string SetGuess(const BagSurvey& survey, const TopicChoice& choice,
+                     const TopicChoice::Camera& camera, CameraSpec* spec) {
+  const std::string& optical = camera.images->frame;
+  const std::string& lidar = choice.cloud->frame;
+  spec->camera_from_lidar_guess = FindTransform(survey.transforms, optical, lidar);
+  if (!spec->camera_from_lidar_guess) return "";
+  const Eigen::Vector3d centre =
+      spec->camera_from_lidar_guess->Inverse().translation + Eigen::Vector3d::Zero();  // no -0
+  return "guess " + spec->name + "_from_lidar of tf_static: point_in_camera (" +
+         ValidUtf8(optical) + ", taken as x right, y down, z forward) = R * point_in_lidar (" +
+         ValidUtf8(lidar) + ") + t; the camera at " +
+         Format("%.3f %.3f %.3f m in the LIDAR frame", centre.x(), centre.y(), centre.z());
+}
+
+}  // namespace
+
+BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choice,
+               const RigWishes& wishes) {
+  CheckLensNames(wishes, choice);
+  BagRig out;
+  out.rig.lidar.name = "lidar";
+  out.rig.target = wishes.board;
+  for (std::size_t i = 0; i < choice.cameras.size(); ++i) {
+    const TopicChoice::Camera& camera = choice.cameras[i];
+    const Image first = Decode(bag, *camera.images, camera.images->stamped.front());
+    CameraSpec spec;
+    spec.name = camera.name;
+    spec.format = first.format;
+    spec.kind = KindOf(camera, first.format);
+    spec.width = first.pixels.cols;
+    spec.height = first.pixels.rows;
+    const std::string lens = SetLens(choice, wishes, i, &spec);
+    out.lines.push_back("camera " + spec.name + ": " +
+                        (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
+                        std::to_string(spec.width) + "x" + std::to_string(spec.height) + ", " +
+                        lens + "; " + camera.images->topic.name);
+    const std::string guess = SetGuess(survey, choice, camera, &spec);
+    if (!guess.empty()) out.lines.push_back(guess);
+    out.rig.cameras.push_back(spec);
+  }
+  out.lines.push_back("lidar: " + choice.cloud->topic.name + ", " + choice.cloud->what);
+  out.rig.Check(LensNeed::kMayBeUnknown);
+  return out;
+}
+
+Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
+                const Stamped& stamped) {
+  Image image = Decode(bag, *camera.images, stamped);
+  image.camera = spec.name;
+  const bool alike = image.pixels.cols == spec.width && image.pixels.rows == spec.height &&
+                     image.format == spec.format;
+  if (alike) return image;
+  throw InputError(Where(*camera.images, stamped.utime) + ": is " +
+                   std::to_string(image.pixels.cols) + "x" + std::to_string(image.pixels.rows) +
+                   " " + NameOf(image.format) + ", the first one " + std::to_string(spec.width) +
+                   "x" + std::to_string(spec.height) + " " + NameOf(spec.format) +
+                   "; expected images of one kind in a topic");
+}
+
+std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& rig,
+                         const std::vector<Moment>& moments, const std::filesystem::path& dir,
+                         const std::function<void(const std::string&)>& progress,
+                         std::vector<std::string>* left_over) {
+  const Utime start = StartOf(choice);
+  std::size_t views = 0;
+  for (const Moment& moment : moments) {
+    View view;
+    view.name = Format("%04zu", views + 1);
+    view.heldout = views % 3 == 2;
+    try {
+      view.cloud = DecodeCloud(bag, *choice.cloud, moment.cloud);
+    } catch (const InputError& error) {
+      left_over->push_back(error.what());
+      continue;
+    }
+    std::string line =
+        view.name + ": cloud at " + Fixed(ToSeconds(moment.cloud.utime - start), 2) + " s";
+    for (std::size_t i = 0; i < choice.cameras.size(); ++i) {
+      const std::string& camera = rig.cameras[i].name;
+      if (!moment.images[i]) {
+        line += "  " + camera + ": none";
+        continue;
+      }
+      try {
+        view.images.push_back(ReadImage(bag, choice.cameras[i], rig.cameras[i], *moment.images[i]));
+        line += "  " + camera + ": " +
+                Format("%+.0f ms", 1e3 * ToSeconds(moment.images[i]->utime - moment.cloud.utime));
+      } catch (const InputError& error) {
+        left_over->push_back(error.what());
+      }
+    }
+    if (view.images.empty()) continue;
+    WriteView(dir, view);
+    ++views;
+    if (progress) progress(line);
+  }
+  if (views == 0) {
+    throw InputError("no moment of the bag can be used" +
+                     (left_over->empty() ? "" : ": " + left_over->back()));
+  }
+  WriteRig(dir, rig);
+  return views;
+}
+
+}  // namespace rgbdt

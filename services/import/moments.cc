@@ -1,0 +1,84 @@
+#include "services/import/moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+// `stamped` is sorted and not empty.
+const Stamped& Nearest(const std::vector<Stamped>& stamped, Utime utime) {
+  const auto after =
+      std::lower_bound(stamped.begin(), stamped.end(), utime,
+                       [](const Stamped& one, Utime time) { return one.utime < time; });
+  if (after == stamped.begin()) return *after;
+  const auto before = after - 1;
+  if (after == stamped.end()) return *before;
+  return utime - before->utime <= after->utime - utime ? *before : *after;
+}
+
+}  // namespace
+
+Utime StartOf(const TopicChoice& choice) {
+  Utime start = choice.cloud->stamped.front().utime;
+  for (const TopicChoice::Camera& camera : choice.cameras) {
+    start = std::min(start, camera.images->stamped.front().utime);
+  }
+  return start;
+}
+
+std::vector<Moment> PairAt(const TopicChoice& choice, const std::vector<Utime>& times,
+                           double max_apart_s, std::vector<std::string>* left_over) {
+  const Utime start = StartOf(choice);
+  std::vector<Utime> sorted = times;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<Moment> moments;
+  double nearest_s = std::numeric_limits<double>::infinity();
+  std::string alone;
+  Utime last = std::numeric_limits<Utime>::min();
+  for (const Utime time : sorted) {
+    Moment moment;
+    moment.cloud = Nearest(choice.cloud->stamped, time);
+    if (moment.cloud.utime == last) continue;
+    last = moment.cloud.utime;
+    bool any = false;
+    for (const TopicChoice::Camera& camera : choice.cameras) {
+      const Stamped& image = Nearest(camera.images->stamped, moment.cloud.utime);
+      const double apart_s = std::abs(ToSeconds(image.utime - moment.cloud.utime));
+      nearest_s = std::min(nearest_s, apart_s);
+      auto& of_camera = moment.images.emplace_back();
+      if (apart_s > max_apart_s) continue;
+      of_camera = image;
+      any = true;
+    }
+    if (any) {
+      moments.push_back(moment);
+    } else {
+      alone += (alone.empty() ? "" : ", ") + Fixed(ToSeconds(moment.cloud.utime - start), 2) + " s";
+    }
+  }
+  if (moments.empty() && !sorted.empty()) {
+    throw InputError("no image is within " + Fixed(max_apart_s, 3) +
+                     " s of a cloud; the nearest is " + Format("%.6g", nearest_s) +
+                     " s away (--max-apart; do both sensors' headers tell the same clock?)");
+  }
+  if (!alone.empty()) left_over->push_back("clouds without an image: " + alone);
+  return moments;
+}
+
+std::vector<Utime> EverySeconds(const TopicChoice& choice, double every_s) {
+  std::vector<Utime> times;
+  Utime next = std::numeric_limits<Utime>::min();
+  for (const Stamped& cloud : choice.cloud->stamped) {
+    if (cloud.utime < next) continue;
+    times.push_back(cloud.utime);
+    next = cloud.utime + FromSeconds(every_s);
+  }
+  return times;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/import/topics.h"
+
+namespace rgbdt {
+
+/// A view to be: a cloud, and each camera's image that is nearest to it in time.
+struct Moment {
+  Stamped cloud;
+  std::vector<std::optional<Stamped>> images;  ///< as TopicChoice::cameras; none within reach
+};
+
+/// The first time that any of the chosen topics measured: what seconds are counted from.
+Utime StartOf(const TopicChoice& choice);
+
+/// Of each of these times the nearest cloud, once, with each camera's nearest image within
+/// `max_apart_s` of it; in order. Clouds without any image are told in `left_over`. Throws
+/// InputError, with how far apart they are, where none has one.
+std::vector<Moment> PairAt(const TopicChoice& choice, const std::vector<Utime>& times,
+                           double max_apart_s, std::vector<std::string>* left_over);
+
+/// Every so many seconds, from the first cloud on.
+std::vector<Utime> EverySeconds(const TopicChoice& choice, double every_s);
+
+}  // namespace rgbdt

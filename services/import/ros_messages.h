@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/model/rigid3.h"
+#include "calib/model/time.h"
+#include "services/bags/bag_reader.h"
+
+namespace rgbdt::ros {
+
+// Messages of ROS as they are, with its names. Bytes (`data`) lie in the message that they were
+// decoded from. Each function throws InputError, without the topic's name, where the message is
+// damaged, cut short or inconsistent.
+
+/// std_msgs/Header
+struct Header {
+  Utime utime = 0;    ///< when the sensor measured; 0: its driver did not say
+  std::string frame;  ///< "lidar_link"
+};
+
+/// sensor_msgs/Image
+struct Image {
+  Header header;
+  std::uint32_t width = 0, height = 0;  ///< [px]
+  std::string encoding;                 ///< "mono16", "bayer_rggb8", ...
+  bool big_endian = false;
+  std::uint32_t step = 0;  ///< from row to row [byte]
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;  ///< of `data` [byte]
+};
+
+/// sensor_msgs/CompressedImage
+struct CompressedImage {
+  Header header;
+  std::string format;  ///< "bayer_rggb8; jpeg compressed bgr8"
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;  ///< of `data` [byte]
+};
+
+/// sensor_msgs/CameraInfo
+struct CameraInfo {
+  Header header;
+  std::uint32_t width = 0, height = 0;  ///< [px]
+  std::string distortion_model;         ///< "plumb_bob", ...
+  std::vector<double> d;
+  std::array<double, 9> k{};  ///< row by row; all zero: never calibrated
+  std::uint32_t binning_x = 0, binning_y = 0;
+  std::uint32_t roi_x = 0, roi_y = 0;
+};
+
+/// sensor_msgs/PointCloud2
+struct PointCloud {
+  struct Field {
+    std::string name;
+    std::uint32_t offset = 0;   ///< in a point [byte]
+    std::uint8_t datatype = 0;  ///< 1 to 8: int8 uint8 int16 uint16 int32 uint32 float32 float64
+    std::uint32_t count = 1;
+  };
+  Header header;
+  std::uint32_t width = 0, height = 0;
+  std::vector<Field> fields;
+  bool big_endian = false;
+  std::uint32_t point_step = 0, row_step = 0;  ///< [byte]
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;  ///< of `data` [byte]
+};
+
+/// geometry_msgs/TransformStamped: point_in_parent = parent_from_child * point_in_child.
+struct Transform {
+  std::string parent, child;
+  Rigid3 parent_from_child;
+};
+
+/// Of any message that begins with a header.
+Header DecodeHeader(const BagMessage& message, BagEncoding encoding);
+Image DecodeImage(const BagMessage& message, BagEncoding encoding);
+CompressedImage DecodeCompressedImage(const BagMessage& message, BagEncoding encoding);
+CameraInfo DecodeCameraInfo(const BagMessage& message, BagEncoding encoding);
+PointCloud DecodePointCloud(const BagMessage& message, BagEncoding encoding);
+/// tf2_msgs/TFMessage
+std::vector<Transform> DecodeTransforms(const BagMessage& message, BagEncoding encoding);
+
+}  // namespace rgbdt::ros

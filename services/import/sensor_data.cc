@@ -1,0 +1,347 @@
+#include "services/import/sensor_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <opencv2/imgproc.hpp>
+
+#include "calib/files/image_files.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/model/errors.h"
+#include "calib/model/image_codec.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr std::uint32_t kMostSide = 20000;  // [px]
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
+
+// How an encoding of sensor_msgs lies in memory, and what it becomes.
+struct Encoding {
+  int type;  // OpenCV's
+  PixelFormat format;
+  int conversion = -1;  // cv::ColorConversionCodes; -1: as it is
+};
+
+const std::map<std::string, Encoding>& Encodings() {
+  using F = PixelFormat;
+  static const std::map<std::string, Encoding> encodings = {
+      {"mono8", {CV_8UC1, F::kMono8}},
+      {"8UC1", {CV_8UC1, F::kMono8}},
+      {"mono16", {CV_16UC1, F::kMono16}},
+      {"16UC1", {CV_16UC1, F::kMono16}},
+      {"bgr8", {CV_8UC3, F::kBgr8}},
+      {"8UC3", {CV_8UC3, F::kBgr8}},
+      {"rgb8", {CV_8UC3, F::kBgr8, cv::COLOR_RGB2BGR}},
+      {"bgra8", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
+      {"8UC4", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
+      {"rgba8", {CV_8UC4, F::kBgr8, cv::COLOR_RGBA2BGR}},
+      {"bayer_rggb8", {CV_8UC1, F::kBayerRg8}},
+      {"bayer_grbg8", {CV_8UC1, F::kBayerGr8}},
+      {"bayer_gbrg8", {CV_8UC1, F::kBayerGb8}},
+      {"bayer_bggr8", {CV_8UC1, F::kBayerBg8}},
+      {"yuv422", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_UYVY}},
+      {"uyvy", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_UYVY}},
+      {"yuv422_yuy2", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_YUY2}},
+      {"yuyv", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_YUY2}},
+  };
+  return encodings;
+}
+
+const Encoding& EncodingOf(const std::string& name, const std::string& where) {
+  const auto found = Encodings().find(name);
+  if (found != Encodings().end()) return found->second;
+  std::string known;
+  for (const auto& entry : Encodings()) known += " " + entry.first;
+  throw InputError(where + ": encoding \"" + ValidUtf8(name.substr(0, 40)) +
+                   "\" is not read; those that are:" + known);
+}
+
+void CheckSize(std::uint32_t width, std::uint32_t height, const std::string& where) {
+  const bool good = width >= 1 && height >= 1 && width <= kMostSide && height <= kMostSide &&
+                    std::uint64_t{width} * height <= kMostPixels;
+  if (good) return;
+  throw InputError(where + ": is " + std::to_string(width) + " x " + std::to_string(height) +
+                   " px; expected 1 to " + std::to_string(kMostSide) + ", and at most " +
+                   std::to_string(kMostPixels) + " pixels");
+}
+
+void SwapBytes(cv::Mat* pixels) {
+  for (int y = 0; y < pixels->rows; ++y) {
+    auto* row = pixels->ptr<std::uint16_t>(y);
+    for (int x = 0; x < pixels->cols; ++x) {
+      row[x] = static_cast<std::uint16_t>(row[x] << 8 | row[x] >> 8);
+    }
+  }
+}
+
+// The size that a PNG or JPEG claims, before it is decoded: a few bytes may claim gigabytes.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> StatedSize(const std::uint8_t* bytes,
+                                                                  std::size_t size) {
+  const auto big_endian = [&](std::size_t at, int count) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
+    return value;
+  };
+  if (size >= 24 && std::memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) {
+    return std::pair(big_endian(16, 4), big_endian(20, 4));
+  }
+  if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return std::nullopt;
+  // JPEG: segments of marker (ff xx), length and contents, until the frame's.
+  for (std::size_t at = 2; at + 9 <= size && bytes[at] == 0xff;) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (marker == 0xff) {  // fill
+      ++at;
+      continue;
+    }
+    if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
+      return std::pair(big_endian(at + 7, 2), big_endian(at + 5, 2));
+    }
+    at += 2 + big_endian(at + 2, 2);
+  }
+  return std::nullopt;
+}
+
+// "bayer_rggb8; png compressed bayer_rggb8": what the pixels were before.
+PixelFormat MosaicOf(const std::string& format) {
+  const auto found = Encodings().find(format.substr(0, format.find(';')));
+  const bool mosaic = found != Encodings().end() && found->second.type == CV_8UC1;
+  return mosaic ? found->second.format : PixelFormat::kMono8;
+}
+
+// A PointCloud2 differs from a PCD in its header only, so it is read as one: what fields mean is
+// decided there.
+struct PcdField {
+  std::string name;
+  char type = 'U';
+  std::size_t size = 1, count = 1, offset = 0;
+};
+
+constexpr struct {
+  char type;
+  std::size_t size;
+} kDatatypes[] = {{'I', 1}, {'U', 1}, {'I', 2}, {'U', 2}, {'I', 4}, {'U', 4}, {'F', 4}, {'F', 8}};
+
+bool IsSmallWhole(const PcdField& field) { return field.type != 'F' && field.size <= 2; }
+
+class PcdFields {
+ public:
+  PcdFields(const ros::PointCloud& cloud, const std::string& where) {
+    for (const ros::PointCloud::Field& field : cloud.fields) {
+      if (field.datatype < 1 || field.datatype > 8) {
+        throw InputError(where + ": field \"" + ValidUtf8(field.name.substr(0, 40)) +
+                         "\" has datatype " + std::to_string(field.datatype) + "; expected 1 to 8");
+      }
+      const auto& type = kDatatypes[field.datatype - 1];
+      const std::size_t count = std::max<std::uint32_t>(1, field.count);
+      if (field.offset + count * type.size > cloud.point_step) {
+        throw InputError(where + ": field \"" + ValidUtf8(field.name.substr(0, 40)) +
+                         "\" lies beyond the point's " + std::to_string(cloud.point_step) +
+                         " bytes");
+      }
+      all_[field.name] = {field.name, type.type, type.size, count, field.offset};
+    }
+    Choose();
+  }
+
+  const PcdField* Find(const std::string& name) const {
+    const auto found = all_.find(name);
+    return found == all_.end() ? nullptr : &found->second;
+  }
+
+  // In the order of their offsets, gaps filled by what nobody reads.
+  std::vector<PcdField> WithGaps(std::size_t point_bytes, const std::string& where) const {
+    std::vector<PcdField> chosen = chosen_;
+    std::sort(chosen.begin(), chosen.end(),
+              [](const PcdField& a, const PcdField& b) { return a.offset < b.offset; });
+    std::vector<PcdField> fields;
+    std::size_t at = 0;
+    const auto fill = [&](std::size_t to) {
+      if (to > at) fields.push_back({"_", 'U', 1, to - at, at});
+    };
+    for (const PcdField& field : chosen) {
+      if (field.offset < at) {
+        throw InputError(where + ": field \"" + field.name + "\" lies over another one");
+      }
+      fill(field.offset);
+      fields.push_back(field);
+      at = field.offset + field.size * field.count;
+    }
+    fill(point_bytes);
+    return fields;
+  }
+
+ private:
+  void Choose() {
+    for (const char* name :
+         {"x", "y", "z", "dir_x", "dir_y", "dir_z", "origin_x", "origin_y", "origin_z"}) {
+      Take(name, name);
+    }
+    if (!Take("intensity", "intensity")) Take("reflectivity", "intensity");
+    const bool organised_by_fields = Find("line") != nullptr && Find("beam") != nullptr;
+    if (organised_by_fields) {
+      Take("line", "line");
+      Take("beam", "beam");
+    }
+    if (!Take("ring", "ring")) {
+      for (const char* name : {"channel", "line"}) {
+        const PcdField* field = Find(name);
+        if (field == nullptr || !IsSmallWhole(*field) || organised_by_fields) continue;
+        Take(name, "ring");
+        break;
+      }
+    }
+    if (Take("timestamp", "timestamp") || Take("time", "time") || Take("t", "t")) return;
+    Take("offset_time", "t");
+  }
+
+  bool Take(const std::string& name, const std::string& as) {
+    const PcdField* field = Find(name);
+    if (field == nullptr) return false;
+    chosen_.push_back(*field);
+    chosen_.back().name = as;
+    return true;
+  }
+
+  std::map<std::string, PcdField> all_;
+  std::vector<PcdField> chosen_;
+};
+
+std::string PcdHeader(const std::vector<PcdField>& fields, const ros::PointCloud& cloud) {
+  std::string names, sizes, types, counts;
+  for (const PcdField& field : fields) {
+    names += " " + field.name;
+    sizes += " " + std::to_string(field.size);
+    types += std::string(" ") + field.type;
+    counts += " " + std::to_string(field.count);
+  }
+  return "VERSION 0.7\nFIELDS" + names + "\nSIZE" + sizes + "\nTYPE" + types + "\nCOUNT" + counts +
+         "\nWIDTH " + std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) +
+         "\nDATA binary\n";
+}
+
+// Some drivers (Livox) count in nanoseconds in a field of floating point, where others have
+// seconds: no sensor's clock is at 1e11 s.
+void NanosecondsToSeconds(const std::vector<PcdField>& fields, std::size_t point_bytes,
+                          char* points, std::size_t count) {
+  for (const PcdField& field : fields) {
+    const bool time = field.name == "timestamp" || field.name == "time" || field.name == "t";
+    if (!time || field.type != 'F' || field.size != 8) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+      double value;
+      std::memcpy(&value, points + i * point_bytes + field.offset, sizeof(value));
+      if (!(std::abs(value) > 1e11)) continue;
+      value *= 1e-9;
+      std::memcpy(points + i * point_bytes + field.offset, &value, sizeof(value));
+    }
+  }
+}
+
+void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
+  if (cloud.big_endian) throw InputError(where + ": its points are big-endian; expected little");
+  const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
+  if (cloud.width == 0 || cloud.height == 0 || cloud.point_step == 0) {
+    throw InputError(where + ": holds no points");
+  }
+  const std::uint64_t step = cloud.height == 1 ? row : cloud.row_step;
+  if (step < row || cloud.size < row ||
+      (cloud.height > 1 && (cloud.size - row) / step < cloud.height - 1)) {
+    throw InputError(where + ": is cut short: " + std::to_string(cloud.width) + " x " +
+                     std::to_string(cloud.height) + " points of " +
+                     std::to_string(cloud.point_step) + " bytes are announced, " +
+                     std::to_string(cloud.size) + " bytes are there");
+  }
+}
+
+template <typename Numbers>
+std::string YamlList(const Numbers& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + Exact(number);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+Image ToImage(const ros::Image& image, const std::string& where) {
+  const Encoding& encoding = EncodingOf(image.encoding, where);
+  CheckSize(image.width, image.height, where);
+  const std::size_t row = image.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
+  if (image.step < row || image.size / image.step < image.height) {
+    throw InputError(where + ": is cut short: " + std::to_string(image.height) + " rows of " +
+                     std::to_string(row) + " bytes, " + std::to_string(image.step) +
+                     " apart, are announced, " + std::to_string(image.size) + " bytes are there");
+  }
+  const cv::Mat sent(static_cast<int>(image.height), static_cast<int>(image.width), encoding.type,
+                     const_cast<std::uint8_t*>(image.data), image.step);
+  Image out;
+  out.utime = image.header.utime;
+  out.format = encoding.format;
+  if (encoding.conversion < 0) {
+    out.pixels = sent.clone();
+  } else {
+    if (encoding.type == CV_8UC2 && image.width % 2 != 0) {
+      throw InputError(where + ": YUV 4:2:2 of an odd width, " + std::to_string(image.width));
+    }
+    cv::cvtColor(sent, out.pixels, encoding.conversion);
+  }
+  if (image.big_endian && encoding.type == CV_16UC1) SwapBytes(&out.pixels);
+  return out;
+}
+
+Image ToImage(const ros::CompressedImage& image, const std::string& where) {
+  const auto size = StatedSize(image.data, image.size);
+  if (!size) {
+    throw InputError(where + ": format \"" + ValidUtf8(image.format.substr(0, 60)) +
+                     "\" is not read; expected JPEG or PNG");
+  }
+  CheckSize(size->first, size->second, where);
+  Image out;
+  out.utime = image.header.utime;
+  out.pixels = rgbdt::DecodeImage(image.data, image.size, where);
+  const bool grey = out.pixels.type() == CV_8UC1;
+  out.format = FormatOf(grey ? MosaicOf(image.format) : static_cast<PixelFormat>(0), &out.pixels);
+  return out;
+}
+
+Cloud ToCloud(const ros::PointCloud& cloud, const std::string& where) {
+  CheckShape(cloud, where);
+  const std::vector<PcdField> fields = PcdFields(cloud, where).WithGaps(cloud.point_step, where);
+  std::string bytes = PcdHeader(fields, cloud);
+  const std::size_t begin = bytes.size();
+  const std::size_t row = std::size_t{cloud.width} * cloud.point_step;
+  bytes.reserve(begin + row * cloud.height);
+  for (std::size_t y = 0; y < cloud.height; ++y) {
+    bytes.append(reinterpret_cast<const char*>(cloud.data) + y * cloud.row_step, row);
+  }
+  NanosecondsToSeconds(fields, cloud.point_step, bytes.data() + begin,
+                       std::size_t{cloud.width} * cloud.height);
+  return ParsePcd(bytes, where, cloud.header.utime);
+}
+
+std::optional<FileLens> ToLens(const ros::CameraInfo& info, const LensWanted& wanted) {
+  if (std::all_of(info.k.begin(), info.k.end(), [](double k) { return k == 0; })) {
+    return std::nullopt;
+  }
+  const std::string where = wanted.file.string();
+  if (info.binning_x > 1 || info.binning_y > 1) {
+    throw InputError(where + ": binning " + std::to_string(info.binning_x) + " x " +
+                     std::to_string(info.binning_y) +
+                     ": its K is of images that are larger; give the lens by --lens");
+  }
+  // One reader judges both, the topic and the file that camera_calibration writes.
+  std::string text = "width: " + std::to_string(info.width) +
+                     "\nheight: " + std::to_string(info.height) + "\nK: " + YamlList(info.k) +
+                     "\nD: " + YamlList(info.d) +
+                     "\nroi:\n  x_offset: " + std::to_string(info.roi_x) +
+                     "\n  y_offset: " + std::to_string(info.roi_y) + "\n";
+  std::string model = info.distortion_model.substr(0, 40);
+  model.erase(std::remove_if(model.begin(), model.end(),
+                             [](unsigned char c) { return std::isalnum(c) == 0 && c != '_'; }),
+              model.end());
+  if (!model.empty()) text += "distortion_model: " + model + "\n";
+  return ParseLensFile(text, wanted);
+}
+
+}  // namespace rgbdt

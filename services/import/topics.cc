@@ -1,0 +1,179 @@
+#include "services/import/topics.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+namespace {
+
+using Topic = BagSurvey::Topic;
+
+bool IsImages(const Topic& topic) {
+  return topic.data == BagData::kImage || topic.data == BagData::kCompressedImage;
+}
+
+// "/cam/rgb/image_raw/compressed": the camera "/cam/rgb", and its images "image_raw".
+struct Parts {
+  std::string camera, images;
+};
+
+Parts Split(const Topic& topic) {
+  std::string name = topic.topic.name;
+  for (const char* transport : {"/compressed", "/compressedDepth"}) {
+    const std::string end = transport;
+    if (topic.data == BagData::kCompressedImage && name.size() > end.size() &&
+        name.compare(name.size() - end.size(), end.size(), end) == 0) {
+      name.erase(name.size() - end.size());
+      break;
+    }
+  }
+  const std::size_t slash = name.rfind('/');
+  if (slash == std::string::npos) return {"", name};
+  return {name.substr(0, slash), name.substr(slash + 1)};
+}
+
+// Why these are not taken for a camera's images; empty: they may be.
+std::string WhyNoCamera(const Topic& topic) {
+  std::string name = topic.topic.name;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto says = [&](const char* word) { return name.find(word) != std::string::npos; };
+  if (topic.stamped.empty()) {
+    return topic.problem.empty() ? "no messages" : "cannot be read: " + topic.problem;
+  }
+  if (says("depth") || says("disparity") || topic.what.find("32FC1") != std::string::npos) {
+    return "depth, no picture";
+  }
+  if (says("rect")) return "rectified: another lens; --image takes it, with --lens";
+  for (const char* word : {"mask", "label", "segment", "debug", "overlay"}) {
+    if (says(word)) return std::string("named \"") + word + "\"; --image takes it";
+  }
+  return "";
+}
+
+// The smaller, the less was done to the pixels.
+int Rank(const Topic& topic) {
+  static const std::vector<std::string> order = {"image_raw", "image_color", "image", "image_mono"};
+  const auto found = std::find(order.begin(), order.end(), Split(topic).images);
+  return static_cast<int>(found - order.begin()) +
+         (topic.data == BagData::kCompressedImage ? 100 : 0);
+}
+
+// 1 to 32 of a-z, 0-9 and _, as the rig file has it.
+std::string CameraName(const Topic& topic, const std::set<std::string>& taken) {
+  const Parts parts = Split(topic);
+  const std::string whole = parts.camera.empty() ? parts.images : parts.camera;
+  std::string name;
+  for (const char c : whole.substr(whole.rfind('/') + 1)) {
+    const auto u = static_cast<unsigned char>(c);
+    name += std::isalnum(u) != 0 ? static_cast<char>(std::tolower(u)) : '_';
+  }
+  name = name.substr(0, 28);
+  if (name.empty()) name = "camera";
+  std::string free = name;
+  for (int i = 2; taken.count(free) != 0; ++i) free = name + "_" + std::to_string(i);
+  return free;
+}
+
+std::string NamesOf(const BagSurvey& survey, bool (*is)(const Topic&)) {
+  std::string names;
+  for (const Topic& topic : survey.topics) {
+    if (is(topic)) names += (names.empty() ? "" : ", ") + topic.topic.name;
+  }
+  return names.empty() ? "none" : names;
+}
+
+const Topic& Wanted(const BagSurvey& survey, const std::string& name, bool (*is)(const Topic&),
+                    const std::string& option) {
+  const Topic* topic = survey.Find(name);
+  if (topic == nullptr || !is(*topic)) {
+    throw InputError(option + " " + name +
+                     ": the bag has no such topic; it has: " + NamesOf(survey, is));
+  }
+  if (topic->stamped.empty()) {
+    throw InputError(option + " " + name + ": none of its messages can be read" +
+                     (topic->problem.empty() ? "" : ": " + topic->problem));
+  }
+  return *topic;
+}
+
+const Topic* InfoOf(const BagSurvey& survey, const Topic& images) {
+  const Topic* info = survey.Find(Split(images).camera + "/camera_info");
+  return info != nullptr && info->info ? info : nullptr;
+}
+
+// Of each camera the topic that is taken.
+std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::string>* left_out) {
+  std::map<std::string, const Topic*> best;
+  for (const Topic& topic : survey.topics) {
+    if (!IsImages(topic)) continue;
+    const std::string why = WhyNoCamera(topic);
+    if (!why.empty()) {
+      left_out->push_back(topic.topic.name + ": " + why);
+      continue;
+    }
+    const Topic*& of_camera = best[Split(topic).camera];
+    const Topic* worse = &topic;
+    if (of_camera == nullptr || Rank(topic) < Rank(*of_camera)) std::swap(of_camera, worse);
+    if (worse != nullptr) {
+      left_out->push_back(worse->topic.name + ": " + of_camera->topic.name + " is taken instead");
+    }
+  }
+  std::vector<const Topic*> topics;
+  for (const auto& [camera, topic] : best) topics.push_back(topic);
+  return topics;
+}
+
+bool IsCloud(const Topic& topic) { return topic.data == BagData::kCloud; }
+
+const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish) {
+  if (!wish.empty()) return Wanted(survey, wish, IsCloud, "--cloud");
+  const Topic* found = nullptr;
+  for (const Topic& topic : survey.topics) {
+    if (!IsCloud(topic) || topic.stamped.empty()) continue;
+    if (found != nullptr) {
+      throw InputError("several topics hold clouds; say which by --cloud: " +
+                       NamesOf(survey, IsCloud));
+    }
+    found = &topic;
+  }
+  if (found == nullptr) {
+    throw InputError("the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2");
+  }
+  return *found;
+}
+
+}  // namespace
+
+TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
+  TopicChoice choice;
+  std::set<std::string> names;
+  const auto add = [&](const std::string& wish, const Topic& topic) {
+    TopicChoice::Camera camera;
+    camera.name = wish.empty() ? CameraName(topic, names) : wish;
+    if (!names.insert(camera.name).second) {
+      throw InputError("two cameras are called \"" + camera.name + "\"; expected a name for each");
+    }
+    camera.images = &topic;
+    const bool rectified = topic.topic.name.find("rect") != std::string::npos;
+    camera.info = rectified ? nullptr : InfoOf(survey, topic);
+    choice.cameras.push_back(camera);
+  };
+  for (const auto& [name, topic] : wishes.images) {
+    add(name, Wanted(survey, topic, IsImages, "--image"));
+  }
+  if (wishes.images.empty()) {
+    for (const Topic* topic : SeenCameras(survey, &choice.left_out)) add("", *topic);
+  }
+  if (choice.cameras.empty()) {
+    throw InputError("the bag holds no camera's images; topics of images: " +
+                     NamesOf(survey, IsImages));
+  }
+  choice.cloud = &ChooseCloud(survey, wishes.cloud);
+  return choice;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/import/survey.h"
+
+namespace rgbdt {
+
+/// What a person asks for; what is empty is seen from the bag.
+struct TopicWishes {
+  std::vector<std::pair<std::string, std::string>> images;  ///< name (or empty), topic
+  std::string cloud;
+};
+
+struct TopicChoice {
+  struct Camera {
+    std::string name;  ///< of the camera: from the topic, "rgb" of /rgb/image_raw
+    const BagSurvey::Topic* images = nullptr;
+    const BagSurvey::Topic* info = nullptr;  ///< its CameraInfo; none: it has none
+  };
+  std::vector<Camera> cameras;
+  const BagSurvey::Topic* cloud = nullptr;
+  std::vector<std::string> left_out;  ///< a line for each topic of images that is not taken: why
+};
+
+/// Which topics are cameras and which is the LIDAR. Of what one camera publishes several times, the
+/// raw images are taken, or else the least changed ones. Depth and rectified images are none unless
+/// asked for. Points into `survey`. Throws InputError: no images, no clouds or several topics of
+/// them, a wish for what is not there.
+TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes);
+
+}  // namespace rgbdt
