@@ -55,6 +55,7 @@ std::vector<fs::path> FilesOf(const fs::path& path) {
   }
   std::sort(names.begin(), names.end(), NaturalLess);
   std::vector<fs::path> files;
+  files.reserve(names.size());
   for (const std::string& name : names) files.push_back(path / name);
   return files;
 }

@@ -123,6 +123,7 @@ std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::
     }
   }
   std::vector<const Topic*> topics;
+  topics.reserve(best.size());
   for (const auto& [camera, topic] : best) topics.push_back(topic);
   return topics;
 }

@@ -1,0 +1,149 @@
+// Which topics, which moments, which way.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/import/moments.h"
+#include "services/import/still.h"
+#include "services/import/transforms.h"
+#include "tests/unit/files/test_data.h"
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+BagSurvey::Topic Topic(const std::string& name, BagData data, const std::vector<double>& seconds) {
+  BagSurvey::Topic topic;
+  topic.topic.name = name;
+  topic.data = data;
+  for (const double s : seconds) topic.stamped.push_back({FromSeconds(s), {}});
+  if (data == BagData::kCameraInfo) topic.info.emplace();
+  return topic;
+}
+
+TEST(ChooseTopics, OfEachCameraTheRawest) {
+  BagSurvey survey;
+  for (const char* name : {"/a/rgb/image_raw", "/a/rgb/image_color", "/Front-Left/image",
+                           "/depth/image_raw", "/b/image_rect", "/empty/image_raw"}) {
+    survey.topics.push_back(Topic(name, BagData::kImage, {0}));
+  }
+  survey.topics.back().stamped.clear();
+  survey.topics.push_back(Topic("/a/rgb/image_raw/compressed", BagData::kCompressedImage, {0}));
+  survey.topics.push_back(Topic("/c/rgb/image_raw/compressed", BagData::kCompressedImage, {0}));
+  survey.topics.push_back(Topic("/a/rgb/camera_info", BagData::kCameraInfo, {}));
+  survey.topics.push_back(Topic("/points", BagData::kCloud, {0}));
+  const TopicChoice choice = ChooseTopics(survey, {});
+  std::vector<std::string> taken;
+  for (const auto& camera : choice.cameras) {
+    taken.push_back(camera.name + " " + camera.images->topic.name);
+  }
+  EXPECT_THAT(taken, ElementsAre("front_left /Front-Left/image", "rgb /a/rgb/image_raw",
+                                 "rgb_2 /c/rgb/image_raw/compressed"));
+  EXPECT_EQ(choice.cameras[0].info, nullptr);
+  EXPECT_EQ(choice.cameras[1].info->topic.name, "/a/rgb/camera_info");
+  EXPECT_EQ(choice.cloud->topic.name, "/points");
+  EXPECT_THAT(choice.left_out, SizeIs(5));
+}
+
+TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {
+  BagSurvey survey;
+  survey.topics = {Topic("/b/image_rect", BagData::kImage, {0}),
+                   Topic("/one", BagData::kCloud, {0}), Topic("/two", BagData::kCloud, {0})};
+  const auto error = [&](const TopicWishes& wishes) {
+    return test::ErrorOf([&] { ChooseTopics(survey, wishes); });
+  };
+  EXPECT_THAT(error({}), HasSubstr("no camera's images"));
+  EXPECT_THAT(error({{{"rgb", "/b/image_rect"}}, ""}), HasSubstr("--cloud: /one, /two"));
+  EXPECT_THAT(error({{{"rgb", "/one"}}, "/one"}), HasSubstr("--image /one"));
+  const TopicChoice choice = ChooseTopics(survey, {{{"rgb", "/b/image_rect"}}, "/two"});
+  EXPECT_EQ(choice.cameras.at(0).name, "rgb");
+  EXPECT_EQ(choice.cloud->topic.name, "/two");
+}
+
+TEST(FindTransform, AlongAChainBothWays) {
+  Random random(1);
+  const Rigid3 base_from_lidar = random.Pose(), base_from_link = random.Pose(),
+               link_from_optical = random.Pose();
+  const std::vector<ros::Transform> transforms = {{"base", "lidar", base_from_lidar},
+                                                  {"base", "link", base_from_link},
+                                                  {"link", "optical", link_from_optical}};
+  const std::optional<Rigid3> found = FindTransform(transforms, "optical", "lidar");
+  ASSERT_TRUE(found);
+  EXPECT_THAT(*found, Rigid3Near((base_from_link * link_from_optical).Inverse() * base_from_lidar,
+                                 1e-9, 1e-9));
+  EXPECT_THAT(*FindTransform(transforms, "lidar", "optical"),
+              Rigid3Near(found->Inverse(), 1e-9, 1e-9));
+  EXPECT_FALSE(FindTransform(transforms, "elsewhere", "lidar"));
+  EXPECT_FALSE(FindTransform(transforms, "", ""));
+}
+
+struct Paired {
+  BagSurvey::Topic cloud = Topic("/points", BagData::kCloud, {10, 11, 12, 13}),
+                   rgb = Topic("/rgb", BagData::kImage, {9.98, 10.03, 11.9, 12.05}),
+                   thermal = Topic("/thermal", BagData::kImage, {10.05});
+  TopicChoice choice{{{"rgb", &rgb, nullptr}, {"thermal", &thermal, nullptr}}, &cloud, {}};
+};
+
+TEST(Moments, EachCloudWithTheNearestImages) {
+  const Paired paired;
+  std::vector<std::string> left_over;
+  const auto moments = PairAt(paired.choice, EverySeconds(paired.choice, 1), 0.1, &left_over);
+  ASSERT_THAT(moments, SizeIs(2));
+  EXPECT_EQ(moments[0].cloud.utime, FromSeconds(10));
+  EXPECT_EQ(moments[0].images[0]->utime, FromSeconds(9.98));
+  EXPECT_EQ(moments[0].images[1]->utime, FromSeconds(10.05));
+  EXPECT_EQ(moments[1].images[0]->utime, FromSeconds(12.05));
+  EXPECT_FALSE(moments[1].images[1]);
+  EXPECT_THAT(left_over, ElementsAre(HasSubstr("1.02 s, 3.02 s")));
+}
+
+TEST(Moments, AtTimesEachCloudOnce) {
+  const Paired paired;
+  std::vector<std::string> left_over;
+  const auto moments = PairAt(paired.choice, {FromSeconds(12.2), FromSeconds(9), FromSeconds(10.4)},
+                              0.1, &left_over);
+  ASSERT_THAT(moments, SizeIs(2));
+  EXPECT_EQ(moments[0].cloud.utime, FromSeconds(10));
+  EXPECT_EQ(moments[1].cloud.utime, FromSeconds(12));
+  EXPECT_THAT(EverySeconds(paired.choice, 1.5), ElementsAre(FromSeconds(10), FromSeconds(12)));
+}
+
+TEST(Moments, ClocksThatDisagreeAreTold) {
+  Paired paired;
+  for (Stamped& image : paired.rgb.stamped) image.utime -= FromSeconds(5000);
+  for (Stamped& image : paired.thermal.stamped) image.utime -= FromSeconds(5000);
+  std::vector<std::string> left_over;
+  EXPECT_THAT(test::ErrorOf(
+                  [&] { PairAt(paired.choice, EverySeconds(paired.choice, 1), 0.1, &left_over); }),
+              HasSubstr("4997.95 s away"));
+}
+
+BoardLook Look(double x, double y) {
+  return {0, {{x, y}, {x + 10, y}, {x, y + 10}, {x + 10, y + 10}}};
+}
+
+TEST(Still, HowFarTheBoardMoved) {
+  const BoardLook look = Look(5, 5);
+  EXPECT_NEAR(Moved(look, Look(8, 9)), 5, 1e-12);
+  BoardLook turned = look;
+  std::reverse(turned.corners.begin(), turned.corners.end());
+  EXPECT_EQ(Moved(look, turned), 0);
+  BoardLook hidden = look;
+  hidden.corners[0] = hidden.corners[1] = hidden.corners[2] = UnseenCorner();
+  EXPECT_TRUE(std::isinf(Moved(look, hidden)));
+}
+
+TEST(Still, StandsAreSpreadOverTheImage) {
+  const std::vector<BoardLook> looks = {Look(0, 0), Look(1, 0), Look(500, 0), Look(510, 400),
+                                        Look(250, 0)};
+  EXPECT_THAT(SpreadOver(looks, 1000, 3), ElementsAre(0, 2, 3));
+  EXPECT_THAT(SpreadOver(looks, 1000, 99), ElementsAre(0, 2, 3, 4));  // 1 is 0 again
+  EXPECT_THAT(SpreadOver({}, 1000, 3), IsEmpty());
+}
+
+}  // namespace
+}  // namespace rgbdt

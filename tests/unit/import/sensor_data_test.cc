@@ -1,0 +1,276 @@
+#include "services/import/sensor_data.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "calib/files/image_files.h"
+#include "tests/unit/files/test_data.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr Utime kStamp = 1'700'000'000'000'000;
+
+ros::Image RosImage(const std::string& encoding, std::uint32_t width, std::uint32_t height,
+                    std::uint32_t step, const std::string& bytes) {
+  ros::Image image;
+  image.header.utime = kStamp;
+  image.encoding = encoding;
+  image.width = width;
+  image.height = height;
+  image.step = step;
+  image.data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  image.size = bytes.size();
+  return image;
+}
+
+TEST(RosPixels, RowsMayBePadded) {
+  const std::string bytes = "ab__cd__";
+  const Image image = ToImage(RosImage("bayer_grbg8", 2, 2, 4, bytes), "/cam");
+  EXPECT_EQ(image.format, PixelFormat::kBayerGr8);
+  EXPECT_EQ(image.utime, kStamp);
+  EXPECT_EQ(cv::countNonZero(image.pixels != (cv::Mat_<std::uint8_t>(2, 2) << 'a', 'b', 'c', 'd')),
+            0);
+}
+
+TEST(RosPixels, ColoursComeInOpenCvsOrder) {
+  const std::string rgb = {1, 2, 3}, bgra = {3, 2, 1, 9}, uyvy = {'\x80', 50, '\x80', 60};
+  EXPECT_EQ(ToImage(RosImage("rgb8", 1, 1, 3, rgb), "").pixels.at<cv::Vec3b>(0),
+            cv::Vec3b(3, 2, 1));
+  EXPECT_EQ(ToImage(RosImage("bgra8", 1, 1, 4, bgra), "").pixels.at<cv::Vec3b>(0),
+            cv::Vec3b(3, 2, 1));
+  const cv::Mat grey = ToImage(RosImage("yuv422", 2, 1, 4, uyvy), "").pixels;
+  EXPECT_EQ(grey.at<cv::Vec3b>(0)[0], grey.at<cv::Vec3b>(0)[2]);
+  EXPECT_GT(grey.at<cv::Vec3b>(1)[0], grey.at<cv::Vec3b>(0)[0]);
+}
+
+TEST(RosPixels, SixteenBitsOfEitherByteOrder) {
+  const std::string bytes = {1, 2};
+  ros::Image image = RosImage("mono16", 1, 1, 2, bytes);
+  EXPECT_EQ(ToImage(image, "").pixels.at<std::uint16_t>(0), 0x0201);
+  image.big_endian = true;
+  EXPECT_EQ(ToImage(image, "").pixels.at<std::uint16_t>(0), 0x0102);
+}
+
+TEST(RosPixels, WhatCannotBeIsRefused) {
+  const std::string bytes(8, 'x');
+  const auto error = [&](const ros::Image& image) {
+    return test::ErrorOf([&] { ToImage(image, "/cam"); });
+  };
+  EXPECT_THAT(error(RosImage("32FC1", 1, 1, 4, bytes)), HasSubstr("/cam: encoding \"32FC1\""));
+  EXPECT_THAT(error(RosImage("mono8", 2, 5, 2, bytes)), HasSubstr("cut short"));
+  EXPECT_THAT(error(RosImage("mono8", 2, 2, 1, bytes)), HasSubstr("cut short"));
+  EXPECT_THAT(error(RosImage("mono8", 0, 2, 0, bytes)), HasSubstr("0 x 2 px"));
+  EXPECT_THAT(error(RosImage("mono8", 4'000'000'000U, 4'000'000'000U, 4'000'000'000U, bytes)),
+              HasSubstr("px; expected"));
+  EXPECT_THAT(error(RosImage("yuv422", 1, 1, 2, bytes)), HasSubstr("odd width"));
+}
+
+ros::CompressedImage Compressed(const std::string& format, const std::string& bytes) {
+  ros::CompressedImage image;
+  image.format = format;
+  image.data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  image.size = bytes.size();
+  return image;
+}
+
+TEST(RosPixels, PngKeepsItsBits) {
+  const cv::Mat counts = (cv::Mat_<std::uint16_t>(1, 2) << 7, 40000);
+  const std::string bytes = EncodePng(counts);
+  const Image image = ToImage(Compressed("mono16; png compressed mono16", bytes), "");
+  EXPECT_EQ(image.format, PixelFormat::kMono16);
+  EXPECT_EQ(image.pixels.at<std::uint16_t>(1), 40000);
+  const std::string mosaic = EncodePng(cv::Mat(2, 2, CV_8UC1, cv::Scalar(9)));
+  EXPECT_EQ(ToImage(Compressed("bayer_rggb8; png compressed bayer_rggb8", mosaic), "").format,
+            PixelFormat::kBayerRg8);
+  EXPECT_EQ(ToImage(Compressed("png", mosaic), "").format, PixelFormat::kMono8);
+}
+
+// A few bytes may claim gigabytes.
+TEST(RosPixels, AnImageThatClaimsTooMuchIsNotDecoded) {
+  std::string bytes = EncodePng(cv::Mat(2, 2, CV_8UC1, cv::Scalar(9)));
+  bytes[18] = '\x4e';  // 19970 x 19970: each side is allowed, so many pixels are not
+  bytes[22] = '\x4e';
+  EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("png", bytes), "/cam"); }),
+              HasSubstr("/cam: is 19970 x 19970 px; expected"));
+  EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("compressedDepth", "12345678"), "/cam"); }),
+              HasSubstr("expected JPEG or PNG"));
+}
+
+// Builds clouds field by field.
+class RosCloud {
+ public:
+  RosCloud(std::uint32_t width, std::uint32_t height, std::uint32_t point_step) {
+    cloud_.header.utime = kStamp;
+    cloud_.width = width;
+    cloud_.height = height;
+    cloud_.point_step = point_step;
+    cloud_.row_step = width * point_step;
+    bytes_.resize(std::size_t{cloud_.row_step} * height);
+  }
+  template <typename T>
+  RosCloud& Add(const std::string& name, std::uint32_t offset, int datatype,
+                const std::vector<T>& values) {
+    cloud_.fields.push_back({name, offset, static_cast<std::uint8_t>(datatype), 1});
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::memcpy(&bytes_[i * cloud_.point_step + offset], &values[i], sizeof(T));
+    }
+    return *this;
+  }
+  RosCloud& AddXyz(const std::vector<float>& x) {
+    return Add("x", 0, 7, x)
+        .Add("y", 4, 7, std::vector<float>(x.size(), 1))
+        .Add("z", 8, 7, std::vector<float>(x.size(), 2));
+  }
+  ros::PointCloud& Get() {
+    cloud_.data = reinterpret_cast<const std::uint8_t*>(bytes_.data());
+    cloud_.size = bytes_.size();
+    return cloud_;
+  }
+  Cloud Read() { return ToCloud(Get(), "/points"); }
+  std::string Error() {
+    return test::ErrorOf([this] { Read(); });
+  }
+
+ private:
+  ros::PointCloud cloud_;
+  std::string bytes_;
+};
+
+// velodyne_pointcloud's XYZIRT: gaps, intensity to 255, time [s] before and after the header's.
+TEST(RosClouds, Velodyne) {
+  RosCloud cloud(3, 1, 22);
+  cloud.AddXyz({1, NAN, 3})
+      .Add<float>("intensity", 12, 7, {51, 0, 255})
+      .Add<std::uint16_t>("ring", 16, 4, {0, 7, 15})
+      .Add<float>("time", 18, 7, {-0.05F, 0, 0.01F});
+  const Cloud read = cloud.Read();
+  EXPECT_EQ(read.sweep_utime, kStamp);
+  EXPECT_FALSE(read.organised);
+  EXPECT_TRUE(read.IsHit(0));
+  EXPECT_FALSE(read.IsHit(1));
+  EXPECT_EQ(read.points[2], Eigen::Vector3f(3, 1, 2));
+  EXPECT_THAT(read.intensity, ElementsAre(0.2F, 0, 1));
+  EXPECT_THAT(read.ring, ElementsAre(0, 7, 15));
+  EXPECT_THAT(read.utime, ElementsAre(kStamp - 50'000, kStamp, kStamp + 10'000));
+}
+
+// ouster_ros: organised, fields beyond, misses at 0 0 0, t [ns].
+TEST(RosClouds, Ouster) {
+  RosCloud cloud(2, 2, 48);
+  cloud.AddXyz({1, 2, 3, 4})
+      .Add<float>("intensity", 16, 7, {1000, 65535, 0, 0})
+      .Add<std::uint32_t>("t", 20, 6, {0, 1'000'000, 0, 1'500'000})
+      .Add<std::uint16_t>("reflectivity", 24, 4, {1, 2, 3, 4})
+      .Add<std::uint8_t>("ring", 26, 2, {0, 0, 1, 1})
+      .Add<std::uint32_t>("range", 32, 6, {1, 2, 3, 4});
+  const Cloud read = cloud.Read();
+  EXPECT_TRUE(read.organised);
+  EXPECT_EQ(read.lines, 2);
+  EXPECT_EQ(read.beams, 2);
+  EXPECT_EQ(read.intensity[1], 1);
+  EXPECT_THAT(read.ring, ElementsAre(0, 0, 1, 1));
+  EXPECT_THAT(read.utime, ElementsAre(kStamp, kStamp + 1000, kStamp, kStamp + 1500));
+}
+
+// hesai_ros_driver and rslidar: timestamp [s] since 1970. livox_ros_driver2: the same in ns, and
+// line.
+TEST(RosClouds, HesaiAndLivox) {
+  RosCloud hesai(2, 1, 32);
+  hesai.AddXyz({1, 2}).Add<double>("timestamp", 16, 8, {1'700'000'000.25, 1'700'000'000.5});
+  EXPECT_THAT(hesai.Read().utime, ElementsAre(kStamp + 250'000, kStamp + 500'000));
+  EXPECT_THAT(hesai.Read().ring, IsEmpty());
+  RosCloud livox(2, 1, 32);
+  livox.AddXyz({1, 2})
+      .Add<std::uint8_t>("line", 12, 2, {3, 1})
+      .Add<double>("timestamp", 16, 8, {1'700'000'000'250'000'000.0, 1'700'000'000'500'000'000.0});
+  EXPECT_THAT(livox.Read().utime, ElementsAre(kStamp + 250'000, kStamp + 500'000));
+  EXPECT_THAT(livox.Read().ring, ElementsAre(3, 1));
+}
+
+TEST(RosClouds, ReflectivityStandsForIntensity) {
+  RosCloud cloud(2, 1, 16);
+  cloud.AddXyz({1, 2}).Add<std::uint16_t>("reflectivity", 12, 4, {0, 255});
+  EXPECT_THAT(cloud.Read().intensity, ElementsAre(0, 1));
+}
+
+TEST(RosClouds, WhatCannotBeIsRefused) {
+  EXPECT_THAT(RosCloud(0, 1, 12).AddXyz({}).Error(), HasSubstr("no points"));
+  EXPECT_THAT(RosCloud(1, 1, 12).AddXyz({0}).Add<float>("t", 9, 7, {}).Error(),
+              HasSubstr("\"t\" lies beyond"));
+  EXPECT_THAT(RosCloud(1, 1, 16).AddXyz({0}).Add<float>("intensity", 2, 7, {}).Error(),
+              HasSubstr("lies over"));
+  EXPECT_THAT(RosCloud(1, 1, 16).AddXyz({0}).Add<float>("a", 12, 9, {}).Error(),
+              HasSubstr("datatype 9"));
+  EXPECT_THAT(RosCloud(1, 1, 8).Add<float>("x", 0, 7, {1}).Error(), HasSubstr("y"));
+  RosCloud large(1, 1, 12);
+  large.AddXyz({1}).Get().height = 4'000'000'000U;
+  EXPECT_THAT(large.Error(), HasSubstr("cut short"));
+  RosCloud big(1, 1, 12);
+  big.AddXyz({1}).Get().big_endian = true;
+  EXPECT_THAT(big.Error(), HasSubstr("big-endian"));
+  // A name cannot become a line of the header.
+  RosCloud odd(1, 1, 16);
+  odd.AddXyz({1}).Add<float>("t\nDATA ascii\n", 12, 7, {1});
+  EXPECT_EQ(odd.Read().size(), 1U);
+}
+
+ros::CameraInfo Info() {
+  ros::CameraInfo info;
+  info.width = 640;
+  info.height = 480;
+  info.distortion_model = "plumb_bob";
+  info.k = {500.125, 0, 320.1, 0, 501, 240.3, 0, 0, 1};
+  info.d = {-0.1, 0.02, 1.0 / 3, 0, 0};
+  return info;
+}
+
+LensWanted Wanted(const std::string& topic) {
+  LensWanted wanted;
+  wanted.file = topic;
+  return wanted;
+}
+
+TEST(RosLenses, CameraInfoIsReadAsItsFileIs) {
+  const std::optional<FileLens> lens = ToLens(Info(), Wanted("/cam/camera_info"));
+  ASSERT_TRUE(lens);
+  EXPECT_EQ(lens->width, 640);
+  EXPECT_EQ(lens->lens.fx, 500.125);
+  EXPECT_EQ(lens->lens.distortion[2], 1.0 / 3);
+  EXPECT_EQ(lens->where, "/cam/camera_info");
+  ros::CameraInfo fisheye = Info();
+  fisheye.distortion_model = "equidistant";
+  fisheye.d.resize(4);
+  EXPECT_EQ(ToLens(fisheye, Wanted("/i"))->lens.model, Lens::Model::kFisheye);
+}
+
+TEST(RosLenses, WhatIsNoLensIsNone) {
+  ros::CameraInfo info = Info();
+  info.k = {};
+  EXPECT_FALSE(ToLens(info, Wanted("/i")));
+  const auto error = [](const ros::CameraInfo& bad) {
+    return test::ErrorOf([&] { ToLens(bad, Wanted("/i")); });
+  };
+  info = Info();
+  info.binning_x = 2;
+  EXPECT_THAT(error(info), HasSubstr("binning 2"));
+  info = Info();
+  info.roi_x = 8;
+  EXPECT_THAT(error(info), HasSubstr("x_offset"));
+  info = Info();
+  info.distortion_model = "fov: [\n";
+  EXPECT_THAT(error(info), HasSubstr("fov"));
+  info = Info();
+  info.d[0] = NAN;
+  EXPECT_THAT(error(info), HasSubstr("/i"));
+}
+
+}  // namespace
+}  // namespace rgbdt
