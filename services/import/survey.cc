@@ -39,7 +39,7 @@ std::string Describe(const ros::PointCloud& cloud) {
   for (std::size_t i = 0; i < std::min(kMost, cloud.fields.size()); ++i) {
     text += " " + ValidUtf8(cloud.fields[i].name.substr(0, 40));
   }
-  return text;
+  return cloud.fields.size() > kMost ? text + " ..." : text;
 }
 
 class Surveyor {

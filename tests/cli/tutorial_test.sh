@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# The tutorial of bags prints what its page says, of bags that are made here. Usage:
+# tutorial_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+accepts "a session" "$bin/rgbdt" simulate "$scratch/session" --views 12 --seed 7 --picked rgb
+mkdir "$scratch/monday"
+accepts "its bags" python3 "$here/make_bag.py" "$scratch/session" --seconds 2 --mosaic --tf \
+  "$scratch/monday.bag:lz4" "$scratch/monday/monday_0.db3"
+rm -r "$scratch/session"
+python3 "$here/check_page.py" "$here/../../scripts/examples/bag/README.md" "$bin" "$scratch" \
+  >"$scratch/output" 2>&1 || complain "the tutorial"
+
+verdict
