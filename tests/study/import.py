@@ -1,0 +1,70 @@
+"""Table, CSV, picture and summary.json of `scripts/study import`: a session as a bag of each kind
+against itself as folders, and what reading bags takes."""
+
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+import trials  # noqa: E402
+from trials import figure, mean  # noqa: E402
+
+TARGETS = {"import_identical": (">=", 1), "import_memory_mb": ("<=", 500)}
+
+
+def read(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return [{key: value if key == "kind" else float(value) for key, value in row.items()}
+            for row in rows]
+
+
+def rate(row):
+    return row["megabytes"] / row["list_s"]
+
+
+def figures_of(rows):
+    yield figure("import_identical", mean([row["identical"] for row in rows]))
+    yield figure("import_memory_mb", max(row["memory_mb"] for row in rows), "MB")
+    yield figure("import_kinds", len(rows))
+    for row in rows:
+        name = row["kind"].replace(".", "_").replace(":", "_")
+        yield figure(f"import_{name}_mb_per_s", rate(row), "MB/s")
+
+
+def draw(rows, path):
+    plot, axes = plt.subplots(1, 2, figsize=(11, 4))
+    kinds = [row["kind"] for row in rows]
+    axes[0].barh(kinds, [rate(row) for row in rows])
+    axes[0].set_xlabel("listed, of the file's size [MB/s]")
+    axes[1].barh(kinds, [row["memory_mb"] for row in rows])
+    axes[1].axvline(TARGETS["import_memory_mb"][1], color="k", ls="--", lw=1)
+    axes[1].set_xlabel("most memory of an import [MB]")
+    for axis in axes:
+        axis.invert_yaxis()
+        axis.grid(alpha=0.3)
+    plot.tight_layout()
+    plot.savefig(path, dpi=130)
+
+
+def main():
+    out = pathlib.Path(sys.argv[1])
+    rows = read(out / "parts/import.csv")
+    figures = list(figures_of(rows))
+    lines = [[row["kind"], row["identical"], row["megabytes"], row["list_s"], row["import_s"],
+              row["memory_mb"]] for row in rows]
+    text = trials.table(figures, TARGETS) + "\n" + trials.grid(
+        ("bag", "identical", "MB", "list s", "import s", "memory MB"), lines)
+    draw(rows, out / "import.png")
+    with open(out / "import.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, fieldnames=rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+    trials.write_summary(out, "import", figures, text)
+
+
+main()
