@@ -7,6 +7,7 @@
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/bags/printable.h"
 #include "services/import/sensor_data.h"
 #include "services/import/transforms.h"
 
@@ -133,8 +134,8 @@ std::string SetGuess(const BagSurvey& survey, const TopicChoice& choice,
   const Eigen::Vector3d centre =
       spec->camera_from_lidar_guess->Inverse().translation + Eigen::Vector3d::Zero();  // no -0
   return "guess " + spec->name + "_from_lidar of tf_static: point_in_camera (" +
-         ValidUtf8(optical) + ", taken as x right, y down, z forward) = R * point_in_lidar (" +
-         ValidUtf8(lidar) + ") + t; the camera at " +
+         Printable(optical) + ", taken as x right, y down, z forward) = R * point_in_lidar (" +
+         Printable(lidar) + ") + t; the camera at " +
          Format("%.3f %.3f %.3f m in the LIDAR frame", centre.x(), centre.y(), centre.z());
 }
 

@@ -1,5 +1,6 @@
 #include "services/import/ros_messages.h"
 
+#include "services/bags/printable.h"
 #include "services/import/internal/cursor.h"
 
 namespace rgbdt::ros {
@@ -110,8 +111,8 @@ std::vector<Transform> TakeTransforms(C* in) {
     for (double& value : q) value = in->template Number<double>();
     const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
     if (!(std::abs(rotation.norm() - 1) < 0.01) || !pose.translation.allFinite()) {
-      throw InputError("the transform from " + transform.child + " to " + transform.parent +
-                       " is no rotation and translation");
+      throw InputError("the transform from " + Printable(transform.child) + " to " +
+                       Printable(transform.parent) + " is no rotation and translation");
     }
     pose.rotation = rotation.normalized();
   }

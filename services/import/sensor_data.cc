@@ -11,6 +11,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/image_codec.h"
 #include "calib/model/text.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt {
 namespace {
@@ -55,7 +56,7 @@ const Encoding& EncodingOf(const std::string& name, const std::string& where) {
   if (found != Encodings().end()) return found->second;
   std::string known;
   for (const auto& entry : Encodings()) known += " " + entry.first;
-  throw InputError(where + ": encoding \"" + ValidUtf8(name.substr(0, 40)) +
+  throw InputError(where + ": encoding \"" + Printable(name) +
                    "\" is not read; those that are:" + known);
 }
 
@@ -131,13 +132,13 @@ class PcdFields {
   PcdFields(const ros::PointCloud& cloud, const std::string& where) {
     for (const ros::PointCloud::Field& field : cloud.fields) {
       if (field.datatype < 1 || field.datatype > 8) {
-        throw InputError(where + ": field \"" + ValidUtf8(field.name.substr(0, 40)) +
-                         "\" has datatype " + std::to_string(field.datatype) + "; expected 1 to 8");
+        throw InputError(where + ": field \"" + Printable(field.name) + "\" has datatype " +
+                         std::to_string(field.datatype) + "; expected 1 to 8");
       }
       const auto& type = kDatatypes[field.datatype - 1];
       const std::size_t count = std::max<std::uint32_t>(1, field.count);
       if (field.offset + count * type.size > cloud.point_step) {
-        throw InputError(where + ": field \"" + ValidUtf8(field.name.substr(0, 40)) +
+        throw InputError(where + ": field \"" + Printable(field.name) +
                          "\" lies beyond the point's " + std::to_string(cloud.point_step) +
                          " bytes");
       }
@@ -293,7 +294,7 @@ Image ToImage(const ros::Image& image, const std::string& where) {
 Image ToImage(const ros::CompressedImage& image, const std::string& where) {
   const auto size = StatedSize(image.data, image.size);
   if (!size) {
-    throw InputError(where + ": format \"" + ValidUtf8(image.format.substr(0, 60)) +
+    throw InputError(where + ": format \"" + Printable(image.format) +
                      "\" is not read; expected JPEG or PNG");
   }
   CheckSize(size->first, size->second, where);

@@ -4,6 +4,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt {
 namespace {
@@ -30,14 +31,14 @@ bool IsStatic(const BagTopic& topic) {
 }
 
 std::string Describe(const ros::Image& image) {
-  return Format("%ux%u ", image.width, image.height) + ValidUtf8(image.encoding.substr(0, 40));
+  return Format("%ux%u ", image.width, image.height) + Printable(image.encoding);
 }
 
 std::string Describe(const ros::PointCloud& cloud) {
   std::string text = Format("%ux%u", cloud.width, cloud.height);
   constexpr std::size_t kMost = 12;
   for (std::size_t i = 0; i < std::min(kMost, cloud.fields.size()); ++i) {
-    text += " " + ValidUtf8(cloud.fields[i].name.substr(0, 40));
+    text += " " + Printable(cloud.fields[i].name);
   }
   return cloud.fields.size() > kMost ? text + " ..." : text;
 }
@@ -91,7 +92,7 @@ class Surveyor {
       case BagData::kCompressedImage:
         if (seen->what.empty()) {
           const auto image = ros::DecodeCompressedImage(message, encoding);
-          seen->what = ValidUtf8(image.format.substr(0, 60));
+          seen->what = Printable(image.format);
         }
         return Keep(message, seen);
       case BagData::kCloud:

@@ -36,6 +36,12 @@ Parts Split(const Topic& topic) {
   return {name.substr(0, slash), name.substr(slash + 1)};
 }
 
+// By image_proc: its CameraInfo is of the images before.
+bool IsRectified(const Topic& topic) {
+  const std::string& name = topic.topic.name;
+  return name.find("_rect") != std::string::npos || name.find("/rect") != std::string::npos;
+}
+
 // Why these are not taken for a camera's images; empty: they may be.
 std::string WhyNoCamera(const Topic& topic) {
   std::string name = topic.topic.name;
@@ -47,7 +53,7 @@ std::string WhyNoCamera(const Topic& topic) {
   if (says("depth") || says("disparity") || topic.what.find("32FC1") != std::string::npos) {
     return "depth, no picture";
   }
-  if (says("rect")) return "rectified: another lens; --image takes it, with --lens";
+  if (IsRectified(topic)) return "rectified: another lens; --image takes it, with --lens";
   for (const char* word : {"mask", "label", "segment", "debug", "overlay"}) {
     if (says(word)) return std::string("named \"") + word + "\"; --image takes it";
   }
@@ -159,8 +165,7 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
       throw InputError("two cameras are called \"" + camera.name + "\"; expected a name for each");
     }
     camera.images = &topic;
-    const bool rectified = topic.topic.name.find("rect") != std::string::npos;
-    camera.info = rectified ? nullptr : InfoOf(survey, topic);
+    camera.info = IsRectified(topic) ? nullptr : InfoOf(survey, topic);
     choice.cameras.push_back(camera);
   };
   for (const auto& [name, topic] : wishes.images) {

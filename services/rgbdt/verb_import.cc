@@ -45,7 +45,7 @@ std::function<void(double)> ReadingProgress(const BagReader& bag) {
 void PrintTopics(const BagReader& bag, const BagSurvey& survey) {
   std::printf("%s, %.1f MB:\n", bag.format().c_str(), static_cast<double>(bag.size()) / 1e6);
   for (const BagSurvey::Topic& topic : survey.topics) {
-    std::string line = ValidUtf8(topic.topic.name) + "  " + ValidUtf8(topic.topic.type) + "  " +
+    std::string line = topic.topic.name + "  " + topic.topic.type + "  " +
                        std::to_string(topic.messages) + " messages";
     if (topic.Rate() > 0) line += Format(", %.3g Hz", topic.Rate());
     line += Format(", %.1f MB", static_cast<double>(topic.bytes) / 1e6);
@@ -212,7 +212,7 @@ int RunImport(const ImportFlags& flags) {
   PrintTopics(*bag, survey);
   const TopicChoice choice = ChooseTopics(survey, WishesOf(flags));
   for (const std::string& line : choice.left_out) {
-    std::printf("left out: %s\n", ValidUtf8(line).c_str());
+    std::printf("left out: %s\n", line.c_str());
   }
   if (!writes) {
     for (const TopicChoice::Camera& camera : choice.cameras) {

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "calib/model/errors.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt::bags {
 namespace {
@@ -55,7 +56,7 @@ bool BagFile::ReadAll(std::int64_t from, std::size_t bytes, std::vector<std::uin
 }
 
 std::size_t TopicList::Add(const std::string& name, const std::string& type, BagEncoding encoding) {
-  const BagTopic topic{name, PlainType(type), encoding};
+  const BagTopic topic{Printable(name), PlainType(Printable(type)), encoding};
   const std::string key =
       topic.name + '\n' + topic.type + '\n' + std::to_string(static_cast<int>(encoding));
   const auto [found, is_new] = index_.try_emplace(key, topics_.size());

@@ -9,6 +9,7 @@
 #include "calib/model/errors.h"
 #include "services/bags/internal/bag_file.h"
 #include "services/bags/internal/unpack.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt::bags {
 namespace {
@@ -45,7 +46,9 @@ class Statement {
   }
 
  private:
-  [[noreturn]] void Fail() const { throw InputError(path_ + ": " + sqlite3_errmsg(database_)); }
+  [[noreturn]] void Fail() const {
+    throw InputError(path_ + ": " + Printable(sqlite3_errmsg(database_)));
+  }
 
   sqlite3* database_;
   const std::string& path_;

@@ -8,6 +8,7 @@
 
 #include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt::bags {
 namespace {
@@ -72,7 +73,7 @@ void Unpack(const std::string& compression, const std::uint8_t* packed, std::siz
     } else if (compression == "bz2") {
       got = FromBz2(packed, size, out);
     } else {
-      throw InputError("its compression is \"" + compression.substr(0, 20) +
+      throw InputError("its compression is \"" + Printable(compression) +
                        "\"; expected none, zstd, lz4 or bz2");
     }
   }

@@ -186,6 +186,15 @@ TEST_F(Bags, WhatUnpacksToTooMuchIsLeftOutAndTheNextIsRead) {
   }
 }
 
+TEST_F(Bags, ATopicCannotWriteToTheTerminal) {
+  const std::uint16_t id = 1;
+  const Seen seen =
+      Read(test::kMcapMagic +
+           test::McapRecord(4, Little(id) + Little(id) + test::Text("/\x1b[2J\n\xff") +
+                                   test::Text("cdr") + Little(std::uint32_t{0})));
+  EXPECT_EQ(seen.topics.at(0).name, "/?[2J?\xEF\xBF\xBD");
+}
+
 TEST_F(Bags, OfManyProblemsTheFirstAreTold) {
   std::string bytes = test::kMcapMagic;
   for (int i = 0; i < 1000; ++i) bytes += test::McapMessage(9, 0, "");
