@@ -166,19 +166,26 @@ def camera_info(new, stamp_ns, frame, lens):
     return m.done()
 
 
-def point_cloud(new, stamp_ns, frame, path):
-    """With the PCD's fields; a time in us, which PointCloud2 cannot hold, becomes `timestamp` [s]."""
-    fields, width, height, data = read_pcd(path)
+def with_timestamps(fields, count, data):
+    """Fields (name, offset, datatype) and points as of a PointCloud2, which has no whole numbers of
+    64 bits: `utime` [us] becomes `timestamp` [s]."""
     step = sum(size for _, _, size in fields)
     out, described, at = bytearray(data), [], 0
     for name, kind, size in fields:
         if name == "utime":
-            for i in range(width * height):
+            for i in range(count):
                 utime, = struct.unpack_from("<d" if kind == "F" else "<q", data, i * step + at)
                 struct.pack_into("<d", out, i * step + at, utime / 1e6)
             name, kind = "timestamp", "F"
         described.append((name, at, FIELD_TYPES[kind, size]))
         at += size
+    return described, bytes(out)
+
+
+def point_cloud(new, stamp_ns, frame, path):
+    fields, width, height, data = read_pcd(path)
+    described, data = with_timestamps(fields, width * height, data)
+    step = sum(size for _, _, size in fields)
     m = new()
     m.header(stamp_ns, frame)
     m.put("II", height, width)
@@ -187,7 +194,7 @@ def point_cloud(new, stamp_ns, frame, path):
         m.text(name)
         m.put("IBI", offset, datatype, 1)
     m.put("BII", 0, step, step * width)
-    m.blob(bytes(out))
+    m.blob(data)
     m.put("B", 0)
     return m.done()
 
