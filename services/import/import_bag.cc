@@ -35,26 +35,36 @@ CameraKind KindOf(const TopicChoice::Camera& camera, PixelFormat format) {
                    camera.images->topic.name);
 }
 
-Image Decode(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
-  const BagMessage message = bag->Read(stamped.place);
+// Calls `decode` with the message; what is wrong with it begins with where it is.
+template <typename Decode>
+auto DecodeAt(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped,
+              Decode decode) {
   const std::string where = Where(topic, stamped.utime);
+  const BagMessage message = bag->Read(stamped.place);
   try {
-    Image image = topic.data == BagData::kImage
-                      ? ToImage(ros::DecodeImage(message, topic.topic.encoding), where)
-                      : ToImage(ros::DecodeCompressedImage(message, topic.topic.encoding), where);
-    image.utime = stamped.utime;
-    return image;
+    return decode(message, where);
   } catch (const InputError& error) {
     const std::string what = error.what();
     throw InputError(what.rfind(where, 0) == 0 ? what : where + ": " + what);
   }
 }
 
+Image DecodeImage(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
+  return DecodeAt(bag, topic, stamped, [&](const BagMessage& message, const std::string& where) {
+    Image image = topic.data == BagData::kImage
+                      ? ToImage(ros::DecodeImage(message, topic.topic.encoding), where)
+                      : ToImage(ros::DecodeCompressedImage(message, topic.topic.encoding), where);
+    image.utime = stamped.utime;
+    return image;
+  });
+}
+
 Cloud DecodeCloud(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
-  const BagMessage message = bag->Read(stamped.place);
-  ros::PointCloud cloud = ros::DecodePointCloud(message, topic.topic.encoding);
-  cloud.header.utime = stamped.utime;
-  return ToCloud(cloud, Where(topic, stamped.utime));
+  return DecodeAt(bag, topic, stamped, [&](const BagMessage& message, const std::string& where) {
+    ros::PointCloud cloud = ros::DecodePointCloud(message, topic.topic.encoding);
+    cloud.header.utime = stamped.utime;
+    return ToCloud(cloud, where);
+  });
 }
 
 const Folders::LensFile* LensFor(const RigWishes& wishes, const TopicChoice& choice,
@@ -100,6 +110,7 @@ std::optional<FileLens> FindLens(const TopicChoice& choice, const RigWishes& wis
   if (file != nullptr) return ReadLensFile(wanted);
   if (camera.info == nullptr) return std::nullopt;
   wanted.file = camera.info->topic.name;
+  if (!camera.info->info->distortion_model.empty()) wanted.model.reset();  // it says itself
   return ToLens(*camera.info->info, wanted);
 }
 
@@ -149,7 +160,7 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
   out.rig.target = wishes.board;
   for (std::size_t i = 0; i < choice.cameras.size(); ++i) {
     const TopicChoice::Camera& camera = choice.cameras[i];
-    const Image first = Decode(bag, *camera.images, camera.images->stamped.front());
+    const Image first = DecodeImage(bag, *camera.images, camera.images->stamped.front());
     CameraSpec spec;
     spec.name = camera.name;
     spec.format = first.format;
@@ -172,7 +183,7 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
 
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped) {
-  Image image = Decode(bag, *camera.images, stamped);
+  Image image = DecodeImage(bag, *camera.images, stamped);
   image.camera = spec.name;
   const bool alike = image.pixels.cols == spec.width && image.pixels.rows == spec.height &&
                      image.format == spec.format;
