@@ -107,7 +107,7 @@ double Moved(const BoardLook& a, const BoardLook& b) {
 
 std::vector<std::size_t> SpreadOver(const std::vector<BoardLook>& looks, int image_width,
                                     std::size_t views) {
-  const double least_px = 0.02 * image_width;
+  const double least_px = 0.005 * image_width;
   std::vector<std::size_t> chosen;
   std::vector<double> apart(looks.size(), std::numeric_limits<double>::infinity());
   std::size_t next = 0;

@@ -24,7 +24,7 @@ struct BoardLook {
 double Moved(const BoardLook& a, const BoardLook& b);
 
 /// Of these looks at most `views`, the first and then always the one that is farthest from all
-/// chosen before, as far as it differs by more than 2% of the image's width; indices, in order.
+/// chosen before, as far as it differs by more than 0.5% of the image's width; indices, in order.
 std::vector<std::size_t> SpreadOver(const std::vector<BoardLook>& looks, int image_width,
                                     std::size_t views);
 
