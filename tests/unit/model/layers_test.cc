@@ -48,6 +48,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"calib/monitor", {"calib/camera", "calib/methods/natural"}},
       {"calib/fuse", {"calib/camera"}},
       {"calib/map", {}},
+      {"calib/odometry", {}},
       {"calib/terrain", {}},
       {"calib/simulate", {}},  // its own ray tables, nothing from camera/
       {"calib/files", {}},

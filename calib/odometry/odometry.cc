@@ -1,0 +1,255 @@
+#include "calib/odometry/odometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "calib/model/check.h"
+#include "calib/model/errors.h"
+#include "calib/odometry/internal/degeneracy.h"
+#include "calib/odometry/internal/moving_sweep.h"
+#include "calib/odometry/internal/plane_map.h"
+#include "calib/odometry/internal/registration.h"
+
+namespace rgbdt {
+namespace {
+
+using odometry::Motion;
+using odometry::PlaneMap;
+using odometry::Registration;
+using odometry::SweepMotion;
+using odometry::TimedSweep;
+
+constexpr std::size_t kFewestPoints = 300;
+constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
+constexpr int kStraightening = 8;    // rounds
+constexpr double kStraight = 1e-3;   // [m/s], and rad/s: the first sweep is straight
+constexpr double kForgetEvery = 10;  // [m]
+constexpr double kLeastFit = 0.7;    // of the matched points within 0.1 m of their plane
+constexpr std::size_t kFewestMatched = 100;
+constexpr double kMostAcceleration = 40;  // [m/s^2] and [rad/s^2]: faster is a jump
+
+// Before anything is seen: 1 sigma.
+constexpr double kFirstSpeed = 15;  // [m/s]
+constexpr double kFirstTurn = 1;    // [rad/s]
+
+Motion Unknown(const Rigid3& world_from_lidar) {
+  Motion motion;
+  motion.world_from_lidar = world_from_lidar;
+  motion.covariance.setZero();
+  odometry::Vector12d sigma;
+  sigma << Vector6d::Constant(1e-4), Eigen::Vector3d::Constant(kFirstTurn),
+      Eigen::Vector3d::Constant(kFirstSpeed);
+  motion.covariance.diagonal() = sigma.cwiseAbs2();
+  return motion;
+}
+
+std::string Text(const char* format, double a, double b) {
+  char text[200];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+}  // namespace
+
+void OdometryOptions::Check() const {
+  constexpr OptionCheck check("odometry");
+  check.NotNegative(min_range_m, "min_range_m");
+  check.Require(max_range_m > min_range_m && max_range_m <= 1000, "max_range_m", max_range_m,
+                "more than min_range_m, up to 1000");
+  check.Require(selected >= 500 && selected <= 1000000, "selected", static_cast<double>(selected),
+                "500 to 1e6");
+  check.NotNegative(range_sigma_m, "range_sigma_m");
+  check.Positive(acceleration_mps2, "acceleration_mps2");
+  check.Positive(turn_radps2, "turn_radps2");
+  check.Positive(degenerate_m, "degenerate_m");
+  check.Between(keep_m, 5, 1000, "keep_m");
+  check.Require(max_voxels >= 10000 && max_voxels <= 100000000, "max_voxels",
+                static_cast<double>(max_voxels), "1e4 to 1e8");
+}
+
+struct Odometry::Impl {
+  explicit Impl(const OdometryOptions& o) : options(o), map(o.range_sigma_m) {}
+
+  OdometryOptions options;
+  PlaneMap map;
+  std::optional<TimedSweep> first;  // while the second has not come
+  bool begun = false;               // the map holds something, or `first` does
+  bool anew = false;                // there was a map before
+  Utime sweep_utime = 0;            // of the newest sweep
+  Utime middle = 0;                 // of `motion`
+  Motion motion;
+  int lost = 0;
+  Eigen::Vector3d forgotten_at{0, 0, 0};
+
+  OdometryResult Add(const Cloud& cloud);
+  double Since(const Cloud& cloud, const TimedSweep& sweep) const;
+  void Begin(TimedSweep sweep);
+  void Lose(const TimedSweep& sweep, double seconds);
+  void Follow(TimedSweep sweep, double seconds, OdometryResult* result);
+  Registration Second(const TimedSweep& sweep);
+  std::string WhyNot(const Registration& found, const Motion& before, double seconds) const;
+  void Grow(const TimedSweep& sweep);
+  void Report(const TimedSweep& sweep, OdometryResult* result) const;
+};
+
+// The map begins with this sweep, as far as its own motion is known: the second tells it.
+void Odometry::Impl::Begin(TimedSweep sweep) {
+  map.Clear();
+  middle = sweep.middle;
+  motion = Unknown(motion.world_from_lidar);
+  forgotten_at = motion.world_from_lidar.translation;
+  lost = 0;
+  begun = anew = true;
+  first = std::move(sweep);
+}
+
+// The first sweep is straightened by the way to the second, which is found on the first: round by
+// round both agree.
+Registration Odometry::Impl::Second(const TimedSweep& sweep) {
+  const double seconds = ToSeconds(sweep.middle - middle);
+  const Rigid3 start = motion.world_from_lidar;
+  Motion before = odometry::Predict(motion, seconds, options);
+  const Motion weak = before;
+  Registration found;
+  Vector6d velocity = Vector6d::Zero();
+  for (int round = 0; round < kStraightening; ++round) {
+    map.Clear();
+    map.Add(odometry::InWorld(*first, SweepMotion(start, velocity, first->seconds)),
+            start.translation);
+    before.covariance = weak.covariance;
+    found = odometry::Register(sweep, map, before, true, options);
+    const Vector6d way = Log(start.Inverse() * found.motion.world_from_lidar) / seconds;
+    if (!way.allFinite()) break;
+    const double change = (way - velocity).norm();
+    velocity = way;
+    before.world_from_lidar = found.motion.world_from_lidar;
+    before.velocity = way;
+    if (change < kStraight) break;
+  }
+  return found;
+}
+
+std::string Odometry::Impl::WhyNot(const Registration& found, const Motion& before,
+                                   double seconds) const {
+  if (found.matched < kFewestMatched) {
+    return Text("%.0f points of the sweep lie on planes seen before; expected %.0f or more",
+                static_cast<double>(found.matched), kFewestMatched);
+  }
+  if (found.fit < kLeastFit) {
+    return Text("%.0f%% of the sweep's points fit what was seen before; expected %.0f%% or more",
+                100 * found.fit, 100 * kLeastFit);
+  }
+  const Vector6d change = (found.motion.velocity - before.velocity) / seconds;
+  const double most = change.cwiseAbs().maxCoeff();
+  if (!(most < kMostAcceleration)) {
+    return Text(
+        "the sweep fits the map only after a jump (%.0f m/s^2 or rad/s^2; expected up to "
+        "%.0f)",
+        most, kMostAcceleration);
+  }
+  if (!found.converged) return "the sweep's place on the map did not settle";
+  return "";
+}
+
+void Odometry::Impl::Grow(const TimedSweep& sweep) {
+  const SweepMotion moved(motion.world_from_lidar, motion.velocity, sweep.seconds);
+  const Eigen::Vector3d& place = motion.world_from_lidar.translation;
+  if ((place - forgotten_at).norm() > kForgetEvery) {
+    map.Forget(place, options.keep_m);
+    forgotten_at = place;
+  }
+  if (map.size() < options.max_voxels) map.Add(odometry::InWorld(sweep, moved), place);
+}
+
+void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) const {
+  result->middle_utime = sweep.middle;
+  result->utime = sweep.last;
+  result->world_from_middle = motion.world_from_lidar;
+  result->velocity = motion.velocity;
+  const Motion at_end = odometry::Predict(motion, ToSeconds(sweep.last - sweep.middle), options);
+  result->world_from_lidar = at_end.world_from_lidar;
+  result->covariance = at_end.covariance.topLeftCorner<6, 6>();
+}
+
+// The way since the sweep before [s]; 0: the map begins with this one.
+double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) const {
+  if (!begun || cloud.sweep_utime < sweep_utime - kClockReset) return 0;
+  const double seconds = ToSeconds(sweep.middle - middle);
+  if (cloud.sweep_utime <= sweep_utime || seconds <= 0) {
+    throw InputError("sweep " + std::to_string(cloud.sweep_utime) +
+                     " is not newer than the one before, " + std::to_string(sweep_utime));
+  }
+  return seconds <= kMostGap ? seconds : 0;
+}
+
+// A sweep that tells nothing: on as before.
+void Odometry::Impl::Lose(const TimedSweep& sweep, double seconds) {
+  motion = odometry::Predict(motion, seconds, options);
+  middle = sweep.middle;
+  if (++lost >= kMostLost) begun = false;
+}
+
+OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
+  TimedSweep sweep = odometry::TimeSweep(cloud, options);
+  const double seconds = Since(cloud, sweep);
+  sweep_utime = cloud.sweep_utime;
+  OdometryResult result;
+  result.points = sweep.points.size();
+  result.selected = sweep.selected.size();
+  if (sweep.points.size() < kFewestPoints) {
+    result.reason = Text("the sweep has %.0f points of use; expected %.0f or more",
+                         static_cast<double>(sweep.points.size()), kFewestPoints);
+    if (seconds > 0 && !first) Lose(sweep, seconds);
+    Report(sweep, &result);
+  } else if (seconds == 0) {
+    result.restarted = anew;
+    result.reason = "the map begins with this sweep; the next one tells how it moved";
+    Begin(std::move(sweep));
+    Report(*first, &result);
+  } else {
+    Follow(std::move(sweep), seconds, &result);
+  }
+  return result;
+}
+
+void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* result) {
+  const Motion before = odometry::Predict(motion, seconds, options);
+  const Registration found =
+      first ? Second(sweep) : odometry::Register(sweep, map, before, false, options);
+  result->matched = found.matched;
+  result->residual_m = found.residual_m;
+  result->iterations = found.iterations;
+  result->reason = WhyNot(found, first ? found.motion : before, seconds);
+  result->converged = result->reason.empty();
+  if (result->converged) {
+    lost = 0;
+    first.reset();
+    motion = found.motion;
+    middle = sweep.middle;
+    result->degenerate = odometry::DegenerateWords(found.degenerate);
+    Grow(sweep);
+  } else if (first) {  // neither is better than the other: the newer one leads on
+    Begin(std::move(sweep));
+    Report(*first, result);
+    return;
+  } else {
+    Lose(sweep, seconds);
+  }
+  Report(sweep, result);
+}
+
+Odometry::Odometry(const OdometryOptions& options) : impl_(std::make_unique<Impl>(options)) {
+  options.Check();
+}
+Odometry::~Odometry() = default;
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+
+void Odometry::CheckTimes(const Cloud& part) { odometry::CheckTimes(part); }
+
+OdometryResult Odometry::Add(const Cloud& sweep) { return impl_->Add(sweep); }
+
+}  // namespace rgbdt

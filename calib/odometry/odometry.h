@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calib/model/cloud.h"
+#include "calib/model/rigid3.h"
+
+namespace rgbdt {
+
+struct OdometryOptions {
+  double min_range_m = 0.8;  ///< nearer points are the rig's own
+  double max_range_m = 100;
+  double range_sigma_m = 0.01;       ///< noise of a range
+  std::size_t selected = 3000;       ///< points of a sweep that are matched, about
+  double acceleration_mps2 = 0.8;    ///< along each axis, 1 sigma: what the rig does unseen
+  double turn_radps2 = 1.5;          ///< [rad/s^2] about each axis, 1 sigma
+  double degenerate_m = 0.03;        ///< what a sweep tells of a direction worse is not told
+  double keep_m = 100;               ///< what is farther than this from the rig is forgotten
+  std::size_t max_voxels = 2000000;  ///< of the map, all sizes together; some 300 bytes each
+
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+};
+
+/// What a sweep tells of where the LIDAR is.
+struct OdometryResult {
+  Utime utime = 0;           ///< of the pose: when the sweep's last point was taken
+  Rigid3 world_from_lidar;   ///< world: the LIDAR in the middle of the first sweep
+  Utime middle_utime = 0;    ///< half-way between the sweep's first and last point
+  Rigid3 world_from_middle;  ///< world_from_lidar at that time, when it is known best
+  /// (rx, ry, rz [rad/s], tx, ty, tz [m/s]) in the LIDAR's axes: at a time t of the sweep
+  /// world_from_lidar = world_from_middle * Exp((t - middle_utime) * velocity).
+  Vector6d velocity = Vector6d::Zero();
+  /// Of delta in LIDAR axes, truth = world_from_lidar * Exp(delta): against the map of the last
+  /// keep_m of the way. How far that map has drifted from the start is not in it.
+  Matrix6d covariance = Matrix6d::Zero();
+  bool converged = false;  ///< false: the pose is as the motion before goes on, see `reason`
+  std::string reason;      ///< why not; of a restart, too
+  bool restarted = false;  ///< the map was begun anew: the way since the last pose is a guess
+  /// Directions that the sweep does not tell, in words; there the pose goes on as before.
+  std::vector<std::string> degenerate;
+  std::size_t points = 0;    ///< of the sweep, of use
+  std::size_t selected = 0;  ///< looked for on the map's planes
+  std::size_t matched = 0;   ///< found on one
+  double residual_m = 0;     ///< median distance of these
+  int iterations = 0;
+};
+
+/// Where a spinning LIDAR is, from its sweeps alone: each is registered, points to planes, to a map
+/// of the sweeps before, and moves while it is swept. Its README has the method and its sources.
+/// The same sweeps in the same order give the same poses, bit for bit. One core.
+class Odometry {
+ public:
+  static constexpr double kMostSweep = 0.6;  ///< [s] a longer sweep is no spinning LIDAR's
+  static constexpr double kMostGap = 1.0;    ///< [s] between two sweeps; after more: begun anew
+  static constexpr int kMostLost = 5;        ///< sweeps in a row that do not fit; then: begun anew
+
+  explicit Odometry(const OdometryOptions& options = {});
+  ~Odometry();
+  Odometry(Odometry&&) noexcept;
+  Odometry& operator=(Odometry&&) noexcept;
+
+  /// Throws InputError for a sweep, or a part of one, whose vectors differ in length or whose times
+  /// lie more than kMostSweep from the sweep's.
+  static void CheckTimes(const Cloud& part);
+
+  /// Takes the next sweep; one without times counts as seen at one moment. A sweep with too few
+  /// points, or that does not fit, is a result that is not converged. Throws InputError, and is as
+  /// if it had never come, for a sweep whose vectors differ in length, which lasts too long, or
+  /// which is not newer than the one before (more than ten seconds older: the clock was set back,
+  /// and the map is begun anew).
+  OdometryResult Add(const Cloud& sweep);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rgbdt

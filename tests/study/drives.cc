@@ -1,0 +1,168 @@
+#include "tests/study/drives.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "calib/model/parallel.h"
+#include "calib/simulate/internal/beam.h"
+#include "calib/simulate/internal/dice.h"
+#include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/room.h"
+#include "calib/simulate/internal/street.h"
+
+namespace rgbdt::study {
+namespace {
+
+using Eigen::Vector3d;
+using simulate::kDegree;
+
+constexpr Utime kStart = 1'700'000'000'000'000;
+constexpr double kCell = 8;  // [m] after which the street is made anew
+
+Rigid3 Turned(double yaw, double pitch, double roll) {
+  return RotationAbout(Vector3d::UnitZ(), yaw) * RotationAbout(Vector3d::UnitY(), pitch) *
+         RotationAbout(Vector3d::UnitX(), roll);
+}
+
+std::vector<simulate::SceneObject> Corridor(std::uint64_t seed, double ground) {
+  simulate::Dice draw(seed, 0, "corridor");
+  const double half = draw.Between(0.8, 1.6), top = ground + draw.Between(2.3, 3.2);
+  const double ends = 300;
+  const auto wall = simulate::Paint(simulate::Rgb(0.6, 0.6, 0.6), 0.6, 295);
+  const auto quad = [&](const Vector3d& a, const Vector3d& b) {
+    // From one long edge to the other.
+    return simulate::MakeQuad({-ends, a.y(), a.z()}, {ends, a.y(), a.z()}, {ends, b.y(), b.z()},
+                              {-ends, b.y(), b.z()});
+  };
+  const Vector3d a(0, -half, ground), b(0, half, ground), c(0, half, top), d(0, -half, top);
+  return {{"floor", quad(a, b), wall},
+          {"left", quad(b, c), wall},
+          {"ceiling", quad(c, d), wall},
+          {"right", quad(d, a), wall}};
+}
+
+std::vector<simulate::SceneObject> Plain(double ground) {
+  return {{"ground",
+           simulate::MakeQuad({-500, -500, ground}, {500, -500, ground}, {500, 500, ground},
+                              {-500, 500, ground}),
+           simulate::Paint(simulate::Rgb(0.3, 0.4, 0.2), 0.5, 295)}};
+}
+
+}  // namespace
+
+Way StreetWay(std::uint64_t seed, double speed, double aside_m, double at_rest_s) {
+  simulate::Dice draw(seed, 0, "street way");
+  double phase[5];
+  for (double& p : phase) p = draw.Between(0, 2 * M_PI);
+  const std::vector<double> p(phase, phase + 5);
+  return [=](double seconds) {
+    // Sets off softly: within two seconds.
+    const double t = std::max(0.0, seconds - at_rest_s);
+    const double soft = at_rest_s > 0 ? (t < 2 ? t * t / 4 : t - 1) : t;
+    const double way = speed * (soft + 0.2 / 0.9 * (std::sin(0.9 * soft + p[0]) - std::sin(p[0])));
+    const double aside = aside_m * std::sin(way / 9 + p[1]);
+    const double heading = std::atan(aside_m / 9 * std::cos(way / 9 + p[1]));
+    Rigid3 pose = Turned(heading, 0.6 * kDegree * std::sin(1.1 * way + p[2]),
+                         0.8 * kDegree * std::sin(0.8 * way + p[3]));
+    pose.translation = {way, aside, 0.02 * std::sin(0.9 * way + p[4])};
+    return pose;
+  };
+}
+
+Way RoomWay(std::uint64_t seed, double speed) {
+  simulate::Dice draw(seed, 0, "room way");
+  const double radius = 0.8;
+  const double a = draw.Between(0, 2 * M_PI), b = draw.Between(0, 2 * M_PI);
+  return [=](double seconds) {
+    const double round = speed * seconds / radius;
+    Rigid3 pose = Turned(round + 0.3 * std::sin(1.3 * seconds + a),
+                         0.02 * std::sin(2 * seconds + b), 0.02 * std::sin(1.7 * seconds + a));
+    pose.translation = {radius * std::cos(round + b), radius * std::sin(round + b),
+                        0.02 * std::sin(2.1 * seconds)};
+    return pose;
+  };
+}
+
+Drive::Drive(DriveScene scene, std::uint64_t seed, const simulate::SpinningOptions& lidar, Way way)
+    : scene_(scene), lidar_(lidar), way_(std::move(way)) {
+  lidar_.Check();
+  options_.seed = seed;
+  options_.natural.on = true;
+  options_.natural.people = 0;
+  options_.scene =
+      scene == DriveScene::kRoom ? simulate::Scene::kIndoor : simulate::Scene::kOutdoor;
+}
+
+Rigid3 Drive::At(Utime utime) const { return way_(ToSeconds(utime - kStart)); }
+
+void Drive::MakeWorld(double x_m) {
+  const double cell = kCell * std::floor(x_m / kCell);
+  if (world_ && (scene_ != DriveScene::kStreet || cell == world_x_)) return;
+  world_x_ = cell;
+  auto scene = std::make_shared<simulate::SceneModel>();
+  const double ground = options_.world.ground_z_m;
+  switch (scene_) {
+    case DriveScene::kStreet:
+      scene->objects = simulate::MakeStreet(options_, {297, 9}, cell).parts();
+      break;
+    case DriveScene::kRoom:
+      scene->objects = simulate::MakeRoom(options_, {294, 0}, &scene->lights).parts();
+      break;
+    case DriveScene::kCorridor:
+      scene->objects = Corridor(options_.seed, ground);
+      break;
+    case DriveScene::kPlain:
+      scene->objects = Plain(ground);
+      break;
+  }
+  world_.emplace(std::move(scene), std::nullopt, options_);
+}
+
+Cloud Drive::Sweep(int number) {
+  const Utime revolution = FromSeconds(lidar_.revolution_s);
+  Cloud cloud;
+  cloud.sweep_utime = kStart + number * revolution;
+  MakeWorld(At(cloud.sweep_utime).translation.x());
+  cloud.lines = lidar_.rings();
+  cloud.beams = lidar_.columns();
+  const auto size = static_cast<std::size_t>(cloud.lines) * static_cast<std::size_t>(cloud.beams);
+  cloud.points.resize(size);
+  cloud.directions.resize(size);
+  cloud.intensity.resize(size);
+  cloud.utime.resize(size);
+  cloud.ring.resize(size);
+  const simulate::Noise noise(options_.seed, cloud.sweep_utime, "moving lidar");
+  std::vector<std::vector<Vector3d>> beams;
+  for (const double elevation : lidar_.elevations_rad) {
+    beams.push_back(simulate::SubRays(lidar_, elevation));
+  }
+  const auto rays = static_cast<int>(beams.front().size());
+  ForEach(cloud.beams, 0, [&](int column) {
+    const Utime utime = cloud.sweep_utime + revolution * column / cloud.beams;
+    const Rigid3 pose = At(utime);
+    const double azimuth = lidar_.first_azimuth_rad + column * 360 * kDegree / cloud.beams;
+    const Eigen::Quaterniond turn = RotationAbout(Vector3d::UnitZ(), azimuth).rotation;
+    std::vector<Vector3d> directions;
+    for (const std::vector<Vector3d>& beam : beams) {
+      for (const Vector3d& ray : beam) directions.push_back(pose.rotation * (turn * ray));
+    }
+    std::vector<simulate::BeamReturn> returns(beams.size());
+    simulate::CastBeams(*world_, lidar_, pose.translation, directions, rays, returns.data());
+    for (std::size_t ring = 0; ring < beams.size(); ++ring) {
+      const std::size_t i =
+          ring * static_cast<std::size_t>(cloud.beams) + static_cast<std::size_t>(column);
+      const Vector3d direction = turn * beams[ring].front();
+      const double range =
+          returns[ring].range + lidar_.range_sigma_m * noise.Normal(static_cast<std::uint64_t>(i));
+      cloud.directions[i] = direction.cast<float>();
+      cloud.points[i] = (range * direction).cast<float>();  // of a miss: NaN
+      cloud.intensity[i] = static_cast<float>(std::min(1.0, returns[ring].intensity));
+      cloud.utime[i] = utime;
+      cloud.ring[i] = static_cast<std::uint16_t>(ring);
+    }
+  });
+  return cloud;
+}
+
+}  // namespace rgbdt::study

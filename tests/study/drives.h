@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "calib/model/cloud.h"
+#include "calib/model/rigid3.h"
+#include "calib/simulate/internal/world.h"
+#include "calib/simulate/options.h"
+
+namespace rgbdt::study {
+
+enum class DriveScene {
+  kStreet,    ///< of calib/simulate, without end
+  kRoom,      ///< likewise, furnished
+  kCorridor,  ///< two walls, floor and ceiling, 600 m: nothing tells the way along it
+  kPlain,     ///< a flat ground alone
+};
+
+/// A LIDAR's way through a scene: world_from_lidar at a time [s]. The world's z is up, its origin
+/// at the LIDAR's height.
+using Way = std::function<Rigid3(double seconds)>;
+
+/// Along x at about this speed [m/s], which changes by a fifth, `aside_m` to and fro across, over
+/// uneven ground: smooth, and at no time of constant velocity. `at_rest_s`: stands before.
+Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double at_rest_s = 0);
+/// Round the free middle of the room, looking about.
+Way RoomWay(std::uint64_t seed, double speed_mps);
+
+/// The sweeps of a spinning LIDAR that moves while it turns: each column of beams starts from where
+/// the LIDAR is at its time. Sweep and noise are functions of (seed, number).
+class Drive {
+ public:
+  Drive(DriveScene scene, std::uint64_t seed, const simulate::SpinningOptions& lidar, Way way);
+
+  /// Sweep 0, 1, ...; ring x azimuth, each point with its time, as the LIDAR saw it then.
+  Cloud Sweep(int number);
+  /// world_from_lidar at a time.
+  Rigid3 At(Utime utime) const;
+
+ private:
+  void MakeWorld(double x_m);
+
+  DriveScene scene_;
+  simulate::Options options_;
+  simulate::SpinningOptions lidar_;
+  Way way_;
+  std::optional<simulate::World> world_;
+  double world_x_ = 0;
+};
+
+}  // namespace rgbdt::study

@@ -1,0 +1,79 @@
+// Odometry on simulated drives whose truth is known.
+//   study_odometry SCENE RINGS SPEED_MPS SEED SWEEPS CSV
+// SCENE: street, room, corridor or plain. A line of CSV for each sweep: where the LIDAR truly was
+// and where it was found, in its middle, since the first sweep; what was said; one core's time.
+#include <ctime>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/errors.h"
+#include "calib/odometry/odometry.h"
+#include "tests/study/drives.h"
+#include "tests/study/study_main.h"
+
+namespace rgbdt::study {
+namespace {
+
+// This thread's own: other threads cast the rays, and others share the machine.
+double CpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Drive MakeDrive(const std::string& scene, int rings, double speed, std::uint64_t seed) {
+  static const std::map<std::string, DriveScene> scenes = {{"street", DriveScene::kStreet},
+                                                           {"room", DriveScene::kRoom},
+                                                           {"corridor", DriveScene::kCorridor},
+                                                           {"plain", DriveScene::kPlain}};
+  const auto found = scenes.find(scene);
+  if (found == scenes.end()) {
+    throw InputError("scene is " + scene + "; expected street, room, corridor or plain");
+  }
+  const double aside = found->second == DriveScene::kCorridor ? 0.2 : 0.7;
+  return {
+      found->second, seed, simulate::SpinningLidar(rings),
+      found->second == DriveScene::kRoom ? RoomWay(seed, speed) : StreetWay(seed, speed, aside)};
+}
+
+void WritePose(std::ostream& out, const Rigid3& pose) {
+  out << ',' << pose.translation.x() << ',' << pose.translation.y() << ',' << pose.translation.z()
+      << ',' << pose.rotation.x() << ',' << pose.rotation.y() << ',' << pose.rotation.z() << ','
+      << pose.rotation.w();
+}
+
+void Run(const std::vector<std::string>& a) {
+  Drive drive = MakeDrive(a[0], std::stoi(a[1]), std::stod(a[2]), std::stoull(a[3]));
+  std::ofstream csv(a[5]);
+  csv.precision(12);
+  csv << "sweep,converged,degenerate,points,matched,iterations,seconds,sigma_m,"
+         "true_x,true_y,true_z,true_qx,true_qy,true_qz,true_qw,x,y,z,qx,qy,qz,qw\n";
+  Odometry odometry;
+  std::optional<Rigid3> first;
+  for (int i = 0; i < std::stoi(a[4]); ++i) {
+    const Cloud sweep = drive.Sweep(i);
+    const double before = CpuSeconds();
+    const OdometryResult found = odometry.Add(sweep);
+    const double seconds = CpuSeconds() - before;
+    const Rigid3 truth = drive.At(found.middle_utime);
+    if (!first) first = truth * found.world_from_middle.Inverse();
+    csv << i << ',' << found.converged << ',' << found.degenerate.size() << ',' << found.points
+        << ',' << found.matched << ',' << found.iterations << ',' << seconds << ','
+        << std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace());
+    WritePose(csv, truth);
+    WritePose(csv, *first * found.world_from_middle);
+    csv << '\n';
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt::study
+
+int main(int argc, char** argv) {
+  return rgbdt::study::StudyMain(
+      {"study_odometry", "SCENE RINGS SPEED_MPS SEED SWEEPS CSV", 6, 6, rgbdt::study::Run}, argc,
+      argv);
+}

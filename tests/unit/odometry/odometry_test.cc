@@ -1,0 +1,235 @@
+// Drives by rays, whose truth is known: the simulator shares no code with the estimator.
+#include "calib/odometry/odometry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "calib/model/errors.h"
+#include "tests/study/drives.h"
+
+namespace rgbdt {
+namespace {
+
+using study::Drive;
+using study::DriveScene;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+constexpr double kDegree = M_PI / 180;
+
+// Half the columns: for what does not need to be exact.
+simulate::SpinningOptions Lidar(int rings = 32, int share = 2) {
+  simulate::SpinningOptions lidar = simulate::SpinningLidar(rings);
+  lidar.azimuth_step_rad *= share;
+  return lidar;
+}
+
+Drive Street(double speed_mps = 5, int share = 2) {
+  return {DriveScene::kStreet, 4, Lidar(32, share), study::StreetWay(4, speed_mps)};
+}
+
+Drive Corridor(std::uint64_t seed) {
+  return {DriveScene::kCorridor, seed, Lidar(), study::StreetWay(seed, 1, 0.2)};
+}
+
+// truth = estimate * Exp(this), in LIDAR axes, after sweeps 0 to `last`: since sweep 0.
+Vector6d ErrorAfter(int last, Drive* drive, OdometryResult* result) {
+  Odometry odometry;
+  Rigid3 truth_from_world;
+  for (int i = 0; i <= last; ++i) {
+    *result = odometry.Add(drive->Sweep(i));
+    if (i == 0) truth_from_world = drive->At(result->middle_utime);
+    EXPECT_EQ(result->converged, i > 0) << i << ' ' << result->reason;
+  }
+  return Log((truth_from_world * result->world_from_lidar).Inverse() * drive->At(result->utime));
+}
+
+TEST(Odometry, FollowsADriveWhoseSweepsAreSkewedByTheMotion) {
+  Drive drive = Street(8, 1);
+  OdometryResult result;
+  const Vector6d off = ErrorAfter(30, &drive, &result);
+  const double way = (drive.At(result.utime).translation - drive.At(0).translation).x();
+  EXPECT_GT(way, 15);
+  EXPECT_LT(off.tail<3>().norm(), 0.03);
+  EXPECT_LT(off.head<3>().norm(), 0.1 * kDegree);
+  EXPECT_THAT(result.degenerate, IsEmpty());
+  EXPECT_NEAR(result.velocity[3], 8, 2);
+  EXPECT_GT(result.matched, 1000U);
+  EXPECT_LT(std::sqrt(result.covariance.diagonal().maxCoeff()), 0.01);
+}
+
+TEST(Odometry, SixteenRingsInARoom) {
+  Drive drive(DriveScene::kRoom, 1, Lidar(16, 1), study::RoomWay(1, 0.8));
+  OdometryResult result;
+  const Vector6d off = ErrorAfter(20, &drive, &result);
+  EXPECT_LT(off.tail<3>().norm(), 0.03);
+  EXPECT_LT(off.head<3>().norm(), 0.5 * kDegree);
+}
+
+TEST(Odometry, ACorridorDoesNotTellTheWayAlongIt) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Drive drive = Corridor(seed);
+    Odometry odometry;
+    for (int i = 0; i < 8; ++i) {
+      const OdometryResult result = odometry.Add(drive.Sweep(i));
+      if (i == 0) continue;
+      ASSERT_TRUE(result.converged) << result.reason;
+      EXPECT_THAT(result.degenerate, ElementsAre("a move along the LIDAR's x (forward)")) << i;
+      EXPECT_GT(result.covariance(3, 3), 100 * result.covariance(5, 5));
+    }
+  }
+}
+
+TEST(Odometry, APlainTellsHeightRollAndPitchOnly) {
+  Drive drive(DriveScene::kPlain, 1, Lidar(), study::StreetWay(1, 5));
+  OdometryResult result;
+  const Vector6d off = ErrorAfter(8, &drive, &result);
+  EXPECT_THAT(result.degenerate, UnorderedElementsAre("a move along the LIDAR's x (forward)",
+                                                      "a move along the LIDAR's y (left)",
+                                                      "a turn about the LIDAR's z (yaw)"));
+  EXPECT_LT(off.head<2>().norm(), 0.2 * kDegree);
+}
+
+// A way that was known goes on evenly where nothing tells it.
+TEST(Odometry, GoesOnAsBeforeWhereNothingTells) {
+  Odometry odometry;
+  Drive street = Street();
+  OdometryResult before;
+  for (int i = 0; i < 8; ++i) before = odometry.Add(street.Sweep(i));
+  Drive plain(DriveScene::kPlain, 4, Lidar(), study::StreetWay(4, 5));
+  OdometryResult after;
+  for (int i = 8; i < 11; ++i) after = odometry.Add(plain.Sweep(i));
+  const double way =
+      (after.world_from_middle.translation - before.world_from_middle.translation).head<2>().norm();
+  EXPECT_NEAR(way, 0.3 * before.velocity.tail<3>().norm(), 0.1);
+  EXPECT_GT(after.covariance(3, 3), 4 * before.covariance(3, 3));
+}
+
+TEST(Odometry, TheSameSweepsGiveTheSamePoses) {
+  Odometry one, two;
+  Drive drive = Street();
+  for (int i = 0; i < 5; ++i) {
+    const Cloud sweep = drive.Sweep(i);
+    const OdometryResult a = one.Add(sweep), b = two.Add(sweep);
+    EXPECT_EQ(a.world_from_lidar.translation, b.world_from_lidar.translation);
+    EXPECT_EQ(a.world_from_lidar.rotation.coeffs(), b.world_from_lidar.rotation.coeffs());
+    EXPECT_EQ(a.covariance, b.covariance);
+  }
+}
+
+TEST(Odometry, ASweepOfNothingIsSaidAndTheNextOneGoesOn) {
+  Odometry odometry;
+  Drive drive = Street();
+  for (int i = 0; i < 4; ++i) odometry.Add(drive.Sweep(i));
+  Cloud empty;
+  empty.sweep_utime = drive.Sweep(4).sweep_utime;
+  OdometryResult result = odometry.Add(empty);
+  EXPECT_FALSE(result.converged);
+  EXPECT_THAT(result.reason, HasSubstr("the sweep has 0 points of use; expected 300 or more"));
+  Cloud blind = drive.Sweep(5);
+  for (Eigen::Vector3f& p : blind.points) {
+    p.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  result = odometry.Add(blind);
+  EXPECT_FALSE(result.converged);
+  EXPECT_THAT(result.reason, HasSubstr("0 points of use"));
+  result = odometry.Add(drive.Sweep(6));
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_FALSE(result.restarted);
+}
+
+TEST(Odometry, NothingButNothing) {
+  Odometry odometry;
+  for (int i = 0; i < 10; ++i) {
+    Cloud empty;
+    empty.sweep_utime = 1000 + i;
+    const OdometryResult result = odometry.Add(empty);
+    EXPECT_FALSE(result.converged);
+    EXPECT_TRUE(result.world_from_lidar.translation.allFinite());
+  }
+}
+
+// Carried sixty metres on between two sweeps: said, and after some sweeps the map is begun anew.
+TEST(Odometry, AJumpIsNotTakenForAWay) {
+  Odometry odometry;
+  Drive drive = Street();
+  OdometryResult before;
+  for (int i = 0; i < 5; ++i) before = odometry.Add(drive.Sweep(i));
+  int refused = 0, restarts = 0;
+  OdometryResult result;
+  for (int i = 0; i < 12; ++i) {
+    Cloud elsewhere = drive.Sweep(130 + i);
+    const Utime shift = drive.Sweep(5 + i).sweep_utime - elsewhere.sweep_utime;
+    elsewhere.sweep_utime += shift;
+    for (Utime& utime : elsewhere.utime) utime += shift;
+    result = odometry.Add(elsewhere);
+    if (!result.converged) ++refused;
+    if (result.restarted) ++restarts;
+    EXPECT_LT((result.world_from_lidar.translation - before.world_from_lidar.translation).norm(),
+              1 + 0.1 * (i + 1) * 8);
+  }
+  EXPECT_GE(refused, 2);
+  EXPECT_EQ(restarts, 1);
+  EXPECT_TRUE(result.converged) << result.reason;
+}
+
+TEST(Odometry, AfterALongGapTheMapIsBegunAnew) {
+  Odometry odometry;
+  Drive drive = Street();
+  for (int i = 0; i < 4; ++i) odometry.Add(drive.Sweep(i));
+  const OdometryResult after = odometry.Add(drive.Sweep(24));
+  EXPECT_TRUE(after.restarted);
+  EXPECT_FALSE(after.converged);
+  EXPECT_THAT(after.reason, HasSubstr("begins with this sweep"));
+  EXPECT_TRUE(odometry.Add(drive.Sweep(25)).converged);
+}
+
+TEST(Odometry, WhatCannotBeTakenIsAsIfItHadNeverCome) {
+  Odometry one, two;
+  Drive drive = Street();
+  std::vector<Cloud> sweeps;
+  for (int i = 0; i < 5; ++i) sweeps.push_back(drive.Sweep(i));
+  Cloud uneven = sweeps[3];
+  uneven.utime.pop_back();
+  Cloud slow = sweeps[3];
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    slow.utime[i] = slow.sweep_utime + 30 * (slow.utime[i] - slow.sweep_utime);
+  }
+  Cloud stray = sweeps[3];
+  for (Utime& utime : stray.utime) utime = std::numeric_limits<Utime>::min();
+  for (int i = 0; i < 5; ++i) {
+    const OdometryResult a = one.Add(sweeps[static_cast<std::size_t>(i)]);
+    const OdometryResult b = two.Add(sweeps[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(a.world_from_lidar.translation, b.world_from_lidar.translation);
+    if (i != 2) continue;
+    EXPECT_THAT([&] { one.Add(uneven); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr("expected a time for each point")));
+    EXPECT_THAT([&] { one.Add(slow); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr("for spinning LIDARs")));
+    EXPECT_THAT([&] { one.Add(stray); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr("expected one within 0.6")));
+    EXPECT_THAT([&] { one.Add(sweeps[1]); },
+                ::testing::ThrowsMessage<InputError>(HasSubstr("is not newer than")));
+  }
+}
+
+TEST(Odometry, OptionsNameTheFieldAndItsValue) {
+  OdometryOptions options;
+  options.selected = 3;
+  EXPECT_THAT([&] { Odometry{options}; },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("selected is 3")));
+  options = {};
+  options.max_range_m = std::nan("");
+  EXPECT_THAT([&] { options.Check(); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("max_range_m")));
+}
+
+}  // namespace
+}  // namespace rgbdt
