@@ -12,6 +12,7 @@
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/mapper_node.h"
 #include "services/nodes/monitor_node.h"
+#include "services/nodes/odometry_node.h"
 #include "services/nodes/session_node.h"
 #include "services/nodes/solver_node.h"
 #include "services/simulator/simulator_node.h"
@@ -47,6 +48,7 @@ TEST(ServicesReadme, SaysWhatTheNodesSubscribeTo) {
   nodes.push_back(std::make_unique<SolverNode>());
   nodes.push_back(std::make_unique<FuserNode>());
   nodes.push_back(std::make_unique<MonitorNode>());
+  nodes.push_back(std::make_unique<OdometryNode>());
   nodes.push_back(std::make_unique<MapperNode>(VoxelMapOptions()));
   nodes.push_back(
       std::make_unique<SessionNode>(test::TinyRig(), dir / "session", SessionNode::OnProgress()));

@@ -1,0 +1,69 @@
+#include "services/nodes/odometry_node.h"
+
+#include <cstdio>
+#include <optional>
+
+namespace rgbdt {
+namespace {
+
+std::string Joined(const std::vector<std::string>& words) {
+  std::string joined;
+  for (const std::string& word : words) joined += (joined.empty() ? "" : ", ") + word;
+  return joined;
+}
+
+}  // namespace
+
+Messages OdometryNode::Handle(const Message& message) {
+  const auto* chunk = std::get_if<CloudChunk>(&message);
+  if (chunk == nullptr) return {};
+  const Utime name = chunk->cloud.sweep_utime;
+  Odometry::CheckTimes(chunk->cloud);
+  const bool ended = sweeps_.Ended(name);
+  sweeps_.Add(*chunk);
+  if (ended || !sweeps_.Ended(name)) return {};
+  const std::optional<Cloud> sweep = sweeps_.Complete(name);
+  if (!sweep) return {};
+  const std::vector<std::string> before = newest_.degenerate;
+  newest_ = odometry_.Add(*sweep);
+  ++taken_;
+  if (newest_.restarted) {
+    ++restarts_;
+    Warn("the map is begun anew at sweep " + std::to_string(name) +
+         ": the way since the last pose is not known");
+  }
+  if (!newest_.converged) {
+    ++not_placed_;
+    return {};
+  }
+  if (!newest_.degenerate.empty()) {
+    ++degenerate_;
+    if (before.empty()) Warn("not told by what stands about: " + Joined(newest_.degenerate));
+  }
+  return {StampedPose{poses_++, newest_.utime, kSource, newest_.world_from_lidar}};
+}
+
+Status OdometryNode::GetStatus() const {
+  Status status;
+  status.ready = true;
+  if (taken_ == 0) {
+    status.text = "waits for sweeps (CLOUD)";
+  } else if (!newest_.converged) {
+    status.text = newest_.reason;
+  } else if (!newest_.degenerate.empty()) {
+    status.text = "not told by what stands about: " + Joined(newest_.degenerate);
+  } else {
+    char text[100];
+    std::snprintf(text, sizeof text, "%.1f m/s; points lie %.0f mm off the map's planes",
+                  newest_.velocity.tail<3>().norm(), 1e3 * newest_.residual_m);
+    status.text = text;
+  }
+  status.counters = {{"sweeps", taken_},
+                     {"poses", poses_},
+                     {"without a place", not_placed_},
+                     {"degenerate", degenerate_},
+                     {"maps begun anew", restarts_}};
+  return status;
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/odometry/odometry.h"
+#include "calib/scan_assembly/sweep_collector.h"
+#include "services/runtime/node.h"
+
+namespace rgbdt {
+
+/// CLOUD of a spinning LIDAR -> POSE, one a sweep, of the time of its last point (calib/odometry).
+/// Each sweep is taken when its end comes, and once: nothing waits. A sweep that lacks lines is
+/// taken as it is. No POSE goes out for a sweep of which no place was found; for one that does not
+/// tell a direction it does, and the status names the direction. A sweep that is older than the one
+/// before is refused, like one of a turned scanner. Where the map is begun anew it goes on from the
+/// last pose, with a warning: the way in between is not known.
+class OdometryNode : public Node {
+ public:
+  static constexpr const char* kSource = "odometry";
+
+  explicit OdometryNode(const OdometryOptions& options = {}) : odometry_(options) {}
+
+  std::string name() const override { return "odometry"; }
+  std::vector<std::string> Subscriptions() const override { return {"CLOUD"}; }
+  Messages Handle(const Message& message) override;
+  Status GetStatus() const override;
+
+  /// Of the newest sweep.
+  const OdometryResult& newest() const { return newest_; }
+
+ private:
+  Odometry odometry_;
+  SweepCollector sweeps_;
+  OdometryResult newest_;
+  std::int64_t taken_ = 0, poses_ = 0, not_placed_ = 0, degenerate_ = 0, restarts_ = 0;
+};
+
+}  // namespace rgbdt

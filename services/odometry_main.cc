@@ -1,0 +1,23 @@
+#include "calib/odometry/odometry.h"
+#include "services/command_line/command_line.h"
+#include "services/nodes/odometry_node.h"
+#include "services/runtime/process.h"
+
+int main(int argc, char** argv) {
+  rgbdt::CommandLine line("rgbdt-odometry",
+                          "Where a spinning LIDAR is, from its sweeps alone: CLOUD to POSE, one a "
+                          "sweep. Fuser, monitor\n"
+                          "and mapper then make maps of a drive with nothing else on the bus. What "
+                          "the surroundings do\n"
+                          "not tell, as a corridor the way along it, the status names.\n"
+                          "Example: rgbdt-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
+  std::string url;
+  rgbdt::OdometryOptions options;
+  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Option("--min-range", &options.min_range_m, "nearer points are the rig's own [m]");
+  line.Option("--max-range", &options.max_range_m, "farther points are left out [m]");
+  return line.Run(argc, argv, [&] {
+    rgbdt::OdometryNode node(options);
+    return rgbdt::RunOnLcm(node, url);
+  });
+}

@@ -1,0 +1,130 @@
+#include "services/nodes/odometry_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/nodes/nodes_testing.h"
+#include "tests/nodes/twins.h"
+#include "tests/study/drives.h"
+
+namespace rgbdt {
+namespace {
+
+using study::Drive;
+using study::DriveScene;
+using test::Counter;
+using test::Only;
+using test::Twins;
+using ::testing::Each;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A quarter of the columns.
+simulate::SpinningOptions Lidar() {
+  simulate::SpinningOptions lidar = simulate::SpinningLidar(32);
+  lidar.azimuth_step_rad *= 4;
+  return lidar;
+}
+
+Drive Street() { return {DriveScene::kStreet, 4, Lidar(), study::StreetWay(4, 5)}; }
+
+// As it travels: some rings, then the others and the end.
+Messages ChunksOf(const Cloud& sweep) {
+  CloudChunk low, high;
+  const std::size_t half = sweep.size() / 2;
+  for (CloudChunk* chunk : {&low, &high}) {
+    Cloud& cloud = chunk->cloud;
+    cloud.sweep_utime = sweep.sweep_utime;
+    cloud.lines = sweep.lines / 2;
+    cloud.beams = sweep.beams;
+    const std::size_t first = chunk == &low ? 0 : half;
+    const auto part = [&](const auto& all) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+      return std::decay_t<decltype(all)>(begin, begin + static_cast<std::ptrdiff_t>(half));
+    };
+    cloud.points = part(sweep.points);
+    cloud.directions = part(sweep.directions);
+    cloud.intensity = part(sweep.intensity);
+    cloud.utime = part(sweep.utime);
+    cloud.ring = part(sweep.ring);
+  }
+  high.cloud.first_line = sweep.lines / 2;
+  high.sweep_end = true;
+  high.sweep_lines = sweep.lines;
+  low.seq = 0;
+  high.seq = 1;
+  return {low, high};
+}
+
+TEST(OdometryNode, SaysWhereTheRigIsAfterEachSweep) {
+  OdometryNode node;
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("waits for sweeps"));
+  Drive drive = Street();
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 8; ++i) {
+    const Messages chunks = ChunksOf(drive.Sweep(i));
+    EXPECT_THAT(node.Handle(chunks[0]), IsEmpty()) << "a sweep is taken at its end";
+    for (const auto& pose : Only<StampedPose>(node.Handle(chunks[1]))) poses.push_back(pose);
+    EXPECT_THAT(node.Handle(chunks[1]), IsEmpty()) << "and once";
+  }
+  ASSERT_EQ(poses.size(), 7U) << "the first sweep tells nothing of its motion";
+  EXPECT_EQ(poses[0].source, "odometry");
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].seq, static_cast<std::int64_t>(i));
+    const Rigid3 moved = poses[0].map_from_lidar.Inverse() * poses[i].map_from_lidar;
+    const Rigid3 truth = drive.At(poses[0].utime).Inverse() * drive.At(poses[i].utime);
+    EXPECT_LT((moved.translation - truth.translation).norm(), 0.05);
+    EXPECT_LT(RotationDistance(moved, truth), 0.005);
+  }
+  const Status status = node.GetStatus();
+  EXPECT_THAT(status.text, HasSubstr("m/s"));
+  EXPECT_EQ(Counter(status, "sweeps"), 8);
+  EXPECT_EQ(Counter(status, "poses"), 7);
+  EXPECT_EQ(Counter(status, "without a place"), 1);
+}
+
+TEST(OdometryNode, SaysWhatIsNotTold) {
+  OdometryNode node;
+  std::vector<std::string> warnings;
+  node.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
+  Drive drive(DriveScene::kPlain, 1, Lidar(), study::StreetWay(1, 5));
+  for (int i = 0; i < 4; ++i) test::HandleAll(&node, ChunksOf(drive.Sweep(i)));
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("a turn about the LIDAR's z (yaw)"));
+  EXPECT_EQ(Counter(node.GetStatus(), "degenerate"), 3);
+  ASSERT_EQ(warnings.size(), 1U) << "told once";
+  EXPECT_THAT(warnings[0], HasSubstr("not told by what stands about"));
+}
+
+TEST(OdometryNode, ABlindSweepGivesNoPose) {
+  OdometryNode node;
+  Drive drive = Street();
+  for (int i = 0; i < 3; ++i) test::HandleAll(&node, ChunksOf(drive.Sweep(i)));
+  Cloud blind = drive.Sweep(3);
+  for (Eigen::Vector3f& p : blind.points) {
+    p.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  EXPECT_THAT(test::HandleAll(&node, ChunksOf(blind)), IsEmpty());
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("0 points of use"));
+  EXPECT_EQ(test::HandleAll(&node, ChunksOf(drive.Sweep(4))).size(), 1U);
+}
+
+TEST(OdometryNode, IsAsIfWhatItRefusesHadNeverCome) {
+  OdometryNode node, twin;
+  Twins twins(&node, &twin);
+  Drive drive = Street();
+  // Ends the sweep that is under way, with times of another.
+  CloudChunk stray = std::get<CloudChunk>(ChunksOf(drive.Sweep(2))[1]);
+  for (Utime& utime : stray.cloud.utime) utime = std::numeric_limits<Utime>::max();
+  CloudChunk slow = std::get<CloudChunk>(ChunksOf(drive.Sweep(3))[1]);
+  slow.cloud.utime.back() += kMicrosecondsPerSecond;
+  twins.bad = {stray, slow};
+  for (int i = 0; i < 5; ++i) twins.Feed(ChunksOf(drive.Sweep(i)));
+  EXPECT_THAT(twins.refused, Each(Gt(1)));
+  EXPECT_EQ(Counter(node.GetStatus(), "poses"), 4);
+}
+
+}  // namespace
+}  // namespace rgbdt
