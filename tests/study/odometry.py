@@ -1,0 +1,172 @@
+"""Table, CSV, picture and summary.json of `scripts/study odometry`: how far a spinning LIDAR's
+odometry drifts, how fast it is, and whether it says what it is not told, against the synthetic
+truth. KITTI's relative error (Geiger, Lenz and Urtasun 2012), here over 100 m, from every tenth
+sweep on; TUM's absolute trajectory error (Sturm et al. 2012), aligned with the truth."""
+
+import math
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+import trials  # noqa: E402
+from trials import column, figure, mean, median, pick  # noqa: E402
+
+DRIVES = {"street-32": "street, 32 rings", "street-16": "street, 16 rings", "room-32": "room, 32"}
+NOT_TOLD = {"corridor-32": "corridor", "plain-32": "plain"}
+PERIOD = 0.1  # [s] of a sweep
+TARGETS = {
+    "odometry_percent": ("<=", 0.3),
+    "odometry_realtime_factor": (">=", 5),
+    "odometry_degenerate_found": (">=", 1),
+    "odometry_degenerate_false": ("<=", 0),
+    "odometry_lost": ("<=", 0),
+}
+
+
+def rotation(q):
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def poses(rows, prefix):
+    """4x4 matrices."""
+    found = []
+    for row in rows:
+        pose = np.eye(4)
+        pose[:3, :3] = rotation([row[f"{prefix}q{k}"] for k in "xyzw"])
+        pose[:3, 3] = [row[f"{prefix}{k}"] for k in "xyz"]
+        found.append(pose)
+    return found
+
+
+def relative_errors(truth, found, length_m):
+    """Of stretches of this length: error of the way over its length, and its turn [deg/m]."""
+    steps = [np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, truth[1:])]
+    way = np.concatenate([[0], np.cumsum(steps)])
+    errors = []
+    for first in range(0, len(truth), 10):
+        last = int(np.searchsorted(way, way[first] + length_m))
+        if last >= len(truth):
+            break
+        true_step = np.linalg.inv(truth[first]) @ truth[last]
+        step = np.linalg.inv(found[first]) @ found[last]
+        off = np.linalg.inv(step) @ true_step
+        turn = math.acos(min(1, max(-1, (np.trace(off[:3, :3]) - 1) / 2)))
+        errors.append((np.linalg.norm(off[:3, 3]) / length_m, math.degrees(turn) / length_m))
+    return errors
+
+
+def absolute_error(truth, found):
+    """RMS [m] after the rotation and shift that fit best (Kabsch)."""
+    a = np.array([p[:3, 3] for p in truth])
+    b = np.array([p[:3, 3] for p in found])
+    u, _, vt = np.linalg.svd((b - b.mean(0)).T @ (a - a.mean(0)))
+    flip = np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))])
+    turned = (b - b.mean(0)) @ (vt.T @ flip @ u.T).T
+    return math.sqrt(((turned - (a - a.mean(0))) ** 2).sum(1).mean())
+
+
+def runs(rows, kind):
+    parts = sorted({r["part"] for r in rows if r["part"].startswith(f"odometry-{kind}-")})
+    return [pick(rows, part=part) for part in parts]
+
+
+def summary(run):
+    truth, found = poses(run, "true_"), poses(run, "")
+    way = sum(np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, truth[1:]))
+    length = min(100, 0.5 * way)  # a room's way is shorter
+    errors = relative_errors(truth, found, length)
+    placed = run[1:]  # the first sweep tells nothing
+    return {
+        "way_m": way,
+        "percent": 100 * mean([e[0] for e in errors]),
+        "deg_per_100m": 100 * mean([e[1] for e in errors]),
+        "ate_m": absolute_error(truth, found),
+        "realtime": PERIOD / mean(column(placed, "seconds")),
+        "slowest_ms": 1000 * max(column(placed, "seconds")),
+        "lost": sum(r["converged"] == 0 for r in placed),
+        "degenerate": sum(r["degenerate"] > 0 for r in placed),
+    }
+
+
+def told(run):
+    """Whether every sweep whose place was found said that something is not told."""
+    placed = [r for r in run[1:] if r["converged"]]
+    return bool(placed) and all(r["degenerate"] > 0 for r in placed)
+
+
+def figures_of(rows):
+    for kind in DRIVES:
+        own = [summary(run) for run in runs(rows, kind)]
+        if not own:
+            continue
+        name = "odometry" if kind == "street-32" else f"odometry_{kind.replace('-', '_')}"
+        yield figure(f"{name}_percent", mean([s["percent"] for s in own]), "%")
+        yield figure(f"{name}_percent_worst", max(s["percent"] for s in own), "%")
+        yield figure(f"{name}_deg_per_100m", mean([s["deg_per_100m"] for s in own]), "deg")
+        yield figure(f"{name}_ate_m", median([s["ate_m"] for s in own]), "m")
+        yield figure(f"{name}_realtime_factor", min(s["realtime"] for s in own))
+        yield figure(f"{name}_lost", sum(s["lost"] for s in own))
+        yield figure(f"{name}_degenerate_false", sum(s["degenerate"] for s in own))
+        yield figure(f"{name}_drives", len(own))
+    for kind, label in NOT_TOLD.items():
+        own = [told(run) for run in runs(rows, kind)]
+        name = "odometry_degenerate" if label == "corridor" else f"odometry_{label}"
+        yield figure(f"{name}_found", mean([float(t) for t in own]))
+        yield figure(f"{name}_drives", len(own))
+
+
+def table(rows):
+    head = ["drive", "way m", "%", "deg/100 m", "ATE m", "realtime", "slowest ms", "lost"]
+    keys = ("way_m", "percent", "deg_per_100m", "ate_m", "realtime", "slowest_ms", "lost")
+    lines = []
+    for kind, label in DRIVES.items():
+        for run in runs(rows, kind):
+            found = summary(run)
+            lines.append([label, *(found[key] for key in keys)])
+    return trials.grid(head, lines) + "\n"
+
+
+def draw(rows, path):
+    plot, axes = plt.subplots(1, 2, figsize=(12, 5))
+    for place, kind in enumerate(DRIVES):
+        for number, run in enumerate(runs(rows, kind)):
+            truth, found = poses(run, "true_"), poses(run, "")
+            steps = [np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, truth[1:])]
+            way = np.concatenate([[0], np.cumsum(steps)])
+            off = [np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, found)]
+            label = None if number else DRIVES[kind]
+            axes[0].plot(way, off, c=f"C{place}", label=label)
+            axes[1].plot(1000 * np.array(column(run, "seconds")), c=f"C{place}", lw=0.7)
+    axes[0].set(xlabel="way [m]", ylabel="error since the start [m]")
+    axes[0].legend()
+    axes[1].axhline(1000 * PERIOD / 5, color="r", linestyle="--")
+    axes[1].set(xlabel="sweep", ylabel="one core's time [ms]", ylim=(0, None))
+    plot.suptitle("Odometry from sweeps alone; red: a fifth of a sweep's time")
+    plot.tight_layout()
+    plot.savefig(path, dpi=130)
+
+
+def main():
+    out = pathlib.Path(sys.argv[1])
+    rows = trials.read(out / "parts", "odometry-")
+    missing = [kind for kind in (*DRIVES, *NOT_TOLD) if not runs(rows, kind)]
+    if missing:
+        sys.exit(f"study: no {', '.join(missing)} in {out / 'parts'}")
+    draw(rows, out / "odometry.png")
+    figures = list(figures_of(rows))
+    trials.write(out, "odometry", rows, figures, table(rows) + trials.table(figures, TARGETS))
+
+
+main()
