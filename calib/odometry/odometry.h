@@ -14,7 +14,7 @@ struct OdometryOptions {
   double min_range_m = 0.8;  ///< nearer points are the rig's own
   double max_range_m = 100;
   double range_sigma_m = 0.01;       ///< noise of a range
-  std::size_t selected = 3000;       ///< points of a sweep that are matched, about
+  std::size_t selected = 2500;       ///< points of a sweep that are matched, about
   double acceleration_mps2 = 0.8;    ///< along each axis, 1 sigma: what the rig does unseen
   double turn_radps2 = 1.5;          ///< [rad/s^2] about each axis, 1 sigma
   double degenerate_m = 0.03;        ///< what a sweep tells of a direction worse is not told

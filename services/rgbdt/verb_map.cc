@@ -1,11 +1,15 @@
 #include <cstdio>
 #include <memory>
 
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
 #include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
+#include "calib/present/pictures/map_picture.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
 #include "services/nodes/mapper_node.h"
+#include "services/replay/drive_map.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -13,12 +17,13 @@ namespace {
 
 struct MapFlags {
   std::string log, out = "map.ply";
+  bool drive = false;
   VoxelMapOptions options;
 };
 
 /// What a log gave.
 struct LogRead {
-  std::int64_t events = 0, clouds = 0, dropped = 0;
+  std::int64_t events = 0, clouds = 0, sweeps = 0, dropped = 0;
   std::string last_problem;
 };
 
@@ -28,6 +33,7 @@ LogRead ReadLog(const std::string& path, MapperNode* node) {
   LogRead read;
   while (const auto event = log.Next()) {
     ++read.events;
+    if (event->channel == "CLOUD") ++read.sweeps;
     if (event->channel != "RGBDT_CLOUD") continue;
     try {
       node->Handle(Decode(event->channel, event->bytes.data(), event->bytes.size()));
@@ -44,24 +50,18 @@ LogRead ReadLog(const std::string& path, MapperNode* node) {
   return read;
 }
 
-int RunMap(const MapFlags& flags) {
-  flags.options.Check();
-  MapperNode node(flags.options);
-  const LogRead read = ReadLog(flags.log, &node);
-  if (read.dropped > 0) {
-    std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", flags.log.c_str(),
-                 static_cast<long long>(read.dropped), read.last_problem.c_str());
-  }
-  if (node.map().size() == 0) {
-    throw InputError(flags.log + ": none of its " + std::to_string(read.events) +
-                     " messages is a fused cloud with points (RGBDT_CLOUD); record that channel, "
-                     "as rgbdt-fuser publishes it");
-  }
-  const MapCloud map = node.map().Cloud();
+void TellDropped(const std::string& log, std::int64_t dropped, const std::string& last_problem) {
+  if (dropped == 0) return;
+  std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", log.c_str(),
+               static_cast<long long>(dropped), last_problem.c_str());
+}
+
+void WriteMap(const MapFlags& flags, const MapperNode& node, const MapCloud& map,
+              std::int64_t clouds) {
   WriteMapPly(flags.out, map);
   std::printf(
       "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
-      static_cast<long long>(read.clouds), static_cast<long long>(node.map().points()), map.size(),
+      static_cast<long long>(clouds), static_cast<long long>(node.map().points()), map.size(),
       map.voxel_m,
       map.frame == "map" ? "of the pose stream" : "LIDAR (no poses: a rig that stands still)",
       flags.out.c_str());
@@ -69,6 +69,65 @@ int RunMap(const MapFlags& flags) {
     std::printf("the map was full: %lld voxels went; take larger ones, or --max-voxels\n",
                 static_cast<long long>(node.map().evicted()));
   }
+}
+
+void TellDrive(const MappedDrive& drive) {
+  std::vector<Eigen::Vector3d> places;
+  double way = 0;
+  for (const StampedPose& pose : drive.way) {
+    places.push_back(pose.map_from_lidar.translation);
+    if (places.size() > 1) way += (places.back() - places[places.size() - 2]).norm();
+  }
+  std::printf("%.1f m of way, %zu poses by %s\n", way, drive.way.size(),
+              drive.by_odometry ? "odometry from the sweeps" : "the log's POSE");
+  if (!drive.by_odometry) return;
+  std::printf("%lld sweeps, %lld without a place, %lld that do not tell a direction\n",
+              static_cast<long long>(drive.sweeps), static_cast<long long>(drive.without_place),
+              static_cast<long long>(drive.degenerate));
+  if (drive.degenerate > 0) {
+    std::printf("where a direction is not told, as along a corridor, the way is a guess\n");
+  }
+  if (drive.restarts > 0) {
+    std::printf("the map was begun anew %lld times: parts of it may lie off each other\n",
+                static_cast<long long>(drive.restarts));
+  }
+}
+
+int RunDrive(const MapFlags& flags) {
+  MapperNode node(flags.options);
+  const MappedDrive drive = MapDrive(flags.log, &node);
+  TellDropped(flags.log, drive.dropped, drive.last_problem);
+  const MapCloud map = node.map().Cloud();
+  if (map.size() == 0) {
+    throw InputError(flags.log + ": its poses and its sweeps (CLOUD) are of different times");
+  }
+  WriteMap(flags, node, map, drive.clouds);
+  const std::filesystem::path out = flags.out;
+  const std::filesystem::path way = std::filesystem::path(out).replace_extension(".tum");
+  const std::filesystem::path picture = std::filesystem::path(out).replace_extension(".png");
+  WriteFileAtomically(way, TumText(drive.way));
+  std::vector<Eigen::Vector3d> places;
+  for (const StampedPose& pose : drive.way) places.push_back(pose.map_from_lidar.translation);
+  WritePng(picture, MapPicture(map, places));
+  TellDrive(drive);
+  std::printf("wrote %s (the way, in TUM's format) and %s (from above)\nnext: rgbdt terrain %s\n",
+              way.c_str(), picture.c_str(), flags.out.c_str());
+  return EndsWith(true);
+}
+
+int RunMap(const MapFlags& flags) {
+  flags.options.Check();
+  if (flags.drive) return RunDrive(flags);
+  MapperNode node(flags.options);
+  const LogRead read = ReadLog(flags.log, &node);
+  if (read.clouds == 0 && read.sweeps > 0) return RunDrive(flags);
+  TellDropped(flags.log, read.dropped, read.last_problem);
+  if (node.map().size() == 0) {
+    throw InputError(flags.log + ": none of its " + std::to_string(read.events) +
+                     " messages is a fused cloud with points (RGBDT_CLOUD), or a sweep (CLOUD); "
+                     "record either channel, as rgbdt-fuser or the LIDAR publishes it");
+  }
+  WriteMap(flags, node, node.map().Cloud(), read.clouds);
   std::printf("next: rgbdt terrain %s\n", flags.out.c_str());
   return EndsWith(true);
 }
@@ -80,11 +139,20 @@ void AddMap(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "map",
       "Fused clouds of a log (RGBDT_CLOUD) to a map of voxels, in the pose stream's frame: mean\n"
-      "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live.\n"
+      "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live. A log that "
+      "has\n"
+      "sweeps (CLOUD) and no fused clouds is a drive: its way comes from POSE or else from the\n"
+      "sweeps themselves, as rgbdt-odometry finds it, and is written beside the map (.tum), with "
+      "a\n"
+      "picture from above (.png).\n"
       "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply",
       [flags] { return RunMap(*flags); });
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "the map, a PLY file");
+  verb->Flag(
+      "--drive", &flags->drive,
+      "as a drive, from CLOUD, though the log has fused clouds: of a rig that moved and was\n"
+      "fused without POSE");
   verb->Option("--voxel", &flags->options.voxel_m, "edge of a voxel [m]");
   verb->Option("--max-voxels", &flags->options.max_voxels,
                "most voxels kept (80 bytes each); then those not seen for the longest are dropped");

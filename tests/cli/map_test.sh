@@ -6,8 +6,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 mkdir "$scratch/kept"
 log=$scratch/fused.lcmlog
 
-# An LCM log of fused clouds (lcmtypes/rgbdt_cloud_t.lcm) over level ground with a crate on it.
-"$bin/map_test_log" "$log" "$scratch/other.lcmlog"
+# An LCM log of fused clouds (lcmtypes/rgbdt_cloud_t.lcm) over level ground with a crate on it, and
+# one of sweeps (lcmtypes/cloud_t.lcm) of a drive.
+drive=$scratch/drive.lcmlog
+"$bin/map_test_log" "$log" "$scratch/other.lcmlog" "$drive" "$scratch/truth"
 
 accepts "map" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/kept/map.ply"
 grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
@@ -15,6 +17,30 @@ head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment voxel_m: 0.1$' || compl
 head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment frame: lidar$' || complain "no frame"
 accepts "the map again" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/again.ply"
 cmp "$scratch/kept/map.ply" "$scratch/again.ply" || complain "the same log, another map"
+
+# A drive with nothing but sweeps: the way is found from them.
+accepts "map of a drive" "$bin/rgbdt" map "$drive" --out "$scratch/drive/map.ply"
+grep -q 'poses by odometry' "$scratch/output" || complain "where does the way come from?"
+grep -q '^20 sweeps, 1 without a place, 0 that' "$scratch/output" || complain "sweeps of the drive"
+head -c 500 "$scratch/drive/map.ply" | grep -qa '^comment frame: map$' || complain "the drive's frame"
+head -c 8 "$scratch/drive/map.png" | grep -qa PNG || complain "no picture from above"
+python3 - "$scratch/drive/map.tum" "$scratch/truth" <<'END' >"$scratch/output" 2>&1 || complain "map.tum"
+import math, sys
+lines = [l.split() for l in open(sys.argv[1]) if not l.startswith("#")]
+truth = {int(l.split()[0]): [float(v) for v in l.split()[1:]] for l in open(sys.argv[2])}
+assert len(lines) == 19 and all(len(l) == 8 for l in lines), lines
+first, last = lines[0], lines[-1]
+found = math.dist([float(v) for v in first[1:4]], [float(v) for v in last[1:4]])
+times = [int(l[0].replace(".", "")) for l in (first, last)]
+true = math.dist(truth[times[0]], truth[times[1]])
+assert true > 4 and abs(found - true) < 0.05, (found, true)
+END
+accepts "the drive again" "$bin/rgbdt" map "$drive" --out "$scratch/drive/again.ply"
+for kind in ply tum png; do
+  cmp "$scratch/drive/map.$kind" "$scratch/drive/again.$kind" || complain "the same drive, another $kind"
+done
+says=("no POSE" "0 sweeps")
+refuses "a drive without sweeps" "$bin/rgbdt" map "$log" --drive --out "$scratch/kept/map.ply"
 
 accepts "terrain" "$bin/rgbdt" terrain "$scratch/kept/map.ply" --out "$scratch/kept/terrain"
 grep -qE '^ +1 ' "$scratch/output" || complain "no site in the table"

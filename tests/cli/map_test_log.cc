@@ -1,9 +1,13 @@
-// Writes two LCM logs for map_test.sh: one of fused clouds over level ground with a crate, 27 C
-// warm, and one of poses only. Usage: map_test_log FUSED OTHER
+// Writes LCM logs for map_test.sh: of fused clouds over level ground with a crate, 27 C warm; of
+// poses only; and of the sweeps of a drive through a street, with the truth beside it: a line a
+// sweep, time [us] x y z [m]. Usage: map_test_log FUSED OTHER DRIVE TRUTH
 #include <cmath>
+#include <fstream>
+#include <utility>
 
 #include "services/messages/codec.h"
 #include "tests/log_writer.h"
+#include "tests/study/drives.h"
 
 namespace {
 
@@ -42,10 +46,32 @@ void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
 }
 
+void WriteDrive(const char* log_path, const char* truth_path) {
+  rgbdt::simulate::SpinningOptions lidar = rgbdt::simulate::SpinningLidar(32);
+  lidar.azimuth_step_rad *= 4;
+  rgbdt::study::Drive drive(rgbdt::study::DriveScene::kStreet, 4, lidar,
+                            rgbdt::study::StreetWay(4, 5));
+  rgbdt::test::LogWriter log(log_path);
+  std::ofstream truth(truth_path);
+  truth.precision(9);
+  for (int i = 0; i < 20; ++i) {
+    rgbdt::CloudChunk chunk;
+    chunk.seq = i;
+    chunk.cloud = drive.Sweep(i);
+    chunk.sweep_end = true;
+    chunk.sweep_lines = chunk.cloud.lines;
+    const Utime last = chunk.cloud.utime.back();
+    const Eigen::Vector3d place = drive.At(last).translation;
+    truth << last << ' ' << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
+    Write(&log, std::move(chunk));
+  }
+  log.Close();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 1;
+  if (argc != 5) return 1;
   rgbdt::test::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
@@ -55,5 +81,6 @@ int main(int argc, char** argv) {
   pose.source = "odometry";
   Write(&other, pose);
   other.Close();
+  WriteDrive(argv[3], argv[4]);
   return 0;
 }

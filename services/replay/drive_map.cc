@@ -1,0 +1,170 @@
+#include "services/replay/drive_map.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "calib/fuse/sweep_fuser.h"
+#include "calib/model/errors.h"
+#include "services/bus/log.h"
+#include "services/messages/codec.h"
+#include "services/nodes/fuser_node.h"
+#include "services/nodes/odometry_node.h"
+
+namespace rgbdt {
+namespace {
+
+bool IsImage(const std::string& channel) {
+  constexpr std::size_t kEnd = 6;
+  return channel.size() > kEnd && channel.compare(channel.size() - kEnd, kEnd, "_IMAGE") == 0;
+}
+
+/// The log's messages on some channels, one after the other; broken ones are counted.
+class Reader {
+ public:
+  Reader(const std::string& path, MappedDrive* drive) : log_(path), drive_(drive) {}
+
+  template <typename Wanted, typename Take>
+  void Each(const Wanted& wanted, const Take& take, const std::function<void(double)>& progress) {
+    while (const auto event = log_.Next()) {
+      if (progress) {
+        progress(static_cast<double>(log_.position()) / static_cast<double>(log_.size()));
+      }
+      if (!wanted(event->channel)) continue;
+      try {
+        take(Decode(event->channel, event->bytes.data(), event->bytes.size()));
+      } catch (const std::exception& e) {
+        ++drive_->dropped;
+        drive_->last_problem = e.what();
+      }
+    }
+  }
+
+ private:
+  LogReader log_;
+  MappedDrive* drive_;
+};
+
+// The log's own poses, or else those of the sweeps; whether it has a rig.
+bool FindWay(const std::string& log, MappedDrive* drive,
+             const std::function<void(double)>& progress) {
+  OdometryNode odometry;
+  std::vector<StampedPose> own, found;
+  bool has_rig = false;
+  Reader(log, drive)
+      .Each(
+          [](const std::string& channel) {
+            return channel == "CLOUD" || channel == "POSE" || channel == "RIG";
+          },
+          [&](const Message& message) {
+            has_rig = has_rig || std::holds_alternative<RigText>(message);
+            if (const auto* pose = std::get_if<StampedPose>(&message)) own.push_back(*pose);
+            if (!own.empty()) return;
+            for (const Message& answer : odometry.Handle(message)) {
+              found.push_back(std::get<StampedPose>(answer));
+            }
+          },
+          progress);
+  drive->by_odometry = own.empty();
+  drive->way = own.empty() ? std::move(found) : std::move(own);
+  if (drive->by_odometry) {
+    for (const auto& [name, count] : odometry.GetStatus().counters) {
+      if (name == "sweeps") drive->sweeps = count;
+      if (name == "without a place") drive->without_place = count;
+      if (name == "degenerate") drive->degenerate = count;
+      if (name == "maps begun anew") drive->restarts = count;
+    }
+  }
+  return has_rig;
+}
+
+Utime NewestOf(const Cloud& cloud) {
+  return cloud.utime.empty() ? cloud.sweep_utime
+                             : *std::max_element(cloud.utime.begin(), cloud.utime.end());
+}
+
+/// Hands over poses in time for the points that need them: up to the first after them.
+class PosesAhead {
+ public:
+  explicit PosesAhead(const std::vector<StampedPose>& way) : way_(way) {}
+
+  template <typename Take>
+  void Until(Utime utime, const Take& take) {
+    while (next_ < way_.size() && (next_ == 0 || way_[next_ - 1].utime < utime)) {
+      take(way_[next_++]);
+    }
+  }
+
+ private:
+  const std::vector<StampedPose>& way_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+MappedDrive MapDrive(const std::string& log, MapperNode* mapper,
+                     const std::function<void(double)>& progress) {
+  const auto part = [&](double from) {
+    return [&progress, from](double share) {
+      if (progress) progress(from + 0.5 * share);
+    };
+  };
+  MappedDrive drive;
+  const bool has_rig = FindWay(log, &drive, part(0));
+  if (drive.way.empty()) {
+    throw InputError(log + ": it has no POSE, and of its " + std::to_string(drive.sweeps) +
+                     " sweeps (CLOUD) none whose place was found" +
+                     (drive.last_problem.empty() ? "" : "; last problem: " + drive.last_problem));
+  }
+  FuserNode fuser;
+  SweepFuser plain({}, 0.01);
+  PosesAhead poses(drive.way);
+  const auto map = [&](const Message& fused) {
+    const auto* cloud = std::get_if<RgbdtCloud>(&fused);
+    // A sweep comes once more at its end; and what no pose tells lies nowhere.
+    if (ChannelOf(fused) != "RGBDT_CLOUD" || !cloud->map_from_lidar) return;
+    mapper->Handle(fused);
+    ++drive.clouds;
+  };
+  Reader(log, &drive)
+      .Each(
+          [has_rig](const std::string& channel) {
+            return channel == "CLOUD" ||
+                   (has_rig && (channel == "RIG" || channel == "CALIBRATION" || IsImage(channel)));
+          },
+          [&](const Message& message) {
+            if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
+              poses.Until(NewestOf(chunk->cloud), [&](const StampedPose& pose) {
+                if (has_rig) {
+                  fuser.Handle(pose);
+                } else {
+                  plain.AddPose(pose);
+                }
+              });
+              if (!has_rig) {
+                map(plain.FuseChunk(chunk->cloud));
+                return;
+              }
+            }
+            for (const Message& fused : fuser.Handle(message)) map(fused);
+          },
+          part(0.5));
+  return drive;
+}
+
+std::string TumText(const std::vector<StampedPose>& way) {
+  std::string text = "# time [s, UTC] tx ty tz [m] qx qy qz qw: world_from_lidar\n";
+  for (const StampedPose& pose : way) {
+    const Eigen::Vector3d& t = pose.map_from_lidar.translation;
+    const Eigen::Quaterniond& q = pose.map_from_lidar.rotation;
+    char line[300];
+    std::snprintf(line, sizeof line, "%lld.%06lld %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n",
+                  static_cast<long long>(pose.utime / kMicrosecondsPerSecond),
+                  static_cast<long long>(pose.utime % kMicrosecondsPerSecond), t.x(), t.y(), t.z(),
+                  q.x(), q.y(), q.z(), q.w());
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace rgbdt
