@@ -24,7 +24,7 @@ Messages OdometryNode::Handle(const Message& message) {
   if (ended || !sweeps_.Ended(name)) return {};
   const std::optional<Cloud> sweep = sweeps_.Complete(name);
   if (!sweep) return {};
-  const std::vector<std::string> before = newest_.degenerate;
+  const OdometryResult before = newest_;
   newest_ = odometry_.Add(*sweep);
   ++taken_;
   if (newest_.restarted) {
@@ -38,9 +38,17 @@ Messages OdometryNode::Handle(const Message& message) {
   }
   if (!newest_.degenerate.empty()) {
     ++degenerate_;
-    if (before.empty()) Warn("not told by what stands about: " + Joined(newest_.degenerate));
+    if (before.degenerate.empty())
+      Warn("not told by what stands about: " + Joined(newest_.degenerate));
   }
-  return {StampedPose{poses_++, newest_.utime, kSource, newest_.world_from_lidar}};
+  Messages poses;
+  // A single pose would be that of a rig that stands.
+  if (!before.converged && newest_.middle_utime < newest_.utime) {
+    poses.emplace_back(
+        StampedPose{poses_++, newest_.middle_utime, kSource, newest_.world_from_middle});
+  }
+  poses.emplace_back(StampedPose{poses_++, newest_.utime, kSource, newest_.world_from_lidar});
+  return poses;
 }
 
 Status OdometryNode::GetStatus() const {

@@ -10,7 +10,8 @@
 
 namespace rgbdt {
 
-/// CLOUD of a spinning LIDAR -> POSE, one a sweep, of the time of its last point (calib/odometry).
+/// CLOUD of a spinning LIDAR -> POSE, one a sweep, of the time of its last point (calib/odometry);
+/// where there was none before, one of the sweep's middle, too, so that a track of them moves.
 /// Each sweep is taken when its end comes, and once: nothing waits. A sweep that lacks lines is
 /// taken as it is. No POSE goes out for a sweep of which no place was found; for one that does not
 /// tell a direction it does, and the status names the direction. A sweep that is older than the one

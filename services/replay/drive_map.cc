@@ -83,14 +83,15 @@ Utime NewestOf(const Cloud& cloud) {
                              : *std::max_element(cloud.utime.begin(), cloud.utime.end());
 }
 
-/// Hands over poses in time for the points that need them: up to the first after them.
+/// Hands over poses in time for the points that need them: up to the first after them. Two at
+/// least, as a single one is that of a rig that stands.
 class PosesAhead {
  public:
   explicit PosesAhead(const std::vector<StampedPose>& way) : way_(way) {}
 
   template <typename Take>
   void Until(Utime utime, const Take& take) {
-    while (next_ < way_.size() && (next_ == 0 || way_[next_ - 1].utime < utime)) {
+    while (next_ < way_.size() && (next_ < 2 || way_[next_ - 1].utime < utime)) {
       take(way_[next_++]);
     }
   }

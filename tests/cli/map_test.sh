@@ -28,8 +28,8 @@ python3 - "$scratch/drive/map.tum" "$scratch/truth" <<'END' >"$scratch/output" 2
 import math, sys
 lines = [l.split() for l in open(sys.argv[1]) if not l.startswith("#")]
 truth = {int(l.split()[0]): [float(v) for v in l.split()[1:]] for l in open(sys.argv[2])}
-assert len(lines) == 19 and all(len(l) == 8 for l in lines), lines
-first, last = lines[0], lines[-1]
+assert len(lines) == 20 and all(len(l) == 8 for l in lines), lines
+first, last = lines[1], lines[-1]  # the very first is of a sweep's middle
 found = math.dist([float(v) for v in first[1:4]], [float(v) for v in last[1:4]])
 times = [int(l[0].replace(".", "")) for l in (first, last)]
 true = math.dist(truth[times[0]], truth[times[1]])

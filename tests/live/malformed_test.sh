@@ -11,7 +11,7 @@ group=${LCM_DEFAULT_URL#udpm://}
 port=${group#*:}
 port=${port%%\?*}
 group=${group%%:*}
-processes=(assembler detector solver fuser monitor mapper session viewer simulator)
+processes=(assembler detector solver fuser monitor odometry mapper session viewer simulator)
 channels=(CLOUD LINE_SCAN DETECTION CALIBRATION RGBDT_CLOUD STATUS SESSION_COMMAND rgb_IMAGE)
 addresses=(127.0.0.1)
 
@@ -65,7 +65,7 @@ helper ready simulator || fail "rgbdt-simulator did not come up"
 start session "$bin/rgbdt-session" --rig "$scratch/rig.textproto" --out "$scratch/session"
 start viewer "$bin/rgbdt-viewer" --listen 127.0.0.1:0
 start mapper "$bin/rgbdt-mapper" --out "$scratch/map.ply"
-for process in assembler detector solver fuser monitor; do
+for process in assembler detector solver fuser monitor odometry; do
   start "$process" "$bin/rgbdt-$process"
 done
 helper ready "${processes[@]}" || fail "not every process came up"
@@ -90,7 +90,7 @@ echo "malformed datagrams told, of $sent:"
 cat "$scratch/told"
 grep -q 'viewer: a malformed datagram from ' "$scratch/viewer.log" ||
   fail "the viewer's log does not name them"
-stop TERM assembler detector solver fuser monitor mapper viewer simulator
+stop TERM assembler detector solver fuser monitor odometry mapper viewer simulator
 kill -TERM "${pids[session]}"
 wait_for session || [ $? = 1 ] || fail "rgbdt-session did not end as it does when stopped"
 echo "passed"
