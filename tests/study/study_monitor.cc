@@ -1,10 +1,11 @@
 // A mount watched while the rig drives: standing still, knocked, drifting.
 //   study_monitor SESSION MODE RUNS SEED SIZE_DEG CSV
 // SESSION: a session directory with truth.textproto, its views in the order of driving. MODE: still
-// (all views), knock (SIZE_DEG and 5 mm, in directions drawn from SEED, before the sixth of ten
-// sweeps), random (the same, as the watch takes mounts to move), drift (of yaw, SIZE_DEG a sweep).
-// The calibration at hand is off by what it states: 1 sigma 0.02 deg and 1 mm. That a LIDAR was
-// knocked is put into its clouds. A line of CSV for each sweep and camera.
+// (all views), knock (SIZE_DEG, about an axis drawn from SEED, before the sixth of ten sweeps),
+// random (the same, by as much as the watch takes mounts to turn), drift (of yaw, SIZE_DEG a
+// sweep). The calibration at hand is off by what it states: 1 sigma 0.02 deg and 1 mm. That a LIDAR
+// was knocked is put into its clouds, so it turns about its own origin: shifted clouds would show
+// rims that no beam from there sees. A line of CSV for each sweep and camera.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -35,14 +36,20 @@ Eigen::Vector3d Normals(std::mt19937_64* random) {
   return {x, y, Normal(random)};
 }
 
-// The cloud of a LIDAR that was knocked such that camera_from_lidar = Exp(delta) * before.
-Cloud Knocked(Cloud cloud, const Rigid3& before, const Vector6d& delta) {
-  const Rigid3 knock = before.Inverse() * Exp(Vector6d(-delta)) * before;
-  for (Eigen::Vector3f& point : cloud.points) {
-    point = (knock * point.cast<double>().eval()).cast<float>();
-  }
+// The LIDAR turned about its own origin such that the camera is turned by `turn` (camera's axes,
+// rad) against it: turned_lidar_from_lidar.
+Rigid3 TurnedLidar(const Rigid3& camera_from_lidar, const Eigen::Vector3d& turn) {
+  Vector6d delta = Vector6d::Zero();
+  delta.head<3>() = -(camera_from_lidar.rotation.inverse() * turn);
+  return Exp(delta);
+}
+
+// As the turned LIDAR sees it.
+Cloud Seen(Cloud cloud, const Rigid3& turned_lidar_from_lidar) {
+  const Eigen::Quaterniond& turn = turned_lidar_from_lidar.rotation;
+  for (Eigen::Vector3f& point : cloud.points) point = (turn * point.cast<double>()).cast<float>();
   for (Eigen::Vector3f& direction : cloud.directions) {
-    direction = (knock.rotation * direction.cast<double>()).cast<float>();
+    direction = (turn * direction.cast<double>()).cast<float>();
   }
   return cloud;
 }
@@ -58,14 +65,13 @@ class Recorder {
     csv_ << "session,mode,size_deg,camera,run,sweep,since,holds,state,true_deg,rotation_deg,"
             "translation_mm,sigma_deg,chi2,yaw_error_deg,edges,shown,seconds\n";
   }
-  void Write(const Case& own, int run, std::size_t sweep, int since, const Vector6d& moved,
-             const Rigid3& truth, const MountCheck& check, double seconds) {
-    const Rigid3 now = Exp(moved) * truth;
+  void Write(const Case& own, int run, std::size_t sweep, int since, double turned_rad,
+             const Rigid3& now, const MountCheck& check, double seconds) {
     const PoseError error = ErrorOf(check.camera_from_lidar, now);
     const Vector6d off = Log(check.camera_from_lidar * now.Inverse());
     csv_ << own.session << ',' << own.mode << ',' << own.size_deg << ',' << check.camera << ','
          << run << ',' << sweep << ',' << since << ',' << check.holds.value_or(-1) << ','
-         << static_cast<int>(check.state) << ',' << moved.head<3>().norm() / kDegree << ','
+         << static_cast<int>(check.state) << ',' << turned_rad / kDegree << ','
          << error.rotation_deg << ',' << error.translation_mm << ','
          << std::sqrt(check.covariance.topLeftCorner<3, 3>().trace()) / kDegree << ','
          << off.dot(SolveSymmetric(check.covariance, off)) << ',' << off[1] / kDegree << ','
@@ -97,13 +103,10 @@ void Run(const std::vector<std::string>& a) {
       Vector6d off;
       off << Normals(&random), Normals(&random);
       calibration.camera_from_lidar = Exp(Vector6d(sigma.cwiseProduct(off))) * right;
-      Vector6d knock;
-      knock << own.size_deg * kDegree * Normals(&random).normalized(),
-          5e-3 * Normals(&random).normalized();
+      Eigen::Vector3d knock = own.size_deg * kDegree * Normals(&random).normalized();
       if (own.mode == "random") {
         const WatchOptions usual;
-        const std::size_t size = random() % usual.moved_rad.size();
-        knock << usual.moved_rad[size] * Normals(&random), usual.moved_m[size] * Normals(&random);
+        knock = usual.moved_rad[random() % usual.moved_rad.size()] * Normals(&random);
       }
       const std::size_t most = views.size() - kBefore - kAfter;
       const std::size_t first =
@@ -115,18 +118,18 @@ void Run(const std::vector<std::string>& a) {
       watch.SetCalibration(calibration, 1);
       for (std::size_t v = first; v < end; ++v) {
         const int since = static_cast<int>(v) - static_cast<int>(first + kBefore) + 1;
-        Vector6d moved = Vector6d::Zero();
-        if (knocks && since > 0) moved = knock;
-        if (own.mode == "drift") {
-          moved[1] = own.size_deg * kDegree * static_cast<double>(v);
-        }
-        const Cloud cloud = Knocked(views[v].cloud, right, moved);
+        Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+        if (knocks && since > 0) turn = knock;
+        if (own.mode == "drift") turn.y() = own.size_deg * kDegree * static_cast<double>(v);
+        const Rigid3 turned_lidar_from_lidar = TurnedLidar(right, turn);
+        const Rigid3 now = right * turned_lidar_from_lidar.Inverse();
+        const Cloud cloud = Seen(views[v].cloud, turned_lidar_from_lidar);
         const auto image =
             std::find_if(views[v].images.begin(), views[v].images.end(),
                          [&](const Image& one) { return one.camera == camera.name; });
         const Stopwatch stopwatch;
         const MountCheck check = watch.Add({views[v].name, &cloud, &*image});
-        recorder.Write(own, run, v, since, moved, right, check, stopwatch.Seconds());
+        recorder.Write(own, run, v, since, turn.norm(), now, check, stopwatch.Seconds());
       }
     }
   }

@@ -33,8 +33,11 @@ std::optional<Projected> Project(const Camera& camera, const SceneState& state,
   const auto kind = static_cast<std::size_t>(rim.kind);
   const double out = state.shift_rad[kind] - rim.reach * state.beam_rad;
   const Vector3d aside = rim.across - rim.across.dot(rim.along) * rim.along;
-  const Vector3d outwards = rim.point.norm() * aside.normalized();
-  const Vector3d point = turn * (rim.point + out * outwards) + state.camera_from_lidar.translation;
+  const double range = rim.point.norm();
+  const Vector3d outwards = range * aside.normalized();
+  const double farther = 1 + state.farther_m / range;
+  const Vector3d point =
+      turn * (farther * (rim.point + out * outwards)) + state.camera_from_lidar.translation;
   const auto pixel = camera.Project(point);
   if (!pixel || !camera.Contains(*pixel)) return std::nullopt;
   Projected seen;
@@ -44,11 +47,12 @@ std::optional<Projected> Project(const Camera& camera, const SceneState& state,
   seen.by_unknowns.setZero();
   seen.by_unknowns.leftCols<3>() = -by_point * CrossMatrix(point);
   seen.by_unknowns.middleCols<3>(3) = by_point;
-  seen.by_shift = by_point * (turn * outwards);
+  seen.by_shift = by_point * (turn * (farther * outwards));
   seen.by_unknowns.col(kShiftAt + static_cast<Eigen::Index>(kind)) = seen.by_shift;
   seen.by_unknowns.col(kBeamAt) = -rim.reach * seen.by_shift;
+  seen.by_unknowns.col(kFartherAt) = by_point * (turn * (rim.point + out * outwards) / range);
   seen.by_unknowns.rightCols<kLensNumbers>() = by_all.rightCols<kLensNumbers>();
-  seen.across = by_point * (turn * rim.across);
+  seen.across = by_point * (turn * (farther * rim.across));
   const Vector2d along = by_point * (turn * rim.along);
   const double length = along.norm();
   if (!(length > 0)) return std::nullopt;
@@ -276,6 +280,7 @@ SceneState SceneState::Moved(const SceneVector& x) const {
     moved.shift_rad[k] += x[kShiftAt + static_cast<Eigen::Index>(k)];
   }
   moved.beam_rad += x[kBeamAt];
+  moved.farther_m += x[kFartherAt];
   moved.lens = WithNumbers(lens, NumbersOf(lens) + x.tail<kLensNumbers>());
   return moved;
 }

@@ -8,7 +8,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kPlaneM = 4;  // how far away the board hangs
+constexpr double kPlaneM = 4;                  // how far away the board hangs
+const Eigen::Vector3d kLidar(0.5, -0.4, 0.3);  // in the camera's frame [m], turned as it is
 
 CameraSpec Spec() {
   CameraSpec spec;
@@ -57,7 +58,7 @@ cv::Mat Painted() {
   return image;
 }
 
-// The quadrangle's rim, as a LIDAR in the camera's place meets it.
+// The quadrangle's rim, as a LIDAR beside the camera meets it.
 std::shared_ptr<const SceneShot> QuadrangleShot() {
   auto shot = std::make_shared<SceneShot>();
   for (std::size_t k = 0; k < kCorners.size(); ++k) {
@@ -65,7 +66,7 @@ std::shared_ptr<const SceneShot> QuadrangleShot() {
     for (int i = 2; i < 38; ++i) {
       const Eigen::Vector2d at = from + (to - from) * i / 40;
       DepthEdge edge;
-      edge.point = {at.x(), at.y(), kPlaneM};
+      edge.point = Eigen::Vector3d(at.x(), at.y(), kPlaneM) - kLidar;
       edge.along.head<2>() = (to - from).normalized();
       // Hardly any room between the beams: rims are where they are.
       edge.across = 1e-7 * Eigen::Vector3d(edge.along.y(), -edge.along.x(), 0);
@@ -84,10 +85,10 @@ class SceneProblemTest : public ::testing::Test {
  protected:
   SceneProblemTest() : problem_(Spec(), {QuadrangleShot()}) {
     state_.lens = Spec().lens;
-    state_.beam_rad = 0;
+    state_.beam_rad = state_.farther_m = 0;
     Vector6d off;
     off << 0.004, -0.003, 0.005, 0.01, 0.008, 0.02;
-    state_.camera_from_lidar = Exp(off);
+    state_.camera_from_lidar = Exp(off) * Rigid3{Eigen::Quaterniond::Identity(), kLidar};
     look_.sigma_px = 2;
     look_.matched = 0.7;
     look_.thing_sigma_rad = look_.rim_sigma_rad = 1e-9;  // nothing is eliminated
