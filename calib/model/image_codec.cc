@@ -57,37 +57,38 @@ bool IsWholeIfPng(std::string_view bytes) {
   return false;
 }
 
-struct Size {
-  std::int64_t width, height;
-};
-
-// Of a JPEG's frame header (ITU-T T.81, B.2.2); nothing where there is none.
-std::optional<Size> JpegSize(std::string_view bytes) {
+// Of a JPEG's frame header (ITU-T T.81, B.2.2), which is behind segments of marker, length and
+// content; nothing where there is none.
+std::optional<ImageSize> JpegSize(std::string_view bytes) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   for (std::size_t i = 2; i + 9 <= bytes.size() && at(i) == 0xFF;) {
     const int marker = at(i + 1);
+    if (marker == 0xFF) {  // fill
+      ++i;
+      continue;
+    }
     const bool tables = marker == 0xC4 || marker == 0xC8 || marker == 0xCC;
     if (marker >= 0xC0 && marker <= 0xCF && !tables) {
-      return Size{256 * at(i + 7) + at(i + 8), 256 * at(i + 5) + at(i + 6)};
+      return ImageSize{256 * at(i + 7) + at(i + 8), 256 * at(i + 5) + at(i + 6)};
     }
     i += 2 + 256 * std::size_t{at(i + 2)} + at(i + 3);
   }
   return std::nullopt;
 }
 
-// What a PNG or JPEG says before it is unpacked, which may take a thousand times its bytes.
-std::optional<Size> SizeSaidBy(std::string_view bytes) {
-  if (bytes.compare(0, 8, kPngSignature) == 0 && bytes.size() >= 24) {
-    return Size{BigEndian(bytes, 16), BigEndian(bytes, 20)};
-  }
-  return bytes.compare(0, 3, "\xFF\xD8\xFF") == 0 ? JpegSize(bytes) : std::nullopt;
-}
-
 }  // namespace
+
+std::optional<ImageSize> StatedSize(const void* data, std::size_t size) {
+  const std::string_view bytes(static_cast<const char*>(data), size);
+  if (size >= 24 && bytes.compare(0, 8, kPngSignature) == 0) {
+    return ImageSize{BigEndian(bytes, 16), BigEndian(bytes, 20)};
+  }
+  return bytes.compare(0, 2, "\xFF\xD8") == 0 ? JpegSize(bytes) : std::nullopt;
+}
 
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
   if (size == 0) throw InputError(where + " is empty; expected an image");
-  const auto said = SizeSaidBy({static_cast<const char*>(bytes), size});
+  const auto said = StatedSize(bytes, size);
   if (said && said->width * said->height > kMostPixels) {
     throw InputError(where + " is an image of " + std::to_string(said->width) + "x" +
                      std::to_string(said->height) + " pixels; expected at most " +

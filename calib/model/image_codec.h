@@ -1,10 +1,20 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 
 namespace rgbdt {
+
+struct ImageSize {
+  std::int64_t width, height;  // [px]
+};
+
+/// What a PNG or JPEG says of itself, before it is unpacked, which may take a thousand times its
+/// bytes; nothing for what is neither.
+std::optional<ImageSize> StatedSize(const void* bytes, std::size_t size);
 
 /// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
 /// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be

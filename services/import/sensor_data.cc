@@ -16,8 +16,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr std::uint32_t kMostSide = 20000;  // [px]
-constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 26;
+constexpr std::int64_t kMostSide = 20000;  // [px]
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
 
 // How an encoding of sensor_msgs lies in memory, and what it becomes.
 struct Encoding {
@@ -60,9 +60,9 @@ const Encoding& EncodingOf(const std::string& name, const std::string& where) {
                    "\" is not read; those that are:" + known);
 }
 
-void CheckSize(std::uint32_t width, std::uint32_t height, const std::string& where) {
+void CheckSize(std::int64_t width, std::int64_t height, const std::string& where) {
   const bool good = width >= 1 && height >= 1 && width <= kMostSide && height <= kMostSide &&
-                    std::uint64_t{width} * height <= kMostPixels;
+                    width * height <= kMostPixels;
   if (good) return;
   throw InputError(where + ": is " + std::to_string(width) + " x " + std::to_string(height) +
                    " px; expected 1 to " + std::to_string(kMostSide) + ", and at most " +
@@ -76,33 +76,6 @@ void SwapBytes(cv::Mat* pixels) {
       row[x] = static_cast<std::uint16_t>(row[x] << 8 | row[x] >> 8);
     }
   }
-}
-
-// The size that a PNG or JPEG claims, before it is decoded: a few bytes may claim gigabytes.
-std::optional<std::pair<std::uint32_t, std::uint32_t>> StatedSize(const std::uint8_t* bytes,
-                                                                  std::size_t size) {
-  const auto big_endian = [&](std::size_t at, int count) {
-    std::uint32_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + static_cast<std::size_t>(i)];
-    return value;
-  };
-  if (size >= 24 && std::memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0) {
-    return std::pair(big_endian(16, 4), big_endian(20, 4));
-  }
-  if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8) return std::nullopt;
-  // JPEG: segments of marker (ff xx), length and contents, until the frame's.
-  for (std::size_t at = 2; at + 9 <= size && bytes[at] == 0xff;) {
-    const std::uint8_t marker = bytes[at + 1];
-    if (marker == 0xff) {  // fill
-      ++at;
-      continue;
-    }
-    if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
-      return std::pair(big_endian(at + 7, 2), big_endian(at + 5, 2));
-    }
-    at += 2 + big_endian(at + 2, 2);
-  }
-  return std::nullopt;
 }
 
 // "bayer_rggb8; png compressed bayer_rggb8": what the pixels were before.
@@ -297,7 +270,7 @@ Image ToImage(const ros::CompressedImage& image, const std::string& where) {
     throw InputError(where + ": format \"" + Printable(image.format) +
                      "\" is not read; expected JPEG or PNG");
   }
-  CheckSize(size->first, size->second, where);
+  CheckSize(size->width, size->height, where);
   Image out;
   out.utime = image.header.utime;
   out.pixels = rgbdt::DecodeImage(image.data, image.size, where);
