@@ -55,7 +55,7 @@ Seen ReadAll(const std::filesystem::path& path) {
 class Bags : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& bytes) {
-    const std::filesystem::path path = dir_ / "bag";
+    std::filesystem::path path = dir_ / "bag";
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
   }
@@ -165,7 +165,8 @@ TEST_F(Bags, DamagedAnywhereEndsAndSaysSo) {
 
 TEST_F(Bags, WhatUnpacksToTooMuchIsLeftOutAndTheNextIsRead) {
   const std::string records = test::McapChannels() + test::McapMessage(1, 1000, "one");
-  const std::string good = test::McapChunk("zstd", Zstd(records), records.size(), Crc(records));
+  const std::string good =
+      test::McapChunk("zstd", Zstd(records), records.size(), Crc(records)) + test::McapEnd();
   const std::string zeros(1'000'000, '\0');
   const struct {
     std::string chunk, says;
@@ -180,7 +181,10 @@ TEST_F(Bags, WhatUnpacksToTooMuchIsLeftOutAndTheNextIsRead) {
       {test::McapMessage(9, 1000, "whose?"), "channel 9"},
   };
   for (const auto& [chunk, says] : bad) {
-    const Seen seen = Read(test::kMcapMagic + chunk + good + test::McapEnd());
+    std::string bytes = test::kMcapMagic;
+    bytes += chunk;
+    bytes += good;
+    const Seen seen = Read(bytes);
     EXPECT_THAT(seen.messages, ElementsAre("/a 1 one")) << says;
     EXPECT_THAT(seen.problems, ElementsAre(HasSubstr(says))) << says;
   }
@@ -206,7 +210,7 @@ TEST_F(Bags, OfManyProblemsTheFirstAreTold) {
 class SqliteBag : public Bags {
  protected:
   std::filesystem::path Make(const std::string& script) {
-    const std::filesystem::path path = dir_ / "bag.db3";
+    std::filesystem::path path = dir_ / "bag.db3";
     std::filesystem::remove(path);
     sqlite3* database = nullptr;
     sqlite3_open(path.c_str(), &database);
