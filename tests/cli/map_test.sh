@@ -9,7 +9,8 @@ log=$scratch/fused.lcmlog
 # An LCM log of fused clouds (lcmtypes/rgbdt_cloud_t.lcm) over level ground with a crate on it, and
 # one of sweeps (lcmtypes/cloud_t.lcm) of a drive.
 drive=$scratch/drive.lcmlog
-"$bin/map_test_log" "$log" "$scratch/other.lcmlog" "$drive" "$scratch/truth"
+"$bin/map_test_log" "$log" "$scratch/other.lcmlog" "$drive" "$scratch/rigged.lcmlog" \
+  "$scratch/truth"
 
 accepts "map" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/kept/map.ply"
 grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
@@ -20,6 +21,7 @@ cmp "$scratch/kept/map.ply" "$scratch/again.ply" || complain "the same log, anot
 
 # A drive with nothing but sweeps: the way is found from them.
 accepts "map of a drive" "$bin/rgbdt" map "$drive" --out "$scratch/drive/map.ply"
+grep '^18 clouds' "$scratch/output" | cut -d ';' -f 1 >"$scratch/unrigged" || complain "clouds of the drive"
 grep -q 'poses by odometry' "$scratch/output" || complain "where does the way come from?"
 grep -q '^20 sweeps, 1 without a place, 0 that' "$scratch/output" || complain "sweeps of the drive"
 head -c 500 "$scratch/drive/map.ply" | grep -qa '^comment frame: map$' || complain "the drive's frame"
@@ -35,6 +37,9 @@ times = [int(l[0].replace(".", "")) for l in (first, last)]
 true = math.dist(truth[times[0]], truth[times[1]])
 assert true > 4 and abs(found - true) < 0.05, (found, true)
 END
+accepts "a drive with a rig" "$bin/rgbdt" map "$scratch/rigged.lcmlog" --out "$scratch/drive/rigged.ply"
+grep '^18 clouds' "$scratch/output" | cut -d ';' -f 1 | cmp - "$scratch/unrigged" ||
+  complain "fused by a rig whose cameras saw nothing, another map"
 accepts "the drive again" "$bin/rgbdt" map "$drive" --out "$scratch/drive/again.ply"
 for kind in ply tum png; do
   cmp "$scratch/drive/map.$kind" "$scratch/drive/again.$kind" || complain "the same drive, another $kind"

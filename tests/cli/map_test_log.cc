@@ -1,10 +1,12 @@
 // Writes LCM logs for map_test.sh: of fused clouds over level ground with a crate, 27 C warm; of
-// poses only; and of the sweeps of a drive through a street, with the truth beside it: a line a
-// sweep, time [us] x y z [m]. Usage: map_test_log FUSED OTHER DRIVE TRUTH
+// poses only; and of the sweeps of a drive through a street, without a rig and with one, and the
+// truth beside it: a line a sweep, time [us] x y z [m]. Usage: map_test_log FUSED OTHER DRIVE
+// RIGGED TRUTH
 #include <cmath>
 #include <fstream>
-#include <utility>
 
+#include "calib/files/schema/rig_file.h"
+#include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
 #include "tests/log_writer.h"
 #include "tests/study/drives.h"
@@ -46,12 +48,15 @@ void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
 }
 
-void WriteDrive(const char* log_path, const char* truth_path) {
+void WriteDrive(const char* log_path, const char* rigged_path, const char* truth_path) {
   rgbdt::simulate::SpinningOptions lidar = rgbdt::simulate::SpinningLidar(32);
   lidar.azimuth_step_rad *= 4;
   rgbdt::study::Drive drive(rgbdt::study::DriveScene::kStreet, 4, lidar,
                             rgbdt::study::StreetWay(4, 5));
-  rgbdt::test::LogWriter log(log_path);
+  rgbdt::test::LogWriter log(log_path), rigged(rigged_path);
+  const rgbdt::Rig rig = rgbdt::ParseRig(
+      rgbdt::PrintRig(rgbdt::simulate::Simulator(rgbdt::simulate::Options()).rig()), "rig");
+  Write(&rigged, rgbdt::RigText{0, rig.hash, rig.text});
   std::ofstream truth(truth_path);
   truth.precision(9);
   for (int i = 0; i < 20; ++i) {
@@ -63,15 +68,17 @@ void WriteDrive(const char* log_path, const char* truth_path) {
     const Utime last = chunk.cloud.utime.back();
     const Eigen::Vector3d place = drive.At(last).translation;
     truth << last << ' ' << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
-    Write(&log, std::move(chunk));
+    Write(&log, chunk);
+    Write(&rigged, chunk);
   }
   log.Close();
+  rigged.Close();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 1;
+  if (argc != 6) return 1;
   rgbdt::test::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
@@ -81,6 +88,6 @@ int main(int argc, char** argv) {
   pose.source = "odometry";
   Write(&other, pose);
   other.Close();
-  WriteDrive(argv[3], argv[4]);
+  WriteDrive(argv[3], argv[4], argv[5]);
   return 0;
 }
