@@ -41,8 +41,8 @@ double Information::LeastTold(const Vector6d& delta) const {
     told.push_back(delta.dot(sums.all * delta) - noise);
     squared += 2 * noise * noise;
   }
-  std::sort(told.begin(), told.end());
   const std::size_t kept = told.size() - std::min(told.size(), kLeftOut + told.size() / kOneIn);
+  std::nth_element(told.begin(), told.begin() + static_cast<std::ptrdiff_t>(kept), told.end());
   double least = -kScatters * std::sqrt(squared);
   for (std::size_t i = 0; i < kept; ++i) least += told[i];
   return least;
@@ -73,6 +73,7 @@ Directions Information::Told(double lever_m, double limit_m) const {
 std::vector<std::string> DegenerateWords(
     const Eigen::Matrix<double, 6, Eigen::Dynamic>& directions) {
   std::vector<std::string> words;
+  words.reserve(static_cast<std::size_t>(directions.cols()));
   // How much of each number lies in the directions together: as many numbers as directions.
   const Vector6d share = directions.rowwise().squaredNorm();
   std::array<int, 6> order = {0, 1, 2, 3, 4, 5};

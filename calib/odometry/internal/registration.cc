@@ -13,7 +13,7 @@ constexpr int kMostIterations = 25;
 constexpr double kOnPlane = 0.1;       // [m]
 constexpr double kLeastScale = 0.003;  // [m] of distances
 constexpr double kSettled = 0.02;      // [m] after smaller steps points keep their planes
-constexpr double kDone = 1e-4;         // [m], of the lever for turns
+constexpr double kDone = 3e-4;         // [m], of the lever for turns
 // A beam as wide as most that grazes a plane comes back from its near end: [rad]
 constexpr double kGrazing = 0.05;
 constexpr int kMostSearches = 10;    // iterations in which points look for their planes
@@ -49,7 +49,7 @@ class Solver {
     for (int i = 0; i < kMostIterations && !result_.converged; ++i) {
       Evaluate(!settled);
       if (result_.matched < kFewest) return result_;
-      if (!first_ && i % 3 == 0) FindDegenerate();
+      if (!first_ && (i == 0 || i == 3)) FindDegenerate();
       const double step = Step();
       ++result_.iterations;
       if (settled && step < kDone) {
