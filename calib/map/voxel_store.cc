@@ -2,21 +2,14 @@
 
 #include <algorithm>
 
+#include "calib/model/hash.h"
+
 namespace rgbdt {
 namespace {
 
 constexpr int kBits = 21;  // an axis
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 constexpr std::size_t kFirstSlots = 1024;
-
-// The finaliser of MurmurHash3 (Appleby): every bit of the key moves every bit of the hash.
-std::uint64_t Hash(std::uint64_t key) {
-  key ^= key >> 33;
-  key *= 0xff51afd7ed558ccdULL;
-  key ^= key >> 33;
-  key *= 0xc4ceb9fe1a85ec53ULL;
-  return key ^ (key >> 33);
-}
 
 }  // namespace
 

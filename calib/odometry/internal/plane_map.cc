@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/model/hash.h"
 #include "calib/model/linear_algebra.h"
 
 namespace rgbdt::odometry {
@@ -48,15 +49,6 @@ Eigen::Vector3d MiddleOf(const Place& place, double side) {
   return side * (Eigen::Vector3d(static_cast<double>(place[0]), static_cast<double>(place[1]),
                                  static_cast<double>(place[2])) +
                  Eigen::Vector3d::Constant(0.5));
-}
-
-// The finaliser of MurmurHash3 (Appleby): every bit of the key moves every bit of the hash.
-std::uint64_t Hash(std::uint64_t key) {
-  key ^= key >> 33;
-  key *= 0xff51afd7ed558ccdULL;
-  key ^= key >> 33;
-  key *= 0xc4ceb9fe1a85ec53ULL;
-  return key ^ (key >> 33);
 }
 
 }  // namespace
