@@ -89,7 +89,7 @@ std::optional<ImageSize> StatedSize(const void* data, std::size_t size) {
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
   if (size == 0) throw InputError(where + " is empty; expected an image");
   const auto said = StatedSize(bytes, size);
-  if (said && said->width * said->height > kMostPixels) {
+  if (said && said->height > 0 && said->width > kMostPixels / said->height) {
     throw InputError(where + " is an image of " + std::to_string(said->width) + "x" +
                      std::to_string(said->height) + " pixels; expected at most " +
                      std::to_string(kMostPixels));

@@ -56,7 +56,7 @@ std::string Text(const char* format, double a, double b) {
 
 void OdometryOptions::Check() const {
   constexpr OptionCheck check("odometry");
-  check.NotNegative(min_range_m, "min_range_m");
+  check.Require(min_range_m >= 0.05, "min_range_m", min_range_m, "0.05 or more");
   check.Require(max_range_m > min_range_m && max_range_m <= 1000, "max_range_m", max_range_m,
                 "more than min_range_m, up to 1000");
   check.Require(selected >= 500 && selected <= 1000000, "selected", static_cast<double>(selected),
@@ -139,8 +139,9 @@ std::string Odometry::Impl::WhyNot(const Registration& found, const Motion& befo
                 static_cast<double>(found.matched), kFewestMatched);
   }
   if (found.fit < kLeastFit) {
-    return Text("%.0f%% of the sweep's points fit what was seen before; expected %.0f%% or more",
-                100 * found.fit, 100 * kLeastFit);
+    return Text(
+        "%.0f%% of the sweep's points that lie near a plane fit it; expected %.0f%% or more",
+        100 * found.fit, 100 * kLeastFit);
   }
   const Vector6d change = (found.motion.velocity - before.velocity) / seconds;
   const double most = change.cwiseAbs().maxCoeff();
@@ -203,6 +204,7 @@ OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
     result.reason = Text("the sweep has %.0f points of use; expected %.0f or more",
                          static_cast<double>(sweep.points.size()), kFewestPoints);
     if (seconds > 0 && !first) Lose(sweep, seconds);
+    if (seconds == 0) begun = false;  // also where the clock was set back
     Report(sweep, &result);
   } else if (seconds == 0) {
     result.restarted = anew;

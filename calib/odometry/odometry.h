@@ -19,7 +19,7 @@ struct OdometryOptions {
   double turn_radps2 = 1.5;          ///< [rad/s^2] about each axis, 1 sigma
   double degenerate_m = 0.03;        ///< what a sweep tells of a direction worse is not told
   double keep_m = 100;               ///< what is farther than this from the rig is forgotten
-  std::size_t max_voxels = 2000000;  ///< of the map, all sizes together; some 300 bytes each
+  std::size_t max_voxels = 2000000;  ///< of the map, all sizes together; 300 to 600 bytes each
 
   /// Throws InputError naming the field and its value.
   void Check() const;

@@ -82,7 +82,7 @@ std::string SweepCollector::WhyTorn(Utime sweep_utime) const {
   if (!Ended(sweep_utime)) return "";
   const Sweep& sweep = sweeps_.at(sweep_utime);
   const int missing = MissingLines(sweep.chunks);
-  if (missing <= kMaxMissing * sweep.lines) return "";
+  if (missing <= std::max(1.0, kMaxMissing * sweep.lines)) return "";
   return "sweep " + std::to_string(sweep_utime) + " is not whole: " + std::to_string(missing) +
          " of its " + std::to_string(sweep.lines) +
          " lines never came (rgbdt-assembler or this process was started anew, or messages were "

@@ -67,49 +67,24 @@ Cloud DecodeCloud(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& 
   });
 }
 
-const Folders::LensFile* LensFor(const RigWishes& wishes, const TopicChoice& choice,
-                                 std::size_t index) {
-  std::vector<const Folders::LensFile*> in_order;
-  for (const Folders::LensFile& lens : wishes.lenses) {
-    if (lens.camera == choice.cameras[index].name) return &lens;
-    if (lens.camera.empty()) in_order.push_back(&lens);
-  }
-  if (index < in_order.size()) return in_order[index];
-  return in_order.size() == 1 ? in_order[0] : nullptr;
-}
-
-void CheckLensNames(const RigWishes& wishes, const TopicChoice& choice) {
-  std::string names;
-  for (const TopicChoice::Camera& camera : choice.cameras) {
-    names += (names.empty() ? "" : ", ") + camera.name;
-  }
-  for (const Folders::LensFile& lens : wishes.lenses) {
-    const bool known = std::any_of(choice.cameras.begin(), choice.cameras.end(),
-                                   [&](const auto& camera) { return camera.name == lens.camera; });
-    if (lens.camera.empty() || known) continue;
-    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " +
-                     names);
-  }
-}
-
-std::string ModelName(Lens::Model model) {
-  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
+std::vector<std::string> NamesOf(const TopicChoice& choice) {
+  std::vector<std::string> names;
+  for (const TopicChoice::Camera& camera : choice.cameras) names.push_back(camera.name);
+  return names;
 }
 
 // A file that was given, else the bag's CameraInfo.
 std::optional<FileLens> FindLens(const TopicChoice& choice, const RigWishes& wishes,
                                  std::size_t index) {
   const TopicChoice::Camera& camera = choice.cameras[index];
-  const Folders::LensFile* file = LensFor(wishes, choice, index);
-  LensWanted wanted{file != nullptr ? file->file : std::filesystem::path(),
-                    file != nullptr ? file->entry : "",
+  if (auto given = LensOf(wishes.lenses, NamesOf(choice), index, wishes.model)) return given;
+  if (camera.info == nullptr) return std::nullopt;
+  LensWanted wanted{camera.info->topic.name,
+                    "",
                     camera.name,
                     static_cast<int>(index),
                     static_cast<int>(choice.cameras.size()),
                     wishes.model};
-  if (file != nullptr) return ReadLensFile(wanted);
-  if (camera.info == nullptr) return std::nullopt;
-  wanted.file = camera.info->topic.name;
   if (!camera.info->info->distortion_model.empty()) wanted.model.reset();  // it says itself
   return ToLens(*camera.info->info, wanted);
 }
@@ -121,7 +96,7 @@ std::string SetLens(const TopicChoice& choice, const RigWishes& wishes, std::siz
   if (found) {
     CheckLensSize(*found, spec->name, spec->width, spec->height);
     spec->lens = found->lens;
-    return ModelName(spec->lens.model) + " lens of " + found->where;
+    return NameOf(spec->lens.model) + " lens of " + found->where;
   }
   if (!wishes.model || !wishes.board.HasPattern()) {
     throw InputError("camera \"" + spec->name + "\" has no lens: the bag has no CameraInfo of it" +
@@ -132,7 +107,7 @@ std::string SetLens(const TopicChoice& choice, const RigWishes& wishes, std::siz
                           : ""));
   }
   spec->lens.model = *wishes.model;
-  return ModelName(spec->lens.model) + " lens, not known yet";
+  return NameOf(spec->lens.model) + " lens, not known yet";
 }
 
 // By tf_static, and a line about it.
@@ -154,7 +129,7 @@ std::string SetGuess(const BagSurvey& survey, const TopicChoice& choice,
 
 BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choice,
                const RigWishes& wishes) {
-  CheckLensNames(wishes, choice);
+  CheckLensFiles(wishes.lenses, NamesOf(choice));
   BagRig out;
   out.rig.lidar.name = "lidar";
   out.rig.target = wishes.board;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calib/model/errors.h"
+#include "calib/model/statistics.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -19,6 +20,15 @@ const Stamped& Nearest(const std::vector<Stamped>& stamped, Utime utime) {
   const auto before = after - 1;
   if (after == stamped.end()) return *before;
   return utime - before->utime <= after->utime - utime ? *before : *after;
+}
+
+// From a cloud to the next, median; of a single one as far as an image may be.
+double SpacingOf(const std::vector<Stamped>& clouds, double otherwise_s) {
+  std::vector<double> apart;
+  for (std::size_t i = 1; i < clouds.size(); ++i) {
+    apart.push_back(ToSeconds(clouds[i].utime - clouds[i - 1].utime));
+  }
+  return apart.empty() ? otherwise_s : std::max(otherwise_s, Median(std::move(apart)));
 }
 
 }  // namespace
@@ -38,11 +48,16 @@ std::vector<Moment> PairAt(const TopicChoice& choice, const std::vector<Utime>& 
   std::sort(sorted.begin(), sorted.end());
   std::vector<Moment> moments;
   double nearest_s = std::numeric_limits<double>::infinity();
-  std::string alone;
+  const double spacing_s = SpacingOf(choice.cloud->stamped, max_apart_s);
+  std::string alone, far;
   Utime last = std::numeric_limits<Utime>::min();
   for (const Utime time : sorted) {
     Moment moment;
     moment.cloud = Nearest(choice.cloud->stamped, time);
+    if (std::abs(ToSeconds(moment.cloud.utime - time)) > spacing_s) {
+      far += (far.empty() ? "" : ", ") + Fixed(ToSeconds(time - start), 2) + " s";
+      continue;
+    }
     if (moment.cloud.utime == last) continue;
     last = moment.cloud.utime;
     bool any = false;
@@ -60,6 +75,11 @@ std::vector<Moment> PairAt(const TopicChoice& choice, const std::vector<Utime>& 
     } else {
       alone += (alone.empty() ? "" : ", ") + Fixed(ToSeconds(moment.cloud.utime - start), 2) + " s";
     }
+  }
+  if (!far.empty()) {
+    far = "no cloud is within " + Fixed(spacing_s, 3) + " s of: " + far;
+    if (moments.empty() && alone.empty()) throw InputError(far);
+    left_over->push_back(far);
   }
   if (moments.empty() && !sorted.empty()) {
     throw InputError("no image is within " + Fixed(max_apart_s, 3) +

@@ -18,8 +18,9 @@ struct Moment {
 Utime StartOf(const TopicChoice& choice);
 
 /// Of each of these times the nearest cloud, once, with each camera's nearest image within
-/// `max_apart_s` of it; in order. Clouds without any image are told in `left_over`. Throws
-/// InputError, with how far apart they are, where none has one.
+/// `max_apart_s` of it; in order. Times from which the nearest cloud is farther than clouds usually
+/// are from each other, and clouds without any image, are told in `left_over`. Throws InputError,
+/// with how far apart they are, where none is left.
 std::vector<Moment> PairAt(const TopicChoice& choice, const std::vector<Utime>& times,
                            double max_apart_s, std::vector<std::string>* left_over);
 

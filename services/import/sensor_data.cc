@@ -219,6 +219,11 @@ void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
   if (cloud.width == 0 || cloud.height == 0 || cloud.point_step == 0) {
     throw InputError(where + ": holds no points");
   }
+  if (std::uint64_t{cloud.width} * cloud.height > kMostSweepPoints) {
+    throw InputError(where + ": has " + std::to_string(cloud.width) + " x " +
+                     std::to_string(cloud.height) + " points; expected at most " +
+                     std::to_string(kMostSweepPoints));
+  }
   const std::uint64_t step = cloud.height == 1 ? row : cloud.row_step;
   if (step < row || cloud.size < row ||
       (cloud.height > 1 && (cloud.size - row) / step < cloud.height - 1)) {
@@ -242,6 +247,10 @@ Image ToImage(const ros::Image& image, const std::string& where) {
   const Encoding& encoding = EncodingOf(image.encoding, where);
   CheckSize(image.width, image.height, where);
   const std::size_t row = image.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
+  if (image.step % static_cast<std::size_t>(CV_ELEM_SIZE1(encoding.type)) != 0) {
+    throw InputError(where + ": rows of 16-bit pixels are " + std::to_string(image.step) +
+                     " bytes apart; expected an even number");
+  }
   if (image.step < row || image.size / image.step < image.height) {
     throw InputError(where + ": is cut short: " + std::to_string(image.height) + " rows of " +
                      std::to_string(row) + " bytes, " + std::to_string(image.step) +

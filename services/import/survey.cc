@@ -51,6 +51,10 @@ class Surveyor {
     seen.first_log = std::min(seen.first_log, message.log_utime);
     seen.last_log = std::max(seen.last_log, message.log_utime);
     seen.bytes += message.size;
+    if (stamped_ >= kMostStamped) {
+      throw InputError("more than " + std::to_string(kMostStamped) +
+                       " images and clouds in one bag; split it");
+    }
     try {
       Look(message, &seen);
     } catch (const InputError& error) {
@@ -111,10 +115,7 @@ class Surveyor {
   void Keep(const BagMessage& message, BagSurvey::Topic* seen) {
     const ros::Header header = ros::DecodeHeader(message, seen->topic.encoding);
     if (seen->stamped.empty()) seen->frame = header.frame;
-    if (++stamped_ > kMostStamped) {
-      throw InputError("more than " + std::to_string(kMostStamped) +
-                       " images and clouds in one bag; split it");
-    }
+    ++stamped_;
     seen->stamped.push_back({header.utime != 0 ? header.utime : message.log_utime, message.place});
   }
 

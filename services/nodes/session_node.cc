@@ -360,7 +360,8 @@ Status SessionNode::GetStatus() const {
                 : idle()    ? "waits for a person to ask for something (SESSION_REQUEST)"
                             : "step " + std::to_string(index_ + 1) + " of " +
                                std::to_string(script_.steps.size());
-  if (!identity_.place.empty()) status.text += "; writes " + identity_.place;
+  // First, as another session tells no more than this text's beginning.
+  if (!identity_.place.empty()) status.text = "writes " + identity_.place + "; " + status.text;
   return status;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <optional>
 #include <utility>
 
 #include "calib/fuse/sweep_fuser.h"
@@ -22,7 +24,9 @@ bool IsImage(const std::string& channel) {
 /// The log's messages on some channels, one after the other; broken ones are counted.
 class Reader {
  public:
-  Reader(const std::string& path, MappedDrive* drive) : log_(path), drive_(drive) {}
+  /// `known`: channels of which broken messages were counted before.
+  Reader(const std::string& path, MappedDrive* drive, std::function<bool(const std::string&)> known)
+      : log_(path), drive_(drive), known_(std::move(known)) {}
 
   template <typename Wanted, typename Take>
   void Each(const Wanted& wanted, const Take& take, const std::function<void(double)>& progress) {
@@ -31,33 +35,50 @@ class Reader {
         progress(static_cast<double>(log_.position()) / static_cast<double>(log_.size()));
       }
       if (!wanted(event->channel)) continue;
+      Message message;
       try {
-        take(Decode(event->channel, event->bytes.data(), event->bytes.size()));
+        message = Decode(event->channel, event->bytes.data(), event->bytes.size());
       } catch (const std::exception& e) {
-        ++drive_->dropped;
-        drive_->last_problem = e.what();
+        if (!known_(event->channel)) Drop(e);
+        continue;
+      }
+      try {
+        take(message);
+      } catch (const std::exception& e) {
+        Drop(e);
       }
     }
   }
 
  private:
+  void Drop(const std::exception& error) {
+    ++drive_->dropped;
+    drive_->last_problem = error.what();
+  }
+
   LogReader log_;
   MappedDrive* drive_;
+  std::function<bool(const std::string&)> known_;
 };
 
-// The log's own poses, or else those of the sweeps; whether it has a rig.
-bool FindWay(const std::string& log, MappedDrive* drive,
-             const std::function<void(double)>& progress) {
+// Read for the way; what is broken there is counted then.
+bool IsOfWay(const std::string& channel) {
+  return channel == "CLOUD" || channel == "POSE" || channel == "RIG";
+}
+
+// The log's own poses, or else those of the sweeps; the log's first rig, if it has one.
+std::optional<RigText> FindWay(const std::string& log, MappedDrive* drive,
+                               const std::function<void(double)>& progress) {
   OdometryNode odometry;
   std::vector<StampedPose> own, found;
-  bool has_rig = false;
-  Reader(log, drive)
+  std::optional<RigText> rig;
+  Reader(log, drive, [](const std::string&) { return false; })
       .Each(
-          [](const std::string& channel) {
-            return channel == "CLOUD" || channel == "POSE" || channel == "RIG";
-          },
+          IsOfWay,
           [&](const Message& message) {
-            has_rig = has_rig || std::holds_alternative<RigText>(message);
+            if (const auto* text = std::get_if<RigText>(&message); text != nullptr && !rig) {
+              rig = *text;
+            }
             if (const auto* pose = std::get_if<StampedPose>(&message)) own.push_back(*pose);
             if (!own.empty()) return;
             for (const Message& answer : odometry.Handle(message)) {
@@ -75,7 +96,7 @@ bool FindWay(const std::string& log, MappedDrive* drive,
       if (name == "maps begun anew") drive->restarts = count;
     }
   }
-  return has_rig;
+  return rig;
 }
 
 Utime NewestOf(const Cloud& cloud) {
@@ -111,7 +132,8 @@ MappedDrive MapDrive(const std::string& log, MapperNode* mapper,
     };
   };
   MappedDrive drive;
-  const bool has_rig = FindWay(log, &drive, part(0));
+  const std::optional<RigText> rig = FindWay(log, &drive, part(0));
+  const bool has_rig = rig.has_value();
   if (drive.way.empty()) {
     throw InputError(log + ": it has no POSE, and of its " + std::to_string(drive.sweeps) +
                      " sweeps (CLOUD) none whose place was found" +
@@ -119,6 +141,8 @@ MappedDrive MapDrive(const std::string& log, MapperNode* mapper,
   }
   FuserNode fuser;
   SweepFuser plain({}, 0.01);
+  // A rig comes once a second: sweeps before the first one would be without.
+  if (rig) fuser.Handle(*rig);
   PosesAhead poses(drive.way);
   const auto map = [&](const Message& fused) {
     const auto* cloud = std::get_if<RgbdtCloud>(&fused);
@@ -127,7 +151,7 @@ MappedDrive MapDrive(const std::string& log, MapperNode* mapper,
     mapper->Handle(fused);
     ++drive.clouds;
   };
-  Reader(log, &drive)
+  Reader(log, &drive, IsOfWay)
       .Each(
           [has_rig](const std::string& channel) {
             return channel == "CLOUD" ||

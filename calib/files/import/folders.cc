@@ -117,22 +117,18 @@ std::string FreeName(const std::string& wanted, const std::set<std::string>& tak
   return name;
 }
 
-std::string ModelName(Lens::Model model) {
-  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
-}
-
 // The file for camera `index` of those that are called `names`; none: it has none.
-const Folders::LensFile* LensFor(const Folders& folders, const std::vector<std::string>& names,
-                                 std::size_t index) {
+const Folders::LensFile* LensFor(const std::vector<Folders::LensFile>& lenses,
+                                 const std::vector<std::string>& names, std::size_t index) {
   const auto by_name = [&](const std::string& name) -> const Folders::LensFile* {
-    for (const Folders::LensFile& lens : folders.lenses) {
+    for (const Folders::LensFile& lens : lenses) {
       if (lens.camera == name) return &lens;
     }
     return nullptr;
   };
   if (const Folders::LensFile* lens = by_name(names[index])) return lens;
   std::vector<const Folders::LensFile*> in_order;
-  for (const Folders::LensFile& lens : folders.lenses) {
+  for (const Folders::LensFile& lens : lenses) {
     if (lens.camera.empty()) in_order.push_back(&lens);
   }
   const auto before = static_cast<std::size_t>(
@@ -151,17 +147,10 @@ const Folders::LensFile* LensFor(const Folders& folders, const std::vector<std::
 // Sets the lens, or the model that is wanted; gives what there is to say of it.
 std::string SetLens(const Folders& folders, const std::vector<std::string>& names,
                     std::size_t index, CameraSpec* spec) {
-  if (const Folders::LensFile* file = LensFor(folders, names, index)) {
-    const FileLens found =
-        ReadLensFile({file->file, file->entry, spec->name, static_cast<int>(index),
-                      static_cast<int>(names.size()), folders.model});
-    const bool shared = file->camera.empty() && folders.lenses.size() < names.size() && index > 0 &&
-                        found.parts == 1;
-    if (!shared) {
-      CheckLensSize(found, spec->name, spec->width, spec->height);
-      spec->lens = found.lens;
-      return ModelName(spec->lens.model) + " lens of " + found.where;
-    }
+  if (const auto found = LensOf(folders.lenses, names, index, folders.model)) {
+    CheckLensSize(*found, spec->name, spec->width, spec->height);
+    spec->lens = found->lens;
+    return NameOf(spec->lens.model) + " lens of " + found->where;
   }
   if (!folders.model) RefuseWithoutLens(spec->name);
   if (!folders.board.HasPattern()) {
@@ -170,7 +159,7 @@ std::string SetLens(const Folders& folders, const std::vector<std::string>& name
                      "--lens FILE");
   }
   spec->lens.model = *folders.model;
-  return ModelName(spec->lens.model) + " lens, not known yet";
+  return NameOf(spec->lens.model) + " lens, not known yet";
 }
 
 ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const FileList& clouds,
@@ -194,19 +183,8 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
 // A line each of what they are.
 std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamera>* cameras) {
   std::vector<std::string> names, lines;
-  std::string list;
-  for (const ReadCamera& camera : *cameras) {
-    names.push_back(camera.spec.name);
-    list += (list.empty() ? "" : ", ") + camera.spec.name;
-  }
-  for (const Folders::LensFile& lens : folders.lenses) {
-    if (lens.camera.empty() || std::count(names.begin(), names.end(), lens.camera) > 0) continue;
-    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " + list);
-  }
-  if (folders.lenses.size() > names.size()) {
-    throw InputError(std::to_string(folders.lenses.size()) + " lens files are given for " +
-                     Counted(names.size(), "camera") + " (" + list + "); expected one for each");
-  }
+  for (const ReadCamera& camera : *cameras) names.push_back(camera.spec.name);
+  CheckLensFiles(folders.lenses, names);
   for (std::size_t i = 0; i < cameras->size(); ++i) {
     CameraSpec& spec = (*cameras)[i].spec;
     const std::string lens = SetLens(folders, names, i, &spec);
@@ -316,6 +294,37 @@ void CheckFolders(const Folders& folders) {
 }
 
 }  // namespace
+
+std::string NameOf(Lens::Model model) {
+  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
+}
+
+std::optional<FileLens> LensOf(const std::vector<Folders::LensFile>& lenses,
+                               const std::vector<std::string>& names, std::size_t index,
+                               std::optional<Lens::Model> model) {
+  const Folders::LensFile* file = LensFor(lenses, names, index);
+  if (file == nullptr) return std::nullopt;
+  FileLens found = ReadLensFile({file->file, file->entry, names[index], static_cast<int>(index),
+                                 static_cast<int>(names.size()), model});
+  const bool first_ones =
+      file->camera.empty() && lenses.size() < names.size() && index > 0 && found.parts == 1;
+  if (first_ones) return std::nullopt;
+  return found;
+}
+
+void CheckLensFiles(const std::vector<Folders::LensFile>& lenses,
+                    const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  for (const Folders::LensFile& lens : lenses) {
+    if (lens.camera.empty() || std::count(names.begin(), names.end(), lens.camera) > 0) continue;
+    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " + list);
+  }
+  if (lenses.size() > names.size()) {
+    throw InputError(std::to_string(lenses.size()) + " lens files are given for " +
+                     Counted(names.size(), "camera") + " (" + list + "); expected one for each");
+  }
+}
 
 std::vector<std::string> FolderSession::WithoutLens() const {
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/import/lens_file.h"
 #include "calib/files/import/pairing.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/rig.h"
@@ -41,6 +42,20 @@ struct FolderSession {
   /// The names of the cameras whose lens is still to be found.
   std::vector<std::string> WithoutLens() const;
 };
+
+/// Of camera `index` of those that are called `names`: from the file that is given for it, by its
+/// name or, where files have none, in the cameras' order; one file may hold the lenses of all.
+/// Nothing: none is for it. Throws InputError.
+std::optional<FileLens> LensOf(const std::vector<Folders::LensFile>& lenses,
+                               const std::vector<std::string>& names, std::size_t index,
+                               std::optional<Lens::Model> model);
+
+/// Throws InputError for lens files of cameras that are none of `names`, or for more than those.
+void CheckLensFiles(const std::vector<Folders::LensFile>& lenses,
+                    const std::vector<std::string>& names);
+
+/// "pinhole" or "fisheye".
+std::string NameOf(Lens::Model model);
 
 /// Reads every image and every cloud once: what cannot be read is left over, and so is what has no
 /// partner. A camera is thermal if its images have 16 bits, or one channel and "thermal" in its

@@ -8,6 +8,9 @@
 
 namespace rgbdt {
 
+/// Of a sweep, also of one that a bag holds.
+inline constexpr std::size_t kMostSweepPoints = 20'000'000;
+
 /// Reads a PCD file (ASCII, binary or binary_compressed). Fields, each of any numeric type:
 ///  - x y z [m], required. Not finite, or all three 0 (as many drivers write it): nothing returned.
 ///  - intensity; where the file's largest is above 1, 0..255 (or, above 255, 0..65535) is brought
@@ -19,7 +22,8 @@ namespace rgbdt {
 ///    of WIDTH beams; HEIGHT 1 is a cloud without order.
 ///  - dir_x dir_y dir_z: unit vector of the beam; origin_x origin_y origin_z [m]: where it starts.
 /// What the file does not have stays empty. Throws InputError naming the file, and where it is cut
-/// short, inconsistent, without x y z or without a single point that returned.
+/// short, inconsistent, without x y z, without a single point that returned or claims more than
+/// kMostSweepPoints.
 Cloud ReadPcd(const std::filesystem::path& path, Utime sweep_utime = 0);
 
 /// The same from bytes; `where` stands for the file in error messages.

@@ -42,7 +42,7 @@ std::size_t BagFile::Read(std::int64_t from, void* to, std::size_t bytes) const 
     const ssize_t got = pread(descriptor_.get(), static_cast<char*>(to) + done, bytes - done,
                               from + static_cast<std::int64_t>(done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) ThrowErrno(path_);
+    if (got < 0) throw DiskError("cannot read " + path_ + ": " + std::strerror(errno));
     if (got == 0) break;
     done += static_cast<std::size_t>(got);
   }

@@ -9,10 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
 #include "services/posix/descriptor.h"
 
 namespace rgbdt::bags {
+
+/// The disk fails: no matter of what is written in the bag, and met again at the next try.
+struct DiskError : InputError {
+  using InputError::InputError;
+};
 
 class BagFile {
  public:
@@ -21,8 +27,7 @@ class BagFile {
 
   const std::string& path() const { return path_; }
   std::int64_t size() const { return size_; }
-  /// At most `bytes` from `from`; fewer at the end of the file. Throws InputError where the disk
-  /// fails.
+  /// At most `bytes` from `from`; fewer at the end of the file. Throws DiskError.
   std::size_t Read(std::int64_t from, void* to, std::size_t bytes) const;
   /// False where the file ends before.
   bool ReadAll(std::int64_t from, std::size_t bytes, std::vector<std::uint8_t>* to) const;

@@ -41,6 +41,8 @@ class McapReader : public BagReader {
         if (NextInChunk(message)) return true;
         if (at_ >= file_.size() || done_) return false;
         if (TakeRecord(message)) return true;
+      } catch (const DiskError&) {
+        throw;
       } catch (const InputError& error) {
         // Of a damaged chunk the next ones are of use: where it ends is known.
         problems_.Add(Where() + ": " + error.what());
@@ -109,7 +111,7 @@ class McapReader : public BagReader {
     }
     if (opcode < kSchema || opcode > kChunk) return false;  // indexes, attachments, later additions
     RequireSize(length);
-    file_.ReadAll(begin, length, &record_);
+    if (!file_.ReadAll(begin, length, &record_)) EndAt("has become shorter while it was read");
     if (opcode == kChunk) {
       UnpackChunk(record_at_);
       in_chunk_ = 0;
@@ -126,7 +128,11 @@ class McapReader : public BagReader {
       const auto length = fields.Number<std::uint64_t>();
       const std::uint8_t* content = fields.Bytes(length);
       in_chunk_ = chunk_.size() - fields.left();
-      if (Take(opcode, content, length, place, message)) return true;
+      try {
+        if (Take(opcode, content, length, place, message)) return true;
+      } catch (const InputError& error) {  // the next record's place is known
+        problems_.Add(Where() + ": " + error.what());
+      }
     }
     return false;
   }

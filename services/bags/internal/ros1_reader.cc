@@ -69,8 +69,10 @@ class Ros1Reader : public BagReader {
         if (NextInChunk(message)) return true;
         if (at_ >= file_.size() || done_) return false;
         if (TakeFileRecord(message)) return true;
+      } catch (const DiskError&) {
+        throw;
       } catch (const InputError& error) {
-        problems_.Add(file_.path() + ", byte " + std::to_string(record_at_) + ": " + error.what());
+        problems_.Add(Where() + ": " + error.what());
         in_chunk_ = chunk_.size();
       }
     }
@@ -107,6 +109,8 @@ class Ros1Reader : public BagReader {
   std::string format() const override { return "ROS 1 bag"; }
 
  private:
+  std::string Where() const { return file_.path() + ", byte " + std::to_string(record_at_); }
+
   [[noreturn]] void EndAt(const std::string& why) {
     done_ = true;
     throw InputError(why + "; what lies before it is read");
@@ -129,7 +133,7 @@ class Ros1Reader : public BagReader {
       throw InputError("a record of " + std::to_string(size) + " bytes is left out; at most " +
                        std::to_string(kMostBagBytes) + " are read at once");
     }
-    file_.ReadAll(data_at, size, &data_);
+    if (!file_.ReadAll(data_at, size, &data_)) EndAt("has become shorter while it was read");
     return data_at + size;
   }
 
@@ -160,7 +164,11 @@ class Ros1Reader : public BagReader {
       Fields fields(chunk_.data() + in_chunk_, chunk_.size() - in_chunk_);
       const Record record = TakeRecord(&fields);
       in_chunk_ = chunk_.size() - fields.left();
-      if (Take(record.header, record.data, record.size, place, message)) return true;
+      try {
+        if (Take(record.header, record.data, record.size, place, message)) return true;
+      } catch (const InputError& error) {  // the next record's place is known
+        problems_.Add(Where() + ": " + error.what());
+      }
     }
     return false;
   }

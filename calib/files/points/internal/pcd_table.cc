@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt::pcd {

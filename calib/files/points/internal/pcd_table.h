@@ -27,7 +27,6 @@ struct File {
 
 /// Whether a file that begins with `head` can be a sweep: throws InputError naming `where` for a
 /// header that is none or claims more points than kMostSweepPoints. For before it is read.
-inline constexpr std::size_t kMostSweepPoints = 20'000'000;
 void CheckSweepHead(std::string_view head, const std::string& where);
 
 /// The bytes must outlive what is returned. Throws InputError naming `where`, and the line or byte;
