@@ -219,11 +219,6 @@ void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
   if (cloud.width == 0 || cloud.height == 0 || cloud.point_step == 0) {
     throw InputError(where + ": holds no points");
   }
-  if (std::uint64_t{cloud.width} * cloud.height > kMostSweepPoints) {
-    throw InputError(where + ": has " + std::to_string(cloud.width) + " x " +
-                     std::to_string(cloud.height) + " points; expected at most " +
-                     std::to_string(kMostSweepPoints));
-  }
   const std::uint64_t step = cloud.height == 1 ? row : cloud.row_step;
   if (step < row || cloud.size < row ||
       (cloud.height > 1 && (cloud.size - row) / step < cloud.height - 1)) {
@@ -231,6 +226,11 @@ void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
                      std::to_string(cloud.height) + " points of " +
                      std::to_string(cloud.point_step) + " bytes are announced, " +
                      std::to_string(cloud.size) + " bytes are there");
+  }
+  if (std::uint64_t{cloud.width} * cloud.height > kMostSweepPoints) {
+    throw InputError(where + ": has " + std::to_string(cloud.width) + " x " +
+                     std::to_string(cloud.height) + " points; expected at most " +
+                     std::to_string(kMostSweepPoints));
   }
 }
 

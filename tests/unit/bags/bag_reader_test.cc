@@ -199,6 +199,20 @@ TEST_F(Bags, ATopicCannotWriteToTheTerminal) {
   EXPECT_EQ(seen.topics.at(0).name, "/?[2J?\xEF\xBF\xBD");
 }
 
+TEST_F(Bags, AMessageOfAnUnknownChannelCostsItselfAlone) {
+  const std::string records = test::McapChannels() + test::McapMessage(9, 0, "lost") +
+                              test::McapMessage(1, 1'000'000, "one");
+  const Seen mcap = Read(test::kMcapMagic + test::McapChunk("", records, records.size()));
+  EXPECT_THAT(mcap.messages, ElementsAre("/a 1000 one"));
+  EXPECT_THAT(mcap.problems, ElementsAre(HasSubstr("channel 9")));
+  const std::string ros1 =
+      test::Ros1Message(1, "lost") + test::Ros1Connection() + test::Ros1Message(2, "two");
+  const Seen seen = Read(test::kRos1Magic +
+                         test::Ros1Chunk("none", ros1, static_cast<std::uint32_t>(ros1.size())));
+  EXPECT_THAT(seen.messages, ElementsAre("/a 2500000 two"));
+  EXPECT_THAT(seen.problems, ElementsAre(HasSubstr("connection 5")));
+}
+
 TEST_F(Bags, OfManyProblemsTheFirstAreTold) {
   std::string bytes = test::kMcapMagic;
   for (int i = 0; i < 1000; ++i) bytes += test::McapMessage(9, 0, "");

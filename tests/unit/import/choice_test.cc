@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calib/files/atomic_file.h"
+#include "calib/files/import/folders.h"
 #include "services/import/moments.h"
 #include "services/import/still.h"
 #include "services/import/transforms.h"
@@ -110,6 +112,37 @@ TEST(Moments, AtTimesEachCloudOnce) {
   EXPECT_EQ(moments[0].cloud.utime, FromSeconds(10));
   EXPECT_EQ(moments[1].cloud.utime, FromSeconds(12));
   EXPECT_THAT(EverySeconds(paired.choice, 1.5), ElementsAre(FromSeconds(10), FromSeconds(12)));
+}
+
+TEST(Moments, ATimeFarFromAnyCloudIsLeftOver) {
+  const Paired paired;
+  std::vector<std::string> left_over;
+  const auto moments = PairAt(paired.choice, {FromSeconds(500), FromSeconds(12)}, 0.1, &left_over);
+  ASSERT_THAT(moments, SizeIs(1));
+  EXPECT_EQ(moments[0].cloud.utime, FromSeconds(12));
+  EXPECT_THAT(left_over, ElementsAre(HasSubstr("of: 490.02 s")));
+  EXPECT_THAT(test::ErrorOf([&] { PairAt(paired.choice, {FromSeconds(500)}, 0.1, &left_over); }),
+              HasSubstr("no cloud is within 1.000 s of: 490.02 s"));
+}
+
+TEST(LensFiles, OneFileOfOneLensIsNotTwoCameras) {
+  const test::TempDir dir;
+  WriteFileAtomically(dir / "left.yaml",
+                      "width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
+                      "D: [0, 0, 0, 0, 0]\n");
+  const Folders::LensFile unnamed{"", dir / "left.yaml", ""};
+  Folders::LensFile of_a = unnamed;
+  of_a.camera = "a";
+  const std::vector<std::string> two = {"a", "b"}, three = {"a", "b", "c"};
+  EXPECT_TRUE(LensOf({unnamed}, two, 0, {}));
+  EXPECT_FALSE(LensOf({unnamed}, two, 1, {}));
+  EXPECT_TRUE(LensOf({of_a, unnamed, unnamed}, three, 2, {}));
+  EXPECT_THAT(test::ErrorOf([&] { CheckLensFiles({of_a}, {"left"}); }),
+              HasSubstr("the cameras are left"));
+  EXPECT_THAT(test::ErrorOf([&] {
+                CheckLensFiles({unnamed, unnamed, unnamed}, two);
+              }),
+              HasSubstr("3 lens files are given for 2 cameras"));
 }
 
 TEST(Moments, ClocksThatDisagreeAreTold) {

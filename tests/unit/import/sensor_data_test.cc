@@ -71,6 +71,7 @@ TEST(RosPixels, WhatCannotBeIsRefused) {
   EXPECT_THAT(error(RosImage("mono8", 4'000'000'000U, 4'000'000'000U, 4'000'000'000U, bytes)),
               HasSubstr("px; expected"));
   EXPECT_THAT(error(RosImage("yuv422", 1, 1, 2, bytes)), HasSubstr("odd width"));
+  EXPECT_THAT(error(RosImage("mono16", 1, 2, 3, bytes)), HasSubstr("even number"));
 }
 
 ros::CompressedImage Compressed(const std::string& format, const std::string& bytes) {

@@ -191,6 +191,24 @@ TEST(Odometry, AfterALongGapTheMapIsBegunAnew) {
   EXPECT_TRUE(odometry.Add(drive.Sweep(25)).converged);
 }
 
+TEST(Odometry, AClockThatIsSetBackAtAnEmptySweepIsFollowed) {
+  Odometry odometry;
+  Drive drive = Street();
+  for (int i = 0; i < 4; ++i) odometry.Add(drive.Sweep(i));
+  const auto earlier = [](Cloud cloud) {
+    constexpr Utime kHour = 3600 * kMicrosecondsPerSecond;
+    cloud.sweep_utime -= kHour;
+    for (Utime& utime : cloud.utime) utime -= kHour;
+    return cloud;
+  };
+  Cloud empty;
+  empty.sweep_utime = drive.Sweep(4).sweep_utime;
+  EXPECT_FALSE(odometry.Add(earlier(empty)).converged);
+  const OdometryResult after = odometry.Add(earlier(drive.Sweep(5)));
+  EXPECT_TRUE(after.restarted);
+  EXPECT_TRUE(odometry.Add(earlier(drive.Sweep(6))).converged);
+}
+
 TEST(Odometry, WhatCannotBeTakenIsAsIfItHadNeverCome) {
   Odometry one, two;
   Drive drive = Street();
@@ -225,6 +243,10 @@ TEST(Odometry, OptionsNameTheFieldAndItsValue) {
   options.selected = 3;
   EXPECT_THAT([&] { Odometry{options}; },
               ::testing::ThrowsMessage<InputError>(HasSubstr("selected is 3")));
+  options = {};
+  options.min_range_m = 0;  // where drivers put beams that returned nothing
+  EXPECT_THAT([&] { options.Check(); },
+              ::testing::ThrowsMessage<InputError>(HasSubstr("min_range_m")));
   options = {};
   options.max_range_m = std::nan("");
   EXPECT_THAT([&] { options.Check(); },
