@@ -25,6 +25,7 @@ TARGETS = {
     "odometry_degenerate_found": (">=", 1),
     "odometry_degenerate_false": ("<=", 0),
     "odometry_lost": ("<=", 0),
+    "odometry_way_over_sigma": ("in", 0.5, 1.5),
 }
 
 
@@ -77,6 +78,20 @@ def absolute_error(truth, found):
     return math.sqrt(((turned - (a - a.mean(0))) ** 2).sum(1).mean())
 
 
+def way_over_sigma(run):
+    """Of the way from each sweep to the next: its squared error over both places' variances. What
+    the map is off by is common to both, so that an honest covariance gives 1 or less."""
+    placed = [r for r in run if r["converged"]]
+    truth, found = poses(placed, "true_"), poses(placed, "")
+    ratios = []
+    for i in range(1, len(placed)):
+        step = (np.linalg.inv(found[i - 1]) @ found[i])[:3, 3]
+        true_step = (np.linalg.inv(truth[i - 1]) @ truth[i])[:3, 3]
+        variance = placed[i - 1]["sigma_m"] ** 2 + placed[i]["sigma_m"] ** 2
+        ratios.append(((step - true_step) ** 2).sum() / variance)
+    return mean(ratios)
+
+
 def runs(rows, kind):
     parts = sorted({r["part"] for r in rows if r["part"].startswith(f"odometry-{kind}-")})
     return [pick(rows, part=part) for part in parts]
@@ -97,6 +112,7 @@ def summary(run):
         "slowest_ms": 1000 * max(column(placed, "seconds")),
         "lost": sum(r["converged"] == 0 for r in placed),
         "degenerate": sum(r["degenerate"] > 0 for r in placed),
+        "over_sigma": way_over_sigma(placed),
     }
 
 
@@ -117,6 +133,7 @@ def figures_of(rows):
         yield figure(f"{name}_deg_per_100m", mean([s["deg_per_100m"] for s in own]), "deg")
         yield figure(f"{name}_ate_m", median([s["ate_m"] for s in own]), "m")
         yield figure(f"{name}_realtime_factor", min(s["realtime"] for s in own))
+        yield figure(f"{name}_way_over_sigma", mean([s["over_sigma"] for s in own]))
         yield figure(f"{name}_lost", sum(s["lost"] for s in own))
         yield figure(f"{name}_degenerate_false", sum(s["degenerate"] for s in own))
         yield figure(f"{name}_drives", len(own))
