@@ -55,7 +55,8 @@ struct ImageEdges {
   std::vector<Eigen::Vector2d> corners;
   /// Board's corners in order round the board; beginning with the target's top left where there is
   /// a pose.
-  std::array<Eigen::Vector2d, 4> outline_corners;
+  std::array<Eigen::Vector2d, 4> outline_corners{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                                 Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   /// A person said where the board is. With a pose: all else was measured from there; without one
   /// (the paper's method): the outline corners are the picks, the inner ones follow from them.
   bool picked = false;

@@ -146,7 +146,8 @@ TEST_F(TwoSessionsTest, TheSecondIsRefusedAndTheFirstEndsAsIfUndisturbed) {
     EXPECT_EQ(Calibration(folder), undisturbed);
     EXPECT_THAT(OpenSession(dir_ / folder).views, ElementsAre("0001", "0002"));
     for (const SessionCommand& command : world_.commands) EXPECT_EQ(command.command >> 32, 5);
-    const auto warns = HasSubstr("another rgbdt-session is on this bus (it says: listens");
+    const auto warns =
+        HasSubstr("another rgbdt-session is on this bus (it says: writes host:/second; listens");
     EXPECT_THAT(first_->problems, ElementsAre(warns)) << "once";
     EXPECT_THAT(first_->problems, Each(HasSubstr("host:/second")));
     std::vector<std::string> texts;
