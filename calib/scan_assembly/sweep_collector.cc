@@ -82,8 +82,7 @@ std::string SweepCollector::WhyTorn(Utime sweep_utime) const {
   if (!Ended(sweep_utime)) return "";
   const Sweep& sweep = sweeps_.at(sweep_utime);
   const int missing = MissingLines(sweep.chunks);
-  const double most = std::max(kMaxMissing * sweep.lines, sweep.lines >= kManyLines ? 1.0 : 0.0);
-  if (missing <= most) return "";
+  if (missing <= kMaxMissing * sweep.lines) return "";
   return "sweep " + std::to_string(sweep_utime) + " is not whole: " + std::to_string(missing) +
          " of its " + std::to_string(sweep.lines) +
          " lines never came (rgbdt-assembler or this process was started anew, or messages were "

@@ -20,7 +20,6 @@ class SweepCollector {
   static constexpr std::size_t kMaxChunks = 100'000;    ///< of one sweep
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
   static constexpr double kMaxMissing = 0.01;           ///< of its lines: gaps look like edges
-  static constexpr int kManyLines = 50;                 ///< of so many one may be missing
 
   /// Throws InputError for a chunk that cannot be joined to those of its sweep.
   void Add(CloudChunk chunk);
