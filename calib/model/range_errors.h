@@ -38,8 +38,9 @@ inline constexpr int kMostLasers = 256;
 /// Whether `ring` names lasers: a turned scanner's only one leaves its beams' numbers there.
 bool NamesLasers(const Cloud& cloud);
 
-/// Of an intensity of 0 to 1, the logarithm to base 2, no less than kLeastLog2Intensity.
-inline constexpr double kLeastLog2Intensity = -8;
+/// Of an intensity of 0 to 1, the logarithm to base 2, no less than kLeastLog2Intensity: 1 of
+/// 65535, of which some LIDARs use the lowest hundreds alone.
+inline constexpr double kLeastLog2Intensity = -16;
 double Log2Intensity(double intensity);
 
 /// Where a value lies between places one apart: it is (1 - share) of `lower` and share of the next.

@@ -90,7 +90,7 @@ struct Crossing {
 struct PointGroup {
   int ring = -1;              ///< the laser; -1: the cloud does not tell, or there is only one
   double log2_intensity = 0;  ///< mean (Log2Intensity); 0 where the cloud does not tell
-  /// As CloudEdges::scatter, of these points, each counted whole.
+  /// As CloudEdges::scatter, of these points, each with its whole weight.
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
 };
 
@@ -111,18 +111,21 @@ struct CloudEdges {
   /// All that its points tell of the plane they lie on: the sum over them of q q^T with
   /// q = (p - centre, 1), in metres; p is where the beam meets the fitted plane, moved along the
   /// normal by the point's distance from it, so noise on slanted beams does not lean the plane.
-  /// Where the points of a ring share an error, what they tell again is taken off.
+  /// Each point weighs by the noise that its brightness has on this board, one in the mean; where
+  /// the points of a ring share an error, what they tell again is taken off.
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
   /// The same of the points where they were measured.
   Eigen::Matrix4d raw_scatter = Eigen::Matrix4d::Zero();
-  double scatter_sigma_m = 0;  ///< of a point's distance from the plane; 0: no scatter is known
+  /// Of the distance from the plane of a point of weight one, as if independent of its neighbours;
+  /// 0: no scatter is known.
+  double scatter_sigma_m = 0;
   /// By bearing-angle alone: the outline's corners, picked among the points, in the order of the
   /// pose's target (Target::OutlineCorners); NaN where none could be picked. Not on the bus.
   std::vector<Eigen::Vector3d> corners;
   /// The same points told apart by what shares an error; empty: by the paper's method. By
   /// line-scan: one group a line, where its points were measured.
   std::vector<PointGroup> groups;
-  double group_sigma_m = 0;  ///< of a point's distance from the plane, about its group's mean
+  double group_sigma_m = 0;  ///< as scatter_sigma_m, about the group's mean
 };
 
 /// What detection makes of one camera's image in a view.

@@ -27,6 +27,7 @@ constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
 constexpr int kStraightening = 8;    // rounds
 constexpr double kStraight = 1e-3;   // [m/s], and rad/s: the first sweep is straight
 constexpr double kForgetEvery = 10;  // [m]
+constexpr double kLeastKept = 2;     // [m], however full the map is
 constexpr double kLeastFit = 0.7;    // of the matched points within 0.1 m of their plane
 constexpr std::size_t kFewestMatched = 100;
 constexpr double kMostAcceleration = 40;  // [m/s^2] and [rad/s^2]: faster is a jump
@@ -162,7 +163,12 @@ void Odometry::Impl::Grow(const TimedSweep& sweep) {
     map.Forget(place, options.keep_m);
     forgotten_at = place;
   }
-  if (map.size() < options.max_voxels) map.Add(odometry::InWorld(sweep, moved), place);
+  // A full map keeps what is near: one that grows no more would lose the way.
+  for (double keep = options.keep_m; map.size() >= options.max_voxels && keep > kLeastKept;) {
+    keep /= 2;
+    map.Forget(place, keep);
+  }
+  map.Add(odometry::InWorld(sweep, moved), place);
 }
 
 void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) const {

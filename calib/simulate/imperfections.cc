@@ -41,6 +41,7 @@ void DrawBeam(std::uint64_t seed, BeamOptions* beam) {
   beam->divergence_rad = noise.Uniform(2, 1.5e-3, 4e-3);
   beam->min_return = std::exp(noise.Uniform(3, std::log(0.005), std::log(0.03)));
   beam->merge_m = noise.Uniform(4, 0.3, 0.8);
+  beam->dark_noise = noise.Uniform(5, 1, 3.5);
 }
 
 void DrawRings(std::uint64_t seed, SpinningOptions* spinning) {
@@ -57,8 +58,8 @@ std::string Line(const char* format, Values... values) {
 }
 
 std::string BeamText(const BeamOptions& beam) {
-  return Line("ranges: %+.1f mm, black ones %+.1f mm more", 1e3 * beam.range_offset_m,
-              1e3 * beam.dark_range_m) +
+  return Line("ranges: %+.1f mm, black ones %+.1f mm more and %.1f times as noisy",
+              1e3 * beam.range_offset_m, 1e3 * beam.dark_range_m, beam.dark_noise) +
          Line("beam: %.2f mrad wide, returns from %.3f of a white wall's, merges within %.2f m",
               1e3 * beam.divergence_rad, beam.min_return, beam.merge_m);
 }
@@ -100,7 +101,8 @@ std::string ImperfectionsText(const Options& options) {
   }
   const BeamOptions& beam =
       options.spinning ? static_cast<const BeamOptions&>(*options.spinning) : options.scanner;
-  if (beam.range_offset_m != 0 || beam.dark_range_m != 0) text += BeamText(beam);
+  if (beam.range_offset_m != 0 || beam.dark_range_m != 0 || beam.dark_noise != 1)
+    text += BeamText(beam);
   const auto& spinning = options.spinning;
   if (spinning && (spinning->ring_bias_sigma_m != 0 || spinning->beams_meet_m != 0)) {
     text += RingsText(*spinning, options.seed);

@@ -20,6 +20,7 @@ void BeamOptions::Check(const std::string& prefix) const {
   kCheck.NotNegative(intensity_sigma, prefix + "intensity_sigma");
   kCheck.Between(range_offset_m, -1, 1, prefix + "range_offset_m");
   kCheck.Between(dark_range_m, -1, 1, prefix + "dark_range_m");
+  kCheck.Between(dark_noise, 0.1, 100, prefix + "dark_noise");
 }
 
 int SpinningOptions::columns() const {

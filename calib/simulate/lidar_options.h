@@ -20,6 +20,7 @@ struct BeamOptions {
   double intensity_sigma = 0.01;         ///< noise of an intensity (0 to 1)
   double range_offset_m = 0;             ///< all ranges are measured this much too long
   double dark_range_m = 0;               ///< black surfaces' ranges, too, against white ones'
+  double dark_noise = 1;                 ///< black surfaces' noise of ranges over white ones'
 
   /// Throws InputError naming the field, with `prefix` before it, and its value.
   void Check(const std::string& prefix) const;

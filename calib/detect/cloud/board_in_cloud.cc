@@ -14,6 +14,7 @@
 #include "calib/model/beam_priors.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
+#include "calib/model/range_errors.h"
 
 namespace rgbdt {
 namespace {
@@ -69,7 +70,9 @@ struct Filling {
   BoardPoints on;     // its rim left out
 };
 
-Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const Target& target) {
+Filling Fill(const Cloud& cloud, const PlaneMembers& members, const FlatRectangle& rectangle,
+             const Target& target) {
+  const bool bright = cloud.intensity.size() == cloud.size();
   constexpr double kMargin = 0.04;
   constexpr double kBand = 0.15;
   const double c = std::cos(rectangle.angle_rad);
@@ -90,6 +93,8 @@ Filling Fill(const PlaneMembers& members, const FlatRectangle& rectangle, const 
       filling.on.flat.push_back(members.flat[i]);
       filling.on.row.push_back(members.row[i]);
       filling.on.index.push_back(members.index[i]);
+      filling.on.log2_intensity.push_back(bright ? Log2Intensity(cloud.intensity[members.index[i]])
+                                                 : 0);
     }
     if (off > kMargin && off < kMargin + kBand) ++band;
   }
@@ -188,7 +193,7 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
       rectangle.prior_deviation > kMostPriorDeviation) {
     return std::nullopt;
   }
-  Filling filling = Fill(members, rectangle, target);
+  Filling filling = Fill(cloud, members, rectangle, target);
   if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 ||
       filling.on.points.size() < 12) {
     return std::nullopt;

@@ -84,9 +84,22 @@ void CastBeams(const World& world, const BeamOptions& options, const Eigen::Vect
   }
 }
 
-double RangeError(const BeamOptions& options, const BeamReturn& back) {
+namespace {
+
+// One of black surfaces, zero of bright ones.
+double Darkness(const BeamReturn& back) {
   const double grey = back.intensity / 0.3;
-  return options.range_offset_m + options.dark_range_m * std::exp(-grey * grey);
+  return std::exp(-grey * grey);
+}
+
+}  // namespace
+
+double RangeError(const BeamOptions& options, const BeamReturn& back) {
+  return options.range_offset_m + options.dark_range_m * Darkness(back);
+}
+
+double RangeSigma(const BeamOptions& options, const BeamReturn& back) {
+  return options.range_sigma_m * (1 + (options.dark_noise - 1) * Darkness(back));
 }
 
 float NoisyIntensity(const BeamOptions& options, const BeamReturn& back, double noise) {

@@ -40,6 +40,11 @@ void CastBeams(const World& world, const BeamOptions& options, const Eigen::Vect
 /// by what the whole beam returns.
 double RangeError(const BeamOptions& options, const BeamReturn& back);
 
+/// 1 sigma of a range's noise [m]: range_sigma_m of white surfaces, up to dark_noise times that of
+/// dark ones,
+///   range_sigma_m (1 + (dark_noise - 1) exp(-(reflectivity / 0.3)^2)).
+double RangeSigma(const BeamOptions& options, const BeamReturn& back);
+
 /// An intensity as it is reported: noisy, within 0 to 1; 0 of a miss. `noise`: standard normal.
 float NoisyIntensity(const BeamOptions& options, const BeamReturn& back, double noise);
 

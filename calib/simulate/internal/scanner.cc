@@ -81,7 +81,7 @@ LineScan Scanner::LineAt(const World& world, Utime utime,
     const BeamReturn back = Beam(world, beam, motor_angle(beam * options_.beam_period_s));
     const auto i = static_cast<std::size_t>(beam);
     scan.range[i] = static_cast<float>(back.range + RangeError(options_, back) +
-                                       options_.range_sigma_m * noise.Normal(2 * i));
+                                       RangeSigma(options_, back) * noise.Normal(2 * i));
     scan.intensity[i] = NoisyIntensity(options_, back, noise.Normal(2 * i + 1));
   }
   return scan;

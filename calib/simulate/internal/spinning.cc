@@ -74,7 +74,7 @@ void FillRing(const SpinningOptions& options, const std::vector<BeamReturn>& ret
         static_cast<std::size_t>(ring) * returns.size() + static_cast<std::size_t>(column);
     const Eigen::Vector3d direction = Turned(along, Azimuth(options, ring, column));
     const double range = back.range + (bias + RangeError(options, back)) +
-                         options.range_sigma_m * noise.Normal(2 * i);
+                         RangeSigma(options, back) * noise.Normal(2 * i);
     cloud->directions[i] = direction.cast<float>();
     cloud->points[i] = (range * direction).cast<float>();  // of a miss: NaN
     cloud->intensity[i] = NoisyIntensity(options, back, noise.Normal(2 * i + 1));

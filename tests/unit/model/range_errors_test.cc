@@ -165,7 +165,10 @@ TEST(NamesLasers, WhereEveryHitHasTheNumberOfOne) {
 TEST(Log2Intensity, EndsWhereTheLeastIs) {
   EXPECT_EQ(Log2Intensity(1), 0);
   EXPECT_EQ(Log2Intensity(0.125), -3);
-  EXPECT_EQ(Log2Intensity(1.0 / 1024), kLeastLog2Intensity);
+  // An Ouster's boards are 5 to 200 of 65535.
+  EXPECT_EQ(Log2Intensity(1.0 / 1024), -10);
+  EXPECT_EQ(Log2Intensity(1.0 / 65536), kLeastLog2Intensity);
+  EXPECT_EQ(Log2Intensity(1e-6), kLeastLog2Intensity);
   EXPECT_EQ(Log2Intensity(0), kLeastLog2Intensity);
   EXPECT_EQ(Log2Intensity(-1), kLeastLog2Intensity);
   EXPECT_EQ(Log2Intensity(std::numeric_limits<double>::quiet_NaN()), kLeastLog2Intensity);

@@ -65,6 +65,23 @@ TEST(Odometry, FollowsADriveWhoseSweepsAreSkewedByTheMotion) {
   EXPECT_LT(std::sqrt(result.covariance.diagonal().maxCoeff()), 0.01);
 }
 
+TEST(Odometry, AFullMapKeepsWhatIsNear) {
+  OdometryOptions options;
+  options.max_voxels = 10000;  // a sweep brings that many
+  Odometry odometry(options);
+  Drive drive = Street(8, 2);
+  OdometryResult result;
+  Rigid3 truth_from_world;
+  for (int i = 0; i <= 30; ++i) {
+    result = odometry.Add(drive.Sweep(i));
+    if (i == 0) truth_from_world = drive.At(result.middle_utime);
+    ASSERT_EQ(result.converged, i > 0) << i << ' ' << result.reason;
+  }
+  const Vector6d off =
+      Log((truth_from_world * result.world_from_lidar).Inverse() * drive.At(result.utime));
+  EXPECT_LT(off.tail<3>().norm(), 0.2);
+}
+
 TEST(Odometry, SixteenRingsInARoom) {
   Drive drive(DriveScene::kRoom, 1, Lidar(16, 1), study::RoomWay(1, 0.8));
   OdometryResult result;

@@ -53,6 +53,8 @@ TEST(Imperfections, AreSpreadOverTheirRanges) {
     EXPECT_LE(o.ring_bias_sigma_m, 0.010);
     EXPECT_GE(o.divergence_rad, 1.5e-3);
     EXPECT_LE(o.divergence_rad, 4e-3);
+    EXPECT_GE(o.dark_noise, 1);
+    EXPECT_LE(o.dark_noise, 3.5);
     least_dark = std::min(least_dark, o.dark_range_m);
     most_dark = std::max(most_dark, o.dark_range_m);
     least_meet = std::min(least_meet, o.beams_meet_m);

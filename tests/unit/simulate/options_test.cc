@@ -87,6 +87,7 @@ TEST(Options, BadOnesAreNamed) {
        }},
       {"scanner.range_offset_m", [](Options* o) { o->scanner.range_offset_m = 2; }},
       {"scanner.dark_range_m", [](Options* o) { o->scanner.dark_range_m = -2; }},
+      {"scanner.dark_noise", [](Options* o) { o->scanner.dark_noise = 0; }},
       {"lens_error", [](Options* o) { o->cameras[0].lens_error[2] = std::nan(""); }},
       {"lens_sigma", [](Options* o) { o->cameras[0].lens_sigma[2] = -1; }},
       {"lens + lens_error", [](Options* o) { o->cameras[1].lens_error[4] = -0.7; }},

@@ -172,6 +172,28 @@ TEST(SpinningSweep, DarkSurfacesLieFartherByASmoothFunction) {
   EXPECT_NEAR(error_at(0.70), 0.000086, 2e-6);
 }
 
+TEST(SpinningSweep, DarkSurfacesAreNoisier) {
+  const auto sigma_at = [](double reflectivity) {
+    SpinningOptions options = Quiet(16);
+    const World world = LeaningWorld(reflectivity);
+    const Cloud truth = SpinningSweep(world, options, 1, 0);
+    options.range_sigma_m = 0.01;
+    options.dark_noise = 3;
+    const Cloud cloud = SpinningSweep(world, options, 1, 0);
+    double squares = 0;
+    constexpr int kFirst = 700, kLast = 1100;
+    for (int column = kFirst; column < kLast; ++column) {
+      const std::size_t i = At(cloud, 7, column);
+      const double off = double(cloud.points[i].norm()) - double(truth.points[i].norm());
+      squares += off * off / (kLast - kFirst);
+    }
+    return std::sqrt(squares);
+  };
+  // 1 + 2 e^(-1/9) times 10 mm, and 10 mm; of 400 draws: 3.5% is 1 sigma.
+  EXPECT_NEAR(sigma_at(0.1), 0.01 * (1 + 2 * std::exp(-1.0 / 9)), 0.004);
+  EXPECT_NEAR(sigma_at(0.9), 0.01, 0.0015);
+}
+
 // A VLP-16's: 11.2 mm higher at -15 degrees, as much lower at 15.
 TEST(SpinningSweep, BeamsThatMeetStartAtTheirOwnHeights) {
   EXPECT_NEAR(0.042 * std::tan(15 * kDegree), 0.0112, 1e-4);

@@ -53,6 +53,21 @@ double CentreError(const CloudEdges& found, const Rigid3& truth) {
   return (found.pose->sensor_from_target.translation - truth.translation).norm();
 }
 
+/// A found board's tilt against the truth: about its own x and y, squared [rad^2], and over its
+/// covariance.
+struct Tilt {
+  double squared = 0, chi2 = 0;
+};
+
+Tilt TiltOf(const CloudEdges& found, const Rigid3& truth) {
+  const TargetPose& pose = *found.pose;
+  const Eigen::Matrix3d r = pose.sensor_from_target.Inverse().rotation.toRotationMatrix();
+  const Eigen::Vector2d tilt = (r * ErrorOf(found, truth).head<3>()).head<2>();
+  const Eigen::Matrix2d covariance =
+      (r * pose.covariance.topLeftCorner<3, 3>() * r.transpose()).topLeftCorner<2, 2>();
+  return {tilt.squaredNorm(), tilt.dot(covariance.ldlt().solve(tilt))};
+}
+
 class AnyLidar : public ::testing::TestWithParam<int> {};
 
 TEST_P(AnyLidar, FindsTheBoardInTheWholeCloud) {
@@ -114,18 +129,73 @@ TEST(BoardInCloud, ATiltedBoardsPlaneDoesNotLean) {
     const CloudWorld world(options, view);
     const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
     ASSERT_FALSE(boards.candidates.empty()) << boards.why;
-    const TargetPose& pose = *boards.candidates[0].pose;
-    const Rigid3 to_target = pose.sensor_from_target.Inverse();
-    const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
-    // Of the tilt alone: rotations about the board's own x and y.
-    const Eigen::Matrix3d r = to_target.rotation.toRotationMatrix();
-    const Eigen::Vector2d tilt = (r * error.head<3>()).head<2>();
-    const Eigen::Matrix2d covariance =
-        (r * pose.covariance.topLeftCorner<3, 3>() * r.transpose()).topLeftCorner<2, 2>();
-    chi2 += tilt.dot(covariance.ldlt().solve(tilt));
+    chi2 += TiltOf(boards.candidates[0], world.lidar_from_target()).chi2;
   }
   // Two degrees of freedom a view: the mean of six has sigma 0.8.
   EXPECT_LT(chi2 / kViews, 2 + 3.5 * 0.8);
+}
+
+/// Of many boards' tilts: the mean of their squares, and of their chi-squares (2 each).
+struct Tilts {
+  double squared = 0, chi2 = 0;
+  int views = 0;
+
+  void Add(const Cloud& cloud, const CloudWorld& world) {
+    const auto boards = FindBoards(cloud, world.target(), Detection(32));
+    if (boards.candidates.empty()) return;
+    const Tilt tilt = TiltOf(boards.candidates[0], world.lidar_from_target());
+    squared += tilt.squared;
+    chi2 += tilt.chi2;
+    ++views;
+  }
+};
+
+TEST(BoardInCloud, NoisierDarkPointsCountForLess) {
+  Tilts weighed, alike;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    simulate::Options options = Physics(32, seed);
+    options.spinning->dark_noise = 5;
+    for (int view = 0; view < 6; ++view) {
+      const CloudWorld world(options, view);
+      Cloud cloud = world.Sweep(kSweep);
+      weighed.Add(cloud, world);
+      cloud.intensity.clear();
+      alike.Add(cloud, world);
+    }
+  }
+  ASSERT_GE(weighed.views, 34);
+  ASSERT_GE(alike.views, 34);
+  // Half of the points with 25 times the variance: 13 times as large if all count alike.
+  EXPECT_LT(weighed.squared / weighed.views, 0.5 * alike.squared / alike.views);
+  // Two degrees of freedom a view: the mean of 36 has sigma 0.33.
+  EXPECT_LT(weighed.chi2 / weighed.views, 2 + 3 * 0.33);
+  EXPECT_GT(weighed.chi2 / weighed.views, 2 - 3 * 0.33);
+}
+
+TEST(BoardInCloud, NoiseThatNeighboursShareIsCountedOnce) {
+  constexpr double kAlike = 0.6, kSigmaM = 0.02;
+  Tilts tilts;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    simulate::Options options = Physics(32, seed);
+    options.spinning->range_sigma_m = 1e-6;
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::normal_distribution<float> normal;
+    for (int view = 0; view < 6; ++view) {
+      const CloudWorld world(options, view);
+      Cloud cloud = world.Sweep(kSweep);
+      float noise = 0;
+      for (Eigen::Vector3f& point : cloud.points) {
+        noise = static_cast<float>(kAlike) * noise +
+                static_cast<float>(std::sqrt(1 - kAlike * kAlike)) * normal(random);
+        point += static_cast<float>(kSigmaM) * noise * point.normalized();
+      }
+      tilts.Add(cloud, world);
+    }
+  }
+  ASSERT_GE(tilts.views, 34);
+  // As if independent, they would be twice as sure as they are: 8 for 2. Sigma as above.
+  EXPECT_LT(tilts.chi2 / tilts.views, 2 + 3 * 0.33);
+  EXPECT_GT(tilts.chi2 / tilts.views, 2 - 3 * 0.33);
 }
 
 TEST(BoardInCloud, WhatLooksAlikeIsNoBoard) {
