@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "calib/model/errors.h"
 
@@ -24,14 +25,11 @@ class Descriptor {
   explicit Descriptor(int fd) : fd_(fd) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { Close(); }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
 
   int get() const { return fd_; }
-  bool Close() {
-    const int fd = fd_;
-    fd_ = -1;
-    return fd < 0 || ::close(fd) == 0;
-  }
 
  private:
   int fd_;
@@ -78,7 +76,7 @@ class RegularFile {
 };
 
 // Returns 0 or errno.
-int WriteAll(int fd, const std::string& bytes) {
+int WriteAll(int fd, std::string_view bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
@@ -89,42 +87,51 @@ int WriteAll(int fd, const std::string& bytes) {
   return 0;
 }
 
-// Returns 0 or errno.
-int WriteAndSync(const std::filesystem::path& path, const std::string& bytes) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (file.get() < 0) return errno;
-  if (const int error = WriteAll(file.get(), bytes)) return error;
-  if (::fsync(file.get()) != 0) return errno;
-  return file.Close() ? 0 : errno;
-}
-
 // So that the rename itself survives a power cut. Some file systems refuse: nothing is lost then.
 void SyncFolder(const std::filesystem::path& folder) {
   Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
+std::filesystem::path FolderOf(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 }  // namespace
 
-void WriteFileAtomically(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
+  const std::filesystem::path folder = FolderOf(path_);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) Fail("create the folder", folder, error.value());
 
   static std::atomic<unsigned> count{0};
-  const std::filesystem::path temporary =
-      folder / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-  if (const int failed = WriteAndSync(temporary, bytes)) {
-    ::unlink(temporary.c_str());
-    Fail("write", path, failed);
-  }
-  if (::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int failed = errno;
-    ::unlink(temporary.c_str());
-    Fail("write", path, failed);
-  }
-  SyncFolder(folder);
+  temporary_ = folder / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) Fail("write", path_, errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::Write(std::string_view bytes) {
+  if (const int error = WriteAll(descriptor_, bytes)) Fail("write", path_, error);
+}
+
+void AtomicFile::Commit() {
+  if (::fsync(descriptor_) != 0) Fail("write", path_, errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0) Fail("write", path_, errno);
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) Fail("write", path_, errno);
+  temporary_.clear();
+  SyncFolder(FolderOf(path_));
+}
+
+void WriteFileAtomically(const std::filesystem::path& path, const std::string& bytes) {
+  AtomicFile file(path);
+  file.Write(bytes);
+  file.Commit();
 }
 
 std::string ReadWholeFile(const std::filesystem::path& path, std::uintmax_t most_bytes) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace rgbdt {
 
@@ -11,6 +12,23 @@ namespace rgbdt {
 /// a part: temporary name in the same folder, fsync, rename. Creates the folders above it. Throws
 /// InputError with the path and the system's reason.
 void WriteFileAtomically(const std::filesystem::path& path, const std::string& bytes);
+
+/// The same of a file too large to be held at once, piece by piece: `path` holds what it held
+/// before until Commit. One that is never committed is gone with its owner. All throw as above.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void Write(std::string_view bytes);
+  void Commit();
+
+ private:
+  std::filesystem::path path_, temporary_;
+  int descriptor_ = -1;
+};
 
 /// Files larger than this are refused before they are read, whatever they hold.
 inline constexpr std::uintmax_t kMostTextBytes = std::uintmax_t{256} << 20;

@@ -57,6 +57,25 @@ TEST(AtomicFile, AReaderOfTheOldFileKeepsIt) {
   EXPECT_EQ(ReadWholeFile(dir / "file"), "new!");
 }
 
+TEST(AtomicFile, PieceByPieceIsThereOnceItIsWhole) {
+  const test::TempDir dir;
+  WriteFileAtomically(dir / "file", "old");
+  {
+    AtomicFile file(dir / "file");
+    file.Write("one ");
+    file.Write("two");
+    EXPECT_EQ(ReadWholeFile(dir / "file"), "old");
+    file.Commit();
+  }
+  EXPECT_EQ(ReadWholeFile(dir / "file"), "one two");
+  {
+    AtomicFile file(dir / "file");
+    file.Write("a part");
+  }
+  EXPECT_EQ(ReadWholeFile(dir / "file"), "one two");
+  EXPECT_EQ(FilesIn(dir.path()), 1u) << "a temporary file was left";
+}
+
 TEST(AtomicFile, ErrorsNameThePathAndTheReason) {
   const test::TempDir dir;
   const std::string missing = test::ErrorOf([&] { ReadWholeFile(dir / "none.pcd"); });
