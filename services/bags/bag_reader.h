@@ -15,6 +15,7 @@ namespace rgbdt {
 enum class BagEncoding {
   kRos1,   ///< ROS 1: packed, little-endian
   kCdr,    ///< ROS 2: CDR, behind four bytes that name its kind
+  kProtobuf,
   kOther,  ///< listed, not read
 };
 

@@ -2,6 +2,7 @@
 
 #include "services/bags/printable.h"
 #include "services/import/internal/cursor.h"
+#include "services/import/internal/foxglove_reader.h"
 
 namespace rgbdt::ros {
 namespace {
@@ -104,17 +105,12 @@ std::vector<Transform> TakeTransforms(C* in) {
   for (Transform& transform : transforms) {
     transform.parent = TakeHeader(in).frame;
     transform.child = in->Text();
-    if (!transform.child.empty() && transform.child.front() == '/') transform.child.erase(0, 1);
     Rigid3& pose = transform.parent_from_child;
     for (int i = 0; i < 3; ++i) pose.translation[i] = in->template Number<double>();
     double q[4];  // x y z w
     for (double& value : q) value = in->template Number<double>();
-    const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
-    if (!(std::abs(rotation.norm() - 1) < 0.01) || !pose.translation.allFinite()) {
-      throw InputError("the transform from " + Printable(transform.child) + " to " +
-                       Printable(transform.parent) + " is no rotation and translation");
-    }
-    pose.rotation = rotation.normalized();
+    pose.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
+    CheckTransform(&transform);
   }
   return transforms;
 }
@@ -135,22 +131,40 @@ auto Decode(const BagMessage& message, BagEncoding encoding, Take take) {
 
 }  // namespace
 
-Header DecodeHeader(const BagMessage& message, BagEncoding encoding) {
-  return Decode(message, encoding, [](auto* in) { return TakeHeader(in); });
+void CheckTransform(Transform* transform) {
+  for (std::string* frame : {&transform->parent, &transform->child}) {
+    if (!frame->empty() && frame->front() == '/') frame->erase(0, 1);
+  }
+  Rigid3& pose = transform->parent_from_child;
+  if (!(std::abs(pose.rotation.norm() - 1) < 0.01) || !pose.translation.allFinite()) {
+    throw InputError("the transform from " + Printable(transform->child) + " to " +
+                     Printable(transform->parent) + " is no rotation and translation");
+  }
+  pose.rotation.normalize();
+}
+
+Header DecodeHeader(const BagMessage& message, const BagTopic& topic) {
+  if (topic.encoding == BagEncoding::kProtobuf) return FoxgloveHeader(message, topic.type);
+  return Decode(message, topic.encoding, [](auto* in) { return TakeHeader(in); });
 }
 Image DecodeImage(const BagMessage& message, BagEncoding encoding) {
+  if (encoding == BagEncoding::kProtobuf) return FoxgloveImage(message);
   return Decode(message, encoding, [](auto* in) { return TakeImage(in); });
 }
 CompressedImage DecodeCompressedImage(const BagMessage& message, BagEncoding encoding) {
+  if (encoding == BagEncoding::kProtobuf) return FoxgloveCompressedImage(message);
   return Decode(message, encoding, [](auto* in) { return TakeCompressedImage(in); });
 }
 CameraInfo DecodeCameraInfo(const BagMessage& message, BagEncoding encoding) {
+  if (encoding == BagEncoding::kProtobuf) return FoxgloveCameraInfo(message);
   return Decode(message, encoding, [](auto* in) { return TakeCameraInfo(in); });
 }
 PointCloud DecodePointCloud(const BagMessage& message, BagEncoding encoding) {
+  if (encoding == BagEncoding::kProtobuf) return FoxglovePointCloud(message);
   return Decode(message, encoding, [](auto* in) { return TakePointCloud(in); });
 }
 std::vector<Transform> DecodeTransforms(const BagMessage& message, BagEncoding encoding) {
+  if (encoding == BagEncoding::kProtobuf) return FoxgloveTransforms(message);
   return Decode(message, encoding, [](auto* in) { return TakeTransforms(in); });
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,10 @@
 
 namespace rgbdt::ros {
 
-// Messages of ROS as they are, with its names. Bytes (`data`) lie in the message that they were
-// decoded from. Each function throws InputError, without the topic's name, where the message is
-// damaged, cut short or inconsistent.
+// Messages of ROS as they are, with its names, and Foxglove's (Protobuf) as those of ROS that say
+// the same. Bytes (`data`) lie in the message that they were decoded from, or in what `owner`
+// holds. Each function throws InputError, without the topic's name, where the message is damaged,
+// cut short or inconsistent.
 
 /// std_msgs/Header
 struct Header {
@@ -31,6 +33,7 @@ struct Image {
   std::uint32_t step = 0;  ///< from row to row [byte]
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;  ///< of `data` [byte]
+  std::shared_ptr<const void> owner{};
 };
 
 /// sensor_msgs/CompressedImage
@@ -39,6 +42,7 @@ struct CompressedImage {
   std::string format;  ///< "bayer_rggb8; jpeg compressed bgr8"
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;  ///< of `data` [byte]
+  std::shared_ptr<const void> owner{};
 };
 
 /// sensor_msgs/CameraInfo
@@ -67,6 +71,7 @@ struct PointCloud {
   std::uint32_t point_step = 0, row_step = 0;  ///< [byte]
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;  ///< of `data` [byte]
+  std::shared_ptr<const void> owner{};
 };
 
 /// geometry_msgs/TransformStamped: point_in_parent = parent_from_child * point_in_child.
@@ -75,8 +80,8 @@ struct Transform {
   Rigid3 parent_from_child;
 };
 
-/// Of any message that begins with a header.
-Header DecodeHeader(const BagMessage& message, BagEncoding encoding);
+/// Of any message that begins with a header, and of Foxglove's images and clouds.
+Header DecodeHeader(const BagMessage& message, const BagTopic& topic);
 Image DecodeImage(const BagMessage& message, BagEncoding encoding);
 CompressedImage DecodeCompressedImage(const BagMessage& message, BagEncoding encoding);
 CameraInfo DecodeCameraInfo(const BagMessage& message, BagEncoding encoding);

@@ -1,6 +1,7 @@
 #include "services/import/survey.h"
 
 #include <algorithm>
+#include <map>
 
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
@@ -13,20 +14,30 @@ constexpr std::size_t kMostStamped = 2'000'000;
 constexpr std::size_t kMostTransforms = 10'000;
 
 BagData DataOf(const BagTopic& topic) {
+  static const std::map<std::string, BagData> ros = {
+      {"sensor_msgs/Image", BagData::kImage},
+      {"sensor_msgs/CompressedImage", BagData::kCompressedImage},
+      {"sensor_msgs/CameraInfo", BagData::kCameraInfo},
+      {"sensor_msgs/PointCloud2", BagData::kCloud}};
+  static const std::map<std::string, BagData> foxglove = {
+      {"foxglove.RawImage", BagData::kImage},
+      {"foxglove.CompressedImage", BagData::kCompressedImage},
+      {"foxglove.CameraCalibration", BagData::kCameraInfo},
+      {"foxglove.PointCloud", BagData::kCloud}};
   if (topic.encoding == BagEncoding::kOther) return BagData::kOther;
-  if (topic.type == "sensor_msgs/Image") return BagData::kImage;
-  if (topic.type == "sensor_msgs/CompressedImage") return BagData::kCompressedImage;
-  if (topic.type == "sensor_msgs/CameraInfo") return BagData::kCameraInfo;
-  if (topic.type == "sensor_msgs/PointCloud2") return BagData::kCloud;
-  return BagData::kOther;
+  const auto& types = topic.encoding == BagEncoding::kProtobuf ? foxglove : ros;
+  const auto found = types.find(topic.type);
+  return found == types.end() ? BagData::kOther : found->second;
 }
 
 bool IsStatic(const BagTopic& topic) {
   static const std::string kName = "tf_static";
   const std::string& name = topic.name;
-  return topic.encoding != BagEncoding::kOther &&
-         (topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage") &&
-         name.size() >= kName.size() &&
+  const bool of_transforms =
+      topic.encoding == BagEncoding::kProtobuf
+          ? topic.type == "foxglove.FrameTransforms"
+          : topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";
+  return topic.encoding != BagEncoding::kOther && of_transforms && name.size() >= kName.size() &&
          name.compare(name.size() - kName.size(), kName.size(), kName) == 0;
 }
 
@@ -113,7 +124,7 @@ class Surveyor {
   }
 
   void Keep(const BagMessage& message, BagSurvey::Topic* seen) {
-    const ros::Header header = ros::DecodeHeader(message, seen->topic.encoding);
+    const ros::Header header = ros::DecodeHeader(message, seen->topic);
     if (seen->stamped.empty()) seen->frame = header.frame;
     ++stamped_;
     seen->stamped.push_back({header.utime != 0 ? header.utime : message.log_utime, message.place});

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "calib/model/errors.h"
 
@@ -136,21 +138,35 @@ std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::
 
 bool IsCloud(const Topic& topic) { return topic.data == BagData::kCloud; }
 
-const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish) {
+// What cameras have coloured comes of no LIDAR.
+bool IsColoured(const Topic& topic) {
+  std::istringstream fields(topic.what);
+  const std::set<std::string> names{std::istream_iterator<std::string>(fields), {}};
+  return names.count("rgb") + names.count("rgba") + names.count("red") != 0;
+}
+
+const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish,
+                         std::vector<std::string>* left_out) {
   if (!wish.empty()) return Wanted(survey, wish, IsCloud, "--cloud");
-  const Topic* found = nullptr;
+  std::vector<const Topic*> found, coloured;
   for (const Topic& topic : survey.topics) {
     if (!IsCloud(topic) || topic.stamped.empty()) continue;
-    if (found != nullptr) {
-      throw InputError("several topics hold clouds; say which by --cloud: " +
-                       NamesOf(survey, IsCloud));
-    }
-    found = &topic;
+    (IsColoured(topic) ? coloured : found).push_back(&topic);
   }
-  if (found == nullptr) {
-    throw InputError("the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2");
+  if (found.empty()) found.swap(coloured);
+  if (found.size() > 1) {
+    throw InputError("several topics hold clouds; say which by --cloud: " +
+                     NamesOf(survey, IsCloud));
   }
-  return *found;
+  if (found.empty()) {
+    throw InputError(
+        "the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2 or "
+        "foxglove.PointCloud");
+  }
+  for (const Topic* topic : coloured) {
+    left_out->push_back(topic->topic.name + ": coloured by cameras; --cloud takes it");
+  }
+  return *found[0];
 }
 
 }  // namespace
@@ -178,7 +194,7 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
     throw InputError("the bag holds no camera's images; topics of images: " +
                      NamesOf(survey, IsImages));
   }
-  choice.cloud = &ChooseCloud(survey, wishes.cloud);
+  choice.cloud = &ChooseCloud(survey, wishes.cloud, &choice.left_out);
   return choice;
 }
 

@@ -22,13 +22,14 @@ struct TopicChoice {
   };
   std::vector<Camera> cameras;
   const BagSurvey::Topic* cloud = nullptr;
-  std::vector<std::string> left_out;  ///< a line for each topic of images that is not taken: why
+  std::vector<std::string>
+      left_out;  ///< a line for each topic of images or clouds that is not taken: why
 };
 
 /// Which topics are cameras and which is the LIDAR. Of what one camera publishes several times, the
 /// raw images are taken, or else the least changed ones. Depth and rectified images are none unless
-/// asked for. Points into `survey`. Throws InputError: no images, no clouds or several topics of
-/// them, a wish for what is not there.
+/// asked for, nor is a cloud with colours the LIDAR's where there is another. Points into `survey`.
+/// Throws InputError: no images, no clouds or several topics of them, a wish for what is not there.
 TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes);
 
 }  // namespace rgbdt

@@ -27,18 +27,23 @@ void CheckWhole(const Wire& wire) {
 }
 
 template <typename Wire>
-Message DecodeAs(const std::string& channel, const std::uint8_t* data, std::size_t size) {
-  if (!IsA<Wire>(data, size)) {
-    throw InputError(std::string("the message is no ") + Wire::getTypeName() +
-                     ": another type or version on channel " + channel);
-  }
+Wire WireFrom(const std::uint8_t* data, std::size_t size) {
   Layouts::OfMessages().Check(Wire::getTypeName(), data, size);
   Wire wire;
   if (wire.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size)) {
     throw InputError(std::string("the message does not decode as ") + Wire::getTypeName());
   }
   CheckWhole(wire);
-  return FromWire(std::move(wire));
+  return wire;
+}
+
+template <typename Wire>
+Message DecodeAs(const std::string& channel, const std::uint8_t* data, std::size_t size) {
+  if (!IsA<Wire>(data, size)) {
+    throw InputError(std::string("the message is no ") + Wire::getTypeName() +
+                     ": another type or version on channel " + channel);
+  }
+  return FromWire(WireFrom<Wire>(data, size));
 }
 
 using Decoder = Message (*)(const std::string& channel, const std::uint8_t* data, std::size_t size);
@@ -108,6 +113,12 @@ Message Decode(const std::string& channel, const std::uint8_t* data, std::size_t
   const std::string own = ChannelOf(message);
   if (own != channel) throw InputError("the message belongs on channel " + own);
   return message;
+}
+
+Bytes ImageFileOf(const std::uint8_t* data, std::size_t size) {
+  image_t wire = WireFrom<image_t>(data, size);
+  const bool is_file = wire.pixel_format == image_t::JPEG || wire.pixel_format == image_t::PNG;
+  return is_file ? std::move(wire.data) : Bytes();
 }
 
 }  // namespace rgbdt

@@ -32,4 +32,8 @@ Bytes Encode(const Message& message);
 /// channel if no type belongs to it.
 Message Decode(const std::string& channel, const std::uint8_t* data, std::size_t size);
 
+/// The file of an image that was sent as JPEG or PNG, for who passes it on as it is; empty for one
+/// whose pixels travel plain. Of a message of a camera's channel that Decode takes.
+Bytes ImageFileOf(const std::uint8_t* data, std::size_t size);
+
 }  // namespace rgbdt

@@ -4,6 +4,8 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/exports.h"
 #include "calib/files/schema/rig_file.h"
+#include "services/bags/printable.h"
+#include "services/export/export_log.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -12,7 +14,7 @@ namespace {
 struct ExportFlags {
   std::string dir, calibration, out, lidar_frame;
   std::vector<std::string> camera_frames;
-  bool anyway = false;
+  bool anyway = false, mcap = false;
 };
 
 FrameNames FramesOf(const ExportFlags& flags) {
@@ -28,7 +30,45 @@ FrameNames FramesOf(const ExportFlags& flags) {
   return frames;
 }
 
+// What was written, what was left out, and what went wrong on the way.
+void PrintExported(const ExportFlags& flags, const std::string& out, const ExportedLog& exported) {
+  for (const auto& [name, topic] : exported.topics) {
+    std::printf("%s  %s  %lld messages\n", name.c_str(), topic.schema.c_str(),
+                static_cast<long long>(topic.messages));
+  }
+  for (const auto& [channel, count] : exported.left_out) {
+    std::printf("left out: %s, %lld messages\n", Printable(channel).c_str(),
+                static_cast<long long>(count));
+  }
+  if (exported.dropped > 0) {
+    std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", flags.dir.c_str(),
+                 static_cast<long long>(exported.dropped), exported.last_problem.c_str());
+  }
+  if (exported.unreadable_bytes > 0) {
+    std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
+                 flags.dir.c_str(), static_cast<long long>(exported.unreadable_bytes));
+  }
+  std::printf("wrote %s\n", out.c_str());
+}
+
+int RunMcap(const ExportFlags& flags) {
+  if (!flags.calibration.empty() || flags.anyway) {
+    throw UsageError("--calibration and --anyway are of a session; a log has its own calibrations");
+  }
+  const FrameNames frames = FramesOf(flags);
+  const std::filesystem::path out =
+      PathOr(flags.out, std::filesystem::path(flags.dir).replace_extension(".mcap"));
+  std::error_code error;
+  if (std::filesystem::equivalent(flags.dir, out, error)) {
+    throw InputError(out.string() + ": is the log itself; say another --out");
+  }
+  PrintExported(flags, out,
+                ExportLog(flags.dir, out, {frames.lidar, frames.cameras}, Tenths("exporting")));
+  return EndsWith(true);
+}
+
 int RunExport(const ExportFlags& flags) {
+  if (flags.mcap) return RunMcap(flags);
   const std::filesystem::path dir = flags.dir;
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);
@@ -50,12 +90,18 @@ void AddExport(CommandLine* program) {
       "Writes a calibration for other tools: static transforms of ROS as command lines, launch\n"
       "file and URDF, OpenCV YAML, Kalibr's camchain. Each file says which way it goes. A\n"
       "calibration that is not to be used, or was made with another rig, is refused.\n"
-      "Example: rgbdt export out/demo/session --lidar-frame velodyne \\\n"
-      "           --camera-frame rgb=camera_optical_frame",
+      "With --mcap, a log of lcm-logger as an MCAP that Foxglove, Rerun and PlotJuggler open: "
+      "sweeps,\n"
+      "fused clouds, images, lenses, transforms, poses and what the processes said.\n"
+      "Examples: rgbdt export out/demo/session --lidar-frame velodyne \\\n"
+      "            --camera-frame rgb=camera_optical_frame\n"
+      "          rgbdt export --mcap out/demo/session.lcmlog",
       [flags] { return RunExport(*flags); });
-  verb->Required("DIR", &flags->dir, "session directory");
+  verb->Required("DIR", &flags->dir, "session directory; with --mcap: the log");
+  verb->Flag("--mcap", &flags->mcap, "a log as an MCAP of Foxglove's messages");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
-  verb->Option("--out", &flags->out, "where to write; default: DIR/export");
+  verb->Option("--out", &flags->out,
+               "where to write; default: DIR/export, with --mcap the\nlog's name with .mcap");
   verb->Option("--lidar-frame", &flags->lidar_frame,
                "what ROS calls the LIDAR's frame; default: its name in the rig file");
   verb->Option("--camera-frame", &flags->camera_frames,

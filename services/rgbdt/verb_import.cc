@@ -25,17 +25,6 @@ struct ImportFlags {
   int views = 24;
 };
 
-// A line for each tenth of the way.
-std::function<void(double)> Tenths(const std::string& what) {
-  auto last = std::make_shared<int>(0);
-  return [what, last](double done) {
-    const int tenth = static_cast<int>(10 * done);
-    if (tenth <= *last || tenth >= 10) return;
-    *last = tenth;
-    PrintProgress(what + ": " + std::to_string(10 * tenth) + "%");
-  };
-}
-
 // A small bag is read at once.
 std::function<void(double)> ReadingProgress(const BagReader& bag) {
   constexpr std::int64_t kLarge = 300'000'000;
@@ -50,7 +39,8 @@ void PrintTopics(const BagReader& bag, const BagSurvey& survey) {
     if (topic.Rate() > 0) line += Format(", %.3g Hz", topic.Rate());
     line += Format(", %.1f MB", static_cast<double>(topic.bytes) / 1e6);
     if (!topic.what.empty()) line += "  " + topic.what;
-    if (topic.topic.encoding == BagEncoding::kOther) line += "  (not of ROS: not read)";
+    if (topic.topic.encoding == BagEncoding::kOther)
+      line += "  (neither of ROS nor Protobuf: not read)";
     std::printf("  %s\n", line.c_str());
     if (topic.unreadable > 0) {
       std::printf("    %zu of them unreadable, the last: it %s\n", topic.unreadable,
@@ -243,13 +233,15 @@ void AddImport(CommandLine* program) {
   auto flags = std::make_shared<ImportFlags>();
   CommandLine* verb = program->Verb(
       "import",
-      "Makes a session directory of a bag, ready for `rgbdt calibrate`: MCAP, a ROS 2 bag (.db3, "
-      "or\n"
-      "the folder that holds it) or a ROS 1 bag; no ROS is needed. Without --board and --out it\n"
-      "lists what is inside. Cameras, lenses (CameraInfo), guesses (tf_static) and the LIDAR are\n"
-      "taken from the topics. Views are taken where the board stands still for a second, spread\n"
-      "over the image. Exit code 1: also where a lens was to be found from the images and was "
-      "not.\n"
+      "Makes a session directory of a bag, ready for `rgbdt calibrate`: MCAP (of ROS or with\n"
+      "Foxglove's schemas), a ROS 2 bag (.db3, or the folder that holds it) or a ROS 1 bag; no "
+      "ROS\n"
+      "is needed. Without --board and --out it lists what is inside. Cameras, lenses "
+      "(CameraInfo),\n"
+      "guesses (tf_static) and the LIDAR are taken from the topics. Views are taken where the "
+      "board\n"
+      "stands still for a second, spread over the image. Exit code 1: also where a lens was to be\n"
+      "found from the images and was not.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "

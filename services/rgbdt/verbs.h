@@ -2,6 +2,8 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -81,5 +83,16 @@ int FinishSession(const std::string& session_dir, const std::vector<std::string>
 
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+/// A line for each tenth of the way, 0 to 1.
+inline std::function<void(double)> Tenths(const std::string& what) {
+  auto last = std::make_shared<int>(0);
+  return [what, last](double done) {
+    const int tenth = static_cast<int>(10 * done);
+    if (tenth <= *last || tenth >= 10) return;
+    *last = tenth;
+    PrintProgress(what + ": " + std::to_string(10 * tenth) + "%");
+  };
+}
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 // Writes an LCM log of a drive without captures, from a session of the simulator's: RIG, and view
-// by view images, then the sweep in chunks, 20 s after the view before; all views ROUNDS times.
-// Beside it the true calibration. Usage: drive_test_log SESSION ROUNDS LOG CALIBRATION
+// by view images, then the sweep in chunks, 20 s (or BETWEEN) after the view before; all views
+// ROUNDS times. Beside it the true calibration. Usage: drive_test_log SESSION ROUNDS LOG
+// CALIBRATION [BETWEEN]
 #include <cstdio>
 #include <map>
 #include <string>
@@ -15,7 +16,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kBetween = 20'000'000, kReplayed = 500'000;
+constexpr Utime kReplayed = 500'000;
 
 class Drive {
  public:
@@ -45,7 +46,7 @@ class Drive {
   Utime now_ = 1'500'000'000'000'000;
 };
 
-void Run(char** argv) {
+void Run(char** argv, Utime between) {
   const Session session = OpenSession(argv[1]);
   Drive drive(argv[3]);
   RigText rig;
@@ -55,7 +56,7 @@ void Run(char** argv) {
   for (int round = 0; round < std::stoi(argv[2]); ++round) {
     for (const std::string& view : session.views) {
       drive.Write(rig);
-      drive.WriteView(ReadView(session, view), utime += kBetween);
+      drive.WriteView(ReadView(session, view), utime += between);
     }
   }
   drive.Close();
@@ -77,9 +78,9 @@ void Run(char** argv) {
 }  // namespace rgbdt
 
 int main(int argc, char** argv) {
-  if (argc != 5) return 2;
+  if (argc != 5 && argc != 6) return 2;
   try {
-    rgbdt::Run(argv);
+    rgbdt::Run(argv, rgbdt::FromSeconds(argc == 6 ? std::stod(argv[5]) : 20));
   } catch (const std::exception& e) {
     std::fprintf(stderr, "drive_test_log: %s\n", e.what());
     return 1;

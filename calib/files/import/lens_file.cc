@@ -160,7 +160,7 @@ std::optional<Lens::Model> StatedModel(const Node& part) {
   for (const char* pinhole : {"plumbbob", "radtan", "rationalpolynomial", "none", "pinhole"}) {
     if (name == pinhole) return Lens::Model::kPinhole;
   }
-  for (const char* equidistant : {"equidistant", "fisheye"}) {
+  for (const char* equidistant : {"equidistant", "fisheye", "kannalabrandt"}) {
     if (name == equidistant) return Lens::Model::kFisheye;
   }
   if (name.empty()) return std::nullopt;

@@ -28,6 +28,7 @@ constexpr std::size_t kHeadBytes = 9;  // opcode and length
 BagEncoding EncodingOf(const std::string& name) {
   if (name == "cdr") return BagEncoding::kCdr;
   if (name == "ros1") return BagEncoding::kRos1;
+  if (name == "protobuf") return BagEncoding::kProtobuf;
   return BagEncoding::kOther;
 }
 

@@ -51,6 +51,19 @@ TEST(ChooseTopics, OfEachCameraTheRawest) {
   EXPECT_THAT(choice.left_out, SizeIs(5));
 }
 
+TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
+  BagSurvey survey;
+  survey.topics = {Topic("/cam/image", BagData::kImage, {0}), Topic("/fused", BagData::kCloud, {0}),
+                   Topic("/lidar", BagData::kCloud, {0})};
+  survey.topics[1].what = "5x1 x y z red green blue";
+  survey.topics[2].what = "5x1 x y z intensity";
+  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/lidar");
+  EXPECT_THAT(ChooseTopics(survey, {}).left_out, ElementsAre(HasSubstr("/fused: coloured")));
+  EXPECT_EQ(ChooseTopics(survey, {{}, "/fused"}).cloud->topic.name, "/fused");
+  survey.topics.pop_back();
+  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/fused");
+}
+
 TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {
   BagSurvey survey;
   survey.topics = {Topic("/b/image_rect", BagData::kImage, {0}),
