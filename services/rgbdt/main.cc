@@ -12,7 +12,11 @@ int main(int argc, char** argv) {
       "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic");
   rgbdt::AddSession(&line);
-  rgbdt::AddImport(&line);
+#ifdef RGBDT_HAS_DRIVERS
+  rgbdt::AddImport(&line, rgbdt::ImportPackets);
+#else
+  rgbdt::AddImport(&line, nullptr);
+#endif
   rgbdt::AddCalibrate(&line);
   rgbdt::AddEvaluate(&line);
   rgbdt::AddRefine(&line);

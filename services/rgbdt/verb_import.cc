@@ -18,11 +18,11 @@ namespace rgbdt {
 namespace {
 
 struct ImportFlags {
-  std::string bag, board, out, cloud;
+  std::string bag, board, out, cloud, metadata;
   std::vector<std::string> images, lenses, at;
   bool pinhole = false, fisheye = false;
   double every_s = 0, max_apart_s = 0.1;
-  int views = 24;
+  int views = 24, port = 0;
 };
 
 // A small bag is read at once.
@@ -192,7 +192,35 @@ void CheckFlags(const ImportFlags& flags) {
   }
 }
 
-int RunImport(const ImportFlags& flags) {
+using PacketImport = int (*)(const PacketsToImport&);
+
+// A recording holds no images: what is of these makes no sense with it.
+int RunPackets(const ImportFlags& flags, PacketImport packets) {
+  const bool of_bags = !flags.board.empty() || !flags.cloud.empty() || !flags.images.empty() ||
+                       !flags.lenses.empty() || !flags.at.empty() || flags.every_s > 0 ||
+                       flags.pinhole || flags.fisheye;
+  if (of_bags) {
+    throw UsageError(
+        flags.bag +
+        ": is a recording of packets, without images, so no --board and the like; expected --out, "
+        "--metadata and --port alone, then rgbdt session --clouds with the images");
+  }
+  if (packets == nullptr) {
+    throw InputError(flags.bag + ": is a recording of packets; this build is without drivers");
+  }
+  return packets({flags.bag, flags.metadata, flags.out, flags.port});
+}
+
+bool IsPacketFile(const std::string& path) {
+  const std::string end = std::filesystem::path(path).extension().string();
+  return end == ".pcap" || end == ".pcapng";
+}
+
+int RunImport(const ImportFlags& flags, PacketImport packets) {
+  if (IsPacketFile(flags.bag)) return RunPackets(flags, packets);
+  if (!flags.metadata.empty() || flags.port != 0) {
+    throw UsageError("--metadata and --port are of a recording of packets (.pcap, .pcapng)");
+  }
   CheckFlags(flags);
   const bool writes = !flags.out.empty();
   const RigWishes wishes = writes ? RigWishesOf(flags) : RigWishes();
@@ -229,7 +257,7 @@ int RunImport(const ImportFlags& flags) {
 
 }  // namespace
 
-void AddImport(CommandLine* program) {
+void AddImport(CommandLine* program, PacketImport packets) {
   auto flags = std::make_shared<ImportFlags>();
   CommandLine* verb = program->Verb(
       "import",
@@ -242,13 +270,18 @@ void AddImport(CommandLine* program) {
       "board\n"
       "stands still for a second, spread over the image. Exit code 1: also where a lens was to be\n"
       "found from the images and was not.\n"
+      "Of a recording of a LIDAR's packets (.pcap, .pcapng; Velodyne, or Ouster with --metadata) "
+      "it\n"
+      "writes each sweep as a PCD into --out, named by its time, for `rgbdt session --clouds`.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "
       "\\\n"
-      "            --cloud /velodyne_points --every 5 --out out/session",
-      [flags] { return RunImport(*flags); });
-  verb->Required("FILE", &flags->bag, "the bag; a folder stands for the bags in it");
+      "            --cloud /velodyne_points --every 5 --out out/session\n"
+      "          rgbdt import drive.pcap --metadata os1.json --out out/clouds",
+      [flags, packets] { return RunImport(*flags, packets); });
+  verb->Required("FILE", &flags->bag,
+                 "the bag, or the recording; a folder stands for the bags in it");
   verb->Option("--board", &flags->board,
                "the board as for `rgbdt session`: SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres");
   verb->Option("--out", &flags->out, "the session directory to write");
@@ -269,6 +302,10 @@ void AddImport(CommandLine* program) {
   verb->Option("--views", &flags->views, "of moments in which the board stands still: at most");
   verb->Within("--max-apart", &flags->max_apart_s, 0, 60,
                "how far an image and its cloud may be apart, by their headers [s]");
+  verb->Option("--metadata", &flags->metadata,
+               "of a recording of an Ouster: what the sensor says of itself (JSON)");
+  verb->Option("--port", &flags->port,
+               "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }
 
 }  // namespace rgbdt

@@ -20,7 +20,9 @@ void AddRefine(CommandLine* program);
 void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
 void AddSession(CommandLine* program);
-void AddImport(CommandLine* program);
+/// `packets`: for recordings of a LIDAR's packets; none: the build has no drivers.
+struct PacketsToImport;
+void AddImport(CommandLine* program, int (*packets)(const PacketsToImport&));
 void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);
 void AddIntrinsics(CommandLine* program);
@@ -76,6 +78,13 @@ bool FindLenses(const std::string& session_dir, const std::vector<std::string>& 
 
 /// "[NAME=]FILE[:PART]" of `--lens`.
 Folders::LensFile LensFileOf(const std::string& text);
+
+/// A recording of a LIDAR's packets, for `import`. Gives the exit code.
+struct PacketsToImport {
+  std::string file, metadata, out;
+  int port = 0;
+};
+int ImportPackets(const PacketsToImport& packets);
 
 /// How `session` and `import` end once the session is written: the lenses of these cameras are
 /// found from its images, and what to do next is said. Gives the exit code.

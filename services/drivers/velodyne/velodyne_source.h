@@ -9,36 +9,11 @@
 
 #include "calib/model/devices.h"
 #include "services/drivers/device_report.h"
+#include "services/drivers/pcap/pcap_reader.h"
 #include "services/drivers/velodyne/velodyne_sweeps.h"
 #include "services/runtime/device_thread.h"
 
-struct pcap;
-
 namespace rgbdt {
-
-/// A recording of network packets (pcap or pcapng, over Ethernet with or without VLAN tags, Linux
-/// "any" captures or raw IP), as the IPv4 UDP payloads in it.
-class PcapReader {
- public:
-  /// Throws InputError naming the file where it is missing or no recording.
-  explicit PcapReader(const std::string& path);
-  ~PcapReader();
-  PcapReader(const PcapReader&) = delete;
-  PcapReader& operator=(const PcapReader&) = delete;
-
-  struct Datagram {
-    Utime utime = 0;   ///< when it was recorded
-    int port = 0;      ///< that it was sent to
-    bool cut = false;  ///< the recording has not all of it
-    std::vector<std::uint8_t> payload;
-  };
-  /// The next one; nothing at the end. Throws InputError where the file is damaged or cut short.
-  std::optional<Datagram> Next();
-
- private:
-  std::string path_;
-  pcap* pcap_ = nullptr;
-};
 
 /// A UDP port of this machine.
 class UdpPort {

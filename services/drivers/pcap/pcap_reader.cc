@@ -1,10 +1,11 @@
+#include "services/drivers/pcap/pcap_reader.h"
+
 #include <pcap/pcap.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 
 #include "calib/model/errors.h"
-#include "services/drivers/velodyne/velodyne_source.h"
 
 namespace rgbdt {
 namespace {
@@ -62,24 +63,26 @@ bool IsKnownLink(int link) {
          link == DLT_NULL || link == DLT_LOOP || link == DLT_RAW || link == DLT_IPV4;
 }
 
-// Leaves the UDP packet; false for anything else, and for pieces of one.
-bool SkipIp(Bytes* bytes) {
-  if (bytes->size < 20 || bytes->data[0] >> 4 != 4) return false;
-  const std::size_t header = 4 * static_cast<std::size_t>(bytes->data[0] & 15);
-  constexpr int kMoreOrOffset = 0x3fff;
-  if (header < 20 || bytes->data[9] != kUdp || (Word(bytes->data + 6) & kMoreOrOffset) != 0) {
-    return false;
-  }
-  return bytes->Skip(header);
+constexpr std::size_t kMostFragmented = 32;  // packets at once
+constexpr std::size_t kMostFragments = 1000;
+constexpr int kMore = 0x2000, kOffset = 0x1fff;
+
+// Of an IPv4 packet that carries UDP, its header's length; 0: something else.
+std::size_t IpHeader(const Bytes& bytes) {
+  if (bytes.size < 20 || bytes.data[0] >> 4 != 4 || bytes.data[9] != kUdp) return 0;
+  const std::size_t header = 4 * static_cast<std::size_t>(bytes.data[0] & 15);
+  return header < 20 || header > bytes.size ? 0 : header;
 }
 
 }  // namespace
 
 PcapReader::PcapReader(const std::string& path) : path_(path) {
   struct stat status {};
-  // libpcap opens a folder, too, and then fails to read it; and "-" would be standard input.
-  if (stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
-    throw InputError(path + ": is a folder; expected a recording (pcap)");
+  // libpcap opens a folder, too, and then fails to read it, and waits for a pipe; and "-" would be
+  // standard input.
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+    throw InputError(path + (S_ISDIR(status.st_mode) ? ": is a folder" : ": is no regular file") +
+                     "; expected a recording (pcap)");
   }
   char error[PCAP_ERRBUF_SIZE] = "";
   const std::string file = path == "-" ? "./-" : path;
@@ -108,17 +111,65 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     if (got < 0) throw InputError(path_ + ": is damaged or cut short: " + pcap_geterr(pcap_));
     if (got == 0) continue;
     Bytes bytes{data, header->caplen};
-    if (!SkipLink(link, &bytes) || !SkipIp(&bytes) || bytes.size < 8) continue;
+    if (!SkipLink(link, &bytes)) continue;
+    const std::size_t ip = IpHeader(bytes);
+    if (ip == 0) continue;
+    std::optional<std::vector<std::uint8_t>> joined;
+    if ((Word(bytes.data + 6) & (kMore | kOffset)) != 0) {
+      // What follows the packet pads the Ethernet frame.
+      const auto whole = static_cast<std::size_t>(Word(bytes.data + 2));
+      if (whole < ip || whole > bytes.size) continue;
+      joined = Join(bytes.data, bytes.data + ip, whole - ip);
+      if (!joined) continue;
+      bytes = {joined->data(), joined->size()};
+    } else {
+      bytes.Skip(ip);
+    }
+    if (bytes.size < 8) continue;
     Datagram datagram;
     datagram.utime = Utime{header->ts.tv_sec} * kMicrosecondsPerSecond + header->ts.tv_usec;
     datagram.port = Word(bytes.data + 2);
-    // What follows the datagram pads the Ethernet frame.
     const auto length = static_cast<std::size_t>(std::max(8, Word(bytes.data + 4)));
     datagram.cut = bytes.size < length;
     const std::size_t size = std::min(length, bytes.size);
     datagram.payload.assign(bytes.data + 8, bytes.data + size);
     return datagram;
   }
+}
+
+// The whole packet's bytes once its last fragment has come.
+std::optional<std::vector<std::uint8_t>> PcapReader::Join(const std::uint8_t* header,
+                                                          const std::uint8_t* data,
+                                                          std::size_t size) {
+  std::vector<std::uint8_t> key(header + 12, header + 20);  // addresses
+  key.insert(key.end(), header + 4, header + 6);            // number
+  const int place = Word(header + 6);
+  const std::size_t begin = 8 * static_cast<std::size_t>(place & kOffset), end = begin + size;
+  auto found = std::find_if(fragments_.begin(), fragments_.end(),
+                            [&](const Fragments& f) { return f.key == key; });
+  if (found == fragments_.end()) {
+    if (fragments_.size() == kMostFragmented) fragments_.pop_front();
+    found = fragments_.insert(fragments_.end(), {key, {}, {}, 0});
+  }
+  if ((place & kMore) == 0) found->size = end;
+  found->bytes.resize(std::max(found->bytes.size(), end));  // 72 KiB at most, by its place
+  std::copy(data, data + size, found->bytes.begin() + static_cast<std::ptrdiff_t>(begin));
+  found->have.emplace_back(begin, end);
+  std::sort(found->have.begin(), found->have.end());
+  std::size_t reach = 0;
+  for (const auto& [from, to] : found->have) {
+    if (from > reach) break;  // a hole
+    reach = std::max(reach, to);
+  }
+  const bool whole = found->size != 0 && reach == found->size;
+  const bool hopeless = found->have.size() > kMostFragments;
+  std::vector<std::uint8_t> bytes = std::move(found->bytes);
+  if (!whole && !hopeless) {
+    found->bytes = std::move(bytes);
+    return std::nullopt;
+  }
+  fragments_.erase(found);
+  return whole ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
 }  // namespace rgbdt

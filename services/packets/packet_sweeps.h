@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/model/cloud.h"
+#include "services/drivers/ouster/ouster_metadata.h"
+
+namespace rgbdt {
+
+/// A LIDAR's packets -> sweeps, whatever the LIDAR. Each point of a sweep has its range (its
+/// distance from the line's origin), direction, ring, time and reflectivity (0 to 1).
+class PacketSweeps {
+ public:
+  using Payload = std::vector<std::uint8_t>;
+  virtual ~PacketSweeps() = default;
+
+  virtual std::string name() const = 0;  ///< "OS-1-64"
+  /// Whether a datagram is of this kind, by its size and what it begins with.
+  virtual bool IsOurs(const Payload& payload) const = 0;
+  /// The sweeps that it ended; it arrived at `arrival` [us, UTC]. Throws InputError for a packet
+  /// that cannot be decoded; the next one may come.
+  virtual std::vector<Cloud> Add(const Payload& payload, Utime arrival) = 0;
+  /// The one under way at the end, where all of it came.
+  virtual std::optional<Cloud> Finish() = 0;
+  /// What never came, in words; empty: all came.
+  virtual std::string Lost() const = 0;
+};
+
+std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata);
+
+/// Of the model that a packet names (VLP-16, VLP-32C, HDL-32E); none: it is no such packet.
+std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload);
+
+}  // namespace rgbdt

@@ -1,0 +1,139 @@
+#include "services/packets/recording.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "services/drivers/pcap/pcap_reader.h"
+#include "services/packets/packet_sweeps.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Every datagram until the end, or until it is cut off: then why.
+std::string ForEach(const fs::path& path,
+                    const std::function<void(const PcapReader::Datagram&)>& take) {
+  PcapReader reader(path.string());
+  while (true) {
+    std::optional<PcapReader::Datagram> datagram;
+    try {
+      datagram = reader.Next();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    if (!datagram) return "";
+    take(*datagram);
+  }
+}
+
+// Who sent these packets, and where most of them went.
+class Finder {
+ public:
+  explicit Finder(const RecordingOptions& options) : wanted_(options.port) {
+    if (options.metadata.empty()) return;
+    ouster_ = OusterPackets(
+        ouster::ParseMetadata(ReadWholeFile(options.metadata), options.metadata.string()));
+  }
+
+  void Look(const PcapReader::Datagram& datagram) {
+    ++all_[datagram.port];
+    if (datagram.cut || (wanted_ != 0 && datagram.port != wanted_)) return;
+    if (ouster_) {
+      if (ouster_->IsOurs(datagram.payload)) ++ours_[datagram.port];
+      return;
+    }
+    std::unique_ptr<PacketSweeps>& seen = velodyne_[datagram.port];
+    if (!seen) seen = VelodynePackets(datagram.payload);
+    if (seen && seen->IsOurs(datagram.payload)) ++ours_[datagram.port];
+  }
+
+  // Throws InputError where there is none.
+  std::unique_ptr<PacketSweeps> Found(const fs::path& path, int* port) {
+    const auto most =
+        std::max_element(ours_.begin(), ours_.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == ours_.end()) {
+      std::string ports;
+      constexpr std::size_t kMost = 8;
+      for (const auto& [other, count] : all_) {
+        if (ports.size() > 16 * kMost) break;
+        ports += Format(" %d (%lld)", other, static_cast<long long>(count));
+      }
+      throw InputError(path.string() + ": has no packets of " +
+                       (ouster_ ? "the " + ouster_->name() + " of --metadata"
+                                : "a VLP-16, VLP-32C or HDL-32E; of an Ouster, give --metadata") +
+                       (wanted_ == 0 ? "" : " to UDP port " + std::to_string(wanted_)) +
+                       (ports.empty() ? "; no UDP at all" : "; UDP ports (datagrams):" + ports));
+    }
+    *port = most->first;
+    return ouster_ ? std::move(ouster_) : std::move(velodyne_.at(most->first));
+  }
+  const std::map<int, std::int64_t>& all() const { return all_; }
+
+ private:
+  int wanted_;
+  std::unique_ptr<PacketSweeps> ouster_;
+  std::map<int, std::unique_ptr<PacketSweeps>> velodyne_;
+  std::map<int, std::int64_t> ours_, all_;
+};
+
+void RequireEmpty(const fs::path& dir) {
+  std::error_code error;
+  if (!fs::exists(dir, error)) return;
+  if (!fs::is_directory(dir, error) || !fs::is_empty(dir, error) || error) {
+    throw InputError(dir.string() + ": is there and not empty; expected a new folder");
+  }
+}
+
+std::string NameOf(Utime utime) {
+  return Format("%lld.%06lld.pcd", static_cast<long long>(utime / kMicrosecondsPerSecond),
+                static_cast<long long>(utime % kMicrosecondsPerSecond));
+}
+
+}  // namespace
+
+Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
+                        const std::function<void(const Cloud&)>& take) {
+  Finder finder(options);
+  ForEach(path, [&](const PcapReader::Datagram& datagram) { finder.Look(datagram); });
+  Recording recording;
+  const std::unique_ptr<PacketSweeps> sweeps = finder.Found(path, &recording.port);
+  recording.sensor = sweeps->name();
+  recording.others = finder.all();
+  recording.others.erase(recording.port);
+  const auto give = [&](const Cloud& sweep) {
+    if (recording.sweeps++ == 0) recording.first = sweep.sweep_utime;
+    recording.last = sweep.sweep_utime;
+    take(sweep);
+  };
+  recording.cut_off = ForEach(path, [&](const PcapReader::Datagram& datagram) {
+    if (datagram.port != recording.port || !sweeps->IsOurs(datagram.payload)) return;
+    ++recording.packets;
+    std::vector<Cloud> done;
+    try {
+      if (datagram.cut) throw InputError("a packet was recorded cut short");
+      done = sweeps->Add(datagram.payload, datagram.utime);
+    } catch (const InputError& error) {
+      ++recording.bad;
+      recording.last_problem = error.what();
+    }
+    for (const Cloud& sweep : done) give(sweep);
+  });
+  if (const auto sweep = sweeps->Finish()) give(*sweep);
+  recording.lost = sweeps->Lost();
+  return recording;
+}
+
+Recording WriteRecordingAsPcds(const fs::path& path, const RecordingOptions& options,
+                               const fs::path& dir) {
+  RequireEmpty(dir);
+  return ReadRecording(
+      path, options, [&](const Cloud& sweep) { WritePcd(dir / NameOf(sweep.sweep_utime), sweep); });
+}
+
+}  // namespace rgbdt

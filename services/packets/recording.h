@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "calib/model/cloud.h"
+
+namespace rgbdt {
+
+struct RecordingOptions {
+  std::filesystem::path metadata;  ///< an Ouster's, as JSON; empty: a Velodyne
+  int port = 0;                    ///< that the LIDAR sends to; 0: where its packets are most
+};
+
+/// What a recording of a LIDAR's packets holds.
+struct Recording {
+  std::string sensor;  ///< "OS-1-64"
+  int port = 0;
+  std::int64_t packets = 0;  ///< of the LIDAR
+  std::int64_t bad = 0;      ///< of these, could not be decoded, or the recording has not all of it
+  std::string last_problem;
+  std::map<int, std::int64_t> others;  ///< datagrams by port
+  std::int64_t sweeps = 0;
+  Utime first = 0, last = 0;  ///< of the sweeps
+  std::string lost;           ///< in words; empty: nothing
+  std::string cut_off;        ///< where and why the recording ends too early; empty: it does not
+};
+
+/// Reads it, front to back, twice; `take` gets each whole sweep. Memory does not grow with it.
+/// Throws InputError: no recording, no packets of a known LIDAR in it, metadata that cannot be
+/// read, and what `take` throws.
+Recording ReadRecording(const std::filesystem::path& path, const RecordingOptions& options,
+                        const std::function<void(const Cloud&)>& take);
+
+/// The sweeps as PCD files into `dir`, which is new or empty, named by their times as `rgbdt
+/// session
+/// --clouds` pairs them with images: SECONDS.MICROSECONDS.pcd.
+Recording WriteRecordingAsPcds(const std::filesystem::path& path, const RecordingOptions& options,
+                               const std::filesystem::path& dir);
+
+}  // namespace rgbdt

@@ -1,0 +1,46 @@
+#include <cstdio>
+
+#include "calib/model/errors.h"
+#include "services/packets/recording.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+
+int ImportPackets(const PacketsToImport& packets) {
+  const RecordingOptions options{packets.metadata, packets.port};
+  const Recording recording = packets.out.empty()
+                                  ? ReadRecording(packets.file, options, [](const Cloud&) {})
+                                  : WriteRecordingAsPcds(packets.file, options, packets.out);
+  std::printf("%s at UDP port %d: %lld packets, %lld sweeps", recording.sensor.c_str(),
+              recording.port, static_cast<long long>(recording.packets),
+              static_cast<long long>(recording.sweeps));
+  const double seconds = ToSeconds(recording.last - recording.first);
+  if (recording.sweeps > 1 && seconds > 0) {
+    std::printf(", %.3g Hz", static_cast<double>(recording.sweeps - 1) / seconds);
+  }
+  std::printf("\n");
+  constexpr int kMostLines = 10;
+  int lines = 0;
+  for (const auto& [port, count] : recording.others) {
+    if (++lines > kMostLines) break;
+    std::printf("left out: UDP port %d, %lld datagrams\n", port, static_cast<long long>(count));
+  }
+  if (!recording.lost.empty()) std::printf("lost: %s\n", recording.lost.c_str());
+  if (recording.bad > 0) {
+    std::printf("problem: %lld packets could not be read, the last: %s\n",
+                static_cast<long long>(recording.bad), recording.last_problem.c_str());
+  }
+  if (!recording.cut_off.empty()) std::printf("problem: %s\n", recording.cut_off.c_str());
+  if (recording.sweeps == 0) {
+    throw InputError(packets.file + ": holds no whole sweep; record for a second or longer");
+  }
+  if (packets.out.empty()) {
+    std::printf("next: add --out\n");
+  } else {
+    std::printf("wrote %lld PCD files to %s\nnext: rgbdt session --clouds %s --images ...\n",
+                static_cast<long long>(recording.sweeps), packets.out.c_str(), packets.out.c_str());
+  }
+  return EndsWith(true);
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# rgbdt import of a recording of a LIDAR's packets. Usage: import_packets_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+python3 "$(dirname "${BASH_SOURCE[0]}")/make_pcap.py" "$scratch/drive.pcap" "$scratch/os.json" 3
+os=(--metadata "$scratch/os.json")
+says_line() {  # WHAT LINE
+  grep -qxF -- "$2" "$scratch/output" || complain "$1: no line '$2'"
+}
+
+accepts "a list" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}"
+says_line "a list" "OS-1-16 at UDP port 7502: 96 packets, 3 sweeps, 10 Hz"
+says_line "a list" "next: add --out"
+accepts "sweeps" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --out "$scratch/clouds"
+says_line "sweeps" "wrote 3 PCD files to $scratch/clouds"
+[ "$(find "$scratch/clouds" -name '[0-9]*.[0-9]*.pcd' | wc -l)" = 3 ] || complain "sweeps: not three files"
+for file in "$scratch"/clouds/*; do
+  grep -qa '^HEIGHT 16$' "$file" || complain "sweeps: not of 16 lines"
+done
+
+# Cut off: what lies before is taken.
+head -c 200000 "$scratch/drive.pcap" >"$scratch/cut.pcap"
+accepts "cut off" "$bin/rgbdt" import "$scratch/cut.pcap" "${os[@]}"
+grep -q "^problem: $scratch/cut.pcap: is damaged or cut short" "$scratch/output" || complain "cut off: not told"
+
+mkdir "$scratch/kept"
+echo mine >"$scratch/kept/mine"
+says=("--metadata" "7502")
+refuses "no known LIDAR" "$bin/rgbdt" import "$scratch/drive.pcap" --out "$scratch/kept/new"
+says=("not empty")
+refuses "a folder with files" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --out "$scratch/kept"
+says=("drive.pcap" "JSON")
+refuses "no metadata" "$bin/rgbdt" import "$scratch/drive.pcap" --metadata "$scratch/drive.pcap" --out "$scratch/kept/new"
+says=("nowhere.pcap")
+refuses "no file" "$bin/rgbdt" import "$scratch/nowhere.pcap"
+mkfifo "$scratch/pipe.pcap"
+says=("pipe.pcap" "regular file")
+refuses "a pipe" "$bin/rgbdt" import "$scratch/pipe.pcap"
+cp "$scratch/os.json" "$scratch/text.pcap"
+says=("text.pcap" "pcap")
+refuses "no recording" "$bin/rgbdt" import "$scratch/text.pcap"
+says=("--board" "session --clouds")
+misuses "with a board" "$bin/rgbdt" import "$scratch/drive.pcap" --board 8x6@0.1,0.8x0.6 --out "$scratch/kept/new"
+says=("--metadata")
+misuses "a bag with metadata" "$bin/rgbdt" import "$scratch/os.mcap" "${os[@]}"
+
+verdict
