@@ -1,5 +1,6 @@
 #include "services/packets/packet_sweeps.h"
 
+#include "services/drivers/hesai/hesai_sweeps.h"
 #include "services/drivers/ouster/ouster_sweeps.h"
 #include "services/drivers/velodyne/velodyne_sweeps.h"
 
@@ -31,6 +32,24 @@ class Ouster : public PacketSweeps {
   OusterSweeps sweeps_;
 };
 
+class Hesai : public PacketSweeps {
+ public:
+  explicit Hesai(hesai::Angles angles) : sweeps_(std::move(angles)) {}
+
+  std::string name() const override { return sweeps_.sensor().name; }
+  bool IsOurs(const Payload& payload) const override {
+    return hesai::IsPacket(sweeps_.sensor(), payload.data(), payload.size());
+  }
+  std::vector<Cloud> Add(const Payload& payload, Utime arrival) override {
+    return sweeps_.Add(hesai::Decode(sweeps_.sensor(), payload.data(), payload.size()), arrival);
+  }
+  std::optional<Cloud> Finish() override { return std::nullopt; }
+  std::string Lost() const override { return ""; }  // most of these packets have no numbers
+
+ private:
+  HesaiSweeps sweeps_;
+};
+
 class Velodyne : public PacketSweeps {
  public:
   explicit Velodyne(VelodyneDevice::Model model)
@@ -58,6 +77,10 @@ class Velodyne : public PacketSweeps {
 
 std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata) {
   return std::make_unique<Ouster>(std::move(metadata));
+}
+
+std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles) {
+  return std::make_unique<Hesai>(std::move(angles));
 }
 
 std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/model/cloud.h"
+#include "services/drivers/hesai/hesai_packets.h"
 #include "services/drivers/ouster/ouster_metadata.h"
 
 namespace rgbdt {
@@ -31,6 +32,8 @@ class PacketSweeps {
 };
 
 std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata);
+/// Of the model that has so many channels. Throws InputError where none has.
+std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles);
 
 /// Of the model that a packet names (VLP-16, VLP-32C, HDL-32E); none: it is no such packet.
 std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload);

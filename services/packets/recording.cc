@@ -31,20 +31,32 @@ std::string ForEach(const fs::path& path,
   }
 }
 
+// An Ouster's JSON, or a Hesai's CSV.
+std::unique_ptr<PacketSweeps> SweepsOf(const fs::path& metadata) {
+  const std::string text = ReadWholeFile(metadata), where = metadata.string();
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
+  if (is_json) return OusterPackets(ouster::ParseMetadata(text, where));
+  const hesai::Angles angles = hesai::ParseAngles(text, where);
+  try {
+    return HesaiPackets(angles);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
 // Who sent these packets, and where most of them went.
 class Finder {
  public:
   explicit Finder(const RecordingOptions& options) : wanted_(options.port) {
-    if (options.metadata.empty()) return;
-    ouster_ = OusterPackets(
-        ouster::ParseMetadata(ReadWholeFile(options.metadata), options.metadata.string()));
+    if (!options.metadata.empty()) known_ = SweepsOf(options.metadata);
   }
 
   void Look(const PcapReader::Datagram& datagram) {
     ++all_[datagram.port];
     if (datagram.cut || (wanted_ != 0 && datagram.port != wanted_)) return;
-    if (ouster_) {
-      if (ouster_->IsOurs(datagram.payload)) ++ours_[datagram.port];
+    if (known_) {
+      if (known_->IsOurs(datagram.payload)) ++ours_[datagram.port];
       return;
     }
     std::unique_ptr<PacketSweeps>& seen = velodyne_[datagram.port];
@@ -65,19 +77,20 @@ class Finder {
         ports += Format(" %d (%lld)", other, static_cast<long long>(count));
       }
       throw InputError(path.string() + ": has no packets of " +
-                       (ouster_ ? "the " + ouster_->name() + " of --metadata"
-                                : "a VLP-16, VLP-32C or HDL-32E; of an Ouster, give --metadata") +
+                       (known_ ? "the " + known_->name() + " of --metadata"
+                               : "a VLP-16, VLP-32C or HDL-32E; of an Ouster or a Hesai, give "
+                                 "--metadata") +
                        (wanted_ == 0 ? "" : " to UDP port " + std::to_string(wanted_)) +
                        (ports.empty() ? "; no UDP at all" : "; UDP ports (datagrams):" + ports));
     }
     *port = most->first;
-    return ouster_ ? std::move(ouster_) : std::move(velodyne_.at(most->first));
+    return known_ ? std::move(known_) : std::move(velodyne_.at(most->first));
   }
   const std::map<int, std::int64_t>& all() const { return all_; }
 
  private:
   int wanted_;
-  std::unique_ptr<PacketSweeps> ouster_;
+  std::unique_ptr<PacketSweeps> known_;  // by what the user says
   std::map<int, std::unique_ptr<PacketSweeps>> velodyne_;
   std::map<int, std::int64_t> ours_, all_;
 };

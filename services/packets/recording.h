@@ -11,7 +11,7 @@
 namespace rgbdt {
 
 struct RecordingOptions {
-  std::filesystem::path metadata;  ///< an Ouster's, as JSON; empty: a Velodyne
+  std::filesystem::path metadata;  ///< an Ouster's JSON, a Hesai's angles (CSV); empty: a Velodyne
   int port = 0;                    ///< that the LIDAR sends to; 0: where its packets are most
 };
 

@@ -270,9 +270,9 @@ void AddImport(CommandLine* program, PacketImport packets) {
       "board\n"
       "stands still for a second, spread over the image. Exit code 1: also where a lens was to be\n"
       "found from the images and was not.\n"
-      "Of a recording of a LIDAR's packets (.pcap, .pcapng; Velodyne, or Ouster with --metadata) "
-      "it\n"
-      "writes each sweep as a PCD into --out, named by its time, for `rgbdt session --clouds`.\n"
+      "Of a recording of a LIDAR's packets (.pcap, .pcapng; Velodyne, or Ouster and Hesai with\n"
+      "--metadata) it writes each sweep as a PCD into --out, named by its time, for\n"
+      "`rgbdt session --clouds`.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "
@@ -302,8 +302,9 @@ void AddImport(CommandLine* program, PacketImport packets) {
   verb->Option("--views", &flags->views, "of moments in which the board stands still: at most");
   verb->Within("--max-apart", &flags->max_apart_s, 0, 60,
                "how far an image and its cloud may be apart, by their headers [s]");
-  verb->Option("--metadata", &flags->metadata,
-               "of a recording of an Ouster: what the sensor says of itself (JSON)");
+  verb->Option(
+      "--metadata", &flags->metadata,
+      "of a recording: what an Ouster says of itself (JSON), or a Hesai's angle correction (CSV)");
   verb->Option("--port", &flags->port,
                "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }

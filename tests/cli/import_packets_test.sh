@@ -30,7 +30,7 @@ says=("--metadata" "7502")
 refuses "no known LIDAR" "$bin/rgbdt" import "$scratch/drive.pcap" --out "$scratch/kept/new"
 says=("not empty")
 refuses "a folder with files" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --out "$scratch/kept"
-says=("drive.pcap" "JSON")
+says=("drive.pcap" "CSV" "JSON")
 refuses "no metadata" "$bin/rgbdt" import "$scratch/drive.pcap" --metadata "$scratch/drive.pcap" --out "$scratch/kept/new"
 says=("nowhere.pcap")
 refuses "no file" "$bin/rgbdt" import "$scratch/nowhere.pcap"

@@ -1,5 +1,6 @@
 // Recorded packets against the clouds that nebula makes of them: the data set "nebula", of its
-// decoder_ground_truth: vlp16.db3 (velodyne_msgs/VelodyneScan) and vlp16.pcd.
+// decoder_ground_truth: NAME.db3 (velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan), NAME.pcd
+// and, of a Hesai, NAME.csv, its angles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "services/bags/bag_reader.h"
+#include "services/drivers/hesai/hesai_packets.h"
 #include "services/drivers/velodyne/velodyne_packets.h"
 
 namespace rgbdt {
@@ -37,9 +39,10 @@ struct Angles {
   double azimuth_deg, elevation_deg;
 };
 
-// CDR, aligned from behind its first four bytes: header, number of packets, stamp and 1206 bytes
-// each.
-std::vector<std::string> PacketsOf(const BagMessage& message) {
+// CDR, aligned from behind its first four bytes: header, number of packets, and of each its stamp
+// and so many bytes; pandar_msgs has their number behind them.
+std::vector<std::string> PacketsOf(const BagMessage& message, std::size_t packet_bytes,
+                                   bool has_size) {
   const std::string bytes(message.data, message.data + message.size);
   const auto align = [](std::size_t at) { return 4 + (at - 4 + 3) / 4 * 4; };
   std::size_t at = align(16 + At<std::uint32_t>(bytes, 12));
@@ -47,10 +50,19 @@ std::vector<std::string> PacketsOf(const BagMessage& message) {
   at += 4;
   for (std::string& packet : packets) {
     at = align(at) + 8;
-    packet = bytes.substr(at, velodyne::kDataBytes);
-    at += velodyne::kDataBytes;
+    packet = bytes.substr(at, packet_bytes);
+    at += packet_bytes;
+    if (!has_size) continue;
+    at = align(at);
+    packet.resize(At<std::uint32_t>(bytes, at));
+    at += 4;
   }
   return packets;
+}
+
+fs::path DataFolder() {
+  const char* data = std::getenv("RGBDT_REAL_DATA");
+  return fs::path(data == nullptr ? "" : data) / "nebula";
 }
 
 std::multimap<Key, Angles> Decoded(const fs::path& bag_path) {
@@ -59,7 +71,7 @@ std::multimap<Key, Angles> Decoded(const fs::path& bag_path) {
   const auto bag = OpenBag(bag_path);
   BagMessage message;
   while (bag->Next(&message)) {
-    for (const std::string& bytes : PacketsOf(message)) {
+    for (const std::string& bytes : PacketsOf(message, velodyne::kDataBytes, false)) {
       const velodyne::Packet packet = velodyne::Decode(
           sensor, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
       for (std::size_t c = 0; c < packet.columns.size(); ++c) {
@@ -82,9 +94,8 @@ std::multimap<Key, Angles> Decoded(const fs::path& bag_path) {
 }
 
 TEST(NebulaReal, AVelodynesPointsAreThoseOfNebula) {
-  const char* data = std::getenv("RGBDT_REAL_DATA");
-  const fs::path folder = fs::path(data == nullptr ? "" : data) / "nebula";
-  if (data == nullptr || !fs::exists(folder / "vlp16.db3")) {
+  const fs::path folder = DataFolder();
+  if (!fs::exists(folder / "vlp16.db3")) {
     GTEST_SKIP() << "no nebula in RGBDT_REAL_DATA: packets not compared";
   }
   const std::multimap<Key, Angles> beams = Decoded(folder / "vlp16.db3");
@@ -117,6 +128,71 @@ TEST(NebulaReal, AVelodynesPointsAreThoseOfNebula) {
   // Of a beam's two returns the weaker one is not kept here.
   EXPECT_GT(found, 0.99 * static_cast<double>(points));
   EXPECT_GT(near, 0.98 * static_cast<double>(points));
+}
+
+// Each return of a Hesai, by channel and distance in the sensor's units: its azimuth [rad].
+std::multimap<std::pair<std::size_t, std::int64_t>, double> DecodedHesai(
+    const fs::path& bag_path, const hesai::Angles& angles, double unit_m) {
+  const hesai::Sensor& sensor = hesai::SensorOf(angles.elevation_rad.size());
+  std::multimap<std::pair<std::size_t, std::int64_t>, double> beams;
+  const auto bag = OpenBag(bag_path);
+  BagMessage message;
+  while (bag->Next(&message)) {
+    for (const std::string& bytes : PacketsOf(message, 1500, true)) {
+      const hesai::Packet packet =
+          hesai::Decode(sensor, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+      for (const hesai::Column& column : packet.columns) {
+        for (const auto* returns : {&column.returns, &column.second_returns}) {
+          for (std::size_t channel = 0; channel < returns->size(); ++channel) {
+            beams.insert({{channel, std::lround((*returns)[channel].range_m / unit_m)},
+                          column.azimuth_rad + angles.azimuth_rad[channel]});
+          }
+        }
+      }
+    }
+  }
+  return beams;
+}
+
+TEST(NebulaReal, AHesaisPointsAreThoseOfNebula) {
+  const fs::path folder = DataFolder();
+  std::size_t points = 0, agree = 0;
+  for (const std::string name : {"40p", "xt32", "xt16"}) {
+    if (!fs::exists(folder / (name + ".db3"))) continue;
+    const hesai::Angles angles = hesai::ParseAngles(ReadWholeFile(folder / (name + ".csv")), name);
+    constexpr double kUnit_m = 0.004;
+    const auto beams = DecodedHesai(folder / (name + ".db3"), angles, kUnit_m);
+    const std::string bytes = ReadWholeFile(folder / (name + ".pcd"));
+    const std::size_t begin = bytes.find("DATA binary\n") + 12;
+    constexpr std::size_t kStride = 12;
+    for (std::size_t at = begin; at + kStride <= bytes.size(); at += kStride, ++points) {
+      const Eigen::Vector3d p(At<float>(bytes, at), At<float>(bytes, at + 4),
+                              At<float>(bytes, at + 8));
+      const double elevation = std::asin(p.z() / p.norm());
+      std::size_t channel = 0;
+      for (std::size_t i = 0; i < angles.elevation_rad.size(); ++i) {
+        if (std::abs(angles.elevation_rad[i] - elevation) <
+            std::abs(angles.elevation_rad[channel] - elevation)) {
+          channel = i;
+        }
+      }
+      const std::int64_t units = std::lround(p.norm() / kUnit_m);
+      double nearest = 4;
+      const auto [first, last] = beams.equal_range({channel, units});
+      for (auto beam = first; beam != last; ++beam) {
+        nearest = std::min(
+            nearest, std::abs(std::remainder(beam->second - std::atan2(p.x(), p.y()), 2 * M_PI)));
+      }
+      const bool same = nearest < 1e-5 &&
+                        std::abs(angles.elevation_rad[channel] - elevation) < 1e-5 &&
+                        std::abs(kUnit_m * static_cast<double>(units) - p.norm()) <
+                            2e-7 * p.norm() + 1e-6;  // of floats
+      if (same) ++agree;
+    }
+  }
+  if (points == 0) GTEST_SKIP() << "no nebula in RGBDT_REAL_DATA: packets not compared";
+  std::printf("hesai_agree: %zu of %zu points\n", agree, points);
+  EXPECT_EQ(agree, points);
 }
 
 }  // namespace

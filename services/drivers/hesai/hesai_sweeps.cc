@@ -1,0 +1,94 @@
+#include "services/drivers/hesai/hesai_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rgbdt {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kMostColumns = 20'000;  // a head that hardly turns
+
+// From the back on, 0 to a full turn.
+double FromSeam(double azimuth_rad) { return std::fmod(azimuth_rad + 3 * M_PI, 2 * M_PI); }
+
+hesai::Return Brighter(const hesai::Return& a, const hesai::Return& b) {
+  if (a.range_m == 0 || b.range_m == 0) return a.range_m == 0 ? b : a;
+  return b.reflectivity > a.reflectivity ? b : a;
+}
+
+}  // namespace
+
+HesaiSweeps::HesaiSweeps(hesai::Angles angles)
+    : angles_(std::move(angles)), sensor_(hesai::SensorOf(angles_.elevation_rad.size())) {
+  std::vector<std::size_t> order(sensor_.channels);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return angles_.elevation_rad[a] < angles_.elevation_rad[b];
+  });
+  ring_.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) ring_[order[i]] = i;
+}
+
+std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) {
+  std::vector<Cloud> done;
+  const auto utime = static_cast<double>(packet.utime.value_or(arrival));
+  for (const hesai::Column& column : packet.columns) {
+    Fired fired{column.azimuth_rad, utime + column.time_us, column.returns};
+    for (std::size_t i = 0; i < column.second_returns.size(); ++i) {
+      fired.returns[i] = Brighter(fired.returns[i], column.second_returns[i]);
+    }
+    const double from_seam = FromSeam(fired.azimuth_rad);
+    if (last_from_seam_ >= 0 && from_seam < last_from_seam_ - M_PI) {
+      if (whole_ && columns_.size() > 1) done.push_back(Revolution());
+      columns_.clear();
+      whole_ = true;
+    } else if (columns_.size() >= kMostColumns) {
+      columns_.clear();
+      whole_ = false;
+    }
+    last_from_seam_ = from_seam;
+    if (whole_) columns_.push_back(std::move(fired));
+  }
+  return done;
+}
+
+Cloud HesaiSweeps::Revolution() const {
+  const std::size_t beams = columns_.size(), size = sensor_.channels * beams;
+  Cloud cloud;
+  cloud.sweep_utime = std::llround(columns_.front().utime);
+  cloud.lines = static_cast<int>(sensor_.channels);
+  cloud.beams = static_cast<int>(beams);
+  cloud.points.assign(size, {kNan, kNan, kNan});
+  cloud.directions.resize(size);
+  cloud.intensity.resize(size);
+  cloud.utime.resize(size);
+  cloud.ring.resize(size);
+  const double step =
+      (FromSeam(columns_.back().azimuth_rad) - FromSeam(columns_.front().azimuth_rad)) /
+      static_cast<double>(beams - 1);
+  const auto n = static_cast<std::int64_t>(beams);
+  for (std::size_t channel = 0; channel < sensor_.channels; ++channel) {
+    const double cos = std::cos(angles_.elevation_rad[channel]);
+    const double sin = std::sin(angles_.elevation_rad[channel]);
+    const std::int64_t aside = step > 0 ? std::llround(angles_.azimuth_rad[channel] / step) : 0;
+    for (std::size_t c = 0; c < beams; ++c) {
+      const std::int64_t place = ((static_cast<std::int64_t>(c) + aside) % n + n) % n;
+      const std::size_t i = ring_[channel] * beams + static_cast<std::size_t>(place);
+      const Fired& column = columns_[c];
+      const double azimuth = column.azimuth_rad + angles_.azimuth_rad[channel];
+      const Eigen::Vector3d direction(cos * std::cos(azimuth), -cos * std::sin(azimuth), sin);
+      const hesai::Return& back = column.returns[channel];
+      cloud.ring[i] = static_cast<std::uint16_t>(ring_[channel]);
+      cloud.utime[i] = std::llround(column.utime + sensor_.channel_us[channel]);
+      cloud.directions[i] = direction.cast<float>();
+      cloud.intensity[i] = static_cast<float>(back.reflectivity) / 255;
+      if (back.range_m > 0) cloud.points[i] = (back.range_m * direction).cast<float>();
+    }
+  }
+  return cloud;
+}
+
+}  // namespace rgbdt

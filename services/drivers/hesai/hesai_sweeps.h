@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "calib/model/cloud.h"
+#include "services/drivers/hesai/hesai_packets.h"
+
+namespace rgbdt {
+
+/// A Hesai's packets -> revolutions, organised ring x azimuth: line 0 is the lowest ring, beam 0
+/// points backwards, the next ones as they were fired, clockwise from above. LIDAR frame: x forward
+/// at azimuth 0, y left, z up (the manuals have y forward and x right). A beam that returned
+/// nothing is NaN and keeps its direction. Rings whose channels look aside are shifted by whole
+/// columns. Of two returns of a beam the one of the higher reflectivity counts. Columns of lost
+/// packets are left out: their neighbours stand side by side.
+///
+/// Times: the packets' own date and time; where the sensor's clock was never set, their arrival.
+class HesaiSweeps {
+ public:
+  /// Throws InputError for angles of a number of channels that no known sensor has.
+  explicit HesaiSweeps(hesai::Angles angles);
+
+  /// The revolutions that a packet, which arrived at `arrival` [us, UTC], completed. The first, cut
+  /// off one never comes.
+  std::vector<Cloud> Add(const hesai::Packet& packet, Utime arrival);
+
+  const hesai::Sensor& sensor() const { return sensor_; }
+
+ private:
+  struct Fired {
+    double azimuth_rad = 0;
+    double utime = 0;
+    std::vector<hesai::Return> returns;
+  };
+  Cloud Revolution() const;
+
+  hesai::Angles angles_;
+  const hesai::Sensor& sensor_;
+  std::vector<std::size_t> ring_;  // by channel
+  std::vector<Fired> columns_;
+  double last_from_seam_ = -1;
+  bool whole_ = false;  // `columns_` begin at the seam
+};
+
+}  // namespace rgbdt

@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/drivers/hesai/hesai_sweeps.h"
+#include "tests/unit/files/test_data.h"
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr double kDegree = M_PI / 180;
+constexpr Utime kSecond = 1'700'000'000'000'000;  // 2023-11-14 22:13:20
+
+// Made-up packets, by the manuals' tables; none of the driver's code.
+struct Encoder {
+  bool is_40p = false;
+  int channels = 16;
+  bool dual = false;
+  bool has_date = true;
+
+  int Range_mm(int azimuth, int channel) const {
+    return azimuth == 9000 ? 0 : 4 * (1000 + azimuth / 100 + 10 * channel);
+  }
+  int blocks() const { return is_40p ? 10 : 8; }
+  // Blocks from this azimuth on, 1 degree apart [0.01 degrees].
+  std::vector<std::uint8_t> Packet(int first_azimuth, int us) const {
+    std::vector<std::uint8_t> bytes;
+    if (!is_40p) {
+      bytes = {0xee, 0xff, 6, 1, 0, 0, static_cast<std::uint8_t>(channels), 8, 0, 4, 2, 0};
+    }
+    for (int block = 0; block < blocks(); ++block) {
+      const int azimuth = (first_azimuth + 100 * (dual ? block / 2 : block)) % 36000;
+      if (is_40p) Add(0xeeff, 2, &bytes);
+      Add(azimuth, 2, &bytes);
+      for (int channel = 0; channel < channels; ++channel) {
+        const bool second = dual && block % 2 == 1;
+        Add(Range_mm(azimuth, channel) / 4 + (second ? 250 : 0), 2, &bytes);
+        bytes.push_back(second ? 20 : 10);
+        if (!is_40p) bytes.push_back(0);
+      }
+    }
+    const std::uint8_t mode = dual ? 0x39 : 0x37;
+    const std::uint8_t year = is_40p ? 23 : 123;
+    const std::vector<std::uint8_t> date = {
+        static_cast<std::uint8_t>(has_date ? year : 0), 11, 14, 22, 13, 20};
+    if (is_40p) {
+      bytes.resize(bytes.size() + 10);
+      Add(us, 4, &bytes);
+      bytes.push_back(mode);
+      bytes.push_back(0x42);
+      bytes.insert(bytes.end(), date.begin(), date.end());
+    } else {
+      bytes.resize(bytes.size() + 10);
+      bytes.push_back(mode);
+      bytes.resize(bytes.size() + 2);
+      bytes.insert(bytes.end(), date.begin(), date.end());
+      Add(us, 4, &bytes);
+      bytes.resize(bytes.size() + 1 + 4);
+    }
+    return bytes;
+  }
+  std::string Angles() const {
+    std::string csv = "Channel,Elevation,Azimuth\n";
+    for (int i = 0; i < channels; ++i) {
+      csv += std::to_string(i + 1) + "," + std::to_string(15 - i) + "," + (i == 1 ? "3" : "0") +
+             "\r\n";
+    }
+    return csv;
+  }
+
+ private:
+  static void Add(int value, int count, std::vector<std::uint8_t>* to) {
+    for (int i = 0; i < count; ++i) to->push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+};
+
+std::vector<Cloud> Turns(const Encoder& encoder, Utime arrival = 0) {
+  HesaiSweeps sweeps(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
+  std::vector<Cloud> done;
+  const int step = 100 * encoder.blocks() / (encoder.dual ? 2 : 1);
+  for (int azimuth = 0; azimuth <= 36000 + 18000 + step; azimuth += step) {
+    const auto bytes = encoder.Packet(azimuth % 36000, azimuth);
+    const auto more =
+        sweeps.Add(hesai::Decode(sweeps.sensor(), bytes.data(), bytes.size()), arrival);
+    done.insert(done.end(), more.begin(), more.end());
+  }
+  return done;
+}
+
+TEST(HesaiSweeps, PointsLieWhereTheManualsSay) {
+  for (Encoder encoder : {Encoder{false, 16}, Encoder{false, 32}, Encoder{true, 40}}) {
+    for (const bool dual : {false, true}) {
+      encoder.dual = dual;
+      const std::vector<Cloud> sweeps = Turns(encoder);
+      ASSERT_THAT(sweeps, SizeIs(1));
+      const Cloud& sweep = sweeps[0];
+      ASSERT_EQ(sweep.lines, encoder.channels);
+      ASSERT_EQ(sweep.beams, 360);
+      for (int channel = 0; channel < encoder.channels; ++channel) {
+        for (int beam = 0; beam < 360; ++beam) {
+          const int aside = channel == 1 ? 3 : 0;
+          const int azimuth = 100 * ((beam + 180 - aside + 360) % 360);
+          const auto i = static_cast<std::size_t>((encoder.channels - 1 - channel) * 360 + beam);
+          // The brighter of two returns is a metre farther.
+          const int range = encoder.Range_mm(azimuth, channel) + (dual ? 1000 : 0);
+          EXPECT_EQ(sweep.IsHit(i), range != 0);
+          const double a = (azimuth / 100.0 + aside) * kDegree, e = (15 - channel) * kDegree;
+          const Eigen::Vector3d direction(std::cos(e) * std::cos(a), -std::cos(e) * std::sin(a),
+                                          std::sin(e));
+          EXPECT_THAT(sweep.directions[i].cast<double>(), EigenNear(direction, 1e-6));
+          if (range == 0) continue;
+          EXPECT_THAT(sweep.points[i].cast<double>(), EigenNear(1e-3 * range * direction, 2e-6));
+        }
+      }
+    }
+  }
+}
+
+TEST(HesaiSweeps, TimesAreTheSensorsUnlessItsClockWasNeverSet) {
+  Encoder encoder;
+  // The first block after the back is the fifth of the packet that begins at 176 degrees.
+  const Cloud sweep = Turns(encoder).at(0);
+  EXPECT_NEAR(static_cast<double>(sweep.sweep_utime), kSecond + 17600 + 5.632 - 3 * 50, 1);
+  const std::size_t top = 15 * 360;  // channel 0
+  EXPECT_NEAR(static_cast<double>(sweep.utime[top]), sweep.sweep_utime + 0.368, 1);
+  EXPECT_NEAR(static_cast<double>(sweep.utime[0]), sweep.sweep_utime + 0.368 + 15 * 3.024, 1);
+  encoder.has_date = false;
+  EXPECT_NEAR(static_cast<double>(Turns(encoder, 77'000'000).at(0).sweep_utime), 77'000'000, 200);
+}
+
+TEST(HesaiPackets, DamagedOnesAreDecodedOrRefused) {
+  for (const Encoder& encoder : {Encoder{false, 16}, Encoder{true, 40}}) {
+    const hesai::Sensor& sensor = hesai::SensorOf(static_cast<std::size_t>(encoder.channels));
+    const auto whole = encoder.Packet(100, 5);
+    ASSERT_TRUE(hesai::IsPacket(sensor, whole.data(), whole.size()));
+    int refused = 0;
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+      auto damaged = whole;
+      damaged[at] ^= 0xff;
+      try {
+        hesai::Decode(sensor, damaged.data(), damaged.size());
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+    EXPECT_GE(refused, encoder.blocks());  // an azimuth's high byte each, the magic, the mode
+    EXPECT_LE(refused, 2 * encoder.blocks() + 5);
+    EXPECT_THROW(hesai::Decode(sensor, whole.data(), whole.size() - 1), InputError);
+    EXPECT_FALSE(hesai::IsPacket(sensor, whole.data(), 0));
+  }
+}
+
+TEST(HesaiAngles, WhatIsWrongIsSaid) {
+  const auto why = [](const std::string& csv) {
+    return test::ErrorOf([&] { hesai::ParseAngles(csv, "angles.csv"); });
+  };
+  EXPECT_THAT(why("Channel,Elevation,Azimuth\n1,2\n"), HasSubstr("angles.csv:2"));
+  EXPECT_THAT(why("1,2,3\n1,2,3\n"), HasSubstr("angles.csv:2"));
+  EXPECT_THAT(why("1,2,3\n3,2,3\n"), HasSubstr("no channel 2"));
+  EXPECT_THAT(why("1,200,3\n"), HasSubstr("angles.csv:1"));
+  EXPECT_THAT(why("4000000000,2,3\n"), HasSubstr("angles.csv:1"));
+  EXPECT_THAT(why(""), HasSubstr("no channels"));
+  EXPECT_THAT(test::ErrorOf([] { hesai::SensorOf(7); }), HasSubstr("7 channels"));
+}
+
+}  // namespace
+}  // namespace rgbdt
