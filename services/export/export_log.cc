@@ -187,6 +187,7 @@ class Exporter {
     sweeps_.Add(chunk);
     if (!chunk.sweep_end) return;
     const std::optional<Cloud> sweep = sweeps_.Complete(chunk.cloud.sweep_utime);
+    sweeps_.Clear();  // it would keep many
     if (sweep && sweep->size() > 0) Put("/lidar/points", ToFoxglove(*sweep, lidar_));
   }
 

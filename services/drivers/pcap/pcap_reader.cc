@@ -152,7 +152,7 @@ std::optional<std::vector<std::uint8_t>> PcapReader::Join(const std::uint8_t* he
     found = fragments_.insert(fragments_.end(), {key, {}, {}, 0});
   }
   if ((place & kMore) == 0) found->size = end;
-  found->bytes.resize(std::max(found->bytes.size(), end));  // 72 KiB at most, by its place
+  found->bytes.resize(std::max(found->bytes.size(), end));  // 128 KiB at most, by its place
   std::copy(data, data + size, found->bytes.begin() + static_cast<std::ptrdiff_t>(begin));
   found->have.emplace_back(begin, end);
   std::sort(found->have.begin(), found->have.end());
