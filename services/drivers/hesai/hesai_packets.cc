@@ -58,7 +58,8 @@ Sensor PandarXt(std::size_t channels) {
   s.block_us = 50;
   s.last_block_us = 5.632;
   for (std::size_t i = 0; i < channels; ++i) {
-    s.channel_us.push_back(0.368 + 1.512 * static_cast<double>(i * 32 / channels));
+    const std::size_t slot = i * 32 / channels;  // of those that the larger one has
+    s.channel_us.push_back(0.368 + 1.512 * static_cast<double>(slot));
   }
   return s;
 }
@@ -182,8 +183,8 @@ Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size) 
     }
     Column column;
     column.azimuth_rad = static_cast<double>(azimuth) / 100 * kDegree;
-    const auto before_last = static_cast<double>((sensor.blocks - block - 1) / returns);
-    column.time_us = sensor.last_block_us - sensor.block_us * before_last;
+    const std::size_t before_last = (sensor.blocks - block - 1) / returns;
+    column.time_us = sensor.last_block_us - sensor.block_us * static_cast<double>(before_last);
     column.returns = ReadBlock(sensor, at, unit_m);
     if (returns == 2) column.second_returns = ReadBlock(sensor, at + sensor.BlockBytes(), unit_m);
     packet.columns.push_back(std::move(column));

@@ -37,6 +37,6 @@ struct Metadata {
 
 /// Reads it, of firmware 2.0 on. Throws InputError, which begins with `where`: no JSON, something
 /// missing, sizes that no sensor has, another profile.
-Metadata ParseMetadata(const std::string& json, const std::string& where);
+Metadata ParseMetadata(const std::string& text, const std::string& where);
 
 }  // namespace rgbdt::ouster
