@@ -56,7 +56,7 @@ completes() {  # WANTED WORD...: among what completes the last word is this
   # shellcheck disable=SC2016 # for the inner shell
   bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _rgbdt "$1"
            printf "%s\n" "${COMPREPLY[@]}"' bash \
-    "$prefix/share/bash-completion/completions/rgbdt" "$@" | grep -qxF -- "$wanted" ||
+    "$prefix/share/bash-completion/completions/rgbdt" "$@" | grep -xF -- "$wanted" >/dev/null ||
     complain "'${*:2}' is not completed to '$wanted'"
 }
 completes calibrate "$prefix/bin/rgbdt" cal
