@@ -134,6 +134,13 @@ void WriteFileAtomically(const std::filesystem::path& path, const std::string& b
   file.Commit();
 }
 
+void Rename(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) {
+    Fail("rename " + from.string() + " to", to, errno);
+  }
+  SyncFolder(to.has_parent_path() ? to.parent_path() : ".");
+}
+
 std::string ReadWholeFile(const std::filesystem::path& path, std::uintmax_t most_bytes) {
   const RegularFile file(path);
   if (file.size() > most_bytes) {

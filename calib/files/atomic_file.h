@@ -30,6 +30,10 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+/// Renames a file or a folder, so that the new name survives a power cut. Throws InputError with
+/// both paths and the system's reason.
+void Rename(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Files larger than this are refused before they are read, whatever they hold.
 inline constexpr std::uintmax_t kMostTextBytes = std::uintmax_t{256} << 20;
 inline constexpr std::uintmax_t kMostImageBytes = std::uintmax_t{512} << 20;

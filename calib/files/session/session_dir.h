@@ -63,10 +63,16 @@ Cloud ReadCloud(const Session& session, const std::string& view);
 /// be renamed.
 std::string SetResultsAside(const std::filesystem::path& dir);
 
+/// Renames views/VIEW so that no one takes it for a view: nothing is lost, and its name is free.
+/// Returns what it is called now. Throws InputError where it cannot be renamed.
+std::string SetViewAside(const std::filesystem::path& dir, const std::string& view);
+
 /// Writes rig.textproto: the rig's own text where it has one, so that its hash stays.
 void WriteRig(const std::filesystem::path& session_dir, const Rig& rig);
 
-/// Writes views/NAME: cloud.pcd, one PNG an image, and last view.textproto.
+/// Writes views/NAME: cloud.pcd, one PNG an image, and last view.textproto. A new one is there
+/// whole or not at all (it is written beside, as .NAME.part, and renamed); of one that is there
+/// already each file is.
 void WriteView(const std::filesystem::path& session_dir, const View& view);
 
 /// A view of files that lie elsewhere.

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 
@@ -32,15 +33,6 @@ void Remove(const fs::path& path) {
   if (error) throw InputError("cannot remove " + path.string() + ": " + error.message());
 }
 
-void Rename(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) {
-    throw InputError("cannot rename " + from.string() + " to " + to.string() + ": " +
-                     error.message());
-  }
-}
-
 }  // namespace
 
 std::string SetResultsAside(const fs::path& dir) {
@@ -60,6 +52,16 @@ std::string SetResultsAside(const fs::path& dir) {
   }
   return kept.empty() ? ""
                       : "results of an earlier run are kept in " + dir.string() + " as " + kept;
+}
+
+std::string SetViewAside(const fs::path& dir, const std::string& view) {
+  const fs::path views = dir / "views";
+  std::string name = "." + view + ".unfinished";
+  for (int i = 2; fs::exists(views / name); ++i) {
+    name = "." + view + ".unfinished-" + std::to_string(i);
+  }
+  Rename(views / view, views / name);
+  return name;
 }
 
 }  // namespace rgbdt

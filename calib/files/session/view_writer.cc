@@ -124,11 +124,21 @@ void WriteView(const fs::path& session_dir, const View& view) {
   }
   for (const CornerSelection& picks : view.picks) FromPicks(view, picks, &message);
 
-  WritePcd(folder / "cloud.pcd", view.cloud);
-  for (std::size_t i = 0; i < view.images.size(); ++i) {
-    WritePng(folder / message.image(static_cast<int>(i)).file(), view.images[i].pixels);
+  std::error_code ignored;
+  const bool is_new = !fs::exists(folder, ignored);
+  const fs::path writes = is_new ? folder.parent_path() / ("." + view.name + ".part") : folder;
+  try {
+    if (is_new) fs::remove_all(writes, ignored);  // what a killed process left
+    WritePcd(writes / "cloud.pcd", view.cloud);
+    for (std::size_t i = 0; i < view.images.size(); ++i) {
+      WritePng(writes / message.image(static_cast<int>(i)).file(), view.images[i].pixels);
+    }
+    WriteViewFile(writes, message);  // last: a folder with a view.textproto is complete
+    if (is_new) Rename(writes, folder);
+  } catch (...) {
+    if (is_new) fs::remove_all(writes, ignored);
+    throw;
   }
-  WriteViewFile(folder, message);  // last: a folder with a view.textproto is complete
 }
 
 }  // namespace rgbdt

@@ -1,6 +1,9 @@
 #include "calib/files/session/session_dir.h"
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
@@ -18,6 +21,26 @@ using ::testing::HasSubstr;
 bool Same(const cv::Mat& a, const cv::Mat& b) {
   return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
+
+/// Writing fails from so many bytes of a file on, as on a disk that is full.
+class RoomFor {
+ public:
+  explicit RoomFor(rlim_t bytes) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &limit_);
+    const rlimit less{bytes, limit_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &less);
+  }
+  ~RoomFor() {
+    setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, before_);
+  }
+  RoomFor(const RoomFor&) = delete;
+  RoomFor& operator=(const RoomFor&) = delete;
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int);
+};
 
 /// A session with six views, of which the last one's view.textproto can be replaced.
 class SessionDir : public ::testing::Test {
@@ -90,6 +113,53 @@ TEST_F(SessionDir, GivesBackTheWholeView) {
   EXPECT_EQ(back.picks[0].camera, "thermal");
   EXPECT_EQ(back.picks[0].image_utime, view.picks[0].image_utime);
   EXPECT_EQ(back.picks[0].corners, view.picks[0].corners);
+}
+
+TEST_F(SessionDir, ANewViewIsThereWholeOrNotAtAll) {
+  View view = test::MakeView();
+  view.name = "0007";
+  int failed = 0;
+  bool written = false;
+  for (rlim_t bytes = 1; !written; bytes *= 2) {
+    try {
+      const RoomFor room(bytes);
+      WriteView(dir_.path(), view);
+      written = true;
+    } catch (const InputError& e) {
+      ++failed;
+      EXPECT_THAT(e.what(), HasSubstr("0007"));
+      EXPECT_EQ(OpenSession(dir_.path()).views.size(), 6u) << bytes;
+      EXPECT_FALSE(fs::exists(dir_ / "views/.0007.part")) << bytes;
+    }
+  }
+  EXPECT_GT(failed, 5);
+  test::ExpectSame(ReadView(OpenSession(dir_.path()), "0007").cloud, view.cloud);
+}
+
+// What a killed process left of it is no view, and in nobody's way.
+TEST_F(SessionDir, APartOfAViewIsNone) {
+  fs::create_directories(dir_ / "views/.0007.part");
+  WriteFileAtomically(dir_ / "views/.0007.part/rgb_5.png", "half an ima");
+  EXPECT_EQ(OpenSession(dir_.path()).views.size(), 6u);
+  View view = test::MakeView();
+  view.name = "0007";
+  WriteView(dir_.path(), view);
+  EXPECT_FALSE(fs::exists(dir_ / "views/.0007.part"));
+  EXPECT_FALSE(fs::exists(Folder("0007") / "rgb_5.png"));
+}
+
+TEST_F(SessionDir, AViewThatIsSetAsideIsNoViewAndIsKept) {
+  EXPECT_EQ(SetViewAside(dir_.path(), "0006"), ".0006.unfinished");
+  EXPECT_EQ(OpenSession(dir_.path()).views.size(), 5u);
+  View view = test::MakeView();
+  view.name = "0006";
+  WriteView(dir_.path(), view);
+  EXPECT_EQ(SetViewAside(dir_.path(), "0006"), ".0006.unfinished-2");
+  for (const char* name : {".0006.unfinished", ".0006.unfinished-2"}) {
+    EXPECT_TRUE(fs::exists(dir_ / "views" / name / "view.textproto")) << name;
+  }
+  EXPECT_THAT(test::ErrorOf([&] { SetViewAside(dir_.path(), "0006"); }),
+              AllOf(HasSubstr("cannot rename"), HasSubstr("views/0006")));
 }
 
 TEST_F(SessionDir, KeepsTheRigsOwnText) {
