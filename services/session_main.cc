@@ -84,7 +84,8 @@ int main(int argc, char** argv) {
   Flags flags;
   line.Option("FILE", &flags.script, "session.textproto; without it the viewer's page leads");
   line.Option("--rig", &flags.rig, "rig.textproto; default: the one that the script names");
-  line.Option("--out", &flags.out, "session directory to write");
+  line.Option("--out", &flags.out,
+              "session directory to write, or, where it was ended before its end, to go on with");
   line.Flag("--by-hand", &flags.by_hand,
             "you carry the board: asks for each pose and waits for Enter, or for the button in "
             "the viewer, however long");

@@ -10,6 +10,22 @@
 
 namespace rgbdt {
 
+namespace {
+
+std::int64_t Received(const Status& status) {
+  for (const auto& [name, value] : status.counters) {
+    if (name == "received") return value;
+  }
+  return 0;
+}
+
+// It counts from 0 again. A datagram may come twice.
+bool IsStartedAnew(const Status& before, const Status& now) {
+  return now.seq < before.seq || Received(now) < Received(before);
+}
+
+}  // namespace
+
 void SessionNode::Take(const Message& message) {
   if (const auto* status = std::get_if<Status>(&message)) {
     OnStatus(*status);
@@ -27,9 +43,11 @@ void SessionNode::Take(const Message& message) {
     OnPicks(*picks);
     collector_.Add(*picks);
   } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
-    if (IsCaptured(*detection)) solver_views_.Add(*detection);
+    if (!IsCaptured(*detection)) return;
+    solver_views_.Add(*detection);
+    SaveDetection(detection->view);
   } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
-    if (started_) solver_views_.Set(*left_out);
+    if (started_) SaveLeftOut(*left_out);
   } else if (const auto* report = std::get_if<ReportText>(&message)) {
     report_ = ReportFromJson(report->json, "REPORT message");
   }
@@ -40,7 +58,10 @@ bool SessionNode::Listens() const {
 }
 
 void SessionNode::OnStatus(const Status& status) {
+  const auto before = statuses_.find(status.process);
+  const bool anew = before != statuses_.end() && IsStartedAnew(before->second, status);
   statuses_[status.process] = status;
+  if (anew && started_ && !finished_) OnStartedAnew(status.process);
   if (status.process == "solver" && solver_views_.LostBy(status)) {
     RestoreSolver("rgbdt-solver was started anew and has lost its views");
   }
@@ -51,6 +72,52 @@ void SessionNode::OnStatus(const Status& status) {
     failure_ = "start: " + *why;
     finished_ = true;  // no event: the page would take it for one of the other session
   }
+}
+
+// What it was asked, and what it had of the view at hand, is lost. A sweep that others make goes on
+// to its end before it is made again.
+void SessionNode::OnStartedAnew(const std::string& process) {
+  const std::string why = "rgbdt-" + process + " was started anew";
+  const bool has_lines = process == "assembler" || process == "lidar" || process == "simulator";
+  const bool has_images = process == "simulator" || process.rfind("camera-", 0) == 0;
+  if (process == "detector" || has_lines) spoiled_ = why;
+  if (!waiting_ || idle()) return;
+  switch (step().kind) {
+    case SessionStep::Kind::kNextPose:
+      if (process == "simulator" && !answered_) AskAgain(why);
+      return;
+    case SessionStep::Kind::kSweep:
+      if (AnswersSweeps(process) && !answered_) AskAgain(why);
+      return;
+    case SessionStep::Kind::kCapture: {
+      const bool swept = collector_.sweeps().Ended(sweep_utime_);
+      if (process == "detector") answered_ |= IsDetected();  // its event alone is missing
+      if ((process == "detector" && !answered_) || (has_images && !view_saved_) ||
+          (has_lines && !swept)) {
+        TakeAgain(why, &restarts_, kMaxRestarts);
+      }
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+bool SessionNode::AnswersSweeps(const std::string& process) const {
+  const bool by_motor = rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor;
+  return process == "simulator" || process == (by_motor ? "motor" : "lidar");
+}
+
+// The step at hand, once everybody is ready.
+void SessionNode::AskAgain(const std::string& why) {
+  if (restarts_ == kMaxRestarts) {
+    Fail(why + " " + std::to_string(restarts_ + 1) + " times; see what it prints");
+    return;
+  }
+  ++restarts_;
+  waiting_ = false;
+  if (step().kind == SessionStep::Kind::kNextPose) --view_number_;  // the same view's
+  Tell(WithView(why + "; it is asked again"));
 }
 
 void SessionNode::OnRequest(const SessionRequest& request) {
@@ -118,7 +185,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
     const std::string why = event.source + ": " + event.text;
     if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
     if (event.source == "detector" && event.sweep_utime != 0) {
-      TakeAgain(why);
+      TakeTornAgain(why);
     } else {
       Fail(why);
     }
@@ -157,6 +224,31 @@ bool SessionNode::RestoreSolver(const std::string& why) {
   again_ = std::move(again);
   Warn(why + "; all views are sent to it again");
   return true;
+}
+
+bool SessionNode::IsDetected() const {
+  const ViewDetection* detection = solver_views_.Find(view_);
+  return detection != nullptr && IsCaptured(*detection);
+}
+
+// Once the view is on disk, its detection is, too.
+void SessionNode::SaveDetection(const std::string& view) {
+  const ViewDetection* detection = solver_views_.Find(view);
+  if (saved_.count(view) == 0 || detection == nullptr || !IsCaptured(*detection)) return;
+  try {
+    WriteDetection(directory_, *detection);
+  } catch (const std::exception& e) {
+    Fail(e.what());
+  }
+}
+
+void SessionNode::SaveLeftOut(const LeftOutViews& left_out) {
+  solver_views_.Set(left_out);
+  try {
+    WriteLeftOut(directory_, left_out);
+  } catch (const std::exception& e) {
+    Warn(e.what());
+  }
 }
 
 // By this session: another one's views are called the same.
@@ -199,6 +291,7 @@ std::string SessionNode::WhoIsNotReady() const {
 
 std::string SessionNode::WhatIsMissing() const {
   const std::string wanted = AnsweredBy(step().kind);
+  if (answered_ && view_saved_) return "this process still lacks the view's DETECTION";
   if (answered_) return "this process still lacks " + collector_.Missing(rig_);
   const auto found = statuses_.find(wanted);
   if (step().kind == SessionStep::Kind::kNextPose) {

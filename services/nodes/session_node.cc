@@ -17,22 +17,6 @@ namespace {
 
 constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
 
-std::string ViewName(int number) {
-  char name[16];
-  std::snprintf(name, sizeof(name), "%04d", number);
-  return name;
-}
-
-// Two sessions' views must not mix.
-void RequireNoViews(const std::filesystem::path& directory) {
-  std::error_code ignored;
-  const std::filesystem::path views = directory / "views";
-  if (std::filesystem::exists(views, ignored) && !std::filesystem::is_empty(views, ignored)) {
-    throw InputError(views.string() +
-                     " holds views of an earlier session; remove them or name another directory");
-  }
-}
-
 }  // namespace
 
 SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path directory,
@@ -44,7 +28,8 @@ SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path di
       board_stands_(std::move(board_stands)),
       identity_(std::move(identity)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
-  RequireNoViews(directory_);
+  earlier_ = ReadEarlierViews(directory_, rig_);
+  if (!earlier_.empty()) resume_ = FindResumePoint(script_, earlier_, directory_);
   for (SessionStep& step : script_.steps) {
     if (board_stands_ && step.kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
   }
@@ -57,7 +42,8 @@ SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress pr
       directory_(std::move(directory)),
       progress_(std::move(progress)),
       identity_(std::move(identity)) {
-  RequireNoViews(directory_);
+  earlier_ = ReadEarlierViews(directory_, rig_);
+  resume_.view_number = earlier_.NewestNumber();
 }
 
 Messages SessionNode::Handle(const Message& message) {
@@ -77,13 +63,15 @@ void SessionNode::SaveView() {
   if (!view) return;
   const std::string torn = collector_.sweeps().WhyTorn(view->cloud.sweep_utime);
   if (!torn.empty()) {
-    if (waiting_ && is_newest) TakeAgain(torn);
+    if (waiting_ && is_newest) TakeTornAgain(torn);
     return;
   }
   try {
     WriteView(directory_, *view);
     view_saved_ = true;
+    saved_.insert(view->name);
     for (const Image& image : view->images) images_[{image.camera, image.utime}] = view->name;
+    SaveDetection(view->name);
   } catch (const std::exception& e) {
     Fail(e.what());
   }
@@ -137,12 +125,49 @@ Messages SessionNode::Start() {
   started_ = true;
   solver_views_.Clear();
   Messages out = Send(SessionVerb::kReset);
-  if (by_request_) {
+  const auto add = [&](Messages messages) {
+    std::move(messages.begin(), messages.end(), std::back_inserter(out));
+  };
+  if (!earlier_.empty()) add(GoOnWithEarlierViews());
+  if (!by_request_) {
+    add(Begin());
+  } else if (idle()) {
     PublishEvent(EventKind::kDone, "ready", 1);
-    return out;
   }
-  for (Message& message : Begin()) out.push_back(std::move(message));
   return out;
+}
+
+// As if they had just been taken; the solver is told of them.
+Messages SessionNode::GoOnWithEarlierViews() {
+  newest_utime_ = std::max(newest_utime_, earlier_.NewestUtime());
+  for (const auto& [name, detection] : earlier_.detected) {
+    solver_views_.Add(detection);
+    solver_views_.Require(name);
+    for (const ImageDetection& image : detection.images) {
+      images_[{image.camera, image.utime}] = name;
+    }
+  }
+  if (earlier_.left_out) solver_views_.Set(*earlier_.left_out);
+  index_ = resume_.step;
+  view_number_ = resume_.view_number;
+  if (view_number_ > 0) view_ = ViewName(view_number_);
+  view_taken_ = true;
+  Tell("goes on with the " + std::to_string(earlier_.detected.size()) + " views that are in " +
+       directory_.string());
+  if (!resume_.unfinished.empty()) {
+    Tell("view " + resume_.unfinished + " was not finished and is taken again; the first one is " +
+         SetViewAside(directory_, resume_.unfinished));
+  }
+  if (by_request_ && !earlier_.undetected.empty()) {
+    std::string names;
+    for (const std::string& name : earlier_.undetected) names += (names.empty() ? "" : ", ") + name;
+    Tell("view " + names + " was not detected and does not count here; " + kAllIsOnDisk);
+  }
+  if (by_request_ && !earlier_.detected.empty()) {
+    Append(SessionStep::Kind::kSolve);
+    Append(SessionStep::Kind::kEvaluate);
+  }
+  return solver_views_.Again();
 }
 
 void SessionNode::EndStep() {
@@ -150,7 +175,7 @@ void SessionNode::EndStep() {
   const bool saved = step().kind == SessionStep::Kind::kSave;
   if (step().kind == SessionStep::Kind::kCapture) {
     view_taken_ = true;
-    retakes_ = 0;
+    retakes_ = restarts_ = 0;
     solver_views_.Require(view_);
   }
   if (++index_ < script_.steps.size()) return;
@@ -158,7 +183,26 @@ void SessionNode::EndStep() {
   PublishEvent(EventKind::kDone, saved ? "saved to " + directory_.string() : last_answer_, 1);
 }
 
+// A sweep without somebody who needs it is of no use.
+bool SessionNode::IsHeldUp() {
+  const std::string who = step().kind == SessionStep::Kind::kSweep ? WhoIsNotReady() : "";
+  if (who.empty()) {
+    held_up_since_.reset();
+    return false;
+  }
+  if (!held_up_since_) {
+    held_up_since_ = now_;
+    Announce("waits for: " + who);
+  }
+  if (ToSeconds(now_ - *held_up_since_) > step().timeout_s) {
+    held_up_since_.reset();
+    Fail("not ready after " + std::to_string(static_cast<int>(step().timeout_s)) + " s: " + who);
+  }
+  return true;
+}
+
 Messages SessionNode::Begin() {
+  if (IsHeldUp()) return {};
   waiting_ = true;
   answered_ = false;
   step_began_ = now_;
@@ -171,6 +215,7 @@ Messages SessionNode::Begin() {
     case SessionStep::Kind::kSweep:
       if (view_.empty() || view_taken_) view_ = ViewName(++view_number_);
       view_taken_ = false;
+      spoiled_.clear();
       Announce("asked for a sweep");
       return Send(SessionVerb::kSweep);
     case SessionStep::Kind::kCapture:
@@ -192,7 +237,7 @@ Messages SessionNode::Begin() {
 }
 
 // The sweep before the capture at hand, and the capture, once more.
-void SessionNode::TakeAgain(const std::string& why) {
+void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
   collector_.GiveUp();
   captures_.erase(command_);
   std::size_t sweep = index_;
@@ -200,15 +245,18 @@ void SessionNode::TakeAgain(const std::string& why) {
     --sweep;
   }
   const bool can = script_.steps[sweep].kind == SessionStep::Kind::kSweep;
-  if (!can || retakes_ == kMaxRetakes) {
-    Fail(why + (can ? "; given up after " + std::to_string(kMaxRetakes + 1) + " sweeps"
+  if (!can || *tries == most) {
+    Fail(why + (can ? "; given up after " + std::to_string(most + 1) + " sweeps"
                     : "; put sweep before capture, so that it can be taken again"));
     return;
   }
   for (auto image = images_.begin(); image != images_.end();) {
     image = image->second == view_ ? images_.erase(image) : std::next(image);
   }
-  ++retakes_;
+  solver_views_.Drop(view_);
+  std::error_code ignored;
+  if (saved_.erase(view_) != 0) std::filesystem::remove_all(directory_ / "views" / view_, ignored);
+  ++*tries;
   index_ = sweep;
   waiting_ = false;
   Tell("view " + view_ + ": " + why + "; the sweep is taken again");
@@ -216,6 +264,10 @@ void SessionNode::TakeAgain(const std::string& why) {
 
 Messages SessionNode::BeginCapture() {
   view_saved_ = false;
+  if (!spoiled_.empty()) {
+    TakeAgain(spoiled_, &restarts_, kMaxRestarts);
+    return {};
+  }
   Announce("looking for the board");
   Messages out = Send(SessionVerb::kCapture);
   captures_[command_] = std::get<SessionCommand>(out.front());
@@ -245,7 +297,7 @@ bool SessionNode::StepDone() {
     case SessionStep::Kind::kSave:
       return true;
     case SessionStep::Kind::kCapture:
-      return answered_ && view_saved_;
+      return answered_ && view_saved_ && IsDetected();
     case SessionStep::Kind::kSolve:
     case SessionStep::Kind::kEvaluate:
       return answered_ && SolverTookAll();
@@ -295,7 +347,7 @@ void SessionNode::Fail(const std::string& why) {
              (view_.empty() ? "" : ", view " + view_) + ": " + why;
   PublishEvent(EventKind::kFailed, failure_, 1);
   finished_ = !leads;
-  retakes_ = 0;
+  retakes_ = restarts_ = 0;
   if (!leads) return;
   // What was to follow is dropped; the person decides.
   index_ = script_.steps.size();

@@ -9,6 +9,7 @@
 #include "calib/files/schema/session_script.h"
 #include "calib/model/calibration.h"
 #include "calib/model/rig.h"
+#include "services/nodes/earlier_views.h"
 #include "services/nodes/other_sessions.h"
 #include "services/nodes/solver_views.h"
 #include "services/nodes/view_collector.h"
@@ -45,8 +46,15 @@ struct SessionProgress {
 /// nothing is written (OtherSessions). Later it warns of another one, on the page, too. What
 /// answers another session's commands is ignored.
 ///
+/// A directory with views of an earlier start of the session, that was ended or killed, is gone on
+/// with (EarlierViews): the solver gets what it had, the script goes on after the last view that is
+/// there with its detection, a person is asked for the next. What is there is not written over. A
+/// directory of another rig or script, or of a session that has ended, is refused.
+///
 /// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
-/// sweep and all, kMaxRetakes times at most; then it has failed.
+/// sweep and all, kMaxRetakes times at most; then it has failed. So is one for which a process was
+/// started anew (its STATUS counts from 0 again) that had a part in it, kMaxRestarts times; and
+/// what such a process was asked it is asked again. No sweep begins until everybody is ready.
 ///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
@@ -56,14 +64,16 @@ struct SessionProgress {
 class SessionNode : public Node {
  public:
   static constexpr int kMaxRetakes = 2;
+  static constexpr int kMaxRestarts = 5;
 
   using OnProgress = std::function<void(const SessionProgress&)>;
   /// Whether the person who carries the board has put it where the next view wants it; asked in
   /// each Advance until it has. What it throws ends the session.
   using BoardStands = std::function<bool()>;
 
-  /// Throws InputError where the script makes no sense, and where `directory` holds views already:
-  /// two sessions' views must not mix. With `board_stands` a pose may take as long as it does.
+  /// Throws InputError where the script makes no sense, and where `directory` holds views that are
+  /// not to be gone on with: two sessions' views must not mix. With `board_stands` a pose may take
+  /// as long as it does.
   SessionNode(SessionScript script, Rig rig, std::filesystem::path directory, OnProgress progress,
               BoardStands board_stands = {}, SessionIdentity identity = {});
   /// A session that a person leads, by SESSION_REQUEST.
@@ -90,24 +100,33 @@ class SessionNode : public Node {
   const SessionStep& step() const { return script_.steps[index_]; }
   Messages GoOn();
   Messages Start();
+  Messages GoOnWithEarlierViews();
   bool WaitsForPose() const;
   bool IsCaptured(const ViewDetection& detection) const;
   void PoseIsSet();
   void AskWhetherBoardStands();
   Messages Begin();
+  bool IsHeldUp();
   Messages BeginCapture();
   Messages Send(SessionVerb verb);
   bool StepDone();
+  bool IsDetected() const;
   bool SolverTookAll();
   bool RestoreSolver(const std::string& why);
   void Take(const Message& message);
   void OnStatus(const Status& status);
+  void OnStartedAnew(const std::string& process);
+  bool AnswersSweeps(const std::string& process) const;
+  void AskAgain(const std::string& why);
   bool Listens() const;
   void OnRequest(const SessionRequest& request);
   void OnPicks(const CornerSelection& picks);
   void OnEvent(const SessionEvent& event);
   void SaveView();
-  void TakeAgain(const std::string& why);
+  void SaveDetection(const std::string& view);
+  void SaveLeftOut(const LeftOutViews& left_out);
+  void TakeAgain(const std::string& why, int* tries, int most);
+  void TakeTornAgain(const std::string& why) { TakeAgain(why, &retakes_, kMaxRetakes); }
   void Tell(const std::string& text);
   void Save();
   void SetEarlierResultsAside();
@@ -150,13 +169,19 @@ class SessionNode : public Node {
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, SessionCommand> captures_;              // by their numbers
+  std::set<std::string> saved_;                                  // views on disk, of this start
   Messages events_;                                              // not yet published
   SolverViews solver_views_;
   Messages again_;  // for the solver, not yet published
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
   bool view_saved_ = false;
-  int retakes_ = 0;  // of the capture at hand
+  int retakes_ = 0;      // of the capture at hand: torn sweeps
+  int restarts_ = 0;     // likewise: processes started anew
+  std::string spoiled_;  // why the newest sweep is lost to who needs it; empty: it is not
+  std::optional<Utime> held_up_since_;  // until everybody is ready
+  EarlierViews earlier_;
+  ResumePoint resume_;
   std::optional<Report> report_;
   bool finished_ = false;
   std::string failure_;

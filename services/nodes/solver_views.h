@@ -20,6 +20,13 @@ class SolverViews {
   /// A new session begins.
   void Clear() { *this = {}; }
   void Add(const ViewDetection& detection) { detections_[detection.view] = detection; }
+  /// The view is taken again.
+  void Drop(const std::string& view) { detections_.erase(view); }
+  /// Null: none came.
+  const ViewDetection* Find(const std::string& view) const {
+    const auto found = detections_.find(view);
+    return found == detections_.end() ? nullptr : &found->second;
+  }
   void Set(const LeftOutViews& left_out) { left_out_ = left_out; }
   /// The view was captured: no result is complete without it.
   void Require(const std::string& view) { required_.insert(view); }

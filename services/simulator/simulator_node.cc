@@ -1,6 +1,7 @@
 #include "services/simulator/simulator_node.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "calib/model/errors.h"
 
@@ -9,6 +10,14 @@ namespace {
 
 constexpr Utime kSecond = kMicrosecondsPerSecond;
 constexpr Utime kLongestGap = 10 * kSecond;
+
+// Which of the places in a row it is that a session's view "0003" has; -1: its name does not tell.
+int PlaceOf(const std::string& view) {
+  int number = 0;
+  const char* end = view.data() + view.size();
+  const auto [rest, error] = std::from_chars(view.data(), end, number);
+  return error == std::errc() && rest == end && number > 0 ? number - 1 : -1;
+}
 
 }  // namespace
 
@@ -59,6 +68,13 @@ void SimulatorNode::PlanEvent(Utime due, std::int64_t command, EventKind kind,
   At(due, std::move(task));
 }
 
+void SimulatorNode::PlanShow(Utime begin, const std::string& view) {
+  Task show;
+  show.kind = Task::Kind::kShow;
+  show.text = view;
+  At(begin + 1, std::move(show));
+}
+
 void SimulatorNode::PlanImages(Utime from, Utime to) {
   for (Utime utime = (from / kSecond + 1) * kSecond; utime <= to; utime += kSecond) {
     Task task;
@@ -68,23 +84,30 @@ void SimulatorNode::PlanImages(Utime from, Utime to) {
   }
 }
 
+// Not before what the session knows: one that was started anew in the midst of a session would make
+// sweeps of the names once more that earlier ones had.
+Utime SimulatorNode::BeginOf(const SessionCommand& command) const {
+  return std::max({now_, newest_planned_, command.utime});
+}
+
 // The board is carried to its next place; the cameras see it there before the scanner turns.
 void SimulatorNode::PlanPose(const SessionCommand& command) {
-  const Utime begin = std::max(now_, newest_planned_);
+  const Utime begin = BeginOf(command);
   const Utime end = begin + 2 * kSecond;
   PlanEvent(begin, command.command, EventKind::kProgress, "carrying the board to its next place", 0,
             0);
-  Task show;
-  show.kind = Task::Kind::kShow;
-  show.text = command.view;
-  At(begin + 1, std::move(show));
+  PlanShow(begin, command.view);
   PlanImages(begin, end);
   newest_planned_ = end + kSecond / 10;
   PlanEvent(newest_planned_, command.command, EventKind::kDone, "the board stands", 0, 1);
 }
 
 void SimulatorNode::PlanSweep(const SessionCommand& command) {
-  const Utime begin = std::max(now_, newest_planned_);
+  Utime begin = BeginOf(command);
+  if (views_ == 0 && now_ == kEpoch && command.utime > now_) {  // started anew: the board stands
+    PlanShow(begin, command.view);
+    begin += kSecond / 10;
+  }
   const Utime sweep = begin + kSecond / 10;
   const Utime sweep_end = sweep + simulator_.sweep_lines() * simulator_.line_period();
   const Utime end = sweep_end + kSecond / 4;
@@ -113,7 +136,7 @@ void SimulatorNode::PlanSweep(const SessionCommand& command) {
 }
 
 void SimulatorNode::PlanCapture(const SessionCommand& command) {
-  const Utime utime = std::max({now_, newest_planned_, command.utime});
+  const Utime utime = BeginOf(command);
   Task images;
   images.kind = Task::Kind::kImages;
   images.utime = utime;
@@ -150,7 +173,9 @@ Messages SimulatorNode::Advance(Utime now) {
 }
 
 void SimulatorNode::ShowView(const std::string& view) {
-  simulator_.ShowView(views_++, view);
+  const int place = std::max(views_, PlaceOf(view));
+  views_ = place + 1;
+  simulator_.ShowView(place, view);
   if (on_truth_) on_truth_(simulator_.truth());
 }
 

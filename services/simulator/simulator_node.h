@@ -14,7 +14,9 @@ namespace rgbdt {
 /// synthetic rig on the bus. Its time is simulated, `speed` times as fast as Advance's, and stands
 /// still until a command comes; what takes long to render holds it up. Cameras take an image at
 /// each full second of simulated time and at each capture; each message leaves when the real sensor
-/// would have sent it (a line after its last beam, an image after read-out).
+/// would have sent it (a line after its last beam, an image after read-out). One that is started
+/// anew in the midst of a session goes on: its time is not before the session's, and the board
+/// stands where the view "0003" had it, by its number.
 class SimulatorNode : public Node {
  public:
   static constexpr Utime kEpoch = 1'433'160'000'000'000;  ///< 2015-06-01, a sunny day
@@ -57,6 +59,8 @@ class SimulatorNode : public Node {
   void PlanPose(const SessionCommand& command);
   void PlanSweep(const SessionCommand& command);
   void PlanCapture(const SessionCommand& command);
+  Utime BeginOf(const SessionCommand& command) const;
+  void PlanShow(Utime begin, const std::string& view);
   void PlanImages(Utime from, Utime to);
   void PlanEvent(Utime due, std::int64_t command, EventKind kind, const std::string& text,
                  Utime sweep_utime, double fraction);

@@ -42,7 +42,7 @@ kill_in_sweep_of() {  # VIEW PROCESS: and starts it anew, before the sweep has e
   until_told disturbed "view $1: sweeping, 25%"
   kill_process "$2"
   start "$2" "$bin/rgbdt-$2"
-  until_told disturbed "view $1: .* lines never came .*; the sweep is taken again"
+  until_told disturbed "view $1: rgbdt-$2 was started anew; the sweep is taken again"
 }
 
 write_script >"$scratch/session.textproto"

@@ -150,6 +150,34 @@ TEST_F(SimulatorNodeTest, ARestartRepeatsItselfBitForBit) {
   EXPECT_NE(test::BytesOf(View(&other)), expected);
 }
 
+// Killed after its second view, which is swept once more.
+TEST_F(SimulatorNodeTest, StartedAnewInASessionTheBoardStandsWhereItStoodAndTimeGoesOn) {
+  Truth truth;
+  const auto keep = [&](const Truth& t) { truth = t; };
+  simulate::Simulator reference(test::TinyOptions());
+  reference.ShowView(1, "0002");
+  for (const auto& verbs : {std::vector{SessionVerb::kNextPose, SessionVerb::kSweep},
+                            std::vector{SessionVerb::kSweep}}) {
+    SimulatorNode node(test::TinyOptions(), 1, keep);
+    std::int64_t number = 20;
+    Messages out;
+    for (const SessionVerb verb : verbs) {
+      SessionCommand command = Command(++number, verb);
+      command.view = "0002";
+      command.utime = SimulatorNode::kEpoch + 100 * kMicrosecondsPerSecond;
+      node.Handle(command);
+      for (Message& message : RunOut(&node)) out.push_back(std::move(message));
+    }
+    ASSERT_EQ(truth.lidar_from_target.count("0002"), 1U);
+    EXPECT_EQ(truth.lidar_from_target["0002"].translation,
+              reference.truth().lidar_from_target.at("0002").translation);
+    ASSERT_EQ(Only<LineScan>(out).size(), 25U);
+    for (const LineScan& line : Only<LineScan>(out)) {
+      EXPECT_GT(line.utime, SimulatorNode::kEpoch + 100 * kMicrosecondsPerSecond);
+    }
+  }
+}
+
 TEST_F(SimulatorNodeTest, TheAssemblerMakesAWholeSweepOfIt) {
   AssemblerNode assembler;
   assembler.Handle(test::TextOf(test::RigOf(node_.simulator())));

@@ -6,135 +6,18 @@
 #include <functional>
 
 #include "calib/files/atomic_file.h"
-#include "services/nodes/session_node.h"
-#include "services/nodes/solver_node.h"
-#include "tests/nodes/bus_process.h"
-#include "tests/nodes/session_world.h"
+#include "tests/nodes/restart_world.h"
 #include "tests/unit/files/test_data.h"
-#include "tests/unit/solve/board_world.h"
 
 namespace rgbdt {
 namespace {
 
-using test::Step;
+using test::kViews;
+using test::OneCamera;
+using test::RestartWorld;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using Kind = SessionStep::Kind;
 using Verb = SessionVerb;
-
-constexpr int kViews = 6;
-
-const BoardWorld& Boards() {
-  static const BoardWorld world = MakeBoardWorld(kViews);
-  return world;
-}
-
-const Rig& OneCamera() {
-  static const Rig rig = [] {
-    Rig one = simulate::Simulator(test::TinyOptions()).rig();
-    CameraSpec camera = Boards().spec;
-    camera.camera_from_lidar_guess = GuessOff(Boards().camera_from_lidar, 0.02, 0.03, 5);
-    camera.format = one.cameras[0].format;
-    one.cameras = {camera};
-    return ParseRig(PrintRig(one), "test rig");
-  }();
-  return rig;
-}
-
-CalibrateOptions ByPaper() {
-  CalibrateOptions options;
-  options.method = kPaperMethod;
-  return options;
-}
-
-SessionScript ManyViews() {
-  SessionScript script;
-  for (int i = 0; i < kViews; ++i) {
-    for (const Kind kind : {Kind::kNextPose, Kind::kSweep, Kind::kCapture}) {
-      script.steps.push_back(Step(kind));
-    }
-  }
-  for (const Kind kind : {Kind::kSolve, Kind::kEvaluate, Kind::kSave}) {
-    script.steps.push_back(Step(kind));
-  }
-  return script;
-}
-
-using Solver = test::Process<SolverNode>;
-
-// The simulator, assembler, detector and fuser of a session of the boards' views.
-class RestartWorld {
- public:
-  using OnCommand = std::function<void(const SessionCommand&, RestartWorld*)>;
-
-  RestartWorld(const std::filesystem::path& directory, OnCommand on_command)
-      : on_command_(std::move(on_command)),
-        session_(&bus_, ManyViews(), OneCamera(), directory, SessionNode::OnProgress()) {
-    StartSolver();
-    bus_.Subscribe("SESSION_COMMAND",
-                   [this](const std::string& channel, const std::uint8_t* data, std::size_t size) {
-                     Answer(std::get<SessionCommand>(Decode(channel, data, size)));
-                   });
-    session_.runner.SetProblemHandler(
-        [this](const std::string& problem) { problems_.push_back(problem); });
-  }
-
-  void Run() {
-    for (int turn = 0; turn < 600 && !session_.node.finished(); ++turn) {
-      const Utime now = turn * kMicrosecondsPerSecond / 10;
-      if (turn == starts_solver_at_) StartSolver();
-      for (const char* process : {"assembler", "detector", "fuser"}) {
-        if (turn % 10 == 0) Send(test::Ready(process));
-      }
-      session_.runner.Advance(now);
-      if (solver_) solver_->runner.Advance(now);
-      bus_.Run();
-      turn_ = turn;
-    }
-  }
-
-  void KillSolver() { solver_.reset(); }
-  void StartSolver() { solver_ = std::make_unique<Solver>(&bus_, ByPaper()); }
-  void StartSolverInSeconds(int seconds) { starts_solver_at_ = turn_ + 10 * seconds; }
-  void Send(const Message& message) { bus_.Publish(ChannelOf(message), Encode(message)); }
-  void LeaveOut(const std::string& view) {
-    LeftOutViews left_out;
-    left_out.views = {view};
-    Send(left_out);
-  }
-
-  const SessionNode& session() const { return session_.node; }
-  const Solver& solver() const { return *solver_; }
-  const std::vector<std::string>& problems() const { return problems_; }
-
- private:
-  void Answer(const SessionCommand& command) {
-    on_command_(command, this);
-    if (command.verb == Verb::kNextPose) Send(world_.Event(command, "simulator"));
-    if (command.verb != Verb::kSweep && command.verb != Verb::kCapture) return;
-    for (const Message& message : world_.Answer(command)) {
-      if (command.verb == Verb::kSweep) Send(message);
-    }
-    if (command.verb != Verb::kCapture) return;
-    Send(test::Blank(OneCamera().cameras[0], world_.now));
-    ViewDetection detection = Boards().views.at(static_cast<std::size_t>(captures_));
-    detection.view = command.view;
-    detection.sweep_utime = command.sweep_utime;
-    detection.seq = captures_++;
-    detection.images[0].utime = world_.now;
-    detection.cloud.candidates[0].normal = {-1, 0, 0};
-    Send(detection);
-    Send(world_.Event(command, "detector"));
-  }
-
-  OnCommand on_command_;
-  MemoryBus bus_;
-  test::World world_;
-  test::Process<SessionNode> session_;
-  std::unique_ptr<Solver> solver_;
-  std::vector<std::string> problems_;
-  int captures_ = 0, turn_ = 0, starts_solver_at_ = -1;
-};
 
 class SolverRestartTest : public ::testing::Test {
  protected:

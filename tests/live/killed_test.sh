@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# A session that is killed and started again on its own folder: its views stay as they are, and its
+# calibration is that of an undisturbed session, to the bit. Then sessions in which each process in
+# turn is killed at a random moment and started anew: they end by themselves, each view is there,
+# and the calibration agrees with the undisturbed one. Run by scripts/in-namespace.
+# Usage: killed_test.sh BIN_DIR; RGBDT_KILLS: how many (6); RGBDT_SEED: of the moments (1)
+set -euo pipefail
+# shellcheck source=tests/live/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+kills=${RGBDT_KILLS:-6}
+seed=${RGBDT_SEED:-1}
+views=8
+speed=4
+services=(assembler detector solver fuser)
+
+write_script() {
+  local view
+  for view in $(seq "$views"); do
+    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
+    if [ "$view" = 2 ]; then echo 'step { wait { seconds: 3 } }'; fi
+  done
+  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
+}
+
+start_process() {  # NAME: one of a session's, in the folder $folder
+  case $1 in
+    session)
+      start session "$bin/rgbdt-session" "$scratch/session.textproto" \
+        --rig "$scratch/rig.textproto" --out "$folder"
+      ;;
+    simulator) start simulator "$bin/rgbdt-simulator" --speed "$speed" --rig "$scratch/rig.textproto" ;;
+    *) start "$1" "$bin/rgbdt-$1" ;;
+  esac
+}
+
+begin() {  # NAME: a session, with processes of its own
+  local process
+  folder=$scratch/$1
+  for process in "${services[@]}" simulator; do start_process "$process"; done
+  helper ready "${services[@]}" simulator || fail "not every process came up"
+  start_process session
+}
+
+end() {
+  wait_for session || fail "the session ended with exit code $?"
+  stop TERM "${services[@]}" simulator
+}
+
+has_all_views() {
+  local view
+  for view in $(seq -f %04.0f "$views"); do
+    [ -s "$folder/views/$view/view.textproto" ] || fail "view $view is missing"
+  done
+}
+
+checksums() { find "$folder/views" -type f -exec cksum {} + | sort; }
+
+restart() {  # PROCESS: what it had said is kept
+  kill_process "$1"
+  cat "$scratch/$1.log" >>"$scratch/killed-$1.log"
+  start_process "$1"
+}
+
+write_script >"$scratch/session.textproto"
+echo "== undisturbed"
+begin undisturbed
+end
+if grep 'started anew' "$scratch/session.log"; then fail "nothing was"; fi
+
+echo "== a session that is killed goes on"
+begin resumed
+until grep -qs 'waiting 3' "$scratch/session.log"; do
+  kill -0 "${pids[session]}" || fail "the session ended before it waited"
+  sleep 0.05
+done
+checksums >"$scratch/views"
+restart session
+end
+grep 'goes on with the 2 views' "$scratch/session.log" || fail "it did not say that it goes on"
+checksums | grep -F -x -f "$scratch/views" | cmp - "$scratch/views" ||
+  fail "the views that there were are not what they were"
+has_all_views
+cmp "$scratch/undisturbed/calibration.textproto" "$folder/calibration.textproto" ||
+  fail "the calibration is not what it is undisturbed"
+
+RANDOM=$seed
+number=0
+while [ "$kills" -gt 0 ]; do
+  number=$((number + 1))
+  echo "== each process is killed at a random moment, session $number"
+  begin "killed-$number"
+  mapfile -t turn < <(printf '%s\n' "${services[@]}" simulator session |
+    shuf --random-source=<(yes "$seed $number"))
+  for process in "${turn[@]}"; do
+    [ "$kills" -gt 0 ] || break
+    moment=$((RANDOM % 5000 + 1000))
+    sleep "$((moment / 1000)).$(printf %03d $((moment % 1000)))"
+    kill -0 "${pids[session]}" || fail "the session ended before $process was killed"
+    echo "$process is killed after $moment ms, in: $(tail -n 1 "$scratch/session.log")"
+    restart "$process"
+    kills=$((kills - 1))
+  done
+  end
+  has_all_views
+  cat "$scratch/killed-session.log" "$scratch/session.log" | grep -h 'started anew' || true
+  "$bin/rgbdt" compare "$scratch/undisturbed" "$folder" ||
+    fail "the calibrations contradict each other"
+  rm -r "$folder" "$scratch"/killed-*.log
+done
+echo "passed"
