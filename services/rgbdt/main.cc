@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   rgbdt::AddMap(&line);
   rgbdt::AddTerrain(&line);
   rgbdt::AddExport(&line);
+  rgbdt::AddUp(&line);
 #ifdef RGBDT_HAS_DRIVERS
   rgbdt::AddDoctor(&line);
 #endif

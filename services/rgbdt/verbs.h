@@ -30,6 +30,7 @@ void AddScanner(CommandLine* program);
 void AddMap(CommandLine* program);
 void AddTerrain(CommandLine* program);
 void AddExport(CommandLine* program);
+void AddUp(CommandLine* program);
 void AddDoctor(CommandLine* program);
 
 /// What the user gave, or else the default.

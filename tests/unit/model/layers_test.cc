@@ -95,6 +95,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/packets",
        {"calib/files", "calib/files/points", "services/drivers", "services/drivers/*"}},
       {"services/doctor", {"services/bus", "services/posix", "services/drivers/*"}},
+      {"services/up", {"services/messages", "services/posix", "services/runtime"}},
       {"services/rgbdt", {"calib/*", "services/*"}},
       {"services", {"calib/*", "services/*"}},
       {"viewer/server", {"calib/present/layout"}},

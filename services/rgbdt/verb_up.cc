@@ -1,0 +1,116 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "calib/files/schema/rig_file.h"
+#include "services/rgbdt/verbs.h"
+#include "services/runtime/process.h"
+#include "services/up/up_node.h"
+
+namespace rgbdt {
+namespace {
+
+struct UpFlags {
+  std::string rig, url, listen, logs;
+  std::string out = "out/session";
+};
+
+constexpr const char* kPageAt = "http://";
+
+// As the viewer printed it.
+std::string PageOf(const std::filesystem::path& log) {
+  std::FILE* file = std::fopen(log.c_str(), "r");
+  if (file == nullptr) return "";
+  std::string page;
+  char line[1000];
+  while (std::fgets(line, sizeof(line), file) != nullptr) {
+    if (std::string(line).rfind(kPageAt, 0) == 0) page = line;
+  }
+  std::fclose(file);
+  return page.substr(0, page.find_first_of("\r\n"));
+}
+
+// On a terminal the newest table stands in place of the one before, what happened above it;
+// elsewhere there is only what happened.
+class Screen {
+ public:
+  explicit Screen(std::filesystem::path viewer_log) : viewer_log_(std::move(viewer_log)) {}
+
+  void Tell(const std::string& line) {
+    Erase();
+    std::printf("%s\n", line.c_str());
+    std::fputs(table_.c_str(), stdout);
+    std::fflush(stdout);
+  }
+  void Show(const std::string& table) {
+    const std::string page = PageOf(viewer_log_);
+    if (!terminal_) {
+      if (page != page_) std::printf("page: %s\n", page.c_str());
+      page_ = page;
+      std::fflush(stdout);
+      return;
+    }
+    Erase();
+    table_ = table + (page.empty() ? "" : "page: " + page + "\n") + "Ctrl-C ends all of it\n";
+    std::fputs(table_.c_str(), stdout);
+    std::fflush(stdout);
+  }
+
+ private:
+  void Erase() const {
+    const auto lines = std::count(table_.begin(), table_.end(), '\n');
+    if (lines > 0) std::printf("\x1b[%dA\x1b[J", static_cast<int>(lines));
+  }
+
+  std::filesystem::path viewer_log_;
+  bool terminal_ = isatty(STDOUT_FILENO) == 1;
+  std::string table_, page_;
+};
+
+int RunUp(const UpFlags& flags) {
+  const Rig rig = ReadRig(flags.rig);
+  UpOptions options;
+  options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  options.rig = flags.rig;
+  options.out = flags.out;
+  options.logs = PathOr(flags.logs, flags.out + ".logs");
+  options.listen = flags.listen;
+  options.url = flags.url;
+  std::vector<Program> programs = ProgramsOf(rig, options);
+  for (const Program& program : programs) std::filesystem::remove(program.log);
+  Screen screen(programs.back().log);
+  std::printf("What the processes print is in %s\n", options.logs.c_str());
+  UpNode node(
+      std::move(programs), [&](const std::string& line) { screen.Tell(line); },
+      [&](const std::string& table) { screen.Show(table); });
+  const int code = RunOnLcm(node, flags.url);
+  node.Stop();
+  return code;
+}
+
+}  // namespace
+
+void AddUp(CommandLine* program) {
+  auto flags = std::make_shared<UpFlags>();
+  CommandLine* verb =
+      program->Verb("up",
+                    "Runs all processes of a rig on this machine, and again where one dies: the\n"
+                    "drivers of its devices, assembler, detector, solver, fuser, a session that\n"
+                    "the viewer's page leads, and the viewer. One table tells how each does;\n"
+                    "Ctrl-C ends all of it.\n"
+                    "Example: rgbdt up rig.textproto --out out/monday",
+                    [flags] { return RunUp(*flags); });
+  verb->Required("RIG", &flags->rig, "rig.textproto");
+  verb->Option("--out", &flags->out,
+               "session directory to write, or, where it was ended before its end, to go on with");
+  verb->Option("--logs", &flags->logs,
+               "folder for what the processes print; default: beside the session's, OUT.logs");
+  verb->Option("--listen", &flags->listen,
+               "of the page, e.g. 0.0.0.0:8080 for a phone; default: the viewer's");
+  verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
+}
+
+}  // namespace rgbdt
