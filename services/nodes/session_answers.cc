@@ -12,6 +12,8 @@ namespace rgbdt {
 
 namespace {
 
+constexpr Utime kSilence = 5 * kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
+
 std::int64_t Received(const Status& status) {
   for (const auto& [name, value] : status.counters) {
     if (name == "received") return value;
@@ -61,6 +63,7 @@ void SessionNode::OnStatus(const Status& status) {
   const auto before = statuses_.find(status.process);
   const bool anew = before != statuses_.end() && IsStartedAnew(before->second, status);
   statuses_[status.process] = status;
+  heard_[status.process] = now_;
   if (anew && started_ && !finished_) OnStartedAnew(status.process);
   if (status.process == "solver" && solver_views_.LostBy(status)) {
     RestoreSolver("rgbdt-solver was started anew and has lost its views");
@@ -301,7 +304,13 @@ std::string SessionNode::WhatIsMissing() const {
     return "is rgbdt-motor, rgbdt-lidar (or rgbdt-simulator) running, whichever turns or sweeps?";
   }
   if (found == statuses_.end()) return "rgbdt-" + wanted + " was not heard; is it running?";
-  return "rgbdt-" + wanted + " says: " + found->second.text +
+  const Utime silence = now_ - heard_.at(wanted);
+  const bool silent = silence > kSilence;
+  return "rgbdt-" + wanted +
+         (silent ? " has not been heard for " + std::to_string(silence / kMicrosecondsPerSecond) +
+                       " s, is it running? It said: "
+                 : " says: ") +
+         found->second.text +
          (found->second.last_problem.empty() ? ""
                                              : "; last problem: " + found->second.last_problem);
 }

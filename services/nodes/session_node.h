@@ -153,6 +153,7 @@ class SessionNode : public Node {
   Periodic rig_repeat_{kMicrosecondsPerSecond};
 
   std::map<std::string, Status> statuses_;
+  std::map<std::string, Utime> heard_;  // when
   Utime newest_utime_ = 0;
   Utime now_ = 0;               // Advance's newest
   std::optional<Utime> began_;  // its first

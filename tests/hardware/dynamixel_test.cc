@@ -269,6 +269,18 @@ TEST(DynamixelMotor, RefusesASweepDuringASweep) {
   EXPECT_EQ(motor.WaitForEnd(1).kind, EventKind::kDone);
 }
 
+// As one that was killed in the midst of a sweep and started anew.
+TEST(DynamixelMotor, AnotherSessionsSweepFollowsTheOneUnderWay) {
+  DynamixelPeer peer({});
+  Listener motor(ScannerOn(peer));
+  ASSERT_TRUE(motor.WaitReady());
+  constexpr std::int64_t kOther = (std::int64_t{7} << 32) + 1;
+  motor.Send(SweepCommand(1));
+  motor.Send(SweepCommand(kOther));
+  EXPECT_EQ(motor.WaitForEnd(1).kind, EventKind::kDone);
+  EXPECT_EQ(motor.WaitForEnd(kOther).kind, EventKind::kDone);
+}
+
 TEST(DynamixelMotor, SwitchesTheTorqueOffWhenItEndsWithinASweep) {
   DynamixelPeer peer({});
   Listener motor(ScannerOn(peer));

@@ -84,28 +84,40 @@ has_all_views
 cmp "$scratch/undisturbed/calibration.textproto" "$folder/calibration.textproto" ||
   fail "the calibration is not what it is undisturbed"
 
+shuffle_turn() {  # all, in an order by RANDOM, which a subshell would draw anew
+  local i j other
+  turn=("${services[@]}" simulator session)
+  for ((i = ${#turn[@]} - 1; i > 0; i--)); do
+    j=$((RANDOM % (i + 1)))
+    other=${turn[i]}
+    turn[i]=${turn[j]}
+    turn[j]=$other
+  done
+}
+
 RANDOM=$seed
 number=0
+turn=()
 while [ "$kills" -gt 0 ]; do
   number=$((number + 1))
-  echo "== each process is killed at a random moment, session $number"
+  echo "== each process in turn is killed at a random moment, session $number"
   begin "killed-$number"
-  mapfile -t turn < <(printf '%s\n' "${services[@]}" simulator session |
-    shuf --random-source=<(yes "$seed $number"))
-  for process in "${turn[@]}"; do
-    [ "$kills" -gt 0 ] || break
-    moment=$((RANDOM % 5000 + 1000))
+  while [ "$kills" -gt 0 ]; do
+    moment=$((RANDOM % 7500 + 500))
     sleep "$((moment / 1000)).$(printf %03d $((moment % 1000)))"
-    kill -0 "${pids[session]}" || fail "the session ended before $process was killed"
-    echo "$process is killed after $moment ms, in: $(tail -n 1 "$scratch/session.log")"
+    kill -0 "${pids[session]}" 2>/dev/null || break  # it has ended; the others die in the next one
+    if [ "${#turn[@]}" = 0 ]; then shuffle_turn; fi
+    process=${turn[0]}
+    turn=("${turn[@]:1}")
+    echo "$process is killed after $moment ms, in: $(grep -E '^\[[0-9]+/' "$scratch/session.log" | tail -n 1)"
     restart "$process"
     kills=$((kills - 1))
   done
   end
   has_all_views
-  cat "$scratch/killed-session.log" "$scratch/session.log" | grep -h 'started anew' || true
+  cat "$scratch"/killed-session.log "$scratch/session.log" 2>/dev/null | grep 'started anew' || true
   "$bin/rgbdt" compare "$scratch/undisturbed" "$folder" ||
     fail "the calibrations contradict each other"
-  rm -r "$folder" "$scratch"/killed-*.log
+  rm -rf "$folder" "$scratch"/killed-*.log
 done
 echo "passed"

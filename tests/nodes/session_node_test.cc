@@ -46,6 +46,7 @@ class SessionNodeTest : public ::testing::Test {
   // Until the session ends or a minute of its clock is over.
   void Run() {
     for (double t = 0; t < 60 && !node_->finished(); t += 0.1) {
+      if (meanwhile_) meanwhile_();
       for (const SessionCommand& command : Only<SessionCommand>(AdvanceTo(t, node_.get()))) {
         test::HandleAll(node_.get(), world_.Answer(command));
       }
@@ -56,6 +57,7 @@ class SessionNodeTest : public ::testing::Test {
   World world_;
   std::vector<SessionProgress> progress_;
   std::unique_ptr<SessionNode> node_;
+  std::function<void()> meanwhile_;  // what happens all the time
 };
 
 TEST_F(SessionNodeTest, TheHappyPathWritesTheSessionDirectory) {
@@ -211,13 +213,23 @@ TEST_F(SessionNodeTest, ATimeOutNamesWhoDidNotAnswerAndWhatItSaid) {
   EverybodyReady();
   Status status = Ready("detector", "view 0001 waits for an image of camera thermal");
   status.last_problem = "THERMAL_IMAGE: width is 3";
-  node_->Handle(status);
+  meanwhile_ = [&] { node_->Handle(status); };
   Run();
   EXPECT_THAT(node_->failure(),
               AllOf(HasSubstr("step 3 of 6"), HasSubstr("capture"), HasSubstr("view 0001"),
                     HasSubstr("no answer in 10 s"), HasSubstr("rgbdt-detector says"),
                     HasSubstr("waits for an image of camera thermal"),
                     HasSubstr("THERMAL_IMAGE: width is 3")));
+}
+
+TEST_F(SessionNodeTest, ATimeOutNamesWhoIsNotThereAnyMore) {
+  world_.silent_at = SessionVerb::kCapture;
+  Start(Script(kOneView));
+  EverybodyReady();
+  Run();
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("no answer in 10 s"),
+                                      HasSubstr("rgbdt-detector has not been heard for 1"),
+                                      HasSubstr("is it running? It said: fine")));
 }
 
 TEST_F(SessionNodeTest, ASilentRigIsNamed) {

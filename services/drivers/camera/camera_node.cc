@@ -77,7 +77,7 @@ void CameraNode::Serve(DeviceThread& thread) {
   newest_arrival_ = 0;
   clock_ = ClockFit();
   shutter_ = ShutterWatch();
-  rate_since_ = HostUtime();
+  rate_since_ = SteadyUtime();
   rate_frames_ = 0;
   std::unique_ptr<GenicamCamera> camera;
   try {
@@ -104,12 +104,12 @@ void CameraNode::Stream(GenicamCamera* camera, DeviceThread* thread) {
     const std::lock_guard<std::mutex> lock(mutex_);
     health_.streaming = true;
   }
-  const Utime opened = HostUtime();
+  const Utime opened = SteadyUtime();
   Utime asked = 0;
   while (!thread->Stopping()) {
     if (TakeTrigger()) camera->Trigger();
     camera->Next(kWaitMs, [&](const CameraFrame& frame) { TakeFrame(*thread, frame); });
-    const Utime now = HostUtime();
+    const Utime now = SteadyUtime();
     const Utime silence = now - std::max(opened, newest_arrival_);
     if (free_running && silence > kSilence) {
       throw DeviceError("no frame for " + Seconds(silence) + "; is its cable plugged in?");
@@ -128,7 +128,7 @@ bool CameraNode::TakeTrigger() {
 void CameraNode::AskHealth(GenicamCamera* camera) {
   exposure_s_ = camera->ExposureSeconds().value_or(0);
   const auto celsius = camera->TemperatureCelsius();
-  const Utime now = HostUtime();
+  const Utime now = SteadyUtime();
   const std::lock_guard<std::mutex> lock(mutex_);
   health_.celsius = celsius;
   health_.rate_hz = static_cast<double>(rate_frames_) / ToSeconds(now - rate_since_ + 1);
@@ -159,7 +159,7 @@ void CameraNode::CheckFits(const Image& image) const {
 }
 
 void CameraNode::TakeFrame(DeviceThread& thread, const CameraFrame& frame) {
-  newest_arrival_ = std::max<Utime>(HostUtime(), 1);
+  newest_arrival_ = std::max<Utime>(SteadyUtime(), 1);
   if (!frame.problem.empty()) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);

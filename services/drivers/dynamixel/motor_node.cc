@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "calib/model/errors.h"
 
@@ -21,6 +22,9 @@ void TakePriority() {
   priority.sched_priority = 1;
   pthread_setschedparam(pthread_self(), SCHED_RR, &priority);
 }
+
+// Whose session's it is (SessionCommand).
+std::int64_t SessionOf(std::int64_t command) { return command >> 32; }
 
 void WarnIfAny(const std::string& warning, DeviceThread* thread) {
   if (!warning.empty()) thread->Warn(warning);
@@ -66,6 +70,10 @@ Messages MotorNode::Handle(const Message& message) {
   if (command == nullptr || command->verb != SessionVerb::kSweep) return {};
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!connected_) return {EventOf(command->command, EventKind::kFailed, text_)};
+  if (command_ && SessionOf(*command_) != SessionOf(command->command)) {
+    next_command_ = command->command;
+    return {};
+  }
   if (command_) {
     return {EventOf(command->command, EventKind::kFailed,
                     "the motor is busy with the sweep of command " + std::to_string(*command_) +
@@ -140,13 +148,13 @@ void MotorNode::OnReading(const PositionReading& reading, TurningMotor* motor,
     motor->TorqueOff();
     EndSweep(EventKind::kFailed, step.failure, thread);
   } else {
-    PublishProgress(reading.utime, thread);
+    PublishProgress(reading.steady, thread);
   }
 }
 
-void MotorNode::PublishProgress(Utime utime, DeviceThread* thread) {
-  if (utime < next_progress_) return;
-  next_progress_ = utime + kProgressPeriod;
+void MotorNode::PublishProgress(Utime steady, DeviceThread* thread) {
+  if (steady < next_progress_) return;
+  next_progress_ = steady + kProgressPeriod;
   SessionEvent event = EventOf(sweep_->command(), EventKind::kProgress, sweep_->Text());
   event.sweep_utime = sweep_->sweep_utime();
   event.fraction = sweep_->fraction();
@@ -162,7 +170,7 @@ void MotorNode::EndSweep(EventKind kind, const std::string& text, DeviceThread* 
   if (kind == EventKind::kDone && sweep_) event.sweep_utime = sweep_->sweep_utime();
   thread->Publish(event);
   sweep_.reset();
-  command_.reset();
+  command_ = std::exchange(next_command_, std::nullopt);
 }
 
 Status MotorNode::GetStatus() const {

@@ -18,7 +18,8 @@ namespace rgbdt {
 /// other; the sweep begins with the last reading before the motion, whose time is its name, and is
 /// no longer named from the reading on at which the other end is reached. Events: kProgress at most
 /// four times a second, kDone with the sweep's name, kFailed where the motor stands, is out of
-/// reach, has stopped itself, does not answer or is busy. A failure and the end switch the torque
+/// reach, has stopped itself, does not answer or is busy; where a session was started anew in the
+/// midst of a sweep, its own follows that one. A failure and the end switch the torque
 /// off; a servo that has gone is looked for until it is back.
 class MotorNode : public DeviceNode {
  public:
@@ -40,7 +41,7 @@ class MotorNode : public DeviceNode {
   void ServeMotor(TurningMotor* motor, DeviceThread* thread);
   void BeginSweep(TurningMotor* motor, DeviceThread* thread);
   void OnReading(const PositionReading& reading, TurningMotor* motor, DeviceThread* thread);
-  void PublishProgress(Utime utime, DeviceThread* thread);
+  void PublishProgress(Utime steady, DeviceThread* thread);
   void EndSweep(EventKind kind, const std::string& text, DeviceThread* thread);
   SessionEvent EventOf(std::int64_t command, EventKind kind, const std::string& text) const;
   void SetText(bool connected, const std::string& text);
@@ -50,10 +51,11 @@ class MotorNode : public DeviceNode {
   std::atomic<std::int64_t> sweeps_{0};
   std::atomic<Utime> newest_{0};  // reading
 
-  mutable std::mutex mutex_;  // guards these three
+  mutable std::mutex mutex_;  // guards these four
   bool connected_ = false;
   std::string text_ = "the servo is still being looked for";
-  std::optional<std::int64_t> command_;  // of the sweep that is asked for or under way
+  std::optional<std::int64_t> command_;       // of the sweep that is asked for or under way
+  std::optional<std::int64_t> next_command_;  // another session's
 
   std::optional<MotorSweep> sweep_;  // the thread's own, as is the next
   Utime next_progress_ = 0;

@@ -29,7 +29,7 @@ std::string MotorSweep::Text() const {
 void MotorSweep::GoTo(std::int64_t goal, const PositionReading& reading, Step* step) {
   goal_ = goal;
   nearest_ = Distance(reading.ticks, goal);
-  advanced_ = reading.utime;
+  advanced_ = reading.steady;
   step->move_to = goal;
 }
 
@@ -71,14 +71,14 @@ bool MotorSweep::Arrived(const PositionReading& reading) {
   const double distance = Distance(reading.ticks, goal_);
   if (distance <= nearest_ - advance) {
     nearest_ = distance;
-    advanced_ = reading.utime;
+    advanced_ = reading.steady;
   }
   if (distance <= std::max(1.0, kReachedRad * ticks_per_rad)) return true;
-  return distance <= kNearRad * ticks_per_rad && reading.utime - advanced_ >= kSettled;
+  return distance <= kNearRad * ticks_per_rad && reading.steady - advanced_ >= kSettled;
 }
 
 std::string MotorSweep::Stall(const PositionReading& reading) const {
-  if (reading.utime - advanced_ < kStalled) return "";
+  if (reading.steady - advanced_ < kStalled) return "";
   return "the motor stands at " + Fixed(Degrees(reading.ticks), 1) + " deg on its way to " +
          Fixed(Degrees(goal_), 1) +
          " deg; its torque is off now: see what blocks it, and whether it has power";

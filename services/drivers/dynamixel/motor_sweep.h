@@ -10,7 +10,8 @@
 namespace rgbdt {
 
 /// One sweep as a machine of readings: to the nearer end, then to the other one. No port, no clock
-/// but the readings' own.
+/// but the readings' own: how long something took is by their steady time, so that a wall clock
+/// that is set does not stop a motor.
 ///
 /// A goal is reached within kReached of it, or within kNear where the motor comes no nearer for
 /// kSettled (its own control leaves a rest). Further away, no advance for kStalled is a stall.
@@ -55,7 +56,7 @@ class MotorSweep {
   Phase phase_ = Phase::kNew;
   std::int64_t start_ = 0, end_ = 0, goal_ = 0;  // [ticks]
   double nearest_ = 0;                           // to the goal so far [ticks]
-  Utime advanced_ = 0;                           // when it last came nearer
+  Utime advanced_ = 0;                           // when it last came nearer; steady
   Utime sweep_utime_ = 0;
   double fraction_ = 0;
 };

@@ -250,7 +250,7 @@ PositionReading TurningMotor::Publish(const Timed& reading) {
   newest_us_ = reading.steady_us;
   best_left_out_.reset();
   ++counters_->readings;
-  return {ToUtime(reading.steady_us), reading.ticks};
+  return {ToUtime(reading.steady_us), reading.ticks, std::llround(reading.steady_us)};
 }
 
 // The goal is set to where it stands before the torque comes: an old goal would make it jump.

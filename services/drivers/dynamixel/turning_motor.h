@@ -26,6 +26,7 @@ struct MotorCounters {
 struct PositionReading {
   Utime utime = 0;  ///< when the servo took it
   std::int64_t ticks = 0;
+  Utime steady = 0;  ///< the same moment by the machine's steady clock, for durations
 };
 
 /// The Dynamixel servo that turns the scanner, over its serial port. Everything that goes wrong is
