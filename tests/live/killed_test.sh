@@ -62,10 +62,23 @@ restart() {  # PROCESS: what it had said is kept
   start_process "$1"
 }
 
+now_ms() { date +%s%3N; }
+
+taken() { find "$folder/views" -name detection.lcm 2>/dev/null | wc -l || true; }
+
+another_view_is_taken() {  # since there were $1; false: the session has ended
+  until [ "$(taken)" -gt "$1" ]; do
+    kill -0 "${pids[session]}" 2>/dev/null || return 1
+    sleep 0.05
+  done
+}
+
 write_script >"$scratch/session.textproto"
 echo "== undisturbed"
+began=$(now_ms)
 begin undisturbed
 end
+a_view_ms=$((($(now_ms) - began) / views))
 if grep 'started anew' "$scratch/session.log"; then fail "nothing was"; fi
 
 echo "== a session that is killed goes on"
@@ -102,10 +115,13 @@ while [ "$kills" -gt 0 ]; do
   number=$((number + 1))
   echo "== each process in turn is killed at a random moment, session $number"
   begin "killed-$number"
-  while [ "$kills" -gt 0 ]; do
-    moment=$((RANDOM % 7500 + 500))
+  there=-1
+  # One a view, at any moment of it; more, and none would ever be whole.
+  while [ "$kills" -gt 0 ] && another_view_is_taken "$there"; do
+    moment=$((RANDOM * a_view_ms / 32768))
     sleep "$((moment / 1000)).$(printf %03d $((moment % 1000)))"
-    kill -0 "${pids[session]}" 2>/dev/null || break  # it has ended; the others die in the next one
+    kill -0 "${pids[session]}" 2>/dev/null || break  # the others die in the next session
+    there=$(taken)
     if [ "${#turn[@]}" = 0 ]; then shuffle_turn; fi
     process=${turn[0]}
     turn=("${turn[@]:1}")
