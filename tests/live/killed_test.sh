@@ -3,12 +3,12 @@
 # calibration is that of an undisturbed session, to the bit. Then sessions in which each process in
 # turn is killed at a random moment and started anew: they end by themselves, each view is there,
 # and the calibration agrees with the undisturbed one. Run by scripts/in-namespace.
-# Usage: killed_test.sh BIN_DIR; RGBDT_KILLS: how many (6); RGBDT_SEED: of the moments (1)
+# Usage: killed_test.sh BIN_DIR; RGBDT_KILLS: how many (5); RGBDT_SEED: of the moments (1)
 set -euo pipefail
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-kills=${RGBDT_KILLS:-6}
+kills=${RGBDT_KILLS:-5}
 seed=${RGBDT_SEED:-1}
 views=8
 speed=4
