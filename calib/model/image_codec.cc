@@ -1,7 +1,10 @@
 #include "calib/model/image_codec.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
@@ -16,10 +19,17 @@ namespace {
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 27;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
-std::uint32_t BigEndian(std::string_view bytes, std::size_t at) {
+// OpenCV's words end in a new line, or go on in a next one.
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+enum class Order { kBig, kLittle };
+
+// A number of `count` bytes; who calls has looked that they are there.
+std::uint32_t Unsigned(std::string_view bytes, std::size_t at, std::size_t count, Order order) {
   std::uint32_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t next = order == Order::kBig ? i : count - 1 - i;
+    value = value << 8 | static_cast<unsigned char>(bytes[at + next]);
   }
   return value;
 }
@@ -48,9 +58,10 @@ bool IsWholeIfPng(std::string_view bytes) {
   if (bytes.compare(0, 8, kPngSignature) != 0) return true;
   std::size_t at = 8;
   while (bytes.size() - at >= 12) {
-    const std::size_t length = BigEndian(bytes, at);
+    const std::size_t length = Unsigned(bytes, at, 4, Order::kBig);
     if (length > bytes.size() - at - 12) return false;
-    if (Crc(&bytes[at + 4], length + 4) != BigEndian(bytes, at + 8 + length)) return false;
+    if (Crc(&bytes[at + 4], length + 4) != Unsigned(bytes, at + 8 + length, 4, Order::kBig))
+      return false;
     if (bytes.compare(at + 4, 4, "IEND") == 0) return true;
     at += 12 + length;
   }
@@ -76,20 +87,89 @@ std::optional<ImageSize> JpegSize(std::string_view bytes) {
   return std::nullopt;
 }
 
+// Of BMP's head; older ones have 16 bit, and rows from the top down a negative height.
+std::optional<ImageSize> BmpSize(std::string_view bytes) {
+  constexpr std::uint32_t kOldHead = 12;
+  if (bytes.size() < 26) return std::nullopt;
+  const auto number = [&](std::size_t at) {
+    return static_cast<std::int32_t>(Unsigned(bytes, at, 4, Order::kLittle));
+  };
+  if (Unsigned(bytes, 14, 4, Order::kLittle) == kOldHead) {
+    return ImageSize{Unsigned(bytes, 18, 2, Order::kLittle),
+                     Unsigned(bytes, 20, 2, Order::kLittle)};
+  }
+  return ImageSize{number(18), std::abs(std::int64_t{number(22)})};
+}
+
+// Of the first directory's tags 256 and 257 (TIFF 6.0, section 2). Where tags 322 and 323 speak of
+// tiles beyond the image, theirs: so much is unpacked.
+std::optional<ImageSize> TiffSize(std::string_view bytes, Order order) {
+  constexpr std::size_t kEntry = 12;
+  constexpr std::uint32_t kShort = 3, kLong = 4;
+  if (bytes.size() < 8) return std::nullopt;
+  const std::size_t directory = Unsigned(bytes, 4, 4, order);
+  if (directory > bytes.size() - 2) return std::nullopt;
+  const std::size_t count = Unsigned(bytes, directory, 2, order);
+  if (count * kEntry > bytes.size() - directory - 2) return std::nullopt;
+  std::int64_t width = 0, height = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t entry = directory + 2 + i * kEntry;
+    const std::uint32_t tag = Unsigned(bytes, entry, 2, order);
+    const std::uint32_t type = Unsigned(bytes, entry + 2, 2, order);
+    const bool is_width = tag == 256 || tag == 322, is_height = tag == 257 || tag == 323;
+    if (!is_width && !is_height) continue;
+    if (type != kShort && type != kLong) return std::nullopt;
+    std::int64_t& side = is_width ? width : height;
+    const std::int64_t said = Unsigned(bytes, entry + 8, type == kShort ? 2 : 4, order);
+    side = std::max(side, said);
+  }
+  return ImageSize{width, height};
+}
+
+// Two numbers behind "P1" to "P6", white space and comments between.
+std::optional<ImageSize> PnmSize(std::string_view bytes) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 31;
+  std::array<std::int64_t, 2> sides{};
+  std::size_t at = 2;
+  const auto left = [&] { return at < bytes.size(); };
+  const auto is_digit = [&] { return left() && bytes[at] >= '0' && bytes[at] <= '9'; };
+  for (std::int64_t& side : sides) {
+    while (left() && !is_digit()) {
+      const bool comment = bytes[at] == '#';
+      if (!comment && std::isspace(static_cast<unsigned char>(bytes[at])) == 0) return std::nullopt;
+      at = comment ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    }
+    if (!left()) return std::nullopt;
+    for (; is_digit(); ++at) side = std::min(kMost, 10 * side + (bytes[at] - '0'));
+  }
+  return ImageSize{sides[0], sides[1]};
+}
+
 }  // namespace
 
 std::optional<ImageSize> StatedSize(const void* data, std::size_t size) {
+  using namespace std::string_view_literals;
   const std::string_view bytes(static_cast<const char*>(data), size);
-  if (size >= 24 && bytes.compare(0, 8, kPngSignature) == 0) {
-    return ImageSize{BigEndian(bytes, 16), BigEndian(bytes, 20)};
+  const auto begins = [&](std::string_view text) { return bytes.substr(0, text.size()) == text; };
+  if (size >= 24 && begins(kPngSignature)) {
+    return ImageSize{Unsigned(bytes, 16, 4, Order::kBig), Unsigned(bytes, 20, 4, Order::kBig)};
   }
-  return bytes.compare(0, 2, "\xFF\xD8") == 0 ? JpegSize(bytes) : std::nullopt;
+  if (begins("\xFF\xD8")) return JpegSize(bytes);
+  if (begins("II*\0"sv)) return TiffSize(bytes, Order::kLittle);
+  if (begins("MM\0*"sv)) return TiffSize(bytes, Order::kBig);
+  if (begins("BM")) return BmpSize(bytes);
+  if (size >= 3 && begins("P") && bytes[1] >= '1' && bytes[1] <= '6') return PnmSize(bytes);
+  return std::nullopt;
 }
 
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
   if (size == 0) throw InputError(where + " is empty; expected an image");
   const auto said = StatedSize(bytes, size);
-  if (said && said->height > 0 && said->width > kMostPixels / said->height) {
+  if (!said) {
+    throw InputError(where + " cannot be decoded as an image: expected a PNG, JPEG, TIFF, BMP or " +
+                     "PNM (pgm, ppm)");
+  }
+  if (said->height > 0 && said->width > kMostPixels / said->height) {
     throw InputError(where + " is an image of " + std::to_string(said->width) + "x" +
                      std::to_string(said->height) + " pixels; expected at most " +
                      std::to_string(kMostPixels));
@@ -102,7 +182,7 @@ cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& wher
       image = cv::imdecode(view, cv::IMREAD_UNCHANGED);
     }
   } catch (const std::exception& error) {  // cv::Exception or bad_alloc (a forged size)
-    reason = error.what();
+    reason = FirstLine(error.what());
   }
   if (image.empty()) throw InputError(where + " cannot be decoded as an image: " + reason);
   return image;

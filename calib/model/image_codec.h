@@ -12,13 +12,13 @@ struct ImageSize {
   std::int64_t width, height;  // [px]
 };
 
-/// What a PNG or JPEG says of itself, before it is unpacked, which may take a thousand times its
-/// bytes; nothing for what is neither.
+/// What a PNG, JPEG, TIFF, BMP or PNM says of itself, before it is unpacked, which may take a
+/// thousand times its bytes; nothing for what is none of them.
 std::optional<ImageSize> StatedSize(const void* bytes, std::size_t size);
 
-/// The pixels of a PNG, JPEG, TIFF, ... as they are stored: depth and channels unchanged, no
+/// The pixels of a PNG, JPEG, TIFF, BMP or PNM as they are stored: depth and channels unchanged, no
 /// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be
-/// decoded, for a PNG that is cut short or damaged, and for a PNG or JPEG of more than 2^27 pixels,
+/// decoded, for a PNG that is cut short or damaged, and for an image of more than 2^27 pixels,
 /// which is not unpacked.
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where);
 

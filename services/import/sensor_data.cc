@@ -277,7 +277,7 @@ Image ToImage(const ros::CompressedImage& image, const std::string& where) {
   const auto size = StatedSize(image.data, image.size);
   if (!size) {
     throw InputError(where + ": format \"" + Printable(image.format) +
-                     "\" is not read; expected JPEG or PNG");
+                     "\" is not read; expected JPEG, PNG or TIFF");
   }
   CheckSize(size->width, size->height, where);
   Image out;

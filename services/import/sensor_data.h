@@ -16,7 +16,7 @@ namespace rgbdt {
 /// rgba8 8UC3 8UC4, bayer_*8, and YUV 4:2:2. Other encodings (depth, 16-bit colour) are refused.
 Image ToImage(const ros::Image& image, const std::string& where);
 
-/// The same of JPEG and PNG; a mosaic in a PNG stays one. `utime` is the header's.
+/// The same of JPEG, PNG and TIFF; a mosaic in a PNG stays one. `utime` is the header's.
 Image ToImage(const ros::CompressedImage& image, const std::string& where);
 
 /// As a PCD of the same fields would be read (calib/files/points/cloud_files.h), so a point that is

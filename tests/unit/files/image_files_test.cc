@@ -107,5 +107,33 @@ TEST(ImageFiles, WhatUnpacksToTooManyPixelsIsRefusedByItsHeader) {
               AllOf(HasSubstr("bomb.jpg"), HasSubstr("32639x32639")));
 }
 
+// OpenCV would take gigabytes at their word.
+TEST(ImageFiles, EveryFormatTellsItsSizeBeforeItIsUnpacked) {
+  const auto encoded = [](const std::string& extension) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(extension, Random(extension == ".pgm" ? CV_8UC1 : CV_8UC3), bytes);
+    return std::string(bytes.begin(), bytes.end());
+  };
+  for (const std::string extension : {".png", ".jpg", ".tif", ".bmp", ".pgm", ".ppm"}) {
+    const std::string bytes = encoded(extension);
+    const auto said = StatedSize(bytes.data(), bytes.size());
+    ASSERT_TRUE(said) << extension;
+    EXPECT_EQ(said->width, 23) << extension;
+    EXPECT_EQ(said->height, 17) << extension;
+    EXPECT_EQ(DecodeImage(bytes.data(), bytes.size(), "a").cols, 23) << extension;
+  }
+  const auto error = [](const std::string& bytes) {
+    return test::ErrorOf([&] { DecodeImage(bytes.data(), bytes.size(), "bomb"); });
+  };
+  EXPECT_THAT(error("P5\n# a comment\n60000 50000\n255\n"), HasSubstr("60000x50000"));
+  EXPECT_THAT(error("P5 99999999999999999999 1\n255\n"), HasSubstr("expected at most 134217728"));
+  std::string bmp = encoded(".bmp");
+  bmp.replace(18, 8, std::string("\0\0\1\0\0\0\xff\xff", 8));  // 65536, and -65536: downwards
+  EXPECT_THAT(error(bmp), HasSubstr("65536x65536"));
+  const std::string tiff("II*\0\x08\0\0\0\2\0\0\1\4\0\1\0\0\0\0\0\1\0\1\1\4\0\1\0\0\0\0\0\1\0", 34);
+  EXPECT_THAT(error(tiff), HasSubstr("65536x65536"));
+  EXPECT_THAT(error(encoded(".webp")), HasSubstr("expected a PNG, JPEG, TIFF, BMP or PNM"));
+}
+
 }  // namespace
 }  // namespace rgbdt

@@ -102,7 +102,7 @@ TEST(RosPixels, AnImageThatClaimsTooMuchIsNotDecoded) {
   EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("png", bytes), "/cam"); }),
               HasSubstr("/cam: is 19970 x 19970 px; expected"));
   EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("compressedDepth", "12345678"), "/cam"); }),
-              HasSubstr("expected JPEG or PNG"));
+              HasSubstr("expected JPEG, PNG or TIFF"));
 }
 
 // Builds clouds field by field.

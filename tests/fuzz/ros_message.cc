@@ -1,0 +1,19 @@
+// A message of a bag. The first byte says which, the second how it is laid out.
+#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/read_bag.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace rgbdt;
+  constexpr BagData kKinds[] = {BagData::kImage, BagData::kCompressedImage, BagData::kCameraInfo,
+                                BagData::kCloud, BagData::kOther};
+  fuzz::Input input(data, size);
+  const BagData kind = kKinds[input.Byte() % 5];
+  const BagEncoding encoding = input.Byte() % 2 == 0 ? BagEncoding::kRos1 : BagEncoding::kCdr;
+  const std::string bytes = input.Rest();
+  BagMessage message;
+  message.data = fuzz::Data(bytes);
+  message.size = bytes.size();
+  fuzz::Try([&] { ros::DecodeHeader(message, encoding); });
+  fuzz::Try([&] { fuzz::Convert(message, kind, encoding); });
+  return 0;
+}

@@ -1,0 +1,91 @@
+#include <vector>
+
+#include "services/messages/codec.h"
+#include "tests/datagrams.h"
+#include "tests/fuzz/seeds/seeds.h"
+#include "tests/log_writer.h"
+#include "tests/unit/messages/random_messages.h"
+
+namespace rgbdt::fuzz {
+namespace {
+
+std::string AsText(const Bytes& bytes) { return {bytes.begin(), bytes.end()}; }
+
+// One byte for the channel (its place in OneOfEach), then what follows the fingerprint.
+std::string MessageSeed(std::size_t place, const Message& message) {
+  return static_cast<char>(place) + AsText(Encode(message)).substr(8);
+}
+
+void AddMessages(std::map<std::string, std::string>* seeds) {
+  constexpr std::size_t kMost = 6000;  // a small one is mutated more often
+  for (std::uint64_t round = 0; round < 12; ++round) {
+    testing::RandomMessages random(round + 1);
+    const Messages messages = random.OneOfEach();
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      const std::string seed = MessageSeed(i, messages[i]);
+      // Three of each, and more of those that have many parts.
+      const bool rich = std::holds_alternative<ViewDetection>(messages[i]) ||
+                        std::holds_alternative<Image>(messages[i]) ||
+                        std::holds_alternative<CalibrationMessage>(messages[i]);
+      if (seed.size() > kMost || (round >= 3 && !rich)) continue;
+      (*seeds)[ChannelOf(messages[i]) + std::to_string(round)] = seed;
+    }
+  }
+  testing::RandomMessages random(1);
+  const Messages messages = random.OneOfEach();
+  for (const PixelFormat format : {PixelFormat::kPng, PixelFormat::kJpeg}) {
+    Image image = random.Picture(PixelFormat::kBgr8);
+    image.format = format;
+    (*seeds)[format == PixelFormat::kPng ? "png" : "jpeg"] = MessageSeed(2, image);
+  }
+  RgbdtCloud sweep = random.Fused();
+  sweep.whole_sweep = true;
+  (*seeds)["sweep"] = MessageSeed(messages.size(), sweep);
+}
+
+// As datagrams.cc takes one: kind and sender, and the bytes without their magic.
+std::string DatagramSeed(const Bytes& bytes) {
+  const std::string text = AsText(bytes);
+  if (text.rfind("LC0", 0) != 0) return '\x81' + Piece(text);
+  return (text[3] == '3' ? '\x41' : '\x01') + Piece(text.substr(4));
+}
+
+void AddDatagrams(std::map<std::string, std::string>* seeds) {
+  std::size_t number = 0;
+  for (const test::Attack& attack : test::Attacks("CLOUD")) {
+    std::string seed;
+    for (const Bytes& datagram : attack.datagrams) seed += DatagramSeed(datagram);
+    (*seeds)["attack" + std::to_string(++number)] = seed;
+  }
+  const std::string name("CLOUD\0", 6);
+  const auto fragment = [&](std::uint32_t begin, std::uint32_t at) {
+    return DatagramSeed(
+        test::Fragment{7, 30, begin, at, 3, at == 0 ? name : "", Bytes(10, 'a')}.Datagram());
+  };
+  (*seeds)["short"] = DatagramSeed(test::ShortDatagram(1, name, Bytes(20, 1)));
+  (*seeds)["whole"] = fragment(0, 0) + fragment(10, 1) + fragment(20, 2);
+  (*seeds)["turned"] = fragment(0, 0) + fragment(20, 2) + fragment(20, 2) + fragment(10, 1);
+}
+
+void AddLogs(std::map<std::string, std::string>* seeds) {
+  const std::string log = Written([](const std::filesystem::path& path) {
+    test::LogWriter writer(path);
+    for (const int size : {0, 5, 300}) {
+      writer.Write("CLOUD", Bytes(static_cast<std::size_t>(size), 7), 1'700'000'000'000'000);
+    }
+    writer.Close();
+  });
+  (*seeds)["log"] = log;
+  (*seeds)["cut"] = log.substr(0, log.size() - 50);
+  (*seeds)["rubbish"] = log + std::string(3000, 'x') + log;
+}
+
+}  // namespace
+
+void AddBusSeeds(Seeds* seeds) {
+  AddMessages(&(*seeds)["message"]);
+  AddDatagrams(&(*seeds)["datagrams"]);
+  AddLogs(&(*seeds)["log"]);
+}
+
+}  // namespace rgbdt::fuzz
