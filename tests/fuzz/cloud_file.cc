@@ -1,11 +1,30 @@
-// A PCD as a sweep; PCD and PLY as a fused cloud and as a map.
+// A PCD as a sweep; PCD and PLY as a fused cloud and as a map. What was read is written and read
+// once more, of which nothing may be refused.
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/points/map_files.h"
 #include "tests/fuzz/fuzz.h"
 
+namespace rgbdt {
+namespace {
+
+template <typename Write, typename Read>
+void ReadBack(const fuzz::ScratchFile& file, std::size_t points, Write write, Read read) {
+  constexpr std::size_t kFew = 200;  // writing syncs
+  if (points > kFew) return;
+  try {
+    write(file.path());
+    fuzz::Require(read(file.path()).size() == points, "as many points as were written");
+  } catch (const InputError& error) {
+    fuzz::Require(false, std::string("a cloud that is written and read; ") + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rgbdt;
-  static const fuzz::ScratchFile file("cloud");
+  static const fuzz::ScratchFile file("cloud"), written("written");
   const std::string bytes = fuzz::Input(data, size).Rest();
   file.Write(bytes);
   fuzz::Try([&] {
@@ -19,7 +38,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::Require(cloud.rgb.size() == cloud.size() && cloud.utime.size() == cloud.size() &&
                       cloud.valid.size() == cloud.size(),
                   "vectors of one length");
+    for (const bool ply : {false, true}) {
+      ReadBack(
+          written, cloud.size(),
+          [&](const auto& path) { ply ? WritePly(path, cloud) : WritePcd(path, cloud); },
+          ReadFused);
+    }
   });
-  fuzz::Try([&] { ReadMapOrCloud(file.path()); });
+  fuzz::Try([&] {
+    const MapCloud map = ReadMapOrCloud(file.path());
+    if (map.voxel_m == 0) return;  // no map
+    ReadBack(
+        written, map.size(), [&](const auto& path) { WriteMapPly(path, map); }, ReadMapPly);
+  });
   return 0;
 }

@@ -1,5 +1,5 @@
-// What servos answer. A piece is either put into a status packet with the sum that it should have,
-// or comes as it is.
+// What servos answer. A piece is put into a status packet with the sum that it should have, or into
+// an instruction, of which two-wire buses hear the echo, or comes as it is.
 #include "services/drivers/dynamixel/dynamixel_protocol.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -30,7 +30,9 @@ void Look(const dynamixel::Status& status) {
   fuzz::Require(!dynamixel::ErrorInWords(status.ErrorNumber()).empty(), "an error in words");
   const std::size_t size = status.parameters.size();
   if (size == 1 || size == 2 || size == 4) {
-    dynamixel::SignedFrom(status.parameters);
+    const auto value = dynamixel::SignedFrom(status.parameters);
+    fuzz::Require(dynamixel::ToBytes(value, static_cast<int>(size)) == status.parameters,
+                  "the same bytes of a number");
     const auto number = dynamixel::UnsignedFrom(status.parameters);
     dynamixel::HardwareErrorInWords(static_cast<int>(number & 0xff));
   }
@@ -46,7 +48,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (!input.empty()) {
     const unsigned kind = input.Byte();
     const std::string piece = input.Take(input.Byte());
-    decoder.Add(kind < 0x80 ? Framed(kind, piece) : dynamixel::Bytes(piece.begin(), piece.end()));
+    if (kind < 0x40) {
+      decoder.Add(Framed(kind, piece));
+    } else if (kind < 0x80) {
+      decoder.Add(
+          dynamixel::EncodeWrite(static_cast<int>(kind), 116, {piece.begin(), piece.end()}));
+    } else {
+      decoder.Add({piece.begin(), piece.end()});
+    }
     if (kind == 0xff) decoder.Clear();
     while (const auto status = decoder.Next()) Look(*status);
   }

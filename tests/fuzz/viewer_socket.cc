@@ -44,8 +44,22 @@ std::string Handshake(int port) {
          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
 }
 
+// From a loopback address of its own, as one has not ports enough for so many connections.
+void BindToAnother(int connection) {
+  static std::uint32_t count = 0;
+  constexpr std::uint32_t kFirst = 0x7f010001, kMost = 0xfff0;  // 127.1.0.1
+  const int later = 1;
+  setsockopt(connection, IPPROTO_IP, IP_BIND_ADDRESS_NO_PORT, &later, sizeof(later));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(kFirst + count++ % kMost);
+  fuzz::Require(bind(connection, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0,
+                std::string("a loopback address: ") + std::strerror(errno));
+}
+
 Descriptor Connect(int port) {
   Descriptor connection(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  BindToAnother(connection.get());
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));

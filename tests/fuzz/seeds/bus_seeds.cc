@@ -16,6 +16,32 @@ std::string MessageSeed(std::size_t place, const Message& message) {
   return static_cast<char>(place) + AsText(Encode(message)).substr(8);
 }
 
+// Every nested struct, in few bytes.
+ViewDetection WholeDetection(testing::RandomMessages* random) {
+  ViewDetection detection = random->Seen();
+  ImageDetection image = random->InImage();
+  image.why_not = "";
+  image.edges = ImageEdges{};
+  image.edges->width = image.edges->height = 100;
+  image.edges->outline_corners.fill({1, 2});
+  image.edges->corners = {{3, 4}, {5, 6}};
+  image.edges->outline = {{3, 4}, {5, 6}};
+  image.edges->edge_pixels = {{3, 4}, {5, 6}};
+  ImageSide side = random->Side();
+  side.curve.resize(2, {3, 4});
+  image.edges->pose = random->PoseOfTarget();
+  image.edges->sides.fill(side);
+  detection.images = {image};
+  CloudEdges board = random->Boundary();
+  board.boundary.resize(1);
+  board.pose = random->PoseOfTarget();
+  board.crossings.assign(2, random->WhereAScanLeaves());
+  board.groups.assign(1, random->Group());
+  detection.cloud.candidates.assign(2, board);
+  detection.cloud.why_not = "";
+  return detection;
+}
+
 void AddMessages(std::map<std::string, std::string>* seeds) {
   constexpr std::size_t kMost = 6000;  // a small one is mutated more often
   for (std::uint64_t round = 0; round < 12; ++round) {
@@ -37,6 +63,10 @@ void AddMessages(std::map<std::string, std::string>* seeds) {
     Image image = random.Picture(PixelFormat::kBgr8);
     image.format = format;
     (*seeds)[format == PixelFormat::kPng ? "png" : "jpeg"] = MessageSeed(2, image);
+  }
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    if (!std::holds_alternative<ViewDetection>(messages[i])) continue;
+    (*seeds)["detection_whole"] = MessageSeed(i, WholeDetection(&random));
   }
   RgbdtCloud sweep = random.Fused();
   sweep.whole_sweep = true;

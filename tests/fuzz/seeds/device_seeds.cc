@@ -94,6 +94,9 @@ void AddDynamixel(Inputs* seeds) {
                         std::string("\x01\x04\x00\x06\x04\x26", 6);
   (*seeds)["long"] = std::string("\x80\x08\xff\xff\xfd\x00\x01\xff\xff\x55", 10) +
                      std::string("\x01\x04\x00\x06\x04\x26", 6);
+  (*seeds)["echo"] =
+      std::string("\x41\x04\xff\xff\xfd\x00", 6) + std::string("\x01\x04\x00\x06\x04\x26", 6);
+  (*seeds)["wrong_sum"] = std::string("\x80\x0b\xff\xff\xfd\x00\x01\x04\x00\x55\x00\x12\x34", 13);
   (*seeds)["cleared"] = std::string("\xff\x05\xff\xff\xfd\x00\x01", 7);
 }
 

@@ -20,6 +20,26 @@ using Inputs = std::map<std::string, std::string>;
 void AddRigs(Inputs* seeds) {
   (*seeds)["small"] = kSmallRig;
   (*seeds)["whole"] = PrintRig(test::MakeRig());
+  const std::string small = kSmallRig;
+  const auto with = [&](const std::string& at, const std::string& more) {
+    std::string text = small;
+    return text.insert(text.find(at), more + " ");
+  };
+  const std::string lens = "pinhole {",
+                    covariance = "1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1";
+  for (const std::string more :
+       {"exact: true", "sigma: [1, 2, 3, 4]", "sigma: [1, 2]", "sigma: [1, 2, 3, -4]",
+        "exact: true sigma: 1", "sigma: [1, 1, 1, 1] made_from: [1, 2, 3, 4]", "made_from: 1"}) {
+    (*seeds)["lens " + more] = with(lens, "lens_uncertainty { " + more + " }");
+  }
+  (*seeds)["covariance"] = with(lens, "lens_uncertainty { covariance: [" + covariance + "] }");
+  (*seeds)["no_lens"] = "camera { name: \"rgb\" kind: COLOR width: 4 height: 3 }";
+  (*seeds)["guess"] = with(lens, "camera_from_lidar_guess { roll_pitch_yaw_deg: [1, 2, 3] }");
+  (*seeds)["guess_norm"] = with(lens, "camera_from_lidar_guess { quaternion_wxyz: [1, 2, 3, 4] }");
+  (*seeds)["guess_both"] = with(lens,
+                                "camera_from_lidar_guess { quaternion_wxyz: [1, 0, 0, 0] "
+                                "roll_pitch_yaw_deg: [1, 2, 3] }");
+  (*seeds)["distortion"] = with("fx: 4", "distortion: [1, 2, 3]");
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs")) {
     if (entry.path().extension() != ".textproto") continue;
