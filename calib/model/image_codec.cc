@@ -126,21 +126,24 @@ std::optional<ImageSize> TiffSize(std::string_view bytes, Order order) {
   return ImageSize{width, height};
 }
 
-// Two numbers behind "P1" to "P6", white space and comments between.
+// Two numbers behind "P1" to "P6", white space and comments between. White space must follow each,
+// as the format has it: OpenCV passes over whatever byte does.
 std::optional<ImageSize> PnmSize(std::string_view bytes) {
   constexpr std::int64_t kMost = std::int64_t{1} << 31;
   std::array<std::int64_t, 2> sides{};
   std::size_t at = 2;
   const auto left = [&] { return at < bytes.size(); };
   const auto is_digit = [&] { return left() && bytes[at] >= '0' && bytes[at] <= '9'; };
+  const auto is_space = [&] {
+    return left() && std::isspace(static_cast<unsigned char>(bytes[at])) != 0;
+  };
   for (std::int64_t& side : sides) {
-    while (left() && !is_digit()) {
-      const bool comment = bytes[at] == '#';
-      if (!comment && std::isspace(static_cast<unsigned char>(bytes[at])) == 0) return std::nullopt;
-      at = comment ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    while (is_space() || (left() && bytes[at] == '#')) {
+      at = is_space() ? at + 1 : std::min(bytes.find_first_of("\r\n", at), bytes.size());
     }
-    if (!left()) return std::nullopt;
+    if (!is_digit()) return std::nullopt;
     for (; is_digit(); ++at) side = std::min(kMost, 10 * side + (bytes[at] - '0'));
+    if (!is_space()) return std::nullopt;
   }
   return ImageSize{sides[0], sides[1]};
 }

@@ -12,6 +12,12 @@
 namespace rgbdt {
 namespace {
 
+// Whoever sends names the channel, by any bytes.
+std::string Shown(const std::string& channel) {
+  constexpr std::size_t kMaxChannelBytes = 63;  // LCM's
+  return Printable(channel, kMaxChannelBytes);
+}
+
 template <typename Wire>
 bool IsA(const std::uint8_t* data, std::size_t size) {
   std::uint64_t fingerprint = 0;
@@ -41,7 +47,7 @@ template <typename Wire>
 Message DecodeAs(const std::string& channel, const std::uint8_t* data, std::size_t size) {
   if (!IsA<Wire>(data, size)) {
     throw InputError(std::string("the message is no ") + Wire::getTypeName() +
-                     ": another type or version on channel " + channel);
+                     ": another type or version on channel " + Shown(channel));
   }
   return FromWire(WireFrom<Wire>(data, size));
 }
@@ -76,7 +82,7 @@ Decoder DecoderOf(const std::string& channel) {
                         channel.compare(channel.size() - image.size(), image.size(), image) == 0;
   const auto found = decoders.find(is_image ? image : channel);
   if (found == decoders.end() || channel == image) {
-    throw InputError("no message type belongs to channel " + channel);
+    throw InputError("no message type belongs to channel " + Shown(channel));
   }
   return found->second;
 }

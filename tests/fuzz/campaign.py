@@ -138,7 +138,8 @@ class Target:
             self.run(["-merge=1", "-use_counters=0", str(merged), str(self.work)])
             found = sorted((f for f in merged.iterdir() if f.name not in before),
                            key=lambda f: f.stat().st_size)
-            corpus, total = HERE / "corpus" / self.name, 0
+            corpus = HERE / "corpus" / self.name
+            total = sum(f.stat().st_size for f in corpus.glob("[!f]*"))  # but for found-*
             for file in found:
                 total += file.stat().st_size
                 if total > MOST_KEPT_BYTES:

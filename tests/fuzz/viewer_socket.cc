@@ -74,6 +74,7 @@ Descriptor Connect(int port) {
 void Send(int connection, const std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t sent = send(connection, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
     if (sent <= 0) return;
     at += static_cast<std::size_t>(sent);
   }
@@ -84,7 +85,11 @@ std::string Receive(int connection) {
   constexpr int kPatience_ms = 20'000;
   char bytes[4096];
   pollfd wait{connection, POLLIN, 0};
-  fuzz::Require(poll(&wait, 1, kPatience_ms) == 1, "an answer, or an end");
+  int ready = 0;
+  do {  // libFuzzer looks at its clock by signals
+    ready = poll(&wait, 1, kPatience_ms);
+  } while (ready < 0 && errno == EINTR);
+  fuzz::Require(ready == 1, "an answer, or an end");
   const ssize_t got = recv(connection, bytes, sizeof(bytes), 0);
   return got <= 0 ? std::string() : std::string(bytes, bytes + got);
 }

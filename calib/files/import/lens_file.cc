@@ -248,9 +248,14 @@ void CheckWhole(const Node& part) {
   }
 }
 
-}  // namespace
+// Names and texts of YAML may have several lines; an error has one.
+std::string WithoutControls(std::string text) {
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  std::replace_if(text.begin(), text.end(), is_control, '?');
+  return text;
+}
 
-FileLens ParseLensFile(const std::string& text, const LensWanted& wanted) {
+FileLens Parse(const std::string& text, const LensWanted& wanted) {
   const std::string file = wanted.file.string();
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError(file + " is empty; expected a lens as YAML");
@@ -264,7 +269,7 @@ FileLens ParseLensFile(const std::string& text, const LensWanted& wanted) {
   const auto& [name, part] = Choose(parts, wanted);
   FileLens out;
   out.parts = static_cast<int>(parts.size());
-  out.where = name.empty() ? file : file + ":" + name;
+  out.where = name.empty() ? file : file + ":" + WithoutControls(name);
   ReadFocalAndCentre(part, &out.lens);
   ReadSize(part, &out);
   CheckWhole(part);
@@ -277,6 +282,16 @@ FileLens ParseLensFile(const std::string& text, const LensWanted& wanted) {
   out.lens.model = ModelOf(part, *distortion, distortion->Numbers().size(), wanted);
   ReadDistortion(*distortion, &out.lens);
   return out;
+}
+
+}  // namespace
+
+FileLens ParseLensFile(const std::string& text, const LensWanted& wanted) {
+  try {
+    return Parse(text, wanted);
+  } catch (const InputError& error) {
+    throw InputError(WithoutControls(error.what()));
+  }
 }
 
 FileLens ReadLensFile(const LensWanted& wanted) {

@@ -36,8 +36,14 @@ std::size_t IndexOf(const Session& session, const std::string& view) {
   if (found != session.views.end()) {
     return static_cast<std::size_t>(found - session.views.begin());
   }
+  constexpr std::size_t kFew = 20;
   std::string names;
-  for (const std::string& name : session.views) names += (names.empty() ? "" : ", ") + name;
+  for (std::size_t i = 0; i < std::min(kFew, session.views.size()); ++i) {
+    names += (names.empty() ? "" : ", ") + session.views[i];
+  }
+  if (session.views.size() > kFew) {
+    names += " and " + std::to_string(session.views.size() - kFew) + " more";
+  }
   throw InputError("the session " + session.root.string() + " has no view \"" + view +
                    "\"; it has: " + names);
 }

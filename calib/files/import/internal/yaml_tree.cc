@@ -137,6 +137,8 @@ void Node::AppendNumbers(int depth, std::vector<double>* numbers) const {
     return;
   }
   const auto& items = Get()->data.sequence.items;
+  // By aliases a few kilobytes could hold more empty lists than can be looked at.
+  if (depth > 0 && items.start == items.top) Fail("holds an empty list; expected numbers");
   for (const yaml_node_item_t* item = items.start; item != items.top; ++item) {
     Node(document_, *item, name_).AppendNumbers(depth + 1, numbers);
   }
