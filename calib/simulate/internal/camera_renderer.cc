@@ -151,17 +151,21 @@ void CameraRenderer::RenderEmpty(const World& empty) {
   empty_ = values;
 }
 
-void CameraRenderer::Render(const World& world) {
+void CameraRenderer::RenderBands(const std::vector<const World*>& bands) {
+  const auto count = static_cast<int>(bands.size());
+  const auto world_of = [&](int row) -> const World& {
+    return *bands[static_cast<std::size_t>(row * count / camera_.height)];
+  };
   cv::Mat values = empty_.clone();
   std::vector<std::uint64_t> patches = empty_patches_;
   std::vector<std::uint8_t> moving(patches.size());
   ForEach(camera_.height, threads_, [&](int row) {
-    MarkMoving(world, row, &moving);
-    ShadeRow(world, row, &moving, &values, &patches, nullptr);
+    MarkMoving(world_of(row), row, &moving);
+    ShadeRow(world_of(row), row, &moving, &values, &patches, nullptr);
   });
   ForEach(camera_.height, threads_,
-          [&](int row) { RefineRow(world, row, &moving, patches, &values); });
-  Develop(world, values);
+          [&](int row) { RefineRow(world_of(row), row, &moving, patches, &values); });
+  Develop(world_of(camera_.height / 2), values);
 }
 
 void CameraRenderer::ShowEmpty(const World& empty) { Develop(empty, empty_); }

@@ -28,7 +28,10 @@ class CameraRenderer {
   void RenderEmpty(const World& empty);
   bool has_empty() const { return !empty_.empty(); }
   /// The image of `world`, which is the empty scene plus a board; RenderEmpty() comes first.
-  void Render(const World& world);
+  void Render(const World& world) { RenderBands({&world}); }
+  /// As a rolling shutter sees it: of so many bands of rows, as even as can be, each has a world of
+  /// its own, the scene with the board where it is then.
+  void RenderBands(const std::vector<const World*>& bands);
   /// Makes the empty scene the image.
   void ShowEmpty(const World& empty);
 
