@@ -20,7 +20,7 @@ namespace rgbdt::simulate {
 namespace {
 
 /// Rows that are taken to be exposed at once: the board moves by hundredths of a pixel in between.
-constexpr int kBandRows = 8;
+constexpr int kBandRows = 16;
 
 /// Where the board's sheet is met on a ray of the target's frame [m]; infinite: nowhere.
 double MeetSheet(const BoardOptions& board, const Eigen::Vector3d& origin,

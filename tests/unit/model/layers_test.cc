@@ -49,6 +49,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"calib/fuse", {"calib/camera"}},
       {"calib/map", {}},
       {"calib/odometry", {}},
+      {"calib/sync", {"calib/camera"}},
       {"calib/terrain", {}},
       {"calib/simulate", {}},  // its own ray tables, nothing from camera/
       {"calib/files", {}},
