@@ -15,7 +15,11 @@ PreparedImage Prepare(const CameraSpec& camera, const Image& image) {
 }
 
 FusionCamera::FusionCamera(const CameraSpec& spec)
-    : spec_(spec), given_(spec.lens), camera_(spec), readout_(FromSeconds(spec.readout_s)) {}
+    : spec_(spec),
+      given_(spec.lens),
+      given_rolling_s_(spec.rolling_s),
+      camera_(spec),
+      readout_(FromSeconds(spec.readout_s)) {}
 
 bool FusionCamera::Has(const CameraCalibration& calibration, Utime utime) const {
   const Rigid3& pose = calibration.camera_from_lidar;
@@ -23,7 +27,7 @@ bool FusionCamera::Has(const CameraCalibration& calibration, Utime utime) const 
          camera_from_lidar.translation == pose.translation &&
          camera_from_lidar.rotation.coeffs() == pose.rotation.coeffs() &&
          spec_.lens == (calibration.lens ? calibration.lens->lens : given_) &&
-         range_errors == calibration.range_errors;
+         range_errors == calibration.range_errors && timing_ == calibration.timing;
 }
 
 void FusionCamera::SetCalibration(const CameraCalibration& calibration, Utime utime) {
@@ -32,6 +36,9 @@ void FusionCamera::SetCalibration(const CameraCalibration& calibration, Utime ut
   calibration_utime = utime;
   range_errors = calibration.range_errors;
   spec_.lens = calibration.lens ? calibration.lens->lens : given_;
+  timing_ = calibration.timing;
+  offset_ = timing_ ? timing_->Offset() : 0;
+  spec_.rolling_s = timing_ ? timing_->rolling_s.value : given_rolling_s_;
   camera_ = Camera(spec_);
 }
 
@@ -58,12 +65,12 @@ Serving FusionCamera::ServingAt(Utime point_utime) const {
     return serving;
   }
   for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
-    const Utime from = image->utime + readout_;
+    const Utime from = TakenAt(*image) + readout_;
     if (from > point_utime) {
       serving.until = from;
       continue;
     }
-    const Utime end = image->utime + kMaxAge;
+    const Utime end = TakenAt(*image) + kMaxAge;
     if (point_utime <= end) {
       serving.image = &*image;
       serving.from = from;
@@ -77,7 +84,7 @@ Serving FusionCamera::ServingAt(Utime point_utime) const {
 }
 
 void FusionCamera::ForgetBefore(Utime utime) {
-  while (images_.size() > 1 && images_[1].utime + readout_ <= utime) images_.pop_front();
+  while (images_.size() > 1 && TakenAt(images_[1]) + readout_ <= utime) images_.pop_front();
 }
 
 }  // namespace rgbdt

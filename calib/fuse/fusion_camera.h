@@ -43,8 +43,11 @@ class FusionCamera {
   /// Keeps images in the order of their times, however they arrive; the oldest go first.
   void AddImage(PreparedImage image);
 
-  /// An image serves a point when it is the newest whose utime + readout_s is not after the point's
-  /// time, and not more than kMaxAge before it.
+  /// The LIDAR's time of an image's middle row: its utime and what the calibration's timing says.
+  Utime TakenAt(const PreparedImage& image) const { return image.utime + offset_; }
+
+  /// An image serves a point when it is the newest whose TakenAt + readout_s is not after the
+  /// point's time, and not more than kMaxAge before it.
   Serving ServingAt(Utime point_utime) const;
 
   /// All points are served by the newest image, whatever their times: for files, where a view's
@@ -71,6 +74,9 @@ class FusionCamera {
  private:
   CameraSpec spec_;
   Lens given_;  // by the rig
+  double given_rolling_s_ = 0;
+  std::optional<CameraTiming> timing_;
+  Utime offset_ = 0;
   Camera camera_;
   Utime readout_ = 0;
   bool all_times_ = false;

@@ -151,7 +151,7 @@ SweepFuser::Run SweepFuser::NextRun(const Hits& hits, std::size_t first,
          hits.utime[run.end] < serving.until) {
     ++run.end;
   }
-  const Utime utime = run.image != nullptr ? run.image->utime : hits.utime[first];
+  const Utime utime = run.image != nullptr ? state.camera.TakenAt(*run.image) : hits.utime[first];
   const auto camera_from_sweep = CameraFromSweep(state.camera, utime);
   if (camera_from_sweep) {
     run.camera_from_sweep = *camera_from_sweep;
@@ -164,10 +164,10 @@ SweepFuser::Run SweepFuser::NextRun(const Hits& hits, std::size_t first,
 PointProjector SweepFuser::ProjectorOf(const FusionCamera& camera, const Run& run) const {
   PointProjector projector(camera.camera(), run.camera_from_sweep);
   const double rolling_s = camera.spec().rolling_s;
-  if (!map_from_sweep_ || run.image == nullptr || rolling_s <= 0) return projector;
+  if (!map_from_sweep_ || run.image == nullptr || rolling_s == 0) return projector;
   const Utime half = FromSeconds(0.5 * rolling_s);
-  const auto first = CameraFromSweep(camera, run.image->utime - half);
-  const auto last = CameraFromSweep(camera, run.image->utime + half);
+  const auto first = CameraFromSweep(camera, camera.TakenAt(*run.image) - half);
+  const auto last = CameraFromSweep(camera, camera.TakenAt(*run.image) + half);
   if (first && last) {
     projector.SetMotion(Log(*last * first->Inverse()) / std::max(1, camera.spec().height - 1));
   }

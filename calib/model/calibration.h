@@ -33,6 +33,19 @@ struct SolvedLens {
   Eigen::Matrix<double, kLensNumbers, kPoseAndLens> covariance;
 };
 
+/// When a camera sees what its images say, against the LIDAR's clock (calib/sync).
+struct CameraTiming {
+  Estimate time_offset_s;  ///< the LIDAR's time of an image's middle row is its utime + this
+  Estimate rolling_s;      ///< as CameraSpec::rolling_s; below 0: the last row comes first
+
+  bool operator==(const CameraTiming& other) const {
+    return time_offset_s.value == other.time_offset_s.value &&
+           time_offset_s.sigma == other.time_offset_s.sigma &&
+           rolling_s.value == other.rolling_s.value && rolling_s.sigma == other.rolling_s.sigma;
+  }
+  Utime Offset() const { return FromSeconds(time_offset_s.value); }
+};
+
 /// Where one camera sits: point_in_camera = camera_from_lidar * point_in_lidar.
 struct CameraCalibration {
   std::string camera;
@@ -44,6 +57,8 @@ struct CameraCalibration {
   std::optional<SolvedLens> lens{};
   /// What the LIDAR is off by, which belongs to the pose. Absent: ranges were taken as they are.
   std::optional<RangeErrors> range_errors{};
+  /// Absent: its clock was not looked at, and images are taken for what their utime says.
+  std::optional<CameraTiming> timing{};
 
   /// Of pose and lens together; needs `covariance`.
   PoseAndLensCovariance PoseAndLens() const;

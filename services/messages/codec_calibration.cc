@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
 #include "services/messages/internal/fields.h"
@@ -96,6 +98,29 @@ RangeErrors FromWire(const range_errors_t& wire) {
 }
 
 template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, camera_timing_t>& wire,
+            StructOf<Copy, CameraTiming>& timing) {
+  copy(wire.time_offset_s, timing.time_offset_s.value);
+  copy(wire.time_offset_sigma_s, timing.time_offset_s.sigma);
+  copy(wire.rolling_s, timing.rolling_s.value);
+  copy(wire.rolling_sigma_s, timing.rolling_s.sigma);
+}
+
+camera_timing_t ToWire(const CameraTiming& timing) { return FieldsToWire<camera_timing_t>(timing); }
+
+void Check(const camera_timing_t& wire) {
+  // A minute is no offset of a clock, a second no read-out.
+  if (!(std::abs(wire.time_offset_s) <= 60)) {
+    Fail("timing.time_offset_s", wire.time_offset_s, "-60 to 60");
+  }
+  if (!(std::abs(wire.rolling_s) <= 1)) Fail("timing.rolling_s", wire.rolling_s, "-1 to 1");
+  CheckNotNegative("timing.time_offset_sigma_s", wire.time_offset_sigma_s);
+  CheckNotNegative("timing.rolling_sigma_s", wire.rolling_sigma_s);
+}
+
+CameraTiming FromWire(const camera_timing_t& wire) { return FieldsFromWire<CameraTiming>(wire); }
+
+template <typename Copy>
 void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
             StructOf<Copy, CalibrationMessage>& message) {
   auto& calibration = message.calibration;
@@ -110,6 +135,7 @@ void Fields(const Copy& copy, WireOf<Copy, calibration_t>& wire,
   copy.Optional(wire.has_covariance, wire.covariance, calibration.covariance);
   copy.Optional(wire.has_lens, wire.lens, calibration.lens);
   copy.Optional(wire.has_range_errors, wire.range_errors, calibration.range_errors);
+  copy.Optional(wire.has_timing, wire.timing, calibration.timing);
 }
 
 calibration_t ToWire(const CalibrationMessage& message) {
@@ -128,6 +154,7 @@ void Check(const calibration_t& wire) {
   if (wire.has_covariance != 0) CheckCovariance("covariance", wire.covariance[0], 6);
   if (wire.has_lens != 0) Check(wire.lens);
   if (wire.has_range_errors != 0) Check(wire.range_errors);
+  if (wire.has_timing != 0) Check(wire.timing);
 }
 
 CalibrationMessage FromWire(const calibration_t& wire) {

@@ -31,7 +31,12 @@ Messages MonitorNode::Handle(const Message& message) {
   if (const auto* chunk = std::get_if<CloudChunk>(&message)) return OnChunk(*chunk);
   if (const auto* image = std::get_if<Image>(&message)) {
     CheckImage(rig_->Camera(image->camera), *image);
-    shots_.Add(*image);
+    Image taken = *image;
+    const auto watch = watches_.find(image->camera);
+    if (watch != watches_.end() && watch->second.calibration()->timing) {
+      taken.utime += watch->second.calibration()->timing->Offset();
+    }
+    shots_.Add(taken);
   } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
     OnCalibration(*calibration);
   } else if (const auto* pose = std::get_if<StampedPose>(&message)) {

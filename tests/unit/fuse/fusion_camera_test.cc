@@ -39,6 +39,23 @@ TEST_F(ServingTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
   EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
 }
 
+TEST_F(ServingTest, ATimeOffsetMovesWhatAnImageServes) {
+  camera_.AddImage(At(1'000'000));
+  CameraCalibration calibration;
+  calibration.timing = CameraTiming{{0.2, 1e-4}, {-0.015, 1e-5}};
+  camera_.SetCalibration(calibration, 1);
+  EXPECT_EQ(ServedBy(camera_, 1'200'000 + kReadout - 1), -1);
+  EXPECT_EQ(ServedBy(camera_, 1'200'000 + kReadout), 1'000'000);
+  EXPECT_EQ(camera_.TakenAt(*camera_.ServingAt(1'300'000).image), 1'200'000);
+  EXPECT_EQ(camera_.spec().rolling_s, -0.015);
+  EXPECT_TRUE(camera_.Has(calibration, 1));
+  calibration.timing.reset();
+  EXPECT_FALSE(camera_.Has(calibration, 1));
+  camera_.SetCalibration(calibration, 1);
+  EXPECT_EQ(ServedBy(camera_, 1'000'000 + kReadout), 1'000'000);
+  EXPECT_EQ(camera_.spec().rolling_s, 0);
+}
+
 TEST_F(ServingTest, AnImageServesNoLongerThanItsMaximumAge) {
   camera_.AddImage(At(1'000'000));
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge), 1'000'000);

@@ -144,6 +144,19 @@ TEST_F(Invalid, CalibrationAndPose) {
   EXPECT_THAT(ErrorOf([&] { Encode(pose); }), HasSubstr("norm of quaternion_wxyz is 0"));
 }
 
+TEST_F(Invalid, Timing) {
+  CalibrationMessage message = random_.Calibrated();
+  message.calibration.timing = CameraTiming{{0.1, 1e-4}, {-0.02, 1e-5}};
+  const auto error = [&](auto change) {
+    return ErrorAfter<calibration_t>(message, [&](auto& w) { change(w.timing); });
+  };
+  EXPECT_THAT(error([](auto& w) { w.time_offset_s = NAN; }), HasSubstr("timing.time_offset_s is"));
+  EXPECT_THAT(error([](auto& w) { w.time_offset_s = 61; }), HasSubstr("time_offset_s is 61"));
+  EXPECT_THAT(error([](auto& w) { w.time_offset_sigma_s = -1; }), HasSubstr("sigma_s is -1"));
+  EXPECT_THAT(error([](auto& w) { w.rolling_s = -2; }), HasSubstr("timing.rolling_s is -2"));
+  EXPECT_THAT(error([](auto& w) { w.rolling_sigma_s = NAN; }), HasSubstr("rolling_sigma_s"));
+}
+
 TEST_F(Invalid, RangeErrors) {
   CalibrationMessage message = random_.Calibrated();
   RangeErrors errors;

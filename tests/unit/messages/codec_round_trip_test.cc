@@ -158,6 +158,7 @@ TEST_F(RoundTrip, Calibration) {
       EXPECT_EQ(a.calibration.lens->covariance, b.calibration.lens->covariance);
     }
     EXPECT_TRUE(a.calibration.range_errors == b.calibration.range_errors);
+    EXPECT_TRUE(a.calibration.timing == b.calibration.timing);
   }
 }
 

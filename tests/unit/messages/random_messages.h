@@ -272,6 +272,7 @@ class RandomMessages {
     if (Coin()) message.calibration.covariance = Covariance<6>();
     if (Coin()) message.calibration.lens = AnyLens();
     if (Coin()) message.calibration.range_errors = AnyRangeErrors();
+    if (Coin()) message.calibration.timing = CameraTiming{{-0.25, 1e-4}, {0.02, 3e-5}};
     return message;
   }
 

@@ -18,6 +18,7 @@ TEST(CalibrationFile, GivesBackEveryBit) {
   lens.lens = {Lens::Model::kFisheye, 500.1, 501.2, 320.3, 240.4, {0.1, -0.2, 0.3, -0.4}};
   for (int i = 0; i < lens.covariance.size(); ++i) lens.covariance(i / 15, i % 15) = std::sin(i);
   calibration.cameras[1].range_errors = test::MakeRangeErrors();
+  calibration.cameras[1].timing = CameraTiming{{-0.0123, 1e-4}, {0.021, 2e-5}};
   WriteCalibration(dir / "calibration.textproto", calibration);
   const Calibration back = ReadCalibration(dir / "calibration.textproto");
   EXPECT_EQ(back.method, calibration.method);
@@ -34,6 +35,7 @@ TEST(CalibrationFile, GivesBackEveryBit) {
     EXPECT_EQ(b.detail, a.detail);
     ASSERT_EQ(b.lens.has_value(), a.lens.has_value());
     EXPECT_TRUE(b.range_errors == a.range_errors);
+    EXPECT_TRUE(b.timing == a.timing);
   }
   EXPECT_FALSE(back.cameras[0].range_errors);
   EXPECT_EQ(back.cameras[1].lens->lens, lens.lens);
