@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   rgbdt::AddReplay(&line);
   rgbdt::AddIntrinsics(&line);
   rgbdt::AddScanner(&line);
+  rgbdt::AddSync(&line);
   rgbdt::AddMap(&line);
   rgbdt::AddTerrain(&line);
   rgbdt::AddExport(&line);

@@ -27,6 +27,7 @@ void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);
 void AddIntrinsics(CommandLine* program);
 void AddScanner(CommandLine* program);
+void AddSync(CommandLine* program);
 void AddMap(CommandLine* program);
 void AddTerrain(CommandLine* program);
 void AddExport(CommandLine* program);

@@ -60,7 +60,7 @@ const std::map<std::string, Folders>& Allowed() {
        {"calib/files", "calib/files/schema", "calib/files/points", "calib/files/session"}},
       {"calib/present/layout", {}},
       {"calib/present/pictures",
-       {"calib/camera", "calib/scan_assembly", "calib/solve", "calib/terrain"}},
+       {"calib/camera", "calib/scan_assembly", "calib/solve", "calib/sync", "calib/terrain"}},
       {"calib/present/report", {"calib/files"}},
       {"calib/present/frames",
        {"calib/camera", "calib/solve", "calib/fuse", "calib/files", "calib/present/layout",

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
+#include "calib/files/schema/calibration_file.h"
+#include "calib/present/pictures/sync_picture.h"
+#include "calib/sync/sync.h"
+#include "services/replay/waved_log.h"
+#include "services/rgbdt/print_report.h"
+#include "services/rgbdt/verbs.h"
+
+namespace rgbdt {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SyncFlags {
+  std::string log, calibration, out = "out/sync";
+  bool refine = false, find_poses = false;
+};
+
+void PrintCamera(const SyncedCamera& camera, const CameraSpec& spec) {
+  const char* name = camera.camera.c_str();
+  if (!camera.why_not.empty()) {
+    std::printf("%s: no offset: %s\n", name, camera.why_not.c_str());
+  } else {
+    const Estimate& offset = camera.time_offset_s;
+    std::printf(
+        "%s: time offset %+.3f +- %.3f ms (LIDAR's time = utime + offset), read-out %.3f +- "
+        "%.3f ms; %d images, corners to %.3f px\n",
+        name, 1e3 * offset.value, 1e3 * offset.sigma, 1e3 * camera.rolling_s.value,
+        1e3 * camera.rolling_s.sigma, camera.images, camera.corner_rms_px);
+    std::printf("  %s\n", OffsetInPixels(spec, offset.value).c_str());
+  }
+  for (const std::string& warning : camera.warnings) {
+    std::printf("  warning: %s\n", warning.c_str());
+  }
+}
+
+// What came out, in the calibration that it began from.
+Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool refine) {
+  Calibration calibration;
+  calibration.rig_hash = input.rig.hash;
+  calibration.method = "sync";
+  if (input.calibration) calibration = *input.calibration;
+  if (!calibration.sensors) calibration.sensors = SensorsOf(input.rig);
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    const SyncedCamera& synced = result.cameras[i];
+    if (!synced.why_not.empty()) continue;
+    const WavedCamera& began = input.board.cameras[i];
+    for (const WavedImage& image : began.images) {
+      calibration.utime = std::max(calibration.utime, image.utime);
+    }
+    CameraCalibration* own = nullptr;
+    for (CameraCalibration& camera : calibration.cameras) {
+      if (camera.camera == synced.camera) own = &camera;
+    }
+    if (own == nullptr) {
+      calibration.cameras.emplace_back().camera = synced.camera;
+      own = &calibration.cameras.back();
+    }
+    if (refine || !began.camera_from_lidar) {
+      own->camera_from_lidar = synced.camera_from_lidar;
+      own->covariance = synced.covariance;
+      own->status = SolveStatus::kConverged;
+      own->detail = "by a waved board";
+      // What went with the pose that it was.
+      if (!began.camera_from_lidar) own->lens.reset();
+      own->range_errors.reset();
+      if (result.range_offset_m) {
+        own->range_errors.emplace();
+        own->range_errors->offset_m = {-result.range_offset_m->value, result.range_offset_m->sigma};
+      }
+    }
+    own->timing = CameraTiming{synced.time_offset_s, synced.rolling_s};
+  }
+  return calibration;
+}
+
+int RunSync(const SyncFlags& flags) {
+  std::optional<Calibration> calibration;
+  if (!flags.calibration.empty()) calibration = ReadCalibration(flags.calibration);
+  WavedLogOptions options;
+  options.find_poses = flags.find_poses;
+  int percent = 0;
+  const WavedLog input = ReadWavedLog(flags.log, calibration, options, [&](double share) {
+    const int now = static_cast<int>(100 * share);
+    if (now / 10 != percent / 10) PrintProgress("reading the log: " + std::to_string(now) + "%");
+    percent = now;
+  });
+  PrintUnreadable(input.problems, "not used");
+  PrintProgress("solving ...");
+  const SyncResult result = Synchronise(input.board);
+  bool all = true;
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    PrintCamera(result.cameras[i], input.board.cameras[i].spec);
+    all &= result.cameras[i].why_not.empty();
+  }
+  const Calibration found = WithTimings(input, result, flags.refine);
+  if (std::none_of(result.cameras.begin(), result.cameras.end(),
+                   [](const SyncedCamera& camera) { return camera.why_not.empty(); })) {
+    std::printf("nothing was written\n");
+    return EndsWith(false);
+  }
+  std::printf(
+      "%d sweeps in %.1f s; the board moved by %.2f m/s and %.2f rad/s (RMS), its points "
+      "are %.1f mm off it\n",
+      result.sweeps, result.seconds, result.speed, result.turn_speed, 1e3 * result.plane_rms_m);
+  const fs::path out = flags.out;
+  WriteFileAtomically(out / "rig.textproto", input.rig.text);
+  WriteCalibration(out / "calibration.textproto", found);
+  const cv::Mat picture = SyncPicture(result);
+  if (!picture.empty()) WritePng(out / "sync.png", picture);
+  std::printf(
+      "wrote calibration.textproto (with `timing`), rig.textproto%s into %s\n"
+      "next: rgbdt-monitor %s, which sends both; the fuser takes offset and read-out from "
+      "there\n",
+      picture.empty() ? "" : ", sync.png (the offsets over time)", out.c_str(), out.c_str());
+  return EndsWith(all);
+}
+
+}  // namespace
+
+void AddSync(CommandLine* program) {
+  auto flags = std::make_shared<SyncFlags>();
+  CommandLine* verb = program->Verb(
+      "sync",
+      "When does each camera see what its images say? From a log (RIG, CLOUD of a spinning LIDAR\n"
+      "with the points' times, images) in which a person waves the board for some twenty seconds\n"
+      "before the sensors, towards them and away, tilting it: each camera's time offset against\n"
+      "the LIDAR (within 1 s, no guess), the read-out time of its shutter, and its pose, with "
+      "sigma.\n"
+      "Clocks that drift or jump, and frames that are repeated, are named.\n"
+      "Example: rgbdt sync wave.lcmlog --calibration out/session/calibration.textproto",
+      [flags] { return RunSync(*flags); });
+  verb->Ends(ExitCode::kFailed, "failed, or a camera does not tell its offset");
+  verb->Required("LOG", &flags->log, "log written by lcm-logger");
+  verb->Option("--calibration", &flags->calibration,
+               "where the cameras sit; without it the log's CALIBRATION says, or the sweeps do");
+  verb->Flag("--refine", &flags->refine,
+             "write the pose that came out, too; else a pose that was known stays");
+  verb->Flag("--find-poses", &flags->find_poses,
+             "find the poses from the waved board alone, whatever a calibration says");
+  verb->Option("--out", &flags->out, "the folder to write calibration, rig and picture into");
+}
+
+}  // namespace rgbdt
