@@ -20,7 +20,8 @@ METHOD_COLOURS = {
 FOUR_SIGMA = 28.9
 # Columns; all others are numbers, and what is not to be had is empty.
 TEXT = {"axis", "camera", "case", "first", "grade", "how", "judged", "method", "mistake", "mode",
-        "place", "reason", "scene", "second", "sensor", "session", "start", "status", "view"}
+        "place", "reason", "scene", "second", "sensor", "session", "start", "status", "view",
+        "why_not"}
 
 
 def read(parts, *prefixes):
