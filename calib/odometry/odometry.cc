@@ -165,7 +165,7 @@ void Odometry::Impl::Grow(const TimedSweep& sweep) {
   }
   // A full map keeps what is near: one that grows no more would lose the way.
   for (double keep = options.keep_m; map.size() >= options.max_voxels && keep > kLeastKept;) {
-    keep /= 2;
+    keep = std::max(kLeastKept, keep / 2);
     map.Forget(place, keep);
   }
   map.Add(odometry::InWorld(sweep, moved), place);

@@ -75,7 +75,7 @@ void Check(const range_errors_t& wire) {
     const double log2 = wire.log2_intensity[i];
     const bool follows = i == 0 || log2 == wire.log2_intensity[i - 1] + 1;
     if (!(log2 >= kLeastLog2Intensity && log2 <= 0 && follows)) {
-      Fail(At("range_errors.log2_intensity", i), log2, "-8 to 0, each one more than the last");
+      Fail(At("range_errors.log2_intensity", i), log2, "-16 to 0, each one more than the last");
     }
     CheckFinite(At("range_errors.intensity_offset_m", i), wire.intensity_offset_m[i]);
     CheckNotNegative(At("range_errors.intensity_offset_sigma_m", i),

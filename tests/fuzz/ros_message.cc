@@ -8,12 +8,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                 BagData::kCloud, BagData::kOther};
   fuzz::Input input(data, size);
   const BagData kind = kKinds[input.Byte() % 5];
-  const BagEncoding encoding = input.Byte() % 2 == 0 ? BagEncoding::kRos1 : BagEncoding::kCdr;
+  BagTopic topic;
+  switch (const int layout = input.Byte(); layout) {
+    case 2:
+      topic.encoding = BagEncoding::kProtobuf;
+      topic.type = kind == BagData::kImage             ? "foxglove.RawImage"
+                   : kind == BagData::kCompressedImage ? "foxglove.CompressedImage"
+                                                       : "foxglove.PointCloud";
+      break;
+    default:
+      topic.encoding = layout % 2 == 0 ? BagEncoding::kRos1 : BagEncoding::kCdr;
+  }
   const std::string bytes = input.Rest();
   BagMessage message;
   message.data = fuzz::Data(bytes);
   message.size = bytes.size();
-  fuzz::Try([&] { ros::DecodeHeader(message, encoding); });
-  fuzz::Try([&] { fuzz::Convert(message, kind, encoding); });
+  fuzz::Try([&] { ros::DecodeHeader(message, topic); });
+  fuzz::Try([&] { fuzz::Convert(message, kind, topic.encoding); });
   return 0;
 }

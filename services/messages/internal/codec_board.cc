@@ -90,7 +90,7 @@ point_group_t ToWire(const PointGroup& group) { return FieldsToWire<point_group_
 void Check(const point_group_t& wire) {
   CheckRange("ring", wire.ring, -1, kMostLasers - 1);
   if (!(wire.log2_intensity >= kLeastLog2Intensity && wire.log2_intensity <= 0)) {
-    Fail("log2_intensity", wire.log2_intensity, "-8 to 0");
+    Fail("log2_intensity", wire.log2_intensity, "-16 to 0");
   }
   CheckCovariance("scatter", wire.scatter[0], 4);
 }

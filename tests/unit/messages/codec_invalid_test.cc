@@ -190,15 +190,15 @@ TEST_F(Invalid, RangeErrors) {
   EXPECT_THAT(error([](auto& w) { w.log2_intensity[0] = NAN; }),
               HasSubstr("range_errors.log2_intensity[0] is nan"));
   EXPECT_THAT(error([](auto& w) {
-                w.log2_intensity = {-9, -8, -7};
+                w.log2_intensity = {-17, -16, -15};
               }),
-              HasSubstr("range_errors.log2_intensity[0] is -9; expected -8 to 0"));
+              HasSubstr("range_errors.log2_intensity[0] is -17; expected -16 to 0"));
   EXPECT_THAT(error([](auto& w) {
                 w.log2_intensity = {-1, 0, 1};
               }),
               HasSubstr("range_errors.log2_intensity[2] is 1"));
   EXPECT_THAT(error([](auto& w) { w.log2_intensity[1] = -1.5; }),
-              HasSubstr("range_errors.log2_intensity[1] is -1.5; expected -8 to 0, each one more"));
+              HasSubstr("range_errors.log2_intensity[1] is -1.5; expected -16 to 0, each one more"));
   // What is not there is not read.
   EXPECT_EQ(ErrorAfter<calibration_t>(
                 message, [](auto& w) { w.has_range_errors = 0, w.range_errors.offset_m = NAN; }),

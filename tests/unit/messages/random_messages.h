@@ -202,7 +202,7 @@ class RandomMessages {
     }
     return scatter;
   }
-  PointGroup Group() { return {Int(-1, 127), Number(-8, 0), Scatter()}; }
+  PointGroup Group() { return {Int(-1, 127), Number(-16, 0), Scatter()}; }
   ImageEdges Edges() {
     ImageEdges image;
     image.width = Int(100, 20000);
@@ -253,7 +253,7 @@ class RandomMessages {
     for (int ring = Int(0, 200); ring <= 255; ring += Int(1, 50)) {
       errors.rings.push_back({ring, estimate()});
     }
-    for (double log2 = Number(-8, 1); log2 <= 0; ++log2) {
+    for (double log2 = Number(-16, 1); log2 <= 0; ++log2) {
       errors.intensities.push_back({log2, estimate()});
     }
     return errors;

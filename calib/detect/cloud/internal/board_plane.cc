@@ -51,9 +51,10 @@ double Sum(const std::vector<double>& values) {
 }
 
 // One-way analysis of variance of distances from the plane, rows against points; a bias of rows
-// only where chance hardly makes one.
+// only where chance hardly makes one. `alike`: by how much noise that neighbours share makes the
+// mean of a row scatter more than that of independent points.
 RowNoise NoiseOf(const std::vector<int>& rows, const std::vector<double>& off,
-                 const std::vector<double>& weight, double least) {
+                 const std::vector<double>& weight, double alike, double least) {
   double within = 0;
   double between = 0;
   double count = 0;
@@ -73,12 +74,13 @@ RowNoise NoiseOf(const std::vector<int>& rows, const std::vector<double>& off,
     first = i;
   }
   const auto n = static_cast<double>(rows.size());
-  const double all = std::sqrt((within + between) / n);
-  if (count < 4 || n - count < 10) return {std::max(all, least), 0};
-  const double within_mean = std::max(within / (n - count), least * least);
+  const RowNoise independent{std::sqrt(alike) * std::max(std::sqrt((within + between) / n), least),
+                             0};
+  if (count < 4 || n - count < 10) return independent;
+  const double within_mean = alike * std::max(within / (n - count), least * least);
   const double between_mean = between / (count - 2);  // the plane took two of the rows' freedoms
   const double chance = 1 + 4 * std::sqrt(2 / (count - 2));
-  if (between_mean < chance * within_mean) return {std::max(all, least), 0};
+  if (between_mean < chance * within_mean) return independent;
   return {std::sqrt(within_mean), std::sqrt((between_mean - within_mean) * count / n)};
 }
 
@@ -201,8 +203,7 @@ BoardPlane::BoardPlane(const Plane& near, const PlaneFrame& frame, const BoardPo
   weight_ = WeightsOf(classes, off, least_sigma_m);
   alike_ = AlikeOf(rows, off, weight_);
   if (classes.size() > 1) plane_ = FitAlongRays();
-  noise_ = NoiseOf(points_.row, OffPlane(), weight_, least_sigma_m);
-  noise_.within_m *= std::sqrt(alike_);
+  noise_ = NoiseOf(points_.row, OffPlane(), weight_, alike_, least_sigma_m);
   if (noise_.between_m > 0) plane_ = FitAlongRays();
 }
 

@@ -196,7 +196,7 @@ RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place) 
     if (!(log2 >= kLeastLog2Intensity && log2 <= 0) ||
         (i > 0 && log2 != out.intensities.back().log2_intensity + 1)) {
       at.Fail("log2_intensity",
-              "is " + std::to_string(log2) + "; expected -8 to 0, each one more than the last");
+              "is " + std::to_string(log2) + "; expected -16 to 0, each one more than the last");
     }
     out.intensities.push_back({log2, estimate(errors.intensity(i).offset_m(), at.In("offset_m"))});
   }

@@ -109,8 +109,8 @@ TEST(CalibrationFile, RangeErrorsThatMakeNoSenseAreRefused) {
               HasSubstr("camera.range_errors.ring.ring is -1; expected numbers from 0"));
   EXPECT_THAT(error([](Errors e) { e->rings[2].ring = 256; }), HasSubstr("ring.ring is 256"));
   EXPECT_THAT(error([](Errors e) { e->rings[1].ring = 0; }), HasSubstr("ring.ring is 0"));
-  EXPECT_THAT(error([](Errors e) { e->intensities[0].log2_intensity = -8.5; }),
-              HasSubstr("camera.range_errors.intensity.log2_intensity is -8.5"));
+  EXPECT_THAT(error([](Errors e) { e->intensities[0].log2_intensity = -16.5; }),
+              HasSubstr("camera.range_errors.intensity.log2_intensity is -16.5"));
   EXPECT_THAT(error([](Errors e) {
                 e->intensities = {{0.5, {}}};
               }),
