@@ -13,8 +13,8 @@ namespace rgbdt {
 
 /// How a topic's messages are laid out.
 enum class BagEncoding {
-  kRos1,   ///< ROS 1: packed, little-endian
-  kCdr,    ///< ROS 2: CDR, behind four bytes that name its kind
+  kRos1,  ///< ROS 1: packed, little-endian
+  kCdr,   ///< ROS 2: CDR, behind four bytes that name its kind
   kProtobuf,
   kOther,  ///< listed, not read
 };
