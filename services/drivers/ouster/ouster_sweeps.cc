@@ -38,17 +38,21 @@ bool OusterSweeps::IsLate(int frame) const {
   return behind > 0 && behind <= kMostLate;
 }
 
-// A packet arrives once its last column was measured.
+// A packet arrives once its last column was measured. What PTP is ahead of UTC is kept, so that a
+// packet that comes late has the times of those before it.
 void OusterSweeps::FollowClock(const ouster::Packet& packet, Utime arrival) {
   const auto last = std::find_if(packet.columns.rbegin(), packet.columns.rend(),
                                  [](const ouster::Column& column) { return column.valid; });
-  if (last != packet.columns.rend() && last->time_ns < kSince1970_ns) {
+  if (last == packet.columns.rend()) return;
+  if (last->time_ns < kSince1970_ns) {
     fit_.Add(last->time_ns, arrival);
+  } else if (const auto utc = PtpToUtc(last->time_ns / 1000, arrival)) {
+    ahead_ = last->time_ns / 1000 - *utc;
   }
 }
 
 Utime OusterSweeps::TimeOf(std::int64_t time_ns) const {
-  if (time_ns >= kSince1970_ns) return time_ns / 1000;
+  if (time_ns >= kSince1970_ns) return time_ns / 1000 - ahead_;
   return fit_.ToHost(static_cast<double>(time_ns)).value_or(time_ns / 1000);
 }
 

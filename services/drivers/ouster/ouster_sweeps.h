@@ -17,8 +17,9 @@ namespace rgbdt {
 /// columns that never came not even that is known, but their places stay. Of two returns of a
 /// beam the first one, which the sensor calls the stronger, counts, or else the second.
 ///
-/// Times: a clock that counts from 1970 (PTP, GPS) is taken as it is; another is laid on the host's
-/// by when its packets arrive (ClockFit).
+/// Times: a clock that counts from 1970 (PTP, GPS) is taken as it is, less the whole seconds that
+/// PTP is ahead of UTC (PtpToUtc); another is laid on the host's by when its packets arrive
+/// (ClockFit).
 class OusterSweeps {
  public:
   explicit OusterSweeps(ouster::Metadata metadata);
@@ -45,6 +46,7 @@ class OusterSweeps {
   std::vector<ouster::Beam> beams_;  // row by row
   std::vector<Eigen::Vector3f> origins_;
   ClockFit fit_{ClockFitOptions{1e-3}};
+  Utime ahead_ = 0;  // whole seconds that the sensor's clock is ahead of UTC
   std::optional<int> frame_;
   bool first_ = true;         // the turn under way is the first
   std::vector<bool> came_;    // by column
