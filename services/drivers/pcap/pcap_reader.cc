@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "calib/model/errors.h"
 
@@ -65,6 +66,7 @@ bool IsKnownLink(int link) {
 
 constexpr std::size_t kMostFragmented = 32;  // packets at once
 constexpr std::size_t kMostFragments = 1000;
+constexpr Utime kMostApart = kMicrosecondsPerSecond;  // later, a number may be another packet's
 constexpr int kMore = 0x2000, kOffset = 0x1fff;
 
 // Of an IPv4 packet that carries UDP, its header's length; 0: something else.
@@ -110,6 +112,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     if (got == PCAP_ERROR_BREAK) return std::nullopt;
     if (got < 0) throw InputError(path_ + ": is damaged or cut short: " + pcap_geterr(pcap_));
     if (got == 0) continue;
+    const Utime utime = Utime{header->ts.tv_sec} * kMicrosecondsPerSecond + header->ts.tv_usec;
     Bytes bytes{data, header->caplen};
     if (!SkipLink(link, &bytes)) continue;
     const std::size_t ip = IpHeader(bytes);
@@ -119,7 +122,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
       // What follows the packet pads the Ethernet frame.
       const auto whole = static_cast<std::size_t>(Word(bytes.data + 2));
       if (whole < ip || whole > bytes.size) continue;
-      joined = Join(bytes.data, bytes.data + ip, whole - ip);
+      joined = Join(utime, bytes.data, bytes.data + ip, whole - ip);
       if (!joined) continue;
       bytes = {joined->data(), joined->size()};
     } else {
@@ -127,7 +130,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     }
     if (bytes.size < 8) continue;
     Datagram datagram;
-    datagram.utime = Utime{header->ts.tv_sec} * kMicrosecondsPerSecond + header->ts.tv_usec;
+    datagram.utime = utime;
     datagram.port = Word(bytes.data + 2);
     const auto length = static_cast<std::size_t>(std::max(8, Word(bytes.data + 4)));
     datagram.cut = bytes.size < length;
@@ -138,9 +141,14 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
 }
 
 // The whole packet's bytes once its last fragment has come.
-std::optional<std::vector<std::uint8_t>> PcapReader::Join(const std::uint8_t* header,
+std::optional<std::vector<std::uint8_t>> PcapReader::Join(Utime utime,
+                                                          const std::uint8_t* header,
                                                           const std::uint8_t* data,
                                                           std::size_t size) {
+  fragments_.erase(
+      std::remove_if(fragments_.begin(), fragments_.end(),
+                     [&](const Fragments& f) { return std::abs(utime - f.utime) > kMostApart; }),
+      fragments_.end());
   std::vector<std::uint8_t> key(header + 12, header + 20);  // addresses
   key.insert(key.end(), header + 4, header + 6);            // number
   const int place = Word(header + 6);
@@ -149,7 +157,7 @@ std::optional<std::vector<std::uint8_t>> PcapReader::Join(const std::uint8_t* he
                             [&](const Fragments& f) { return f.key == key; });
   if (found == fragments_.end()) {
     if (fragments_.size() == kMostFragmented) fragments_.pop_front();
-    found = fragments_.insert(fragments_.end(), {key, {}, {}, 0});
+    found = fragments_.insert(fragments_.end(), {key, {}, {}, 0, utime});
   }
   if ((place & kMore) == 0) found->size = end;
   found->bytes.resize(std::max(found->bytes.size(), end));  // 128 KiB at most, by its place
@@ -169,6 +177,7 @@ std::optional<std::vector<std::uint8_t>> PcapReader::Join(const std::uint8_t* he
     return std::nullopt;
   }
   fragments_.erase(found);
+  bytes.resize(reach);  // one that lies may have been sent from beyond the end
   return whole ? std::optional(std::move(bytes)) : std::nullopt;
 }
 

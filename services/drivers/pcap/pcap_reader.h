@@ -41,8 +41,9 @@ class PcapReader {
     std::vector<std::uint8_t> bytes;
     std::vector<std::pair<std::size_t, std::size_t>> have;  // begin, end
     std::size_t size = 0;                                   // of the whole; 0: not known
+    Utime utime = 0;                                        // of the first to come
   };
-  std::optional<std::vector<std::uint8_t>> Join(const std::uint8_t* header,
+  std::optional<std::vector<std::uint8_t>> Join(Utime utime, const std::uint8_t* header,
                                                 const std::uint8_t* data, std::size_t size);
 
   std::string path_;

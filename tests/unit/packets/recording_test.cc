@@ -296,7 +296,7 @@ class Fragmented : public Recordings {
   void AddFragment(const std::string& datagram, int number, std::size_t from, std::size_t to) {
     const bool more = to < datagram.size();
     const std::size_t size = 20 + to - from, place = from / 8 | (more ? 0x2000 : 0);
-    Add32(1'700'000'000);
+    Add32(second_);
     Add32(static_cast<std::uint32_t>(frames_++));
     Add32(static_cast<std::uint32_t>(size));
     Add32(static_cast<std::uint32_t>(size));
@@ -328,6 +328,7 @@ class Fragmented : public Recordings {
   }
 
   std::string bytes_;
+  std::uint32_t second_ = 1'700'000'000;
   int frames_ = 0;
 };
 
@@ -352,6 +353,31 @@ TEST_F(Fragmented, WhatNeverEndsIsForgotten) {
   AddFragment(large, 0, 0, 1480);  // forgotten: of this only the first piece is known now
   AddFragment(large, 1999, 2960, large.size());
   EXPECT_THAT(Payloads(), SizeIs(1));
+}
+
+TEST_F(Fragmented, ANumberUsedAnewIsAnotherPacket) {
+  const std::string old = Udp(std::string(3000, 'o')), fresh = Udp(std::string(3000, 'n'));
+  AddFragment(old, 1, 0, 1480);
+  AddFragment(old, 1, 2960, old.size());  // what is between was lost
+  second_ += 3;
+  AddFragment(fresh, 1, 1480, 2960);
+  AddFragment(fresh, 1, 2960, fresh.size());
+  AddFragment(fresh, 1, 0, 1480);
+  EXPECT_THAT(Payloads(), ElementsAre(std::string(3000, 'n')));
+}
+
+TEST_F(Fragmented, WhatLiesBeyondTheEndIsNoPartOfIt) {
+  std::string datagram = Udp(std::string(3000, 'x'));
+  datagram[4] = 20;  // says that it has 5 kB
+  AddFragment(datagram, 1, 0, 1480);
+  AddFragment(std::string(9000, 'y'), 1, 4000, 5000);
+  AddFragment(datagram, 1, 1480, datagram.size());
+  WriteFileAtomically(dir_ / "f.pcap", bytes_);
+  PcapReader reader((dir_ / "f.pcap").string());
+  const auto joined = reader.Next();
+  ASSERT_TRUE(joined);
+  EXPECT_TRUE(joined->cut);
+  EXPECT_EQ(std::string(joined->payload.begin(), joined->payload.end()), std::string(3000, 'x'));
 }
 
 TEST_F(Fragmented, APipeIsNotWaitedFor) {
