@@ -44,7 +44,17 @@ class Hesai : public PacketSweeps {
     return sweeps_.Add(hesai::Decode(sweeps_.sensor(), payload.data(), payload.size()), arrival);
   }
   std::optional<Cloud> Finish() override { return std::nullopt; }
-  std::string Lost() const override { return ""; }  // most of these packets have no numbers
+  std::string Lost() const override {
+    const std::int64_t lost = sweeps_.lost_columns(), left_out = sweeps_.left_out();
+    std::string text;
+    if (lost > 0) text = std::to_string(lost) + " columns never came";
+    if (left_out > 0) {
+      text +=
+          (text.empty() ? "" : "; ") +
+          ("revolutions left out, as half a turn or more never came: " + std::to_string(left_out));
+    }
+    return text;
+  }
 
  private:
   HesaiSweeps sweeps_;

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace rgbdt {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostColumns = 20'000;  // a head that hardly turns
+constexpr double kMostPassed_us = 5e5;        // from packet to packet
 
 // From the back on, 0 to a full turn.
 double FromSeam(double azimuth_rad) { return std::fmod(azimuth_rad + 3 * M_PI, 2 * M_PI); }
@@ -32,9 +34,38 @@ HesaiSweeps::HesaiSweeps(hesai::Angles angles)
   for (std::size_t i = 0; i < order.size(); ++i) ring_[order[i]] = i;
 }
 
+// Of the revolution under way; the next one begins at the seam.
+void HesaiSweeps::Leave() {
+  left_out_ += whole_ ? 1 : 0;
+  columns_.clear();
+  whole_ = false;
+  last_from_seam_ = -1;
+}
+
+// What never came between the packet before and this one. Azimuths tell it within a turn, whatever
+// the clock; of longer gaps only the time does.
+void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
+  const double passed_us = utime - std::exchange(last_utime_, utime);
+  if (last_from_seam_ < 0 || packet.columns.size() < 2) return;
+  const hesai::Column &first = packet.columns.front(), &last = packet.columns.back();
+  const auto steps = static_cast<double>(packet.columns.size() - 1);
+  const double from_seam = FromSeam(first.azimuth_rad);
+  const double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) / steps;
+  const double column_us = (last.time_us - first.time_us) / steps;
+  if (step <= 0) return;  // the head stands
+  const double half_turn_us = M_PI / step * column_us;
+  const double gap = std::remainder(from_seam - last_from_seam_, 2 * M_PI);
+  if (passed_us < 0 || passed_us > std::min(half_turn_us, kMostPassed_us) || gap < -step) {
+    Leave();
+  } else if (whole_ && gap > 1.5 * step) {
+    lost_columns_ += std::llround(gap / step) - 1;
+  }
+}
+
 std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) {
   std::vector<Cloud> done;
   const auto utime = static_cast<double>(packet.utime.value_or(arrival));
+  CountLost(packet, utime);
   for (const hesai::Column& column : packet.columns) {
     Fired fired{column.azimuth_rad, utime + column.time_us, column.returns};
     for (std::size_t i = 0; i < column.second_returns.size(); ++i) {

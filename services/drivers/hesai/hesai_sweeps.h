@@ -13,7 +13,8 @@ namespace rgbdt {
 /// at azimuth 0, y left, z up (the manuals have y forward and x right). A beam that returned
 /// nothing is NaN and keeps its direction. Rings whose channels look aside are shifted by whole
 /// columns. Of two returns of a beam the one of the higher reflectivity counts. Columns of lost
-/// packets are left out: their neighbours stand side by side.
+/// packets are left out: their neighbours stand side by side, and how many are missing is counted.
+/// A revolution in which half a turn or more is missing, or whose clock jumps, is left out.
 ///
 /// Times: the packets' own date and time; where the sensor's clock was never set, their arrival.
 class HesaiSweeps {
@@ -26,6 +27,9 @@ class HesaiSweeps {
   std::vector<Cloud> Add(const hesai::Packet& packet, Utime arrival);
 
   const hesai::Sensor& sensor() const { return sensor_; }
+  /// Columns that never came, by the azimuths of those about them; but for `left_out`.
+  std::int64_t lost_columns() const { return lost_columns_; }
+  std::int64_t left_out() const { return left_out_; }  ///< revolutions
 
  private:
   struct Fired {
@@ -33,13 +37,17 @@ class HesaiSweeps {
     double utime = 0;
     std::vector<hesai::Return> returns;
   };
+  void CountLost(const hesai::Packet& packet, double utime);
+  void Leave();
   Cloud Revolution() const;
 
   hesai::Angles angles_;
   const hesai::Sensor& sensor_;
   std::vector<std::size_t> ring_;  // by channel
   std::vector<Fired> columns_;
-  double last_from_seam_ = -1;
+  double last_from_seam_ = -1;  // of the column before; -1: there is none
+  double last_utime_ = 0;       // of its packet
+  std::int64_t lost_columns_ = 0, left_out_ = 0;
   bool whole_ = false;  // `columns_` begin at the seam
 };
 

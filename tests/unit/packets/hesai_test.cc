@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/packets/packet_sweeps.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 
@@ -77,6 +78,23 @@ struct Encoder {
   }
 };
 
+// Three turns and a half from the front on, of which some packets are lost.
+struct Driven {
+  explicit Driven(const Encoder& encoder, int first_lost = 0, int end_lost = 0) {
+    sweeps = HesaiPackets(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
+    const int blocks = encoder.blocks();
+    for (int i = 0; i * blocks < 360 * 7 / 2 + blocks; ++i) {
+      if (i >= first_lost && i < end_lost) continue;
+      const int us = 50 * blocks * i;
+      for (Cloud& cloud : sweeps->Add(encoder.Packet(100 * blocks * i % 36000, us), kSecond + us)) {
+        done.push_back(std::move(cloud));
+      }
+    }
+  }
+  std::unique_ptr<PacketSweeps> sweeps;
+  std::vector<Cloud> done;
+};
+
 std::vector<Cloud> Turns(const Encoder& encoder, Utime arrival = 0) {
   HesaiSweeps sweeps(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
   std::vector<Cloud> done;
@@ -129,6 +147,40 @@ TEST(HesaiSweeps, TimesAreTheSensorsUnlessItsClockWasNeverSet) {
   EXPECT_NEAR(static_cast<double>(sweep.utime[0]), sweep.sweep_utime + 0.368 + 15 * 3.024, 1);
   encoder.has_date = false;
   EXPECT_NEAR(static_cast<double>(Turns(encoder, 77'000'000).at(0).sweep_utime), 77'000'000, 200);
+}
+
+// Packets have 8 columns of a degree: a turn has 45, the seams are in packets 22, 67, 112 and 157.
+TEST(HesaiSweeps, WhatNeverCameIsCounted) {
+  for (const bool has_date : {true, false}) {
+    Encoder encoder;
+    encoder.has_date = has_date;
+    const Driven all(encoder);
+    EXPECT_THAT(all.done, SizeIs(3));
+    EXPECT_EQ(all.sweeps->Lost(), "");
+
+    const Driven some(encoder, 80, 82);
+    ASSERT_THAT(some.done, SizeIs(3));
+    EXPECT_EQ(some.done[1].beams, 360 - 16);
+    EXPECT_EQ(some.sweeps->Lost(), "16 columns never came");
+
+    const Driven seam(encoder, 67, 68);
+    ASSERT_THAT(seam.done, SizeIs(3));
+    EXPECT_EQ(seam.sweeps->Lost(), "8 columns never came");
+  }
+}
+
+TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
+  for (const bool has_date : {true, false}) {
+    for (const int lost : {25, 40, 45, 50}) {  // a turn: the azimuths go on as if nothing was
+      Encoder encoder;
+      encoder.has_date = has_date;
+      const Driven driven(encoder, 80, 80 + lost);
+      ASSERT_FALSE(driven.done.empty());
+      for (const Cloud& cloud : driven.done) EXPECT_EQ(cloud.beams, 360) << lost;
+      EXPECT_EQ(driven.sweeps->Lost(),
+                "revolutions left out, as half a turn or more never came: 1");
+    }
+  }
 }
 
 TEST(HesaiPackets, DamagedOnesAreDecodedOrRefused) {
