@@ -45,34 +45,40 @@ std::unique_ptr<PacketSweeps> SweepsOf(const fs::path& metadata) {
   }
 }
 
-// Who sent these packets, and where most of them went.
+// Which LIDAR sent these packets; of several, which sent most.
 class Finder {
+  static constexpr std::size_t kMostSenders = 65'536;  // looked at
+
  public:
   explicit Finder(const RecordingOptions& options) : wanted_(options.port) {
     if (!options.metadata.empty()) known_ = SweepsOf(options.metadata);
   }
 
   void Look(const PcapReader::Datagram& datagram) {
-    ++all_[datagram.port];
+    const Sender sender{datagram.port, datagram.from};
+    if (all_.size() >= kMostSenders && all_.count(sender) == 0) return;
+    ++all_[sender];
     if (datagram.cut || (wanted_ != 0 && datagram.port != wanted_)) return;
     if (known_) {
-      if (known_->IsOurs(datagram.payload)) ++ours_[datagram.port];
+      if (known_->IsOurs(datagram.payload)) ++ours_[sender];
       return;
     }
-    std::unique_ptr<PacketSweeps>& seen = velodyne_[datagram.port];
+    std::unique_ptr<PacketSweeps>& seen = velodyne_[sender];
     if (!seen) seen = VelodynePackets(datagram.payload);
-    if (seen && seen->IsOurs(datagram.payload)) ++ours_[datagram.port];
+    if (seen && seen->IsOurs(datagram.payload)) ++ours_[sender];
   }
 
   // Throws InputError where there is none.
-  std::unique_ptr<PacketSweeps> Found(const fs::path& path, int* port) {
+  std::unique_ptr<PacketSweeps> Found(const fs::path& path, Sender* sender) {
     const auto most =
         std::max_element(ours_.begin(), ours_.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
     if (most == ours_.end()) {
       std::string ports;
       constexpr std::size_t kMost = 8;
-      for (const auto& [other, count] : all_) {
+      std::map<int, std::int64_t> by_port;
+      for (const auto& [other, count] : all_) by_port[other.port] += count;
+      for (const auto& [other, count] : by_port) {
         if (ports.size() > 16 * kMost) break;
         ports += Format(" %d (%lld)", other, static_cast<long long>(count));
       }
@@ -83,16 +89,16 @@ class Finder {
                        (wanted_ == 0 ? "" : " to UDP port " + std::to_string(wanted_)) +
                        (ports.empty() ? "; no UDP at all" : "; UDP ports (datagrams):" + ports));
     }
-    *port = most->first;
+    *sender = most->first;
     return known_ ? std::move(known_) : std::move(velodyne_.at(most->first));
   }
-  const std::map<int, std::int64_t>& all() const { return all_; }
+  const std::map<Sender, std::int64_t>& all() const { return all_; }
 
  private:
   int wanted_;
   std::unique_ptr<PacketSweeps> known_;  // by what the user says
-  std::map<int, std::unique_ptr<PacketSweeps>> velodyne_;
-  std::map<int, std::int64_t> ours_, all_;
+  std::map<Sender, std::unique_ptr<PacketSweeps>> velodyne_;
+  std::map<Sender, std::int64_t> ours_, all_;
 };
 
 void RequireEmpty(const fs::path& dir) {
@@ -115,17 +121,19 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
   Finder finder(options);
   ForEach(path, [&](const PcapReader::Datagram& datagram) { finder.Look(datagram); });
   Recording recording;
-  const std::unique_ptr<PacketSweeps> sweeps = finder.Found(path, &recording.port);
+  const std::unique_ptr<PacketSweeps> sweeps = finder.Found(path, &recording.sender);
   recording.sensor = sweeps->name();
   recording.others = finder.all();
-  recording.others.erase(recording.port);
+  recording.others.erase(recording.sender);
   const auto give = [&](const Cloud& sweep) {
     if (recording.sweeps++ == 0) recording.first = sweep.sweep_utime;
     recording.last = sweep.sweep_utime;
     take(sweep);
   };
   recording.cut_off = ForEach(path, [&](const PcapReader::Datagram& datagram) {
-    if (datagram.port != recording.port || !sweeps->IsOurs(datagram.payload)) return;
+    const bool is_its =
+        datagram.port == recording.sender.port && datagram.from == recording.sender.from;
+    if (!is_its || !sweeps->IsOurs(datagram.payload)) return;
     ++recording.packets;
     std::vector<Cloud> done;
     try {

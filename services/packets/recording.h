@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include "calib/model/cloud.h"
 
@@ -15,14 +16,23 @@ struct RecordingOptions {
   int port = 0;                    ///< that the LIDAR sends to; 0: where its packets are most
 };
 
+/// Who sent datagrams, and where to.
+struct Sender {
+  int port = 0;      ///< that they went to
+  std::string from;  ///< address
+  bool operator<(const Sender& other) const {
+    return std::tie(port, from) < std::tie(other.port, other.from);
+  }
+};
+
 /// What a recording of a LIDAR's packets holds.
 struct Recording {
-  std::string sensor;  ///< "OS-1-64"
-  int port = 0;
+  std::string sensor;        ///< "OS-1-64"
+  Sender sender;             ///< that sent most of its packets: of several LIDARs, one
   std::int64_t packets = 0;  ///< of the LIDAR
   std::int64_t bad = 0;      ///< of these, could not be decoded, or the recording has not all of it
   std::string last_problem;
-  std::map<int, std::int64_t> others;  ///< datagrams by port
+  std::map<Sender, std::int64_t> others;  ///< datagrams that are left out
   std::int64_t sweeps = 0;
   Utime first = 0, last = 0;  ///< of the sweeps
   std::string lost;           ///< in words; empty: nothing

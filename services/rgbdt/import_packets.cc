@@ -12,7 +12,7 @@ int ImportPackets(const PacketsToImport& packets) {
                                   ? ReadRecording(packets.file, options, [](const Cloud&) {})
                                   : WriteRecordingAsPcds(packets.file, options, packets.out);
   std::printf("%s at UDP port %d: %lld packets, %lld sweeps", recording.sensor.c_str(),
-              recording.port, static_cast<long long>(recording.packets),
+              recording.sender.port, static_cast<long long>(recording.packets),
               static_cast<long long>(recording.sweeps));
   const double seconds = ToSeconds(recording.last - recording.first);
   if (recording.sweeps > 1 && seconds > 0) {
@@ -21,9 +21,10 @@ int ImportPackets(const PacketsToImport& packets) {
   std::printf("\n");
   constexpr int kMostLines = 10;
   int lines = 0;
-  for (const auto& [port, count] : recording.others) {
+  for (const auto& [sender, count] : recording.others) {
     if (++lines > kMostLines) break;
-    std::printf("left out: UDP port %d, %lld datagrams\n", port, static_cast<long long>(count));
+    std::printf("left out: UDP port %d from %s, %lld datagrams\n", sender.port, sender.from.c_str(),
+                static_cast<long long>(count));
   }
   if (!recording.lost.empty()) std::printf("lost: %s\n", recording.lost.c_str());
   if (recording.bad > 0) {

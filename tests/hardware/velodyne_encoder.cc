@@ -178,7 +178,9 @@ void PcapWriter::Add(std::int64_t utime, const std::vector<std::uint8_t>& payloa
   if (link == Link::kCooked) frame = std::string(14, '\0') + std::string("\x08\x00", 2);
   frame += std::string("\x45\x00", 2);
   Append(&frame, 28 + payload.size(), 2, true);
-  frame += std::string("\x00\x00\x00\x00\xff\x11\x00\x00\xc0\xa8\x01\xc9\xff\xff\xff\xff", 16);
+  frame += std::string("\x00\x00\x00\x00\xff\x11\x00\x00", 8);
+  frame.append(from.begin(), from.end());
+  frame += std::string("\xff\xff\xff\xff", 4);
   Append(&frame, 2368, 2, true);
   Append(&frame, static_cast<std::uint64_t>(port), 2, true);
   Append(&frame, 8 + payload.size(), 2, true);

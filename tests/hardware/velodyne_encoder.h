@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -51,6 +52,7 @@ struct PcapWriter {
   Link link = Link::kEthernet;
   bool next_generation = false;  ///< pcapng
   int port = 2368;
+  std::array<std::uint8_t, 4> from = {192, 168, 1, 201};
   std::string bytes;
 
   void Begin();

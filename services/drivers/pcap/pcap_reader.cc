@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -76,6 +77,10 @@ std::size_t IpHeader(const Bytes& bytes) {
   return header < 20 || header > bytes.size ? 0 : header;
 }
 
+std::string Address(const std::uint8_t* bytes) {
+  return Format("%d.%d.%d.%d", bytes[0], bytes[1], bytes[2], bytes[3]);
+}
+
 }  // namespace
 
 PcapReader::PcapReader(const std::string& path) : path_(path) {
@@ -117,6 +122,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     if (!SkipLink(link, &bytes)) continue;
     const std::size_t ip = IpHeader(bytes);
     if (ip == 0) continue;
+    std::string from = Address(bytes.data + 12);
     std::optional<std::vector<std::uint8_t>> joined;
     if ((Word(bytes.data + 6) & (kMore | kOffset)) != 0) {
       // What follows the packet pads the Ethernet frame.
@@ -131,6 +137,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     if (bytes.size < 8) continue;
     Datagram datagram;
     datagram.utime = utime;
+    datagram.from = std::move(from);
     datagram.port = Word(bytes.data + 2);
     const auto length = static_cast<std::size_t>(std::max(8, Word(bytes.data + 4)));
     datagram.cut = bytes.size < length;
@@ -141,8 +148,7 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
 }
 
 // The whole packet's bytes once its last fragment has come.
-std::optional<std::vector<std::uint8_t>> PcapReader::Join(Utime utime,
-                                                          const std::uint8_t* header,
+std::optional<std::vector<std::uint8_t>> PcapReader::Join(Utime utime, const std::uint8_t* header,
                                                           const std::uint8_t* data,
                                                           std::size_t size) {
   fragments_.erase(

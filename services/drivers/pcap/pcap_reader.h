@@ -28,6 +28,7 @@ class PcapReader {
   struct Datagram {
     Utime utime = 0;   ///< when it was recorded; of fragments, the last to come
     int port = 0;      ///< that it was sent to
+    std::string from;  ///< address that it was sent from: "192.168.1.201"
     bool cut = false;  ///< the recording has not all of it
     std::vector<std::uint8_t> payload;
   };

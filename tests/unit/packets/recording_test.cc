@@ -79,7 +79,7 @@ TEST_F(Recordings, AnOustersPointsLieWhereTheManualSays) {
       encoder.nested = nested;
       const Recording recording = Read(Record(encoder, 0, 4), {dir_ / "os.json", 0});
       EXPECT_EQ(recording.sensor, "OS-0-4");
-      EXPECT_EQ(recording.port, 7502);
+      EXPECT_EQ(recording.sender.port, 7502);
       EXPECT_EQ(recording.packets, 4);
       EXPECT_EQ(recording.lost, "");
       ASSERT_THAT(sweeps_, SizeIs(2)) << profile;
@@ -178,9 +178,38 @@ TEST_F(Recordings, AVelodyneIsKnownByItsPackets) {
   }
   const Recording recording = Read(Save(writer));
   EXPECT_EQ(recording.sensor, "VLP-16");
-  EXPECT_EQ(recording.port, 2368);
+  EXPECT_EQ(recording.sender.port, 2368);
   EXPECT_GE(recording.sweeps, 1);
   EXPECT_EQ(sweeps_.at(0).lines, 16);
+}
+
+TEST_F(Recordings, OfTwoLidarsOnOnePortTheOneOfMorePacketsIsTaken) {
+  const VelodyneEncoder encoder = MadeUpVelodyne(VelodyneEncoder::Model::kVlp16);
+  const auto record = [&](bool other_too) {
+    PcapWriter writer;
+    writer.Begin();
+    for (int i = 0; i < 3 * encoder.PacketsPerTurn(); ++i) {
+      const Utime utime = kNow + static_cast<Utime>(i * encoder.PacketDuration_us());
+      writer.from = {192, 168, 1, 201};
+      writer.Add(utime, encoder.Packet(i));
+      writer.from = {192, 168, 1, 202};
+      if (other_too && i % 2 == 0) writer.Add(utime + 50, encoder.Packet(i + 30));
+    }
+    return Save(writer);
+  };
+  Read(record(false));
+  const std::vector<Cloud> alone = sweeps_;
+  const Recording recording = Read(record(true));
+  EXPECT_EQ(recording.sender.from, "192.168.1.201");
+  EXPECT_EQ(recording.packets, 3 * encoder.PacketsPerTurn());
+  EXPECT_EQ(recording.lost, "");
+  ASSERT_THAT(recording.others, SizeIs(1));
+  EXPECT_EQ(recording.others.begin()->first.from, "192.168.1.202");
+  ASSERT_EQ(sweeps_.size(), alone.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(sweeps_[i].sweep_utime, alone[i].sweep_utime);
+    EXPECT_EQ(sweeps_[i].size(), alone[i].size());
+  }
 }
 
 TEST_F(Recordings, BecomePcdFilesNamedByTheirTimes) {
