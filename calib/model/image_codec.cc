@@ -69,7 +69,8 @@ bool IsWholeIfPng(std::string_view bytes) {
 }
 
 // Of a JPEG's frame header (ITU-T T.81, B.2.2), which is behind segments of marker, length and
-// content; nothing where there is none.
+// content; nothing where there is none. Codes without a length (stuffed bytes, restarts, begin,
+// end) and the scan have no place before it: a decoder may pass over them and read another header.
 std::optional<ImageSize> JpegSize(std::string_view bytes) {
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   for (std::size_t i = 2; i + 9 <= bytes.size() && at(i) == 0xFF;) {
@@ -82,6 +83,7 @@ std::optional<ImageSize> JpegSize(std::string_view bytes) {
     if (marker >= 0xC0 && marker <= 0xCF && !tables) {
       return ImageSize{256 * at(i + 7) + at(i + 8), 256 * at(i + 5) + at(i + 6)};
     }
+    if (marker < 0xC0 || (marker >= 0xD0 && marker <= 0xDA)) return std::nullopt;
     i += 2 + 256 * std::size_t{at(i + 2)} + at(i + 3);
   }
   return std::nullopt;

@@ -9,6 +9,7 @@
 namespace rgbdt {
 namespace {
 
+using namespace std::string_literals;
 using ::testing::HasSubstr;
 
 bool Same(const cv::Mat& a, const cv::Mat& b) {
@@ -105,6 +106,21 @@ TEST(ImageFiles, WhatUnpacksToTooManyPixelsIsRefusedByItsHeader) {
   for (std::size_t i = 5; i < 9; ++i) jpeg[frame + i] = '\x7f';  // height and width
   EXPECT_THAT(test::ErrorOf([&] { DecodeImage(jpeg.data(), jpeg.size(), "bomb.jpg"); }),
               AllOf(HasSubstr("bomb.jpg"), HasSubstr("32639x32639")));
+}
+
+// A decoder passes over codes without a length, to the header of a large image; by a length we
+// would pass over that one, to the header of a small image.
+TEST(ImageFiles, AJpegWhoseHeaderCanBeReadInTwoWaysIsRefused) {
+  const std::string jpeg = EncodeJpeg(cv::Mat::zeros(64, 48, CV_8UC1), 90);
+  const std::string large = "\xFF\xC0"s + "\0\x0B\x08\x7f\x7f\x7f\x7f\x01\x01\x11\0"s;
+  ASSERT_TRUE(StatedSize(jpeg.data(), jpeg.size()));
+  for (const char code : "\x01\xD0\xD7\xD8\xD9\xDA"s + '\0') {
+    const std::string head = "\xFF\xD8\xFF"s + code + '\0' + static_cast<char>(2 + large.size());
+    const std::string two = head + large + jpeg.substr(2);
+    EXPECT_FALSE(StatedSize(two.data(), two.size())) << static_cast<int>(code);
+    EXPECT_THAT(test::ErrorOf([&] { DecodeImage(two.data(), two.size(), "two.jpg"); }),
+                HasSubstr("two.jpg cannot be decoded"));
+  }
 }
 
 // OpenCV would take gigabytes at their word.
