@@ -51,13 +51,20 @@ void PrintExported(const ExportFlags& flags, const std::string& out, const Expor
   std::printf("wrote %s\n", out.c_str());
 }
 
+// lcm-logger names its logs lcmlog-2025-11-25.00, .01, ...: what is behind the dot tells them apart.
+std::filesystem::path McapOf(std::filesystem::path log) {
+  const std::string extension = log.extension().string();
+  if (extension == ".lcmlog" || extension == ".log") return log.replace_extension(".mcap");
+  return log += ".mcap";
+}
+
 int RunMcap(const ExportFlags& flags) {
   if (!flags.calibration.empty() || flags.anyway) {
     throw UsageError("--calibration and --anyway are of a session; a log has its own calibrations");
   }
   const FrameNames frames = FramesOf(flags);
   const std::filesystem::path out =
-      PathOr(flags.out, std::filesystem::path(flags.dir).replace_extension(".mcap"));
+      PathOr(flags.out, McapOf(flags.dir));
   std::error_code error;
   if (std::filesystem::equivalent(flags.dir, out, error)) {
     throw InputError(out.string() + ": is the log itself; say another --out");

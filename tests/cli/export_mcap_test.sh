@@ -22,6 +22,12 @@ mcap=$scratch/drive.mcap
 cp "$mcap" "$scratch/first.mcap"
 accepts "once more" "$bin/rgbdt" export --mcap "$scratch/drive.lcmlog" --camera-frame rgb=front
 cmp "$mcap" "$scratch/first.mcap" || complain "once more: another file"
+# As lcm-logger names the logs of one day.
+for log in lcmlog-2025-11-25.00 lcmlog-2025-11-25.01; do
+  ln "$scratch/drive.lcmlog" "$scratch/$log"
+  accepts "$log" "$bin/rgbdt" export --mcap "$scratch/$log"
+  has "$log" "^wrote $scratch/$log.mcap$"
+done
 
 if command -v node >/dev/null && [ -d "$modules/@mcap/core" ]; then
   accepts "by @mcap/core" node "$here/read_mcap.mjs" "$mcap" "$modules"
