@@ -151,8 +151,12 @@ void Append(RgbdtCloud more, RgbdtCloud* cloud) {
 
 class Exporter {
  public:
-  Exporter(LogSurvey survey, const ExportFrames& frames, Topics* topics)
-      : survey_(std::move(survey)), frames_(frames), topics_(topics), now_(survey_.first) {
+  Exporter(LogSurvey survey, const ExportFrames& frames, Topics* topics, ExportedLog* exported)
+      : survey_(std::move(survey)),
+        frames_(frames),
+        topics_(topics),
+        exported_(exported),
+        now_(survey_.first) {
     lidar_ = !frames.lidar.empty()        ? frames.lidar
              : survey_.lidar_name.empty() ? "lidar"
                                           : survey_.lidar_name;
@@ -167,7 +171,10 @@ class Exporter {
     std::visit([this](const auto& m) { Take(m); }, message);
   }
 
-  void Finish() { FlushFused(); }
+  void Finish() {
+    FlushFused();
+    ForgetUnended();
+  }
 
  private:
   template <typename M>
@@ -184,11 +191,22 @@ class Exporter {
   }
 
   void Take(const CloudChunk& chunk) {
+    const Utime name = chunk.cloud.sweep_utime;
     sweeps_.Add(chunk);
+    if (under_way_.size() >= SweepCollector::kMaxSweeps) ForgetUnended();
+    under_way_.insert(name);
     if (!chunk.sweep_end) return;
-    const std::optional<Cloud> sweep = sweeps_.Complete(chunk.cloud.sweep_utime);
+    const std::optional<Cloud> sweep = sweeps_.Complete(name);
+    if (!sweeps_.WhyTorn(name).empty()) ++exported_->torn_sweeps;
     sweeps_.Clear();  // it would keep many
+    under_way_.erase(name);
+    ForgetUnended();
     if (sweep && sweep->size() > 0) Put("/lidar/points", ToFoxglove(*sweep, lidar_));
+  }
+
+  void ForgetUnended() {
+    exported_->torn_sweeps += static_cast<std::int64_t>(under_way_.size());
+    under_way_.clear();
   }
 
   void Take(const RgbdtCloud& cloud) {
@@ -294,9 +312,11 @@ class Exporter {
   LogSurvey survey_;
   const ExportFrames& frames_;
   Topics* topics_;
+  ExportedLog* exported_;
   Utime now_;
   std::string lidar_;
   SweepCollector sweeps_;
+  std::set<Utime> under_way_;  // sweeps whose end has not come
   std::optional<RgbdtCloud> fused_;
   std::optional<Rig> rig_;
   std::map<std::string, CameraCalibration> calibrations_;  // those to be used
@@ -330,7 +350,7 @@ ExportedLog ExportLog(const std::string& log_path, const std::filesystem::path& 
   exported.left_out = survey.left_out;
   AtomicFile file(out);
   Topics topics(&file, &exported);
-  Exporter exporter(survey, frames, &topics);
+  Exporter exporter(survey, frames, &topics, &exported);
   while (const auto event = log.Next()) {
     if (progress) progress(0.5 + 0.5 * log.position() / static_cast<double>(log.size()));
     if (!IsExported(event->channel)) continue;

@@ -22,6 +22,7 @@ struct ExportedLog {
   };
   std::map<std::string, Topic> topics;           ///< by name
   std::map<std::string, std::int64_t> left_out;  ///< channels without a counterpart, and how many
+  std::int64_t torn_sweeps = 0;                  ///< of which lines or the end never came
   std::int64_t dropped = 0;                      ///< messages that could not be used
   std::string last_problem;
   std::int64_t unreadable_bytes = 0;  ///< of the log
@@ -29,14 +30,13 @@ struct ExportedLog {
 
 /// An LCM log as an MCAP of Foxglove's messages (Protobuf), which viewers open without a plug-in:
 ///
-/// | topic | of | what |
-/// | /lidar/points | CLOUD | PointCloud: whole sweeps |
-/// | /fused/points | RGBDT_SWEEP, or else RGBDT_CLOUD | PointCloud: whole fused sweeps |
-/// | /CAMERA/image_raw | CAMERA_IMAGE | RawImage, or at .../compressed CompressedImage |
-/// | /CAMERA/camera_info | RIG, CALIBRATION | CameraCalibration: the lens, as solved where it is |
-/// | /tf_static | RIG, CALIBRATION | FrameTransforms: LIDAR to camera; the guess until it is solved
-/// | | /tf, /pose | POSE | FrameTransforms, PoseInFrame: map to LIDAR | | /status, /events,
-/// /mount_check | STATUS, SESSION_EVENT, MOUNT_CHECK | Log |
+/// - /lidar/points, of CLOUD: PointCloud, a message a sweep; lines that never came are NaN;
+/// - /fused/points, of RGBDT_SWEEP, or else RGBDT_CLOUD: PointCloud, a message a fused sweep;
+/// - /CAMERA/image_raw, of CAMERA_IMAGE: RawImage, or at .../compressed CompressedImage;
+/// - /CAMERA/camera_info, of RIG and CALIBRATION: CameraCalibration, the lens, solved or not;
+/// - /tf_static, of RIG and CALIBRATION: FrameTransforms, LIDAR to camera; the guess until solved;
+/// - /tf and /pose, of POSE: FrameTransforms and PoseInFrame, map to LIDAR;
+/// - /status, /events, /mount_check, of STATUS, SESSION_EVENT, MOUNT_CHECK: Log.
 ///
 /// The times of the file are the sensors': a message is logged at the newest sensor time so far, so
 /// the same log gives the same bytes. A calibration that is not to be used gives no transform. The

@@ -40,6 +40,10 @@ void PrintExported(const ExportFlags& flags, const std::string& out, const Expor
     std::printf("left out: %s, %lld messages\n", Printable(channel).c_str(),
                 static_cast<long long>(count));
   }
+  if (exported.torn_sweeps > 0) {
+    std::fprintf(stderr, "%s: %lld sweeps are not whole: lines of them, or the end, never came\n",
+                 flags.dir.c_str(), static_cast<long long>(exported.torn_sweeps));
+  }
   if (exported.dropped > 0) {
     std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", flags.dir.c_str(),
                  static_cast<long long>(exported.dropped), exported.last_problem.c_str());
@@ -51,7 +55,8 @@ void PrintExported(const ExportFlags& flags, const std::string& out, const Expor
   std::printf("wrote %s\n", out.c_str());
 }
 
-// lcm-logger names its logs lcmlog-2025-11-25.00, .01, ...: what is behind the dot tells them apart.
+// lcm-logger names its logs lcmlog-2025-11-25.00, .01, ...: what is behind the dot tells them
+// apart.
 std::filesystem::path McapOf(std::filesystem::path log) {
   const std::string extension = log.extension().string();
   if (extension == ".lcmlog" || extension == ".log") return log.replace_extension(".mcap");
@@ -63,8 +68,7 @@ int RunMcap(const ExportFlags& flags) {
     throw UsageError("--calibration and --anyway are of a session; a log has its own calibrations");
   }
   const FrameNames frames = FramesOf(flags);
-  const std::filesystem::path out =
-      PathOr(flags.out, McapOf(flags.dir));
+  const std::filesystem::path out = PathOr(flags.out, McapOf(flags.dir));
   std::error_code error;
   if (std::filesystem::equivalent(flags.dir, out, error)) {
     throw InputError(out.string() + ": is the log itself; say another --out");

@@ -114,7 +114,7 @@ class ExportingLog : public testing::Test {
   Utime last_ = kNow - 1000;  // nothing is logged before the first sensor time
 };
 
-TEST_F(ExportingLog, SweepsComeWhole) {
+TEST_F(ExportingLog, SweepsComeAsTheyEndAndThoseThatAreTornAreCounted) {
   Status early;  // before any sensor's time
   early.process = "assembler";
   Add(early);
@@ -123,7 +123,8 @@ TEST_F(ExportingLog, SweepsComeWhole) {
   Add(Chunk(kNow + 200'000, 0, 3));                                   // never ends
   const ExportedLog exported = Export();
   EXPECT_EQ(exported.topics.at("/lidar/points").messages, 2);
-  EXPECT_EQ(exported.dropped, 0);
+  EXPECT_EQ(exported.torn_sweeps, 2);
+  EXPECT_EQ(exported.dropped, 0) << "messages";
   const auto clouds = Read<foxglove::PointCloud>("/lidar/points");
   ASSERT_THAT(clouds, SizeIs(2));
   for (const auto& cloud : clouds) {
