@@ -246,7 +246,9 @@ class Exporter {
   void Take(const RigText& rig) {
     if (!rig_ || rig_->hash != rig.hash) {
       rig_ = ParseRig(rig.text, "RIG", LensNeed::kMayBeUnknown);
-      calibrations_.clear();
+      for (auto solved = calibrations_.begin(); solved != calibrations_.end();) {
+        solved = solved->second.rig_hash == rig.hash ? ++solved : calibrations_.erase(solved);
+      }
     }
     foxglove::FrameTransforms guesses;
     for (const CameraSpec& camera : rig_->cameras) {
@@ -261,7 +263,7 @@ class Exporter {
   void PutLens(const CameraSpec& camera) {
     const auto solved = calibrations_.find(camera.name);
     const CameraSpec with_lens =
-        solved == calibrations_.end() ? camera : solved->second.WithSolvedLens(camera);
+        solved == calibrations_.end() ? camera : solved->second.calibration.WithSolvedLens(camera);
     if (!with_lens.lens.known()) return;
     Put("/" + camera.name + "/camera_info", ToFoxglove(with_lens, now_, FrameOf(camera.name)));
   }
@@ -280,7 +282,7 @@ class Exporter {
       }
       return;
     }
-    calibrations_[calibration.camera] = calibration;
+    calibrations_[calibration.camera] = message;
     foxglove::FrameTransforms transforms;
     *transforms.add_transforms() = ToFoxglove(calibration.camera_from_lidar.Inverse(), lidar_,
                                               FrameOf(calibration.camera), now_);
@@ -319,7 +321,7 @@ class Exporter {
   std::set<Utime> under_way_;  // sweeps whose end has not come
   std::optional<RgbdtCloud> fused_;
   std::optional<Rig> rig_;
-  std::map<std::string, CameraCalibration> calibrations_;  // those to be used
+  std::map<std::string, CalibrationMessage> calibrations_;  // those to be used
   std::map<std::string, std::string> not_used_, problems_;
 };
 

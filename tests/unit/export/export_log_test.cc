@@ -185,6 +185,29 @@ TEST_F(ExportingLog, ACalibrationTakesAGuesssPlaceAndTheLensGoesWithIt) {
   EXPECT_THAT(events[0].message(), HasSubstr("degenerate"));
 }
 
+TEST_F(ExportingLog, ACalibrationThatComesBeforeItsRigIsKept) {
+  Add(Chunk(kNow, 0, 1));
+  Add(Calibrated(SolveStatus::kConverged));
+  Add(RigText{0, HashOfRigText(kRig), kRig});
+  const ExportedLog exported = Export();
+  EXPECT_EQ(exported.dropped, 0) << exported.last_problem;
+  const auto transforms = Read<foxglove::FrameTransforms>("/tf_static");
+  ASSERT_THAT(transforms, SizeIs(1)) << "and no guess after it";
+  EXPECT_EQ(transforms[0].transforms(0).translation().y(), -2);
+}
+
+TEST_F(ExportingLog, AnotherRigsCalibrationGivesWayToTheGuess) {
+  Add(Chunk(kNow, 0, 1));
+  CalibrationMessage other = Calibrated(SolveStatus::kConverged);
+  other.rig_hash = HashOfRigText("another");
+  Add(other);
+  Add(RigText{0, HashOfRigText(kRig), kRig});
+  Export();
+  const auto transforms = Read<foxglove::FrameTransforms>("/tf_static");
+  ASSERT_THAT(transforms, SizeIs(2));
+  EXPECT_EQ(transforms[1].transforms(0).translation().x(), -1);
+}
+
 TEST_F(ExportingLog, AJpegGoesOnAsItWasSent) {
   Image image;
   image.camera = "rgb";
