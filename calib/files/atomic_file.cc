@@ -106,9 +106,15 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   if (error) Fail("create the folder", folder, error.value());
 
   static std::atomic<unsigned> count{0};
-  temporary_ = folder / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) Fail("write", path_, errno);
+  const std::string name = ".tmp-" + std::to_string(::getpid()) + "-";
+  int why = 0;
+  do {  // one may be left over of a process that was killed and had this number
+    const std::filesystem::path temporary = folder / (name + std::to_string(count++));
+    descriptor_ = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    why = descriptor_ < 0 ? errno : 0;
+    if (why == 0) temporary_ = temporary;
+  } while (why == EEXIST);
+  if (why != 0) Fail("write", path_, why);
 }
 
 AtomicFile::~AtomicFile() {

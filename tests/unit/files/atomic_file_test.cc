@@ -1,6 +1,7 @@
 #include "calib/files/atomic_file.h"
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -44,6 +45,23 @@ TEST(AtomicFile, AFailingWriteLeavesTheOldFileAndNoOther) {
   EXPECT_THAT(error, HasSubstr((dir / "target").string()));
   EXPECT_EQ(ReadWholeFile(dir / "target/old"), "old");
   EXPECT_EQ(FilesIn(dir.path()), 1u) << "a temporary file was left";
+}
+
+// A process that was killed had the same number, as the only one of a container has.
+TEST(AtomicFile, WhatAKilledProcessLeftIsNotInTheWay) {
+  const test::TempDir dir;
+  const std::string begin = ".tmp-" + std::to_string(getpid()) + "-";
+  int last = 0;
+  {
+    const AtomicFile one(dir / "one");
+    const std::string name = fs::directory_iterator(dir.path())->path().filename().string();
+    ASSERT_EQ(name.substr(0, begin.size()), begin);
+    last = std::stoi(name.substr(begin.size()));
+  }
+  for (const int ahead : {1, 2}) std::ofstream(dir / (begin + std::to_string(last + ahead))) << "x";
+  WriteFileAtomically(dir / "file", "new");
+  EXPECT_EQ(ReadWholeFile(dir / "file"), "new");
+  EXPECT_EQ(FilesIn(dir.path()), 3u) << "those of others stay";
 }
 
 TEST(AtomicFile, AReaderOfTheOldFileKeepsIt) {
