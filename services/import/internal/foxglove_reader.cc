@@ -18,12 +18,14 @@ using google::protobuf::io::CodedInputStream;
 constexpr int kNone = 0;
 constexpr int kMostFields = 10'000;
 constexpr std::uint32_t kMostFieldBytes = 64 * 1024;
+constexpr std::size_t kMostBytesOfAll = 1024 * 1024;
 
 // A message may take many times its bytes once it is decoded, as does one of a million empty parts:
 // only its one field of bytes may be large.
 void CheckFields(const BagMessage& message, int bytes_field) {
   CodedInputStream in(message.data, static_cast<int>(message.size));
   int fields = 0;
+  std::size_t bytes = 0;
   while (const std::uint32_t tag = in.ReadTag()) {
     const int number = WireFormatLite::GetTagFieldNumber(tag);
     std::uint32_t size = 0;
@@ -32,6 +34,11 @@ void CheckFields(const BagMessage& message, int bytes_field) {
     const bool whole = is_sized ? in.ReadVarint32(&size) && in.Skip(static_cast<int>(size))
                                 : WireFormatLite::SkipField(&in, tag);
     if (!whole) throw InputError("is damaged or cut short");
+    if (number != bytes_field) bytes += size;
+    if (bytes > kMostBytesOfAll) {
+      throw InputError("has more than " + std::to_string(kMostBytesOfAll) +
+                       " bytes besides its data, where few are expected");
+    }
     if (++fields > kMostFields || (number != bytes_field && size > kMostFieldBytes)) {
       throw InputError("has a field of " + std::to_string(size) + " bytes, or more than " +
                        std::to_string(kMostFields) + " fields, where few are expected");

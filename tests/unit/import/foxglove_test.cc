@@ -53,6 +53,17 @@ TEST(FoxgloveReader, AnyByteMayBeAnyOther) {
   EXPECT_GT(refused, 100);
 }
 
+// Each field is small enough, all together are not; the data's own bytes do not count.
+TEST(FoxgloveReader, OnlyTheDataMayBeLarge) {
+  foxglove::PointCloud cloud = Cloud();
+  cloud.set_data(std::string(3 << 20, 'x'));
+  EXPECT_EQ(ros::DecodePointCloud(MessageOf(cloud.SerializeAsString()), kProto).size, 3U << 20);
+  for (int i = 0; i < 40; ++i) cloud.add_fields()->set_name(std::string(60'000, 'n'));
+  EXPECT_THAT(
+      test::ErrorOf([&] { ros::DecodePointCloud(MessageOf(cloud.SerializeAsString()), kProto); }),
+      HasSubstr("more than 1048576 bytes besides its data"));
+}
+
 TEST(FoxgloveReader, AMillionEmptyPartsTakeNoMemory) {
   std::string bytes;
   for (int i = 0; i < 1'000'000; ++i) bytes += std::string("\x2a\x00", 2);  // an empty field
