@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr unsigned kMost_s = 60;               // that a run may take
 constexpr int kVariants = 60;                  // of each input
 constexpr std::size_t kMostVaried = 16 << 20;  // bytes of an input's variants in all
 
@@ -44,6 +45,7 @@ void OnCrash(int signal_number) {
 void Run(const std::string& name, std::string bytes) {
   running_name = name;
   running_bytes = std::move(bytes);
+  alarm(kMost_s);
   LLVMFuzzerTestOneInput(rgbdt::fuzz::Data(running_bytes), running_bytes.size());
 }
 
