@@ -22,7 +22,10 @@ Messages AssemblerNode::Handle(const Message& message) {
     OnRig(*rig);
     return {};
   }
-  if (!assembler_) throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
+  if (rig_hash_.empty()) {
+    throw InputError("no rig heard yet; start rgbdt-session, or publish RIG");
+  }
+  if (!assembler_) return {};
   if (const auto* reading = std::get_if<EncoderReading>(&message)) {
     return ToMessages(assembler_->Add(*reading));
   }
@@ -31,12 +34,11 @@ Messages AssemblerNode::Handle(const Message& message) {
 }
 
 void AssemblerNode::OnRig(const RigText& text) {
-  if (assembler_ && rig_hash_ == text.hash) return;
+  if (!rig_hash_.empty() && rig_hash_ == text.hash) return;
   const Rig rig = ParseRig(text.text, "RIG message");
   if (!rig.lidar.turned_scanner) {
-    throw InputError("the rig's lidar has no turned_scanner: nothing to assemble");
-  }
-  if (assembler_) {
+    assembler_.reset();
+  } else if (assembler_) {
     assembler_->SetScanner(*rig.lidar.turned_scanner);
   } else {
     assembler_.emplace(*rig.lidar.turned_scanner);
@@ -48,10 +50,11 @@ Status AssemblerNode::GetStatus() const {
   const auto counts = assembler_ ? assembler_->counts() : Assembler::Counts{};
   const auto lines = assembler_ ? assembler_->LinesOfSweep() : std::nullopt;
   Status status;
-  status.ready = assembler_.has_value();
-  status.text = !assembler_ ? "waits for the rig (RIG)"
-                : lines     ? "assembling a sweep, " + std::to_string(*lines) + " lines"
-                            : "waits for a sweep";
+  status.ready = !rig_hash_.empty();
+  status.text = rig_hash_.empty() ? "waits for the rig (RIG)"
+                : !assembler_     ? "nothing to assemble: the LIDAR gives whole sweeps"
+                : lines           ? "assembling a sweep, " + std::to_string(*lines) + " lines"
+                                  : "waits for a sweep";
   status.counters = {
       {"lines", counts.lines_used}, {"lines lost", counts.lines_lost}, {"sweeps", counts.sweeps}};
   return status;

@@ -10,7 +10,8 @@
 namespace rgbdt {
 
 /// LINE_SCAN + ENCODER -> CLOUD: what leaves when, in which order lines may come, and which are
-/// refused stands in Assembler. Needs the rig first; another rig forgets the sweep at hand.
+/// refused stands in Assembler. Needs the rig first; another rig forgets the sweep at hand. Of a rig
+/// whose LIDAR gives whole sweeps it is ready and has nothing to do.
 class AssemblerNode : public Node {
  public:
   std::string name() const override { return "assembler"; }
@@ -24,7 +25,7 @@ class AssemblerNode : public Node {
   void OnRig(const RigText& text);
 
   std::string rig_hash_;
-  std::optional<Assembler> assembler_;  // from the first rig on
+  std::optional<Assembler> assembler_;  // from a rig with a turned scanner on
 };
 
 }  // namespace rgbdt

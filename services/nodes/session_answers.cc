@@ -81,7 +81,8 @@ void SessionNode::OnStatus(const Status& status) {
 // to its end before it is made again.
 void SessionNode::OnStartedAnew(const std::string& process) {
   const std::string why = "rgbdt-" + process + " was started anew";
-  const bool has_lines = process == "assembler" || process == "lidar" || process == "simulator";
+  const bool assembles = process == "assembler" && rig_.lidar.turned_scanner;
+  const bool has_lines = assembles || process == "lidar" || process == "simulator";
   const bool has_images = process == "simulator" || process.rfind("camera-", 0) == 0;
   if (process == "detector" || has_lines) spoiled_ = why;
   if (!waiting_ || idle()) return;
@@ -107,8 +108,10 @@ void SessionNode::OnStartedAnew(const std::string& process) {
 }
 
 bool SessionNode::AnswersSweeps(const std::string& process) const {
-  const bool by_motor = rig_.lidar.turned_scanner && rig_.lidar.turned_scanner->motor;
-  return process == "simulator" || process == (by_motor ? "motor" : "lidar");
+  const auto& scanner = rig_.lidar.turned_scanner;
+  if (process == "simulator") return true;
+  if (scanner) return scanner->motor && process == "motor";  // or somebody else's motor turns it
+  return process == "lidar";
 }
 
 // The step at hand, once everybody is ready.
@@ -272,7 +275,8 @@ void SessionNode::PoseIsSet() {
 
 // Processes without which a session leads nowhere.
 std::vector<std::string> SessionNode::Needed() const {
-  std::vector<std::string> needed = {"assembler", "detector", "solver", "fuser"};
+  std::vector<std::string> needed = {"detector", "solver", "fuser"};
+  if (rig_.lidar.turned_scanner) needed.emplace_back("assembler");
   for (const CameraSpec& camera : rig_.cameras) {
     if (camera.device) needed.push_back("camera-" + camera.name);
   }

@@ -29,8 +29,8 @@ struct SessionProgress {
 /// Runs a session, by a script or as a person asks in the viewer: sends commands, waits for the
 /// answering events, writes the session directory. STATUS, SESSION_EVENT, SESSION_REQUEST, CLOUD,
 /// `<CAMERA>_IMAGE`, CORNER_SELECTION, DETECTION, REPORT, LEFT_OUT_VIEWS -> RIG, SESSION_COMMAND,
-/// SESSION_EVENT (how far it is), and the DETECTIONs once more. It begins when assembler, detector,
-/// solver, fuser and the processes of the rig file's devices are ready (STATUS). next_pose and
+/// SESSION_EVENT (how far it is), and the DETECTIONs once more. It begins when detector, solver,
+/// fuser, the assembler of a turned scanner, and the processes of the rig file's devices are ready (STATUS). next_pose and
 /// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
 /// evaluate with the solver's. save writes the report, and the calibration of the cameras that were
 /// solved; results of an earlier run in the directory are kept aside (SetResultsAside), once the

@@ -28,7 +28,8 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
   if (rig.lidar.turned_scanner && rig.lidar.turned_scanner->motor) {
     add("motor", "motor", {"--rig", file});
   }
-  for (const char* name : {"assembler", "detector", "solver", "fuser"}) add(name, name, {});
+  if (rig.lidar.turned_scanner) add("assembler", "assembler", {});
+  for (const char* name : {"detector", "solver", "fuser"}) add(name, name, {});
   add("session", "session", {"--rig", file, "--out", options.out.string()});
   all.back().ends = true;
   add("viewer", "viewer",

@@ -27,7 +27,8 @@ struct UpOptions {
 };
 
 /// The processes of a rig, as systemd's rgbdt.target has them: a driver for each device that the
-/// rig names, assembler, detector, solver, fuser, a session that the page leads, the viewer.
+/// rig names, assembler (of a turned scanner), detector, solver, fuser, a session that the page
+/// leads, the viewer.
 std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options);
 
 }  // namespace rgbdt

@@ -89,6 +89,18 @@ TEST(AssemblerNodeTest, BeforeTheRigNothingIsTaken) {
   EXPECT_EQ(Only<CloudChunk>(test::HandleAll(&node, SweepInOrder())).size(), kLines + 1U);
 }
 
+TEST(AssemblerNodeTest, OfALidarThatGivesWholeSweepsItIsReadyAndAssemblesNothing) {
+  Rig rig = test::RigOf(simulate::Simulator(test::TinyOptions()));
+  rig.lidar.turned_scanner.reset();
+  AssemblerNode node;
+  node.Handle(test::TextOf(ParseRig(PrintRig(rig), "whole sweeps")));
+  EXPECT_TRUE(node.GetStatus().ready);
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("nothing to assemble"));
+  EXPECT_TRUE(test::HandleAll(&node, SweepInOrder()).empty());
+  node.Handle(MakeRigText());
+  EXPECT_EQ(node.GetStatus().text, "waits for a sweep");
+}
+
 TEST(AssemblerNodeTest, TheRigAgainDoesNotDisturbASweepAnotherRigEndsIt) {
   AssemblerNode once;
   once.Handle(MakeRigText());

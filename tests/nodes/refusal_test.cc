@@ -131,18 +131,10 @@ TEST(Refusal, Assembler) {
   LineScan misnumbered = simulator.Line(kStart, 9);
   misnumbered.utime += 1;
   misnumbered.seq = 3;
-  Rig spinning = TinyRig();
-  spinning.lidar.turned_scanner.reset();
-  spinning.text = PrintRig(spinning);
 
   AssemblerNode node, twin;
   Twins twins(&node, &twin);
-  twins.bad = {Garbage(),
-               RigText{0, "a 3D LIDAR's", spinning.text},
-               simulator.Encoder(kStart - 60'000, 0),
-               early,
-               again,
-               misnumbered};
+  twins.bad = {Garbage(), simulator.Encoder(kStart - 60'000, 0), early, again, misnumbered};
   twins.Feed(good);
   EXPECT_THAT(twins.refused, Each(Gt(10)));
   EXPECT_EQ(test::Counter(node.GetStatus(), "sweeps"), 2);

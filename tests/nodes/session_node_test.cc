@@ -148,6 +148,18 @@ TEST_F(SessionNodeTest, TheDevicesOfTheRigFileAreWaitedForToo) {
   EXPECT_FALSE(AdvanceTo(2, &node).empty());
 }
 
+TEST_F(SessionNodeTest, NoAssemblerIsWaitedForWhereTheLidarGivesWholeSweeps) {
+  Rig rig = TinyRig();
+  rig.lidar.turned_scanner.reset();
+  rig.lidar.device = VelodyneDevice();
+  SessionNode node(Script(kOneView), rig, dir_ / "session", {});
+  for (const char* process : {"detector", "solver", "fuser"}) node.Handle(Ready(process));
+  EXPECT_TRUE(AdvanceTo(1, &node).empty());
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("waits for: rgbdt-lidar (not heard)"));
+  node.Handle(Ready("lidar"));
+  EXPECT_FALSE(Only<SessionCommand>(AdvanceTo(2, &node)).empty());
+}
+
 TEST_F(SessionNodeTest, APersonWhoCarriesTheBoardIsAskedUntilItStands) {
   int asked = 0;
   bool stands = false;
