@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDetectionFile = "detection.lcm";
 constexpr const char* kLeftOutFile = "left_out_views.lcm";
+constexpr const char* kEndedFile = "ended";  // report.json does not tell: others write it, too
 constexpr const char* kWayOut = "name another directory (--out)";
 
 template <typename T>
@@ -50,8 +51,8 @@ Session OpenEarlier(const fs::path& directory, const Rig& rig) {
   if (!fs::exists(directory / "rig.textproto", ignored)) {
     throw InputError(holds + ", of which rig is not known (there is no rig.textproto); " + kWayOut);
   }
-  if (fs::exists(directory / "report.json", ignored)) {
-    throw InputError(holds + " that has ended (report.json); " + kWayOut);
+  if (fs::exists(directory / kEndedFile, ignored)) {
+    throw InputError(holds + " that has ended (see the file 'ended'); " + kWayOut);
   }
   Session session = OpenSession(directory, LensNeed::kKnown);
   std::string differences;
@@ -178,6 +179,20 @@ void WriteDetection(const fs::path& directory, const ViewDetection& detection) {
 
 void WriteLeftOut(const fs::path& directory, const LeftOutViews& left_out) {
   WriteMessage(directory / kLeftOutFile, left_out);
+}
+
+void WriteEnded(const fs::path& directory) {
+  WriteFileAtomically(directory / kEndedFile, "saved; a session started again does not go on\n");
+}
+
+void RemoveTraces(const fs::path& directory) {
+  for (const char* name : {kLeftOutFile, kEndedFile}) {
+    std::error_code error;
+    fs::remove(directory / name, error);
+    if (error) {
+      throw InputError("cannot remove " + (directory / name).string() + ": " + error.message());
+    }
+  }
 }
 
 }  // namespace rgbdt

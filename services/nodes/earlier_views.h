@@ -27,8 +27,8 @@ struct EarlierViews {
 };
 
 /// Empty where the folder holds no views, or is not there. Throws InputError, with what differs,
-/// where the views are of another rig; where the session has ended (there is a report.json); and
-/// where a file cannot be read.
+/// where the views are of another rig; where the session has ended (WriteEnded); and where a
+/// file cannot be read.
 EarlierViews ReadEarlierViews(const std::filesystem::path& directory, const Rig& rig);
 
 /// "0007"
@@ -50,5 +50,12 @@ ResumePoint FindResumePoint(const SessionScript& script, const EarlierViews& vie
 /// Beside the view; whole or not at all. Throw InputError.
 void WriteDetection(const std::filesystem::path& directory, const ViewDetection& detection);
 void WriteLeftOut(const std::filesystem::path& directory, const LeftOutViews& left_out);
+
+/// The session was saved and is not to be gone on with: a file `ended`. Throws InputError.
+void WriteEnded(const std::filesystem::path& directory);
+
+/// What a session whose views are gone left beside them is not taken for a new one's. Throws
+/// InputError.
+void RemoveTraces(const std::filesystem::path& directory);
 
 }  // namespace rgbdt

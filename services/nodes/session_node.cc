@@ -121,6 +121,7 @@ Messages SessionNode::Start() {
     return {};
   }
   SetEarlierResultsAside();
+  if (earlier_.empty()) RemoveTraces(directory_);
   WriteRig(directory_, rig_);
   started_ = true;
   solver_views_.Clear();
@@ -335,6 +336,7 @@ void SessionNode::Save() {
     Fail("camera " + camera.calibration.camera + ": " + camera.calibration.StatusText());
     return;
   }
+  if (index_ + 1 == script_.steps.size()) WriteEnded(directory_);
   ReportProgress("saved to " + directory_.string(), 1);
 }
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
 #include "services/nodes/session_node.h"
@@ -95,6 +96,30 @@ TEST_F(SessionByRequestTest, FinishSavesAndEnds) {
   EXPECT_EQ(node_.failure(), "");
   EXPECT_EQ(ReadCalibration(dir_ / "session/calibration.textproto").rig_hash, TinyRig().hash);
   EXPECT_THAT(events_.back().text, HasSubstr("saved to"));
+  EXPECT_THAT(ErrorOf([&] { SessionNode(TinyRig(), dir_ / "session", {}); }),
+              HasSubstr("has ended"));
+}
+
+TEST_F(SessionByRequestTest, WhatASessionWithoutViewsLeftIsNotTakenForThisOnes) {
+  for (const char* file : {"left_out_views.lcm", "ended"}) {
+    WriteFileAtomically(dir_ / "session" / file, "of views that were removed");
+  }
+  EverybodyReady();
+  for (const char* file : {"left_out_views.lcm", "ended"}) {
+    EXPECT_FALSE(std::filesystem::exists(dir_ / "session" / file)) << file;
+  }
+}
+
+TEST_F(SessionByRequestTest, AFinishWithoutAPoseLeavesASessionThatIsGoneOnWith) {
+  world_.solved = false;
+  EverybodyReady();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  Ask(SessionRequestKind::kFinish);
+  Run();
+  EXPECT_FALSE(node_.finished());
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "session/report.json"));
+  EXPECT_NO_THROW(SessionNode(TinyRig(), dir_ / "session", {}));
 }
 
 // As on a full disk. The views stay, and once there is room finish is asked for again.

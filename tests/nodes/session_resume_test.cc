@@ -194,7 +194,9 @@ TEST_F(SessionResumeTest, WhatCannotBeReadOrHasEndedIsRefused) {
   EXPECT_THAT(Refusal(test::ManyViews(), OneCamera(), folder), HasSubstr("is of view \"0002\""));
   std::ofstream(folder / "views/0001/detection.lcm") << detection;
   EXPECT_NO_THROW(SessionNode(test::ManyViews(), OneCamera(), folder, {}));
-  std::ofstream(folder / "report.json") << "{}";
+  std::ofstream(folder / "report.json") << "{}";  // as `rgbdt calibrate` writes it
+  EXPECT_NO_THROW(SessionNode(test::ManyViews(), OneCamera(), folder, {}));
+  std::ofstream(folder / "ended") << "";
   EXPECT_THAT(Refusal(test::ManyViews(), OneCamera(), folder), HasSubstr("has ended"));
 }
 
