@@ -24,7 +24,10 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
     if (!camera.device) continue;
     add("camera-" + camera.name, "camera", {"--rig", file, "--camera", camera.name});
   }
-  if (rig.lidar.device.index() != 0) add("lidar", "lidar", {"--rig", file});
+  if (rig.lidar.device.index() != 0) {
+    add("lidar", "lidar", {"--rig", file});
+    all.back().ends = true;  // a recording does; it is not to be played again
+  }
   if (rig.lidar.turned_scanner && rig.lidar.turned_scanner->motor) {
     add("motor", "motor", {"--rig", file});
   }

@@ -86,6 +86,7 @@ std::string HowItEnded(const Program& program, int status) {
 }  // namespace
 
 Supervisor::Supervisor(std::vector<Program> programs, Tell tell) : tell_(std::move(tell)) {
+  signal(SIGCHLD, SIG_DFL);  // where it was inherited as ignored, no child could be waited for
   for (Program& program : programs) {
     children_.emplace_back();
     children_.back().program = std::move(program);

@@ -103,6 +103,15 @@ TEST_F(SupervisorTest, OneThatIsToEndIsDoneAndFailsLikeTheOthers) {
   EXPECT_THAT(told_.back(), "session: ended with exit code 0");
 }
 
+TEST_F(SupervisorTest, ItIsNoticedWhereEndsOfChildrenWereIgnored) {
+  signal(SIGCHLD, SIG_IGN);
+  Make({Shell("failing", "exit 1")});
+  const bool noticed = Until(2, kSecond);
+  signal(SIGCHLD, SIG_DFL);
+  ASSERT_TRUE(noticed);
+  EXPECT_THAT(told_.at(1), HasSubstr("failing: ended with exit code 1"));
+}
+
 TEST_F(SupervisorTest, StopEndsAllOfThem) {
   Make({Shell("a", "exec sleep 1000"), Shell("b", "exec sleep 1000")});
   ASSERT_TRUE(Until(2, kSecond));
@@ -173,6 +182,7 @@ TEST(RigPrograms, AreThoseOfItsDevicesAndTheSession) {
   EXPECT_THAT(all[7].arguments, ElementsAre("/bin/rgbdt-session", "--rig", "rig.textproto", "--out",
                                             "out", "--lcm-url", "udpm://"));
   EXPECT_TRUE(all[7].ends);
+  EXPECT_TRUE(all[1].ends) << "a recording is played once";
   EXPECT_THAT(all[8].arguments,
               ElementsAre("/bin/rgbdt-viewer", "--listen", "0.0.0.0:80", "--lcm-url", "udpm://"));
 }
