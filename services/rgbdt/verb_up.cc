@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "calib/files/schema/rig_file.h"
+#include "services/nodes/earlier_views.h"
 #include "services/rgbdt/verbs.h"
 #include "services/runtime/process.h"
 #include "services/up/up_node.h"
@@ -42,8 +43,7 @@ class Screen {
   void Tell(const std::string& line) {
     Erase();
     std::printf("%s\n", line.c_str());
-    std::fputs(table_.c_str(), stdout);
-    std::fflush(stdout);
+    Draw();
   }
   void Show(const std::string& table) {
     const std::string page = PageOf(viewer_log_);
@@ -55,11 +55,15 @@ class Screen {
     }
     Erase();
     table_ = table + (page.empty() ? "" : "page: " + page + "\n") + "Ctrl-C ends all of it\n";
-    std::fputs(table_.c_str(), stdout);
-    std::fflush(stdout);
+    Draw();
   }
 
  private:
+  // Without wrapping: a row is a line, however narrow the terminal is, and so can be erased.
+  void Draw() const {
+    if (!table_.empty()) std::printf("\x1b[?7l%s\x1b[?7h", table_.c_str());
+    std::fflush(stdout);
+  }
   void Erase() const {
     const auto lines = std::count(table_.begin(), table_.end(), '\n');
     if (lines > 0) std::printf("\x1b[%dA\x1b[J", static_cast<int>(lines));
@@ -72,6 +76,7 @@ class Screen {
 
 int RunUp(const UpFlags& flags) {
   const Rig rig = ReadRig(flags.rig);
+  ReadEarlierViews(flags.out, rig);  // what the session would refuse again and again
   UpOptions options;
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   options.rig = flags.rig;

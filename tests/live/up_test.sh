@@ -66,6 +66,14 @@ mapfile -t all < <(for process in "${processes[@]}"; do pid_of first "$process";
 stop INT first
 none_is_left "${all[@]}"
 
+echo "== a session that has ended is refused before anything is started"
+code=0
+timeout 60 "$bin/rgbdt" up "$scratch/rig.textproto" --out "$scratch/first" --listen 127.0.0.1:0 \
+  >"$scratch/refused.log" 2>&1 || code=$?
+[ "$code" = 1 ] || fail "a session that has ended: exit code $code"
+grep -q 'has ended' "$scratch/refused.log" || fail "it does not say that the session has ended"
+! grep -q started "$scratch/refused.log" || fail "something was started"
+
 echo "== killed itself, it takes all along"
 up second
 mapfile -t all < <(for process in "${processes[@]}"; do pid_of second "$process"; done)
