@@ -15,12 +15,13 @@ std::size_t ViewsOf(const Status& status) {
 }  // namespace
 
 // A STATUS may have left before the newest detection came: what counts is what was there one STATUS
-// earlier.
+// earlier; and one that still takes what it was sent counts more each time.
 bool SolverViews::LostBy(const Status& solver) {
   const std::size_t views = ViewsOf(solver);
-  const bool lost = solver.ready && views < due_;
+  const bool lost = solver.ready && views < due_ && views <= counted_;
   if (views >= detections_.size()) tries_ = 0;
   due_ = detections_.size();
+  counted_ = views;
   return lost;
 }
 

@@ -31,7 +31,8 @@ class SolverViews {
   /// The view was captured: no result is complete without it.
   void Require(const std::string& view) { required_.insert(view); }
 
-  /// Whether the solver, by its STATUS, lacks views that were there at its STATUS before.
+  /// Whether the solver, by its STATUS, lacks views that were there at its STATUS before, and does
+  /// not take more of them.
   bool LostBy(const Status& solver);
   /// Captured views that the report was made without, in words; empty: none, but for those that a
   /// person left out.
@@ -43,7 +44,8 @@ class SolverViews {
   std::map<std::string, ViewDetection> detections_;
   std::optional<LeftOutViews> left_out_;
   std::set<std::string> required_;
-  std::size_t due_ = 0;  // views that the next STATUS must count
+  std::size_t due_ = 0;      // views that the next STATUS must count
+  std::size_t counted_ = 0;  // by the STATUS before
   int tries_ = 0;
 };
 

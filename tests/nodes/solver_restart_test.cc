@@ -102,5 +102,25 @@ TEST_F(SolverRestartTest, WhatAPersonLeftOutStaysLeftOut) {
   EXPECT_NE(expected, Undisturbed());
 }
 
+TEST(SolverViews, ThoseThatItStillTakesAreNotLost) {
+  SolverViews views;
+  for (const char* view : {"0001", "0002", "0003"}) {
+    ViewDetection detection;
+    detection.view = view;
+    views.Add(detection);
+  }
+  const auto lost = [&](std::int64_t counted) {
+    Status status = test::Ready("solver");
+    status.counters = {{"views", counted}};
+    return views.LostBy(status);
+  };
+  EXPECT_FALSE(lost(0)) << "none was there at a STATUS before";
+  EXPECT_FALSE(lost(1));
+  EXPECT_FALSE(lost(2));
+  EXPECT_TRUE(lost(2)) << "the third is lost";
+  EXPECT_FALSE(lost(3));
+  EXPECT_TRUE(lost(0)) << "it was started anew";
+}
+
 }  // namespace
 }  // namespace rgbdt
