@@ -48,6 +48,10 @@ SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress pr
 
 Messages SessionNode::Handle(const Message& message) {
   Take(message);
+  if (const auto* image = std::get_if<Image>(&message)) {
+    // The clock was set back, perhaps since the views that this session goes on with.
+    if (image->utime < newest_utime_ - ViewCollector::kClockReset) newest_utime_ = image->utime;
+  }
   // Another process' health is no sensor's time.
   if (!std::holds_alternative<Status>(message)) {
     newest_utime_ = std::max(newest_utime_, UtimeOf(message));

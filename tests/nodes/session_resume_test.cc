@@ -200,6 +200,30 @@ TEST_F(SessionResumeTest, WhatCannotBeReadOrHasEndedIsRefused) {
   EXPECT_THAT(Refusal(test::ManyViews(), OneCamera(), folder), HasSubstr("has ended"));
 }
 
+// A computer without a clock of its own that was switched off: its time begins anew.
+TEST_F(SessionResumeTest, AClockThatIsBehindTheEarlierViewsIsFollowed) {
+  const fs::path folder = TwoViews();
+  SessionNode node(OneCamera(), folder, {});
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(test::Ready(process));
+  }
+  test::AdvanceTo(0, &node);
+  const auto solve = Only<SessionCommand>(test::AdvanceTo(1, &node));
+  ASSERT_EQ(solve.size(), 1U);
+  const Utime now = test::kStart - 3600 * kMicrosecondsPerSecond;
+  node.Handle(test::Blank(OneCamera().cameras[0], now));
+  SessionEvent failed;  // so that it is free again
+  failed.source = "somebody";
+  failed.command = solve[0].command;
+  failed.kind = EventKind::kFailed;
+  node.Handle(failed);
+  node.Handle(SessionRequest());
+  const auto sweep = Only<SessionCommand>(test::AdvanceTo(2, &node));
+  ASSERT_EQ(sweep.size(), 1U);
+  EXPECT_EQ(sweep[0].verb, Verb::kSweep);
+  EXPECT_EQ(sweep[0].utime, now);
+}
+
 // One that a person leads: it solves at once from what is there, and asks for the next.
 TEST_F(SessionResumeTest, APersonGoesOnWithTheNextView) {
   test::World world;
