@@ -312,7 +312,7 @@ std::string SessionNode::WhatIsMissing() const {
   const bool silent = silence > kSilence;
   return "rgbdt-" + wanted +
          (silent ? " has not been heard for " + std::to_string(silence / kMicrosecondsPerSecond) +
-                       " s, is it running? It said: "
+                       " s, is it running, or at work? It said: "
                  : " says: ") +
          found->second.text +
          (found->second.last_problem.empty() ? ""

@@ -30,16 +30,16 @@ struct SessionProgress {
 /// answering events, writes the session directory. STATUS, SESSION_EVENT, SESSION_REQUEST, CLOUD,
 /// `<CAMERA>_IMAGE`, CORNER_SELECTION, DETECTION, REPORT, LEFT_OUT_VIEWS -> RIG, SESSION_COMMAND,
 /// SESSION_EVENT (how far it is), and the DETECTIONs once more. It begins when detector, solver,
-/// fuser, the assembler of a turned scanner, and the processes of the rig file's devices are ready (STATUS). next_pose and
-/// sweep end with anybody's done, capture with the detector's and the view on disk, solve and
-/// evaluate with the solver's. save writes the report, and the calibration of the cameras that were
-/// solved; results of an earlier run in the directory are kept aside (SetResultsAside), once the
-/// session begins. A failed event, no answer in the step's time, a camera that could not be solved,
-/// or a file that cannot be written ends the session with the reason; one that a person leads
-/// publishes the reason and goes on. Each capture that a person asks for is followed by solve and
-/// evaluate, so that there always is a report. Corners that a person picks in an image of a view
-/// that is on disk are written to it, and once the detector has detected it again, a session that a
-/// person leads solves again.
+/// fuser, the assembler of a turned scanner, and the processes of the rig file's devices are ready
+/// (STATUS). next_pose and sweep end with anybody's done, capture with the detector's and the view
+/// on disk, solve and evaluate with the solver's. save writes the report, and the calibration of
+/// the cameras that were solved; results of an earlier run in the directory are kept aside
+/// (SetResultsAside), once the session begins. A failed event, no answer in the step's time, a
+/// camera that could not be solved, or a file that cannot be written ends the session with the
+/// reason; one that a person leads publishes the reason and goes on. Each capture that a person
+/// asks for is followed by solve and evaluate, so that there always is a report. Corners that a
+/// person picks in an image of a view that is on disk are written to it, and once the detector has
+/// detected it again, a session that a person leads solves again.
 ///
 /// Two sessions on one bus would erase each other's views. For as long as its identity says it
 /// listens and sends nothing but its STATUS; hears it another one, it ends with the reason, and
@@ -54,7 +54,9 @@ struct SessionProgress {
 /// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
 /// sweep and all, kMaxRetakes times at most; then it has failed. So is one for which a process was
 /// started anew (its STATUS counts from 0 again) that had a part in it, kMaxRestarts times; and
-/// what such a process was asked it is asked again. No sweep begins until everybody is ready.
+/// what such a process was asked it is asked again. No sweep begins until everybody is ready, by
+/// the newest STATUS; that of a process that is gone counts until it is back (one at work is
+/// silent, too).
 ///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS

@@ -241,7 +241,7 @@ TEST_F(SessionNodeTest, ATimeOutNamesWhoIsNotThereAnyMore) {
   Run();
   EXPECT_THAT(node_->failure(), AllOf(HasSubstr("no answer in 10 s"),
                                       HasSubstr("rgbdt-detector has not been heard for 1"),
-                                      HasSubstr("is it running? It said: fine")));
+                                      HasSubstr("is it running, or at work? It said: fine")));
 }
 
 TEST_F(SessionNodeTest, ASilentRigIsNamed) {
