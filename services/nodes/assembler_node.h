@@ -10,8 +10,8 @@
 namespace rgbdt {
 
 /// LINE_SCAN + ENCODER -> CLOUD: what leaves when, in which order lines may come, and which are
-/// refused stands in Assembler. Needs the rig first; another rig forgets the sweep at hand. Of a rig
-/// whose LIDAR gives whole sweeps it is ready and has nothing to do.
+/// refused stands in Assembler. Needs the rig first; another rig forgets the sweep at hand. Of a
+/// rig whose LIDAR gives whole sweeps it is ready and has nothing to do.
 class AssemblerNode : public Node {
  public:
   std::string name() const override { return "assembler"; }
