@@ -201,22 +201,30 @@ void LearnNoise(const MotionCovariance& found, MotionData* data) {
 
 std::string Milliseconds(double seconds) { return Text("%.3f ms", 1e3 * seconds); }
 
-// The offset over time, and what is to be said of it.
+// The offset over time, where images tell it, and what is to be said of it.
 void LookAtClock(const MotionState& state, const MotionCovariance& found, std::size_t camera,
-                 double step_s, SyncedCamera* out) {
+                 double step_s, const SyncOptions& options, SyncedCamera* out) {
   const std::vector<double>& changes = state.cameras[camera].changes_s;
-  sync::OffsetsOverTime over;
-  over.step_s = step_s;
-  over.values =
-      Eigen::Map<const Eigen::VectorXd>(changes.data(), static_cast<Eigen::Index>(changes.size()));
-  over.covariance = found.changes[camera];
-  const sync::ClockModel clock = sync::FitClock(over);
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    out->offsets.push_back(
-        {static_cast<double>(k) * step_s,
-         {state.cameras[camera].offset_s + changes[k], std::sqrt(over.covariance(i, i))}});
+  const Eigen::MatrixXd& covariance = found.changes[camera];
+  std::vector<Eigen::Index> told;
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
+    if (std::sqrt(covariance(k, k)) <= options.most_sigma_s) told.push_back(k);
   }
+  const auto count = static_cast<Eigen::Index>(told.size());
+  sync::OffsetsOverTime over{Eigen::VectorXd(count), Eigen::VectorXd(count),
+                             Eigen::MatrixXd(count, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index k = told[static_cast<std::size_t>(i)];
+    over.seconds[i] = static_cast<double>(k) * step_s;
+    over.values[i] = changes[static_cast<std::size_t>(k)];
+    for (Eigen::Index j = 0; j < count; ++j) {
+      over.covariance(i, j) = covariance(k, told[static_cast<std::size_t>(j)]);
+    }
+    out->offsets.push_back(
+        {over.seconds[i],
+         {state.cameras[camera].offset_s + over.values[i], std::sqrt(over.covariance(i, i))}});
+  }
+  const sync::ClockModel clock = sync::FitClock(over);
   if (!clock.jump && !clock.drift && !clock.wanders) return;
   out->time_offset_s.value = state.cameras[camera].offset_s + clock.mean_s;
   out->time_offset_s.sigma = std::hypot(out->time_offset_s.sigma, clock.spread_s);
@@ -266,7 +274,9 @@ void Solve(const SyncOptions& options, const std::vector<std::size_t>& indices, 
   MotionCovariance found;
   for (int round = 0; round < 3; ++round) {
     if (!sync::SolveMotion(posed->data, &posed->state)) return all_failed(no_rest);
-    found = sync::CovarianceOf(posed->data, posed->state);
+    const auto covariance = sync::CovarianceOf(posed->data, posed->state);
+    if (!covariance) return all_failed("images and sweeps do not tell the board's way everywhere");
+    found = *covariance;
     if (found.sweeps < 10) {
       return all_failed(std::to_string(found.sweeps) +
                         " sweeps show the board where the images have it; 10 are the least");
@@ -292,11 +302,12 @@ void Solve(const SyncOptions& options, const std::vector<std::size_t>& indices, 
   posed->data.clock_step_s = seconds / static_cast<double>(places - 1);
   for (CameraState& camera : changing.cameras) camera.changes_s.assign(places, 0.0);
   if (!sync::SolveMotion(posed->data, &changing)) return;
-  const MotionCovariance over_time = sync::CovarianceOf(posed->data, changing);
+  const auto over_time = sync::CovarianceOf(posed->data, changing);
+  if (!over_time) return;
   for (std::size_t c = 0; c < indices.size(); ++c) {
     SyncedCamera& out = result->cameras[indices[c]];
     if (out.why_not.empty()) {
-      LookAtClock(changing, over_time, c, posed->data.clock_step_s, &out);
+      LookAtClock(changing, *over_time, c, posed->data.clock_step_s, options, &out);
     }
   }
 }

@@ -58,7 +58,7 @@ struct SyncOptions {
   double most_offset_s = 1;     ///< offsets are looked for within this, either way
   double margin_m = 0.04;       ///< points nearer to the board's outline are not used
   double least_speed = 0.1;     ///< [m/s or rad/s] RMS; a board that moves less tells nothing
-  double most_sigma_s = 0.005;  ///< an offset that is known worse is not given
+  double most_sigma_s = 0.005;  ///< an offset that is known worse is not given, at no time
   double clock_step_s = 1;      ///< between places at which a changing offset is looked at
   double most_gap_s = 0.25;     ///< nothing is used across a longer gap between images
 

@@ -40,8 +40,7 @@ ClockModel FitClock(const OffsetsOverTime& offsets) {
   if (count < 4) return clock;
 
   Eigen::MatrixXd line(count, 2);
-  line << ones,
-      Eigen::VectorXd::LinSpaced(count, 0, static_cast<double>(count - 1)) * offsets.step_s;
+  line << ones, offsets.seconds;
   const Fitted straight = Fit(offsets, inverse, line);
   // A step, the place nearest to it free, as it may have been half there.
   std::optional<Fitted> step;
@@ -65,7 +64,7 @@ ClockModel FitClock(const OffsetsOverTime& offsets) {
     return constant.chi2 - by < std::max(of_chance, 0.5 * constant.chi2);
   };
   if (by_step > kBeyondChance + 10 && by_step > by_line + 10 && explains(by_step)) {
-    clock.jump = {static_cast<double>(at) * offsets.step_s,
+    clock.jump = {offsets.seconds[at],
                   {step->numbers[1], std::sqrt(step->covariance(1, 1))}};
   } else if (by_line > kBeyondChance && explains(by_line)) {
     clock.drift = {straight.numbers[1], std::sqrt(straight.covariance(1, 1))};

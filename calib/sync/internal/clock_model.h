@@ -8,16 +8,16 @@
 
 namespace rgbdt::sync {
 
-/// An offset at even steps of time, as measured.
+/// An offset over time, as measured.
 struct OffsetsOverTime {
-  double step_s = 1;
+  Eigen::VectorXd seconds;     ///< rising
   Eigen::VectorXd values;      ///< [s]
   Eigen::MatrixXd covariance;  ///< [s^2]
 };
 
 /// What the offsets look like, beyond chance.
 struct ClockModel {
-  double mean_s = 0;              ///< over all steps
+  double mean_s = 0;              ///< over all times
   double spread_s = 0;            ///< RMS of the values about it, beyond their noise
   std::optional<Estimate> drift;  ///< [s/s]
   struct Jump {

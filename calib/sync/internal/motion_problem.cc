@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <stdexcept>
 
 namespace rgbdt::sync {
 namespace {
@@ -23,6 +22,10 @@ constexpr double kJerk = 100;      // [m/s^3]
 constexpr double kTurnJerk = 200;  // [rad/s^3]
 // A read-out is known to be less than some times this before anything is measured [s].
 constexpr double kRollingSigma = 0.2;
+// An offset's change from one place of a changing clock to the next [s], and that of its first
+// place: only what holds places that no image reaches.
+constexpr double kChangeSigma = 0.05;
+constexpr double kFirstChangeSigma = 1;
 constexpr int kMostRounds = 25;
 constexpr double kAtRest = 2e-6;  // [s] that offsets and read-outs move by
 // Of an image's or sweep's dozen of residuals together: beyond this [sigma] it counts less, but
@@ -171,13 +174,24 @@ struct ScalarPrior {
   }
 };
 
+// Two of a clock's places in a row.
+struct ChangePrior {
+  double difference = 0, sigma = 1;  // of the unknowns at zero
+
+  template <typename T>
+  bool operator()(const T* from, const T* to, T* residuals) const {
+    residuals[0] = (T(difference) + to[0] - from[0]) / sigma;
+    return true;
+  }
+};
+
 /// The problem about a state: unknowns are what is to be added to it.
 class Problem {
  public:
   Problem(const MotionData& data, const MotionState& state);
 
   bool Step(MotionState* state, double* moved_s);
-  MotionCovariance Covariance();
+  std::optional<MotionCovariance> Covariance();
 
  private:
   struct CameraUnknowns {
@@ -189,6 +203,7 @@ class Problem {
   void AddWay();
   void AddImages(std::size_t camera);
   void AddSweeps();
+  void AddChangePriors(const std::vector<double>& now, std::vector<double>* changes);
   void AddPriors();
   bool SeenAt(double seconds) const;
 
@@ -325,6 +340,17 @@ void Problem::AddSweeps() {
   }
 }
 
+void Problem::AddChangePriors(const std::vector<double>& now, std::vector<double>* changes) {
+  problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<ScalarPrior, 1, 1>(
+                                new ScalarPrior{now[0], kFirstChangeSigma}),
+                            nullptr, changes->data());
+  for (std::size_t k = 0; k + 1 < now.size(); ++k) {
+    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<ChangePrior, 1, 1, 1>(
+                                  new ChangePrior{now[k + 1] - now[k], kChangeSigma}),
+                              nullptr, &(*changes)[k], &(*changes)[k + 1]);
+  }
+}
+
 void Problem::AddPriors() {
   for (std::size_t index = 0; index < cameras_.size(); ++index) {
     const CameraData& data = data_.cameras[index];
@@ -332,6 +358,7 @@ void Problem::AddPriors() {
     problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<ScalarPrior, 1, 1>(
                                   new ScalarPrior{state.rolling_s, kRollingSigma}),
                               nullptr, &cameras_[index].rolling);
+    if (data_.clocks_change) AddChangePriors(state.changes_s, &cameras_[index].changes);
     if (!data.prior_pose) continue;
     if (data.prior_covariance.isZero()) {
       problem_.SetParameterBlockConstant(cameras_[index].pose.data());
@@ -387,7 +414,7 @@ bool Problem::Step(MotionState* state, double* moved_s) {
   return true;
 }
 
-MotionCovariance Problem::Covariance() {
+std::optional<MotionCovariance> Problem::Covariance() {
   using Sparse = Eigen::SparseMatrix<double>;
   // In this order: the knots, then all that is asked for.
   std::vector<double*> blocks;
@@ -433,8 +460,8 @@ MotionCovariance Problem::Covariance() {
   const Sparse jacobian = jacobian_of({}, nullptr);
   const Sparse hessian = jacobian.transpose() * jacobian;
   const Eigen::SimplicialLDLT<Sparse> factor(hessian);
-  if (factor.info() != Eigen::Success) {
-    throw std::runtime_error("the motion's normal equations are singular");
+  if (factor.info() != Eigen::Success || !(factor.vectorD().array() > 0).all()) {
+    return std::nullopt;
   }
   const Eigen::Index globals = columns - first_global;
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(columns, globals);
@@ -547,7 +574,7 @@ bool SolveMotion(const MotionData& data, MotionState* state) {
   return false;
 }
 
-MotionCovariance CovarianceOf(const MotionData& data, const MotionState& state) {
+std::optional<MotionCovariance> CovarianceOf(const MotionData& data, const MotionState& state) {
   return Problem(data, state).Covariance();
 }
 

@@ -78,7 +78,7 @@ Trajectory FirstWay(const std::vector<PosedImage>& images, const CameraState& ca
 /// each. False: it did not come to rest.
 bool SolveMotion(const MotionData& data, MotionState* state);
 
-/// At the solved state.
-MotionCovariance CovarianceOf(const MotionData& data, const MotionState& state);
+/// At the solved state. Nothing: the normal equations are singular.
+std::optional<MotionCovariance> CovarianceOf(const MotionData& data, const MotionState& state);
 
 }  // namespace rgbdt::sync

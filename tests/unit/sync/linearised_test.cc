@@ -124,7 +124,8 @@ TEST(LineariseSweepTest, FindsWhatAPlaneTells) {
 
 OffsetsOverTime Offsets(const std::vector<double>& values, double sigma) {
   const auto count = static_cast<Eigen::Index>(values.size());
-  return {2, Eigen::Map<const Eigen::VectorXd>(values.data(), count),
+  return {Eigen::VectorXd::LinSpaced(count, 0, 2 * static_cast<double>(count - 1)),
+          Eigen::Map<const Eigen::VectorXd>(values.data(), count),
           Eigen::MatrixXd::Identity(count, count) * sigma * sigma};
 }
 
@@ -140,6 +141,10 @@ TEST(ClockModelTest, TellsAJumpFromADrift) {
   EXPECT_NEAR(jumps.jump->seconds, 7, 1.1);
   EXPECT_NEAR(jumps.jump->by_s.value, 2e-3, 1e-4);
   EXPECT_FALSE(jumps.drift);
+  OffsetsOverTime gap = Offsets({0, 4e-4, 1.6e-3, 2e-3}, 1e-4);  // as above, less two of them
+  gap.seconds << 0, 2, 8, 10;
+  ASSERT_TRUE(FitClock(gap).drift);
+  EXPECT_NEAR(FitClock(gap).drift->value, 2e-4, 1e-9);
   EXPECT_TRUE(FitClock(Offsets({0, 2e-3, 0, 2e-3, 0, 2e-3, 0, 2e-3}, 1e-4)).wanders);
 }
 

@@ -1,5 +1,6 @@
 #include "calib/sync/sync.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/model/errors.h"
@@ -91,6 +92,28 @@ TEST(SyncTest, ABoardThatHardlyMovesTellsNothing) {
   scene.wave.turn_rad.setConstant(0.003);
   const SyncedCamera camera = SolveNearTruth(scene).cameras[0];
   EXPECT_THAT(camera.why_not, testing::HasSubstr("hardly moves"));
+}
+
+TEST(SyncTest, ABoardThatOneCameraDoesNotSeeAtFirstLosesNothing) {
+  WavedScene scene = Short(study::TwoCameras(20));
+  scene.clocks[kThermal].offset_s = 0.2;
+  Truth truth;
+  WavedBoard board = study::SampleWavedBoard(scene, &truth);
+  study::BeginNearTruth(truth, 0.01, 0.02, &board);
+  std::vector<WavedImage>& images = board.cameras[kThermal].images;
+  const Utime from = scene.wave.start + FromSeconds(3);
+  images.erase(std::remove_if(images.begin(), images.end(),
+                              [&](const WavedImage& image) { return image.utime < from; }),
+               images.end());
+  const SyncResult result = Synchronise(board);
+  for (const std::size_t i : {kColor, kThermal}) {
+    EXPECT_EQ(result.cameras[i].why_not, "");
+    ExpectNear(result.cameras[i].time_offset_s, scene.clocks[i].offset_s, 1e-3);
+    ASSERT_FALSE(result.cameras[i].offsets.empty());
+  }
+  // What no image tells is not given.
+  EXPECT_LT(result.cameras[kColor].offsets.front().seconds, 0.5);
+  EXPECT_GT(result.cameras[kThermal].offsets.front().seconds, 1.5);
 }
 
 TEST(SyncTest, AFrameThatIsRepeatedCountsOnce) {
