@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "calib/camera/camera.h"
@@ -23,6 +24,8 @@ using sync::MotionState;
 using sync::PosedImage;
 
 constexpr std::size_t kLeastImages = 20;
+constexpr double kMostSeconds = 600;  // of the way
+constexpr double kBeyondImages = 1;   // [s] that the way goes on where no image shows the board
 constexpr double kLeastRanges = 4;  // sigma of a range: the gate about the board
 
 std::string Text(const char* format, double a, double b = 0, double c = 0) {
@@ -99,20 +102,38 @@ std::optional<Entrant> Enter(const WavedBoard& input, std::size_t index, const S
   return entrant;
 }
 
-Utime FirstOf(const std::vector<WavedSweep>& sweeps) {
-  Utime first = std::numeric_limits<Utime>::max();
-  for (const WavedSweep& sweep : sweeps) {
-    if (!sweep.utime.empty()) first = std::min(first, sweep.utime.front());
-  }
-  return first;
-}
+// By the LIDAR's clock.
+struct Span {
+  Utime from = std::numeric_limits<Utime>::max();
+  Utime to = std::numeric_limits<Utime>::min();
 
-Utime LastOf(const std::vector<WavedSweep>& sweeps) {
-  Utime last = 0;
-  for (const WavedSweep& sweep : sweeps) {
-    if (!sweep.utime.empty()) last = std::max(last, sweep.utime.back());
+  void Add(Utime first, Utime last) {
+    from = std::min(from, first);
+    to = std::max(to, last);
   }
-  return last;
+};
+
+// Where there are both images of the board and sweeps. A clock that was set in the log, or a pause,
+// must not stretch the way over years.
+Span SpanOf(const std::vector<WavedSweep>& sweeps, const std::vector<Entrant>& entrants) {
+  Span of_sweeps;
+  for (const WavedSweep& sweep : sweeps) {
+    if (!sweep.utime.empty()) of_sweeps.Add(sweep.utime.front(), sweep.utime.back());
+  }
+  Span of_images;
+  for (const Entrant& entrant : entrants) {
+    const std::vector<PosedImage>& images = entrant.data.images;
+    of_images.Add(images.front().utime + FromSeconds(entrant.state.offset_s - kBeyondImages),
+                  images.back().utime + FromSeconds(entrant.state.offset_s + kBeyondImages));
+  }
+  const Span span{std::max(of_sweeps.from, of_images.from), std::min(of_sweeps.to, of_images.to)};
+  const double seconds = ToSeconds(span.to - span.from);
+  if (!(seconds > 0 && seconds <= kMostSeconds)) {
+    throw InputError(Text("images of the board and sweeps go on together for %.0f s; expected at "
+                          "most %.0f s: cut the log, and were clocks set while it was recorded?",
+                          seconds, kMostSeconds));
+  }
+  return span;
 }
 
 // The camera that has most to tell of the way.
@@ -142,8 +163,7 @@ void AlignHalfTurns(const sync::Trajectory& way, const MotionState& state,
     int told = 0;
     for (const PosedImage& image : data.images) {
       const double seconds = state.SecondsOf(c, image, 1);
-      if (seconds < 0 || seconds > (static_cast<double>(way.knots.size()) - 4) * way.step_s)
-        continue;
+      if (seconds < 0 || seconds > way.Length()) continue;
       turned += RotationDistance(lidar_from_camera * image.camera_from_target, way.At(seconds)) >
                         0.5 * M_PI
                     ? 1
@@ -162,11 +182,11 @@ struct Posed {
 
 Posed Begin(const WavedBoard& input, const SyncOptions& options, std::vector<Entrant> entrants) {
   Posed begun;
-  const Utime start = FirstOf(input.sweeps);
+  const Span span = SpanOf(input.sweeps, entrants);
   const Entrant& leader = entrants[Busiest(entrants)];
   const double step = std::clamp(TypicalPeriod(leader.data.images), 0.05, 0.1);
-  begun.state.way = sync::FirstWay(leader.data.images, leader.state, start, step,
-                                   ToSeconds(LastOf(input.sweeps) - start));
+  begun.state.way = sync::FirstWay(leader.data.images, leader.state, span.from, step,
+                                   ToSeconds(span.to - span.from));
   for (const Entrant& entrant : entrants) begun.state.cameras.push_back(entrant.state);
   AlignHalfTurns(begun.state.way, begun.state, &entrants);
   begun.data.target = input.target;
@@ -233,7 +253,7 @@ void LookAtClock(const MotionState& state, const MotionCovariance& found, std::s
   const std::string remedy = "; without PTP or a common trigger the offset holds for this log only";
   if (clock.jump) {
     out->warnings.push_back("the clock jumps by " + Milliseconds(clock.jump->by_s.value) +
-                            Text(" about %.0f s after the first sweep", clock.jump->seconds) +
+                            Text(" about %.0f s after the first sweep used", clock.jump->seconds) +
                             remedy);
   } else if (clock.drift) {
     out->warnings.push_back(Text("the clock drifts by %.0f +- %.0f us/s", 1e6 * clock.drift->value,
@@ -286,6 +306,7 @@ void Solve(const SyncOptions& options, const std::vector<std::size_t>& indices, 
   for (std::size_t c = 0; c < indices.size(); ++c) {
     Report(*posed, found, c, options, &result->cameras[indices[c]]);
   }
+  result->start = posed->state.way.start;
   result->sweeps = found.sweeps;
   result->seconds = found.last_s - found.first_s;
   result->plane_rms_m = posed->data.on_board.sigma_m;

@@ -68,7 +68,7 @@ struct SyncOptions {
 
 /// The offset at one time.
 struct OffsetAt {
-  double seconds = 0;  ///< since the first sweep's first point, by the LIDAR's clock
+  double seconds = 0;  ///< since SyncResult::start
   Estimate offset_s;
 };
 
@@ -94,6 +94,9 @@ struct SyncedCamera {
 
 struct SyncResult {
   std::vector<SyncedCamera> cameras;
+  /// Where times begin, by the LIDAR's clock: the first sweep's first point, or a second before the
+  /// first image of the board where that is later. 0: nothing was solved.
+  Utime start = 0;
   int sweeps = 0;                          ///< with the board
   double seconds = 0;                      ///< from the first to the last of these
   double speed = 0, turn_speed = 0;        ///< of the board, RMS [m/s, rad/s]
@@ -106,8 +109,9 @@ struct SyncResult {
 /// B-spline (R^3 x SO(3), a knot every 50 to 100 ms); corners lie on it at the times of their rows,
 /// points at their beams' times; each camera's offset, read-out and pose, and the range offset are
 /// solved for with it (README.md). No guess of an offset is needed. A camera that does not tell has
-/// the reason in `why_not`; the others are given without it. Throws InputError for input that makes
-/// no sense.
+/// the reason in `why_not`; the others are given without it. What lies more than a second before the
+/// first image of the board or after the last is not used. Throws InputError for input that makes no
+/// sense, or whose images and sweeps go on together for more than 600 s.
 SyncResult Synchronise(const WavedBoard& input, const SyncOptions& options = {});
 
 /// What an offset does that nobody takes out, in words with pixels: at 1 m/s across, 3 m away, and

@@ -42,8 +42,8 @@ double HuberOf(std::vector<double> norms) { return std::max(kHuber, 3 * Median(s
 
 // Between which two places of the clock a time lies, and how far beyond the first.
 std::pair<int, double> ClockPlace(double seconds, double step_s, std::size_t places) {
-  const int from = std::clamp(static_cast<int>(std::floor(seconds / step_s)), 0,
-                              std::max(0, static_cast<int>(places) - 2));
+  const int from = static_cast<int>(std::clamp(std::floor(seconds / step_s), 0.0,
+                                               std::max(0.0, static_cast<double>(places) - 2)));
   return {from, std::clamp(seconds / step_s - from, 0.0, 1.0)};
 }
 

@@ -103,10 +103,12 @@ struct Trajectory {
   double step_s = 0.05;
   std::vector<Rigid3> knots;  ///< knot i stands for start + (i - 1) * step_s
 
+  /// The last time that it tells [s since start].
+  double Length() const { return (static_cast<double>(knots.size()) - 3) * step_s; }
   /// Of a time [s since start]: the first of its four knots, and how far it is beyond the second.
   int Segment(double seconds) const {
-    return std::clamp(static_cast<int>(std::floor(seconds / step_s)), 0,
-                      static_cast<int>(knots.size()) - 4);
+    return static_cast<int>(std::clamp(std::floor(seconds / step_s), 0.0,
+                                       static_cast<double>(knots.size()) - 4));
   }
   double Within(double seconds, int segment) const { return seconds / step_s - segment; }
   std::array<Rigid3, 4> KnotsOf(int segment) const {

@@ -40,7 +40,10 @@ std::vector<WavedSweep> AboutBoard(const std::vector<WavedSweep>& sweeps, const 
   const double radius = 0.5 * std::hypot(target.width_m, target.height_m) + 0.5;
   std::vector<WavedSweep> about;
   for (const WavedSweep& sweep : sweeps) {
-    if (sweep.points.empty()) continue;
+    if (sweep.points.empty() || sweep.utime.front() < way.start ||
+        ToSeconds(sweep.utime.back() - way.start) > way.Length()) {
+      continue;
+    }
     const Utime middle = (sweep.utime.front() + sweep.utime.back()) / 2;
     const Eigen::Vector3d centre = way.At(ToSeconds(middle - way.start)).translation;
     const double least = std::cos(std::atan2(radius, centre.norm()));

@@ -168,6 +168,40 @@ TEST(SyncTest, AnOffsetBeyondTheSearchIsNotMadeUp) {
   EXPECT_NE(camera.why_not, "");
 }
 
+TEST(SyncTest, ALidarWhoseClockWasSetInTheLogIsUsedFromThenOn) {
+  WavedScene scene = Short(study::ColorCamera(21));
+  scene.clocks[0].offset_s = 0.1;
+  Truth truth;
+  WavedBoard board = study::SampleWavedBoard(scene, &truth);
+  study::BeginNearTruth(truth, 0.01, 0.02, &board);
+  for (std::size_t i = 0; i < 10; ++i) {
+    for (Utime& utime : board.sweeps[i].utime) utime -= scene.wave.start;  // from 1970
+  }
+  const SyncResult result = Synchronise(board);
+  EXPECT_EQ(result.cameras[0].why_not, "");
+  ExpectNear(result.cameras[0].time_offset_s, 0.1, 5e-4);
+  EXPECT_GT(result.sweeps, 70);
+  EXPECT_LT(result.seconds, 10);
+  EXPECT_GE(result.start, scene.wave.start - kMicrosecondsPerSecond);
+}
+
+TEST(SyncTest, AnHoursPauseIsRefused) {
+  WavedScene scene = Short(study::ColorCamera(22));
+  scene.seconds = 4;
+  Truth truth;
+  WavedBoard board = study::SampleWavedBoard(scene, &truth);
+  study::BeginNearTruth(truth, 0.01, 0.02, &board);
+  const Utime pause = 3600 * kMicrosecondsPerSecond;
+  board.cameras[0].images.back().utime += pause;
+  for (Utime& utime : board.sweeps.back().utime) utime += pause;
+  try {
+    Synchronise(board);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("for 3604 s; expected at most 600 s"));
+  }
+}
+
 TEST(SyncTest, OneCameraThatFailsLeavesTheOthers) {
   WavedScene scene = Short(study::TwoCameras(19));
   Truth truth;
