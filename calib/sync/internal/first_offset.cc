@@ -310,8 +310,6 @@ FirstOffset FindFirstOffset(const CameraTrack& track, const std::vector<WavedSwe
                             const Target& target, const std::optional<Rigid3>& camera_from_lidar,
                             const SyncOptions& options) {
   FirstOffset first;
-  double from = -options.most_offset_s;
-  double to = options.most_offset_s;
   std::optional<Rigid3> pose = camera_from_lidar;
   if (!pose) {
     const std::vector<Moved> moves = MovesOf(sweeps);
@@ -328,27 +326,26 @@ FirstOffset FindFirstOffset(const CameraTrack& track, const std::vector<WavedSwe
           "right?";
       return first;
     }
-    from = std::max(from, by_moves->offset_s - 0.15);
-    to = std::min(to, by_moves->offset_s + 0.15);
   }
   const std::vector<SomePoints> points =
       Choose(sweeps, track, target, pose->Inverse(), options.most_offset_s);
-  auto best = SearchByPoints(points, track, target, *pose, from, to, kCoarse);
+  auto best = SearchByPoints(points, track, target, *pose, -options.most_offset_s,
+                             options.most_offset_s, kCoarse);
   if (!best) {
     first.why_not = "too few sweeps (" + std::to_string(points.size()) + " of " +
                     std::to_string(sweeps.size()) +
                     ") see the board at the images' times; wave it where both see it";
     return first;
   }
-  const bool at_end = best->at_end && (best->offset_s < -options.most_offset_s + 0.5 * kCoarse ||
-                                       best->offset_s > options.most_offset_s - 0.5 * kCoarse);
+  const bool at_end =
+      best->at_end && std::abs(best->offset_s) > options.most_offset_s - 0.5 * kCoarse;
   if (at_end || best->misfit > 0.5) {
     first.why_not = "at no offset within " + Milliseconds(options.most_offset_s) +
                     " the sweeps' points lie on the board where the images have it" +
                     (camera_from_lidar ? "; is the calibration this rig's?" : "");
     return first;
   }
-  if (camera_from_lidar && best->elsewhere < 1.1 * best->misfit) {
+  if (best->elsewhere < 1.1 * best->misfit) {
     first.why_not = "more than one offset fits alike; wave the board faster, and not evenly";
     return first;
   }

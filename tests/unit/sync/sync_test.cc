@@ -74,6 +74,16 @@ TEST(SyncTest, NeedsNoPoseToBeginFrom) {
   EXPECT_LT(off.dot(camera.covariance.ldlt().solve(off)), 25);  // 6 numbers; once in 3000
 }
 
+TEST(SyncTest, EvenWavingDoesNotTellWithoutAPose) {
+  WavedScene scene = Short(study::ColorCamera(23));
+  scene.clocks[0].offset_s = 0.5;
+  scene.wave.slowest_hz = scene.wave.fastest_hz = 0.8;  // as after 1.25 s: at -0.75 s, too
+  WavedBoard board = study::SampleWavedBoard(scene, nullptr);
+  study::AddSweepBoards(scene, &board);
+  const SyncedCamera camera = Synchronise(board).cameras[0];
+  EXPECT_THAT(camera.why_not, testing::HasSubstr("more than one offset fits alike"));
+}
+
 TEST(SyncTest, APoseThatIsKnownStays) {
   WavedScene scene = Short(study::ColorCamera(13));
   Truth truth;
