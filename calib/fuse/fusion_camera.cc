@@ -57,6 +57,10 @@ void FusionCamera::AddImage(PreparedImage image) {
   if (images_.size() > kMaxImages) images_.pop_front();
 }
 
+Utime FusionCamera::ServesFrom(const PreparedImage& image) const {
+  return image.utime + std::max<Utime>(0, offset_) + readout_;
+}
+
 Serving FusionCamera::ServingAt(Utime point_utime) const {
   Serving serving;
   if (images_.empty()) return serving;
@@ -65,7 +69,7 @@ Serving FusionCamera::ServingAt(Utime point_utime) const {
     return serving;
   }
   for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
-    const Utime from = TakenAt(*image) + readout_;
+    const Utime from = ServesFrom(*image);
     if (from > point_utime) {
       serving.until = from;
       continue;
@@ -84,7 +88,7 @@ Serving FusionCamera::ServingAt(Utime point_utime) const {
 }
 
 void FusionCamera::ForgetBefore(Utime utime) {
-  while (images_.size() > 1 && TakenAt(images_[1]) + readout_ <= utime) images_.pop_front();
+  while (images_.size() > 1 && ServesFrom(images_[1]) <= utime) images_.pop_front();
 }
 
 }  // namespace rgbdt

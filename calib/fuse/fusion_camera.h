@@ -46,8 +46,9 @@ class FusionCamera {
   /// The LIDAR's time of an image's middle row: its utime and what the calibration's timing says.
   Utime TakenAt(const PreparedImage& image) const { return image.utime + offset_; }
 
-  /// An image serves a point when it is the newest whose TakenAt + readout_s is not after the
-  /// point's time, and not more than kMaxAge before it.
+  /// An image serves a point when it is the newest whose TakenAt + readout_s, and utime +
+  /// readout_s, is not after the point's time, and whose TakenAt is not more than kMaxAge before
+  /// it: a camera whose utime is late does not have its image earlier.
   Serving ServingAt(Utime point_utime) const;
 
   /// All points are served by the newest image, whatever their times: for files, where a view's
@@ -72,6 +73,8 @@ class FusionCamera {
   std::optional<RangeErrors> range_errors;  ///< of the LIDAR, as the calibration has them
 
  private:
+  Utime ServesFrom(const PreparedImage& image) const;
+
   CameraSpec spec_;
   Lens given_;  // by the rig
   double given_rolling_s_ = 0;

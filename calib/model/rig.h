@@ -37,7 +37,9 @@ struct CameraSpec {
   Lens lens;
   std::optional<LensUncertainty> lens_uncertainty;  ///< absent: as is usual of published lenses
   Radiometry radiometry;                            ///< thermal; used where an image brings none
-  double readout_s = 0;  ///< D: read-out and transfer time; an image serves points from utime + D
+  /// D: read-out and transfer time; an image serves points from utime + D (+ the calibration's time
+  /// offset, where that is above 0).
+  double readout_s = 0;
   /// Rolling read-out: from the first row's exposure to the last one's; the image's utime is that
   /// of the middle row. 0: all rows at once.
   double rolling_s = 0;

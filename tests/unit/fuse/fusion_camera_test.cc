@@ -56,6 +56,19 @@ TEST_F(ServingTest, ATimeOffsetMovesWhatAnImageServes) {
   EXPECT_EQ(camera_.spec().rolling_s, 0);
 }
 
+TEST_F(ServingTest, AnImageWhoseTimeIsLateServesNothingBeforeItIsThere) {
+  camera_.AddImage(At(1'000'000));
+  camera_.AddImage(At(1'500'000));
+  CameraCalibration calibration;
+  calibration.timing = CameraTiming{{-0.2, 1e-4}, {0, 1e-5}};
+  camera_.SetCalibration(calibration, 1);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout - 1), 1'000'000);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
+  EXPECT_EQ(camera_.TakenAt(*camera_.ServingAt(1'600'000).image), 1'300'000);
+  camera_.ForgetBefore(1'500'000 + kReadout - 1);
+  EXPECT_EQ(ServedBy(camera_, 1'500'000), 1'000'000);
+}
+
 TEST_F(ServingTest, AnImageServesNoLongerThanItsMaximumAge) {
   camera_.AddImage(At(1'000'000));
   EXPECT_EQ(ServedBy(camera_, 1'000'000 + FusionCamera::kMaxAge), 1'000'000);
