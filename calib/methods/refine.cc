@@ -137,7 +137,9 @@ CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& v
   report.solve_s = watch.Seconds();
   report.scene = CheckOf(spec, shots, found, *pose, options.natural);
   CameraCalibration& result = report.calibration;
-  if (given != nullptr) {  // which belong to the pose, as long as nothing else was found
+  if (given != nullptr) {
+    result.timing = given->timing;
+    // Which belong to the pose, as long as nothing else was found.
     result.lens = given->lens;
     result.range_errors = given->range_errors;
   }

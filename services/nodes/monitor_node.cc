@@ -31,12 +31,9 @@ Messages MonitorNode::Handle(const Message& message) {
   if (const auto* chunk = std::get_if<CloudChunk>(&message)) return OnChunk(*chunk);
   if (const auto* image = std::get_if<Image>(&message)) {
     CheckImage(rig_->Camera(image->camera), *image);
-    Image taken = *image;
     const auto watch = watches_.find(image->camera);
-    if (watch != watches_.end() && watch->second.calibration()->timing) {
-      taken.utime += watch->second.calibration()->timing->Offset();
-    }
-    shots_.Add(taken);
+    shots_.Add(*image,
+               watch != watches_.end() ? watch->second.calibration()->timing : std::nullopt);
   } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {
     OnCalibration(*calibration);
   } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
@@ -89,12 +86,13 @@ Messages MonitorNode::Look(const Cloud& sweep) {
   ++looks_;
   Messages said;
   for (auto& [camera, watch] : watches_) {
-    const std::optional<TakenShot> shot =
+    std::optional<TakenShot> shot =
         shots_.ShotOf(sweep, watch.spec(), watch.calibration()->camera_from_lidar);
     if (!shot) {
       ++without_image_;
       continue;
     }
+    shot->image.utime = shot->taken;
     const MountCheck check =
         watch.Add({std::to_string(sweep.sweep_utime), &shot->cloud, &shot->image});
     const auto before = newest_.find(camera);

@@ -41,21 +41,22 @@ Utime Apart(Utime a, Utime b) { return a < b ? b - a : a - b; }
 
 }  // namespace
 
-void ShotCollector::Add(const Image& image) {
+void ShotCollector::Add(const Image& image, const std::optional<CameraTiming>& timing) {
   if (image.shutter_correcting) return;
-  std::deque<Image>& images = images_[image.camera];
-  if (!images.empty() && image.utime < images.back().utime - kClockReset) images.clear();
+  const Utime taken = image.utime + (timing ? timing->Offset() : 0);
+  std::deque<TimedImage>& images = images_[image.camera];
+  if (!images.empty() && taken < images.back().taken - kClockReset) images.clear();
   const auto later =
-      std::upper_bound(images.begin(), images.end(), image.utime,
-                       [](Utime utime, const Image& other) { return utime < other.utime; });
-  images.insert(later, image);
+      std::upper_bound(images.begin(), images.end(), taken,
+                       [](Utime utime, const TimedImage& other) { return utime < other.taken; });
+  images.insert(later, {image, taken});
   if (images.size() <= kKept) return;
   // Of those from while a long sweep goes on, every second one of the older half.
   for (std::size_t i = 1; i < images.size() / 2; ++i) {
     images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  const Utime newest = images.back().utime;
-  while (images.front().utime < newest - PoseTrack::kKept) images.pop_front();
+  const Utime newest = images.back().taken;
+  while (images.front().taken < newest - PoseTrack::kKept) images.pop_front();
 }
 
 bool ShotCollector::Add(CloudChunk chunk) {
@@ -70,15 +71,16 @@ std::optional<TakenShot> ShotCollector::ShotOf(const Cloud& sweep, const CameraS
   const auto found = images_.find(camera.name);
   if (found == images_.end()) return std::nullopt;
   const Utime seen = WhenSeen(sweep, camera, camera_from_lidar);
-  const auto nearest = std::min_element(
-      found->second.begin(), found->second.end(),
-      [&](const Image& a, const Image& b) { return Apart(a.utime, seen) < Apart(b.utime, seen); });
-  if (nearest == found->second.end() || FromSweep(sweep, nearest->utime) > kFarthest) {
+  const auto nearest = std::min_element(found->second.begin(), found->second.end(),
+                                        [&](const TimedImage& a, const TimedImage& b) {
+                                          return Apart(a.taken, seen) < Apart(b.taken, seen);
+                                        });
+  if (nearest == found->second.end() || FromSweep(sweep, nearest->taken) > kFarthest) {
     return std::nullopt;
   }
-  std::optional<Cloud> still = AsSeenAt(sweep, poses_, nearest->utime);
+  std::optional<Cloud> still = AsSeenAt(sweep, poses_, nearest->taken);
   if (!still) return std::nullopt;
-  return TakenShot{std::move(*still), *nearest};
+  return TakenShot{std::move(*still), nearest->image, nearest->taken};
 }
 
 }  // namespace rgbdt

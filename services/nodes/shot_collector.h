@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "calib/model/calibration.h"
 #include "calib/model/image.h"
 #include "calib/model/pose_track.h"
 #include "calib/model/rig.h"
@@ -18,6 +19,7 @@ namespace rgbdt {
 struct TakenShot {
   Cloud cloud;
   Image image;
+  Utime taken = 0;  ///< the LIDAR's time of the image
 };
 
 /// Sweeps and images of a rig that drives, put together as they come, without a capture. To a sweep
@@ -33,7 +35,8 @@ class ShotCollector {
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   static constexpr Utime kFarthest = 3 * kMicrosecondsPerSecond;  ///< before a sweep or after it
 
-  void Add(const Image& image);
+  /// `timing`: what the camera's calibration says of its clock.
+  void Add(const Image& image, const std::optional<CameraTiming>& timing);
   PoseTrack::Added Add(const StampedPose& pose) { return poses_.Add(pose); }
   /// Throws InputError for a chunk that cannot be joined to those of its sweep. True: it ends its
   /// sweep.
@@ -45,7 +48,11 @@ class ShotCollector {
                                   const Rigid3& camera_from_lidar) const;
 
  private:
-  std::map<std::string, std::deque<Image>> images_;  // by camera, rising in time
+  struct TimedImage {
+    Image image;
+    Utime taken = 0;
+  };
+  std::map<std::string, std::deque<TimedImage>> images_;  // by camera, rising in time
   SweepCollector sweeps_;
   PoseTrack poses_;
 };

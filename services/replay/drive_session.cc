@@ -58,7 +58,8 @@ class Cutter {
 
   void TakeOfRig(const Message& message) {
     if (const auto* image = std::get_if<Image>(&message)) {
-      shots_.Add(*image);
+      const CameraCalibration* found = calibration_.Find(image->camera);
+      shots_.Add(*image, found != nullptr ? found->timing : std::nullopt);
     } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
       shots_.Add(*pose);
     } else if (const auto* calibration = std::get_if<CalibrationMessage>(&message)) {

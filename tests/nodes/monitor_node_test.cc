@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/nodes/fuser_node.h"
+#include "services/nodes/shot_collector.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/twins.h"
 #include "tests/unit/methods/scene/scene_world.h"
@@ -160,6 +161,22 @@ Messages DriveInMotion(bool with_poses) {
     messages.push_back(std::move(message));
   }
   return messages;
+}
+
+TEST(ShotCollector, AClocksOffsetTellsWhichImageIsOfTheSweepsTime) {
+  Cloud sweep = Room().clouds[0];
+  sweep.utime.clear();  // all of it at its start
+  ShotCollector shots;
+  const CameraTiming late{{-0.5, 1e-4}, {0, 1e-5}};
+  for (const Utime after : {Utime{0}, kSecond / 2}) {
+    Image image = Room().images[0];
+    image.utime = sweep.sweep_utime + after;
+    shots.Add(image, late);
+  }
+  const auto shot = shots.ShotOf(sweep, RoomRig().cameras[0], Room().Truth(0));
+  ASSERT_TRUE(shot);
+  EXPECT_EQ(shot->taken, sweep.sweep_utime);
+  EXPECT_EQ(shot->image.utime, sweep.sweep_utime + kSecond / 2);  // by its own clock still
 }
 
 TEST(MonitorNode, PosesTakeTheRigsMotionOut) {

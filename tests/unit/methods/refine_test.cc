@@ -53,8 +53,12 @@ const SceneWorld& Room() {
 
 TEST(Refine, EndsAtTheTruthAndKnowsHowNear) {
   const SceneWorld& world = Room();
-  const Report report = Refine(world.rig(), ViewsOf(world), StartOff(world, 1.5 * kDegree, 0.04));
+  Calibration start = StartOff(world, 1.5 * kDegree, 0.04);
+  start.cameras[1].timing = CameraTiming{{0.1, 1e-4}, {0.02, 1e-4}};
+  const Report report = Refine(world.rig(), ViewsOf(world), start);
   ASSERT_EQ(report.cameras.size(), 2U);
+  EXPECT_FALSE(report.cameras[0].calibration.timing);
+  EXPECT_TRUE(report.cameras[1].calibration.timing == start.cameras[1].timing);
   for (std::size_t c = 0; c < 2; ++c) {
     const CameraReport& camera = report.cameras[c];
     ASSERT_EQ(camera.calibration.status, SolveStatus::kConverged) << camera.calibration.detail;
