@@ -120,7 +120,8 @@ void MountWatch::SetCalibration(const CameraCalibration& calibration, Utime utim
   const Rigid3& pose = calibration.camera_from_lidar;
   const bool same = calibration_ && calibration_utime_ == utime &&
                     calibration_->camera_from_lidar.translation == pose.translation &&
-                    calibration_->camera_from_lidar.rotation.coeffs() == pose.rotation.coeffs();
+                    calibration_->camera_from_lidar.rotation.coeffs() == pose.rotation.coeffs() &&
+                    calibration_->timing == calibration.timing;
   if (same) return;
   calibration_ = calibration;
   calibration_utime_ = utime;

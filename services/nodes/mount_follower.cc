@@ -28,7 +28,8 @@ bool MountFollower::Take(const CameraCalibration& calibration, Utime utime) {
   Camera& camera = cameras_[calibration.camera];
   const Rigid3 &before = camera.calibration.camera_from_lidar, &now = calibration.camera_from_lidar;
   const bool repeated = camera.utime == utime && before.translation == now.translation &&
-                        before.rotation.coeffs() == now.rotation.coeffs();
+                        before.rotation.coeffs() == now.rotation.coeffs() &&
+                        camera.calibration.timing == calibration.timing;
   if (repeated && !camera.text.empty()) return false;
   camera = {calibration, utime, now, ""};
   return true;

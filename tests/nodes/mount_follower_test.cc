@@ -83,6 +83,16 @@ TEST(MountFollower, ARepeatedCalibrationDoesNotPutItBack) {
   EXPECT_FALSE(follower.Follow(Spec(), Check(MountState::kMoved, 0.3), &said)) << "of the old one";
 }
 
+TEST(MountFollower, ACalibrationWithAnotherTimingIsNoRepetition) {
+  MountFollower follower;
+  std::string said;
+  follower.Take(Calibrated(), 7);
+  ASSERT_TRUE(follower.Follow(Spec(), Check(MountState::kMoved, 0.3), &said));
+  CameraCalibration timed = Calibrated();
+  timed.timing = CameraTiming{{0.2, 1e-4}, {0, 1e-5}};
+  EXPECT_TRUE(follower.Take(timed, 7));
+}
+
 TEST(MountFollower, TheFuserFollowsWhereItIsTold) {
   const simulate::Simulator simulator(test::TinyOptions());
   const Rig rig = test::RigOf(simulator);

@@ -154,6 +154,16 @@ TEST(MountWatch, AnotherCalibrationIsWatchedFromItsFirstSweepOn) {
   EXPECT_EQ(check.calibration_utime, 2);
 }
 
+TEST(MountWatch, ACalibrationWithAnotherTimingIsAnother) {
+  const CameraSpec& spec = Room().rig().cameras[0];
+  MountWatch watch(spec);
+  CameraCalibration calibration = CalibratedAt(Room().Truth(0), spec.name);
+  watch.SetCalibration(calibration, 1);
+  calibration.timing = CameraTiming{{0.2, 1e-4}, {0, 1e-5}};
+  watch.SetCalibration(calibration, 1);
+  EXPECT_TRUE(watch.calibration()->timing == calibration.timing);
+}
+
 TEST(MountWatch, OptionsThatMakeNoSenseAreRefused) {
   const auto refused = [](auto change) {
     WatchOptions options;
