@@ -210,8 +210,8 @@ Cloud Waving::Sweep(Utime utime) const {
       std::vector<Eigen::Vector3d> rays;
       for (const Eigen::Vector3d& ray : sub_rays) rays.push_back(turn * ray);
       const BeamReturn back = impl_->Cast(start, rays, impl_->At(cloud.utime[i]));
-      const double range =
-          back.range + (bias + RangeError(lidar, back)) + lidar.range_sigma_m * noise.Normal(2 * i);
+      const double range = back.range + (bias + RangeError(lidar, back)) +
+                           RangeSigma(lidar, back) * noise.Normal(2 * i);
       cloud.points[i] = (range * direction).cast<float>();
       cloud.intensity[i] = NoisyIntensity(lidar, back, noise.Normal(2 * i + 1));
     }
