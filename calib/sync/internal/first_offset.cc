@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calib/sync/internal/sweep_motion.h"
 
@@ -107,8 +108,8 @@ std::vector<SomePoints> Choose(const std::vector<WavedSweep>& sweeps, const Came
 
 struct Searched {
   double offset_s = 0, misfit = 1;
-  double elsewhere = 1;  // the least misfit that is more than 0.2 s away
-  bool at_end = false;   // the best one is the farthest that was tried
+  bool at_end = false;                               // the best one is the farthest that was tried
+  std::optional<double> elsewhere_s = std::nullopt;  // the best that is more than 0.2 s away
 };
 
 // The best of offsets from..to; `misfit` gives nothing where an offset cannot be judged.
@@ -122,10 +123,12 @@ std::optional<Searched> Search(double from, double to, double step, const Misfit
   if (tried.size() < 3) return std::nullopt;
   const auto best = std::min_element(
       tried.begin(), tried.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  Searched searched{best->first, best->second, 1, best == tried.begin() || best + 1 == tried.end()};
+  Searched searched{best->first, best->second, best == tried.begin() || best + 1 == tried.end()};
+  double least = std::numeric_limits<double>::infinity();
   for (const auto& [offset, value] : tried) {
-    if (std::abs(offset - best->first) > 0.2)
-      searched.elsewhere = std::min(searched.elsewhere, value);
+    if (std::abs(offset - best->first) < 0.2 || value > least) continue;
+    least = value;
+    searched.elsewhere_s = offset;
   }
   return searched;
 }
@@ -345,12 +348,15 @@ FirstOffset FindFirstOffset(const CameraTrack& track, const std::vector<WavedSwe
                     (camera_from_lidar ? "; is the calibration this rig's?" : "");
     return first;
   }
-  if (best->elsewhere < 1.1 * best->misfit) {
+  const auto finely = [&](double about) {
+    return SearchByPoints(points, track, target, *pose, about - kCoarse, about + kCoarse, kFine);
+  };
+  const auto fine = finely(best->offset_s);
+  const auto rival = best->elsewhere_s ? finely(*best->elsewhere_s) : std::nullopt;
+  if (rival && rival->misfit < 1.1 * (fine ? fine->misfit : best->misfit)) {
     first.why_not = "more than one offset fits alike; wave the board faster, and not evenly";
     return first;
   }
-  const auto fine = SearchByPoints(points, track, target, *pose, best->offset_s - kCoarse,
-                                   best->offset_s + kCoarse, kFine);
   first.offset_s = fine ? fine->offset_s : best->offset_s;
   first.camera_from_lidar = *pose;
   return first;
