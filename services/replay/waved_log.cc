@@ -10,6 +10,7 @@
 #include "calib/detect/image/saturation.h"
 #include "calib/files/schema/calibration_use.h"
 #include "calib/files/schema/rig_file.h"
+#include "calib/fuse/range_correction.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_collector.h"
 #include "services/bus/log.h"
@@ -64,6 +65,7 @@ std::optional<Calibration> CalibrationOf(const Known& known) {
 class Reader {
  public:
   Reader(WavedLog* read, const WavedLogOptions& options) : read_(read), options_(options) {
+    std::vector<std::optional<RangeErrors>> errors;
     for (const CameraSpec& spec : read->rig.cameras) {
       WavedCamera camera;
       camera.spec = spec;
@@ -73,11 +75,13 @@ class Reader {
         camera.spec = known->WithSolvedLens(spec);
         camera.camera_from_lidar = known->camera_from_lidar;
         camera.covariance = known->covariance;
+        errors.push_back(known->range_errors);
       } else {
         look_for_boards_ = true;
       }
       read->board.cameras.push_back(std::move(camera));
     }
+    read->range_errors = RangeCorrectionFor(errors).errors;
   }
 
   void Take(const Message& message) {
@@ -93,9 +97,10 @@ class Reader {
   void TakeChunk(const CloudChunk& chunk) {
     sweeps_.Add(chunk);
     const Utime name = chunk.cloud.sweep_utime;
-    const auto sweep = sweeps_.Complete(name);
+    auto sweep = sweeps_.Complete(name);
     if (!sweep || name == last_sweep_) return;
     last_sweep_ = name;
+    if (read_->range_errors) sweep = Corrected(std::move(*sweep), *read_->range_errors);
     WavedSweep waved = TakeWavedSweep(*sweep, options_.most_range_m);
     // Every second one is enough to begin with.
     if (look_for_boards_ && read_->board.sweeps.size() % 2 == 0) FindIn(*sweep, &waved);

@@ -67,12 +67,14 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
       own->covariance = synced.covariance;
       own->status = SolveStatus::kConverged;
       own->detail = "by a waved board";
-      // What went with the pose that it was.
+      // What went with the pose that it was; the new one was found with the lens taken as it is.
       if (!began.camera_from_lidar) own->lens.reset();
-      own->range_errors.reset();
-      if (result.range_offset_m) {
-        own->range_errors.emplace();
-        own->range_errors->offset_m = {-result.range_offset_m->value, result.range_offset_m->sigma};
+      if (own->lens) own->lens->covariance.leftCols<6>().setZero();
+      own->range_errors = input.range_errors;
+      if (result.range_offset_m) {  // what is left of them
+        if (!own->range_errors) own->range_errors.emplace();
+        own->range_errors->offset_m.value -= result.range_offset_m->value;
+        own->range_errors->offset_m.sigma = result.range_offset_m->sigma;
       }
     }
     own->timing = CameraTiming{synced.time_offset_s, synced.rolling_s};
@@ -100,19 +102,24 @@ int RunSync(const SyncFlags& flags) {
     all &= result.cameras[i].why_not.empty();
   }
   const Calibration found = WithTimings(input, result, flags.refine);
+  const fs::path out = flags.out;
+  const cv::Mat picture = SyncPicture(result);
   if (std::none_of(result.cameras.begin(), result.cameras.end(),
                    [](const SyncedCamera& camera) { return camera.why_not.empty(); })) {
-    std::printf("nothing was written\n");
+    if (picture.empty()) {
+      std::printf("nothing was written\n");
+    } else {  // offsets that change too much to be given
+      WritePng(out / "sync.png", picture);
+      std::printf("only sync.png (the offsets over time) was written, into %s\n", out.c_str());
+    }
     return EndsWith(false);
   }
   std::printf(
       "%d sweeps in %.1f s; the board moved by %.2f m/s and %.2f rad/s (RMS), its points "
       "are %.1f mm off it\n",
       result.sweeps, result.seconds, result.speed, result.turn_speed, 1e3 * result.plane_rms_m);
-  const fs::path out = flags.out;
   WriteFileAtomically(out / "rig.textproto", input.rig.text);
   WriteCalibration(out / "calibration.textproto", found);
-  const cv::Mat picture = SyncPicture(result);
   if (!picture.empty()) WritePng(out / "sync.png", picture);
   std::printf(
       "wrote calibration.textproto (with `timing`), rig.textproto%s into %s\n"

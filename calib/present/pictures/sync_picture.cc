@@ -57,7 +57,7 @@ cv::Mat ChartOf(const SyncedCamera& camera) {
 cv::Mat SyncPicture(const SyncResult& result) {
   cv::Mat picture;
   for (const SyncedCamera& camera : result.cameras) {
-    if (camera.why_not.empty() && !camera.offsets.empty()) {
+    if (!camera.offsets.empty()) {
       if (picture.empty()) {
         picture = ChartOf(camera);
       } else {
