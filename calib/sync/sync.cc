@@ -26,7 +26,7 @@ using sync::PosedImage;
 constexpr std::size_t kLeastImages = 20;
 constexpr double kMostSeconds = 600;  // of the way
 constexpr double kBeyondImages = 1;   // [s] that the way goes on where no image shows the board
-constexpr double kLeastRanges = 4;  // sigma of a range: the gate about the board
+constexpr double kLeastRanges = 4;    // sigma of a range: the gate about the board
 
 std::string Text(const char* format, double a, double b = 0, double c = 0) {
   char text[300];
@@ -129,9 +129,10 @@ Span SpanOf(const std::vector<WavedSweep>& sweeps, const std::vector<Entrant>& e
   const Span span{std::max(of_sweeps.from, of_images.from), std::min(of_sweeps.to, of_images.to)};
   const double seconds = ToSeconds(span.to - span.from);
   if (!(seconds > 0 && seconds <= kMostSeconds)) {
-    throw InputError(Text("images of the board and sweeps go on together for %.0f s; expected at "
-                          "most %.0f s: cut the log, and were clocks set while it was recorded?",
-                          seconds, kMostSeconds));
+    throw InputError(
+        Text("images of the board and sweeps go on together for %.0f s; expected at "
+             "most %.0f s: cut the log, and were clocks set while it was recorded?",
+             seconds, kMostSeconds));
   }
   return span;
 }
@@ -221,6 +222,8 @@ void LearnNoise(const MotionCovariance& found, MotionData* data) {
 
 std::string Milliseconds(double seconds) { return Text("%.3f ms", 1e3 * seconds); }
 
+const char* const kChangeNotTold = "whether the offset changes is not told";
+
 // The offset over time, where images tell it, and what is to be said of it.
 void LookAtClock(const MotionState& state, const MotionCovariance& found, std::size_t camera,
                  double step_s, const SyncOptions& options, SyncedCamera* out) {
@@ -228,8 +231,9 @@ void LookAtClock(const MotionState& state, const MotionCovariance& found, std::s
   const Eigen::MatrixXd& covariance = found.changes[camera];
   std::vector<Eigen::Index> told;
   for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
-    if (std::sqrt(covariance(k, k)) <= options.most_sigma_s) told.push_back(k);
+    if (std::sqrt(covariance(k, k)) < sync::kToldChange) told.push_back(k);
   }
+  if (told.size() < 4) out->warnings.push_back(kChangeNotTold);
   const auto count = static_cast<Eigen::Index>(told.size());
   sync::OffsetsOverTime over{Eigen::VectorXd(count), Eigen::VectorXd(count),
                              Eigen::MatrixXd(count, count)};
@@ -248,6 +252,10 @@ void LookAtClock(const MotionState& state, const MotionCovariance& found, std::s
   if (!clock.jump && !clock.drift && !clock.wanders) return;
   out->time_offset_s.value = state.cameras[camera].offset_s + clock.mean_s;
   out->time_offset_s.sigma = std::hypot(out->time_offset_s.sigma, clock.spread_s);
+  if (out->time_offset_s.sigma > options.most_sigma_s) {
+    out->why_not =
+        "the clock changes by " + Milliseconds(clock.spread_s) + " (RMS); no one offset holds";
+  }
   out->drift = clock.drift;
   if (clock.jump) out->jump = OffsetAt{clock.jump->seconds, clock.jump->by_s};
   const std::string remedy = "; without PTP or a common trigger the offset holds for this log only";
@@ -315,16 +323,22 @@ void Solve(const SyncOptions& options, const std::vector<std::size_t>& indices, 
     result->range_offset_m = {posed->state.range_offset_m, std::sqrt(found.range_offset_m2)};
   }
   // Once more, with offsets that may change.
+  const auto not_told = [&] {
+    for (const std::size_t index : indices) {
+      SyncedCamera& out = result->cameras[index];
+      if (out.why_not.empty()) out.warnings.push_back(kChangeNotTold);
+    }
+  };
   const double seconds = found.last_s;
   const auto places = static_cast<std::size_t>(std::floor(seconds / options.clock_step_s)) + 1;
-  if (places < 4) return;
+  if (places < 4) return not_told();
   MotionState changing = posed->state;
   posed->data.clocks_change = true;
   posed->data.clock_step_s = seconds / static_cast<double>(places - 1);
   for (CameraState& camera : changing.cameras) camera.changes_s.assign(places, 0.0);
-  if (!sync::SolveMotion(posed->data, &changing)) return;
+  if (!sync::SolveMotion(posed->data, &changing)) return not_told();
   const auto over_time = sync::CovarianceOf(posed->data, changing);
-  if (!over_time) return;
+  if (!over_time) return not_told();
   for (std::size_t c = 0; c < indices.size(); ++c) {
     SyncedCamera& out = result->cameras[indices[c]];
     if (out.why_not.empty()) {

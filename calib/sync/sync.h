@@ -58,7 +58,7 @@ struct SyncOptions {
   double most_offset_s = 1;     ///< offsets are looked for within this, either way
   double margin_m = 0.04;       ///< points nearer to the board's outline are not used
   double least_speed = 0.1;     ///< [m/s or rad/s] RMS; a board that moves less tells nothing
-  double most_sigma_s = 0.005;  ///< an offset that is known worse is not given, at no time
+  double most_sigma_s = 0.005;  ///< an offset that is known worse is not given
   double clock_step_s = 1;      ///< between places at which a changing offset is looked at
   double most_gap_s = 0.25;     ///< nothing is used across a longer gap between images
 
@@ -77,7 +77,7 @@ struct SyncedCamera {
   std::string camera;
   std::string why_not;  ///< why nothing is given; empty: it is
   /// The LIDAR's time of an image's middle row is its utime + this. Of a clock that drifts or jumps
-  /// the mean, its sigma widened to all of its values.
+  /// the mean, its sigma widened to all of its values; beyond most_sigma_s it is not given.
   Estimate time_offset_s;
   /// From the first row's exposure to the last one's; below 0: the last row comes first.
   Estimate rolling_s;
@@ -109,9 +109,9 @@ struct SyncResult {
 /// B-spline (R^3 x SO(3), a knot every 50 to 100 ms); corners lie on it at the times of their rows,
 /// points at their beams' times; each camera's offset, read-out and pose, and the range offset are
 /// solved for with it (README.md). No guess of an offset is needed. A camera that does not tell has
-/// the reason in `why_not`; the others are given without it. What lies more than a second before the
-/// first image of the board or after the last is not used. Throws InputError for input that makes no
-/// sense, or whose images and sweeps go on together for more than 600 s.
+/// the reason in `why_not`; the others are given without it. What lies more than a second before
+/// the first image of the board or after the last is not used. Throws InputError for input that
+/// makes no sense, or whose images and sweeps go on together for more than 600 s.
 SyncResult Synchronise(const WavedBoard& input, const SyncOptions& options = {});
 
 /// What an offset does that nobody takes out, in words with pixels: at 1 m/s across, 3 m away, and

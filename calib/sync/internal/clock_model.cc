@@ -64,8 +64,7 @@ ClockModel FitClock(const OffsetsOverTime& offsets) {
     return constant.chi2 - by < std::max(of_chance, 0.5 * constant.chi2);
   };
   if (by_step > kBeyondChance + 10 && by_step > by_line + 10 && explains(by_step)) {
-    clock.jump = {offsets.seconds[at],
-                  {step->numbers[1], std::sqrt(step->covariance(1, 1))}};
+    clock.jump = {offsets.seconds[at], {step->numbers[1], std::sqrt(step->covariance(1, 1))}};
   } else if (by_line > kBeyondChance && explains(by_line)) {
     clock.drift = {straight.numbers[1], std::sqrt(straight.covariance(1, 1))};
   } else {

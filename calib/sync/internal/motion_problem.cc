@@ -24,10 +24,12 @@ constexpr double kTurnJerk = 200;  // [rad/s^3]
 constexpr double kRollingSigma = 0.2;
 // An offset's change from one place of a changing clock to the next [s], and that of its first
 // place: only what holds places that no image reaches.
-constexpr double kChangeSigma = 0.05;
+constexpr double kChangeSigma = 2 * kToldChange;
 constexpr double kFirstChangeSigma = 1;
 constexpr int kMostRounds = 25;
 constexpr double kAtRest = 2e-6;  // [s] that offsets and read-outs move by
+// Likewise of a changing clock's places, about a jump of which nothing fits: less than is known.
+constexpr double kChangesAtRest = 2e-4;
 // Of an image's or sweep's dozen of residuals together: beyond this [sigma] it counts less, but
 // for while most are off by more.
 constexpr double kHuber = 6;
@@ -266,7 +268,8 @@ void Problem::AddImages(std::size_t index) {
     const double within = way.Within(seconds, segment);
     // Beyond the way's ends nothing holds it.
     if (within < -0.5 || within > 1.5) continue;
-    const auto [place, share] = ClockPlace(seconds, data_.clock_step_s, unknowns.changes.size());
+    const auto [place, share] =
+        ClockPlace(state_.ByClock(index, image), data_.clock_step_s, unknowns.changes.size());
     auto cost = std::make_unique<ImageCost>();
     cost->knots = way.KnotsOf(segment);
     cost->camera_from_lidar = state.camera_from_lidar;
@@ -526,11 +529,15 @@ std::optional<MotionCovariance> Problem::Covariance() {
 
 }  // namespace
 
+double MotionState::ByClock(std::size_t camera, const PosedImage& image) const {
+  const CameraState& state = cameras[camera];
+  return ToSeconds(image.utime - way.start) + state.offset_s + state.rolling_s * image.middle_row;
+}
+
 double MotionState::SecondsOf(std::size_t camera, const PosedImage& image,
                               double clock_step_s) const {
   const CameraState& state = cameras[camera];
-  const double by_clock =
-      ToSeconds(image.utime - way.start) + state.offset_s + state.rolling_s * image.middle_row;
+  const double by_clock = ByClock(camera, image);
   if (state.changes_s.empty()) return by_clock;
   const auto [place, share] = ClockPlace(by_clock, clock_step_s, state.changes_s.size());
   return by_clock + Interpolated(state.changes_s, place, share);
@@ -569,7 +576,7 @@ bool SolveMotion(const MotionData& data, MotionState* state) {
     const MotionState before = *state;
     double moved_s = 0;
     if (!Problem(narrowing, before).Step(state, &moved_s)) return false;
-    if (narrow && moved_s < kAtRest) return true;
+    if (narrow && moved_s < (data.clocks_change ? kChangesAtRest : kAtRest)) return true;
   }
   return false;
 }

@@ -12,6 +12,10 @@
 
 namespace rgbdt::sync {
 
+/// Of CameraState::changes_s [s]: a place known worse is held by its neighbours only. Not less, as
+/// a jump enlarges what is stated.
+inline constexpr double kToldChange = 0.025;
+
 /// A camera's unknowns.
 struct CameraState {
   Rigid3 camera_from_lidar;
@@ -28,6 +32,8 @@ struct MotionState {
 
   /// When an image's middle of the corners was seen, since the way's start [s].
   double SecondsOf(std::size_t camera, const PosedImage& image, double clock_step_s) const;
+  /// That without CameraState::changes_s: at this time they are looked up.
+  double ByClock(std::size_t camera, const PosedImage& image) const;
 };
 
 /// A camera's part of the problem.

@@ -107,8 +107,8 @@ struct Trajectory {
   double Length() const { return (static_cast<double>(knots.size()) - 3) * step_s; }
   /// Of a time [s since start]: the first of its four knots, and how far it is beyond the second.
   int Segment(double seconds) const {
-    return static_cast<int>(std::clamp(std::floor(seconds / step_s), 0.0,
-                                       static_cast<double>(knots.size()) - 4));
+    return static_cast<int>(
+        std::clamp(std::floor(seconds / step_s), 0.0, static_cast<double>(knots.size()) - 4));
   }
   double Within(double seconds, int segment) const { return seconds / step_s - segment; }
   std::array<Rigid3, 4> KnotsOf(int segment) const {

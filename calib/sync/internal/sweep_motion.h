@@ -34,8 +34,8 @@ std::optional<SweepMotion> LineariseSweep(const WavedSweep& sweep, const Target&
                                           const Trajectory& way, double range_offset_m,
                                           const OnBoard& options);
 
-/// Of each sweep within the way's time the points in a cone about the board, half a metre wider than
-/// it.
+/// Of each sweep within the way's time the points in a cone about the board, half a metre wider
+/// than it.
 std::vector<WavedSweep> AboutBoard(const std::vector<WavedSweep>& sweeps, const Target& target,
                                    const Trajectory& way);
 

@@ -171,6 +171,16 @@ TEST(SyncTest, AClockThatJumpsIsNamed) {
   EXPECT_TRUE(Warns(camera, "jumps"));
 }
 
+TEST(SyncTest, AClockThatJumpsFarHasNoOneOffset) {
+  WavedScene scene = Short(study::ColorCamera(17));
+  scene.clocks[0].jump_s = 0.03;
+  scene.clocks[0].jump_at_s = 6;
+  const SyncedCamera camera = SolveNearTruth(scene).cameras[0];
+  EXPECT_THAT(camera.why_not, testing::HasSubstr("no one offset holds"));
+  EXPECT_TRUE(Warns(camera, "jumps") || Warns(camera, "changes"));
+  EXPECT_GE(camera.offsets.size(), 4U);
+}
+
 TEST(SyncTest, AnOffsetBeyondTheSearchIsNotMadeUp) {
   WavedScene scene = Short(study::ColorCamera(18));
   scene.clocks[0].offset_s = 2.5;
