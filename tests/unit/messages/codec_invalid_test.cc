@@ -197,8 +197,9 @@ TEST_F(Invalid, RangeErrors) {
                 w.log2_intensity = {-1, 0, 1};
               }),
               HasSubstr("range_errors.log2_intensity[2] is 1"));
-  EXPECT_THAT(error([](auto& w) { w.log2_intensity[1] = -1.5; }),
-              HasSubstr("range_errors.log2_intensity[1] is -1.5; expected -16 to 0, each one more"));
+  EXPECT_THAT(
+      error([](auto& w) { w.log2_intensity[1] = -1.5; }),
+      HasSubstr("range_errors.log2_intensity[1] is -1.5; expected -16 to 0, each one more"));
   // What is not there is not read.
   EXPECT_EQ(ErrorAfter<calibration_t>(
                 message, [](auto& w) { w.has_range_errors = 0, w.range_errors.offset_m = NAN; }),
