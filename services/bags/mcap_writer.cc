@@ -8,23 +8,12 @@
 
 #include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
+#include "services/bags/internal/mcap_format.h"
 
 namespace rgbdt {
 namespace {
 
-enum Opcode : std::uint8_t {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07,
-  kChunkIndex = 0x08,
-  kStatistics = 0x0b,
-  kSummaryOffset = 0x0e,
-  kDataEnd = 0x0f,
-};
+using namespace bags;  // opcodes
 
 constexpr char kMagic[] = "\x89MCAP0\r\n";
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;  // unpacked, before one is closed
@@ -43,7 +32,7 @@ void AddText(std::string_view text, std::string* to) {
   to->append(text);
 }
 
-std::string Record(Opcode opcode, std::string_view content) {
+std::string Record(McapOpcode opcode, std::string_view content) {
   std::string record;
   record.reserve(9 + content.size());
   record.push_back(static_cast<char>(opcode));
@@ -88,7 +77,7 @@ void McapWriter::Put(std::string_view bytes) {
 }
 
 void McapWriter::AddToSummary(std::uint8_t opcode, const std::string& content) {
-  summary_[opcode] += Record(static_cast<Opcode>(opcode), content);
+  summary_[opcode] += Record(static_cast<McapOpcode>(opcode), content);
 }
 
 // Schemas and channels stand in the chunk before their messages, and in the summary once more.

@@ -9,18 +9,11 @@
 
 #include "services/bags/internal/bag_file.h"
 #include "services/bags/internal/fields.h"
+#include "services/bags/internal/mcap_format.h"
 #include "services/bags/internal/unpack.h"
 
 namespace rgbdt::bags {
 namespace {
-
-enum Opcode : std::uint8_t {
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kDataEnd = 0x0f,
-};
 
 constexpr std::int64_t kMagicBytes = 8;
 constexpr std::size_t kHeadBytes = 9;  // opcode and length

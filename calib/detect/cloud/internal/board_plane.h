@@ -63,7 +63,7 @@ class BoardPlane {
   const BoardPoints& points_;
   double least_sigma_m_;
   std::vector<double> weight_;  // of each point; one in the mean
-  double alike_ = 1;            // how many times their number neighbours' noise makes of variance
+  double alike_ = 1;  // times the variance of independent noise, as neighbours share theirs
   RowNoise noise_{1, 0};
   Plane plane_;
 };
