@@ -13,7 +13,18 @@
 namespace rgbdt {
 namespace {
 
-using namespace bags;  // opcodes
+using bags::kChannel;
+using bags::kChunk;
+using bags::kChunkIndex;
+using bags::kDataEnd;
+using bags::kFooter;
+using bags::kHeader;
+using bags::kMessage;
+using bags::kMessageIndex;
+using bags::kSchema;
+using bags::kStatistics;
+using bags::kSummaryOffset;
+using bags::McapOpcode;
 
 constexpr char kMagic[] = "\x89MCAP0\r\n";
 constexpr std::size_t kChunkBytes = std::size_t{4} << 20;  // unpacked, before one is closed

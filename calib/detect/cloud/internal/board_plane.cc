@@ -264,7 +264,8 @@ BoardPlane::Groups BoardPlane::GroupsAbout(const Eigen::Vector3d& centre,
   const std::vector<double> all_off = OffPlane();
   double squares = 0;
   double freedom = 0;
-  for (const auto& [key, group] : members) {
+  for (const auto& entry : members) {
+    const std::vector<std::size_t>& group = entry.second;
     const auto n = static_cast<double>(group.size());
     double log2_sum = 0;
     double weights = 0;
@@ -281,7 +282,7 @@ BoardPlane::Groups BoardPlane::GroupsAbout(const Eigen::Vector3d& centre,
     squares += off_squares - off_sum * off_sum / weights;
     freedom += n - 1;
     out.groups.push_back(
-        {key.first, log2_sum / n,
+        {entry.first.first, log2_sum / n,
          ScatterOf(
              rows, noise, [&](std::size_t k) { return weight_[group[k]]; },
              [&](std::size_t k) -> Eigen::Vector3d { return AlongNormal(group[k]) - centre; })});
