@@ -30,6 +30,11 @@ inline constexpr double kPlainClassShiftSigmaRad = 3e-3;
 /// The same where all views share it: as large as it was seen to be.
 inline constexpr double kSharedPlainClassShiftSigmaRad = 8e-3;
 
+/// What makes such a board look too large depends on how much light comes back, which falls with
+/// the square of the range: the recorded one looks too large by a length rather than an angle. How
+/// much of it is a length, where all views share it [m].
+inline constexpr double kPlainFringeSigmaM = 0.03;
+
 /// Further shift of each side in each view: what lies behind one side is not one class throughout.
 /// Opposite sides' difference looks like a turn of the board: 0.3 mrad cost 0.013 degrees.
 inline constexpr double kSideShiftSigmaRad = 0.3e-3;
@@ -65,6 +70,6 @@ inline constexpr double kBeamsMeetSigmaM = 0.05;
 inline constexpr double kNoBeamsMeetSigmaM = 1e-7;
 
 /// The same where it is taken for zero: small enough to pin it, large enough to be inverted.
-inline constexpr double kNoRangeOffsetSigmaM = 1e-9, kNoPrintSigma = 1e-9;
+inline constexpr double kNoFringeSigmaM = 1e-9, kNoRangeOffsetSigmaM = 1e-9, kNoPrintSigma = 1e-9;
 
 }  // namespace rgbdt

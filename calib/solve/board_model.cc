@@ -33,6 +33,7 @@ double BoardPriors::Sigma(int unknown) const {
   if (unknown == kThickness) return thickness_sigma_m;
   if (unknown == kRangeOffset) return range_offset_sigma_m;
   if (unknown == kBeamsMeet) return beams_meet_sigma_m;
+  if (unknown == kFringe) return fringe_sigma_m;
   if (unknown == kPrintWidth || unknown == kPrintHeight) return print_sigma;
   return outline_sigma_m;
 }
@@ -102,12 +103,14 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   // A beam that meets the plane at a slant is drawn out on it; a rim that faces the LIDAR is seen
   // beside the front.
   out.per_rad = range / upright;
+  out.per_fringe = 1 / upright;
   out.per_thickness = std::max(0.0, -slope.dot(outward));
   const auto kind = static_cast<std::size_t>(crossing.kind) - 1;
   const double shift = shared[kNoReturnShift + kind] + side_shift;
   out.beyond_m = outward.dot(at) - HalfExtent(target, crossing.side) -
                  shared[static_cast<std::size_t>(kOutlineTop + crossing.side)] -
-                 out.per_rad * shift - out.per_thickness * shared[kThickness];
+                 out.per_rad * shift - out.per_fringe * shared[kFringe] -
+                 out.per_thickness * shared[kThickness];
   const double blur = priors.blur_rad * out.per_rad;
   out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
   out.by_beams_meet = outward.dot(by_meet.head<2>() - by_meet.z() * slope) +
@@ -124,8 +127,9 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   by_range /= beam.z();
   by_sideways << turned.transpose(), 0, 0, 0;
   by_depth << -beam.y(), beam.x(), 0, 0, 0, 0;
-  out.by_target -=
-      shift / upright * (by_range + range * sideways / (upright * upright) * by_sideways);
+  out.by_target -= (shift * by_range + (shift * range + shared[kFringe]) * sideways /
+                                           (upright * upright) * by_sideways) /
+                   upright;
   if (out.per_thickness > 0) {
     out.by_target += shared[kThickness] / beam.z() * (by_sideways - across * by_depth);
   }

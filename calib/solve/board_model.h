@@ -27,6 +27,7 @@ enum SharedUnknown {
   kPrintWidth,  ///< the pattern's width over what its squares make it, less one
   kPrintHeight,
   kBeamsMeet,  ///< RangeErrors::beams_meet_m
+  kFringe,     ///< by how much more a board looks too large at each side, at any range
   kSharedUnknowns
 };
 
@@ -43,6 +44,7 @@ struct BoardPriors {
   double range_offset_sigma_m = kNoRangeOffsetSigmaM;  ///< true range minus measured
   double print_sigma = kNoPrintSigma;                  ///< Target::print_sigma
   double beams_meet_sigma_m = kNoBeamsMeetSigmaM;
+  double fringe_sigma_m = kNoFringeSigmaM;
   /// Further range offsets, of each ring and of each octave of intensity (RangeTerms).
   double ring_sigma_m = 0, octave_sigma_m = 0;
   double ring_view_sigma_m = 0;  ///< further still, of each ring in each view; 0: there is none
@@ -99,6 +101,7 @@ struct CrossingResidual {
   double per_rad = 0;        ///< metres that a side seems farther out for each radian of shift
   double per_thickness = 0;  ///< the same for each metre of thickness
   double by_beams_meet = 0;  ///< d beyond / d kBeamsMeet
+  double per_fringe = 0;     ///< metres that a side seems farther out for each metre of kFringe
 };
 CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                             const Crossing& crossing, const Rigid3& lidar_from_target,

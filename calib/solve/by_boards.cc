@@ -13,6 +13,7 @@
 #include "calib/solve/evaluate.h"
 #include "calib/solve/internal/cross_check.h"
 #include "calib/solve/internal/disagreement.h"
+#include "calib/solve/internal/edges_planes.h"
 #include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "calib/solve/internal/next_view.h"
@@ -37,7 +38,8 @@ constexpr NuisanceLine kNuisances[] = {
     {kRangeOffset, "range offset", "mm"},
     {kPrintWidth, "pattern's width, found less given", "mm/m"},
     {kPrintHeight, "pattern's height, found less given", "mm/m"},
-    {kBeamsMeet, "radius at which the LIDAR's beams meet", "mm"}};
+    {kBeamsMeet, "radius at which the LIDAR's beams meet", "mm"},
+    {kFringe, "beam edge, at any range", "mm"}};
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
@@ -186,32 +188,9 @@ CameraViews WithRangeOffset(CameraViews camera) {
   return camera;
 }
 
-// Edges and planes are two measurements of one pose: where they contradict each other, nobody knows
-// which is off. The result lies between them; its covariance is enlarged until they agree (Birge
-// 1932), after it was judged whether the views determine the pose at all.
-CameraReport EnlargedWhereEdgesAndPlanesDiffer(CameraReport report) {
-  constexpr double kFreedom = 6;
-  constexpr double kUnlikely = 22.5;  // of six degrees of freedom: once in a thousand times
-  CameraCalibration& calibration = report.calibration;
-  if (!report.edges_planes || !calibration.covariance) return report;
-  if (!(report.edges_planes->chi2 > kUnlikely)) return report;
-  const double factor = report.edges_planes->chi2 / kFreedom;
-  report.edges_planes->sigma_enlarged = std::sqrt(factor);
-  report.warnings.push_back(
-      Format("edges alone and planes alone contradict each other (chi-square %.1f, %.0f expected): "
-             "the stated sigma was enlarged %.1f times, until they agree",
-             factor * kFreedom, kFreedom, std::sqrt(factor)));
-  *calibration.covariance *= factor;
-  if (calibration.lens) calibration.lens->covariance *= factor;
-  for (Cause& cause : report.causes) {
-    if (cause.moves_sigma) *cause.moves_sigma /= std::sqrt(factor);
-  }
-  return report;
-}
-
 CameraViews Judged(const EdgeModel& edges, CameraViews camera) {
   camera.report.calibration = WithDegeneracy(camera);
-  camera.report = EnlargedWhereEdgesAndPlanesDiffer(std::move(camera.report));
+  camera.report = EnlargedWhereTheyDiffer(std::move(camera.report));
   camera = WithRangeOffset(std::move(camera));
   camera.report = JudgeViews(edges, camera);
   return camera;
@@ -284,6 +263,7 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
     report = WithSolution(result, c, seconds);
     report.causes = std::move(causes[c]);
   }
+  result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;
   solved.changes = ChangesOf(result);
   if (options.diagnostics) {

@@ -19,7 +19,7 @@ CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens",
 DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
 COLUMNS = (*(key for key, _ in DIFFERENCES), "px")
 SINGLE = ("used", "sigma_deg", "sigma_mm", "variance_factor", "edge_plane_deg", "edge_plane_mm",
-          "edge_plane_chi2", "lens_deg", "lens_mm", "lens_chi2", "range_sd_ratio")
+          "edge_plane_chi2", "edge_plane_sigma_enlarged", "lens_deg", "lens_mm", "lens_chi2", "range_sd_ratio")
 
 
 class Rig:
@@ -44,7 +44,12 @@ class Rig:
         """Results farther apart than chance does, of which none said that it may be wrong."""
         count = sum(r["chi2"] > UNLIKELY and not r["doubtful"]
                     for case in CASES for r in self.solved(case) if case != "random_exact_lens")
-        apart = [self.fact(f"{what}_chi2") for what in ("edge_plane", "lens")]
+        # Edges and planes lie this far apart by the sigma that the solve states, which it enlarges
+        # where they contradict each other.
+        edge_plane = self.fact("edge_plane_chi2")
+        if edge_plane is not None:
+            edge_plane /= self.fact("edge_plane_sigma_enlarged") ** 2
+        apart = [edge_plane, self.fact("lens_chi2")]
         return count + (not self.fact("doubtful")) * sum(c is not None and c > UNLIKELY for c in apart)
 
 

@@ -5,10 +5,8 @@
 // has it, with it taken for exact, and with the one that all views' images give, as it is with
 // `rgbdt intrinsics` run first (both halves then have its error in common); and the first half of
 // the recording against the last
-// ("in_order"), as two sessions. FACTS_CSV: name, value, unit. Edges alone against planes alone:
-// the same solve without the boards' points, and without crossings and sides in the images; both
-// have the corners, whose noise they share, or of a plain board the sides in the images, by which
-// alone these know it. The given lens against the session's own: found from
+// ("in_order"), as two sessions. FACTS_CSV: name, value, unit. Edges alone against planes alone, as
+// the report has it. The given lens against the session's own: found from
 // the same images as `rgbdt intrinsics` does. RINGS_CSV: how far each ring's points on a board lie
 // behind its plane, along their beams, before and after the cloud is corrected by what the solve
 // found; range_sd_ratio: the RMS of all of them after over before. VIEWS_CSV: by how much the board
@@ -101,35 +99,6 @@ std::vector<GuessedCamera> Guessed(const Rig& rig, const Detections& views) {
   options.first_guess.accept = kVotingGate;  // as CalibrateByBoards does
   options.first_guess.range_offset_sigma_m = rig.lidar.range_offset_sigma_m;
   return GuessCameras(options, {ViewsOf(rig.cameras.at(0), views)});
-}
-
-/// As Solve, with its covariance however loose the views leave the pose; nothing where it failed.
-std::optional<Pose> SolveLoose(const Rig& rig, const Detections& views) {
-  std::vector<GuessedCamera> cameras = Guessed(rig, views);
-  if (!cameras.at(0).guess.camera_from_lidar) return std::nullopt;
-  const JointResult result = SolveJointly(
-      MakeJointProblem(rig.target, std::move(cameras), rig.lidar.range_offset_sigma_m));
-  if (!result.solution.converged) return std::nullopt;
-  return Pose{result.solution.state.camera_from_lidar[0],
-              Matrix6d(CovarianceOf(result, 0).topLeftCorner<6, 6>())};
-}
-
-Detections WithoutEdges(const Target& target, Detections views) {
-  for (ViewDetection& view : views) {
-    for (CloudEdges& board : view.cloud.candidates) board.crossings.clear();
-    if (!target.HasPattern()) continue;
-    for (ImageDetection& image : view.images) {
-      if (image.edges) image.edges->sides = {};
-    }
-  }
-  return views;
-}
-
-Detections WithoutPlanes(Detections views) {
-  for (ViewDetection& view : views) {
-    for (CloudEdges& board : view.cloud.candidates) board.scatter_sigma_m = 0;  // not known
-  }
-  return views;
 }
 
 /// The rig with the lens that the session's own images give; nothing where that failed, or where
@@ -271,11 +240,11 @@ void AddWhole(const Recorded& recorded, const CameraReport& whole, Facts* facts)
 }
 
 void AddComparisons(const Recorded& recorded, const CameraReport& whole, Facts* facts) {
-  const auto edges = SolveLoose(recorded.rig, WithoutPlanes(recorded.views));
-  const auto planes = SolveLoose(recorded.rig, WithoutEdges(recorded.rig.target, recorded.views));
-  if (edges && planes) {
-    facts->AddApart("edge_plane", *edges, *planes,
-                    Matrix6d(edges->covariance + planes->covariance));
+  if (const auto& apart = whole.edges_planes) {
+    facts->Add("edge_plane_deg", apart->difference.rotation_deg, "deg");
+    facts->Add("edge_plane_mm", apart->difference.translation_mm, "mm");
+    facts->Add("edge_plane_chi2", apart->chi2);
+    facts->Add("edge_plane_sigma_enlarged", apart->sigma_enlarged.value_or(1));
   }
   const auto rig = WithOwnLens(recorded.rig, recorded.views);
   const auto given = PoseOf(whole);

@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
+#include "calib/solve/compare.h"
 
 namespace rgbdt {
-
-/// Of a difference of two poses (6 degrees of freedom): by chance above it once in a thousand
-/// times.
-inline constexpr double kUnlikelyChi2 = 22.5;
 
 /// Of the held-out crossings' RMS in their sigmas: outside of these the sigmas are not as stated.
 inline constexpr double kLeastWhitened = 0.7, kMostWhitened = 1.4;

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <utility>
 
-#include "calib/model/linear_algebra.h"
 #include "calib/model/text.h"
 #include "calib/solve/evaluate.h"
 
@@ -13,7 +11,6 @@ namespace rgbdt {
 namespace {
 
 constexpr double kMostMisfit = 50;
-using Index = Eigen::Index;
 
 // Views of the joint problem, every `parts`-th from `part` on left out or, inverted, taken.
 std::vector<std::size_t> Others(std::size_t views, std::size_t part, std::size_t parts,
@@ -153,54 +150,13 @@ JointResult LeaveOutParts(JointResult result, std::size_t parts) {
   return result;
 }
 
-// How far two solutions put a camera apart, against both covariances.
-Halves ApartOf(const BoardSolution& a, const BoardSolution& b, double variance_factor,
-               std::size_t camera) {
-  const Rigid3& pose_a = a.state.camera_from_lidar[camera];
-  const Rigid3& pose_b = b.state.camera_from_lidar[camera];
-  const Index at = SharedPlaces::Pose(camera);
-  const Matrix6d covariance =
-      variance_factor * (a.covariance.block<6, 6>(at, at) + b.covariance.block<6, 6>(at, at));
-  const Vector6d delta = Log(pose_a * pose_b.Inverse());
-  return {ErrorOf(pose_a, pose_b), delta.dot(SolveSymmetric(covariance, delta))};
-}
-
 JointResult Halve(JointResult result) {
   JointProblem& joint = result.joint;
   const std::size_t count = joint.problem.views.size();
   const BoardSolution a = SolveSome(joint.problem, result.solution, Others(count, 0, 2, true));
   const BoardSolution b = SolveSome(joint.problem, result.solution, Others(count, 1, 2, true));
   for (std::size_t c = 0; c < joint.cameras.size(); ++c) {
-    joint.cameras[c].views.report.halves = ApartOf(a, b, result.variance_factor, c);
-  }
-  return result;
-}
-
-// The boards' edges alone, in clouds and images, and their planes alone. Both have the corners or,
-// of a plain board, its sides in the images, by which alone these know it. What the two share
-// counts twice in the covariance of their difference.
-JointResult HoldEdgesAgainstPlanes(JointResult result) {
-  constexpr double kSettled = 1e-2;  // a tenth of a sigma
-  const BoardProblem& all = result.joint.problem;
-  BoardProblem edges = all;
-  BoardProblem planes = all;
-  std::deque<ImageEdges> without_sides;
-  for (BoardView& view : edges.views) view.cloud.scatter_sigma_m = 0;
-  for (BoardView& view : planes.views) {
-    view.cloud.crossings.clear();
-    if (!all.target.HasPattern()) continue;
-    for (BoardImage& image : view.images) {
-      without_sides.push_back(*image.edges);
-      without_sides.back().sides = {};
-      image.edges = &without_sides.back();
-    }
-  }
-  const BoardSolution by_edges = SolveBoards(edges, result.solution.state, kSettled);
-  const BoardSolution by_planes = SolveBoards(planes, result.solution.state, kSettled);
-  if (!by_edges.converged || !by_planes.converged) return result;
-  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
-    result.joint.cameras[c].views.report.edges_planes =
-        ApartOf(by_edges, by_planes, result.variance_factor, c);
+    joint.cameras[c].views.report.halves = Apart(a, b, result.variance_factor, c);
   }
   return result;
 }
@@ -216,7 +172,6 @@ JointResult CrossValidate(JointResult result, int folds) {
   if (views < 4) return result;
   result = LeaveOutParts(std::move(result), std::min(views, static_cast<std::size_t>(folds)));
   if (views >= 6) result = Halve(std::move(result));
-  result = HoldEdgesAgainstPlanes(std::move(result));
   return result;
 }
 

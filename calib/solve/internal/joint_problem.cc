@@ -55,6 +55,7 @@ class Builder {
     joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
     if (!target.HasPattern()) {
       joint_.problem.priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
+      joint_.problem.priors.fringe_sigma_m = kPlainFringeSigmaM;
     }
   }
 

@@ -340,6 +340,17 @@ JointResult SolveJointly(JointProblem joint) {
   return again;
 }
 
+Halves Apart(const BoardSolution& a, const BoardSolution& b, double variance_factor,
+             std::size_t camera) {
+  const Rigid3& pose_a = a.state.camera_from_lidar[camera];
+  const Rigid3& pose_b = b.state.camera_from_lidar[camera];
+  const Index at = SharedPlaces::Pose(camera);
+  const Matrix6d covariance =
+      variance_factor * (a.covariance.block<6, 6>(at, at) + b.covariance.block<6, 6>(at, at));
+  const Vector6d delta = Log(pose_a * pose_b.Inverse());
+  return {ErrorOf(pose_a, pose_b), delta.dot(SolveSymmetric(covariance, delta))};
+}
+
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
   const PoseAndLensCovariance covariance =
       result.variance_factor *

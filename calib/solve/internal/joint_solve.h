@@ -32,6 +32,11 @@ struct JointResult {
 /// contradict what is known of a lens, with that known as much worse as they say.
 JointResult SolveJointly(JointProblem joint);
 
+/// How far two solutions put a camera apart, against both covariances, a factor of variance counted
+/// in.
+Halves Apart(const BoardSolution& a, const BoardSolution& b, double variance_factor,
+             std::size_t camera);
+
 /// Of camera `index`, the variance factor counted in.
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index);
 

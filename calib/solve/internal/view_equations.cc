@@ -221,7 +221,7 @@ void ViewEquations::AddCrossings() {
                                           lidar_from_target_, state_.shared, side_shift_[side]);
     if (!(r.per_rad > 0)) continue;
     CrossingVector j;
-    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet;
+    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet, -r.per_fringe;
     const double sigma = OwnSigma(crossing, r);
     const double squared = r.beyond_m * r.beyond_m / (sigma * sigma);
     // Noise that it shares with its neighbours counts once: in weight, not in what is far off.
@@ -256,8 +256,9 @@ void ViewEquations::SpreadCrossings(int side, int kind, const CrossingMatrix& h,
                                                 Shared(kThickness),
                                                 Shared(kOutlineTop + side),
                                                 Shared(kBeamsMeet),
+                                                Shared(kFringe),
                                                 6 + side};
-  const std::array<int, kPlaces> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 6};
+  const std::array<int, kPlaces> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 6};
   for (std::size_t a = 0; a < kPlaces; ++a) {
     for (std::size_t b = 0; b < kPlaces; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
     g_[place[a]] += g[sum[a]];

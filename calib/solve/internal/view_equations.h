@@ -55,8 +55,9 @@ class ViewEquations {
                                      const Eigen::Vector2d& along) const;
   double OwnSigma(const Crossing& crossing, const CrossingResidual& here) const;
   void AddCrossings();
-  // Over the board's pose, the class's shift, the thickness, the outline and where beams meet.
-  static constexpr int kCrossingUnknowns = 10;
+  // Over the board's pose, the class's shift, the thickness, the outline, where beams meet and the
+  // fringe.
+  static constexpr int kCrossingUnknowns = 11;
   using CrossingMatrix = Eigen::Matrix<double, kCrossingUnknowns, kCrossingUnknowns>;
   using CrossingVector = Eigen::Matrix<double, kCrossingUnknowns, 1>;
   void SpreadCrossings(int side, int kind, const CrossingMatrix& h, const CrossingVector& g);

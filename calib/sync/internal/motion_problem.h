@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calib/camera/camera.h"
@@ -74,6 +75,10 @@ struct MotionCovariance {
   int sweeps = 0;
   double first_s = 0, last_s = 0;  ///< of the sweeps
 };
+
+/// Between which two of a clock's places, `step_s` apart, a time lies, and how far beyond the
+/// first.
+std::pair<int, double> ClockPlace(double seconds, double step_s, std::size_t places);
 
 /// From where the images have the board: the way of `images`, a camera's, at that offset and pose.
 /// `to`: what the knots are to reach, since `start` [s].

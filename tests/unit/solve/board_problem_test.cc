@@ -57,6 +57,7 @@ TEST_P(ResidualOfSide, ByTargetIsItsDerivative) {
   std::array<double, kSharedUnknowns> shared{};
   shared[kFarShift] = 2e-3;
   shared[kThickness] = 0.02;
+  shared[kFringe] = 0.03;
   for (const double tilt : {-0.5, 0.5}) {  // the rim hidden, and seen
     const Rigid3 board = TiltedBoard(tilt, 0.8 * tilt);
     const Crossing crossing = CrossingOn(board, GetParam(), 0.012);
@@ -83,6 +84,17 @@ TEST_P(ResidualOfSide, ABeamBentOutwardsMeetsTheBoardFartherOut) {
   std::array<double, kSharedUnknowns> shared{};
   shared[kFarShift] = kAngle;
   EXPECT_NEAR(ResidualAt(crossing, board, shared).beyond_m, 0, 1e-7);
+}
+
+TEST_P(ResidualOfSide, AFringeIsALengthAtAnyRange) {
+  std::array<double, kSharedUnknowns> shared{};
+  shared[kFringe] = 0.03;
+  for (const double away : {1.0, 2.0}) {
+    Rigid3 board = TiltedBoard(0.5, -0.4);
+    board.translation *= away;
+    const CrossingResidual r = ResidualAt(CrossingOn(board, GetParam(), 0.03), board, shared);
+    EXPECT_NEAR(r.beyond_m, 0.03 - 0.03 * r.per_fringe, 1e-12);
+  }
 }
 
 TEST_P(ResidualOfSide, ARimThatFacesTheLidarIsSeenBesideTheFrontAnyOtherIsHidden) {

@@ -183,7 +183,8 @@ struct CrossingDistance {  // of board, shared, the view's sides
     const int kind = kNoReturnShift + static_cast<int>(crossing.kind) - 1;
     residual[0] =
         (Dot<T>(lidar, out) + range * lean - half - block[1][kOutlineTop + crossing.side] -
-         per_rad * (block[1][kind] + block[2][crossing.side]) - rim * block[1][kThickness]) /
+         per_rad * (block[1][kind] + block[2][crossing.side]) -
+         1.0 / sqrt(1.0 - lean * lean) * block[1][kFringe] - rim * block[1][kThickness]) /
         crossing.sigma_m;
     return true;
   }

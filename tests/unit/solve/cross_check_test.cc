@@ -7,9 +7,6 @@
 namespace rgbdt {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 using testing::SizeIs;
 using testing::UnorderedElementsAreArray;
 
@@ -46,43 +43,6 @@ TEST(CrossValidate, OfThreeViewsThereIsNothingToSay) {
   const Report report = Calibrate(world.rig, world.detections);
   EXPECT_THAT(report.cameras[0].folds, SizeIs(0));
   EXPECT_FALSE(report.cameras[0].halves);
-}
-
-// Planes turned about the LIDAR while edges stay.
-TEST(CrossValidate, WhereEdgesAndPlanesContradictEachOtherTheSigmaHasTheirDistanceInIt) {
-  SolveWorld world(Views(10));
-  const auto solved = [&] { return Calibrate(world.rig, world.detections).cameras; };
-  for (const CameraReport& camera : solved()) {
-    EXPECT_LT(camera.edges_planes.value().chi2, 22.5);
-    EXPECT_THAT(camera.warnings, Not(Contains(HasSubstr("was enlarged"))));
-  }
-  Rigid3 turn;
-  turn.rotation = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitZ());
-  Eigen::Matrix4d q = Eigen::Matrix4d::Identity();
-  q.topLeftCorner<3, 3>() = turn.rotation.toRotationMatrix();
-  for (std::size_t v = 0; v < world.detections.size(); ++v) {
-    CloudEdges& cloud = world.CloudAt(v);
-    cloud.centre = turn * cloud.centre;
-    cloud.scatter = q * cloud.scatter * q.transpose();
-    cloud.raw_scatter = q * cloud.raw_scatter * q.transpose();
-    for (PointGroup& group : cloud.groups) group.scatter = q * group.scatter * q.transpose();
-  }
-  CalibrateOptions brief;
-  brief.diagnostics = false;
-  const auto without = Calibrate(world.rig, world.detections, brief).cameras;
-  const auto with = solved();
-  for (std::size_t c = 0; c < with.size(); ++c) {
-    const Halves& apart = with[c].edges_planes.value();
-    EXPECT_GT(apart.chi2, 22.5);
-    EXPECT_GT(apart.difference.rotation_deg, 0.3);
-    EXPECT_THAT(with[c].warnings, Contains(HasSubstr("was enlarged")));
-    const Matrix6d& enlarged = *with[c].calibration.covariance;
-    const Matrix6d& stated = *without[c].calibration.covariance;
-    const double factor = enlarged(0, 0) / stated(0, 0);
-    EXPECT_DOUBLE_EQ(factor, apart.chi2 / 6);
-    EXPECT_NEAR(apart.sigma_enlarged.value(), std::sqrt(factor), 1e-9);
-    EXPECT_TRUE(enlarged.isApprox(factor * stated));
-  }
 }
 
 TEST(TheBetter, IsTheFirstGuessWhereItFitsBetterBeyondChance) {

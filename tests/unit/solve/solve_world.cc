@@ -251,9 +251,10 @@ Crossing SolveWorld::SeeCrossing(const Rigid3& board, const Eigen::Vector3d& on_
     const double angle =
         nuisances[static_cast<std::size_t>(kNoReturnShift) + static_cast<std::size_t>(kind) - 1] +
         own_shift + blur;
-    at = on_side + (nuisances[static_cast<std::size_t>(kOutlineTop + side)] + per_rad * angle +
-                    rim * nuisances[kThickness] + place) *
-                       outward;
+    at = on_side +
+         (nuisances[static_cast<std::size_t>(kOutlineTop + side)] + per_rad * angle +
+          per_rad / beam.norm() * nuisances[kFringe] + rim * nuisances[kThickness] + place) *
+             outward;
     crossing.sigma_m = std::hypot(crossing.half_width_m / std::sqrt(3), priors.blur_rad * per_rad);
   }
   crossing.point = Published(board * at);
