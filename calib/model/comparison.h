@@ -10,6 +10,10 @@
 
 namespace rgbdt {
 
+/// Of a difference of two poses (6 degrees of freedom): by chance above it once in a thousand
+/// times.
+inline constexpr double kUnlikelyChi2 = 22.5;
+
 /// By how much two poses project the points of one distance apart.
 struct PixelShift {
   double distance_m = 0;

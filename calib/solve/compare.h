@@ -7,10 +7,6 @@
 
 namespace rgbdt {
 
-/// Of a difference of two poses (6 degrees of freedom): by chance above it once in a thousand
-/// times.
-inline constexpr double kUnlikelyChi2 = 22.5;
-
 /// With delta = Log(b * a^-1), camera axes (rigid3.h), and C_b + Ad(b a^-1) C_a Ad^T its covariance
 /// where the two are independent. `spec`: null where the lens is not known. `b_with_a`, of two that
 /// come of one solve and have the lens in common: the covariance of b's delta with a's.

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/model/calibration.h"
-#include "calib/solve/compare.h"
+#include "calib/model/comparison.h"
 
 namespace rgbdt {
 

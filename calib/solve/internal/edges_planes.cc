@@ -4,8 +4,8 @@
 #include <deque>
 #include <utility>
 
+#include "calib/model/comparison.h"
 #include "calib/model/text.h"
-#include "calib/solve/compare.h"
 
 namespace rgbdt {
 

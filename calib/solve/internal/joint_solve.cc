@@ -124,6 +124,7 @@ class JointSolver {
     PoseImagesAgain();
     FitImageSides();
     FitRanges();
+    FitScatter();  // before views are judged by it
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Problem(), result_.solution);
