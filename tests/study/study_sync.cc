@@ -51,6 +51,7 @@ void Solve(const std::string& name, const WavedScene& scene, bool known, std::of
          << camera.variance_factor << ',' << result.variance_factor << ','
          << (camera.drift ? camera.drift->value : 0) << ','
          << (camera.jump ? camera.jump->offset_s.value : 0) << ',' << result.sweeps << ','
+         << 1000 * result.plane_rms_m << ','
          << result.speed << ',' << result.turn_speed << ',' << sample_s << ',' << solve_s << ",\""
          << camera.why_not << "\"\n"
          << std::flush;
@@ -62,7 +63,7 @@ void Run(const std::vector<std::string>& a) {
   csv.precision(12);
   csv << "case,seed,camera,given,true_offset_s,offset_s,offset_sigma_s,true_rolling_s,rolling_s,"
          "rolling_sigma_s,rotation_deg,translation_mm,pose_nees,image_factor,sweep_factor,drift,"
-         "jump,sweeps,speed,turn_speed,sample_s,solve_s,why_not\n";
+         "jump,sweeps,plane_rms_mm,speed,turn_speed,sample_s,solve_s,why_not\n";
   const std::uint64_t seed = std::stoull(a[0]);
   const double seconds = a.size() > 2 ? std::stod(a[2]) : 20;
   WavedScene scene = TwoCameras(seed);
