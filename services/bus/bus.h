@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "services/bus/link_report.h"
 #include "services/messages/bytes.h"
 
 namespace rgbdt {
@@ -26,6 +27,7 @@ class Bus {
   /// `channel_regex` must match the whole channel name. Throws InputError if it is none.
   virtual void Subscribe(const std::string& channel_regex, Handler handler) = 0;
   virtual Malformed malformed() const { return {}; }
+  virtual LinkReport links() const { return {}; }
 };
 
 /// Delivers within one process, in the order published: a message published by a handler waits
@@ -49,7 +51,9 @@ class MemoryBus : public Bus {
 /// LCM. An empty URL means LCM_DEFAULT_URL or LCM's default, with a receive buffer of 32 MiB asked
 /// for where the URL says none. What a udpm bus carries is received by code of our own, as LCM's
 /// believes whatever a datagram says; LCM sends, and reads file:// URLs. With ttl=0 the bus hears
-/// this machine only. Exceptions of handlers never reach C code.
+/// this machine only. With a higher one we send, too: in datagrams that fit an Ethernet's frame,
+/// of which a receiver that is an LcmBus asks for those that were lost; it so has each sender's
+/// messages in order. Exceptions of handlers never reach C code.
 class LcmBus : public Bus {
  public:
   /// Throws InputError: which URL, why, and what to do.
@@ -58,6 +62,7 @@ class LcmBus : public Bus {
   void Publish(const std::string& channel, const Bytes& bytes) override;
   void Subscribe(const std::string& channel_regex, Handler handler) override;
   Malformed malformed() const override;
+  LinkReport links() const override;
   /// Waits up to `timeout_ms` for messages and delivers what is there, but for no longer than some
   /// 100 ms, so that the caller's clock keeps running under load. False: none came.
   bool Run(int timeout_ms);

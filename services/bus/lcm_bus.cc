@@ -10,6 +10,7 @@
 #include "services/bus/bus.h"
 #include "services/bus/internal/datagram.h"
 #include "services/bus/internal/source.h"
+#include "services/bus/internal/udp_sender.h"
 #include "services/bus/multicast.h"
 
 namespace rgbdt {
@@ -57,10 +58,22 @@ struct LcmBus::Impl {
       source = MakeLcmSource(lcm);
       return;
     }
-    source = MakeUdpSource(url, [this] {
+    const BusUrl parsed = ParseBusUrl(url);
+    if (!parsed.error.empty()) throw InputError(parsed.error);
+    if (parsed.ttl > 0) sender = std::make_unique<UdpSender>(parsed);
+    const auto send_test = [this] {
       const std::string test = "lcm self test";
-      lcm_publish(lcm, kSelfTestChannel, test.data(), static_cast<unsigned>(test.size()));
-    });
+      Publish(kSelfTestChannel, {test.begin(), test.end()});
+    };
+    source = MakeUdpSource(parsed, send_test, sender.get());
+  }
+
+  void Publish(const std::string& channel, const Bytes& bytes) const {
+    if (sender != nullptr) return sender->Publish(channel, bytes);
+    errno = 0;
+    if (lcm_publish(lcm, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
+      throw InputError(errno != 0 ? std::strerror(errno) : "LCM refuses");
+    }
   }
 
   bool Readable(int timeout_ms) const {
@@ -69,6 +82,7 @@ struct LcmBus::Impl {
   }
 
   lcm_t* lcm = nullptr;
+  std::unique_ptr<UdpSender> sender;  // where the bus leaves the machine; else LCM sends
   std::unique_ptr<Source> source;
   std::string url;
   bool ended = false;
@@ -94,11 +108,11 @@ void LcmBus::Publish(const std::string& channel, const Bytes& bytes) {
   if (channel.size() > kMaxChannelBytes) {
     throw InputError("channel " + channel + " has more than 63 characters");
   }
-  errno = 0;
-  if (lcm_publish(impl_->lcm, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) !=
-      0) {
+  try {
+    impl_->Publish(channel, bytes);
+  } catch (const InputError& e) {
     throw InputError("cannot publish " + std::to_string(bytes.size()) + " bytes on " + impl_->url +
-                     ": " + (errno != 0 ? std::strerror(errno) : "LCM refuses"));
+                     ": " + e.what());
   }
 }
 
@@ -116,6 +130,8 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
 }
 
 Malformed LcmBus::malformed() const { return impl_->source->malformed(); }
+
+LinkReport LcmBus::links() const { return impl_->source->links(); }
 
 bool LcmBus::Run(int timeout_ms) {
   if (impl_->ended || !impl_->Readable(timeout_ms)) return false;

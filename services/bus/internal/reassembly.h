@@ -6,23 +6,15 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "services/bus/internal/datagram.h"
-#include "services/messages/bytes.h"
+#include "services/bus/internal/partial_message.h"
 
 namespace rgbdt {
-
-/// A message as it was sent.
-struct WholeMessage {
-  std::string channel;
-  Bytes bytes;
-};
 
 /// Makes messages of datagrams. Whatever these say, a message that comes out is whole: each of its
 /// bytes was sent, once. What is held is bounded: one message a sender, the newest; no larger than
 /// a message may be; 64 MiB and 256 senders in all, of which the one quiet for longest gives way.
-/// Bytes take memory when they come, not when a header speaks of them.
 class Reassembly {
  public:
   using Sender = std::pair<std::uint32_t, std::uint16_t>;  ///< address and port
@@ -40,17 +32,10 @@ class Reassembly {
   std::size_t senders_held() const { return partial_.size(); }
 
  private:
-  struct Range {
-    std::uint32_t begin = 0, end = 0;
-    bool came = false;
-  };
   struct Partial {
-    std::string channel;
-    std::uint32_t seq = 0, message_bytes = 0;
-    std::vector<Range> fragments;
-    std::size_t missing = 0;
-    Bytes bytes;
-    std::uint64_t touched = 0;
+    std::uint32_t seq;
+    PartialMessage message;
+    std::uint64_t touched;
   };
   using Partials = std::map<Sender, Partial>;
 

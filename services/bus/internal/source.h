@@ -7,6 +7,7 @@
 #include <string>
 
 #include "services/bus/bus.h"
+#include "services/bus/internal/udp_sender.h"
 
 namespace rgbdt {
 
@@ -24,6 +25,7 @@ class Source {
   /// Hands on the message that waits. False: nothing will come any more.
   virtual bool Deliver() = 0;
   virtual Malformed malformed() const { return {}; }
+  virtual LinkReport links() const { return {}; }
 };
 
 /// What `lcm` hears itself: a log file. Null where it hears nothing.
@@ -32,9 +34,10 @@ std::unique_ptr<Source> MakeLcmSource(lcm_t* lcm);
 /// The bus of a udpm URL, received by a thread of its own. LCM's own receiver believes what a
 /// datagram says of itself, and two of them end the process; this one holds each to its bytes. It
 /// hears the group only, not what is sent to the machine; with ttl 0 nothing from other machines.
-/// `send_test` sends a message on kSelfTestChannel; null where none comes back within 10 s. Throws
-/// InputError where the kernel refuses the socket.
-std::unique_ptr<Source> MakeUdpSource(const std::string& url,
-                                      const std::function<void()>& send_test);
+/// `send_test` sends a message on kSelfTestChannel; null where none comes back within 10 s. With a
+/// sender, which outlives it, the two repair what networks lose: what is missing is asked for by
+/// it, and it answers others. Throws InputError where the kernel refuses the socket.
+std::unique_ptr<Source> MakeUdpSource(const BusUrl& url, const std::function<void()>& send_test,
+                                      UdpSender* sender);
 
 }  // namespace rgbdt

@@ -4,16 +4,19 @@
 #include <pthread.h>
 #include <sys/eventfd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 
 #include "calib/model/errors.h"
 #include "services/bus/internal/group_socket.h"
 #include "services/bus/internal/inbox.h"
+#include "services/bus/internal/repaired_streams.h"
 #include "services/bus/internal/source.h"
 
 namespace rgbdt {
@@ -26,6 +29,19 @@ constexpr int kDatagramsAtOnce = 100;  // then it looks whether it is to stop
 constexpr auto kTestPatience = std::chrono::seconds(10);
 constexpr int kTestPeriodMs = 100;
 
+constexpr Utime kLongestWaitMs = 1000;
+
+Utime Now() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
+      .count();
+}
+
+Utime Wall() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 std::string Text(const sockaddr_in& address) {
   std::array<char, INET_ADDRSTRLEN> text{};
   inet_ntop(AF_INET, &address.sin_addr, text.data(), text.size());
@@ -34,8 +50,11 @@ std::string Text(const sockaddr_in& address) {
 
 class UdpSource : public Source {
  public:
-  explicit UdpSource(const BusUrl& url)
-      : socket_(OpenGroupSocket(url)), stop_(eventfd(0, EFD_CLOEXEC)), buffer_(kMaxDatagramBytes) {
+  UdpSource(const BusUrl& url, UdpSender* sender)
+      : socket_(OpenGroupSocket(url)),
+        stop_(eventfd(0, EFD_CLOEXEC)),
+        buffer_(kMaxDatagramBytes),
+        sender_(sender) {
     if (!stop_) throw InputError("too many files are open");
   }
 
@@ -79,30 +98,91 @@ class UdpSource : public Source {
     return true;
   }
   Malformed malformed() const override { return inbox_.malformed(); }
+  LinkReport links() const override {
+    if (sender_ == nullptr) return {};
+    const std::lock_guard<std::mutex> lock(streams_mutex_);
+    LinkReport report = streams_.report();
+    report.ip_fragments_given_up = ReassemblyFailures() - reassembly_failures_;
+    return report;
+  }
 
  private:
   // The next datagram into the buffer; false: none waits.
   bool Receive() {
-    socklen_t length = sizeof sender_;
+    socklen_t length = sizeof from_;
     const ssize_t got = recvfrom(socket_.get(), buffer_.data(), buffer_.size(), 0,
-                                 reinterpret_cast<sockaddr*>(&sender_), &length);
+                                 reinterpret_cast<sockaddr*>(&from_), &length);
     size_ = got < 0 ? 0 : static_cast<std::size_t>(got);
     return got >= 0;
   }
 
   void Take() {
     const char* why = nullptr;
-    std::optional<WholeMessage> message;
     if (const auto datagram = ParseDatagram(buffer_.data(), size_, &why)) {
-      message = reassembly_.Add({sender_.sin_addr.s_addr, sender_.sin_port}, *datagram, &why);
+      if (!datagram->is_fragment && datagram->channel == kRepairChannel) {
+        TakeRepair(*datagram, &why);
+      } else {
+        TakeMessage(*datagram, &why);
+      }
     }
-    if (why != nullptr) inbox_.AddMalformed(Text(sender_) + ": " + why);
+    if (why != nullptr) inbox_.AddMalformed(Text(from_) + ": " + why);
+  }
+
+  Reassembly::Sender From() const { return {from_.sin_addr.s_addr, from_.sin_port}; }
+
+  void TakeMessage(const Datagram& datagram, const char** why) {
+    if (sender_ != nullptr) {
+      const std::lock_guard<std::mutex> lock(streams_mutex_);
+      const bool taken = streams_.Add(From(), datagram, Now(), why);
+      if (taken) return DeliverStreams();
+    }
+    auto message = reassembly_.Add(From(), datagram, why);
     if (message) inbox_.Add(std::move(*message));
+  }
+
+  // Senders and receivers of what is lost. Not for a bus that stays on its machine.
+  void TakeRepair(const Datagram& datagram, const char** why) {
+    if (sender_ == nullptr) return;
+    const RepairMessage message = DecodeRepairMessage(datagram.data, datagram.size);
+    const std::lock_guard<std::mutex> lock(streams_mutex_);
+    if (const auto* beat = std::get_if<Beat>(&message)) {
+      streams_.OnBeat(From(), *beat, Now(), Wall());
+    } else if (const auto* request = std::get_if<RepairRequest>(&message)) {
+      streams_.OnRequest(*request, Now());
+      sender_->Answer(*request);
+    } else if (const auto* repair = std::get_if<Repair>(&message)) {
+      const auto lost = ParseDatagram(repair->datagram.data(), repair->datagram.size(), why);
+      if (lost) streams_.AddRepair(From(), *lost, Now(), why);
+    } else {
+      *why = "no message of those that repair what is lost";
+    }
+    DeliverStreams();
+  }
+
+  void DeliverStreams() {
+    for (WholeMessage& message : streams_.Take()) inbox_.Add(std::move(message));
+  }
+
+  // What is due by time. Until when there is nothing more [ms]; below 0: until something comes.
+  int Tend() {
+    if (sender_ == nullptr) return -1;
+    const std::lock_guard<std::mutex> lock(streams_mutex_);
+    const Utime now = Now();
+    for (const RepairRequest& request : streams_.Ask(now)) sender_->Ask(request);
+    DeliverStreams();
+    sender_->BeatIfDue(now);
+    Utime next = sender_->NextBeat();
+    if (const auto ask = streams_.NextAsk()) next = std::min(next, *ask);
+    return static_cast<int>(std::clamp<Utime>((next - now + 999) / 1000, 1, kLongestWaitMs));
+  }
+
+  bool Stopped(const pollfd& stop) const {
+    return stop.revents != 0 && (sender_ == nullptr || !sender_->WaitsForRequests(Now()));
   }
 
   void Run() {
     std::array<pollfd, 2> readable{{{socket_.get(), POLLIN, 0}, {stop_.get(), POLLIN, 0}}};
-    while (readable[1].revents == 0) {
+    while (!Stopped(readable[1])) {
       for (int i = 0; i < kDatagramsAtOnce && Receive(); ++i) {
         try {
           Take();
@@ -110,26 +190,31 @@ class UdpSource : public Source {
           // No memory for it: it is lost, as in a full buffer, and leaves a gap.
         }
       }
-      poll(readable.data(), readable.size(), -1);
+      const int wait_ms = Tend();
+      // Once it is to stop, the other descriptor is always readable.
+      poll(readable.data(), readable[1].revents == 0 ? 2 : 1, wait_ms);
     }
   }
 
   Descriptor socket_, stop_;
   Bytes buffer_;
   std::size_t size_ = 0;
-  sockaddr_in sender_{};
+  sockaddr_in from_{};
   Inbox inbox_;
   Reassembly reassembly_{[this](const std::string& channel) { return inbox_.IsWanted(channel); }};
+  // Of a bus that leaves its machine.
+  UdpSender* sender_;
+  mutable std::mutex streams_mutex_;
+  RepairedStreams streams_{[this](const std::string& channel) { return inbox_.IsWanted(channel); }};
+  std::int64_t reassembly_failures_ = ReassemblyFailures();  // before this
   std::thread thread_;
 };
 
 }  // namespace
 
-std::unique_ptr<Source> MakeUdpSource(const std::string& url,
-                                      const std::function<void()>& send_test) {
-  const BusUrl parsed = ParseBusUrl(url);
-  if (!parsed.error.empty()) throw InputError(parsed.error);
-  auto source = std::make_unique<UdpSource>(parsed);
+std::unique_ptr<Source> MakeUdpSource(const BusUrl& url, const std::function<void()>& send_test,
+                                      UdpSender* sender) {
+  auto source = std::make_unique<UdpSource>(url, sender);
   if (!source->Hears(send_test)) return nullptr;
   source->Start();
   return source;
