@@ -14,6 +14,8 @@ namespace {
 
 constexpr Utime kSilence = 5 * kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
 
+constexpr std::int64_t kMissedWords = 3;  // of a process that was cut off, at 1 Hz
+
 std::int64_t Received(const Status& status) {
   for (const auto& [name, value] : status.counters) {
     if (name == "received") return value;
@@ -61,10 +63,20 @@ bool SessionNode::Listens() const {
 
 void SessionNode::OnStatus(const Status& status) {
   const auto before = statuses_.find(status.process);
-  const bool anew = before != statuses_.end() && IsStartedAnew(before->second, status);
+  const bool known = before != statuses_.end();
+  const bool anew = known && IsStartedAnew(before->second, status);
+  const Utime silence = known ? now_ - heard_.at(status.process) : 0;
+  // One that is at work is silent, too, but says no less for it.
+  const bool cut_off =
+      known && !anew && silence > kCutOff && status.seq - before->second.seq >= kMissedWords;
   statuses_[status.process] = status;
   heard_[status.process] = now_;
   if (anew && started_ && !finished_) OnStartedAnew(status.process);
+  if (cut_off && started_ && !finished_) OnCutOff(status.process, silence);
+  if (const std::string clocks = ClockTrouble(); clocks != clock_told_) {
+    clock_told_ = clocks;
+    if (!clocks.empty()) Warn(clocks);
+  }
   if (status.process == "solver" && solver_views_.LostBy(status)) {
     RestoreSolver("rgbdt-solver was started anew and has lost its views");
   }
@@ -187,6 +199,8 @@ void SessionNode::OnEvent(const SessionEvent& event) {
     return;
   }
   if (!waiting_ || event.command != command_) return;
+  repeat_pause_ = kFirstRepeat;
+  repeat_at_ = now_ + repeat_pause_;
   if (event.kind == EventKind::kFailed) {
     const std::string why = event.source + ": " + event.text;
     if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
@@ -225,6 +239,7 @@ bool SessionNode::RestoreSolver(const std::string& why) {
   if (waiting_ && AnsweredBy(step().kind) == "solver") {
     answered_ = false;
     step_began_ = now_;
+    newest_command_.command = ++command_;  // the answer to the one before is of no use
     again.emplace_back(newest_command_);
   }
   again_ = std::move(again);

@@ -15,6 +15,8 @@
 namespace rgbdt {
 namespace {
 
+// After one that was cut off is heard: within that the others are, too.
+constexpr Utime kHeardAgain = 3 * kMicrosecondsPerSecond / 2;
 constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
 
 }  // namespace
@@ -108,10 +110,11 @@ Messages SessionNode::GoOn() {
     if (!waiting_ || finished_) return {};  // it failed
     const bool waits = step().kind == SessionStep::Kind::kWait;
     if (!waits && ToSeconds(now_ - step_began_) > step().timeout_s) {
+      const std::string clocks = ClockTrouble();
       Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
-           WhatIsMissing());
+           WhatIsMissing() + (clocks.empty() ? "" : "; " + clocks));
     }
-    return {};
+    return RepeatCommand();
   }
   if (!finished_) EndStep();
   if (finished_ || idle()) return {};
@@ -190,7 +193,11 @@ void SessionNode::EndStep() {
 
 // A sweep without somebody who needs it is of no use.
 bool SessionNode::IsHeldUp() {
-  const std::string who = step().kind == SessionStep::Kind::kSweep ? WhoIsNotReady() : "";
+  std::string who = step().kind == SessionStep::Kind::kSweep ? WhoIsNotReady() : "";
+  if (step().kind == SessionStep::Kind::kSweep && who.empty()) {
+    if (HasDevices()) who = ClockTrouble();
+    if (cut_off_ && now_ - *cut_off_ < kHeardAgain) who = "all that were cut off";
+  }
   if (who.empty()) {
     held_up_since_.reset();
     return false;
@@ -292,6 +299,8 @@ Messages SessionNode::Send(SessionVerb verb) {
     command.picked_cameras = step().picked_cameras;
   }
   newest_command_ = command;
+  repeat_pause_ = kFirstRepeat;
+  repeat_at_ = now_ + repeat_pause_;
   return {command};
 }
 

@@ -58,6 +58,12 @@ struct SessionProgress {
 /// the newest STATUS; that of a process that is gone counts until it is back (one at work is
 /// silent, too).
 ///
+/// A command that is not answered is sent again, as it was, after 2, 4, 8 and then every 16 s; who
+/// got it answers once more what it answered (NodeRunner). A process whose STATUS was not heard for
+/// kCutOff and goes on with later numbers was cut off, and this one from it: what either said is
+/// lost. The view at hand is taken again, once all are heard, and the solver sent all it needs.
+/// Machines whose clocks are off, by anybody's STATUS, are named; no sweep of devices begins then.
+///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
 /// once more, and is asked again what it was asked. A report without a captured view, but for those
@@ -67,6 +73,9 @@ class SessionNode : public Node {
  public:
   static constexpr int kMaxRetakes = 2;
   static constexpr int kMaxRestarts = 5;
+  static constexpr Utime kCutOff = 3 * kMicrosecondsPerSecond;
+  static constexpr Utime kFirstRepeat = 2 * kMicrosecondsPerSecond;
+  static constexpr Utime kLongestRepeat = 16 * kMicrosecondsPerSecond;
 
   using OnProgress = std::function<void(const SessionProgress&)>;
   /// Whether the person who carries the board has put it where the next view wants it; asked in
@@ -118,6 +127,11 @@ class SessionNode : public Node {
   void Take(const Message& message);
   void OnStatus(const Status& status);
   void OnStartedAnew(const std::string& process);
+  void OnCutOff(const std::string& process, Utime silence);
+  static bool HasPart(const std::string& process);
+  Messages RepeatCommand();
+  std::string ClockTrouble() const;
+  bool HasDevices() const;
   bool AnswersSweeps(const std::string& process) const;
   void AskAgain(const std::string& why);
   bool Listens() const;
@@ -165,6 +179,9 @@ class SessionNode : public Node {
   std::size_t index_ = 0;
   std::int64_t command_ = identity_.FirstCommand();
   SessionCommand newest_command_;
+  Utime repeat_at_ = 0, repeat_pause_ = kFirstRepeat;  // of the newest command
+  std::optional<Utime> cut_off_;                       // when somebody was heard again
+  std::string clock_told_;
   bool answered_ = false;
   int view_number_ = 0;
   std::string view_;

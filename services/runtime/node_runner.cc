@@ -1,9 +1,11 @@
 #include "services/runtime/node_runner.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "services/messages/check.h"
 #include "services/messages/codec.h"
+#include "services/runtime/status_counters.h"
 
 namespace rgbdt {
 namespace {
@@ -12,6 +14,8 @@ constexpr std::size_t kMaxProblemBytes = 1000;
 // What strangers name themselves must not fill the memory or the status.
 constexpr std::size_t kMaxKeys = 1000;
 constexpr std::size_t kMaxChannelsNamed = 100;
+// In ten seconds; of two senders at 1 Hz about ten, of one that is started anew one.
+constexpr int kSharedFallBacks = 5;
 
 // Whose numbers a message belongs to.
 std::string SequenceOf(const Message& message) {
@@ -20,6 +24,29 @@ std::string SequenceOf(const Message& message) {
   if (const auto* event = std::get_if<SessionEvent>(&message)) sender = event->source;
   if (const auto* pose = std::get_if<StampedPose>(&message)) sender = pose->source;
   return ChannelOf(message) + (sender.empty() ? "" : " " + sender);
+}
+
+// Not those on which each sender counts for itself, persons speak, or the session says again what
+// others said.
+bool HasOneSender(const std::string& channel, const std::string& sequence) {
+  static const std::set<std::string> several = {"CORNER_SELECTION", "DETECTION", "LEFT_OUT_VIEWS",
+                                                "SESSION_REQUEST"};
+  return channel == sequence && several.count(channel) == 0;
+}
+
+void AddLinks(const LinkReport& links, Status* status) {
+  const auto add = [&](const std::string& name, std::int64_t value) {
+    if (value != 0) status->counters.emplace_back(name, value);
+  };
+  add("datagrams lost", links.datagrams_lost);
+  add("datagrams repaired", links.datagrams_repaired);
+  add("messages given up", links.messages_given_up);
+  add("ip fragments given up", links.ip_fragments_given_up);
+  for (const ClockOffset& clock : links.clocks) {
+    if (std::abs(clock.ahead) > kClockTolerance) {
+      add(Printable(kClockCounter + clock.host, 100), clock.ahead / 1000);
+    }
+  }
 }
 
 void AddCounters(const std::string& what, const std::map<std::string, std::int64_t>& by_channel,
@@ -51,6 +78,13 @@ void NodeRunner::OnBytes(const std::string& channel, const std::uint8_t* data, s
   Guard(channel, [&] {
     const Message message = Decode(channel, data, size);
     CountGap(channel, message);
+    const auto* command = std::get_if<SessionCommand>(&message);
+    if (command != nullptr && !commands_.IsNew(*command)) {
+      if (const auto last_word = commands_.LastWord(command->command)) {
+        answers.emplace_back(*last_word);
+      }
+      return;
+    }
     answers = node_->Handle(message);
     // Another process' health is not this one's time.
     if (!std::holds_alternative<Status>(message)) {
@@ -69,6 +103,9 @@ void NodeRunner::CountGap(const std::string& channel, const Message& message) {
   late_ += step.kind == SequenceCounter::Kind::kLate ? 1 : 0;
   duplicates_ += step.kind == SequenceCounter::Kind::kDuplicate ? 1 : 0;
   restarts_ += step.kind == SequenceCounter::Kind::kRestart ? 1 : 0;
+  const bool fell_back = step.kind == SequenceCounter::Kind::kRestart ||
+                         step.kind == SequenceCounter::Kind::kDuplicate;
+  if (fell_back && HasOneSender(channel, key)) ++fallen_back_[channel];
 }
 
 void NodeRunner::Publish(Messages messages) {
@@ -88,6 +125,7 @@ void NodeRunner::PublishOne(Message message) {
     const Bytes bytes = Encode(message);
     ++next_seq_[key];
     bus_->Publish(channel, bytes);
+    if (const auto* event = std::get_if<SessionEvent>(&message)) commands_.Remember(*event);
   });
 }
 
@@ -95,6 +133,10 @@ void NodeRunner::Advance(Utime now) {
   Guard("advancing", [&] { Publish(node_->Advance(now)); });
   if (!status_.IsDue(now)) return;
   NameMalformed();
+  if (links_.IsDue(now)) {
+    NameLinks();
+    NameSharedChannels();
+  }
   Guard("status", [&] { PublishOne(GetStatus()); });
 }
 
@@ -112,6 +154,7 @@ Status NodeRunner::GetStatus() const {
   if (const std::int64_t count = bus_->malformed().count; count != 0) {
     status.counters.emplace_back("malformed", count);
   }
+  AddLinks(bus_->links(), &status);
   AddCounters("dropped", dropped_by_channel_, &status);
   AddCounters("gaps", gaps_by_channel_, &status);
   return status;
@@ -140,6 +183,35 @@ void NodeRunner::NameMalformed() {
   if (malformed.count == malformed_named_) return;
   malformed_named_ = malformed.count;
   NameProblem("a malformed datagram from " + malformed.newest);
+}
+
+// Every ten seconds: what goes on is said again.
+void NodeRunner::NameLinks() {
+  const LinkReport links = bus_->links();
+  if (links.datagrams_lost > lost_named_) {
+    NameProblem("the network loses datagrams, most of host " + links.worst + "; " +
+                std::to_string(links.datagrams_repaired) + " were repaired, " +
+                std::to_string(links.messages_given_up) + " messages given up");
+  }
+  if (links.ip_fragments_given_up > ip_lost_named_) {
+    NameProblem(
+        "the network loses pieces of datagrams that are larger than its MTU, and with each "
+        "a whole one: " +
+        std::to_string(links.ip_fragments_given_up) +
+        " (ReasmFails), of LCM programs that are not rgbdt's");
+  }
+  for (const std::string& problem : ClockProblems(links.clocks)) NameProblem(problem);
+  lost_named_ = links.datagrams_lost;
+  ip_lost_named_ = links.ip_fragments_given_up;
+}
+
+void NodeRunner::NameSharedChannels() {
+  for (const auto& [channel, times] : fallen_back_) {
+    if (times < kSharedFallBacks) continue;
+    NameProblem(channel + ": its numbers fell back " + std::to_string(times) +
+                " times in 10 s: two programs send on this channel; end one of them");
+  }
+  fallen_back_.clear();
 }
 
 void NodeRunner::NameProblem(const std::string& problem) {

@@ -7,6 +7,7 @@
 
 #include "services/bus/bus.h"
 #include "services/bus/sequence.h"
+#include "services/runtime/answered_commands.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
 
@@ -20,8 +21,10 @@ namespace rgbdt {
 /// Numbers (sequence.h) are kept by channel, on STATUS, SESSION_EVENT and POSE by channel and
 /// sender, since several processes speak there. What a node repeats (Node::Repeats) keeps its
 /// sender's number. Late and repeated messages are handed over as they
-/// come: what their order means only the node knows. A message that cannot be decoded is dropped
-/// and also leaves a gap, as its number is unknown.
+/// come: what their order means only the node knows; but a session's command that came before is
+/// not handed over, the node's last word on it is said again (AnsweredCommands). A channel of one
+/// sender whose numbers keep falling back is named: two programs send on it. A message that cannot
+/// be decoded is dropped and also leaves a gap, as its number is unknown.
 class NodeRunner {
  public:
   using ProblemHandler = std::function<void(const std::string& problem)>;
@@ -38,7 +41,9 @@ class NodeRunner {
 
   /// The node's own, with the runner's name, time, newest problem and counters: "received",
   /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "malformed" (what
-  /// reached the bus and was no message), "dropped CLOUD", "gaps CLOUD".
+  /// reached the bus and was no message), "dropped CLOUD", "gaps CLOUD", and what the links between
+  /// machines lost (LinkReport): "datagrams lost", "datagrams repaired", "messages given up",
+  /// "ip fragments given up", and kClockCounter for each machine whose clock is off.
   Status GetStatus() const;
 
   /// Called with each problem, the node's warnings among them, e.g. "CLOUD: num_points is -1".
@@ -60,12 +65,16 @@ class NodeRunner {
   void Drop(const std::string& channel, const std::string& what);
   void NameProblem(const std::string& problem);
   void NameMalformed();
+  void NameLinks();
+  void NameSharedChannels();
 
   Node* node_;
   Bus* bus_;
   std::set<std::string> repeats_;  // Node::Repeats
   ProblemHandler problem_handler_;
   Periodic status_{kMicrosecondsPerSecond};
+  Periodic links_{10 * kMicrosecondsPerSecond};
+  AnsweredCommands commands_;
   std::map<std::string, std::int64_t> next_seq_;      // of what is published, by sequence
   std::map<std::string, SequenceCounter> sequences_;  // of what is received
   std::map<std::string, std::int64_t> dropped_by_channel_, gaps_by_channel_;
@@ -73,7 +82,8 @@ class NodeRunner {
   Utime newest_utime_ = 0;
   std::int64_t received_ = 0, dropped_ = 0, gaps_ = 0;
   std::int64_t late_ = 0, duplicates_ = 0, restarts_ = 0;
-  std::int64_t malformed_named_ = 0;
+  std::int64_t malformed_named_ = 0, lost_named_ = 0, ip_lost_named_ = 0;
+  std::map<std::string, int> fallen_back_;  // numbers, by channel, since links_ was due
 };
 
 }  // namespace rgbdt

@@ -1,0 +1,60 @@
+// What a session does where machines do not hear each other, or their clocks disagree.
+#include <algorithm>
+#include <cstdlib>
+
+#include "services/nodes/session_node.h"
+#include "services/runtime/status_counters.h"
+
+namespace rgbdt {
+
+// It, or its answer, may have been lost.
+Messages SessionNode::RepeatCommand() {
+  const bool asks = step().kind != SessionStep::Kind::kWait;
+  if (!waiting_ || finished_ || answered_ || !asks || now_ < repeat_at_) return {};
+  repeat_pause_ = std::min(2 * repeat_pause_, kLongestRepeat);
+  repeat_at_ = now_ + repeat_pause_;
+  return {newest_command_};
+}
+
+bool SessionNode::HasPart(const std::string& process) {
+  return process == "detector" || process == "assembler" || process == "lidar" ||
+         process == "motor" || process == "simulator" || process.rfind("camera-", 0) == 0;
+}
+
+// What was said since, there or here, did not come. Commands are sent again until they are
+// answered.
+void SessionNode::OnCutOff(const std::string& process, Utime silence) {
+  cut_off_ = now_;
+  const std::string why = "rgbdt-" + process + " was cut off for " +
+                          std::to_string(silence / kMicrosecondsPerSecond) + " s";
+  if (!waiting_ || idle()) return;
+  const SessionStep::Kind kind = step().kind;
+  if (HasPart(process) && kind == SessionStep::Kind::kSweep) spoiled_ = why;
+  const bool solves = kind == SessionStep::Kind::kSolve || kind == SessionStep::Kind::kEvaluate;
+  if (process == "solver" && solves) RestoreSolver(why);
+  if (HasPart(process) && kind == SessionStep::Kind::kCapture && !(view_saved_ && IsDetected())) {
+    TakeAgain(why, &restarts_, kMaxRestarts);
+  }
+}
+
+std::string SessionNode::ClockTrouble() const {
+  for (const auto& [process, status] : statuses_) {
+    for (const auto& [name, value] : status.counters) {
+      if (name.rfind(kClockCounter, 0) != 0) continue;
+      return "clocks disagree: that of host " + name.substr(sizeof kClockCounter - 1) + " is " +
+             std::to_string(std::abs(value)) + " ms " + (value > 0 ? "ahead of" : "behind") +
+             " that of rgbdt-" + process + "'s host; on each: sudo timedatectl set-ntp true";
+    }
+  }
+  return {};
+}
+
+// Simulated time is nobody's clock.
+bool SessionNode::HasDevices() const {
+  const auto& scanner = rig_.lidar.turned_scanner;
+  return rig_.lidar.device.index() != 0 || (scanner && scanner->motor) ||
+         std::any_of(rig_.cameras.begin(), rig_.cameras.end(),
+                     [](const CameraSpec& camera) { return camera.device.has_value(); });
+}
+
+}  // namespace rgbdt
