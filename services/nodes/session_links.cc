@@ -25,6 +25,8 @@ bool SessionNode::HasPart(const std::string& process) {
 // answered.
 void SessionNode::OnCutOff(const std::string& process, Utime silence) {
   cut_off_ = now_;
+  repeat_pause_ = kFirstRepeat;
+  repeat_at_ = std::min(repeat_at_, now_ + repeat_pause_);
   const std::string why = "rgbdt-" + process + " was cut off for " +
                           std::to_string(silence / kMicrosecondsPerSecond) + " s";
   if (!waiting_ || idle()) return;

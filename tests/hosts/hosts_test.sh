@@ -95,6 +95,7 @@ end_session
 end
 lost=$(last_count assembler 'datagrams lost')
 [ "${lost:-0}" = 0 ] || echo "note: $lost datagrams were lost by a busy machine"
+echo "the session took $took_ms ms"
 figure hosts_mbit_s "$((bytes * 8 / took_ms / 1000))" Mbit/s
 
 echo "== $permille in 1000 datagrams are lost on the way to each host"
@@ -116,6 +117,7 @@ lose_nothing_more
 end
 grep -h 'datagrams lost' "$scratch"/{assembler,detector,simulator}.log | tail -n 3 || true
 echo "the session took $took_ms ms"
+grep -hE 'cut off|again|loses|clock' "$scratch"/{session,detector,assembler}.log || true
 for view in $(seq -f %04.0f "$views"); do
   [ -s "$folder/views/$view/view.textproto" ] || fail "view $view is missing"
 done

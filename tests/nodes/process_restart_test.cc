@@ -47,6 +47,7 @@ class ProcessRestartTest : public ::testing::Test {
   }
 
   test::TempDir dir_;
+  double cut_at_ = 0;  // [s]
   std::unique_ptr<RestartWorld> world_;
 };
 
@@ -61,6 +62,38 @@ TEST_F(ProcessRestartTest, WhoeverIsKilledWhateverWasAskedTheCalibrationIsTheSam
       EXPECT_LT(world_->seconds(), undisturbed_s + 6) << name << ": no time-out is waited for";
     }
   }
+}
+
+TEST_F(ProcessRestartTest, WhoeverIsCutOffWhateverWasAskedTheCalibrationIsTheSame) {
+  const std::string expected = CalibrationOf("whole", [](auto&&...) {});
+  const double undisturbed_s = world_->seconds();
+  for (const Verb verb : {Verb::kNextPose, Verb::kSweep, Verb::kCapture}) {
+    for (const char* process : {"simulator", "assembler", "detector"}) {
+      const std::string name = std::string(process) + std::to_string(static_cast<int>(verb));
+      const auto cut = [this, verb, process](const SessionCommand& command, RestartWorld* world) {
+        if (command.verb != verb || command.view != "0003" || world->seconds() > cut_at_) return;
+        cut_at_ = world->seconds();
+        world->CutOff(process, 10);
+      };
+      cut_at_ = 1e9;
+      EXPECT_EQ(CalibrationOf(name, cut), expected) << name;
+      EXPECT_LT(world_->seconds(), undisturbed_s + 10 + 6) << name << ": no time-out is waited for";
+    }
+  }
+}
+
+TEST_F(ProcessRestartTest, ACommandIsRepeatedAsItWasUntilItIsAnswered) {
+  std::vector<SessionCommand> of_view;
+  int unanswered = 0;
+  Run("deaf", [&](const SessionCommand& command, RestartWorld* world) {
+    if (command.verb != Verb::kNextPose || command.view != "0003") return;
+    of_view.push_back(command);
+    if (++unanswered < 3) world->CutOff("simulator", 1);  // too short to be noticed
+  });
+  EXPECT_EQ(world_->session().failure(), "");
+  ASSERT_EQ(of_view.size(), 3U);
+  EXPECT_EQ(of_view[0].command, of_view[2].command);
+  EXPECT_EQ(of_view[0].utime, of_view[2].utime);
 }
 
 TEST_F(ProcessRestartTest, WhoTakesNoPartCostsNothing) {

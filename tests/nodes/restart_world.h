@@ -81,7 +81,10 @@ class RestartWorld {
       if (turn_ == starts_solver_at_) StartSolver();
       if (turn_ == starts_session_at_) StartSession();
       for (auto& [process, others] : others_) {
-        if (turn_ < others.back_at) continue;
+        if (turn_ < others.back_at) {
+          others.statuses += others.goes_on ? 1 : 0;
+          continue;
+        }
         Status status = Ready(process);
         status.seq = others.statuses++;
         Send(status);
@@ -109,7 +112,12 @@ class RestartWorld {
   }
   /// simulator, assembler, detector or fuser.
   void Kill(const std::string& process, int seconds) {
-    others_[process] = {turn_ + 10 * seconds, 0};
+    others_[process] = {turn_ + 10 * seconds, 0, false};
+    if (process == "detector") detector_has_sweep_ = false;
+  }
+  /// Its machine: it hears nobody and is not heard, and goes on.
+  void CutOff(const std::string& process, int seconds) {
+    others_[process] = {turn_ + 10 * seconds, others_[process].statuses, true};
     if (process == "detector") detector_has_sweep_ = false;
   }
   void Send(const Message& message) { bus_.Publish(ChannelOf(message), Encode(message)); }
@@ -129,6 +137,7 @@ class RestartWorld {
   struct Other {
     int back_at = 0;  // turn
     std::int64_t statuses = 0;
+    bool goes_on = false;  // while it is away
   };
 
   bool Lives(const std::string& process) const { return turn_ >= others_.at(process).back_at; }

@@ -16,15 +16,15 @@ namespace rgbdt {
 /// The messages of one sender that can repeat what is lost, in the order in which it sent them. One
 /// that is not whole holds up those behind it while it is asked for: what is missing kGrace after
 /// the newest of it came, then after pauses that double, kMaxAsked times; then it is given up, some
-/// 1.5 s after it was sent. It is given up at once where the sender can no longer repeat it. The
+/// 2.4 s after it was sent. It is given up at once where the sender can no longer repeat it. The
 /// messages on channels that nobody wants hold up nothing and are not asked for.
 ///
 /// Times are of any steady clock [us].
 class OrderedStream {
  public:
   static constexpr Utime kGrace = 4'000;
-  static constexpr Utime kFirstPause = 15'000, kLongestPause = 240'000;
-  static constexpr int kMaxAsked = 8;
+  static constexpr Utime kFirstPause = 15'000, kLongestPause = 480'000;
+  static constexpr int kMaxAsked = 9;
   static constexpr std::uint32_t kMaxAhead = 8192;  ///< a number farther ahead: begins anew there
   static constexpr std::size_t kFragmentsAsked = 600;  ///< by one call of Ask
 

@@ -49,7 +49,7 @@ class SentMessage {
 /// it and each asks), and so many bytes a second.
 class SentMessages {
  public:
-  static constexpr Utime kKept = 2 * kMicrosecondsPerSecond;
+  static constexpr Utime kKept = 4 * kMicrosecondsPerSecond;
   static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
   static constexpr Utime kPause = 8'000;
   static constexpr std::int64_t kRepeatedPerSecond = 8'000'000, kRepeatedAtOnce = 2'000'000;
