@@ -9,6 +9,8 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
+#include "services/bus/bus.h"
+#include "services/bus/multicast.h"
 #include "services/command_line/command_line.h"
 #include "services/nodes/session_node.h"
 #include "services/runtime/process.h"
@@ -60,6 +62,10 @@ int Run(const Flags& flags) {
   const int code = rgbdt::RunOnLcm(*node, flags.url);
   if (!node->failure().empty()) {
     std::fprintf(stderr, "rgbdt-session: %s\n", node->failure().c_str());
+    if (node->failure().find("not heard") != std::string::npos) {
+      std::fprintf(stderr, "rgbdt-session: %s\n",
+                   rgbdt::WhyNotHeard(rgbdt::CompleteUrl(flags.url)).c_str());
+    }
     return rgbdt::EndsWith(false);
   }
   if (node->finished()) return code;

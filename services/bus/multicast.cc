@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "services/bus/bus.h"
+#include "services/bus/bus_url.h"
 #include "services/posix/descriptor.h"
 
 namespace rgbdt {
@@ -68,6 +69,18 @@ std::string ReceiveBufferAdvice() {
          " bytes, so large messages (images, clouds) may be lost under load: sudo sysctl -w "
          "net.core.rmem_max=" +
          std::to_string(wanted);
+}
+
+std::string WhyNotHeard(const std::string& url) {
+  const BusUrl bus = ParseBusUrl(url);
+  if (bus.ttl == 0) {
+    return "the bus stays on this machine (" + url +
+           "): processes on other machines are heard with ttl=1 in LCM_DEFAULT_URL, on each of "
+           "them";
+  }
+  return "with ttl=" + std::to_string(bus.ttl) +
+         " here, processes on other machines are heard where they have it, too, and the same group "
+         "and port; rgbdt doctor on each says by which interface they speak";
 }
 
 }  // namespace rgbdt

@@ -116,4 +116,15 @@ Finding CheckDisk(const DiskFacts& facts) {
   return Warning("disk", what + "; a session or a log of some minutes fills it", mend);
 }
 
+Finding CheckReassembly(std::int64_t failures) {
+  const std::string check = "network";
+  if (failures == 0) return Ok(check, "no datagram lacked a piece since the machine started");
+  return Warning(check,
+                 std::to_string(failures) +
+                     " datagrams larger than a network's MTU lacked a piece and were lost whole "
+                     "since the machine started (ReasmFails): a link loses packets",
+                 "nstat -az IpReasmFails; rgbdt's own messages are repaired with ttl=1, those of "
+                 "other LCM programs are lost: put them on the machine that sends what they need");
+}
+
 }  // namespace rgbdt

@@ -13,6 +13,8 @@ Findings CheckBusUrl(const BusUrl& url, const Route& route);
 Finding CheckMulticast(const MulticastFacts& facts);
 Finding CheckClock(const ClockFacts& facts);
 Finding CheckDisk(const DiskFacts& facts);
+/// `failures`: datagrams that the kernel could not put together (ReassemblyFailures).
+Finding CheckReassembly(std::int64_t failures);
 
 Finding CheckPort(const PortFacts& facts);
 Finding CheckSerial(const SerialFacts& facts);

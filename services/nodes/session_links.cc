@@ -7,9 +7,10 @@
 
 namespace rgbdt {
 
-// It, or its answer, may have been lost.
+// It, or its answer, may have been lost. Nobody hurries a person who carries the board.
 Messages SessionNode::RepeatCommand() {
-  const bool asks = step().kind != SessionStep::Kind::kWait;
+  const bool carries = board_stands_ && step().kind == SessionStep::Kind::kNextPose;
+  const bool asks = step().kind != SessionStep::Kind::kWait && !carries;
   if (!waiting_ || finished_ || answered_ || !asks || now_ < repeat_at_) return {};
   repeat_pause_ = std::min(2 * repeat_pause_, kLongestRepeat);
   repeat_at_ = now_ + repeat_pause_;
@@ -30,6 +31,7 @@ void SessionNode::OnCutOff(const std::string& process, Utime silence) {
   const std::string why = "rgbdt-" + process + " was cut off for " +
                           std::to_string(silence / kMicrosecondsPerSecond) + " s";
   if (!waiting_ || idle()) return;
+  step_began_ = now_;
   const SessionStep::Kind kind = step().kind;
   if (HasPart(process) && kind == SessionStep::Kind::kSweep) spoiled_ = why;
   const bool solves = kind == SessionStep::Kind::kSolve || kind == SessionStep::Kind::kEvaluate;

@@ -58,7 +58,7 @@ struct SessionProgress {
 /// the newest STATUS; that of a process that is gone counts until it is back (one at work is
 /// silent, too).
 ///
-/// A command that is not answered is sent again, as it was, after 2, 4, 8 and then every 16 s; who
+/// A command that is not answered is sent again, as it was, after 3, 6, 12 and then every 16 s; who
 /// got it answers once more what it answered (NodeRunner). A process whose STATUS was not heard for
 /// kCutOff and goes on with later numbers was cut off, and this one from it: what either said is
 /// lost. The view at hand is taken again, once all are heard, and the solver sent all it needs.
@@ -74,7 +74,7 @@ class SessionNode : public Node {
   static constexpr int kMaxRetakes = 2;
   static constexpr int kMaxRestarts = 5;
   static constexpr Utime kCutOff = 3 * kMicrosecondsPerSecond;
-  static constexpr Utime kFirstRepeat = 2 * kMicrosecondsPerSecond;
+  static constexpr Utime kFirstRepeat = 3 * kMicrosecondsPerSecond;
   static constexpr Utime kLongestRepeat = 16 * kMicrosecondsPerSecond;
 
   using OnProgress = std::function<void(const SessionProgress&)>;

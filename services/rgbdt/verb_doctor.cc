@@ -22,6 +22,7 @@ Findings CheckBus(const SystemRoots& roots, const std::string& text,
   Findings findings = CheckBusUrl(url, multicast.route);
   findings.push_back(CheckMulticast(multicast));
   findings.push_back(CheckPort(GatherPort(roots, url.port, "LCM", true)));
+  if (url.ttl > 0) findings.push_back(CheckReassembly(ReassemblyFailures()));
   return findings;
 }
 

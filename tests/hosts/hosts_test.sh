@@ -116,7 +116,7 @@ true_loss=$(dropped compute)
 lose_nothing_more
 end
 grep -h 'datagrams lost' "$scratch"/{assembler,detector,simulator}.log | tail -n 3 || true
-echo "the session took $took_ms ms"
+figure session_s "$((took_ms / 1000))" s
 grep -hE 'cut off|again|loses|clock' "$scratch"/{session,detector,assembler}.log || true
 for view in $(seq -f %04.0f "$views"); do
   [ -s "$folder/views/$view/view.textproto" ] || fail "view $view is missing"

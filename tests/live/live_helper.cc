@@ -47,6 +47,7 @@ int Usage() {
       "                         how many\n"
       "  malformed LEAST PROCESS...  until their statuses tell of so many; prints how many\n"
       "  hears_malformed CHANNEL  until one came to a bus on which this channel is heard\n"
+      "  speaks SEQ             on RIG, numbered from SEQ, for 90 s\n"
       "  hears CHANNEL COUNT    until so many messages came there, each as it has to be\n"
       "Gives up after 90 s with exit code 1.\n",
       stderr);
@@ -308,6 +309,20 @@ int HearsMalformed(const Arguments& arguments) {
   return 0;
 }
 
+// Four times a second on RIG, numbered from the argument.
+int Speaks(const Arguments& arguments) {
+  LcmBus bus("");
+  RigText rig;
+  rig.hash = "hash";
+  rig.text = "text";
+  const Clock::time_point end = Clock::now() + kPatience;
+  for (rig.seq = std::stoll(arguments.at(0)); Clock::now() < end; ++rig.seq) {
+    bus.Publish("RIG", Encode(rig));
+    bus.Run(250);
+  }
+  return 0;
+}
+
 int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
   if (verb == "ask") return Ask(arguments);
@@ -319,6 +334,7 @@ int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "malformed") return PrintMalformed(arguments);
   if (verb == "hears_malformed") return HearsMalformed(arguments);
   if (verb == "hears") return Hears(arguments);
+  if (verb == "speaks") return Speaks(arguments);
   return Usage();
 }
 

@@ -73,11 +73,11 @@ TEST_F(ProcessRestartTest, WhoeverIsCutOffWhateverWasAskedTheCalibrationIsTheSam
       const auto cut = [this, verb, process](const SessionCommand& command, RestartWorld* world) {
         if (command.verb != verb || command.view != "0003" || world->seconds() > cut_at_) return;
         cut_at_ = world->seconds();
-        world->CutOff(process, 10);
+        world->CutOff(process, 5);
       };
       cut_at_ = 1e9;
       EXPECT_EQ(CalibrationOf(name, cut), expected) << name;
-      EXPECT_LT(world_->seconds(), undisturbed_s + 10 + 6) << name << ": no time-out is waited for";
+      EXPECT_LT(world_->seconds(), undisturbed_s + 5 + 6) << name << ": no time-out is waited for";
     }
   }
 }

@@ -79,6 +79,11 @@ TEST(DoctorMachine, ClockAndDisk) {
   EXPECT_THAT(CheckDisk({"/data", -1}), Is(kWarning));
 }
 
+TEST(DoctorMachine, DatagramsThatLackedAPiece) {
+  EXPECT_THAT(CheckReassembly(0), Is(kOk));
+  EXPECT_THAT(CheckReassembly(12), Says(kWarning, "12 datagrams", "nstat -az IpReasmFails"));
+}
+
 TEST(DoctorFinding, ProblemsComeLastWhereTheEyeIs) {
   const Findings findings{Problem("a", "is broken", "mend it"), Ok("b", "is well"),
                           Warning("c", "is old"), Ok("d", "is well")};
