@@ -2,6 +2,8 @@
 // Each is a byte (sender; whether the magic is put right, and to which) and a piece.
 #include "services/bus/internal/datagram.h"
 #include "services/bus/internal/reassembly.h"
+#include "services/bus/internal/repaired_streams.h"
+#include "services/bus/internal/sent_messages.h"
 #include "services/messages/limits.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -16,12 +18,41 @@ std::string TakeDatagram(unsigned kind, fuzz::Input* input) {
   return bytes;
 }
 
+// As the receiver of a bus between machines does.
+void TakeRepaired(const Reassembly::Sender& sender, const Datagram& datagram, Utime now,
+                  RepairedStreams* streams) {
+  const char* why = nullptr;
+  if (datagram.is_fragment || datagram.channel != kRepairChannel) {
+    streams->Add(sender, datagram, now, &why);
+  } else {
+    const RepairMessage message = DecodeRepairMessage(datagram.data, datagram.size);
+    if (const auto* beat = std::get_if<Beat>(&message)) streams->OnBeat(sender, *beat, now, now);
+    if (const auto* request = std::get_if<RepairRequest>(&message)) {
+      streams->OnRequest(*request, now);
+      SentMessages sent;
+      sent.Add("A", Bytes(5000, 1), now);
+      sent.Repeat(request->parts, now);
+    }
+    if (const auto* repair = std::get_if<Repair>(&message)) {
+      const auto lost = ParseDatagram(repair->datagram.data(), repair->datagram.size(), &why);
+      if (lost) streams->AddRepair(sender, *lost, now, &why);
+    }
+  }
+  for (const RepairRequest& request : streams->Ask(now)) {
+    fuzz::Require(Encode(request).size() <= SentMessage::kDatagramBytes, "a request of a datagram");
+  }
+  streams->Take();
+  fuzz::Require(streams->bytes_held() <= std::size_t{64} << 20, "no more held than is promised");
+}
+
 }  // namespace
 }  // namespace rgbdt
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rgbdt;
   Reassembly reassembly([](const std::string& channel) { return channel[0] != 'X'; });
+  RepairedStreams streams([](const std::string& channel) { return channel[0] != 'X'; });
+  Utime now = 0;
   fuzz::Input input(data, size);
   while (!input.empty()) {
     const unsigned kind = input.Byte();
@@ -32,6 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!datagram) continue;
     why = nullptr;
     const Reassembly::Sender sender(kind & 0x3f, 7667);
+    TakeRepaired(sender, *datagram, now += 10'000, &streams);
     const auto whole = reassembly.Add(sender, *datagram, &why);
     if (whole && datagram->is_fragment) {
       fuzz::Require(whole->bytes.size() == datagram->message_bytes, "a message that is whole");

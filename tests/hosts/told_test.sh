@@ -60,7 +60,7 @@ told detector 'RIG: its numbers fell back [0-9]+ times in 10 s: two programs sen
 for process in first second; do kill_process "$process"; done
 
 echo "== a bus that does not leave its machine"
-echo 'step { solve {} }' >"$scratch/session.textproto"
+echo 'step { sweep {} } step { capture {} }' >"$scratch/session.textproto"
 start_at compute session env "LCM_DEFAULT_URL=${LCM_DEFAULT_URL/ttl=1/ttl=0}" "$bin/rgbdt-session" \
   "$scratch/session.textproto" --rig "$scratch/rig.textproto" --out "$scratch/session"
 code=0

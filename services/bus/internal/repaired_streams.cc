@@ -116,19 +116,20 @@ void RepairedStreams::AddRepair(const Sender& sender, const Datagram& datagram, 
   KeepBounded();
 }
 
+std::size_t RepairedStreams::bytes_held() const {
+  std::size_t held = 0;
+  for (const auto& [sender, stream] : streams_) held += stream.messages.bytes_held();
+  return held;
+}
+
 void RepairedStreams::KeepBounded() {
-  const auto held = [](const auto& entry) { return entry.second.messages.bytes_held(); };
-  while (true) {
-    std::size_t all = 0;
-    auto most = streams_.end();
-    for (auto stream = streams_.begin(); stream != streams_.end(); ++stream) {
-      all += held(*stream);
-      if (most == streams_.end() || held(*stream) > held(*most)) most = stream;
-    }
-    if (all <= kMaxBytesHeld || most == streams_.end()) return;
+  while (bytes_held() > kMaxBytesHeld) {
+    const auto most =
+        std::max_element(streams_.begin(), streams_.end(), [](const auto& a, const auto& b) {
+          return a.second.messages.bytes_held() < b.second.messages.bytes_held();
+        });
+    if (!most->second.messages.NextAsk()) return;  // all are whole and wait to be taken
     most->second.messages.GiveUpOldest();
-    if (most->second.messages.NextAsk()) continue;
-    return;  // all are whole and wait to be taken
   }
 }
 

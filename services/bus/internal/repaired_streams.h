@@ -46,6 +46,7 @@ class RepairedStreams {
   std::vector<RepairRequest> Ask(Utime now);
   std::optional<Utime> NextAsk() const;
 
+  std::size_t bytes_held() const;
   /// Without ip_fragments_given_up.
   LinkReport report() const;
 
