@@ -128,7 +128,7 @@ if [ "$cut_seconds" = 0 ]; then
     counted=$(last_count assembler 'datagrams lost')
     echo "lost on the way to compute: $true_loss; its assembler counts ${counted:-0}"
     figure losses_counted_share "$(awk -v t="$true_loss" -v c="${counted:-0}" \
-      'BEGIN { d = t > c ? t - c : c - t; printf "%.5f", t > 0 ? 1 - d / t : 0 }')" 1
+      'BEGIN { d = t > c ? t - c : c - t; printf "%.5f", (t > 0 ? 1 - d / t : 0) }')" 1
     awk -v t="$true_loss" -v c="${counted:-0}" \
       'BEGIN { d = t > c ? t - c : c - t; exit !(t > 0 && d <= 0.001 * t) }' ||
       fail "losses are not counted: $true_loss, ${counted:-0}"

@@ -52,7 +52,7 @@ bool OrderedStream::AddFragment(const Datagram& fragment, Slot* slot, const char
       return false;
     }
     slot->partial.emplace(fragment);
-    bytes_held_ += fragment.message_bytes;
+    bytes_held_ += slot->partial->memory();
   } else if (!slot->partial->Fits(fragment)) {
     *why = "a fragment of a message of another size than those before it";
     return false;
@@ -80,7 +80,7 @@ void OrderedStream::Settle(Slot* slot) {
   if (slot->settled) return;
   slot->settled = true;
   --unsettled_;
-  if (slot->partial) bytes_held_ -= slot->partial->message_bytes();
+  if (slot->partial) bytes_held_ -= slot->partial->memory();
   slot->partial.reset();
 }
 

@@ -25,7 +25,7 @@ class OrderedStream {
   static constexpr Utime kGrace = 4'000;
   static constexpr Utime kFirstPause = 15'000, kLongestPause = 480'000;
   static constexpr int kMaxAsked = 9;
-  static constexpr std::uint32_t kMaxAhead = 8192;  ///< a number farther ahead: begins anew there
+  static constexpr std::uint32_t kMaxAhead = 4096;  ///< a number farther ahead: begins anew there
   static constexpr std::size_t kFragmentsAsked = 600;  ///< by one call of Ask
 
   using IsWanted = std::function<bool(const std::string& channel)>;

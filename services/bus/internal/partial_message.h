@@ -34,6 +34,8 @@ class PartialMessage {
   bool Add(const Datagram& fragment);
 
   std::uint32_t message_bytes() const { return message_bytes_; }
+  /// At most, once all has come.
+  std::size_t memory() const { return message_bytes_ + fragments_.size() * sizeof(Range); }
   std::size_t fragments() const { return fragments_.size(); }
   std::size_t missing() const { return missing_; }
   bool Has(std::size_t number) const { return fragments_[number].came; }
