@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
@@ -183,6 +185,41 @@ TEST_F(SessionNodeTest, APersonWhoCarriesTheBoardIsAskedUntilItStands) {
   EXPECT_EQ(commands[0].verb, SessionVerb::kSweep);
   EXPECT_TRUE(AdvanceTo(10'002, &node).empty());
   EXPECT_EQ(asked, 3);
+}
+
+// The encoder's stamps would be another time's than the lines'; a simulated rig has one clock.
+TEST_F(SessionNodeTest, NoSweepOfDevicesBeginsWhileClocksDisagree) {
+  Rig with_device = TinyRig();
+  with_device.cameras[0].device = CameraDevice();
+  Status off = Ready("solver");
+  off.counters = {{"clock ahead [ms] sensor (10.0.0.2)", -200}};
+  const auto sweeps = [](const Messages& messages) {
+    const auto commands = Only<SessionCommand>(messages);
+    return std::count_if(commands.begin(), commands.end(), [](const SessionCommand& command) {
+      return command.verb == SessionVerb::kSweep;
+    });
+  };
+  for (const Rig& rig : {with_device, TinyRig()}) {
+    for (const bool mended : {true, false}) {
+      const bool has_device = rig.cameras[0].device.has_value();
+      SessionNode node(Script({Kind::kSweep}), rig,
+                       dir_ / (std::to_string(has_device) + std::to_string(mended)), {});
+      AdvanceTo(0, &node);
+      for (const char* process : {"assembler", "detector", "fuser"}) node.Handle(Ready(process));
+      node.Handle(Ready("camera-" + rig.cameras[0].name));
+      node.Handle(off);
+      EXPECT_EQ(sweeps(AdvanceTo(1, &node)), has_device ? 0 : 1);
+      if (!has_device) continue;
+      EXPECT_EQ(sweeps(AdvanceTo(9, &node)), 0);
+      if (mended) {
+        node.Handle(Ready("solver"));
+        EXPECT_EQ(sweeps(AdvanceTo(10, &node)), 1);
+      } else {
+        AdvanceTo(12, &node);
+        EXPECT_THAT(node.failure(), HasSubstr("that of host sensor (10.0.0.2) is 200 ms behind"));
+      }
+    }
+  }
 }
 
 TEST_F(SessionNodeTest, APersonWhoIsGoneEndsTheSession) {
