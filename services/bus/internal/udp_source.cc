@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -56,6 +57,8 @@ class UdpSource : public Source {
         buffer_(kMaxDatagramBytes),
         sender_(sender) {
     if (!stop_) throw InputError("too many files are open");
+    const int on = 1;
+    if (sender_ != nullptr) setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
   }
 
   ~UdpSource() override {
@@ -109,11 +112,28 @@ class UdpSource : public Source {
  private:
   // The next datagram into the buffer; false: none waits.
   bool Receive() {
-    socklen_t length = sizeof from_;
-    const ssize_t got = recvfrom(socket_.get(), buffer_.data(), buffer_.size(), 0,
-                                 reinterpret_cast<sockaddr*>(&from_), &length);
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timeval))> control{};
+    iovec into{buffer_.data(), buffer_.size()};
+    msghdr message{};
+    message.msg_name = &from_;
+    message.msg_namelen = sizeof from_;
+    message.msg_iov = &into;
+    message.msg_iovlen = 1;
+    message.msg_control = control.data();
+    message.msg_controllen = control.size();
+    const ssize_t got = recvmsg(socket_.get(), &message, 0);
     size_ = got < 0 ? 0 : static_cast<std::size_t>(got);
+    came_ = sender_ == nullptr || got < 0 ? 0 : ArrivalOf(&message);
     return got >= 0;
+  }
+
+  // By the kernel, on the wall clock [us]: on a busy machine it is read much later.
+  static Utime ArrivalOf(msghdr* message) {
+    const cmsghdr* stamp = CMSG_FIRSTHDR(message);
+    if (stamp == nullptr || stamp->cmsg_type != SCM_TIMESTAMP) return Wall();
+    timeval time{};
+    std::memcpy(&time, CMSG_DATA(stamp), sizeof time);
+    return time.tv_sec * kMicrosecondsPerSecond + time.tv_usec;
   }
 
   void Take() {
@@ -146,7 +166,7 @@ class UdpSource : public Source {
     const RepairMessage message = DecodeRepairMessage(datagram.data, datagram.size);
     const std::lock_guard<std::mutex> lock(streams_mutex_);
     if (const auto* beat = std::get_if<Beat>(&message)) {
-      streams_.OnBeat(From(), *beat, Now(), Wall());
+      streams_.OnBeat(From(), *beat, Now(), came_);
     } else if (const auto* request = std::get_if<RepairRequest>(&message)) {
       streams_.OnRequest(*request, Now());
       sender_->Answer(*request);
@@ -200,6 +220,7 @@ class UdpSource : public Source {
   Bytes buffer_;
   std::size_t size_ = 0;
   sockaddr_in from_{};
+  Utime came_ = 0;
   Inbox inbox_;
   Reassembly reassembly_{[this](const std::string& channel) { return inbox_.IsWanted(channel); }};
   // Of a bus that leaves its machine.
