@@ -7,10 +7,10 @@ int main(int argc, char** argv) {
       "rgbdt-assembler",
       "LINE_SCAN and ENCODER to CLOUD: a turned 2D scanner's lines become 3D.\nExample: "
       "rgbdt-assembler --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
-  std::string url;
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  rgbdt::BusFlags bus;
+  line.Bus(&bus.url, &bus.key);
   return line.Run(argc, argv, [&] {
     rgbdt::AssemblerNode node;
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
       "A GigE Vision or USB3 Vision camera, colour or thermal, on the bus: <CAMERA>_IMAGE.\n"
       "One process a camera; how to reach and set it stands in the rig file.\n"
       "Example: rgbdt-camera --rig field.rig.textproto --camera thermal");
-  std::string url;
+  rgbdt::BusFlags bus;
   std::string rig_file;
   std::string name;
   std::string captures = "out/captures";
@@ -17,10 +17,10 @@ int main(int argc, char** argv) {
   line.Option("--camera", &name, "which of its cameras; not needed where only one has a device");
   line.Option("--captures", &captures,
               "where captured views stay raw when JPEG or PNG goes over the bus");
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   return line.Run(argc, argv, [&] {
     rgbdt::CameraNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown), name,
                            captures);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -8,8 +8,8 @@ int main(int argc, char** argv) {
       "CLOUD and images through the calibration to RGBDT_CLOUD. A calibration that is not to be\n"
       "used, or was made with another rig, is refused.\n"
       "Example: rgbdt-fuser --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
-  std::string url;
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  rgbdt::BusFlags bus;
+  line.Bus(&bus.url, &bus.key);
   bool correct_ranges = false;
   line.Flag("--correct-ranges", &correct_ranges,
             "puts points where they truly are, by what the calibration found the LIDAR's ranges\n"
@@ -28,6 +28,6 @@ int main(int argc, char** argv) {
                                          : rgbdt::FuserNode::Ranges::kAsMeasured,
                           anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound,
                           follow ? rgbdt::FuserNode::Follow::kYes : rgbdt::FuserNode::Follow::kNo);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

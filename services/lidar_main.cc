@@ -11,12 +11,12 @@ int main(int argc, char** argv) {
       "the rig file: lidar { hokuyo { address: \"192.168.0.10\" } }, or velodyne { ... }, or\n"
       "pcd_folder { ... }. A device that goes away is waited for; a recording's end ends it.\n"
       "Example: rgbdt-lidar --rig rig.textproto");
-  std::string url;
+  rgbdt::BusFlags bus;
   std::string rig_file;
   line.Required("--rig", &rig_file, "rig.textproto");
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   return line.Run(argc, argv, [&] {
     rgbdt::LidarNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown).lidar);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -31,11 +31,12 @@ int main(int argc, char** argv) {
       "viewer\n"
       "are then all that a drive needs.\n"
       "Example: rgbdt-monitor out/session --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
-  std::string url, session;
+  rgbdt::BusFlags bus;
+  std::string session;
   line.Option("SESSION", &session,
               "folder with rig.textproto and calibration.textproto to send; default: both come\n"
               "over the bus");
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   double every_s = 2;
   line.Within("--every", &every_s, 0, 3600,
               "seconds between the sweeps that are looked at; 0: all of them");
@@ -43,6 +44,6 @@ int main(int argc, char** argv) {
     rgbdt::MonitorOptions options;
     options.every = rgbdt::FromSeconds(every_s);
     rgbdt::MonitorNode node(options, ReadGiven(session));
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

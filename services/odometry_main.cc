@@ -11,13 +11,13 @@ int main(int argc, char** argv) {
                           "the surroundings do\n"
                           "not tell, as a corridor the way along it, the status names.\n"
                           "Example: rgbdt-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
-  std::string url;
+  rgbdt::BusFlags bus;
   rgbdt::OdometryOptions options;
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   line.Option("--min-range", &options.min_range_m, "nearer points are the rig's own [m]");
   line.Option("--max-range", &options.max_range_m, "farther points are left out [m]");
   return line.Run(argc, argv, [&] {
     rgbdt::OdometryNode node(options);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -19,7 +19,8 @@
 namespace {
 
 struct Flags {
-  std::string url, script, rig;
+  rgbdt::BusFlags bus;
+  std::string script, rig;
   std::string out = "out/session";
   bool by_hand = false;
 };
@@ -59,7 +60,7 @@ std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
 
 int Run(const Flags& flags) {
   const auto node = flags.script.empty() ? LedByThePage(flags) : ByScript(flags);
-  const int code = rgbdt::RunOnLcm(*node, flags.url);
+  const int code = rgbdt::RunOnLcm(*node, flags.bus);
   if (!node->failure().empty()) {
     std::fprintf(stderr, "rgbdt-session: %s\n", node->failure().c_str());
     if (node->failure().find("not heard") != std::string::npos) {
@@ -95,6 +96,6 @@ int main(int argc, char** argv) {
   line.Flag("--by-hand", &flags.by_hand,
             "you carry the board: asks for each pose and waits for Enter, or for the button in "
             "the viewer, however long");
-  line.Option("--lcm-url", &flags.url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&flags.bus.url, &flags.bus.key);
   return line.Run(argc, argv, [&] { return Run(flags); });
 }

@@ -11,12 +11,12 @@ int main(int argc, char** argv) {
       "The paper's rig, simulated: a turned scanner, a colour and a thermal camera, a board that\n"
       "is carried about. Waits for rgbdt-session.\n"
       "Example: rgbdt-simulator --seed 3 --scene night --rig out/rig.textproto");
-  std::string url;
+  rgbdt::BusFlags bus;
   std::string rig_file;
   std::string truth_file;
   double speed = 1;
   rgbdt::simulate::Options options;
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   line.Option("--seed", &options.seed, "of everything random");
   line.Choice("--scene", &options.scene, rgbdt::simulate::kSceneNames, "");
   line.Within("--speed", &speed, 0.01, 1000.0, "simulated seconds per second");
@@ -29,6 +29,6 @@ int main(int argc, char** argv) {
     if (!rig_file.empty()) {
       rgbdt::WriteFileAtomically(rig_file, rgbdt::PrintRig(node.simulator().rig()));
     }
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

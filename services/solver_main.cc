@@ -7,14 +7,14 @@ int main(int argc, char** argv) {
       "rgbdt-solver",
       "DETECTION to CALIBRATION: where each camera sits relative to the LIDAR.\nExample: "
       "rgbdt-solver --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
-  std::string url;
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  rgbdt::BusFlags bus;
+  line.Bus(&bus.url, &bus.key);
   std::string method = rgbdt::kAutoMethod;
   line.Choice("--method", &method, rgbdt::kBusMethodNames, rgbdt::kBusMethodHelp);
   return line.Run(argc, argv, [&] {
     rgbdt::CalibrateOptions options;
     options.method = method;
     rgbdt::SolverNode node(options);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

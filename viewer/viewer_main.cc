@@ -5,8 +5,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 #include <random>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/calibration_use.h"
 #include "calib/files/schema/report_file.h"
@@ -30,14 +32,18 @@ namespace {
 
 using rgbdt::viewer::Server;
 using rgbdt::viewer::ServerOptions;
+using rgbdt::viewer::TlsIdentity;
 
 constexpr const char* kUsual = "127.0.0.1:8080";
 
 struct Flags {
   std::string listen = kUsual;
-  std::string url, session;
+  rgbdt::BusFlags bus;
+  std::string session;
   std::vector<std::string> run;
   bool anyway = false;
+  std::string certificate, key;  // of TLS
+  bool clear = false;
 };
 
 // "127.0.0.1:8080", "[::1]:8080", "8080"
@@ -71,6 +77,31 @@ std::string NewToken() {
   return token;
 }
 
+// Addresses by which others may reach what listens at all of this machine's.
+std::vector<std::string> OwnAddresses() {
+  std::vector<std::string> addresses;
+  for (const rgbdt::NetworkInterface& interface : rgbdt::ListInterfaces()) {
+    if (interface.loopback || !interface.up) continue;
+    for (const rgbdt::InterfaceAddress& at : interface.addresses) {
+      addresses.push_back(rgbdt::AddressText(at.address));
+    }
+  }
+  return addresses;
+}
+
+// Beyond loopback always, so that nobody in between reads the token; there by a certificate made
+// here, unless another is given.
+std::optional<TlsIdentity> IdentityFrom(const Flags& flags, const std::string& address,
+                                        bool local) {
+  if (!flags.certificate.empty()) {
+    return TlsIdentity{rgbdt::ReadWholeFile(flags.certificate), rgbdt::ReadWholeFile(flags.key)};
+  }
+  if (local || flags.clear) return std::nullopt;
+  std::vector<std::string> addresses = OwnAddresses();
+  addresses.push_back(address);
+  return rgbdt::viewer::SelfSignedIdentity(addresses);
+}
+
 ServerOptions OptionsFrom(const Flags& flags) {
   ServerOptions options;
   ParseAddress(flags.listen, &options);
@@ -78,6 +109,7 @@ ServerOptions OptionsFrom(const Flags& flags) {
   const bool local = options.socket >= 0 ? rgbdt::viewer::IsLoopback(options.socket)
                                          : rgbdt::viewer::IsLoopback(options.address);
   if (!local) options.token = NewToken();
+  options.tls = IdentityFrom(flags, options.address, local);
   options.page = rgbdt::ViewerPage();
   options.hello = {{"type", "hello"}, {"version", rgbdt::Version()}};
   return options;
@@ -87,14 +119,17 @@ ServerOptions OptionsFrom(const Flags& flags) {
 void PrintAddresses(const Server& server, const ServerOptions& options) {
   const std::string url = server.Url();
   std::printf("%s\n", url.c_str());
+  const std::size_t host = url.find("//") + 2;
   if (options.socket < 0 && (options.address == "0.0.0.0" || options.address == "::")) {
-    const std::string rest = url.substr(url.find(':', std::strlen("http://")));
-    for (const rgbdt::NetworkInterface& interface : rgbdt::ListInterfaces()) {
-      if (interface.loopback || !interface.up) continue;
-      for (const rgbdt::InterfaceAddress& at : interface.addresses) {
-        std::printf("http://%s%s\n", rgbdt::AddressText(at.address).c_str(), rest.c_str());
-      }
+    for (const std::string& address : OwnAddresses()) {
+      std::printf("%s%s%s\n", url.substr(0, host).c_str(), address.c_str(),
+                  url.substr(url.find(':', host)).c_str());
     }
+  }
+  if (options.tls) {
+    std::printf("certificate: SHA-256 %s\n", rgbdt::viewer::FingerprintOf(*options.tls).c_str());
+  } else if (!options.token.empty()) {
+    std::printf("in clear: who listens on this network sees the page and its token\n");
   }
   std::fflush(stdout);
 }
@@ -168,7 +203,7 @@ nlohmann::json DescribeBus(const rgbdt::viewer::BusMonitor& monitor, double now_
 int ShowBus(const Flags& flags) {
   ServerOptions options = OptionsFrom(flags);
   options.hello["source"] = "live";
-  options.hello["title"] = rgbdt::CompleteUrl(flags.url);
+  options.hello["title"] = rgbdt::CompleteUrl(flags.bus.url);
   rgbdt::viewer::LiveNode node(flags.anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound);
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
@@ -176,7 +211,7 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::BusMonitor monitor;
   node.PostBus([&](double now_s) { return DescribeBus(monitor, now_s, server); });
   return rgbdt::RunOnLcm(
-      node, flags.url, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+      node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
         monitor.Add(channel, data, size, rgbdt::ToSeconds(rgbdt::SteadyUtime()),
                     rgbdt::HostUtime());
       });
@@ -232,8 +267,11 @@ void CheckFlags(const Flags& flags, bool run) {
     throw rgbdt::UsageError(run ? "--run: which command?"
                                 : "unexpected \"" + flags.run.front() + "\"");
   }
-  if (!flags.session.empty() && !flags.url.empty()) {
+  if (!flags.session.empty() && !flags.bus.url.empty()) {
     throw rgbdt::UsageError("--session shows files, --lcm-url a bus; give one of them");
+  }
+  if (flags.clear && !flags.certificate.empty()) {
+    throw rgbdt::UsageError("--tls and --no-tls; give one of them");
   }
 }
 
@@ -246,13 +284,21 @@ int main(int argc, char** argv) {
       "finished session. Prints the address to open.\n"
       "Example: rgbdt-viewer\n"
       "         rgbdt-viewer --session out/demo/session\n"
-      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, too\n"
+      "         rgbdt-viewer --listen 0.0.0.0:8080    # a phone in the same network may look, "
+      "too,\n"
+      "                                               # by TLS\n"
       "         rgbdt-viewer --run COMMAND ARGUMENT...");
   Flags flags;
   line.Option("--listen", &flags.listen,
               "address and port; beyond loopback, commands need the token that the printed\n"
               "address has");
-  line.Option("--lcm-url", &flags.url, "the bus; default: LCM_DEFAULT_URL");
+  line.Two(
+      "--tls", &flags.certificate, &flags.key, "CERT KEY",
+      "PEM files to speak TLS with; default: beyond loopback a certificate made at the start,\n"
+      "whose fingerprint is printed, to be compared with what the browser shows");
+  line.Flag("--no-tls", &flags.clear,
+            "beyond loopback, too, in clear: who listens on the network sees page and token");
+  line.Bus(&flags.bus.url, &flags.bus.key);
   line.Option("--session", &flags.session, "a session directory, in place of the bus");
   line.Flag("--anyway", &flags.anyway, "show a calibration although it was made with another rig");
   bool run = false;

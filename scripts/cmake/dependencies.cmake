@@ -34,6 +34,8 @@ rgbdt_external(nlohmann_json::nlohmann_json CMAKE "find_dependency(nlohmann_json
   DEBIAN nlohmann-json3-dev REQUIRES nlohmann_json)
 rgbdt_external(PkgConfig::LCM CMAKE "find_by_pkg_config(LCM lcm)"
   DEBIAN "liblcm-dev libglib2.0-dev" REQUIRES lcm)
+rgbdt_external(PkgConfig::SODIUM CMAKE "find_by_pkg_config(SODIUM libsodium)" DEBIAN libsodium-dev
+  REQUIRES libsodium)
 rgbdt_external(PkgConfig::PCAP CMAKE "find_by_pkg_config(PCAP libpcap)" DEBIAN libpcap-dev
   REQUIRES libpcap)
 rgbdt_external(PkgConfig::ARAVIS CMAKE "find_by_pkg_config(ARAVIS aravis-0.8)"

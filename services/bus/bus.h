@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "calib/model/time.h"
 #include "services/bus/link_report.h"
 #include "services/messages/bytes.h"
 
@@ -14,6 +15,12 @@ namespace rgbdt {
 struct Malformed {
   std::int64_t count = 0;
   std::string newest;  ///< "10.0.0.2:40000: a fragment beyond its message's end"
+};
+
+/// Messages that a process with a key did not take (signed_bus.h).
+struct Unsigned {
+  std::int64_t count = 0;
+  std::string newest;  ///< "SESSION_COMMAND is not signed; ..."
 };
 
 /// A publish-subscribe bus of named channels.
@@ -28,6 +35,10 @@ class Bus {
   virtual void Subscribe(const std::string& channel_regex, Handler handler) = 0;
   virtual Malformed malformed() const { return {}; }
   virtual LinkReport links() const { return {}; }
+  virtual Unsigned refused() const { return {}; }
+  /// When the message that a handler has just got reached this machine [us, UTC, wall clock]; 0:
+  /// it did not wait.
+  virtual Utime arrived() const { return 0; }
 };
 
 /// Delivers within one process, in the order published: a message published by a handler waits
@@ -63,6 +74,7 @@ class LcmBus : public Bus {
   void Subscribe(const std::string& channel_regex, Handler handler) override;
   Malformed malformed() const override;
   LinkReport links() const override;
+  Utime arrived() const override;
   /// Waits up to `timeout_ms` for messages and delivers what is there, but for no longer than some
   /// 100 ms, so that the caller's clock keeps running under load. False: none came.
   bool Run(int timeout_ms);

@@ -132,6 +132,7 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
 Malformed LcmBus::malformed() const { return impl_->source->malformed(); }
 
 LinkReport LcmBus::links() const { return impl_->source->links(); }
+Utime LcmBus::arrived() const { return impl_->source->arrived(); }
 
 bool LcmBus::Run(int timeout_ms) {
   if (impl_->ended || !impl_->Readable(timeout_ms)) return false;

@@ -138,8 +138,28 @@ void CommandLine::Within(const std::string& name, double* value, double least, d
   Add(name, value, help + ", " + Exact(least) + " to " + Exact(most))->check(Between(least, most));
 }
 
+void CommandLine::Two(const std::string& name, std::string* first, std::string* second,
+                      const std::string& what, const std::string& help) {
+  using Words = std::pair<std::string, std::string>;
+  app_->add_option_function<Words>(
+          name,
+          [=](const Words& words) {
+            *first = words.first;
+            *second = words.second;
+          },
+          help)
+      ->type_name(what);
+}
+
 void CommandLine::Flag(const std::string& name, bool* value, const std::string& help) {
   app_->add_flag(name, *value, help);
+}
+
+void CommandLine::Bus(std::string* url, std::string* key) {
+  Option("--lcm-url", url, "the bus; default: LCM_DEFAULT_URL");
+  Option("--key", key,
+         "file of the rig's key (rgbdt key): what commands the rig is signed with it, and what\n"
+         "is not is ignored; default: RGBDT_KEY, or else no key");
 }
 
 void CommandLine::ChoiceOf(const std::string& name, std::vector<std::string> names,

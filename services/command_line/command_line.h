@@ -44,8 +44,13 @@ class CommandLine {
   /// From `least` to `most`.
   void Within(const std::string& name, double* value, double least, double most,
               const std::string& help);
+  /// Two words behind it, `what` in --help: "CERT KEY".
+  void Two(const std::string& name, std::string* first, std::string* second,
+           const std::string& what, const std::string& help);
   /// Given or not, without a value.
   void Flag(const std::string& name, bool* value, const std::string& help);
+  /// "--lcm-url" and "--key", of a process on the bus.
+  void Bus(std::string* url, std::string* key);
   /// One of `choices`, by name; `--help` has the names before `help`.
   template <typename T, typename Variable>
   void Choice(const std::string& name, Variable* value, const std::map<std::string, T>& choices,

@@ -8,6 +8,7 @@
 #include "services/messages/check.h"
 #include "services/messages/internal/codec_types.h"
 #include "services/messages/internal/layout.h"
+#include "services/messages/signature.h"
 
 namespace rgbdt {
 namespace {
@@ -115,7 +116,7 @@ Bytes Encode(const Message& message) {
 Message Decode(const std::string& channel, const std::uint8_t* data, std::size_t size) {
   const Decoder decode = DecoderOf(channel);
   CheckSize(size);
-  Message message = decode(channel, data, size);
+  Message message = decode(channel, data, SizeWithoutSignature(channel, data, size));
   const std::string own = ChannelOf(message);
   if (own != channel) throw InputError("the message belongs on channel " + own);
   return message;

@@ -27,9 +27,9 @@ namespace rgbdt {
 Bytes Encode(const Message& message);
 
 /// The message of a channel, decoded and checked: lengths, counts, ranges, enums, finite numbers
-/// where they must be. Never reads past `size`; takes memory in proportion to `size` (a compressed
-/// image: to its pixels, 2^26 at most). Throws InputError naming the field and its value, or the
-/// channel if no type belongs to it.
+/// where they must be. A signature behind it is passed over, unjudged. Never reads past `size`;
+/// takes memory in proportion to `size` (a compressed image: to its pixels, 2^26 at most). Throws
+/// InputError naming the field and its value, or the channel if no type belongs to it.
 Message Decode(const std::string& channel, const std::uint8_t* data, std::size_t size);
 
 /// The file of an image that was sent as JPEG or PNG, for who passes it on as it is; empty for one

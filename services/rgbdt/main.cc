@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   rgbdt::AddTerrain(&line);
   rgbdt::AddExport(&line);
   rgbdt::AddUp(&line);
+  rgbdt::AddKey(&line);
 #ifdef RGBDT_HAS_DRIVERS
   rgbdt::AddDoctor(&line);
 #endif

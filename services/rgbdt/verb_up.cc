@@ -15,11 +15,12 @@ namespace rgbdt {
 namespace {
 
 struct UpFlags {
-  std::string rig, url, listen, logs;
+  BusFlags bus;
+  std::string rig, listen, certificate, tls_key, logs;
   std::string out = "out/session";
 };
 
-constexpr const char* kPageAt = "http://";
+constexpr const char* kPageAt = "http";
 
 // As the viewer printed it.
 std::string PageOf(const std::filesystem::path& log) {
@@ -83,7 +84,10 @@ int RunUp(const UpFlags& flags) {
   options.out = flags.out;
   options.logs = PathOr(flags.logs, flags.out + ".logs");
   options.listen = flags.listen;
-  options.url = flags.url;
+  options.certificate = flags.certificate;
+  options.tls_key = flags.tls_key;
+  options.url = flags.bus.url;
+  options.key = flags.bus.key;
   std::vector<Program> programs = ProgramsOf(rig, options);
   for (const Program& program : programs) std::filesystem::remove(program.log);
   Screen screen(programs.back().log);
@@ -91,7 +95,7 @@ int RunUp(const UpFlags& flags) {
   UpNode node(
       std::move(programs), [&](const std::string& line) { screen.Tell(line); },
       [&](const std::string& table) { screen.Show(table); });
-  const int code = RunOnLcm(node, flags.url);
+  const int code = RunOnLcm(node, flags.bus);
   node.Stop();
   return code;
 }
@@ -115,7 +119,9 @@ void AddUp(CommandLine* program) {
                "folder for what the processes print; default: beside the session's, OUT.logs");
   verb->Option("--listen", &flags->listen,
                "of the page, e.g. 0.0.0.0:8080 for a phone; default: the viewer's");
-  verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
+  verb->Two("--tls", &flags->certificate, &flags->tls_key, "CERT KEY",
+            "PEM files of the page's TLS; default: the viewer's");
+  verb->Bus(&flags->bus.url, &flags->bus.key);
 }
 
 }  // namespace rgbdt

@@ -32,6 +32,7 @@ void AddMap(CommandLine* program);
 void AddTerrain(CommandLine* program);
 void AddExport(CommandLine* program);
 void AddUp(CommandLine* program);
+void AddKey(CommandLine* program);
 void AddDoctor(CommandLine* program);
 
 /// What the user gave, or else the default.

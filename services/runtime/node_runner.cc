@@ -137,6 +137,7 @@ void NodeRunner::Advance(Utime now) {
     NameLinks();
     NameSharedChannels();
   }
+  NameUnsigned();
   Guard("status", [&] { PublishOne(GetStatus()); });
 }
 
@@ -155,6 +156,9 @@ Status NodeRunner::GetStatus() const {
     status.counters.emplace_back("malformed", count);
   }
   AddLinks(bus_->links(), &status);
+  if (const std::int64_t count = bus_->refused().count; count != 0) {
+    status.counters.emplace_back("unsigned", count);
+  }
   AddCounters("dropped", dropped_by_channel_, &status);
   AddCounters("gaps", gaps_by_channel_, &status);
   return status;
@@ -212,6 +216,13 @@ void NodeRunner::NameSharedChannels() {
                 " times in 10 s: two programs send on this channel; end one of them");
   }
   fallen_back_.clear();
+}
+
+void NodeRunner::NameUnsigned() {
+  const Unsigned refused = bus_->refused();
+  if (refused.count == unsigned_named_) return;
+  unsigned_named_ = refused.count;
+  NameProblem("ignored: " + refused.newest);
 }
 
 void NodeRunner::NameProblem(const std::string& problem) {

@@ -41,7 +41,8 @@ class NodeRunner {
 
   /// The node's own, with the runner's name, time, newest problem and counters: "received",
   /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "malformed" (what
-  /// reached the bus and was no message), "dropped CLOUD", "gaps CLOUD", and what the links between
+  /// reached the bus and was no message), "unsigned" (what a process with a key did not take),
+  /// "dropped CLOUD", "gaps CLOUD", and what the links between
   /// machines lost (LinkReport): "datagrams lost", "datagrams repaired", "messages given up",
   /// "ip fragments given up", and kClockCounter for each machine whose clock is off.
   Status GetStatus() const;
@@ -67,6 +68,7 @@ class NodeRunner {
   void NameMalformed();
   void NameLinks();
   void NameSharedChannels();
+  void NameUnsigned();
 
   Node* node_;
   Bus* bus_;
@@ -84,6 +86,7 @@ class NodeRunner {
   std::int64_t late_ = 0, duplicates_ = 0, restarts_ = 0;
   std::int64_t malformed_named_ = 0, lost_named_ = 0, ip_lost_named_ = 0;
   std::map<std::string, int> fallen_back_;  // numbers, by channel, since links_ was due
+  std::int64_t unsigned_named_ = 0;
 };
 
 }  // namespace rgbdt

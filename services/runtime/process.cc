@@ -5,7 +5,11 @@
 
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
+#include <memory>
 
+#include "services/bus/bus_key.h"
+#include "services/bus/signed_bus.h"
 #include "services/runtime/clock.h"
 #include "services/runtime/node_runner.h"
 
@@ -44,10 +48,16 @@ void LogGoodbye(const Status& status) {
   spdlog::info("{}: stopped; {}{}", status.process, status.text, counters);
 }
 
-void Loop(Node& node, const std::string& url, const Bus::Handler& overhear) {
-  LcmBus bus(url);
+std::unique_ptr<SignedBus> WithKey(Bus* bus, const std::string& given) {
+  const std::filesystem::path file = BusKeyFile(given);
+  return file.empty() ? nullptr : std::make_unique<SignedBus>(bus, ReadBusKey(file), HostUtime);
+}
+
+void Loop(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
+  LcmBus bus(flags.url);
+  const std::unique_ptr<SignedBus> signed_bus = WithKey(&bus, flags.key);
   if (overhear) bus.Subscribe(".*", overhear);
-  NodeRunner runner(&node, &bus);
+  NodeRunner runner(&node, signed_bus ? static_cast<Bus*>(signed_bus.get()) : &bus);
   ProblemLog problems([&](const std::string& line) { spdlog::warn("{}: {}", node.name(), line); });
   runner.SetProblemHandler(
       [&](const std::string& problem) { problems.Add(problem, SteadyUtime()); });
@@ -61,13 +71,13 @@ void Loop(Node& node, const std::string& url, const Bus::Handler& overhear) {
 
 }  // namespace
 
-int RunOnLcm(Node& node, const std::string& url, const Bus::Handler& overhear) {
+int RunOnLcm(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
   CatchSignals();
   KeepMemoryForTheNextMessage();
   try {
     const std::string advice = ReceiveBufferAdvice();
     if (!advice.empty()) spdlog::warn("{}: {}", node.name(), advice);
-    Loop(node, url, overhear);
+    Loop(node, flags, overhear);
     return 0;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rgbdt-%s: %s\n", node.name().c_str(), e.what());

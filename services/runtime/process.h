@@ -9,12 +9,19 @@
 
 namespace rgbdt {
 
+/// Which bus, and with which key.
+struct BusFlags {
+  std::string url = {};  ///< empty: LCM_DEFAULT_URL, or LCM's default
+  std::string key = {};  ///< file of the rig's key (bus_key.h); empty: RGBDT_KEY, or else none
+};
+
 /// The main loop of a process: the node on LCM until it is finished, SIGINT, SIGTERM or a log's
 /// end. The node's time is the machine's steady clock; its status goes out at 1 Hz. Logs how large
 /// the receive buffer ought to be, and each problem, the same one at most every five seconds.
 /// Returns the exit code: 0, or 1 with one line on stderr where the bus cannot be opened.
-/// `overhear` gets every message that is on the bus, as bytes.
-int RunOnLcm(Node& node, const std::string& url, const Bus::Handler& overhear = {});
+/// With a key it signs what it sends and ignores what is not signed (signed_bus.h).
+/// `overhear` gets every message that is on the bus, as bytes, signed or not.
+int RunOnLcm(Node& node, const BusFlags& flags, const Bus::Handler& overhear = {});
 
 /// Logs a problem, unless it logged the same within five seconds; then it counts. Time [us] comes
 /// from the caller.

@@ -16,6 +16,10 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
       one.arguments.emplace_back("--lcm-url");
       one.arguments.push_back(options.url);
     }
+    if (!options.key.empty()) {
+      one.arguments.emplace_back("--key");
+      one.arguments.push_back(options.key);
+    }
     one.log = options.logs / (name + ".log");
     all.push_back(std::move(one));
   };
@@ -35,9 +39,12 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
   for (const char* name : {"detector", "solver", "fuser"}) add(name, name, {});
   add("session", "session", {"--rig", file, "--out", options.out.string()});
   all.back().ends = true;
-  add("viewer", "viewer",
-      options.listen.empty() ? std::vector<std::string>()
-                             : std::vector<std::string>{"--listen", options.listen});
+  std::vector<std::string> page;
+  if (!options.listen.empty()) page = {"--listen", options.listen};
+  if (!options.certificate.empty()) {
+    page.insert(page.end(), {"--tls", options.certificate, options.tls_key});
+  }
+  add("viewer", "viewer", page);
   return all;
 }
 

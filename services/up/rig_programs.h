@@ -18,12 +18,14 @@ struct Program {
 
 /// How a rig's processes are called.
 struct UpOptions {
-  std::filesystem::path programs;  ///< the folder where rgbdt-assembler and the others are
-  std::filesystem::path rig;       ///< rig.textproto
-  std::filesystem::path out;       ///< the session's directory
-  std::filesystem::path logs;      ///< a folder
-  std::string listen;              ///< of the viewer; empty: its usual address
-  std::string url;                 ///< of the bus; empty: LCM_DEFAULT_URL
+  std::filesystem::path programs;    ///< the folder where rgbdt-assembler and the others are
+  std::filesystem::path rig;         ///< rig.textproto
+  std::filesystem::path out;         ///< the session's directory
+  std::filesystem::path logs;        ///< a folder
+  std::string listen;                ///< of the viewer; empty: its usual address
+  std::string certificate, tls_key;  ///< of the viewer's TLS; empty: its own choice
+  std::string url;                   ///< of the bus; empty: LCM_DEFAULT_URL
+  std::string key;                   ///< file of the rig's key; empty: RGBDT_KEY, or else none
 };
 
 /// The processes of a rig, as systemd's rgbdt.target has them: a driver for each device that the

@@ -186,7 +186,7 @@ int main(int argc, char** argv) {
       "Hardware that is simulated down to its protocols: SCIP, Dynamixel, and frames for two\n"
       "fake_camera processes, <camera>.raw in --folder. Answers next_pose.\n"
       "Example: rig_world --folder out/world --rig out/rig.textproto");
-  std::string url;
+  rgbdt::BusFlags bus;
   std::string folder = ".";
   std::string rig_file;
   std::string truth_file;
@@ -197,12 +197,12 @@ int main(int argc, char** argv) {
   line.Option("--truth", &truth_file, "keep the truth here; no process reads it");
   line.Option("--seed", &seed, "of everything random");
   line.Choice("--scene", &scene, rgbdt::simulate::kSceneNames, "outdoor, indoor or night");
-  line.Option("--lcm-url", &url, "the bus; default: LCM_DEFAULT_URL");
+  line.Bus(&bus.url, &bus.key);
   return line.Run(argc, argv, [&] {
     rgbdt::World world(rgbdt::RigOptions(seed, scene), folder);
     world.ShowFrames(0);  // of the scene without the board
     rgbdt::WriteFileAtomically(rig_file, rgbdt::PrintRig(world.MakeRig()));
     rgbdt::WorldNode node(&world, truth_file);
-    return rgbdt::RunOnLcm(node, url);
+    return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -1,7 +1,9 @@
 #include "viewer/server/server.h"
 
 #include <netinet/tcp.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/ip/host_name.hpp>
@@ -16,6 +18,7 @@
 #include "viewer/server/internal/http_connection.h"
 #include "viewer/server/internal/hub.h"
 #include "viewer/server/internal/message.h"
+#include "viewer/server/internal/tls_context.h"
 #include "viewer/server/listening_socket.h"
 
 namespace rgbdt::viewer {
@@ -68,6 +71,7 @@ void ServerOptions::Check() const {
   if (!hello.is_null() && !hello.is_object()) {
     FailOption("hello", hello.type_name(), "a JSON object");
   }
+  if (tls) tls->Check();
 }
 
 struct Server::Impl {
@@ -78,6 +82,7 @@ struct Server::Impl {
   void OnAccept(const beast::error_code& error, tcp::socket socket);
 
   const ServerOptions options;
+  std::optional<net::ssl::context> tls;
   // Connections end with `io`: it goes before what they share.
   Hub hub;
   net::io_context io{1};
@@ -88,14 +93,16 @@ struct Server::Impl {
 
 Server::Impl::Impl(ServerOptions checked, OnMessage on_message)
     : options(std::move(checked)),
+      tls(options.tls ? std::optional(TlsContext(*options.tls)) : std::nullopt),
       hub(options, std::move(on_message)),
       acceptor(options.socket >= 0 ? ListenOn(&io, options.socket)
                                    : ListenAt(&io, options.address, options.port)),
       retry(io) {
   const tcp::endpoint bound = acceptor.local_endpoint();
   const std::string name = AddressToOpen(bound.address());
-  hub.site.hosts = RuleFor(AddressText(bound.address()), bound.port());
-  hub.site.url = "http://" + HostPortText(name, bound.port());
+  hub.tls = tls ? &*tls : nullptr;
+  hub.site.hosts = RuleFor(AddressText(bound.address()), bound.port(), tls.has_value());
+  hub.site.url = (tls ? "https://" : "http://") + HostPortText(name, bound.port());
   Accept();
   thread = std::thread([this] { Run(); });
 }
@@ -107,6 +114,7 @@ Server::Impl::~Impl() {
 
 // What a handler throws (there is no memory, say) is its loss alone.
 void Server::Impl::Run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // Linux: of this thread alone
   while (!io.stopped()) {
     try {
       io.run();
@@ -130,7 +138,7 @@ void Server::Impl::OnAccept(const beast::error_code& error, tcp::socket socket) 
     return;
   }
   Accept();
-  if (hub.http_connections >= kMaxHttpConnections) return;
+  if (hub.http_connections.size() >= kMaxHttpConnections) hub.http_connections.front()->Drop();
   SetSocketOptions(&socket);
   std::make_shared<HttpConnection>(std::move(socket), &hub)->Start();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "viewer/server/outbox.h"
+#include "viewer/server/tls.h"
 
 namespace rgbdt::viewer {
 
@@ -19,6 +20,8 @@ struct ServerOptions {
   int socket = -1;
   /// Commands are taken from browsers that know it; empty: from all that may connect.
   std::string token;
+  /// By TLS, and by it alone; empty: in clear.
+  std::optional<TlsIdentity> tls;
   std::string page;      ///< HTML of the page
   nlohmann::json hello;  ///< a Hello without may_command and why_not
 
@@ -40,10 +43,11 @@ struct ScreenTimes {
   int count = 0;
 };
 
-/// HTTP and WebSocket for any number of browsers, in a thread of its own. GET / is the page, GET
-/// /ws the WebSocket. A request whose Host is not this server's, or whose Origin is another one's,
-/// is refused. What a browser says is checked: a malformed frame closes that browser's connection
-/// only. A browser that reads slowly gets less, newest first, and holds up nobody.
+/// HTTP and WebSocket for any number of browsers, in a thread of its own that gives way to others.
+/// GET / is the page, GET /ws the WebSocket. A request whose Host is not this server's, or whose
+/// Origin is another one's, is refused. What a browser says is checked: a malformed frame closes
+/// that browser's connection only. A browser that reads slowly gets less, newest first, and holds
+/// up nobody.
 class Server : public Outbox {
  public:
   /// What a browser asked for, already checked in type and form: "request", "pick", "leave_out",
@@ -58,7 +62,8 @@ class Server : public Outbox {
   void Send(Post post) override;
   void Forget(const std::string& topic_prefix) override;
 
-  /// "http://127.0.0.1:8080"; with the token, where there is one, behind "/#token=".
+  /// "http://127.0.0.1:8080", by TLS "https://..."; with the token, where there is one, behind
+  /// "/#token=".
   std::string Url() const;
 
   std::vector<BrowserState> Browsers() const;

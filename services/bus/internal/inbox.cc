@@ -2,6 +2,8 @@
 
 #include <sys/eventfd.h>
 
+#include <chrono>
+
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -9,6 +11,13 @@ namespace {
 
 // Names come from strangers, too: forget them all rather than grow.
 constexpr std::size_t kMaxChannels = 1000;
+
+Utime WallClock() {
+  using Microseconds = std::chrono::duration<Utime, std::micro>;
+  return std::chrono::duration_cast<Microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
 
 }  // namespace
 
@@ -42,6 +51,7 @@ void Inbox::Add(WholeMessage message) {
   if (waiting.to.empty()) return;
   for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
   waiting.message = std::move(message);
+  waiting.arrived = WallClock();
   waiting_.push_back(std::move(waiting));
   if (waiting_.size() == 1) eventfd_write(waits_.get(), 1);
 }
@@ -80,6 +90,7 @@ void Inbox::DeliverOne() {
     eventfd_t count = 0;
     if (waiting_.empty()) eventfd_read(waits_.get(), &count);
   }
+  arrived_ = next.arrived;
   for (const Subscriber* subscriber : next.to) {
     subscriber->handler(next.message.channel, next.message.bytes.data(), next.message.bytes.size());
   }

@@ -31,6 +31,7 @@ class Inbox {
   void Subscribe(const std::string& channel_regex, std::size_t capacity, Bus::Handler handler);
   int descriptor() const { return waits_.get(); }  ///< readable while a message waits
   void DeliverOne();
+  Utime arrived() const { return arrived_; }  ///< when the newest delivered one was added
 
  private:
   struct Subscriber {
@@ -42,6 +43,7 @@ class Inbox {
   struct Waiting {
     WholeMessage message;
     std::vector<Subscriber*> to;
+    Utime arrived = 0;
   };
 
   const std::vector<Subscriber*>& Hearing(const std::string& channel);
@@ -52,6 +54,7 @@ class Inbox {
   std::map<std::string, std::vector<Subscriber*>> hearing_;
   std::deque<Waiting> waiting_;
   Malformed malformed_;
+  Utime arrived_ = 0;  // of the thread that handles
 };
 
 }  // namespace rgbdt

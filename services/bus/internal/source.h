@@ -26,6 +26,7 @@ class Source {
   virtual bool Deliver() = 0;
   virtual Malformed malformed() const { return {}; }
   virtual LinkReport links() const { return {}; }
+  virtual Utime arrived() const { return 0; }  ///< of Bus
 };
 
 /// What `lcm` hears itself: a log file. Null where it hears nothing.

@@ -108,6 +108,7 @@ class UdpSource : public Source {
     report.ip_fragments_given_up = ReassemblyFailures() - reassembly_failures_;
     return report;
   }
+  Utime arrived() const override { return inbox_.arrived(); }
 
  private:
   // The next datagram into the buffer; false: none waits.

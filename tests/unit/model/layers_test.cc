@@ -168,6 +168,8 @@ struct Package {
 const std::vector<Package>& Packages() {
   static const std::vector<Package> packages = {
       {"lcm", {"services/messages", "services/bus"}},
+      {"sodium", {"services/bus"}},
+      {"openssl/", {"viewer/server"}},
       {"embree", {"calib/simulate"}},
       {"pcl/", {"calib/methods/paper"}},
       {"CLI/", {"services/command_line"}},

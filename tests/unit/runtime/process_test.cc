@@ -48,7 +48,7 @@ TEST(ProblemLog, TheSameAtMostEveryFiveSeconds) {
 // LCM's memory queue needs no network: the whole loop of a process in a test.
 TEST(RunOnLcm, DeliversUntilTheNodeIsFinished) {
   TalkingNode node;
-  EXPECT_EQ(RunOnLcm(node, "memq://"), 0);
+  EXPECT_EQ(RunOnLcm(node, {"memq://"}), 0);
   EXPECT_EQ(node.turns, 10);
   EXPECT_GE(node.handled, 8);
 }
@@ -57,15 +57,15 @@ TEST(RunOnLcm, SignalEndsItCleanly) {
   for (const int signal : {SIGINT, SIGTERM}) {
     TalkingNode node;
     node.signal = signal;
-    EXPECT_EQ(RunOnLcm(node, "memq://"), 0);
+    EXPECT_EQ(RunOnLcm(node, {"memq://"}), 0);
     EXPECT_EQ(node.turns, 1);
   }
 }
 
 TEST(RunOnLcm, BadUrlIsOneLineAndExitCodeOne) {
   SilentNode node;
-  EXPECT_EQ(RunOnLcm(node, "nonsense://"), 1);
-  EXPECT_EQ(RunOnLcm(node, "udpm://1.2.3.4:7667"), 1);
+  EXPECT_EQ(RunOnLcm(node, {"nonsense://"}), 1);
+  EXPECT_EQ(RunOnLcm(node, {"udpm://1.2.3.4:7667"}), 1);
 }
 
 TEST(CompleteUrl, AsksForAReceiveBuffer) {

@@ -185,6 +185,13 @@ TEST(RigPrograms, AreThoseOfItsDevicesAndTheSession) {
   EXPECT_TRUE(all[1].ends) << "a recording is played once";
   EXPECT_THAT(all[8].arguments,
               ElementsAre("/bin/rgbdt-viewer", "--listen", "0.0.0.0:80", "--lcm-url", "udpm://"));
+  options.key = "rig.key";
+  for (const Program& program : ProgramsOf(rig, options)) {
+    const auto& given = program.arguments;
+    EXPECT_THAT(std::vector<std::string>(given.end() - 2, given.end()),
+                ElementsAre("--key", "rig.key"))
+        << program.name;
+  }
 }
 
 }  // namespace

@@ -15,10 +15,7 @@ namespace {
 
 namespace websocket = beast::websocket;
 
-constexpr std::chrono::seconds kHelloTime{10};
-constexpr std::chrono::seconds kCloseTime{5};
-constexpr std::chrono::seconds kIdleTime{60};
-constexpr std::chrono::seconds kHandshakeTime{10};
+constexpr const char* kOneTooMany = "Too many browsers are connected; close one of them.";
 
 std::string PeerText(const beast::tcp_stream& stream) {
   beast::error_code error;
@@ -39,8 +36,13 @@ std::set<std::string> WatchKeys(const nlohmann::json& watch) {
 
 }  // namespace
 
-Browser::Browser(beast::tcp_stream stream, Hub* hub)
-    : socket_(std::move(stream)), hub_(hub), deadline_(socket_.get_executor()) {
+Browser::Browser(Stream stream, Hub* hub)
+    : socket_(std::move(stream)),
+      hub_(hub),
+      deadline_(socket_.get_executor()),
+      one_too_many_(hub->full()) {
+  ++hub_->web_sockets;
+  if (one_too_many_) return;
   BrowserState state;
   state.address = PeerText(beast::get_lowest_layer(socket_));
   line_ = hub_->roster.Add(std::move(state));
@@ -53,6 +55,8 @@ Browser::~Browser() { End(); }
 void Browser::End() {
   if (std::exchange(ended_, true)) return;
   closing_ = true;
+  --hub_->web_sockets;
+  if (one_too_many_) return;
   hub_->Leave(this);
   hub_->roster.Remove(line_);
 }
@@ -77,6 +81,7 @@ void Browser::Start(const HttpRequest& request) {
       self->End();
       self->deadline_.cancel();
     } else {
+      if (self->one_too_many_) self->Close(CloseCode::try_again_later, kOneTooMany);
       self->Read();
     }
   });

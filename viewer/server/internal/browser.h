@@ -11,6 +11,7 @@
 #include "viewer/server/internal/browser_queue.h"
 #include "viewer/server/internal/hub.h"
 #include "viewer/server/internal/net.h"
+#include "viewer/server/internal/stream.h"
 
 namespace rgbdt::viewer {
 
@@ -18,7 +19,7 @@ namespace rgbdt::viewer {
 /// operations does; all on the server's thread.
 class Browser : public std::enable_shared_from_this<Browser> {
  public:
-  Browser(beast::tcp_stream stream, Hub* hub);
+  Browser(Stream stream, Hub* hub);
   ~Browser();
 
   /// Accepts the upgrade.
@@ -45,12 +46,13 @@ class Browser : public std::enable_shared_from_this<Browser> {
   void End();
 
   static constexpr bool kMayCompress = false;  // points and JPEG gain nothing by it
-  beast::websocket::stream<beast::tcp_stream, kMayCompress> socket_;
+  beast::websocket::stream<Stream, kMayCompress> socket_;
   Hub* hub_;
   std::uint64_t line_ = 0;      // of the roster
   net::steady_timer deadline_;  // of its hello, then of its close
   beast::flat_buffer buffer_;
   BrowserQueue queue_;
+  bool one_too_many_ = false;
   bool greeted_ = false;  // it said hello
   bool may_command_ = false;
   bool writing_ = false;

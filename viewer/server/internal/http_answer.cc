@@ -5,11 +5,17 @@
 namespace rgbdt::viewer {
 namespace {
 
-// The page is one file: its scripts and styles stand in it, its worker is made from a blob.
-constexpr const char* kPagePolicy =
-    "default-src 'none'; script-src 'unsafe-inline' blob:; worker-src blob:; "
-    "style-src 'unsafe-inline'; img-src blob: data:; connect-src 'self' ws:; font-src data:; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+// The page is one file: its scripts and styles stand in it, its worker is made from a blob. It
+// speaks to this server's WebSocket, by the name that it came under, and to nobody else; some
+// browsers do not take 'self' for a WebSocket.
+std::string PagePolicy(const std::string& host, bool tls) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.:-[]";
+  const bool is_plain = host.find_first_not_of(plain) == std::string::npos;
+  return "default-src 'none'; script-src 'unsafe-inline' blob:; worker-src blob:; "
+         "style-src 'unsafe-inline'; img-src blob: data:; connect-src 'self'" +
+         (is_plain ? (tls ? " wss://" : " ws://") + host : "") +
+         "; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
 
 constexpr const char* kNoPage =
     "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>rgbdt-viewer</title>"
@@ -28,10 +34,10 @@ HttpResponse Answer(http::status status, const char* content_type, std::string b
   return answer;
 }
 
-HttpResponse PageAnswer(const std::string& page) {
+HttpResponse PageAnswer(const Site& site, const std::string& host) {
   HttpResponse answer =
-      Answer(http::status::ok, "text/html; charset=utf-8", page.empty() ? kNoPage : page);
-  answer.set("Content-Security-Policy", kPagePolicy);
+      Answer(http::status::ok, "text/html; charset=utf-8", site.page.empty() ? kNoPage : site.page);
+  answer.set("Content-Security-Policy", PagePolicy(host, site.hosts.tls));
   return answer;
 }
 
@@ -40,11 +46,12 @@ std::string Only(const HttpRequest& request, http::field field) {
   return request.count(field) == 1 ? std::string(request[field]) : std::string();
 }
 
-std::optional<HttpResponse> AnswerToUpgrade(const HttpRequest& request, const std::string& host) {
+std::optional<HttpResponse> AnswerToUpgrade(const HttpRequest& request, const std::string& host,
+                                            bool tls) {
   if (!beast::websocket::is_upgrade(request)) {
     return PlainAnswer(http::status::upgrade_required, "This address is the page's WebSocket.");
   }
-  if (!OriginIsHost(Only(request, http::field::origin), host)) {
+  if (!OriginIsHost(Only(request, http::field::origin), host, tls)) {
     return PlainAnswer(http::status::forbidden, "Only this server's own page may connect.");
   }
   return std::nullopt;
@@ -58,8 +65,8 @@ std::optional<HttpResponse> GetAnswer(const HttpRequest& request, const Site& si
   }
   const std::string target(request.target());
   const std::string path = target.substr(0, target.find('?'));
-  if (path == "/ws") return AnswerToUpgrade(request, host);
-  if (path == "/" || path == "/index.html") return PageAnswer(site.page);
+  if (path == "/ws") return AnswerToUpgrade(request, host, site.hosts.tls);
+  if (path == "/" || path == "/index.html") return PageAnswer(site, host);
   return PlainAnswer(http::status::not_found, "There is only the page at " + site.url + ".");
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <boost/asio/ssl/context.hpp>
+#include <list>
 #include <string>
 #include <vector>
 
 #include "viewer/server/internal/http_answer.h"
+#include "viewer/server/internal/limits.h"
 #include "viewer/server/internal/post_store.h"
 #include "viewer/server/internal/roster.h"
 #include "viewer/server/internal/screen_ring.h"
@@ -12,9 +15,7 @@
 namespace rgbdt::viewer {
 
 class Browser;
-
-inline constexpr std::size_t kMaxBrowsers = 64;
-inline constexpr std::size_t kMaxHttpConnections = 64;  ///< that are not yet, or never, browsers
+class HttpConnection;
 
 /// What the server's connections share. Its posts, roster and screen times are there for other
 /// threads, too; all else is the server's thread's.
@@ -42,7 +43,9 @@ class Hub {
   PostStore posts;
   Roster roster;
   ScreenRing screen;
-  std::size_t http_connections = 0;
+  net::ssl::context* tls = nullptr;             ///< none: in clear
+  std::list<HttpConnection*> http_connections;  ///< the oldest first
+  std::size_t web_sockets = 0;                  ///< those that are told to go, too
 
  private:
   void Offer(const std::vector<SharedPost>& posts);

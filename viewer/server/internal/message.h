@@ -4,6 +4,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
+#include "viewer/server/internal/limits.h"
 
 namespace rgbdt::viewer {
 
@@ -16,9 +17,6 @@ class MalformedMessage : public InputError {
  private:
   bool is_json_;
 };
-
-inline constexpr std::size_t kMaxMessageText = 64 * 1024;  ///< [byte]
-inline constexpr std::size_t kMaxMessageString = 200;      ///< [byte] names and tokens
 
 /// A message of ToBridge (protocol.ts): exactly its fields, each of its type and within its range.
 /// Throws MalformedMessage.

@@ -10,7 +10,7 @@
 namespace rgbdt::viewer {
 namespace {
 
-constexpr int kHttpPort = 80;
+constexpr int kHttpPort = 80, kHttpsPort = 443;
 constexpr std::size_t kMaxHostBytes = 300;
 
 struct HostPort {
@@ -34,12 +34,13 @@ std::optional<int> Port(const std::string& digits) {
   return std::stoi(digits);
 }
 
-std::optional<HostPort> Split(const std::string& host) {
+std::optional<HostPort> Split(const std::string& host, bool tls) {
   if (host.empty() || host.size() > kMaxHostBytes) return std::nullopt;
   const bool brackets = host[0] == '[';
   const std::size_t end = host.find(brackets ? ']' : ':');
   if (brackets && end == std::string::npos) return std::nullopt;
   HostPort split;
+  split.port = tls ? kHttpsPort : kHttpPort;
   split.name = LowerCase(brackets ? host.substr(1, end - 1) : host.substr(0, end));
   const std::string rest = end == std::string::npos ? "" : host.substr(brackets ? end + 1 : end);
   if (rest.empty()) return split;
@@ -55,6 +56,8 @@ bool IsAddress(const std::string& name) {
   return !error;
 }
 
+}  // namespace
+
 std::vector<std::string> MachineNames() {
   char name[256] = "";
   if (gethostname(name, sizeof(name) - 1) != 0 || name[0] == '\0') return {};
@@ -63,20 +66,19 @@ std::vector<std::string> MachineNames() {
   return {full, first, first + ".local"};
 }
 
-}  // namespace
-
 bool HostRule::Allows(const std::string& host) const {
-  const std::optional<HostPort> split = Split(host);
+  const std::optional<HostPort> split = Split(host, tls);
   if (!split || split->port != port) return false;
   if (any_address_literal && IsAddress(split->name)) return true;
   return std::find(names.begin(), names.end(), split->name) != names.end();
 }
 
-HostRule RuleFor(const std::string& bound_address, int port) {
+HostRule RuleFor(const std::string& bound_address, int port, bool tls) {
   boost::system::error_code error;
   const net::ip::address address = net::ip::make_address(bound_address, error);
   HostRule rule;
   rule.port = port;
+  rule.tls = tls;
   rule.names = {"localhost", "127.0.0.1", "::1"};
   if (!error && address.is_loopback()) {
     rule.names.push_back(bound_address);
@@ -87,11 +89,11 @@ HostRule RuleFor(const std::string& bound_address, int port) {
   return rule;
 }
 
-bool OriginIsHost(const std::string& origin, const std::string& host) {
-  const std::string scheme = "http://";
+bool OriginIsHost(const std::string& origin, const std::string& host, bool tls) {
+  const std::string scheme = tls ? "https://" : "http://";
   if (LowerCase(origin.substr(0, scheme.size())) != scheme) return false;
-  const std::optional<HostPort> from = Split(origin.substr(scheme.size()));
-  return from && from == Split(host);
+  const std::optional<HostPort> from = Split(origin.substr(scheme.size()), tls);
+  return from && from == Split(host, tls);
 }
 
 }  // namespace rgbdt::viewer

@@ -1,0 +1,96 @@
+#include "services/bus/signature.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr char kContext[] = "rgbdt signature 1";
+constexpr int kRemembered = 64;
+
+// Of the message and the stamp behind it. `message` and `stamp` need not lie side by side.
+void ComputeTag(const BusKey& key, const std::string& channel, const std::uint8_t* message,
+                std::size_t size, const std::uint8_t* stamp,
+                std::uint8_t (&tag)[sizeof(Signature::tag)]) {
+  crypto_generichash_state state;
+  crypto_generichash_init(&state, key.bytes.data(), key.bytes.size(), sizeof tag);
+  crypto_generichash_update(&state, reinterpret_cast<const std::uint8_t*>(kContext),
+                            sizeof kContext);
+  crypto_generichash_update(&state, reinterpret_cast<const std::uint8_t*>(channel.c_str()),
+                            channel.size() + 1);
+  crypto_generichash_update(&state, message, size);
+  crypto_generichash_update(&state, stamp, kStampBytes);
+  crypto_generichash_final(&state, tag, sizeof tag);
+}
+
+}  // namespace
+
+MessageSigner::MessageSigner(const BusKey& key) : key_(key) {
+  if (sodium_init() < 0) throw InputError("libsodium finds no random numbers");
+  randombytes_buf(&sender_, sizeof sender_);
+}
+
+void MessageSigner::Sign(const std::string& channel, Utime now, Bytes* message) {
+  Signature signature;
+  signature.sender = sender_;
+  signature.number = next_++;
+  signature.utime = now;
+  const std::size_t size = message->size();
+  message->reserve(size + kSignatureBytes);
+  AppendSignature(signature, message);
+  ComputeTag(key_, channel, message->data(), size, message->data() + size, signature.tag);
+  std::copy(std::begin(signature.tag), std::end(signature.tag),
+            message->begin() + static_cast<std::ptrdiff_t>(size + kStampBytes));
+}
+
+std::string SignatureCheck::WhyNot(const std::string& channel, const std::uint8_t* data,
+                                   std::size_t size, Utime arrived) {
+  const auto signature = SignatureOf(data, size);
+  if (!signature) return "is not signed; was its sender started without --key?";
+  const std::size_t message_bytes = size - kSignatureBytes;
+  std::uint8_t tag[sizeof(Signature::tag)];
+  ComputeTag(key_, channel, data, message_bytes, data + message_bytes, tag);
+  if (sodium_memcmp(tag, signature->tag, sizeof tag) != 0) {
+    return "is signed with another key, or was changed on its way";
+  }
+  const Utime age = arrived - signature->utime;
+  if (std::abs(age) > kMostApart) {
+    return Format("was signed %.0f s %s: a recording, or two machines' clocks differ",
+                  std::abs(ToSeconds(age)), age > 0 ? "ago" : "ahead of this machine's clock");
+  }
+  return IsNew(*signature, arrived) ? "" : "came before: it was sent once more";
+}
+
+bool SignatureCheck::IsNew(const Signature& signature, Utime arrived) {
+  ForgetThoseBefore(arrived - 2 * kMostApart);
+  Sender& sender = senders_[signature.sender];
+  const std::int64_t ahead = signature.number - sender.newest;
+  if (ahead > 0) {
+    sender.came = ahead < kRemembered ? sender.came << ahead | 1U : 1U;
+    sender.newest = signature.number;
+  } else {
+    const std::uint64_t bit = -ahead < kRemembered ? std::uint64_t{1} << -ahead : 0;
+    if (bit == 0 || (sender.came & bit) != 0) return false;
+    sender.came |= bit;
+  }
+  sender.utime = std::max(sender.utime, signature.utime);
+  return true;
+}
+
+// Whose newest is too old to be taken once more has nothing to be remembered for.
+void SignatureCheck::ForgetThoseBefore(Utime utime) {
+  if (std::abs(utime - forgotten_at_) < kMicrosecondsPerSecond) return;
+  forgotten_at_ = utime;
+  for (auto it = senders_.begin(); it != senders_.end();) {
+    it = it->second.utime < utime ? senders_.erase(it) : std::next(it);
+  }
+}
+
+}  // namespace rgbdt
