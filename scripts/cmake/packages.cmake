@@ -30,7 +30,8 @@ rgbdt_debian_package(programs rgbdt
               "sure that is, and streams the fused RGB-depth-thermal cloud on an LCM bus."
   DEPENDS iproute2)  # lcm-loopback.service
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS liblcm-bin)  # rgbdt replay reads what lcm-logger writes
+# rgbdt replay reads what lcm-logger writes; lcm-firewall.service keeps others out of that.
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "liblcm-bin, nftables")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA ${debian}/postinst ${debian}/prerm ${debian}/postrm)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 

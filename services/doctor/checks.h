@@ -11,6 +11,8 @@ Finding CheckBuffer(const BufferFacts& facts);
 /// `route`: where messages to the group would go.
 Findings CheckBusUrl(const BusUrl& url, const Route& route);
 Finding CheckMulticast(const MulticastFacts& facts);
+/// Of a bus that is to stay on this machine.
+Finding CheckFirewall(const FirewallFacts& facts);
 Finding CheckClock(const ClockFacts& facts);
 Finding CheckDisk(const DiskFacts& facts);
 /// `failures`: datagrams that the kernel could not put together (ReassemblyFailures).

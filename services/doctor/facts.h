@@ -34,6 +34,15 @@ struct MulticastFacts {
 MulticastFacts GatherMulticast(std::uint32_t group,
                                const std::vector<NetworkInterface>& interfaces);
 
+/// What keeps other machines' datagrams from lcm-logger and lcm-logplayer, which die of forged ones.
+struct FirewallFacts {
+  int port = 0;               ///< UDP, of the bus
+  bool others_reach = false;  ///< an interface besides the loopback is up
+  bool readable = false;      ///< the kernel's rules, which are root's to see
+  std::string ruleset;        ///< as `nft list ruleset` prints it
+};
+FirewallFacts GatherFirewall(int port, const std::vector<NetworkInterface>& interfaces);
+
 struct ClockFacts {
   bool synchronised = false;
   bool in_container = false;

@@ -23,6 +23,7 @@ Findings CheckBus(const SystemRoots& roots, const std::string& text,
   findings.push_back(CheckMulticast(multicast));
   findings.push_back(CheckPort(GatherPort(roots, url.port, "LCM", true)));
   if (url.ttl > 0) findings.push_back(CheckReassembly(ReassemblyFailures()));
+  if (url.ttl == 0) findings.push_back(CheckFirewall(GatherFirewall(url.port, interfaces)));
   return findings;
 }
 

@@ -1,5 +1,5 @@
-// Encoding and decoding each message of the bus, at the sizes that it has on a rig; beside copying
-// its bytes into new memory. See measure.h for flags.
+// Encoding and decoding each message of the bus, at the sizes that it has on a rig, and signing and
+// checking those that are signed; beside copying its bytes into new memory. See measure.h for flags.
 #include <algorithm>
 #include <cctype>
 #include <limits>
@@ -9,6 +9,7 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/methods/calibrate.h"
 #include "calib/scan_assembly/line_to_cloud.h"
+#include "services/bus/signature.h"
 #include "services/messages/codec.h"
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
@@ -164,6 +165,18 @@ void RegisterMessage(const Message& made) {
     benchmark::DoNotOptimize(decoded);
   });
   add("decode", "memcpy", copy);
+  if (!IsSignedChannel(ChannelOf(made))) return;
+  // What a key costs a message on both its ends: signed by one process, checked by another.
+  const auto signer = std::make_shared<MessageSigner>(BusKey());
+  const auto check = std::make_shared<SignatureCheck>(BusKey());
+  add("sign", "rgbdt", [bytes, signer, check, channel = ChannelOf(made)] {
+    Bytes message(*bytes);
+    signer->Sign(channel, kStart, &message);
+    if (!check->WhyNot(channel, message.data(), message.size(), kStart).empty()) {
+      throw std::runtime_error("a signed message was refused");
+    }
+  });
+  add("sign", "memcpy", copy);
 }
 
 }  // namespace

@@ -109,6 +109,24 @@ stop_peer holder
 doctor
 silent "LCM port"
 
+# -- other machines and lcm-logger
+
+silent "LCM firewall"
+ip link add other type veth peer name end
+ip link set other up
+doctor
+finds WARNING "LCM firewall" "UDP port 7667" "lcm-logger"
+doctor --lcm-url 'udpm://239.255.76.67:7667?ttl=1'
+! grep -q "LCM firewall" "$scratch/output" || fail "a bus of ttl=1 wants to be heard"
+doctor
+mend "LCM firewall"
+doctor
+silent "LCM firewall"
+doctor --lcm-url 'udpm://239.255.76.67:7668?ttl=0'
+finds WARNING "LCM firewall" "UDP port 7668"
+nft delete table ip lcm
+ip link del other
+
 # -- a camera at the other end of a cable
 
 camera_network

@@ -19,7 +19,9 @@
 #include "services/bus/log.h"
 #include "services/bus/sequence.h"
 #include "services/messages/codec.h"
+#include "services/messages/signature.h"
 #include "tests/datagrams.h"
+#include "tests/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
@@ -39,6 +41,9 @@ int Usage() {
       "it;\n"
       "                         prints what it says; exit code 3: it failed\n"
       "  garbage PROCESS...     publishes garbage on every channel until each names some\n"
+      "  forge PROCESS...       publishes unsigned commands, rigs, calibrations, ... until each\n"
+      "                         says in its status that it ignored some\n"
+      "  keep_signed LOG OUT    a log without what is not signed there; prints how many went\n"
       "  calibration VIEWS      until the solver has them of two cameras; prints what it found\n"
       "  gaps LOG               messages that a log lacks, by channel; exit code 3 if any\n"
       "  print FILE             prints a calibration.textproto in the same way\n"
@@ -163,6 +168,60 @@ int Garbage(const Arguments& processes) {
                 static_cast<long long>(listener.Counter(process, "dropped")),
                 listener.statuses[process].last_problem.c_str());
   }
+  return 0;
+}
+
+/// What would end a session, were it taken: one of each kind that a key keeps out, and RESET.
+Messages Forged() {
+  Messages forged;
+  for (Message& message : testing::RandomMessages(2).OneOfEach()) {
+    if (IsSignedChannel(ChannelOf(message))) forged.push_back(std::move(message));
+  }
+  SessionCommand reset;
+  reset.command = reset.seq = 1;
+  reset.verb = SessionVerb::kReset;
+  forged.emplace_back(reset);
+  SessionRequest finish;
+  finish.request = SessionRequestKind::kFinish;
+  forged.emplace_back(finish);
+  return forged;
+}
+
+int Forge(const Arguments& processes) {
+  Listener listener;
+  for (const Message& message : Forged()) {
+    listener.bus.Publish(ChannelOf(message), Encode(message));
+    const Clock::time_point next = Clock::now() + std::chrono::milliseconds(10);
+    while (Clock::now() < next) listener.bus.Run(5);
+  }
+  for (const std::string& process : processes) {
+    listener.RunUntil(
+        [&] {
+          return listener.Counter(process, "unsigned") > 0 &&
+                 listener.statuses[process].last_problem.find("ignored: ") == 0;
+        },
+        process + " to name in its status what is not signed");
+    std::printf("%s: unsigned %lld, last: %s\n", process.c_str(),
+                static_cast<long long>(listener.Counter(process, "unsigned")),
+                listener.statuses[process].last_problem.c_str());
+  }
+  return 0;
+}
+
+// A log without what Forge put into it.
+int KeepSigned(const Arguments& arguments) {
+  LogReader log(arguments.at(0));
+  test::LogWriter out(arguments.at(1));
+  std::int64_t dropped = 0;
+  while (const auto event = log.Next()) {
+    if (IsSignedChannel(event->channel) && !SignatureOf(event->bytes.data(), event->bytes.size())) {
+      ++dropped;
+      continue;
+    }
+    out.Write(event->channel, event->bytes, event->receive_utime);
+  }
+  out.Close();
+  std::printf("%lld\n", static_cast<long long>(dropped));
   return 0;
 }
 
@@ -327,6 +386,8 @@ int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
   if (verb == "ask") return Ask(arguments);
   if (verb == "garbage") return Garbage(arguments);
+  if (verb == "forge") return Forge(arguments);
+  if (verb == "keep_signed") return KeepSigned(arguments);
   if (verb == "calibration") return PrintLive(arguments);
   if (verb == "gaps") return PrintGaps(arguments);
   if (verb == "print") return PrintFile(arguments);

@@ -53,6 +53,17 @@ TEST(Origin, NoPortIsPort80) {
 }
 
 // Other sites' names are what an attacker can point here; addresses and this machine's are not.
+TEST(Origin, ByTlsTheUsualPortIs443AndTheOriginHttps) {
+  const HostRule rule = RuleFor("127.0.0.1", 443, true);
+  EXPECT_TRUE(rule.Allows("localhost"));
+  EXPECT_FALSE(rule.Allows("localhost:80"));
+  EXPECT_TRUE(OriginIsHost("https://localhost:8080", "localhost:8080", true));
+  EXPECT_TRUE(OriginIsHost("https://localhost", "localhost:443", true));
+  EXPECT_FALSE(OriginIsHost("http://localhost:8080", "localhost:8080", true));
+  EXPECT_FALSE(OriginIsHost("https://localhost:8080", "localhost:8080"));
+  EXPECT_FALSE(OriginIsHost("https://localhost", "localhost:80", true));
+}
+
 TEST(Origin, BeyondLoopbackAddressesAndTheMachinesNameCount) {
   const std::string name = net::ip::host_name();
   for (const char* bound : {"0.0.0.0", "::", "192.168.0.1"}) {

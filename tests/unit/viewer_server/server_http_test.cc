@@ -1,8 +1,12 @@
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "test_browser.h"
@@ -27,11 +31,14 @@ class ServerHttpTest : public ::testing::Test {
   std::string Get(const std::string& target, const std::string& more = "") const {
     return Exchange(port_, GetRequest(target, host_, more));
   }
+  std::string UpgradeRequest(const std::string& origin_field) const {
+    return GetRequest("/ws", host_,
+                      "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                      "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n" +
+                          origin_field);
+  }
   std::string Upgrade(const std::string& origin_field) const {
-    return Get("/ws",
-               "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-               "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n" +
-                   origin_field);
+    return Exchange(port_, UpgradeRequest(origin_field));
   }
 
   Server server_{Options(), nullptr};
@@ -52,10 +59,13 @@ TEST_F(ServerHttpTest, ServesThePageWithItsHeaders) {
           // NOLINTNEXTLINE(bugprone-suspicious-missing-comma): one field of many words
           "Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline' blob:; "
           "worker-src blob:; style-src 'unsafe-inline'; img-src blob: data:; "
-          "connect-src 'self' ws:; font-src data:; base-uri 'none'; form-action 'none'; "
-          "frame-ancestors 'none'"}) {
-      EXPECT_THAT(answer, HasSubstr(std::string(field) + "\r\n"));
+          "connect-src 'self' ws://"}) {
+      EXPECT_THAT(answer, HasSubstr("\r\n" + std::string(field)));
     }
+    EXPECT_THAT(answer, HasSubstr("connect-src 'self' ws://" + host_ +
+                                  "; font-src data:; base-uri 'none'; form-action 'none'; "
+                                  "frame-ancestors 'none'\r\n"))
+        << "no other server's WebSocket";
   }
 }
 
@@ -139,17 +149,65 @@ TEST_F(ServerHttpTest, RandomBytesAreRefused) {
   }
 }
 
-TEST_F(ServerHttpTest, BrowsersBeyond64AreRefused) {
+// Whoever holds connections open and says nothing keeps nobody out.
+TEST_F(ServerHttpTest, AThousandSilentConnectionsKeepNobodyOut) {
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  files.rlim_cur = std::min<rlim_t>(files.rlim_max, 4096);  // most often 1024, of both ends here
+  setrlimit(RLIMIT_NOFILE, &files);
+  std::vector<std::unique_ptr<HeldConnection>> held;
+  for (int i = 0; i < 1000; ++i) {
+    held.push_back(std::make_unique<HeldConnection>(port_));
+    if (i % 3 == 1) held.back()->Say("GET / HT");
+    if (i % 3 == 2) held.back()->Say(GetRequest("/", host_));  // and reads no answer
+    if (i % 100 == 99) {
+      EXPECT_THAT(Get("/"), StartsWith("HTTP/1.1 200 "));
+    }
+  }
+  TestBrowser browser(server_);
+  EXPECT_EQ(browser.Hello().type(), "hello");
+}
+
+// A byte now and then does not make a request's time longer.
+TEST_F(ServerHttpTest, ASlowRequestIsGivenUp) {
+  HeldConnection slow(port_);
+  slow.Say("GET / HTTP/1.1\r\n");
+  const auto begin = std::chrono::steady_clock::now();
+  while (slow.IsOpen()) {
+    ASSERT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    slow.Say("X");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
+TEST_F(ServerHttpTest, BrowsersBeyond64AreToldSo) {
   std::vector<std::unique_ptr<TestBrowser>> browsers;
   for (int i = 0; i < 64; ++i) {
     browsers.push_back(std::make_unique<TestBrowser>(server_));
     browsers.back()->Hello();
   }
+  for (int i = 0; i < 40; ++i) {  // the page shows the reason
+    TestBrowser one_more(server_);
+    EXPECT_EQ(one_more.CloseCode(), 1013);
+    EXPECT_EQ(one_more.CloseReason(), "Too many browsers are connected; close one of them.");
+  }
+  EXPECT_EQ(server_.Browsers().size(), 64U);
+  EXPECT_THAT(Get("/"), StartsWith("HTTP/1.1 200 "));
+  browsers.pop_back();
+  EXPECT_EQ(TestBrowser(server_).Hello().type(), "hello") << "there is room again";
+}
+
+// Those that are told to go, and do not, are limited as well.
+TEST_F(ServerHttpTest, WebSocketsBeyondThatAreRefused) {
+  std::vector<std::unique_ptr<HeldConnection>> held;
+  for (int i = 0; i < 96; ++i) {
+    held.push_back(std::make_unique<HeldConnection>(port_));
+    held.back()->Say(UpgradeRequest("Origin: http://" + host_ + "\r\n"));
+    held.back()->Await("101 Switching");
+  }
   const std::string answer = Upgrade("Origin: http://" + host_ + "\r\n");
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 503 "));
   EXPECT_THAT(answer, HasSubstr("Too many browsers are connected; close one of them."));
-  EXPECT_EQ(server_.Browsers().size(), 64U);
-  EXPECT_THAT(Get("/"), StartsWith("HTTP/1.1 200 "));
 }
 
 TEST(ServerHttp, WithoutAPageSaysWhatToDo) {

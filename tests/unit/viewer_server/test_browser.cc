@@ -2,6 +2,7 @@
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/read.hpp>
+#include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
 #include <stdexcept>
@@ -59,6 +60,28 @@ std::string Exchange(int port, const std::string& request) {
   net::read(socket, net::dynamic_buffer(answer), error);
   if (error != net::error::eof) throw boost::system::system_error(error);
   return answer;
+}
+
+HeldConnection::HeldConnection(int port) { socket_.connect(Loopback(port)); }
+
+void HeldConnection::Say(const std::string& bytes) {
+  error_code lost;
+  net::write(socket_, net::buffer(bytes), lost);
+}
+
+bool HeldConnection::IsOpen() {
+  error_code error;
+  socket_.non_blocking(true);
+  std::string bytes(1000, '\0');
+  while (!error && socket_.read_some(net::buffer(bytes), error) > 0) {
+  }
+  socket_.non_blocking(false);
+  return error == net::error::would_block;
+}
+
+void HeldConnection::Await(const std::string& bytes) {
+  std::string came;
+  net::read_until(socket_, net::dynamic_buffer(came), bytes);
 }
 
 TestBrowser::TestBrowser(int port, const std::string& origin) : socket_(io_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cstdint>
@@ -17,6 +18,22 @@ int PortOf(const Server& server);
 
 /// Sends these bytes to that port and gives all that comes back until the end.
 std::string Exchange(int port, const std::string& request);
+
+/// A connection that is held open, with whatever is said on it.
+class HeldConnection {
+ public:
+  explicit HeldConnection(int port);
+  /// What the other end does not take is lost.
+  void Say(const std::string& bytes);
+  /// The other end has not closed it. What came is passed over.
+  bool IsOpen();
+  /// Reads until these bytes have come. Throws where they do not.
+  void Await(const std::string& bytes);
+
+ private:
+  boost::asio::io_context io_;
+  boost::asio::ip::tcp::socket socket_{io_};
+};
 
 /// A GET request as a browser sends it, but for the fields named.
 std::string GetRequest(const std::string& target, const std::string& host,

@@ -19,12 +19,15 @@ function readToken(): string {
   return decodeURIComponent(given ?? "");
 }
 
+function complain(text: string): void {
+  notices.value = [...notices.value.slice(-4), { type: "notice", level: "error", text, at: Date.now() }];
+}
+
 function onBytes(bytes: ArrayBuffer): void {
   try {
     take(decodeFrame(bytes));
   } catch (error) {
-    notices.value = [...notices.value.slice(-4),
-      { type: "notice", level: "error", text: `Received data that cannot be read: ${error}`, at: Date.now() }];
+    complain(`Received data that cannot be read: ${error}`);
   }
 }
 
@@ -32,6 +35,7 @@ export function connect(): void {
   const token = readToken();
   let socket: WebSocket | null = null;
   let backoff = kBackoffMs.first;
+  let said = "";
   const say = (message: ToBridge) => {
     if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
   };
@@ -51,8 +55,11 @@ export function connect(): void {
       watch();
     };
     socket.onmessage = (event) => { if (event.data instanceof ArrayBuffer) onBytes(event.data); };
-    socket.onclose = () => {
+    socket.onclose = ({ reason }) => {
       connection.value = "lost";
+      // It is tried again and again: said once.
+      if (reason !== "" && reason !== said) complain(`The viewer closed the connection: ${reason}`);
+      said = reason;
       setTimeout(open, backoff);
       backoff = Math.min(2 * backoff, kBackoffMs.most);
     };

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Hostile browsers (web_attack.py) before the viewer of a live rig: each gets what it deserves, the
+# page is there for others, the viewer loses no message and does not grow, and the bus feels nothing.
+# Run by scripts/in-namespace. Usage: web_attack_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/live/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+turns=${RGBDT_TURNS:-8}
+most_growth_kb=80000
+ulimit -n "$(ulimit -H -n)"
+[ "$(ulimit -n)" -ge 2000 ] || fail "1,000 connections need more open files than $(ulimit -n)"
+
+resident_kb() { awk '/^VmRSS:/ { print $2 }' "/proc/${pids[viewer]}/status"; }
+
+start viewer "$bin/rgbdt-viewer" --listen 127.0.0.1:0
+helper ready viewer || fail "rgbdt-viewer did not come up"
+port=$(sed -n 's/^http:.*:\([0-9]*\).*/\1/p' "$scratch/viewer.log")
+[ -n "$port" ] || fail "the viewer did not say where its page is"
+start stream "$bin/browser_helper" stream 2 20000 10 2
+start pulse "$bin/bus_pulse" "$scratch/pulse.csv"
+sleep 3
+before=$(resident_kb)
+# Who attacks has processors of its own: here they are those that nobody else wants.
+chrt --idle 0 python3 "$(dirname "$0")/web_attack.py" "$port" "${pids[pulse]}" "$scratch/pulse.csv" \
+  "$turns" >"$scratch/figures" || fail "under attack: $(cat "$scratch/figures")"
+cat "$scratch/figures"
+growth=$(($(resident_kb) - before))
+echo "the viewer grew by $growth kB"
+[ "$growth" -lt "$most_growth_kb" ] || fail "the viewer grew by $growth kB"
+kill -0 "${pids[stream]}" || fail "the stream ended"
+stop TERM viewer
+grep -q 'viewer: stopped' "$scratch/viewer.log" || fail "the viewer said no goodbye"
+! grep 'viewer: stopped' "$scratch/viewer.log" | grep -Eq ', gaps [1-9]' ||
+  fail "the viewer missed messages"
+echo "passed"
