@@ -3,7 +3,6 @@
 #include <netinet/tcp.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/ip/host_name.hpp>
@@ -114,7 +113,8 @@ Server::Impl::~Impl() {
 
 // What a handler throws (there is no memory, say) is its loss alone.
 void Server::Impl::Run() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // Linux: of this thread alone
+  const int of_others = getpriority(PRIO_PROCESS, 0);
+  setpriority(PRIO_PROCESS, 0, of_others + kNiceness);  // on Linux of this thread alone
   while (!io.stopped()) {
     try {
       io.run();

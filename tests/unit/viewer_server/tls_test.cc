@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <boost/asio/read.hpp>
+#include <boost/asio/ssl/rfc2818_verification.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
@@ -35,7 +36,7 @@ net::ssl::context Trusting(const TlsIdentity& identity, const std::string& name)
   net::ssl::context context(net::ssl::context::tls_client);
   context.set_verify_mode(net::ssl::verify_peer);
   context.add_certificate_authority(net::buffer(identity.certificate));
-  context.set_verify_callback(net::ssl::host_name_verification(name));
+  context.set_verify_callback(net::ssl::rfc2818_verification(name));
   return context;
 }
 
