@@ -15,24 +15,28 @@ namespace {
 constexpr char kContext[] = "rgbdt signature 1";
 constexpr int kRemembered = 64;
 
-// Of the message and the stamp behind it. `message` and `stamp` need not lie side by side.
-void ComputeTag(const BusKey& key, const std::string& channel, const std::uint8_t* message,
-                std::size_t size, const std::uint8_t* stamp,
-                std::uint8_t (&tag)[sizeof(Signature::tag)]) {
-  crypto_generichash_state state;
-  crypto_generichash_init(&state, key.bytes.data(), key.bytes.size(), sizeof tag);
-  crypto_generichash_update(&state, reinterpret_cast<const std::uint8_t*>(kContext),
-                            sizeof kContext);
-  crypto_generichash_update(&state, reinterpret_cast<const std::uint8_t*>(channel.c_str()),
-                            channel.size() + 1);
-  crypto_generichash_update(&state, message, size);
-  crypto_generichash_update(&state, stamp, kStampBytes);
-  crypto_generichash_final(&state, tag, sizeof tag);
-}
+static_assert(crypto_aead_xchacha20poly1305_ietf_NPUBBYTES == kStampBytes);
+static_assert(crypto_aead_xchacha20poly1305_ietf_ABYTES == sizeof(Signature::tag));
 
 }  // namespace
 
-MessageSigner::MessageSigner(const BusKey& key) : key_(key) {
+void ChannelKeys::Tag(const std::string& channel, const std::uint8_t* message, std::size_t size,
+                      std::uint8_t (&tag)[sizeof(Signature::tag)]) {
+  const auto [entry, is_new] = of_channels_.try_emplace(channel);
+  BusKey& key = entry->second;
+  if (is_new) {
+    const std::string name = kContext + channel;
+    crypto_generichash(key.bytes.data(), key.bytes.size(),
+                       reinterpret_cast<const std::uint8_t*>(name.data()), name.size(),
+                       key_.bytes.data(), key_.bytes.size());
+  }
+  std::uint8_t no_text = 0;
+  crypto_aead_xchacha20poly1305_ietf_encrypt_detached(&no_text, tag, nullptr, &no_text, 0, message,
+                                                      size, nullptr, message + size,
+                                                      key.bytes.data());
+}
+
+MessageSigner::MessageSigner(const BusKey& key) : keys_(key) {
   if (sodium_init() < 0) throw InputError("libsodium finds no random numbers");
   randombytes_buf(&sender_, sizeof sender_);
 }
@@ -45,7 +49,7 @@ void MessageSigner::Sign(const std::string& channel, Utime now, Bytes* message) 
   const std::size_t size = message->size();
   message->reserve(size + kSignatureBytes);
   AppendSignature(signature, message);
-  ComputeTag(key_, channel, message->data(), size, message->data() + size, signature.tag);
+  keys_.Tag(channel, message->data(), size, signature.tag);
   std::copy(std::begin(signature.tag), std::end(signature.tag),
             message->begin() + static_cast<std::ptrdiff_t>(size + kStampBytes));
 }
@@ -56,7 +60,7 @@ std::string SignatureCheck::WhyNot(const std::string& channel, const std::uint8_
   if (!signature) return "is not signed; was its sender started without --key?";
   const std::size_t message_bytes = size - kSignatureBytes;
   std::uint8_t tag[sizeof(Signature::tag)];
-  ComputeTag(key_, channel, data, message_bytes, data + message_bytes, tag);
+  keys_.Tag(channel, data, message_bytes, tag);
   if (sodium_memcmp(tag, signature->tag, sizeof tag) != 0) {
     return "is signed with another key, or was changed on its way";
   }

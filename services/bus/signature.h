@@ -11,9 +11,24 @@
 
 namespace rgbdt {
 
-// The tag is BLAKE2b-256 (RFC 7693), keyed with the rig's key, of: "rgbdt signature 1" and a zero,
-// the channel's name and a zero, the message, the signature's first kStampBytes. A keyed hash and
-// no public keys: every process of a rig both sends and judges, so all would hold a secret anyway.
+// Each channel has a key of its own: BLAKE2b-256 (RFC 7693) of "rgbdt signature 1" and its name,
+// keyed with the rig's. The tag is that of XChaCha20-Poly1305 (IETF) by the channel's key, for an
+// empty text, with the message as its additional data and the signature's first kStampBytes as
+// nonce. No public keys: every process of a rig both sends and judges, so all would hold a secret
+// anyway.
+
+/// The channels' keys, each made once.
+class ChannelKeys {
+ public:
+  explicit ChannelKeys(const BusKey& key) : key_(key) {}
+  /// The tag of a message with its stamp behind it.
+  void Tag(const std::string& channel, const std::uint8_t* message, std::size_t size,
+           std::uint8_t (&tag)[sizeof(Signature::tag)]);
+
+ private:
+  BusKey key_;
+  std::map<std::string, BusKey> of_channels_;  // those of IsSignedChannel
+};
 
 /// Signs what one process sends.
 class MessageSigner {
@@ -25,7 +40,7 @@ class MessageSigner {
   void Sign(const std::string& channel, Utime now, Bytes* message);
 
  private:
-  BusKey key_;
+  ChannelKeys keys_;
   std::uint64_t sender_;
   std::int64_t next_ = 0;
 };
@@ -37,7 +52,7 @@ class SignatureCheck {
   /// How far sender's and receiver's wall clocks may differ, the way between them included.
   static constexpr Utime kMostApart = 10 * kMicrosecondsPerSecond;
 
-  explicit SignatureCheck(const BusKey& key) : key_(key) {}
+  explicit SignatureCheck(const BusKey& key) : keys_(key) {}
 
   /// Why the message is not to be taken; empty: it is, without its last kSignatureBytes, and never
   /// again. `arrived` [us, UTC] is of the wall clock.
@@ -56,7 +71,7 @@ class SignatureCheck {
   bool IsNew(const Signature& signature, Utime arrived);
   void ForgetThoseBefore(Utime utime);
 
-  BusKey key_;
+  ChannelKeys keys_;
   std::map<std::uint64_t, Sender> senders_;
   Utime forgotten_at_ = 0;
 };

@@ -7,13 +7,16 @@ While they are on: 1,000 connections that say nothing or a byte now and then, ea
 the viewer closes it; WebSockets of another site's page, with a wrong token, with a frame that is too
 large, with fragments without end; and eight browsers that ask for everything and read nothing. Each
 must be answered as it deserves, and the page must be there for others. The bus' latency comes from
-`bus_pulse`, PULSE_PID, which is ended for its CSV. Prints figures as JSON; exit code 1 where
-p99 is more than 1.2 of what it is without: the middle of the ratios of all turns.
+`bus_pulse`, PULSE_PID, which is ended for its CSV. Prints figures as JSON: the ratio of p99 with
+them to p99 without is the middle one of all turns'. Exit code 1 where it is above 1.2 in more turns
+than chance makes once in a hundred (sign test): what else the machine does makes single turns differ
+by far, either way.
 """
 import asyncio
 import base64
 import bisect
 import json
+import math
 import os
 import signal
 import statistics
@@ -213,7 +216,9 @@ async def main():
     ratios = [p99(b) / p99(a) for a, b in zip(calm, attacked)]
     ratio = statistics.median(ratios)
     expect(min(map(len, calm + attacked)) > 500, "too few pulses")
-    expect(ratio <= MOST_RATIO, f"p99 on the bus is {ratio:.2f} of what it is without")
+    above = sum(r > MOST_RATIO for r in ratios)
+    chance = sum(math.comb(TURNS, k) for k in range(above, TURNS + 1)) / 2**TURNS
+    expect(chance > 0.01, f"p99 on the bus is {ratio:.2f} of what it is without")
     for what in ("foreign_origins", "too_large", "page_loads"):
         expect(count[what] > 0, f"none of {what}")
     print(json.dumps({**count, "bus_p99_ratio": round(ratio, 3),
