@@ -13,14 +13,12 @@ ulimit -n "$(ulimit -H -n)"
 
 resident_kb() { awk '/^VmRSS:/ { print $2 }' "/proc/${pids[viewer]}/status"; }
 
-# What else this machine does is not what is measured.
-first=(nice -n -15)
-start viewer "${first[@]}" "$bin/rgbdt-viewer" --listen 127.0.0.1:0
+start viewer "$bin/rgbdt-viewer" --listen 127.0.0.1:0
 helper ready viewer || fail "rgbdt-viewer did not come up"
 port=$(sed -n 's/^http:.*:\([0-9]*\).*/\1/p' "$scratch/viewer.log")
 [ -n "$port" ] || fail "the viewer did not say where its page is"
-start stream "${first[@]}" "$bin/browser_helper" stream 2 2000 10 2
-start pulse "${first[@]}" "$bin/bus_pulse" "$scratch/pulse.csv"
+start stream "$bin/browser_helper" stream 2 2000 10 2
+start pulse "$bin/bus_pulse" "$scratch/pulse.csv"
 sleep 3
 before=$(resident_kb)
 # Who attacks has processors of its own: here they are those that nobody else wants. That they are
