@@ -197,6 +197,22 @@ TEST_F(ServerHttpTest, BrowsersBeyond64AreToldSo) {
   EXPECT_EQ(TestBrowser(server_).Hello().type(), "hello") << "there is room again";
 }
 
+// A flood of fragments of a byte each waits in the sender's own buffers.
+TEST_F(ServerHttpTest, AFloodIsReadSlowly) {
+  HeldConnection flood(port_);
+  flood.Say(UpgradeRequest("Origin: http://" + host_ + "\r\n"));
+  flood.Await("101 Switching");
+  const std::string hello = R"({"type": "hello", "token": ""})";
+  flood.Say(std::string("\x81") + static_cast<char>(0x80 + hello.size()) + std::string(4, '\0') +
+            hello);
+  std::string fragments("\x01\x81\0\0\0\0x", 7);
+  while (fragments.size() < 100'000) fragments += std::string("\x00\x81\0\0\0\0x", 7);
+  const auto begin = std::chrono::steady_clock::now();
+  flood.Say(fragments + std::string("\x80\x81\0\0\0\0x", 7));  // the end: it is no JSON
+  flood.Await("no JSON");                                      // in the close's reason
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4)) << "100 KB";
+}
+
 // Those that are told to go, and do not, are limited as well.
 TEST_F(ServerHttpTest, WebSocketsBeyondThatAreRefused) {
   std::vector<std::unique_ptr<HeldConnection>> held;

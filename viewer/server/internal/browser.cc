@@ -17,7 +17,7 @@ namespace websocket = beast::websocket;
 
 constexpr const char* kOneTooMany = "Too many browsers are connected; close one of them.";
 
-std::string PeerText(const beast::tcp_stream& stream) {
+std::string PeerText(const Stream::Clear& stream) {
   beast::error_code error;
   const tcp::endpoint peer = stream.socket().remote_endpoint(error);
   return error ? "" : HostPortText(AddressText(peer.address()), peer.port());
@@ -71,6 +71,7 @@ void Browser::SetOptions() {
   socket_.auto_fragment(false);
   socket_.binary(true);
   socket_.read_message_max(kMaxMessageText);
+  beast::get_lowest_layer(socket_).rate_policy().read_limit(kMaxReadPerSecond);
 }
 
 void Browser::Start(const HttpRequest& request) {

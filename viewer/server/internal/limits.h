@@ -27,6 +27,10 @@ inline constexpr std::chrono::seconds kCloseTime{5};
 inline constexpr std::size_t kMaxMessageText = 64 * 1024;  ///< [byte] in however many fragments
 inline constexpr std::size_t kMaxMessageString = 200;      ///< [byte] names and tokens
 
+/// [byte] of a browser in a second: a page says some hundred. In fragments of a byte more would
+/// keep a core busy; who sends more waits.
+inline constexpr std::size_t kMaxReadPerSecond = 16 * 1024;
+
 /// The server's thread gives way to the bus', whatever browsers do (nice(2)).
 inline constexpr int kNiceness = 10;
 

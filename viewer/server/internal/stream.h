@@ -13,8 +13,9 @@ namespace rgbdt::viewer {
 /// reads and writes is compiled once, for both.
 class Stream {
  public:
-  using Clear = beast::tcp_stream;
-  using Tls = beast::ssl_stream<beast::tcp_stream>;
+  using Clear =
+      beast::basic_stream<tcp, beast::tcp_stream::executor_type, beast::simple_rate_policy>;
+  using Tls = beast::ssl_stream<Clear>;
   using next_layer_type = Clear;
   using executor_type = Clear::executor_type;
 
