@@ -34,7 +34,8 @@ struct MulticastFacts {
 MulticastFacts GatherMulticast(std::uint32_t group,
                                const std::vector<NetworkInterface>& interfaces);
 
-/// What keeps other machines' datagrams from lcm-logger and lcm-logplayer, which die of forged ones.
+/// What keeps other machines' datagrams from lcm-logger and lcm-logplayer, which die of forged
+/// ones.
 struct FirewallFacts {
   int port = 0;               ///< UDP, of the bus
   bool others_reach = false;  ///< an interface besides the loopback is up

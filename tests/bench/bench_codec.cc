@@ -1,5 +1,6 @@
 // Encoding and decoding each message of the bus, at the sizes that it has on a rig, and signing and
-// checking those that are signed; beside copying its bytes into new memory. See measure.h for flags.
+// checking those that are signed; beside copying its bytes into new memory. See measure.h for
+// flags.
 #include <algorithm>
 #include <cctype>
 #include <limits>
