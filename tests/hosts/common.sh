@@ -52,9 +52,9 @@ lose() {  # PERMILLE HOST...: of the datagrams, and pieces of datagrams, on the 
   local permille=$1 name repair=0x52474244545f524550414952
   shift
   for name in "$@"; do
-    nft add rule bridge links forward oifname "$name" @th,128,96 "$repair" numgen random mod 1000 \
+    nft add rule bridge links forward oifname "\"$name\"" @th,128,96 "$repair" numgen random mod 1000 \
       "<" "$permille" counter drop comment "\"repair $name\""
-    nft add rule bridge links forward oifname "$name" @th,128,96 != "$repair" ip protocol udp \
+    nft add rule bridge links forward oifname "\"$name\"" @th,128,96 != "$repair" ip protocol udp \
       numgen random mod 1000 "<" "$permille" counter drop comment "\"data $name\""
   done
 }
