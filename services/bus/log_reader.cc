@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -138,10 +139,13 @@ struct LogReader::Impl {
 
 LogReader::LogReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
   impl_->path = path;
-  impl_->descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (impl_->descriptor < 0) impl_->ThrowErrno();
-  impl_->size = lseek(impl_->descriptor, 0, SEEK_END);
-  if (impl_->size < 0) impl_->ThrowErrno();
+  impl_->descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat status {};
+  if (impl_->descriptor < 0 || fstat(impl_->descriptor, &status) != 0) impl_->ThrowErrno();
+  if (!S_ISREG(status.st_mode)) {  // a pipe would be waited for
+    throw InputError("cannot read " + path + ": it is no regular file; expected an LCM log");
+  }
+  impl_->size = status.st_size;
   if (impl_->size > 0 && !impl_->HeaderAt(0) && impl_->NextSync(0) == impl_->size) {
     throw InputError(path + " is no LCM log: it has " + std::to_string(impl_->size) +
                      " bytes and no event");

@@ -2,7 +2,7 @@
 # Sourced by the command-line tests. Usage of each: NAME_test.sh BIN_DIR
 
 # shellcheck disable=SC2034 # for the tests
-bin=$1
+bin=$(cd "$1" && pwd)
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/rgbdt-cli-XXXXXX")
 trap 'chmod -R u+w "$scratch"; rm -rf "$scratch"' EXIT
 failures=0

@@ -6,6 +6,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
+#include "calib/files/session/internal/printable_name.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 
@@ -13,6 +14,14 @@ namespace rgbdt {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Reports and pages take nothing else, and a terminal would do what it says.
+void RequireName(const fs::path& folder, const std::string& view) {
+  if (IsPrintable(view)) return;
+  throw InputError("the view \"" + PrintableName(view) + "\" in " + folder.string() +
+                   " has a line break or another control character in its name, or bytes that are "
+                   "no UTF-8; rename its folder");
+}
 
 std::vector<std::string> ListViews(const fs::path& folder) {
   std::vector<std::string> views;
@@ -22,6 +31,7 @@ std::vector<std::string> ListViews(const fs::path& folder) {
     if (name.front() != '.' && it->is_directory(error)) views.push_back(name);
   }
   if (error) throw InputError("cannot list " + folder.string() + ": " + error.message());
+  for (const std::string& view : views) RequireName(folder, view);
   std::sort(views.begin(), views.end(), NaturalLess);
   return views;
 }

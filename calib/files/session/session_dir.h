@@ -16,7 +16,7 @@ namespace rgbdt {
 struct Session {
   std::filesystem::path root;  ///< of a joined one: empty
   Rig rig;
-  std::vector<std::string> views;  ///< folders of root/views, sorted with numbers as numbers
+  std::vector<std::string> views;  ///< folders of root/views, sorted by NaturalLess
 
   struct Part;
   std::vector<Part> parts{};  ///< of a joined one

@@ -6,8 +6,10 @@
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/session.pb.h"
 #include "calib/files/schema/text_proto.h"
+#include "calib/files/session/internal/printable_name.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -32,8 +34,9 @@ InSession Find(const Session& session, const std::string& view) {
 }
 
 std::size_t IndexOf(const Session& session, const std::string& view) {
-  const auto found = std::find(session.views.begin(), session.views.end(), view);
-  if (found != session.views.end()) {
+  const auto found =
+      std::lower_bound(session.views.begin(), session.views.end(), view, NaturalLess);
+  if (found != session.views.end() && *found == view) {
     return static_cast<std::size_t>(found - session.views.begin());
   }
   constexpr std::size_t kFew = 20;
@@ -46,6 +49,17 @@ std::size_t IndexOf(const Session& session, const std::string& view) {
   }
   throw InputError("the session " + session.root.string() + " has no view \"" + view +
                    "\"; it has: " + names);
+}
+
+// Where a field names a file of the view.
+fs::path FileOf(const fs::path& folder, const std::string& file, const Place& place,
+                const std::string& field) {
+  if (!IsPrintable(file)) {
+    place.Fail(field, "is \"" + PrintableName(file) +
+                          "\", which has a line break or another control character, or bytes that "
+                          "are no UTF-8; rename the file");
+  }
+  return folder / file;
 }
 
 // Runs `read`, and says which field of which file asked for what it could not read.
@@ -104,7 +118,7 @@ Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path&
       place, "camera",
       [&]() -> std::reference_wrapper<const CameraSpec> { return rig.Camera(message.camera()); });
   if (message.file().empty()) place.Fail("file", "is missing; expected the image's path");
-  const fs::path file = folder / message.file();
+  const fs::path file = FileOf(folder, message.file(), place, "file");
   Image image;
   image.camera = camera.name;
   image.pixels = ReadFor(place, "file", [&] { return DecodeImageFile(file); });
@@ -185,9 +199,8 @@ void RequireCloud(const ViewFile& file, const Place& place) {
 }
 
 Cloud ReadCloudOf(const ViewFile& file, const Place& place) {
-  return ReadFor(place, "cloud", [&] {
-    return ReadPcd(file.folder / file.message.cloud(), file.message.sweep_utime());
-  });
+  const fs::path cloud = FileOf(file.folder, file.message.cloud(), place, "cloud");
+  return ReadFor(place, "cloud", [&] { return ReadPcd(cloud, file.message.sweep_utime()); });
 }
 
 View Read(const Session& session, const std::string& view, WithCloud with_cloud) {

@@ -62,6 +62,9 @@ class Problems {
   std::size_t more_ = 0;
 };
 
+/// Of a chunk with more records than this that are of no use the rest is left out.
+inline constexpr std::size_t kMostBadRecords = 100'000;
+
 /// Unsigned, little-endian, as long as T.
 template <typename T>
 T LittleEndian(const std::uint8_t* bytes) {

@@ -27,7 +27,8 @@ BagEncoding EncodingOf(const std::string& name) {
 
 class McapReader : public BagReader {
  public:
-  explicit McapReader(const std::filesystem::path& path) : file_(path), at_(kMagicBytes) {}
+  explicit McapReader(const std::filesystem::path& path)
+      : file_(path), at_(kMagicBytes), budget_(file_.size()) {}
 
   bool Next(BagMessage* message) override {
     while (true) {
@@ -54,7 +55,7 @@ class McapReader : public BagReader {
     }
     if (chunk_at_ != place.at) {
       LoadRecord(place.at, &record_);
-      UnpackChunk(place.at);
+      UnpackChunk(place.at, nullptr);
     }
     const auto within = static_cast<std::size_t>(place.within);
     if (within > chunk_.size()) throw InputError(file_.path() + ": has changed while it was read");
@@ -92,6 +93,7 @@ class McapReader : public BagReader {
     std::uint8_t head[kHeadBytes];
     if (file_.Read(at_, head, kHeadBytes) < kHeadBytes) EndAt("is cut off within a record");
     const std::uint8_t opcode = head[0];
+    if (opcode == 0) EndAt("is damaged: a record of opcode 0, which no record has");
     const auto length = LittleEndian<std::uint64_t>(head + 1);
     const std::int64_t begin = at_ + static_cast<std::int64_t>(kHeadBytes);
     if (length > static_cast<std::uint64_t>(file_.size() - begin)) {
@@ -107,7 +109,7 @@ class McapReader : public BagReader {
     RequireSize(length);
     if (!file_.ReadAll(begin, length, &record_)) EndAt("has become shorter while it was read");
     if (opcode == kChunk) {
-      UnpackChunk(record_at_);
+      UnpackChunk(record_at_, &budget_);
       in_chunk_ = 0;
       return false;
     }
@@ -119,12 +121,14 @@ class McapReader : public BagReader {
       const BagPlace place{0, chunk_at_, static_cast<std::int64_t>(in_chunk_)};
       Fields fields(chunk_.data() + in_chunk_, chunk_.size() - in_chunk_);
       const auto opcode = fields.Number<std::uint8_t>();
+      if (opcode == 0) throw InputError("a record in a chunk is of opcode 0, which no record has");
       const auto length = fields.Number<std::uint64_t>();
       const std::uint8_t* content = fields.Bytes(length);
       in_chunk_ = chunk_.size() - fields.left();
       try {
         if (Take(opcode, content, length, place, message)) return true;
       } catch (const InputError& error) {  // the next record's place is known
+        if (++bad_in_chunk_ > kMostBadRecords) throw;
         problems_.Add(Where() + ": " + error.what());
       }
     }
@@ -171,8 +175,8 @@ class McapReader : public BagReader {
     return message;
   }
 
-  // Of the chunk in record_.
-  void UnpackChunk(std::int64_t at) {
+  // Of the chunk in record_; what it costs is counted the first time.
+  void UnpackChunk(std::int64_t at, UnpackBudget* budget) {
     chunk_at_ = -1;
     chunk_.clear();
     in_chunk_ = 0;
@@ -183,6 +187,7 @@ class McapReader : public BagReader {
     const auto crc = fields.Number<std::uint32_t>();
     const std::string compression = fields.Text();
     const auto packed = fields.Number<std::uint64_t>();
+    if (budget != nullptr) budget->Spend(unpacked);
     Unpack(compression, fields.Bytes(packed), packed, unpacked, &chunk_);
     if (crc != 0 && crc32_z(0, chunk_.data(), chunk_.size()) != crc) {
       chunk_.clear();
@@ -190,6 +195,7 @@ class McapReader : public BagReader {
           "a chunk is damaged: its checksum is another one; its messages are left out");
     }
     chunk_at_ = at;
+    bad_in_chunk_ = 0;
   }
 
   static void RequireSize(std::uint64_t length) {
@@ -211,10 +217,11 @@ class McapReader : public BagReader {
   BagFile file_;
   std::int64_t at_;             // of the next record
   std::int64_t record_at_ = 0;  // of the last one
+  UnpackBudget budget_;
   bool done_ = false;
   std::vector<std::uint8_t> record_, chunk_;  // content of the last record; unpacked records
   std::int64_t chunk_at_ = -1;
-  std::size_t in_chunk_ = 0;
+  std::size_t in_chunk_ = 0, bad_in_chunk_ = 0;
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, std::size_t> channels_;  // to topics
   TopicList topics_;

@@ -54,6 +54,7 @@ struct Record {
 
 Record TakeRecord(Fields* fields) {
   const auto header_size = fields->Number<std::uint32_t>();
+  if (header_size == 0) throw InputError("a record has no header");
   const std::uint8_t* header = fields->Bytes(header_size);
   const auto size = fields->Number<std::uint32_t>();
   return {Header(header, header_size), fields->Bytes(size), size};
@@ -61,7 +62,8 @@ Record TakeRecord(Fields* fields) {
 
 class Ros1Reader : public BagReader {
  public:
-  explicit Ros1Reader(const std::filesystem::path& path) : file_(path), at_(kMagicBytes) {}
+  explicit Ros1Reader(const std::filesystem::path& path)
+      : file_(path), at_(kMagicBytes), budget_(file_.size()) {}
 
   bool Next(BagMessage* message) override {
     while (true) {
@@ -81,7 +83,7 @@ class Ros1Reader : public BagReader {
   BagMessage Read(const BagPlace& place) override {
     if (place.within < 0 || chunk_at_ != place.at) Load(place.at);
     if (place.within >= 0 && chunk_at_ != place.at) {
-      UnpackChunk(place.at, Header(header_.data(), header_.size()));
+      UnpackChunk(place.at, Header(header_.data(), header_.size()), nullptr);
     }
     Fields fields(chunk_.data(), chunk_.size());
     BagMessage message;
@@ -121,6 +123,7 @@ class Ros1Reader : public BagReader {
     header_.clear();
     data_.clear();
     const std::uint32_t header_size = LengthAt(from, kMostHeaderBytes);
+    if (header_size == 0) EndAt("is damaged: a record without a header");
     if (!file_.ReadAll(from + 4, header_size, &header_)) EndAt("is cut off within a record");
     const std::int64_t data_at = from + 8 + header_size;
     const std::uint32_t size = LengthAt(data_at - 4, UINT32_MAX);
@@ -152,7 +155,7 @@ class Ros1Reader : public BagReader {
     at_ = Load(at_);
     const Header header(header_.data(), header_.size());
     if (header.Number<std::uint8_t>("op") == kChunk) {
-      UnpackChunk(record_at_, header);
+      UnpackChunk(record_at_, header, &budget_);
       return false;
     }
     return Take(header, data_.data(), data_.size(), {0, record_at_, -1}, message);
@@ -167,6 +170,7 @@ class Ros1Reader : public BagReader {
       try {
         if (Take(record.header, record.data, record.size, place, message)) return true;
       } catch (const InputError& error) {  // the next record's place is known
+        if (++bad_in_chunk_ > kMostBadRecords) throw;
         problems_.Add(Where() + ": " + error.what());
       }
     }
@@ -203,22 +207,26 @@ class Ros1Reader : public BagReader {
     return message;
   }
 
-  void UnpackChunk(std::int64_t at, const Header& header) {
+  // What it costs is counted the first time.
+  void UnpackChunk(std::int64_t at, const Header& header, UnpackBudget* budget) {
     chunk_at_ = -1;
     chunk_.clear();
     in_chunk_ = 0;
-    Unpack(header.Text("compression"), data_.data(), data_.size(),
-           header.Number<std::uint32_t>("size"), &chunk_);
+    const auto unpacked = header.Number<std::uint32_t>("size");
+    if (budget != nullptr) budget->Spend(unpacked);
+    Unpack(header.Text("compression"), data_.data(), data_.size(), unpacked, &chunk_);
     chunk_at_ = at;
+    bad_in_chunk_ = 0;
   }
 
   BagFile file_;
   std::int64_t at_;             // of the next record
   std::int64_t record_at_ = 0;  // of the last one
+  UnpackBudget budget_;
   bool done_ = false;
   std::vector<std::uint8_t> header_, data_, chunk_;  // of the last record; unpacked records
   std::int64_t chunk_at_ = -1;
-  std::size_t in_chunk_ = 0;
+  std::size_t in_chunk_ = 0, bad_in_chunk_ = 0;
   std::map<std::uint32_t, std::size_t> connections_;  // to topics
   TopicList topics_;
   Problems problems_;

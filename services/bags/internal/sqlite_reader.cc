@@ -59,7 +59,7 @@ constexpr char kColumns[] = "SELECT id, topic_id, timestamp, data FROM messages"
 
 class SqliteReader : public BagReader {
  public:
-  explicit SqliteReader(const std::filesystem::path& path) : file_(path) {
+  explicit SqliteReader(const std::filesystem::path& path) : file_(path), budget_(file_.size()) {
     Open();
     ReadTopics();
     CountRows();
@@ -75,7 +75,7 @@ class SqliteReader : public BagReader {
         done_ = !rows_->Step();
         if (done_) break;
         ++read_rows_;
-        *message = MessageOf(*rows_);
+        *message = MessageOf(*rows_, &budget_);
         return true;
       } catch (const InputError& error) {
         problems_.Add(std::string(error.what()) + " (row " + std::to_string(read_rows_) + ")");
@@ -88,7 +88,7 @@ class SqliteReader : public BagReader {
   BagMessage Read(const BagPlace& place) override {
     row_->Bind(place.at);
     if (!row_->Step()) throw InputError(file_.path() + ": has changed while it was read");
-    return MessageOf(*row_);
+    return MessageOf(*row_, nullptr);
   }
 
   void Rest() override { unpacked_ = {}; }
@@ -138,7 +138,8 @@ class SqliteReader : public BagReader {
     if (rows.Step()) count_ = rows.Integer(1) - rows.Integer(0) + 1;
   }
 
-  BagMessage MessageOf(const Statement& row) {
+  // What it costs to unpack it is counted the first time.
+  BagMessage MessageOf(const Statement& row, UnpackBudget* budget) {
     BagMessage message;
     message.place = {0, row.Integer(0), -1};
     const auto topic = topic_of_.find(row.Integer(1));
@@ -151,7 +152,9 @@ class SqliteReader : public BagReader {
     message.data = row.Blob(3, &message.size);
     // `ros2 bag record --compression-mode message`: no CDR begins as zstd does.
     if (IsZstd(message.data, message.size)) {
-      Unpack("zstd", message.data, message.size, ZstdSize(message.data, message.size), &unpacked_);
+      const std::uint64_t unpacked = ZstdSize(message.data, message.size);
+      if (budget != nullptr) budget->Spend(unpacked);
+      Unpack("zstd", message.data, message.size, unpacked, &unpacked_);
       message.data = unpacked_.data();
       message.size = unpacked_.size();
     }
@@ -163,6 +166,7 @@ class SqliteReader : public BagReader {
   std::unique_ptr<Statement> rows_, row_;  // go before the database
   std::map<std::int64_t, std::size_t> topic_of_;
   std::int64_t count_ = 0, read_rows_ = 0;
+  UnpackBudget budget_;
   bool done_ = false;
   std::vector<std::uint8_t> unpacked_;
   TopicList topics_;

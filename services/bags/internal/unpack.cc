@@ -82,6 +82,18 @@ void Unpack(const std::string& compression, const std::uint8_t* packed, std::siz
                    std::to_string(unpacked) + " are announced");
 }
 
+UnpackBudget::UnpackBudget(std::int64_t file_bytes)
+    : left_((std::uint64_t{1} << 30) + 1000 * static_cast<std::uint64_t>(file_bytes)) {}
+
+void UnpackBudget::Spend(std::uint64_t bytes) {
+  if (bytes > kMostBagBytes) return;  // Unpack refuses it
+  if (bytes > left_) {
+    throw InputError(
+        "with it the bag would unpack to more than a thousand times its size; it is left out");
+  }
+  left_ -= bytes;
+}
+
 bool IsZstd(const std::uint8_t* bytes, std::size_t size) {
   return size >= 4 && bytes[0] == 0x28 && bytes[1] == 0xb5 && bytes[2] == 0x2f && bytes[3] == 0xfd;
 }

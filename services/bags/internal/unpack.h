@@ -17,6 +17,18 @@ namespace rgbdt::bags {
 void Unpack(const std::string& compression, const std::uint8_t* packed, std::size_t size,
             std::uint64_t unpacked, std::vector<std::uint8_t>* out);
 
+/// How much all of a bag's chunks may unpack to. No recorder packs as tightly as one who forges:
+/// 100 bytes of bz2 give 128 MiB, and a file of a megabyte hours of work.
+class UnpackBudget {
+ public:
+  explicit UnpackBudget(std::int64_t file_bytes);
+  /// Before so many bytes are unpacked. Throws InputError where these are more than are left.
+  void Spend(std::uint64_t bytes);
+
+ private:
+  std::uint64_t left_;
+};
+
 /// Whether this begins as zstd's frames do.
 bool IsZstd(const std::uint8_t* bytes, std::size_t size);
 

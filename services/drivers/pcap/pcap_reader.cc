@@ -117,6 +117,8 @@ std::optional<PcapReader::Datagram> PcapReader::Next() {
     if (got == PCAP_ERROR_BREAK) return std::nullopt;
     if (got < 0) throw InputError(path_ + ": is damaged or cut short: " + pcap_geterr(pcap_));
     if (got == 0) continue;
+    // Holes of a file that only claims to be large.
+    if (header->caplen == 0) throw InputError(path_ + ": is damaged: a packet of no bytes");
     const Utime utime = Utime{header->ts.tv_sec} * kMicrosecondsPerSecond + header->ts.tv_usec;
     Bytes bytes{data, header->caplen};
     if (!SkipLink(link, &bytes)) continue;

@@ -26,7 +26,9 @@ int main(int argc, char** argv) {
   AddBusSeeds(&seeds);
   AddFileSeeds(&seeds);
   AddBagSeeds(&seeds);
+  AddFoxgloveSeeds(&seeds);
   AddDeviceSeeds(&seeds);
+  AddPacketSeeds(&seeds);
   AddViewerSeeds(&seeds);
   std::size_t files = 0, bytes = 0;
   for (const auto& [target, inputs] : seeds) {

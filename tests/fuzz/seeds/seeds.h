@@ -8,11 +8,13 @@ namespace rgbdt::fuzz {
 /// By target and name.
 using Seeds = std::map<std::string, std::map<std::string, std::string>>;
 
-void AddBusSeeds(Seeds* seeds);     ///< message, datagrams, log
-void AddFileSeeds(Seeds* seeds);    ///< text files, lenses, clouds, images
-void AddBagSeeds(Seeds* seeds);     ///< bag, bag_sqlite, ros_message
-void AddDeviceSeeds(Seeds* seeds);  ///< scip, velodyne, pcap_file, dynamixel, camera
-void AddViewerSeeds(Seeds* seeds);  ///< viewer_message, viewer_http, viewer_socket
+void AddBusSeeds(Seeds* seeds);       ///< message, datagrams, log
+void AddFileSeeds(Seeds* seeds);      ///< text files, lenses, clouds, images
+void AddBagSeeds(Seeds* seeds);       ///< bag, bag_sqlite, ros_message
+void AddFoxgloveSeeds(Seeds* seeds);  ///< more of bag and ros_message
+void AddDeviceSeeds(Seeds* seeds);    ///< scip, velodyne, pcap_file, dynamixel, camera
+void AddPacketSeeds(Seeds* seeds);    ///< ouster, hesai, recording
+void AddViewerSeeds(Seeds* seeds);    ///< viewer_message, viewer_http, viewer_socket
 
 /// The length as a big-endian word, and the bytes: Input::Piece.
 std::string Piece(const std::string& bytes);

@@ -190,6 +190,41 @@ TEST_F(Bags, WhatUnpacksToTooMuchIsLeftOutAndTheNextIsRead) {
   }
 }
 
+// Of zeros, or of records that are of no use, as many as a chunk holds: the file is small, and so
+// is the work.
+TEST_F(Bags, ChunksThatUnpackToFarMoreThanTheFileAreLeftOut) {
+  constexpr std::size_t kLargest = std::size_t{128} << 20;
+  const std::string useless = test::McapMessage(9, 0, "");
+  std::string many;
+  while (many.size() + useless.size() <= kLargest) many += useless;
+  const std::string zeros(kLargest, '\0');
+  for (const std::string& records : {zeros, many}) {
+    const std::string chunk = test::McapChunk("zstd", Zstd(records), records.size());
+    std::string bytes = test::kMcapMagic;
+    for (int i = 0; i < 12; ++i) bytes += chunk;
+    const Seen seen = Read(bytes + test::McapEnd());
+    EXPECT_THAT(seen.messages, IsEmpty());
+    EXPECT_THAT(seen.problems, testing::Not(IsEmpty()));
+  }
+  const std::string packed = Bz2(zeros);
+  ASSERT_LT(packed.size(), 10'000U);
+  std::string bag = test::kRos1Magic;
+  for (int i = 0; i < 100; ++i) bag += test::Ros1Chunk("bz2", packed, kLargest);
+  const Seen seen = Read(bag);
+  EXPECT_THAT(seen.messages, IsEmpty());
+  EXPECT_THAT(seen.problems, testing::Contains(HasSubstr("a thousand times its size")));
+}
+
+TEST_F(Bags, AFileOfZerosBehindItsHeadEndsAtOnce) {
+  for (const std::string& magic : {test::kMcapMagic, test::kRos1Magic}) {
+    const std::filesystem::path path = Write(magic);
+    std::filesystem::resize_file(path, 10'000'000'000);  // sparse: no room on the disk
+    const Seen seen = ReadAll(path);
+    EXPECT_THAT(seen.messages, IsEmpty());
+    EXPECT_THAT(seen.problems, ElementsAre(HasSubstr("is damaged")));
+  }
+}
+
 TEST_F(Bags, ATopicCannotWriteToTheTerminal) {
   const std::uint16_t id = 1;
   const Seen seen =

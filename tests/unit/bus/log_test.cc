@@ -1,6 +1,7 @@
 #include "services/bus/log.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -148,6 +149,9 @@ TEST_F(LogTest, RandomBytesFlippedNeverHarm) {
 TEST_F(LogTest, WhatIsNoLogIsSaid) {
   EXPECT_THROW(LogReader(path_ + "2"), InputError);
   EXPECT_THROW(LogReader(directory_.string()), InputError);
+  const std::string pipe = (directory_ / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(LogReader{pipe}, InputError) << "nobody writes to it";
   WriteFile(Bytes(5000, 'x'));
   EXPECT_THROW(LogReader{path_}, InputError);
   WriteFile({});

@@ -5,82 +5,21 @@
 #include "services/packets/packet_sweeps.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
+#include "tests/unit/packets/hesai_encoder.h"
 
 namespace rgbdt {
 namespace {
 
+using test::HesaiEncoder;
 using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr double kDegree = M_PI / 180;
 constexpr Utime kSecond = 1'700'000'000'000'000;  // 2023-11-14 22:13:20
 
-// Made-up packets, by the manuals' tables; none of the driver's code.
-struct Encoder {
-  bool is_40p = false;
-  int channels = 16;
-  bool dual = false;
-  bool has_date = true;
-
-  int Range_mm(int azimuth, int channel) const {
-    return azimuth == 9000 ? 0 : 4 * (1000 + azimuth / 100 + 10 * channel);
-  }
-  int blocks() const { return is_40p ? 10 : 8; }
-  // Blocks from this azimuth on, 1 degree apart [0.01 degrees].
-  std::vector<std::uint8_t> Packet(int first_azimuth, int us) const {
-    std::vector<std::uint8_t> bytes;
-    if (!is_40p) {
-      bytes = {0xee, 0xff, 6, 1, 0, 0, static_cast<std::uint8_t>(channels), 8, 0, 4, 2, 0};
-    }
-    for (int block = 0; block < blocks(); ++block) {
-      const int azimuth = (first_azimuth + 100 * (dual ? block / 2 : block)) % 36000;
-      if (is_40p) Add(0xeeff, 2, &bytes);
-      Add(azimuth, 2, &bytes);
-      for (int channel = 0; channel < channels; ++channel) {
-        const bool second = dual && block % 2 == 1;
-        Add(Range_mm(azimuth, channel) / 4 + (second ? 250 : 0), 2, &bytes);
-        bytes.push_back(second ? 20 : 10);
-        if (!is_40p) bytes.push_back(0);
-      }
-    }
-    const std::uint8_t mode = dual ? 0x39 : 0x37;
-    const std::uint8_t year = is_40p ? 23 : 123;
-    const std::vector<std::uint8_t> date = {
-        static_cast<std::uint8_t>(has_date ? year : 0), 11, 14, 22, 13, 20};
-    if (is_40p) {
-      bytes.resize(bytes.size() + 10);
-      Add(us, 4, &bytes);
-      bytes.push_back(mode);
-      bytes.push_back(0x42);
-      bytes.insert(bytes.end(), date.begin(), date.end());
-    } else {
-      bytes.resize(bytes.size() + 10);
-      bytes.push_back(mode);
-      bytes.resize(bytes.size() + 2);
-      bytes.insert(bytes.end(), date.begin(), date.end());
-      Add(us, 4, &bytes);
-      bytes.resize(bytes.size() + 1 + 4);
-    }
-    return bytes;
-  }
-  std::string Angles() const {
-    std::string csv = "Channel,Elevation,Azimuth\n";
-    for (int i = 0; i < channels; ++i) {
-      csv += std::to_string(i + 1) + "," + std::to_string(15 - i) + "," + (i == 1 ? "3" : "0") +
-             "\r\n";
-    }
-    return csv;
-  }
-
- private:
-  static void Add(int value, int count, std::vector<std::uint8_t>* to) {
-    for (int i = 0; i < count; ++i) to->push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-  }
-};
-
 // Three turns and a half from the front on, of which some packets are lost.
 struct Driven {
-  explicit Driven(const Encoder& encoder, int first_lost = 0, int end_lost = 0) {
+  explicit Driven(const HesaiEncoder& encoder, int first_lost = 0, int end_lost = 0) {
     sweeps = HesaiPackets(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
     const int blocks = encoder.blocks();
     for (int i = 0; i * blocks < 360 * 7 / 2 + blocks; ++i) {
@@ -95,7 +34,7 @@ struct Driven {
   std::vector<Cloud> done;
 };
 
-std::vector<Cloud> Turns(const Encoder& encoder, Utime arrival = 0) {
+std::vector<Cloud> Turns(const HesaiEncoder& encoder, Utime arrival = 0) {
   HesaiSweeps sweeps(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
   std::vector<Cloud> done;
   const int step = 100 * encoder.blocks() / (encoder.dual ? 2 : 1);
@@ -109,7 +48,8 @@ std::vector<Cloud> Turns(const Encoder& encoder, Utime arrival = 0) {
 }
 
 TEST(HesaiSweeps, PointsLieWhereTheManualsSay) {
-  for (Encoder encoder : {Encoder{false, 16}, Encoder{false, 32}, Encoder{true, 40}}) {
+  for (HesaiEncoder encoder :
+       {HesaiEncoder{false, 16}, HesaiEncoder{false, 32}, HesaiEncoder{true, 40}}) {
     for (const bool dual : {false, true}) {
       encoder.dual = dual;
       const std::vector<Cloud> sweeps = Turns(encoder);
@@ -138,7 +78,7 @@ TEST(HesaiSweeps, PointsLieWhereTheManualsSay) {
 }
 
 TEST(HesaiSweeps, TimesAreTheSensorsUnlessItsClockWasNeverSet) {
-  Encoder encoder;
+  HesaiEncoder encoder;
   // The first block after the back is the fifth of the packet that begins at 176 degrees.
   const Cloud sweep = Turns(encoder).at(0);
   EXPECT_NEAR(static_cast<double>(sweep.sweep_utime), kSecond + 17600 + 5.632 - 3 * 50, 1);
@@ -152,7 +92,7 @@ TEST(HesaiSweeps, TimesAreTheSensorsUnlessItsClockWasNeverSet) {
 // Packets have 8 columns of a degree: a turn has 45, the seams are in packets 22, 67, 112 and 157.
 TEST(HesaiSweeps, WhatNeverCameIsCounted) {
   for (const bool has_date : {true, false}) {
-    Encoder encoder;
+    HesaiEncoder encoder;
     encoder.has_date = has_date;
     const Driven all(encoder);
     EXPECT_THAT(all.done, SizeIs(3));
@@ -172,7 +112,7 @@ TEST(HesaiSweeps, WhatNeverCameIsCounted) {
 TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
   for (const bool has_date : {true, false}) {
     for (const int lost : {25, 40, 45, 50}) {  // a turn: the azimuths go on as if nothing was
-      Encoder encoder;
+      HesaiEncoder encoder;
       encoder.has_date = has_date;
       const Driven driven(encoder, 80, 80 + lost);
       ASSERT_FALSE(driven.done.empty());
@@ -184,7 +124,7 @@ TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
 }
 
 TEST(HesaiPackets, DamagedOnesAreDecodedOrRefused) {
-  for (const Encoder& encoder : {Encoder{false, 16}, Encoder{true, 40}}) {
+  for (const HesaiEncoder& encoder : {HesaiEncoder{false, 16}, HesaiEncoder{true, 40}}) {
     const hesai::Sensor& sensor = hesai::SensorOf(static_cast<std::size_t>(encoder.channels));
     const auto whole = encoder.Packet(100, 5);
     ASSERT_TRUE(hesai::IsPacket(sensor, whole.data(), whole.size()));

@@ -264,6 +264,15 @@ TEST_F(Recordings, CutOffAnywhereGivesWhatLiesBefore) {
   EXPECT_EQ(most, 2);
 }
 
+TEST_F(Recordings, HolesOfASparseFileEndIt) {
+  OusterEncoder encoder;
+  const auto path = Record(encoder, 0, 4);
+  std::filesystem::resize_file(path, 10'000'000'000);
+  const Recording recording = Read(path, {dir_ / "os.json", 0});
+  EXPECT_EQ(recording.sweeps, 2);
+  EXPECT_THAT(recording.cut_off, HasSubstr("a packet of no bytes"));
+}
+
 TEST(OusterMetadata, WhatIsWrongWithItIsSaid) {
   const OusterEncoder encoder;
   const auto why = [&](const std::string& from, const std::string& to) {
