@@ -20,7 +20,7 @@ refuses() {
   local what=$1 code=0 word before
   shift
   before=$(fingerprint)
-  timeout 120 "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
+  timeout "${patience:-120}" "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
   [ "$code" -ne 0 ] || complain "$what: exit code 0"
   [ "$code" -le 2 ] || complain "$what: exit code $code: another reason, a signal or a time-out"
   for word in "${says[@]}"; do
@@ -45,7 +45,7 @@ misuses() {
 accepts() {
   local what=$1 code=0
   shift
-  timeout 120 "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
+  timeout "${patience:-120}" "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
   [ "$code" -eq 0 ] || complain "$what: exit code $code"
 }
 

@@ -10,8 +10,8 @@ good=$scratch/good
 accepts "a good session" "$bin/rgbdt" simulate "$good" --views 4 --seed 3
 mkdir "$scratch/kept"
 
-# A command in 4 GB of memory and 60 s.
-limited() { bash -c 'ulimit -v 4000000; exec timeout 60 "$@"' limited "$@"; }
+# A command in 4 GB of memory and 60 s of a core.
+limited() { bash -c 'ulimit -v 4000000 -t 60; exec "$@"' limited "$@"; }
 export -f limited
 bounded=(bash -c 'limited "$@"' bounded)
 
@@ -175,7 +175,8 @@ import os, sys
 for i in range(100_000):
     os.mkdir(f"{sys.argv[1]}/{i + 10}")
 END
-for verb in calibrate evaluate fuse intrinsics; do
+patience=400  # of a busy machine
+for verb in calibrate intrinsics; do
   says=("100000 views not read")
   refuses "100,000 views ($verb)" "${bounded[@]}" "$bin/rgbdt" "$verb" "$bad" --out "$scratch/out"
   [ "$(grep '^rgbdt: ' "$scratch/output" | wc -c)" -lt 2000 ] ||

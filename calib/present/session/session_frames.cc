@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <iterator>
+#include <map>
 
 #include "calib/fuse/fuse.h"
 #include "calib/model/parallel.h"
@@ -29,16 +30,18 @@ std::string HelloFrame(const std::string& title) {
 
 std::vector<ViewState> ViewsOf(const Session& session,
                                const std::vector<ViewDetection>& detections) {
+  std::map<std::string, const ViewDetection*> detection_of;
+  for (const ViewDetection& detection : detections) detection_of[detection.view] = &detection;
   std::vector<ViewState> views;
   for (const std::string& name : session.views) {
     ViewState& view = views.emplace_back();
     view.name = name;
-    for (const ViewDetection& detection : detections) {
-      if (detection.view != name) continue;
-      view.heldout = detection.heldout;
-      for (const ImageDetection& image : detection.images) view.images[image.camera] = image.utime;
-      view.detection = detection;
-    }
+    const auto found = detection_of.find(name);
+    if (found == detection_of.end()) continue;
+    const ViewDetection& detection = *found->second;
+    view.heldout = detection.heldout;
+    for (const ImageDetection& image : detection.images) view.images[image.camera] = image.utime;
+    view.detection = detection;
   }
   return views;
 }
