@@ -92,15 +92,15 @@ Utime ImageOf(const ViewState& view, const std::string& camera) {
   return image == nullptr ? 0 : image->utime;
 }
 
-// Why the solver left the view out, or detection; empty: neither did.
+// Why detection left the view out, or the solver; empty: neither did.
 std::string WhyRejected(const CameraReport* report, const ViewDetection& detection,
                         const std::string& camera) {
-  if (report != nullptr) {
-    for (const RejectedView& rejected : report->rejected) {
-      if (rejected.view == detection.view) return rejected.why;
-    }
+  std::string why = CameraViewOf(camera, detection).rejected;
+  if (!why.empty() || report == nullptr) return why;
+  for (const RejectedView& rejected : report->rejected) {
+    if (rejected.view == detection.view) return rejected.why;
   }
-  return CameraViewOf(camera, detection).rejected;
+  return why;
 }
 
 const ViewQuality* QualityOf(const CameraReport* report, const std::string& view) {
