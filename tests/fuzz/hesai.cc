@@ -46,11 +46,7 @@ void Drive(const hesai::Angles& angles, bool mended, fuzz::Input* input) {
   }
 }
 
-}  // namespace
-}  // namespace rgbdt
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace rgbdt;
+void TakeInput(const std::uint8_t* data, std::size_t size) {
   constexpr int kChannels[] = {40, 32, 16, 16};
   fuzz::Input input(data, size);
   const unsigned kind = input.Byte();
@@ -58,5 +54,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   made_up.channels = kChannels[kind % 4];
   const std::string text = (kind & 8) != 0 ? input.Piece() : made_up.Angles();
   fuzz::Try([&] { Drive(hesai::ParseAngles(text, "angles.csv"), (kind & 4) != 0, &input); });
+}
+
+}  // namespace
+}  // namespace rgbdt
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rgbdt::TakeInput(data, size);
   return 0;
 }

@@ -48,11 +48,7 @@ void Drive(const ouster::Metadata& metadata, bool mended, fuzz::Input* input) {
   if (const auto sweep = sweeps.Finish()) fuzz::RequireWhole(*sweep);
 }
 
-}  // namespace
-}  // namespace rgbdt
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace rgbdt;
+void TakeInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Input input(data, size);
   const unsigned kind = input.Byte();
   test::OusterEncoder made_up;
@@ -61,5 +57,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::optional<ouster::Metadata> metadata;
   fuzz::Try([&] { metadata = ouster::ParseMetadata(text, "os.json"); });
   if (metadata && IsSmall(*metadata)) Drive(*metadata, (kind & 4) != 0, &input);
+}
+
+}  // namespace
+}  // namespace rgbdt
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rgbdt::TakeInput(data, size);
   return 0;
 }

@@ -7,8 +7,10 @@
 #include "tests/unit/packets/hesai_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace rgbdt;
+namespace rgbdt {
+namespace {
+
+void TakeInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::ScratchFile file("recording.pcap"), metadata("metadata");
   static const std::string ouster = test::OusterEncoder().Metadata();
   static const std::string hesai = test::HesaiEncoder().Angles();
@@ -32,5 +34,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::Require(line.find('\n') == std::string::npos, "one line; it says: " + line);
     }
   });
+}
+
+}  // namespace
+}  // namespace rgbdt
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rgbdt::TakeInput(data, size);
   return 0;
 }
