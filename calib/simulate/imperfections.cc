@@ -81,6 +81,7 @@ void MakeImperfect(Options* options) {
   for (CameraOptions& camera : options->cameras) DrawLens(options->seed, &camera);
   DrawPrint(options->seed, &options->board);
   DrawBeam(options->seed, &options->scanner);
+  if (options->livox) DrawBeam(options->seed, &*options->livox);
   if (!options->spinning) return;
   DrawBeam(options->seed, &*options->spinning);
   DrawRings(options->seed, &*options->spinning);
@@ -99,8 +100,7 @@ std::string ImperfectionsText(const Options& options) {
     text +=
         Line("pattern: printed %.5f wide, %.5f high of what its squares say", print.x(), print.y());
   }
-  const BeamOptions& beam =
-      options.spinning ? static_cast<const BeamOptions&>(*options.spinning) : options.scanner;
+  const BeamOptions& beam = options.beam();
   if (beam.range_offset_m != 0 || beam.dark_range_m != 0 || beam.dark_noise != 1)
     text += BeamText(beam);
   const auto& spinning = options.spinning;

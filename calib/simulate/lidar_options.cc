@@ -43,6 +43,28 @@ void SpinningOptions::Check() const {
   kCheck.Between(beams_meet_m, 0, 0.2, "spinning.beams_meet_m");
 }
 
+void LivoxOptions::Check() const {
+  BeamOptions::Check("livox.");
+  kCheck.Between(seconds, 1e-3, 60, "livox.seconds");
+  kCheck.Between(points_per_s, 1000, 10e6, "livox.points_per_s");
+  kCheck.Positive(divergence_rad, "livox.divergence_rad");
+  kCheck.Between(divergence_across_rad, 0, 0.1, "livox.divergence_across_rad");
+  kCheck.Between(angle_sigma_rad, 0, 0.02, "livox.angle_sigma_rad");
+}
+
+LivoxOptions LivoxLidar(LivoxModel model) {
+  LivoxOptions o;
+  o.model = model;
+  const bool avia = model == LivoxModel::kAvia;
+  o.points_per_s = avia ? 240'000 : 200'000;
+  o.range_sigma_m = 0.02;
+  o.divergence_rad = 0.28 * kDegree;
+  o.divergence_across_rad = 0.03 * kDegree;
+  o.angle_sigma_rad = (avia ? 0.05 : 0.15) * kDegree;
+  o.max_range_m = avia ? 190 : 40;
+  return o;
+}
+
 SpinningOptions SpinningLidar(int rings) {
   struct Fan {
     int rings;

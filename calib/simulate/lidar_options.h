@@ -50,8 +50,32 @@ struct SpinningOptions : BeamOptions {
 /// 15), evenly spaced. Throws InputError for another number.
 SpinningOptions SpinningLidar(int rings);
 
+enum class LivoxModel { kMid360, kAvia };
+
+/// A LIDAR whose pattern does not repeat, in the LIDAR frame's origin (internal/livox.h). The beam
+/// is an oval: divergence_rad high.
+struct LivoxOptions : BeamOptions {
+  LivoxModel model = LivoxModel::kMid360;
+  double seconds = 1;                ///< of a cloud
+  double points_per_s = 200'000;     ///< beams fired, all lasers together
+  double divergence_across_rad = 0;  ///< full angle of the beam's width
+  double angle_sigma_rad = 0;        ///< noise of a beam's angle, along either
+
+  /// Throws InputError naming the field and its value.
+  void Check() const;
+};
+
+/// By their data sheets: Avia, 240,000 points a second, beam of 0.28 by 0.03 degrees, angles to
+/// 0.05 degrees, ranges to 20 mm; Mid-360, 200,000 points a second, angles to 0.15 degrees, ranges
+/// to 20 mm, and the Avia's beam, as its own is not published.
+LivoxOptions LivoxLidar(LivoxModel model);
+
+/// In place of a number of rings.
+inline constexpr int kMid360 = -1, kAvia = -2;
+
 /// As a person types them; 0 is the turned scanner.
 inline const std::map<std::string, int> kLidarRings = {
-    {"turned", 0}, {"vlp16", 16}, {"32", 32}, {"64", 64}, {"128", 128}};
+    {"turned", 0}, {"vlp16", 16},   {"32", 32},         {"64", 64},
+    {"128", 128},  {"avia", kAvia}, {"mid360", kMid360}};
 
 }  // namespace rgbdt::simulate

@@ -169,9 +169,16 @@ CameraOptions DefaultThermalCamera() {
   return o;
 }
 
+const BeamOptions& Options::beam() const {
+  if (livox) return *livox;
+  return spinning ? static_cast<const BeamOptions&>(*spinning) : scanner;
+}
+
 void Options::Check() const {
   simulate::Check(scanner);
   if (spinning) spinning->Check();
+  if (livox) livox->Check();
+  kCheck.Require(!spinning || !livox, "livox", 1, "no spinning LIDAR besides");
   if (cameras.empty()) throw InputError("simulator: cameras is empty; expected at least one");
   std::set<std::string> names;
   for (const CameraOptions& camera : cameras) {
@@ -203,7 +210,12 @@ void Options::Check() const {
 
 void UseLidar(int rings, Options* options) {
   options->spinning.reset();
+  options->livox.reset();
   if (rings == 0) return;
+  if (rings == kMid360 || rings == kAvia) {
+    options->livox = LivoxLidar(rings == kAvia ? LivoxModel::kAvia : LivoxModel::kMid360);
+    return;
+  }
   options->spinning = SpinningLidar(rings);
   if (rings == 64) options->world.ground_z_m = -2;
 }

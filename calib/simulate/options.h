@@ -140,6 +140,7 @@ struct Options {
   Scene scene = Scene::kOutdoor;
   ScannerOptions scanner;
   std::optional<SpinningOptions> spinning;  ///< the rig's LIDAR in place of the scanner
+  std::optional<LivoxOptions> livox;        ///< likewise; not both
   std::vector<CameraOptions> cameras{DefaultColorCamera(), DefaultThermalCamera()};
   BoardOptions board;
   PoseOptions pose;
@@ -153,12 +154,18 @@ struct Options {
   int supersampling = 5;                    ///< n x n rays in a pixel that holds an edge
   int threads = 0;                          ///< 0: as many as the machine has; same result
 
+  /// Whether the rig's LIDAR is the turned scanner.
+  bool turned() const { return !spinning && !livox; }
+  /// Of the rig's LIDAR.
+  const BeamOptions& beam() const;
+
   /// Throws InputError naming the field and its value.
   void Check() const;
 };
 
-/// Gives the rig a spinning LIDAR of so many rings, see SpinningLidar; 0: the turned scanner. That
-/// of 64 rings looks down and stands 2 m high, or no board would be wholly in its field.
+/// Gives the rig a spinning LIDAR of so many rings, see SpinningLidar, or kMid360 or kAvia; 0: the
+/// turned scanner. That of 64 rings looks down and stands 2 m high, or no board would be wholly in
+/// its field.
 void UseLidar(int rings, Options* options);
 
 }  // namespace rgbdt::simulate

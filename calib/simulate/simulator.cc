@@ -8,6 +8,7 @@
 #include "calib/simulate/internal/board_poses.h"
 #include "calib/simulate/internal/camera_renderer.h"
 #include "calib/simulate/internal/hidden_outline.h"
+#include "calib/simulate/internal/livox.h"
 #include "calib/simulate/internal/natural_scene.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/rig_defaults.h"
@@ -133,7 +134,8 @@ LineScan Simulator::LineAt(Utime utime,
 
 Cloud Simulator::Revolution(Utime utime) const {
   const Options& o = impl_->options;
-  if (!o.spinning) throw InputError("simulator: the rig has a turned scanner; call Line");
+  if (o.turned()) throw InputError("simulator: the rig has a turned scanner; call Line");
+  if (o.livox) return LivoxCloud(impl_->world(), *o.livox, o.seed, utime, o.threads);
   return SpinningSweep(impl_->world(), *o.spinning, o.seed, utime, o.threads);
 }
 

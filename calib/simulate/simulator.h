@@ -36,7 +36,8 @@ class Simulator {
   LineScan Line(Utime sweep_utime, int line) const;
   /// A line that begins at `utime`, wherever the motor is: its angle [rad] so many seconds later.
   LineScan LineAt(Utime utime, const std::function<double(double seconds)>& motor_angle) const;
-  /// A revolution of the spinning LIDAR; throws InputError where the rig has none.
+  /// A revolution of the spinning LIDAR, or a Livox's cloud; throws InputError where the rig has
+  /// neither.
   Cloud Revolution(Utime utime) const;
   /// The encoder at a time; sweep_utime 0: standing still between sweeps.
   EncoderReading Encoder(Utime utime, Utime sweep_utime) const;

@@ -6,6 +6,7 @@
 #include "calib/files/image_files.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/livox.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
 #include "services/import/sensor_data.h"
@@ -61,10 +62,36 @@ Image DecodeImage(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& 
 
 Cloud DecodeCloud(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& stamped) {
   return DecodeAt(bag, topic, stamped, [&](const BagMessage& message, const std::string& where) {
-    ros::PointCloud cloud = ros::DecodePointCloud(message, topic.topic.encoding);
+    ros::PointCloud cloud = ros::DecodeCloud(message, topic.topic);
     cloud.header.utime = stamped.utime;
     return ToCloud(cloud, where);
   });
+}
+
+// What is measured one after the other, as one cloud without an order.
+void Append(const Cloud& part, Cloud* whole) {
+  const auto append = [](const auto& from, auto* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  };
+  append(part.points, &whole->points);
+  append(part.intensity, &whole->intensity);
+  append(part.utime, &whole->utime);
+  whole->lines = 1;
+  whole->beams = static_cast<int>(whole->size());
+  whole->organised = false;
+}
+
+// The clouds of a second about this one.
+Cloud DecodeSecond(BagReader* bag, const BagSurvey::Topic& topic, const Stamped& middle) {
+  const auto before = [](const Stamped& stamped, Utime utime) { return stamped.utime < utime; };
+  const auto& all = topic.stamped;
+  const auto first =
+      std::lower_bound(all.begin(), all.end(), middle.utime - kLivoxCloud_us / 2, before);
+  const auto last = std::lower_bound(first, all.end(), middle.utime + kLivoxCloud_us / 2, before);
+  Cloud whole;
+  whole.sweep_utime = first->utime;
+  for (auto part = first; part != last; ++part) Append(DecodeCloud(bag, topic, *part), &whole);
+  return whole;
 }
 
 std::vector<std::string> NamesOf(const TopicChoice& choice) {
@@ -156,6 +183,12 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
   return out;
 }
 
+CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic) {
+  return [bag, &topic](const Stamped& stamped) {
+    return topic.livox ? DecodeSecond(bag, topic, stamped) : DecodeCloud(bag, topic, stamped);
+  };
+}
+
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped) {
   Image image = DecodeImage(bag, *camera.images, stamped);
@@ -171,7 +204,8 @@ Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraS
 }
 
 std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                         const std::vector<Moment>& moments, const std::filesystem::path& dir,
+                         const std::vector<Moment>& moments, const CloudReader& read_cloud,
+                         const std::filesystem::path& dir,
                          const std::function<void(const std::string&)>& progress,
                          std::vector<std::string>* left_over) {
   const Utime start = StartOf(choice);
@@ -181,7 +215,7 @@ std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& r
     view.name = Format("%04zu", views + 1);
     view.heldout = views % 3 == 2;
     try {
-      view.cloud = DecodeCloud(bag, *choice.cloud, moment.cloud);
+      view.cloud = read_cloud(moment.cloud);
     } catch (const InputError& error) {
       left_over->push_back(error.what());
       continue;

@@ -36,11 +36,20 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped);
 
+/// Of a chosen topic of clouds the one at a place of `stamped`. Throws InputError where it cannot
+/// be read.
+using CloudReader = std::function<Cloud(const Stamped&)>;
+
+/// Clouds that are messages; of a Livox, those within half a second of it as one. Both arguments
+/// outlive it.
+CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic);
+
 /// Reads the moments and writes them as views 0001, 0002, ... and last the rig; what cannot be read
 /// is told in `left_over`. Every third view is held out. Gives how many views there are. Throws
 /// InputError where there is none, and what WriteView throws.
 std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                         const std::vector<Moment>& moments, const std::filesystem::path& dir,
+                         const std::vector<Moment>& moments, const CloudReader& read_cloud,
+                         const std::filesystem::path& dir,
                          const std::function<void(const std::string&)>& progress,
                          std::vector<std::string>* left_over);
 

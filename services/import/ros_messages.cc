@@ -1,5 +1,8 @@
 #include "services/import/ros_messages.h"
 
+#include <cstring>
+#include <map>
+
 #include "services/bags/printable.h"
 #include "services/import/internal/cursor.h"
 #include "services/import/internal/foxglove_reader.h"
@@ -98,6 +101,107 @@ PointCloud TakePointCloud(C* in) {
   return cloud;
 }
 
+constexpr std::size_t kLivoxPointBytes = 19;
+
+PointCloud EmptyLivoxCloud() {
+  PointCloud cloud;
+  cloud.height = 1;
+  cloud.point_step = kLivoxPointBytes;
+  cloud.fields = {{"offset_time", 0, 6, 1},   {"x", 4, 7, 1},    {"y", 8, 7, 1},    {"z", 12, 7, 1},
+                  {"reflectivity", 16, 2, 1}, {"tag", 17, 2, 1}, {"line", 18, 2, 1}};
+  return cloud;
+}
+
+// The points are laid out anew, without the gaps of CDR.
+template <typename C>
+PointCloud TakeLivoxCloud(C* in) {
+  constexpr std::size_t kMostPoints = 20'000'000;
+  PointCloud cloud = EmptyLivoxCloud();
+  cloud.header = TakeHeader(in);
+  in->template Number<std::uint64_t>();  // the first point's time, as the header has it
+  const auto said = in->template Number<std::uint32_t>();
+  in->Bytes(4);  // the LIDAR's number, reserved
+  const std::size_t count = Count(in, kMostPoints);
+  if (said != count) {
+    throw InputError("says that it has " + std::to_string(said) + " points, and holds " +
+                     std::to_string(count));
+  }
+  if (count * kLivoxPointBytes > in->left()) {
+    throw InputError("ends before its " + std::to_string(count) + " points");
+  }
+  const auto bytes = std::make_shared<std::vector<std::uint8_t>>(count * kLivoxPointBytes);
+  std::uint8_t* at = bytes->data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto offset = in->template Number<std::uint32_t>();
+    std::memcpy(at, &offset, 4);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto place = in->template Number<float>();
+      std::memcpy(at + 4 + 4 * k, &place, 4);
+    }
+    std::memcpy(at + 16, in->Bytes(3), 3);
+    at += kLivoxPointBytes;
+  }
+  cloud.width = static_cast<std::uint32_t>(count);
+  cloud.data = bytes->data();
+  cloud.size = bytes->size();
+  cloud.row_step = static_cast<std::uint32_t>(cloud.size);
+  cloud.owner = bytes;
+  return cloud;
+}
+
+// How a type of message holds a packet.
+struct PacketLayout {
+  bool header = true;     // of the message
+  bool many = true;       // an array; otherwise the message is one packet, without a time
+  std::size_t fixed = 0;  // bytes of an array of fixed size; 0: it tells how many
+  bool size_after = false;
+};
+
+const std::map<std::string, PacketLayout>& PacketLayouts() {
+  static const std::map<std::string, PacketLayout> layouts = {
+      {"velodyne_msgs/VelodyneScan", {true, true, 1206, false}},
+      {"pandar_msgs/PandarScan", {true, true, 1500, true}},
+      {"nebula_msgs/NebulaPackets", {true, true, 0, false}},
+      {"hesai_ros_driver/UdpFrame", {false, true, 0, true}},
+      {"ouster_sensor_msgs/PacketMsg", {false, false, 0, false}},
+      {"ouster_msgs/PacketMsg", {false, false, 0, false}},
+      {"ouster_ros/PacketMsg", {false, false, 0, false}},
+  };
+  return layouts;
+}
+
+template <typename C>
+Utime TakeTime(C* in) {
+  const auto seconds = in->template Number<std::uint32_t>();
+  return Utime{seconds} * kMicrosecondsPerSecond + in->template Number<std::uint32_t>() / 1000;
+}
+
+template <typename C>
+Packets::Packet TakePacket(C* in, const PacketLayout& layout) {
+  Packets::Packet packet;
+  if (layout.many) packet.utime = TakeTime(in);
+  packet.size = layout.fixed != 0 ? layout.fixed : in->template Number<std::uint32_t>();
+  packet.data = in->Bytes(packet.size);
+  if (!layout.size_after) return packet;
+  const auto size = in->template Number<std::uint32_t>();
+  if (size > packet.size) {
+    throw InputError("a packet claims " + std::to_string(size) + " of " +
+                     std::to_string(packet.size) + " bytes");
+  }
+  packet.size = size;
+  return packet;
+}
+
+template <typename C>
+Packets TakePackets(C* in, const PacketLayout& layout) {
+  constexpr std::size_t kMostPackets = 100'000;
+  Packets packets;
+  if (layout.header) packets.header = TakeHeader(in);
+  const std::size_t count = layout.many ? Count(in, kMostPackets) : 1;
+  for (std::size_t i = 0; i < count; ++i) packets.packets.push_back(TakePacket(in, layout));
+  return packets;
+}
+
 template <typename C>
 std::vector<Transform> TakeTransforms(C* in) {
   constexpr std::size_t kMostTransforms = 10000;
@@ -162,6 +266,43 @@ CameraInfo DecodeCameraInfo(const BagMessage& message, BagEncoding encoding) {
 PointCloud DecodePointCloud(const BagMessage& message, BagEncoding encoding) {
   if (encoding == BagEncoding::kProtobuf) return FoxglovePointCloud(message);
   return Decode(message, encoding, [](auto* in) { return TakePointCloud(in); });
+}
+PointCloud DecodeLivoxCloud(const BagMessage& message, BagEncoding encoding) {
+  return Decode(message, encoding, [](auto* in) { return TakeLivoxCloud(in); });
+}
+bool IsLivoxCloud(const std::string& type) {
+  return type == "livox_ros_driver/CustomMsg" || type == "livox_ros_driver2/CustomMsg";
+}
+PointCloud DecodeCloud(const BagMessage& message, const BagTopic& topic) {
+  return IsLivoxCloud(topic.type) ? DecodeLivoxCloud(message, topic.encoding)
+                                  : DecodePointCloud(message, topic.encoding);
+}
+bool IsPackets(const std::string& type) { return PacketLayouts().count(type) != 0; }
+
+// Of UdpFrame there are versions with a header and without: that holds which the message ends with.
+Packets DecodePackets(const BagMessage& message, const BagTopic& topic) {
+  const auto found = PacketLayouts().find(topic.type);
+  if (found == PacketLayouts().end()) throw InputError("is no message of packets");
+  const auto take = [&](const PacketLayout& layout) {
+    return Decode(message, topic.encoding, [&](auto* in) {
+      Packets packets = TakePackets(in, layout);
+      if (in->left() != 0) {
+        throw InputError("has " + std::to_string(in->left()) + " bytes behind its packets");
+      }
+      return packets;
+    });
+  };
+  PacketLayout layout = found->second;
+  if (topic.type != "hesai_ros_driver/UdpFrame") return take(layout);
+  try {
+    return take(layout);
+  } catch (const InputError&) {
+    layout.header = true;
+    return take(layout);
+  }
+}
+std::string DecodeText(const BagMessage& message, BagEncoding encoding) {
+  return Decode(message, encoding, [](auto* in) { return in->Text(); });
 }
 std::vector<Transform> DecodeTransforms(const BagMessage& message, BagEncoding encoding) {
   if (encoding == BagEncoding::kProtobuf) return FoxgloveTransforms(message);

@@ -74,6 +74,17 @@ struct PointCloud {
   std::shared_ptr<const void> owner{};
 };
 
+/// A LIDAR's packets, of any message that holds them.
+struct Packets {
+  struct Packet {
+    Utime utime = 0;  ///< when it arrived; 0: nobody says
+    const std::uint8_t* data = nullptr;
+    std::size_t size = 0;
+  };
+  Header header;  ///< empty where the message has none
+  std::vector<Packet> packets;
+};
+
 /// geometry_msgs/TransformStamped: point_in_parent = parent_from_child * point_in_child.
 struct Transform {
   std::string parent, child;
@@ -86,6 +97,18 @@ Image DecodeImage(const BagMessage& message, BagEncoding encoding);
 CompressedImage DecodeCompressedImage(const BagMessage& message, BagEncoding encoding);
 CameraInfo DecodeCameraInfo(const BagMessage& message, BagEncoding encoding);
 PointCloud DecodePointCloud(const BagMessage& message, BagEncoding encoding);
+/// livox_ros_driver/CustomMsg, of driver 2 likewise: as the cloud of its points, with fields
+/// offset_time [ns], x, y, z, reflectivity, tag, line
+PointCloud DecodeLivoxCloud(const BagMessage& message, BagEncoding encoding);
+/// Whichever of the two the topic's type says.
+PointCloud DecodeCloud(const BagMessage& message, const BagTopic& topic);
+bool IsLivoxCloud(const std::string& type);
+/// velodyne_msgs/VelodyneScan, ouster_sensor_msgs/PacketMsg (ouster_ros, ouster_msgs),
+/// pandar_msgs/PandarScan, nebula_msgs/NebulaPackets, hesai_ros_driver/UdpFrame
+Packets DecodePackets(const BagMessage& message, const BagTopic& topic);
+bool IsPackets(const std::string& type);
+/// std_msgs/String
+std::string DecodeText(const BagMessage& message, BagEncoding encoding);
 /// tf2_msgs/TFMessage
 std::vector<Transform> DecodeTransforms(const BagMessage& message, BagEncoding encoding);
 

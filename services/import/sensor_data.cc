@@ -10,6 +10,7 @@
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/image_codec.h"
+#include "calib/model/livox.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
 
@@ -159,7 +160,8 @@ class PcdFields {
       Take("line", "line");
       Take("beam", "beam");
     }
-    if (!Take("ring", "ring")) {
+    const bool livox = Find("line") != nullptr && Find("tag") != nullptr;
+    if (!Take("ring", "ring") && !livox) {
       for (const char* name : {"channel", "line"}) {
         const PcdField* field = Find(name);
         if (field == nullptr || !IsSmallWhole(*field) || organised_by_fields) continue;
@@ -234,6 +236,32 @@ void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
   }
 }
 
+// Of a Livox only normal points: those that stay, one after the other.
+void KeepNormal(const ros::PointCloud& cloud, const PcdFields& fields, std::string* points) {
+  const PcdField *tag = fields.Find("tag"), *x = fields.Find("x");
+  const auto is_byte = [](const PcdField* field) { return field->type != 'F' && field->size == 1; };
+  const bool floats = x != nullptr && x->type == 'F' && x->size == 4;
+  if (!is_byte(tag) || !floats) return;
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < points->size(); at += cloud.point_step) {
+    float place[3] = {0, 0, 0};
+    const char* names[] = {"x", "y", "z"};
+    for (int k = 0; k < 3; ++k) {
+      const PcdField* field = fields.Find(names[k]);
+      if (field != nullptr && field->size == 4) {
+        std::memcpy(&place[k], points->data() + at + field->offset, 4);
+      }
+    }
+    const bool nothing = place[0] == 0 && place[1] == 0 && place[2] == 0;
+    if (nothing || !IsNormalLivoxPoint(static_cast<std::uint8_t>((*points)[at + tag->offset]))) {
+      continue;
+    }
+    std::copy_n(points->data() + at, cloud.point_step, points->data() + kept);
+    kept += cloud.point_step;
+  }
+  points->resize(kept);
+}
+
 template <typename Numbers>
 std::string YamlList(const Numbers& numbers) {
   std::string text;
@@ -288,19 +316,32 @@ Image ToImage(const ros::CompressedImage& image, const std::string& where) {
   return out;
 }
 
+bool IsLivox(const ros::PointCloud& cloud) {
+  int found = 0;
+  for (const ros::PointCloud::Field& field : cloud.fields) {
+    found |= field.name == "tag" ? 1 : field.name == "line" ? 2 : field.name == "ring" ? 4 : 0;
+  }
+  return found == 3 && cloud.height == 1;
+}
+
 Cloud ToCloud(const ros::PointCloud& cloud, const std::string& where) {
   CheckShape(cloud, where);
-  const std::vector<PcdField> fields = PcdFields(cloud, where).WithGaps(cloud.point_step, where);
-  std::string bytes = PcdHeader(fields, cloud);
-  const std::size_t begin = bytes.size();
+  const PcdFields known(cloud, where);
+  const std::vector<PcdField> fields = known.WithGaps(cloud.point_step, where);
   const std::size_t row = std::size_t{cloud.width} * cloud.point_step;
-  bytes.reserve(begin + row * cloud.height);
+  std::string points;
+  points.reserve(row * cloud.height);
   for (std::size_t y = 0; y < cloud.height; ++y) {
-    bytes.append(reinterpret_cast<const char*>(cloud.data) + y * cloud.row_step, row);
+    points.append(reinterpret_cast<const char*>(cloud.data) + y * cloud.row_step, row);
   }
-  NanosecondsToSeconds(fields, cloud.point_step, bytes.data() + begin,
-                       std::size_t{cloud.width} * cloud.height);
-  return ParsePcd(bytes, where, cloud.header.utime);
+  ros::PointCloud head = cloud;
+  if (IsLivox(cloud)) {
+    KeepNormal(cloud, known, &points);
+    head.width = static_cast<std::uint32_t>(points.size() / cloud.point_step);
+    if (head.width == 0) throw InputError(where + ": holds no points that its tags call normal");
+  }
+  NanosecondsToSeconds(fields, cloud.point_step, points.data(), points.size() / cloud.point_step);
+  return ParsePcd(PcdHeader(fields, head) + points, where, cloud.header.utime);
 }
 
 std::optional<FileLens> ToLens(const ros::CameraInfo& info, const LensWanted& wanted) {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
+#include "services/import/sensor_data.h"
 
 namespace rgbdt {
 namespace {
@@ -13,12 +15,18 @@ namespace {
 constexpr std::size_t kMostStamped = 2'000'000;
 constexpr std::size_t kMostTransforms = 10'000;
 
+bool EndsWith(const std::string& name, const std::string& end) {
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
 BagData DataOf(const BagTopic& topic) {
   static const std::map<std::string, BagData> ros = {
       {"sensor_msgs/Image", BagData::kImage},
       {"sensor_msgs/CompressedImage", BagData::kCompressedImage},
       {"sensor_msgs/CameraInfo", BagData::kCameraInfo},
-      {"sensor_msgs/PointCloud2", BagData::kCloud}};
+      {"sensor_msgs/PointCloud2", BagData::kCloud},
+      {"livox_ros_driver/CustomMsg", BagData::kCloud},
+      {"livox_ros_driver2/CustomMsg", BagData::kCloud}};
   static const std::map<std::string, BagData> foxglove = {
       {"foxglove.RawImage", BagData::kImage},
       {"foxglove.CompressedImage", BagData::kCompressedImage},
@@ -27,18 +35,22 @@ BagData DataOf(const BagTopic& topic) {
   if (topic.encoding == BagEncoding::kOther) return BagData::kOther;
   const auto& types = topic.encoding == BagEncoding::kProtobuf ? foxglove : ros;
   const auto found = types.find(topic.type);
+  if (topic.encoding != BagEncoding::kProtobuf) {
+    if (ros::IsPackets(topic.type)) return BagData::kPackets;
+    if (topic.type == "std_msgs/String" && EndsWith(topic.name, "metadata")) {
+      return BagData::kMetadata;
+    }
+  }
   return found == types.end() ? BagData::kOther : found->second;
 }
 
 bool IsStatic(const BagTopic& topic) {
-  static const std::string kName = "tf_static";
-  const std::string& name = topic.name;
   const bool of_transforms =
       topic.encoding == BagEncoding::kProtobuf
           ? topic.type == "foxglove.FrameTransforms"
           : topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";
-  return topic.encoding != BagEncoding::kOther && of_transforms && name.size() >= kName.size() &&
-         name.compare(name.size() - kName.size(), kName.size(), kName) == 0;
+  return topic.encoding != BagEncoding::kOther && of_transforms &&
+         EndsWith(topic.name, "tf_static");
 }
 
 std::string Describe(const ros::Image& image) {
@@ -111,8 +123,18 @@ class Surveyor {
         }
         return Keep(message, seen);
       case BagData::kCloud:
-        if (seen->what.empty()) seen->what = Describe(ros::DecodePointCloud(message, encoding));
+        if (seen->what.empty()) {
+          const ros::PointCloud cloud = ros::DecodeCloud(message, seen->topic);
+          seen->what = Describe(cloud);
+          seen->livox = IsLivox(cloud);
+        }
         return Keep(message, seen);
+      case BagData::kPackets:
+        if (seen->what.empty()) LookAtPackets(ros::DecodePackets(message, seen->topic), seen);
+        return;
+      case BagData::kMetadata:
+        if (seen->text.empty()) seen->text = ros::DecodeText(message, encoding);
+        return;
       case BagData::kCameraInfo: {
         if (seen->info && seen->info->k[0] != 0) return;
         seen->info = ros::DecodeCameraInfo(message, encoding);
@@ -121,6 +143,16 @@ class Surveyor {
       case BagData::kOther:
         if (IsStatic(seen->topic)) AddTransforms(ros::DecodeTransforms(message, encoding));
     }
+  }
+
+  // A driver publishes its inertial sensor's small packets alike.
+  static void LookAtPackets(const ros::Packets& packets, BagSurvey::Topic* seen) {
+    constexpr std::size_t kLeast = 256;
+    if (packets.packets.empty()) return;
+    const std::size_t size = packets.packets.front().size;
+    seen->frame = packets.header.frame;
+    seen->what = Format("packets of %zu bytes, %zu a message", size, packets.packets.size());
+    if (size < kLeast) seen->data = BagData::kOther;
   }
 
   void Keep(const BagMessage& message, BagSurvey::Topic* seen) {
@@ -153,6 +185,10 @@ const BagSurvey::Topic* BagSurvey::Find(const std::string& name) const {
     if (topic.topic.name == name) return &topic;
   }
   return nullptr;
+}
+
+BagSurvey::Topic* BagSurvey::Find(const std::string& name) {
+  return const_cast<Topic*>(std::as_const(*this).Find(name));
 }
 
 BagSurvey SurveyBag(BagReader* bag, const std::function<void(double)>& progress) {

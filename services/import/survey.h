@@ -16,7 +16,7 @@ struct Stamped {
   BagPlace place;
 };
 
-enum class BagData { kImage, kCompressedImage, kCameraInfo, kCloud, kOther };
+enum class BagData { kImage, kCompressedImage, kCameraInfo, kCloud, kPackets, kMetadata, kOther };
 
 /// What a bag holds.
 struct BagSurvey {
@@ -26,10 +26,13 @@ struct BagSurvey {
     std::size_t messages = 0;
     std::uint64_t bytes = 0;
     Utime first_log = 0, last_log = 0;
-    std::vector<Stamped> stamped;         ///< images and clouds, sorted by time
+    /// Images and clouds, sorted by time; of packets none: the sweeps that they hold are not known.
+    std::vector<Stamped> stamped;
     std::string frame;                    ///< of the first message
     std::string what;                     ///< of the first: "640x480 mono16", "2048x64 x y z ring"
     std::optional<ros::CameraInfo> info;  ///< the first that is calibrated, or else the first
+    bool livox = false;                   ///< clouds of which those of a second are one (IsLivox)
+    std::string text;                     ///< of a topic "metadata": what the LIDAR says of itself
     std::string problem;                  ///< the last message that could not be read, and why
     std::size_t unreadable = 0;           ///< how many
 
@@ -41,6 +44,7 @@ struct BagSurvey {
   std::vector<std::string> problems;       ///< of the file, a line each
 
   const Topic* Find(const std::string& name) const;
+  Topic* Find(const std::string& name);
 };
 
 /// Reads the whole bag once, and keeps of it what is small. `progress` gets 0 to 1. Throws

@@ -18,6 +18,14 @@ bool IsImages(const Topic& topic) {
   return topic.data == BagData::kImage || topic.data == BagData::kCompressedImage;
 }
 
+bool IsCloud(const Topic& topic) {
+  return topic.data == BagData::kCloud || topic.data == BagData::kPackets;
+}
+
+bool HasMessages(const Topic& topic) {
+  return topic.data == BagData::kPackets ? !topic.what.empty() : !topic.stamped.empty();
+}
+
 // "/cam/rgb/image_raw/compressed": the camera "/cam/rgb", and its images "image_raw".
 struct Parts {
   std::string camera, images;
@@ -101,7 +109,7 @@ const Topic& Wanted(const BagSurvey& survey, const std::string& name, bool (*is)
     throw InputError(option + " " + name +
                      ": the bag has no such topic; it has: " + NamesOf(survey, is));
   }
-  if (topic->stamped.empty()) {
+  if (!HasMessages(*topic)) {
     throw InputError(option + " " + name + ": none of its messages can be read" +
                      (topic->problem.empty() ? "" : ": " + topic->problem));
   }
@@ -136,8 +144,6 @@ std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::
   return topics;
 }
 
-bool IsCloud(const Topic& topic) { return topic.data == BagData::kCloud; }
-
 // What cameras have coloured comes of no LIDAR.
 bool IsColoured(const Topic& topic) {
   std::istringstream fields(topic.what);
@@ -148,20 +154,29 @@ bool IsColoured(const Topic& topic) {
 const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish,
                          std::vector<std::string>* left_out) {
   if (!wish.empty()) return Wanted(survey, wish, IsCloud, "--cloud");
-  std::vector<const Topic*> found, coloured;
+  std::vector<const Topic*> found, coloured, packets;
   for (const Topic& topic : survey.topics) {
-    if (!IsCloud(topic) || topic.stamped.empty()) continue;
-    (IsColoured(topic) ? coloured : found).push_back(&topic);
+    if (!IsCloud(topic) || !HasMessages(topic)) continue;
+    const bool of_packets = topic.data == BagData::kPackets;
+    (of_packets ? packets : IsColoured(topic) ? coloured : found).push_back(&topic);
   }
-  if (found.empty()) found.swap(coloured);
+  if (found.empty() && !packets.empty()) {
+    found.swap(packets);
+  } else if (found.empty()) {
+    found.swap(coloured);
+  }
   if (found.size() > 1) {
     throw InputError("several topics hold clouds; say which by --cloud: " +
                      NamesOf(survey, IsCloud));
   }
   if (found.empty()) {
     throw InputError(
-        "the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2 or "
-        "foxglove.PointCloud");
+        "the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2, "
+        "foxglove.PointCloud, a Livox's CustomMsg, or of packets");
+  }
+  for (const Topic* topic : packets) {
+    left_out->push_back(topic->topic.name + ": packets, and " + found[0]->topic.name +
+                        " has clouds; --cloud takes it");
   }
   for (const Topic* topic : coloured) {
     left_out->push_back(topic->topic.name + ": coloured by cameras; --cloud takes it");
@@ -170,6 +185,20 @@ const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish,
 }
 
 }  // namespace
+
+const BagSurvey::Topic* MetadataOf(const BagSurvey& survey, const BagSurvey::Topic& packets) {
+  const std::string& name = packets.topic.name;
+  const std::string space = name.substr(0, name.rfind('/') + 1);
+  const Topic* only = nullptr;
+  int count = 0;
+  for (const Topic& topic : survey.topics) {
+    if (topic.data != BagData::kMetadata || topic.text.empty()) continue;
+    if (topic.topic.name == space + "metadata") return &topic;
+    only = &topic;
+    ++count;
+  }
+  return count == 1 ? only : nullptr;
+}
 
 TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
   TopicChoice choice;

@@ -32,4 +32,8 @@ struct TopicChoice {
 /// Throws InputError: no images, no clouds or several topics of them, a wish for what is not there.
 TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes);
 
+/// What the LIDAR of these packets says of itself: the topic `metadata` beside them, or else the
+/// only one; none: there is none, or there are several.
+const BagSurvey::Topic* MetadataOf(const BagSurvey& survey, const BagSurvey::Topic& packets);
+
 }  // namespace rgbdt

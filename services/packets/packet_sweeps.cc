@@ -1,6 +1,8 @@
 #include "services/packets/packet_sweeps.h"
 
+#include "calib/model/errors.h"
 #include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/drivers/livox/livox_sweeps.h"
 #include "services/drivers/ouster/ouster_sweeps.h"
 #include "services/drivers/velodyne/velodyne_sweeps.h"
 
@@ -83,15 +85,37 @@ class Velodyne : public PacketSweeps {
   VelodyneSweeps sweeps_;
 };
 
-}  // namespace
+class Livox : public PacketSweeps {
+ public:
+  explicit Livox(livox::Protocol protocol) : protocol_(protocol) {}
 
-std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata) {
-  return std::make_unique<Ouster>(std::move(metadata));
-}
+  std::string name() const override {
+    return protocol_ == livox::Protocol::kSdk1 ? "Livox Avia" : "Livox Mid-360";
+  }
+  bool IsOurs(const Payload& payload) const override {
+    return livox::IsPacket(protocol_, payload.data(), payload.size());
+  }
+  std::vector<Cloud> Add(const Payload& payload, Utime arrival) override {
+    auto sweep = sweeps_.Add(livox::Decode(protocol_, payload.data(), payload.size()), arrival);
+    std::vector<Cloud> sweeps;
+    if (sweep) sweeps.push_back(std::move(*sweep));
+    return sweeps;
+  }
+  std::optional<Cloud> Finish() override { return sweeps_.Finish(); }
+  std::string Lost() const override {
+    std::string text;
+    if (sweeps_.lost_ms() > 0) text = std::to_string(sweeps_.lost_ms()) + " ms never came";
+    if (sweeps_.left_out() > 0) {
+      text += (text.empty() ? "" : "; ") + ("seconds left out, as a tenth or more never came: " +
+                                            std::to_string(sweeps_.left_out()));
+    }
+    return text;
+  }
 
-std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles) {
-  return std::make_unique<Hesai>(std::move(angles));
-}
+ private:
+  livox::Protocol protocol_;
+  LivoxSweeps sweeps_;
+};
 
 std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload) {
   using Model = VelodyneDevice::Model;
@@ -106,6 +130,38 @@ std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& paylo
     default:
       return nullptr;
   }
+}
+
+}  // namespace
+
+std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata) {
+  return std::make_unique<Ouster>(std::move(metadata));
+}
+
+std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles) {
+  return std::make_unique<Hesai>(std::move(angles));
+}
+
+std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const std::string& where) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
+  if (is_json) return OusterPackets(ouster::ParseMetadata(text, where));
+  const hesai::Angles angles = hesai::ParseAngles(text, where);
+  try {
+    return HesaiPackets(angles);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
+std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload) {
+  if (auto velodyne = VelodynePackets(payload)) return velodyne;
+  for (const livox::Protocol protocol : {livox::Protocol::kSdk1, livox::Protocol::kSdk2}) {
+    if (livox::IsPacket(protocol, payload.data(), payload.size())) {
+      return std::make_unique<Livox>(protocol);
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace rgbdt

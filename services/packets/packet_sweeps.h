@@ -35,7 +35,16 @@ std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata);
 /// Of the model that has so many channels. Throws InputError where none has.
 std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles);
 
-/// Of the model that a packet names (VLP-16, VLP-32C, HDL-32E); none: it is no such packet.
-std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload);
+/// What a file says of a sensor: an Ouster's metadata (JSON) or a Hesai's angles (CSV). Throws
+/// InputError, which begins with `where`, for neither.
+std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const std::string& where);
+
+/// Of the LIDAR that a packet tells of by itself: a Velodyne (VLP-16, VLP-32C, HDL-32E), a Livox
+/// (Mid-360, Avia); none: it is no such packet.
+std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload);
+
+/// Those of PacketsByThemselves, and what to do about others, for a message.
+inline constexpr const char* kSelfTellingLidars =
+    "a VLP-16, VLP-32C, HDL-32E, Livox Mid-360 or Avia; of an Ouster or a Hesai, give --metadata";
 
 }  // namespace rgbdt

@@ -31,27 +31,14 @@ std::string ForEach(const fs::path& path,
   }
 }
 
-// An Ouster's JSON, or a Hesai's CSV.
-std::unique_ptr<PacketSweeps> SweepsOf(const fs::path& metadata) {
-  const std::string text = ReadWholeFile(metadata), where = metadata.string();
-  const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
-  if (is_json) return OusterPackets(ouster::ParseMetadata(text, where));
-  const hesai::Angles angles = hesai::ParseAngles(text, where);
-  try {
-    return HesaiPackets(angles);
-  } catch (const InputError& error) {
-    throw InputError(where + ": " + error.what());
-  }
-}
-
 // Which LIDAR sent these packets; of several, which sent most.
 class Finder {
   static constexpr std::size_t kMostSenders = 65'536;  // looked at
 
  public:
   explicit Finder(const RecordingOptions& options) : wanted_(options.port) {
-    if (!options.metadata.empty()) known_ = SweepsOf(options.metadata);
+    if (options.metadata.empty()) return;
+    known_ = PacketsByMetadata(ReadWholeFile(options.metadata), options.metadata.string());
   }
 
   void Look(const PcapReader::Datagram& datagram) {
@@ -63,8 +50,8 @@ class Finder {
       if (known_->IsOurs(datagram.payload)) ++ours_[sender];
       return;
     }
-    std::unique_ptr<PacketSweeps>& seen = velodyne_[sender];
-    if (!seen) seen = VelodynePackets(datagram.payload);
+    std::unique_ptr<PacketSweeps>& seen = seen_[sender];
+    if (!seen) seen = PacketsByThemselves(datagram.payload);
     if (seen && seen->IsOurs(datagram.payload)) ++ours_[sender];
   }
 
@@ -83,21 +70,19 @@ class Finder {
         ports += Format(" %d (%lld)", other, static_cast<long long>(count));
       }
       throw InputError(path.string() + ": has no packets of " +
-                       (known_ ? "the " + known_->name() + " of --metadata"
-                               : "a VLP-16, VLP-32C or HDL-32E; of an Ouster or a Hesai, give "
-                                 "--metadata") +
+                       (known_ ? "the " + known_->name() + " of --metadata" : kSelfTellingLidars) +
                        (wanted_ == 0 ? "" : " to UDP port " + std::to_string(wanted_)) +
                        (ports.empty() ? "; no UDP at all" : "; UDP ports (datagrams):" + ports));
     }
     *sender = most->first;
-    return known_ ? std::move(known_) : std::move(velodyne_.at(most->first));
+    return known_ ? std::move(known_) : std::move(seen_.at(most->first));
   }
   const std::map<Sender, std::int64_t>& all() const { return all_; }
 
  private:
   int wanted_;
   std::unique_ptr<PacketSweeps> known_;  // by what the user says
-  std::map<Sender, std::unique_ptr<PacketSweeps>> velodyne_;
+  std::map<Sender, std::unique_ptr<PacketSweeps>> seen_;
   std::map<Sender, std::int64_t> ours_, all_;
 };
 

@@ -12,8 +12,9 @@
 namespace rgbdt {
 
 struct RecordingOptions {
-  std::filesystem::path metadata;  ///< an Ouster's JSON, a Hesai's angles (CSV); empty: a Velodyne
-  int port = 0;                    ///< that the LIDAR sends to; 0: where its packets are most
+  std::filesystem::path
+      metadata;  ///< an Ouster's JSON, a Hesai's angles (CSV); empty: a Velodyne, a Livox
+  int port = 0;  ///< that the LIDAR sends to; 0: where its packets are most
 };
 
 /// Who sent datagrams, and where to.

@@ -1,7 +1,10 @@
 #include <cstdio>
 
+#include "calib/files/atomic_file.h"
 #include "calib/model/errors.h"
+#include "services/packets/bag_packets.h"
 #include "services/packets/recording.h"
+#include "services/rgbdt/packet_import.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -42,6 +45,23 @@ int ImportPackets(const PacketsToImport& packets) {
                 static_cast<long long>(recording.sweeps), packets.out.c_str(), packets.out.c_str());
   }
   return EndsWith(true);
+}
+
+CloudReader ReadPacketsInBag(const PacketsInBag& packets) {
+  BagPacketsOptions options;
+  options.topic = packets.topic->topic.name;
+  const BagSurvey::Topic* told = MetadataOf(*packets.survey, *packets.topic);
+  if (!packets.metadata.empty()) {
+    options.metadata = ReadWholeFile(packets.metadata);
+    options.metadata_name = packets.metadata;
+  } else if (told != nullptr) {
+    options.metadata = told->text;
+    options.metadata_name = told->topic.name;
+  }
+  const auto reader = std::make_shared<BagPackets>(packets.bag, options);
+  packets.topic->stamped = reader->Find(Tenths("decoding " + options.topic));
+  for (const std::string& line : reader->lines()) std::printf("%s\n", line.c_str());
+  return [reader](const Stamped& stamped) { return reader->Read(stamped); };
 }
 
 }  // namespace rgbdt

@@ -1,6 +1,7 @@
 #include <glog/logging.h>
 
 #include "services/command_line/command_line.h"
+#include "services/rgbdt/packet_import.h"
 #include "services/rgbdt/verbs.h"
 
 int main(int argc, char** argv) {
@@ -13,7 +14,8 @@ int main(int argc, char** argv) {
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic");
   rgbdt::AddSession(&line);
 #ifdef RGBDT_HAS_DRIVERS
-  rgbdt::AddImport(&line, rgbdt::ImportPackets);
+  const rgbdt::PacketImport packets{rgbdt::ImportPackets, rgbdt::ReadPacketsInBag};
+  rgbdt::AddImport(&line, &packets);
 #else
   rgbdt::AddImport(&line, nullptr);
 #endif

@@ -12,6 +12,7 @@
 #include "calib/model/text.h"
 #include "services/import/import_bag.h"
 #include "services/import/still.h"
+#include "services/rgbdt/packet_import.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -192,10 +193,8 @@ void CheckFlags(const ImportFlags& flags) {
   }
 }
 
-using PacketImport = int (*)(const PacketsToImport&);
-
 // A recording holds no images: what is of these makes no sense with it.
-int RunPackets(const ImportFlags& flags, PacketImport packets) {
+int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
   const bool of_bags = !flags.board.empty() || !flags.cloud.empty() || !flags.images.empty() ||
                        !flags.lenses.empty() || !flags.at.empty() || flags.every_s > 0 ||
                        flags.pinhole || flags.fisheye;
@@ -208,7 +207,7 @@ int RunPackets(const ImportFlags& flags, PacketImport packets) {
   if (packets == nullptr) {
     throw InputError(flags.bag + ": is a recording of packets; this build is without drivers");
   }
-  return packets({flags.bag, flags.metadata, flags.out, flags.port});
+  return packets->recording({flags.bag, flags.metadata, flags.out, flags.port});
 }
 
 bool IsPacketFile(const std::string& path) {
@@ -216,17 +215,31 @@ bool IsPacketFile(const std::string& path) {
   return end == ".pcap" || end == ".pcapng";
 }
 
-int RunImport(const ImportFlags& flags, PacketImport packets) {
+// Messages, or packets, of which then the sweeps are known.
+CloudReader CloudsOf(const ImportFlags& flags, const PacketImport* packets,
+                     const TopicChoice& choice, BagReader* bag, BagSurvey* survey) {
+  const std::string& name = choice.cloud->topic.name;
+  if (choice.cloud->data != BagData::kPackets) {
+    if (flags.metadata.empty()) return CloudMessages(bag, *choice.cloud);
+    throw UsageError("--metadata is of packets; " + name + " holds clouds");
+  }
+  if (packets == nullptr) {
+    throw InputError(name + ": holds a LIDAR's packets; this build is without drivers");
+  }
+  return packets->in_bag({flags.bag, flags.metadata, survey, survey->Find(name)});
+}
+
+int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   if (IsPacketFile(flags.bag)) return RunPackets(flags, packets);
-  if (!flags.metadata.empty() || flags.port != 0) {
-    throw UsageError("--metadata and --port are of a recording of packets (.pcap, .pcapng)");
+  if (flags.port != 0) {
+    throw UsageError("--port is of a recording of packets (.pcap, .pcapng)");
   }
   CheckFlags(flags);
   const bool writes = !flags.out.empty();
   const RigWishes wishes = writes ? RigWishesOf(flags) : RigWishes();
   if (writes) RequireNoSession(flags.out);
   const std::unique_ptr<BagReader> bag = OpenBag(flags.bag);
-  const BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));
+  BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));
   PrintTopics(*bag, survey);
   const TopicChoice choice = ChooseTopics(survey, WishesOf(flags));
   for (const std::string& line : choice.left_out) {
@@ -242,13 +255,14 @@ int RunImport(const ImportFlags& flags, PacketImport packets) {
                 choice.cloud->topic.name.c_str());
     return EndsWith(true);
   }
+  const CloudReader read_cloud = CloudsOf(flags, packets, choice, bag.get(), &survey);
   const BagRig rig = ReadRig(bag.get(), survey, choice, wishes);
   for (const std::string& line : rig.lines) std::printf("%s\n", line.c_str());
   std::printf("board: %s\n", DescribeBoard(rig.rig.target).c_str());
   std::vector<std::string> left_over;
   const std::vector<Moment> moments = MomentsOf(bag.get(), choice, rig.rig, flags, &left_over);
-  const std::size_t views =
-      WriteMoments(bag.get(), choice, rig.rig, moments, flags.out, PrintProgress, &left_over);
+  const std::size_t views = WriteMoments(bag.get(), choice, rig.rig, moments, read_cloud, flags.out,
+                                         PrintProgress, &left_over);
   for (const std::string& line : left_over) std::printf("left over: %s\n", line.c_str());
   std::printf("wrote %s: rig.textproto, %zu %s\n", flags.out.c_str(), views,
               views == 1 ? "view" : "views");
@@ -257,7 +271,7 @@ int RunImport(const ImportFlags& flags, PacketImport packets) {
 
 }  // namespace
 
-void AddImport(CommandLine* program, PacketImport packets) {
+void AddImport(CommandLine* program, const PacketImport* packets) {
   auto flags = std::make_shared<ImportFlags>();
   CommandLine* verb = program->Verb(
       "import",
@@ -270,8 +284,11 @@ void AddImport(CommandLine* program, PacketImport packets) {
       "board\n"
       "stands still for a second, spread over the image. Exit code 1: also where a lens was to be\n"
       "found from the images and was not.\n"
-      "Of a recording of a LIDAR's packets (.pcap, .pcapng; Velodyne, or Ouster and Hesai with\n"
-      "--metadata) it writes each sweep as a PCD into --out, named by its time, for\n"
+      "A LIDAR's packets in the bag are decoded: Velodyne, Livox, Ouster and Hesai (with the "
+      "bag's\n"
+      "topic `metadata`, or --metadata).\n"
+      "Of a recording of such packets (.pcap, .pcapng) it writes each sweep as a PCD into --out, "
+      "named by its time, for\n"
       "`rgbdt session --clouds`.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
@@ -304,7 +321,7 @@ void AddImport(CommandLine* program, PacketImport packets) {
                "how far an image and its cloud may be apart, by their headers [s]");
   verb->Option(
       "--metadata", &flags->metadata,
-      "of a recording: what an Ouster says of itself (JSON), or a Hesai's angle correction (CSV)");
+      "of packets: what an Ouster says of itself (JSON), or a Hesai's angle correction (CSV)");
   verb->Option("--port", &flags->port,
                "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }

@@ -53,8 +53,8 @@ void SetScene(SimulateFlags* flags) {
 // The LIDAR's cloud from this time on; `now` becomes when it ends.
 Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Utime* now) {
   const Utime begin = *now;
-  if (options.spinning) {
-    *now += FromSeconds(options.spinning->revolution_s);
+  if (!options.turned()) {
+    *now += FromSeconds(options.livox ? options.livox->seconds : options.spinning->revolution_s);
     return simulator.Revolution(begin);
   }
   *now += simulator.sweep_lines() * simulator.line_period();
@@ -119,7 +119,7 @@ void AddSimulate(CommandLine* program) {
   verb->Option("--seed", &flags->options.seed, "of all random numbers");
   verb->Choice("--scene", &flags->options.scene, simulate::kSceneNames, "");
   verb->Choice("--lidar", &flags->rings, simulate::kLidarRings,
-               "a turned scanner, or a spinning LIDAR by its rings");
+               "a turned scanner, a spinning LIDAR by its rings, or a Livox, a second each");
   verb->Flag("--full-turn", &flags->full_turn,
              "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
   verb->Flag("--scanner-error", &flags->scanner_error,

@@ -20,9 +20,9 @@ void AddRefine(CommandLine* program);
 void AddCompare(CommandLine* program);
 void AddFuse(CommandLine* program);
 void AddSession(CommandLine* program);
-/// `packets`: for recordings of a LIDAR's packets; none: the build has no drivers.
-struct PacketsToImport;
-void AddImport(CommandLine* program, int (*packets)(const PacketsToImport&));
+/// `packets`: for what holds a LIDAR's packets; none: the build has no drivers.
+struct PacketImport;
+void AddImport(CommandLine* program, const PacketImport* packets);
 void AddSimulate(CommandLine* program);
 void AddReplay(CommandLine* program);
 void AddIntrinsics(CommandLine* program);
@@ -81,13 +81,6 @@ bool FindLenses(const std::string& session_dir, const std::vector<std::string>& 
 
 /// "[NAME=]FILE[:PART]" of `--lens`.
 Folders::LensFile LensFileOf(const std::string& text);
-
-/// A recording of a LIDAR's packets, for `import`. Gives the exit code.
-struct PacketsToImport {
-  std::string file, metadata, out;
-  int port = 0;
-};
-int ImportPackets(const PacketsToImport& packets);
 
 /// How `session` and `import` end once the session is written: the lenses of these cameras are
 /// found from its images, and what to do next is said. Gives the exit code.

@@ -19,12 +19,36 @@ for file in "$scratch"/clouds/*; do
   grep -qa '^HEIGHT 16$' "$file" || complain "sweeps: not of 16 lines"
 done
 
+# The same packets in a bag, with a camera: each view's cloud is the recording's sweep, to the byte.
+board=8x6@0.1,0.85x0.65
+mkdir "$scratch/kept"
+for bag in drive.mcap drive.bag; do
+  python3 "$(dirname "${BASH_SOURCE[0]}")/make_packet_bag.py" "$scratch/drive.pcap" "$scratch/os.json" "$scratch/$bag"
+  accepts "list of $bag" "$bin/rgbdt" import "$scratch/$bag"
+  grep -q "^would take: lidar: /ouster/lidar_packets" "$scratch/output" || complain "$bag: packets not taken"
+  for metadata in "" "$scratch/os.json"; do
+    rm -rf "$scratch/session"
+    accepts "$bag" "$bin/rgbdt" import "$scratch/$bag" ${metadata:+--metadata "$metadata"} --board "$board" \
+      --every 0.1 --out "$scratch/session"
+    says_line "$bag" "/ouster/lidar_packets: 96 packets of a OS-1-16, 3 sweeps"
+    views=("$scratch"/session/views/*/cloud.pcd) clouds=("$scratch"/clouds/*)
+    [ "${#views[@]}" = 3 ] || complain "$bag: ${#views[@]} views, not 3"
+    for i in "${!views[@]}"; do
+      cmp -s "${views[$i]}" "${clouds[$i]}" || complain "$bag: view $i is not the recording's sweep"
+    done
+  done
+done
+says=("--metadata" "CSV" "JSON")
+refuses "a bag with wrong metadata" "$bin/rgbdt" import "$scratch/drive.bag" --metadata "$scratch/drive.pcap" \
+  --board "$board" --every 0.1 --out "$scratch/kept/new"
+says=("--port")
+misuses "a bag with a port" "$bin/rgbdt" import "$scratch/drive.bag" --port 7502
+
 # Cut off: what lies before is taken.
 head -c 200000 "$scratch/drive.pcap" >"$scratch/cut.pcap"
 accepts "cut off" "$bin/rgbdt" import "$scratch/cut.pcap" "${os[@]}"
 grep -q "^problem: $scratch/cut.pcap: is damaged or cut short" "$scratch/output" || complain "cut off: not told"
 
-mkdir "$scratch/kept"
 echo mine >"$scratch/kept/mine"
 says=("--metadata" "7502")
 refuses "no known LIDAR" "$bin/rgbdt" import "$scratch/drive.pcap" --out "$scratch/kept/new"
@@ -42,7 +66,5 @@ says=("text.pcap" "pcap")
 refuses "no recording" "$bin/rgbdt" import "$scratch/text.pcap"
 says=("--board" "session --clouds")
 misuses "with a board" "$bin/rgbdt" import "$scratch/drive.pcap" --board 8x6@0.1,0.8x0.6 --out "$scratch/kept/new"
-says=("--metadata")
-misuses "a bag with metadata" "$bin/rgbdt" import "$scratch/os.mcap" "${os[@]}"
 
 verdict

@@ -38,6 +38,7 @@ services/drivers/camera/gvcp_message.cc services/drivers/camera/internal/frame_f
 services/drivers/dynamixel/dynamixel_protocol.cc
 services/drivers/hesai/hesai_packets.cc services/drivers/hesai/hesai_sweeps.cc
 services/drivers/hokuyo/scip_protocol.cc
+services/drivers/livox/livox_packets.cc services/drivers/livox/livox_sweeps.cc
 services/drivers/ouster/ouster_metadata.cc services/drivers/ouster/ouster_packets.cc
 services/drivers/ouster/ouster_sweeps.cc services/drivers/pcap/pcap_reader.cc
 services/drivers/velodyne/velodyne_packets.cc

@@ -28,6 +28,20 @@ inline void Convert(const BagMessage& message, BagData kind, BagEncoding encodin
       ToLens(ros::DecodeCameraInfo(message, encoding), wanted);
       return;
     }
+    case BagData::kMetadata:
+      ros::DecodeText(message, encoding);
+      return;
+    case BagData::kPackets:
+      for (const char* type :
+           {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan", "nebula_msgs/NebulaPackets",
+            "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg"}) {
+        try {
+          ros::DecodePackets(message, {"/packets", type, encoding});
+        } catch (const InputError&) {  // it may be another's
+        }
+      }
+      ToCloud(ros::DecodeLivoxCloud(message, encoding), "cloud");
+      return;
     case BagData::kOther:
       ros::DecodeTransforms(message, encoding);
   }

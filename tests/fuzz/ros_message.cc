@@ -4,10 +4,11 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rgbdt;
-  constexpr BagData kKinds[] = {BagData::kImage, BagData::kCompressedImage, BagData::kCameraInfo,
-                                BagData::kCloud, BagData::kOther};
+  constexpr BagData kKinds[] = {BagData::kImage,   BagData::kCompressedImage, BagData::kCameraInfo,
+                                BagData::kCloud,   BagData::kOther,           BagData::kPackets,
+                                BagData::kMetadata};
   fuzz::Input input(data, size);
-  const BagData kind = kKinds[input.Byte() % 5];
+  const BagData kind = kKinds[input.Byte() % 7];
   BagTopic topic;
   switch (const int layout = input.Byte(); layout) {
     case 2:

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "calib/model/errors.h"
+#include "calib/simulate/internal/livox.h"
 #include "calib/simulate/internal/noise.h"
 
 namespace rgbdt::simulate {
@@ -69,6 +70,7 @@ bool InField(const Options& options, const Eigen::Vector3d& point) {
   const double margin = options.pose.sweep_margin_rad;
   const double azimuth = std::atan2(point.y(), point.x());
   const double elevation = std::atan2(point.z(), point.head<2>().norm());
+  if (options.livox) return InLivoxField(options.livox->model, point, margin);
   if (options.spinning) {
     return elevation > options.spinning->elevations_rad.front() + margin &&
            elevation < options.spinning->elevations_rad.back() - margin;
@@ -104,11 +106,15 @@ bool Hidden(const World& empty, const Eigen::Vector3d& sensor, const Eigen::Vect
 /// Elevation that later attempts draw closer to: the middle of the LIDAR's field, but no lower than
 /// a board may hang.
 double MiddleElevation(const Options& options, double range) {
-  if (!options.spinning) return 0;
-  const std::vector<double>& rings = options.spinning->elevations_rad;
+  const bool mid360 = options.livox && options.livox->model == LivoxModel::kMid360;
+  if (!options.spinning && !mid360) return 0;
+  constexpr double kMid360Middle = 22.5 * kDegree;
+  const double twice =
+      mid360 ? 2 * kMid360Middle
+             : options.spinning->elevations_rad.front() + options.spinning->elevations_rad.back();
   const double radius = 0.5 * std::hypot(options.board.width_m, options.board.height_m);
   const double lowest = options.world.ground_z_m + options.pose.clearance_m + radius;
-  const double middle = std::sin(0.5 * (rings.front() + rings.back()));
+  const double middle = std::sin(0.5 * twice);
   return std::asin(std::clamp(std::max(middle, lowest / range), -1.0, 1.0));
 }
 
@@ -192,7 +198,7 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
     if (Crowded(empty, point, options.pose.clearance_m)) return "too close to an object";
     const double azimuth = std::atan2(point.y(), point.x());
     const Eigen::Vector3d sensor =
-        options.spinning ? Eigen::Vector3d::Zero() : scanner.Centre(azimuth);
+        options.turned() ? scanner.Centre(azimuth) : Eigen::Vector3d::Zero();
     if (Hidden(empty, sensor, point)) return "hidden from the LIDAR";
     for (const CameraRenderer& camera : cameras) {
       if (Hidden(empty, camera.CentreInLidar(), point)) {

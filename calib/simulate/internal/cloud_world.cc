@@ -6,6 +6,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/board_poses.h"
+#include "calib/simulate/internal/livox.h"
 
 namespace rgbdt::simulate {
 namespace {
@@ -61,6 +62,9 @@ Cloud CloudWorld::SpinningSweep(const SpinningOptions& spinning, Utime utime) co
 }
 
 Cloud CloudWorld::Sweep(Utime utime) const {
+  if (options_.livox) {
+    return LivoxCloud(world_, *options_.livox, options_.seed, utime, options_.threads);
+  }
   return options_.spinning ? SpinningSweep(*options_.spinning, utime) : TurnedSweep(utime);
 }
 

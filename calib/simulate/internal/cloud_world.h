@@ -16,7 +16,8 @@ namespace rgbdt::simulate {
 class CloudWorld {
  public:
   /// The board at pose `index` (0, 1, ...) of what options.pose allow, wholly in the field of
-  /// options.spinning or else options.scanner. Throws InputError where no pose is found.
+  /// options.livox, options.spinning or else options.scanner. Throws InputError where no pose is
+  /// found.
   CloudWorld(const Options& options, int index);
   /// The board at a pose, whatever options.pose say; without one, the scene alone.
   CloudWorld(const Options& options, const std::optional<Rigid3>& lidar_from_target);
@@ -30,7 +31,7 @@ class CloudWorld {
   Cloud TurnedSweep(Utime utime) const;
   /// By any spinning LIDAR: organised, ring x azimuth.
   Cloud SpinningSweep(const SpinningOptions& spinning, Utime utime) const;
-  /// By the rig's LIDAR: options.spinning or else the turned scanner.
+  /// By the rig's LIDAR: options.livox, options.spinning or else the turned scanner.
   Cloud Sweep(Utime utime) const;
 
  private:

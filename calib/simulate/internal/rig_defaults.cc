@@ -67,11 +67,10 @@ Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& sc
   Rig rig;
   rig.name = "simulated";
   rig.lidar.name = "lidar";
-  if (!options.spinning) {
+  if (options.turned()) {
     rig.lidar.turned_scanner = GuessOf(options.scanner, scanner.geometry());
   }
-  rig.lidar.range_sigma_m =
-      options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
+  rig.lidar.range_sigma_m = options.beam().range_sigma_m;
   for (std::size_t i = 0; i < options.cameras.size(); ++i) {
     const CameraOptions& from = options.cameras[i];
     CameraSpec camera;

@@ -1,6 +1,7 @@
 #include "services/drivers/hokuyo/scip_protocol.h"
 #include "tests/fuzz/seeds/seeds.h"
 #include "tests/hardware/velodyne_encoder.h"
+#include "tests/unit/packets/livox_encoder.h"
 
 namespace rgbdt::fuzz {
 namespace {
@@ -65,6 +66,25 @@ void AddVelodyne(Inputs* seeds) {
   (*seeds)["cut"] = (*seeds)["model0"].substr(0, 800);
 }
 
+// A word of the time since the one before [64 us], and the packet as a piece.
+void AddLivox(Inputs* seeds) {
+  for (const bool sdk1 : {false, true}) {
+    for (int type = 0; type < 9; ++type) {
+      if (type == 6 || (sdk1 ? type < 2 : type < 1 || type > 3)) continue;
+      const test::LivoxEncoder encoder{sdk1, type};
+      std::string bytes(1, sdk1 ? '\1' : '\0');
+      for (const int number : {0, 1, 900, 1000, 2100}) {
+        const std::vector<std::uint8_t> packet = encoder.Packet(number);
+        bytes += std::string("\0\x10", 2) + Piece({packet.begin(), packet.end()});
+      }
+      const std::string name = (sdk1 ? "sdk1_" : "sdk2_") + std::to_string(type);
+      (*seeds)[name] = bytes;
+      bytes[0] = static_cast<char>(bytes[0] | 2);
+      (*seeds)[name + "_mended"] = bytes;
+    }
+  }
+}
+
 void AddPcap(Inputs* seeds) {
   using Link = PcapWriter::Link;
   for (const bool next_generation : {false, true}) {
@@ -122,6 +142,7 @@ void AddCamera(Inputs* seeds) {
 void AddDeviceSeeds(Seeds* seeds) {
   AddScip(&(*seeds)["scip"]);
   AddVelodyne(&(*seeds)["velodyne"]);
+  AddLivox(&(*seeds)["livox"]);
   AddPcap(&(*seeds)["pcap_file"]);
   AddDynamixel(&(*seeds)["dynamixel"]);
   AddCamera(&(*seeds)["camera"]);

@@ -51,6 +51,26 @@ TEST(ChooseTopics, OfEachCameraTheRawest) {
   EXPECT_THAT(choice.left_out, SizeIs(5));
 }
 
+TEST(ChooseTopics, PacketsAreTakenWhereThereAreNoClouds) {
+  BagSurvey survey;
+  survey.topics = {Topic("/cam/image", BagData::kImage, {0}),
+                   Topic("/os/packets", BagData::kPackets, {}),
+                   Topic("/os/metadata", BagData::kMetadata, {}),
+                   Topic("/other/metadata", BagData::kMetadata, {})};
+  EXPECT_THAT(test::ErrorOf([&] { ChooseTopics(survey, {}); }), HasSubstr("holds no clouds"))
+      << "none of its messages was read";
+  survey.topics[1].what = "packets of 1206 bytes, 1 a message";
+  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/os/packets");
+  survey.topics[3].text = "other";
+  EXPECT_EQ(MetadataOf(survey, survey.topics[1])->text, "other") << "the only one";
+  survey.topics[2].text = "os";
+  EXPECT_EQ(MetadataOf(survey, survey.topics[1])->text, "os") << "the one beside";
+  survey.topics.push_back(Topic("/points", BagData::kCloud, {0}));
+  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/points");
+  EXPECT_THAT(ChooseTopics(survey, {}).left_out, ElementsAre(HasSubstr("/os/packets: packets")));
+  EXPECT_EQ(ChooseTopics(survey, {{}, "/os/packets"}).cloud->topic.name, "/os/packets");
+}
+
 TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
   BagSurvey survey;
   survey.topics = {Topic("/cam/image", BagData::kImage, {0}), Topic("/fused", BagData::kCloud, {0}),

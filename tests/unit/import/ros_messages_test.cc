@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <random>
 
 #include "tests/unit/files/test_data.h"
@@ -123,6 +124,48 @@ TEST(RosMessages, DamagedAnywhereAtMostThrows) {
       }
     }
     EXPECT_GT(refused, 1000);
+  }
+}
+
+std::string LivoxMessage(BagEncoding encoding, bool big_endian, std::uint32_t said,
+                         std::uint32_t count) {
+  RosBytes bytes(encoding, big_endian);
+  bytes.Header(1'700'000'000, 0, "livox_frame").Add(std::uint64_t{1'700'000'000'000'000'000});
+  bytes.Add(said).Add(std::uint8_t{1});
+  for (int i = 0; i < 3; ++i) bytes.Add(std::uint8_t{0});
+  bytes.Add(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    bytes.Add(1000 * i).Add(1.5F + static_cast<float>(i)).Add(-2.5F).Add(0.25F);
+    bytes.Add(static_cast<std::uint8_t>(10 + i)).Add(std::uint8_t{0x10}).Add(std::uint8_t{3});
+  }
+  return bytes.Bytes();
+}
+
+TEST(RosMessages, ALivoxsOwnOfEveryLayout) {
+  for (const auto& [encoding, big_endian] : kLayouts) {
+    const std::string whole = LivoxMessage(encoding, big_endian, 3, 3);
+    const ros::PointCloud cloud = ros::DecodeLivoxCloud(MessageOf(whole), encoding);
+    EXPECT_EQ(cloud.header.utime, 1'700'000'000'000'000);
+    ASSERT_EQ(cloud.width, 3U);
+    ASSERT_EQ(cloud.size, 3 * 19U);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      std::uint32_t offset = 0;
+      float place[3];
+      std::memcpy(&offset, cloud.data + 19 * i, 4);
+      std::memcpy(place, cloud.data + 19 * i + 4, 12);
+      EXPECT_EQ(offset, 1000 * i);
+      EXPECT_EQ(place[0], 1.5F + static_cast<float>(i));
+      EXPECT_EQ(place[2], 0.25F);
+      EXPECT_EQ(cloud.data[19 * i + 16], 10 + i);
+      EXPECT_EQ(cloud.data[19 * i + 18], 3);
+    }
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      const std::string cut = whole.substr(0, size);
+      EXPECT_THROW(ros::DecodeLivoxCloud(MessageOf(cut), encoding), InputError);
+    }
+    const std::string lies = LivoxMessage(encoding, big_endian, 4, 3);
+    EXPECT_THAT(test::ErrorOf([&] { ros::DecodeLivoxCloud(MessageOf(lies), encoding); }),
+                HasSubstr("says that it has 4 points, and holds 3"));
   }
 }
 

@@ -196,6 +196,24 @@ TEST(RosClouds, HesaiAndLivox) {
   EXPECT_THAT(livox.Read().ring, ElementsAre(3, 1));
 }
 
+// livox_ros_driver2's PointXYZRTLT: what its tags call noise, and what returned nothing, is left
+// out.
+TEST(RosClouds, ALivoxHasNoRingsAndOnlyNormalPoints) {
+  RosCloud livox(5, 1, 32);
+  livox.AddXyz({1, 2, 3, 4, 5})
+      .Add<std::uint8_t>("tag", 12, 2, {0x00, 0x10, 0x01, 0x04, 0x20})
+      .Add<std::uint8_t>("line", 13, 2, {3, 1, 0, 2, 2})
+      .Add<std::uint32_t>("offset_time", 16, 6, {0, 1'000'000, 2'000'000, 3'000'000, 4'000'000});
+  const Cloud read = livox.Read();
+  EXPECT_THAT(read.ring, IsEmpty());
+  EXPECT_FALSE(read.organised);
+  EXPECT_THAT(read.utime, ElementsAre(kStamp, kStamp + 1000, kStamp + 4000));
+  EXPECT_EQ(read.points[2].x(), 5);
+  RosCloud noise(1, 1, 32);
+  noise.AddXyz({1}).Add<std::uint8_t>("tag", 12, 2, {2}).Add<std::uint8_t>("line", 13, 2, {0});
+  EXPECT_THAT(noise.Error(), HasSubstr("no points that its tags call normal"));
+}
+
 TEST(RosClouds, ReflectivityStandsForIntensity) {
   RosCloud cloud(2, 1, 16);
   cloud.AddXyz({1, 2}).Add<std::uint16_t>("reflectivity", 12, 4, {0, 255});

@@ -9,6 +9,8 @@
 namespace rgbdt::test {
 
 struct HesaiEncoder {
+  static constexpr std::int64_t kSecond = 1'700'000'000'000'000;  ///< 2023-11-14 22:13:20
+
   bool is_40p = false;
   int channels = 16;
   bool dual = false;

@@ -15,8 +15,8 @@ using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr double kDegree = M_PI / 180;
-constexpr Utime kSecond = 1'700'000'000'000'000;  // 2023-11-14 22:13:20
 
+constexpr Utime kSecond = test::HesaiEncoder::kSecond;
 // Three turns and a half from the front on, of which some packets are lost.
 struct Driven {
   explicit Driven(const HesaiEncoder& encoder, int first_lost = 0, int end_lost = 0) {

@@ -1,0 +1,87 @@
+#include "services/drivers/livox/livox_sweeps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "calib/model/livox.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr Utime kMostGap_us = 2000;         // from packet to packet; 0.2 to 0.5 ms is usual
+constexpr Utime kMostAway_us = 10'000'000;  // farther: somebody set a clock
+
+}  // namespace
+
+// A packet arrives once its last beam was measured.
+Utime LivoxSweeps::TimeOf(const livox::Packet& packet, Utime arrival) {
+  const auto duration = static_cast<Utime>(packet.duration_us);
+  switch (packet.clock) {
+    case livox::Clock::kUtc:
+      return packet.stamp_ns / 1000;
+    case livox::Clock::kPtp:
+      if (const auto utc = PtpToUtc(packet.stamp_ns / 1000, arrival)) return *utc;
+      break;
+    case livox::Clock::kSinceStart:
+      break;
+  }
+  fit_.Add(packet.stamp_ns, arrival, duration);
+  return fit_.ToHost(static_cast<double>(packet.stamp_ns)).value_or(arrival - duration);
+}
+
+std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival) {
+  const Utime utime = TimeOf(packet, arrival);
+  std::optional<Cloud> done;
+  const Utime gap = utime - next_;
+  if (any_ && std::abs(gap) > kMostAway_us) {
+    cloud_ = Cloud();
+    ++left_out_;
+    any_ = false;
+  } else if (any_ && gap < -kMostGap_us) {
+    return std::nullopt;
+  }
+  if (any_ && gap > kMostGap_us) {
+    lost_us_ += gap;
+    cloud_lost_us_ += std::max<Utime>(0, std::min(utime, begun_ + kLivoxCloud_us) - next_);
+  }
+  if (any_ && utime >= begun_ + kLivoxCloud_us) {
+    done = Take();
+    any_ = false;  // a gap that the next one begins with is not in it
+  }
+  if (!any_) {
+    any_ = true;
+    begun_ = utime;
+    cloud_lost_us_ = 0;
+  }
+  for (const livox::Point& point : packet.points) {
+    cloud_.points.push_back(point.place_m);
+    cloud_.intensity.push_back(static_cast<float>(point.reflectivity) / 255);
+    cloud_.utime.push_back(utime + static_cast<Utime>(point.time_us));
+  }
+  dropped_ += packet.dropped;
+  next_ = utime + static_cast<Utime>(packet.duration_us);
+  return done;
+}
+
+std::optional<Cloud> LivoxSweeps::Finish() {
+  if (!any_ || next_ - begun_ < kLivoxCloud_us - kMostGap_us) return std::nullopt;
+  any_ = false;
+  return Take();
+}
+
+std::optional<Cloud> LivoxSweeps::Take() {
+  Cloud cloud = std::exchange(cloud_, Cloud());
+  if (cloud_lost_us_ > kLivoxCloud_us / 10) {
+    ++left_out_;
+    return std::nullopt;
+  }
+  if (cloud.points.empty()) return std::nullopt;
+  cloud.sweep_utime = begun_;
+  cloud.lines = 1;
+  cloud.beams = static_cast<int>(cloud.points.size());
+  cloud.organised = false;
+  return cloud;
+}
+
+}  // namespace rgbdt
