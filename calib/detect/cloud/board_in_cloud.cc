@@ -11,6 +11,7 @@
 #include "calib/detect/cloud/internal/board_plane.h"
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
+#include "calib/detect/cloud/scattered_crossings.h"
 #include "calib/model/beam_priors.h"
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
@@ -161,6 +162,7 @@ std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& 
 struct Candidate {
   CloudEdges edges;
   double score = 0;
+  double misfit = 0;  // of its outline
 };
 
 // Two pieces of one board lead to the same place.
@@ -203,6 +205,7 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
   const Rigid3 pose = PoseOf(members.frame, rectangle, points.plane());
   const Eigen::Matrix4d scatter = points.Scatter(pose.translation);
   Candidate out;
+  out.misfit = rectangle.misfit;
   out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
   out.edges.boundary = Outline(target, rectangle, pose);
   out.edges.centre = pose.translation;
@@ -237,6 +240,29 @@ FlatRectangle InFrame(const PlaneFrame& frame, const Candidate& board) {
   rectangle.centre = frame.Flat(pose.translation);
   rectangle.angle_rad = std::atan2(x.dot(frame.v), x.dot(frame.u));
   return rectangle;
+}
+
+// Of points that keep to no grid: crossings by the points themselves, and as sharp as they turn out
+// to be. Such LIDARs' beams and angles differ more than those of rings: a Livox's beam is 4.9 mrad
+// high, its angles have a noise of up to 2.6 mrad.
+std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, FlatRectangle near,
+                                      const Target& target, BoardInCloudOptions options) {
+  constexpr double kClassSigmaRad = 1.1e-3;  // kViewClassShiftSigmaRad, of so high a beam
+  constexpr double kBluntestRad = 4e-3, kMisfit = 1.2;
+  options.edge.class_sigma_rad = std::max(options.edge.class_sigma_rad, kClassSigmaRad);
+  std::optional<Candidate> board;
+  for (int round = 0; round < 2; ++round) {
+    members.crossings = ScatteredCrossings(cloud, members.plane, members.frame, near, target,
+                                           options.range_sigma_m);
+    board = FitBoard(cloud, members, near, target, options);
+    while (board && board->misfit > kMisfit && options.edge.blur_rad < kBluntestRad) {
+      options.edge.blur_rad *= 1.4;
+      board = FitBoard(cloud, members, near, target, options);
+    }
+    if (!board) return std::nullopt;
+    near = InFrame(members.frame, *board);
+  }
+  return board;
 }
 
 // The piece that looks most like a board of another size, for the reason.
@@ -308,8 +334,11 @@ std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, con
     region.plane = {board->edges.normal, board->edges.normal.dot(board->edges.centre)};
     const MemberOptions closer{options.range_sigma_m, board->edges.centre, 0.7 * diagonal,
                                0.5 * std::min(target.width_m, target.height_m)};
-    const PlaneMembers about = FindMembers(grid, region, closer);
-    auto better = FitBoard(grid.cloud(), about, InFrame(about.frame, *board), target, options);
+    PlaneMembers about = FindMembers(grid, region, closer);
+    const FlatRectangle near = InFrame(about.frame, *board);
+    auto better = grid.scattered()
+                      ? FitScattered(grid.cloud(), std::move(about), near, target, options)
+                      : FitBoard(grid.cloud(), about, near, target, options);
     if (better) found.push_back(std::move(*better));
   }
   if (found.empty()) likeness->Consider(members);

@@ -219,6 +219,7 @@ void RangeGrid::Rebuild() {
     const auto crowded = Place(rows, AzimuthStep(rows), false);
     if (crowded && *crowded * 50 < hits_) return;
   }
+  scattered_ = true;
   double step = CellStep(angles);
   while (!Place(ByCells(angles, step), step, true)) step *= 1.5;
 }

@@ -22,6 +22,8 @@ class RangeGrid {
   const Cloud& cloud() const { return *cloud_; }
   int rows() const { return rows_; }
   int columns() const { return columns_; }
+  /// The cells are even ones of angle, as the points keep to no rows.
+  bool scattered() const { return scattered_; }
   /// Columns go round: column -1 is the last one.
   bool wraps() const { return wraps_; }
   /// Median angle between neighbours [rad]; 0: fewer than two rows (columns).
@@ -88,6 +90,7 @@ class RangeGrid {
   const Cloud* cloud_;
   int rows_ = 0, columns_ = 0;
   bool wraps_ = false;
+  bool scattered_ = false;
   double row_step_ = 0, column_step_ = 0;
   int hits_ = 0;
   std::vector<std::int32_t> place_;    // by cell: index of its point, -1: none; empty: the same

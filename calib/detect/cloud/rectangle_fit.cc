@@ -302,6 +302,7 @@ class Refiner {
     out.angle_rad = x[2];
     const Normal covariance = InverseOfSymmetric(information);
     const double scale = used > 10 ? std::max(1.0, chi2 / used) : 1.0;
+    out.misfit = chi2 / std::max(1, used);
     out.covariance = scale * covariance.topLeftCorner<3, 3>();
     for (int k = 0; k < 3; ++k) {
       out.shift_rad[static_cast<std::size_t>(k)] = x[3 + k];

@@ -30,6 +30,7 @@ struct FlatRectangle {
   /// How far the shifts and the thickness are from their priors, in sigmas: the root of the priors'
   /// cost. A board of another size makes itself fit by them.
   double prior_deviation = 0;
+  double misfit = 0;  ///< mean square of what crossings are off over what they state; 1: as stated
   std::vector<int> side;  ///< by crossing: the side that it lies on; -1: none
   /// By crossing: half of its interval across its side, and the sigma of the side's place that it
   /// gives, errors that it shares with others taken into account.
