@@ -162,7 +162,8 @@ std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& 
 struct Candidate {
   CloudEdges edges;
   double score = 0;
-  double misfit = 0;  // of its outline
+  double misfit = 0;     // of its outline
+  double deviation = 0;  // of its outline's priors
 };
 
 // Two pieces of one board lead to the same place.
@@ -206,6 +207,7 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
   const Eigen::Matrix4d scatter = points.Scatter(pose.translation);
   Candidate out;
   out.misfit = rectangle.misfit;
+  out.deviation = rectangle.prior_deviation;
   out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
   out.edges.boundary = Outline(target, rectangle, pose);
   out.edges.centre = pose.translation;
@@ -250,18 +252,33 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
   constexpr double kClassSigmaRad = 1.1e-3;  // kViewClassShiftSigmaRad, of so high a beam
   constexpr double kBluntestRad = 4e-3, kMisfit = 1.2;
   options.edge.class_sigma_rad = std::max(options.edge.class_sigma_rad, kClassSigmaRad);
+  constexpr int kRounds = 4;
+  constexpr double kStill_m = 0.002, kLeastOnSides = 0.6, kMostDeviation = 4;
+  const auto cut = [&] {
+    return ScatteredCrossings(cloud, members.plane, members.frame, near, target,
+                              options.range_sigma_m);
+  };
+  for (int round = 0; round < 3; ++round) near = Centred(near, cut(), target);
+  const double sharpest_rad = options.edge.blur_rad;
   std::optional<Candidate> board;
-  for (int round = 0; round < 2; ++round) {
-    members.crossings = ScatteredCrossings(cloud, members.plane, members.frame, near, target,
-                                           options.range_sigma_m);
+  for (int round = 0; round < kRounds; ++round) {
+    members.crossings = cut();
+    options.edge.blur_rad = sharpest_rad;
     board = FitBoard(cloud, members, near, target, options);
     while (board && board->misfit > kMisfit && options.edge.blur_rad < kBluntestRad) {
       options.edge.blur_rad *= 1.4;
       board = FitBoard(cloud, members, near, target, options);
     }
     if (!board) return std::nullopt;
+    const Eigen::Vector2d before = near.centre;
     near = InFrame(members.frame, *board);
+    if ((near.centre - before).norm() < kStill_m) break;
   }
+  // A panel a few centimetres larger makes itself fit by shifts that are hardly likely.
+  const auto on_sides = static_cast<double>(board->edges.crossings.size());
+  const bool is_board = on_sides >= kLeastOnSides * static_cast<double>(members.crossings.size()) &&
+                        board->deviation <= kMostDeviation;
+  if (!is_board) return std::nullopt;
   return board;
 }
 

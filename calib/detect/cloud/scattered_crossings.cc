@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/model/statistics.h"
+
 namespace rgbdt {
 namespace {
 
@@ -93,6 +95,12 @@ std::optional<Span> Split(const std::vector<Met>& strip) {
   return span;
 }
 
+// Of side 0 to 3, as rectangle_fit.h counts them.
+Eigen::Vector2d OutwardOf(const FlatRectangle& rectangle, int side) {
+  const double turn = rectangle.angle_rad + (side - 1) * M_PI / 2;
+  return {std::cos(turn), std::sin(turn)};
+}
+
 class SideCutter {
  public:
   SideCutter(const Cloud& cloud, const Plane& plane, const PlaneFrame& frame,
@@ -118,8 +126,7 @@ class SideCutter {
   }
 
   void Cut(int side, std::vector<FlatCrossing>* crossings) const {
-    const double turn = near_.angle_rad + (side - 1) * M_PI / 2;  // side 1 faces the width
-    const Eigen::Vector2d outward(std::cos(turn), std::sin(turn));
+    const Eigen::Vector2d outward = OutwardOf(near_, side);
     const Eigen::Vector2d along(-outward.y(), outward.x());
     const bool upright = side % 2 == 1;
     const double half = (upright ? target_.width_m : target_.height_m) / 2;
@@ -226,6 +233,25 @@ class SideCutter {
 };
 
 }  // namespace
+
+FlatRectangle Centred(FlatRectangle near, const std::vector<FlatCrossing>& crossings,
+                      const Target& target) {
+  Eigen::Vector2d move = Eigen::Vector2d::Zero();
+  for (const int side : {1, 2}) {  // and the one opposite
+    const Eigen::Vector2d outward = OutwardOf(near, side);
+    const double half = (side == 1 ? target.width_m : target.height_m) / 2;
+    std::vector<double> here, opposite;
+    for (const FlatCrossing& c : crossings) {
+      const double place = outward.dot(c.middle - near.centre);
+      if (outward.dot(c.outward) > 0.9) here.push_back(place - half);
+      if (outward.dot(c.outward) < -0.9) opposite.push_back(place + half);
+    }
+    if (here.empty() || opposite.empty()) continue;
+    move += 0.5 * (Median(std::move(here)) + Median(std::move(opposite))) * outward;
+  }
+  near.centre += move;
+  return near;
+}
 
 std::vector<FlatCrossing> ScatteredCrossings(const Cloud& cloud, const Plane& plane,
                                              const PlaneFrame& frame, const FlatRectangle& near,

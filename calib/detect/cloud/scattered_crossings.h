@@ -24,4 +24,9 @@ std::vector<FlatCrossing> ScatteredCrossings(const Cloud& cloud, const Plane& pl
                                              const PlaneFrame& frame, const FlatRectangle& near,
                                              const Target& target, double sigma_m);
 
+/// The rectangle moved to the middle between opposite sides, each where the median of its crossings
+/// is: what sticks to half of a side does not move it.
+FlatRectangle Centred(FlatRectangle near, const std::vector<FlatCrossing>& crossings,
+                      const Target& target);
+
 }  // namespace rgbdt

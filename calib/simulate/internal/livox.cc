@@ -22,7 +22,9 @@ constexpr int kAviaLasers = 6;
 // Mid-360.
 constexpr double kLow = -7 * kDegree, kTop = 52 * kDegree;
 constexpr int kMid360Lasers = 4;
-constexpr double kTurn_hz = 100;               // of 4 lasers, so 40 lines in 0.1 s
+// Of 4 lasers, so 40 lines in 0.1 s. A turn is 500.618 firings: the next turn's lie between this
+// one's, as evenly as the golden ratio spreads them.
+constexpr double kTurn_hz = 50'000 / 500.6180339887498949;
 constexpr double kNod_hz = 6.180339887498949;  // to the turns as no two whole numbers are
 constexpr double kLaserStep = (kTop - kLow) / 40;
 

@@ -15,8 +15,8 @@ using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr double kDegree = M_PI / 180;
+constexpr Utime kSecond = HesaiEncoder::kSecond;
 
-constexpr Utime kSecond = test::HesaiEncoder::kSecond;
 // Three turns and a half from the front on, of which some packets are lost.
 struct Driven {
   explicit Driven(const HesaiEncoder& encoder, int first_lost = 0, int end_lost = 0) {
