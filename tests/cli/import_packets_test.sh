@@ -38,7 +38,7 @@ for bag in drive.mcap drive.bag; do
     done
   done
 done
-says=("--metadata" "CSV" "JSON")
+says=("drive.pcap" "CSV" "JSON")
 refuses "a bag with wrong metadata" "$bin/rgbdt" import "$scratch/drive.bag" --metadata "$scratch/drive.pcap" \
   --board "$board" --every 0.1 --out "$scratch/kept/new"
 says=("--port")
