@@ -244,6 +244,15 @@ FlatRectangle InFrame(const PlaneFrame& frame, const Candidate& board) {
   return rectangle;
 }
 
+// A cloud of a LIDAR whose pattern does not repeat: of a few seconds, in the order in which it was
+// measured, without rows. A turned scanner's takes longer, and keeps to rows that were lost.
+bool DoesNotRepeat(const RangeGrid& grid) {
+  constexpr Utime kLongest = 5 * kMicrosecondsPerSecond;
+  const std::vector<Utime>& utime = grid.cloud().utime;
+  return grid.scattered() && !utime.empty() && utime.size() == grid.cloud().size() &&
+         std::is_sorted(utime.begin(), utime.end()) && utime.back() - utime.front() <= kLongest;
+}
+
 // Of points that keep to no grid: crossings by the points themselves, and as sharp as they turn out
 // to be. Such LIDARs' beams and angles differ more than those of rings: a Livox's beam is 4.9 mrad
 // high, its angles have a noise of up to 2.6 mrad.
@@ -253,7 +262,8 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
   constexpr double kBluntestRad = 4e-3, kMisfit = 1.2;
   options.edge.class_sigma_rad = std::max(options.edge.class_sigma_rad, kClassSigmaRad);
   constexpr int kRounds = 4;
-  constexpr double kStill_m = 0.002, kLeastOnSides = 0.6, kMostDeviation = 4;
+  constexpr double kStill_m = 0.002, kLeastOnSides = 0.7;
+  constexpr double kMostDeviation = 4, kLeastScore = 0.87;
   const auto cut = [&] {
     return ScatteredCrossings(cloud, members.plane, members.frame, near, target,
                               options.range_sigma_m);
@@ -274,10 +284,12 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
     near = InFrame(members.frame, *board);
     if ((near.centre - before).norm() < kStill_m) break;
   }
-  // A panel a few centimetres larger makes itself fit by shifts that are hardly likely.
+  // What holds the board, or stands beside it in its plane, leaves more than one place for it: then
+  // none is better than a wrong one. A panel a few centimetres larger makes itself fit by shifts
+  // that are hardly likely.
   const auto on_sides = static_cast<double>(board->edges.crossings.size());
   const bool is_board = on_sides >= kLeastOnSides * static_cast<double>(members.crossings.size()) &&
-                        board->deviation <= kMostDeviation;
+                        board->deviation <= kMostDeviation && board->score >= kLeastScore;
   if (!is_board) return std::nullopt;
   return board;
 }
@@ -353,7 +365,7 @@ std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, con
                                0.5 * std::min(target.width_m, target.height_m)};
     PlaneMembers about = FindMembers(grid, region, closer);
     const FlatRectangle near = InFrame(about.frame, *board);
-    auto better = grid.scattered()
+    auto better = DoesNotRepeat(grid)
                       ? FitScattered(grid.cloud(), std::move(about), near, target, options)
                       : FitBoard(grid.cloud(), about, near, target, options);
     if (better) found.push_back(std::move(*better));
@@ -431,6 +443,12 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   while (boards.candidates.empty() && 2 * noisier.range_sigma_m <= kMostSigma) {
     noisier.range_sigma_m *= 2;
     boards = FindAtNoise(grid, target, noisier);
+  }
+  // Of points without order some cells stay empty by chance: fewer where cells are wider.
+  for (const double coarser : {1.4, 2.0}) {
+    if (!DoesNotRepeat(grid) || !boards.candidates.empty()) break;
+    noisier.range_sigma_m = options.range_sigma_m;
+    boards = FindAtNoise(RangeGrid(cloud, coarser), target, noisier);
   }
   if (!boards.candidates.empty()) return boards;
   const std::string off = WhyCloudIsOff(cloud);

@@ -149,7 +149,7 @@ double PhaseOf(const std::vector<Angles>& row, double step) {
 
 }  // namespace
 
-RangeGrid::RangeGrid(const Cloud& cloud) : cloud_(&cloud) {
+RangeGrid::RangeGrid(const Cloud& cloud, double coarser) : cloud_(&cloud) {
   bool lines_known = cloud.organised && cloud.lines > 1 && cloud.beams > 1;
   if (lines_known &&
       cloud.directions.size() != cloud.size()) {  // full of hits it needs no directions
@@ -159,7 +159,7 @@ RangeGrid::RangeGrid(const Cloud& cloud) : cloud_(&cloud) {
   if (lines_known) {
     TakeAsItIs();
   } else {
-    Rebuild();
+    Rebuild(coarser);
   }
 }
 
@@ -198,7 +198,7 @@ void RangeGrid::MeasureSteps() {
   row_step_ = Median(std::move(across));
 }
 
-void RangeGrid::Rebuild() {
+void RangeGrid::Rebuild(double coarser) {
   const std::vector<Angles> angles = AnglesOf(*cloud_);
   hits_ = static_cast<int>(angles.size());
   if (angles.size() < 100) return;
@@ -220,7 +220,7 @@ void RangeGrid::Rebuild() {
     if (crowded && *crowded * 50 < hits_) return;
   }
   scattered_ = true;
-  double step = CellStep(angles);
+  double step = coarser * CellStep(angles);
   while (!Place(ByCells(angles, step), step, true)) step *= 1.5;
 }
 

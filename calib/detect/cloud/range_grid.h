@@ -16,8 +16,8 @@ namespace rgbdt {
 /// an empty cell is a beam that returned nothing. LIDAR frame, metres.
 class RangeGrid {
  public:
-  /// `cloud` outlives the grid.
-  explicit RangeGrid(const Cloud& cloud);
+  /// `cloud` outlives the grid. Cells that the points keep to no rows in are so many times wider.
+  explicit RangeGrid(const Cloud& cloud, double coarser = 1);
 
   const Cloud& cloud() const { return *cloud_; }
   int rows() const { return rows_; }
@@ -81,7 +81,7 @@ class RangeGrid {
     return place_.empty() ? static_cast<std::int64_t>(cell) : place_[cell];
   }
   void TakeAsItIs();
-  void Rebuild();
+  void Rebuild(double coarser);
   // Puts rows into columns a step apart; how many points found their cell taken. Nothing: the grid
   // would have far more cells than the cloud has points.
   std::optional<int> Place(const Rows& rows, double step, bool even);
