@@ -51,9 +51,8 @@ void Solve(const std::string& name, const WavedScene& scene, bool known, std::of
          << camera.variance_factor << ',' << result.variance_factor << ','
          << (camera.drift ? camera.drift->value : 0) << ','
          << (camera.jump ? camera.jump->offset_s.value : 0) << ',' << result.sweeps << ','
-         << 1000 * result.plane_rms_m << ','
-         << result.speed << ',' << result.turn_speed << ',' << sample_s << ',' << solve_s << ",\""
-         << camera.why_not << "\"\n"
+         << 1000 * result.plane_rms_m << ',' << result.speed << ',' << result.turn_speed << ','
+         << sample_s << ',' << solve_s << ",\"" << camera.why_not << "\"\n"
          << std::flush;
   }
 }
