@@ -65,7 +65,7 @@ int Run(const Flags& flags) {
     std::fprintf(stderr, "rgbdt-session: %s\n", node->failure().c_str());
     if (node->failure().find("not heard") != std::string::npos) {
       std::fprintf(stderr, "rgbdt-session: %s\n",
-                   rgbdt::WhyNotHeard(rgbdt::CompleteUrl(flags.url)).c_str());
+                   rgbdt::WhyNotHeard(rgbdt::CompleteUrl(flags.bus.url)).c_str());
     }
     return rgbdt::EndsWith(false);
   }

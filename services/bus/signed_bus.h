@@ -22,6 +22,7 @@ class SignedBus : public Bus {
   void Publish(const std::string& channel, const Bytes& bytes) override;
   void Subscribe(const std::string& channel_regex, Handler handler) override;
   Malformed malformed() const override { return bus_->malformed(); }
+  LinkReport links() const override { return bus_->links(); }
   Unsigned refused() const override { return refused_; }
   Utime arrived() const override { return bus_->arrived(); }
 
