@@ -15,6 +15,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/messages/codec.h"
+#include "services/runtime/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -193,6 +194,7 @@ int SendCapture(const Arguments& a) {
   SessionCommand command;
   command.verb = SessionVerb::kCapture;
   command.command = 1;
+  command.utime = HostUtime();  // each asks anew: a repeated command is carried out once
   command.view = a.at(0);
   LcmBus bus("");
   bus.Publish("SESSION_COMMAND", Encode(command));

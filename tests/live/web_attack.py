@@ -8,9 +8,9 @@ the viewer closes it; WebSockets of another site's page, with a wrong token, wit
 large, with fragments without end; and eight browsers that ask for everything and read nothing. Each
 must be answered as it deserves, and the page must be there for others. The bus' latency comes from
 `bus_pulse`, PULSE_PID, which is ended for its CSV. Prints figures as JSON: the ratio of p99 with
-them to p99 without is the middle one of all turns'. Exit code 1 where it is above 1.2 in more turns
-than chance makes once in a hundred (sign test): what else the machine does makes single turns differ
-by far, either way.
+them to p99 without is the middle one of all turns'. From 7 turns on it is judged, too: exit code 1
+where it is above 1.2 in more turns than chance makes once in a hundred (sign test): what else the
+machine does makes single turns differ by far, either way.
 """
 import asyncio
 import base64
@@ -29,6 +29,7 @@ PULSE_PID, PULSE_CSV, TURNS = int(sys.argv[2]), sys.argv[3], int(sys.argv[4])
 HOST = f"127.0.0.1:{PORT}"
 TURN_S, SETTLE_S = 2.0, 0.5
 MOST_RATIO = 1.2
+LEAST_JUDGED = 7  # turns: of fewer no result would be beyond chance
 SILENT, NOT_READING = 1000, 8
 MOST_FRAME = 64 * 1024
 failures = []
@@ -218,7 +219,7 @@ async def main():
     expect(min(map(len, calm + attacked)) > 500, "too few pulses")
     above = sum(r > MOST_RATIO for r in ratios)
     chance = sum(math.comb(TURNS, k) for k in range(above, TURNS + 1)) / 2**TURNS
-    expect(chance > 0.01, f"p99 on the bus is {ratio:.2f} of what it is without")
+    expect(TURNS < LEAST_JUDGED or chance > 0.01, f"p99 on the bus is {ratio:.2f} of what it is without")
     for what in ("foreign_origins", "too_large", "page_loads"):
         expect(count[what] > 0, f"none of {what}")
     print(json.dumps({**count, "bus_p99_ratio": round(ratio, 3),

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Hostile browsers (web_attack.py) before the viewer of a live rig: each gets what it deserves, the
-# page is there for others, the viewer loses no message and does not grow, and the bus feels nothing.
+# page is there for others, the viewer loses no message and does not grow. What the bus feels is
+# printed, and judged with RGBDT_TURNS=10: speed is not for every run (scripts/check-all web).
 # Run by scripts/in-namespace. Usage: web_attack_test.sh BIN_DIR
 set -euo pipefail
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-turns=${RGBDT_TURNS:-10}  # 7 or more, or no result would be beyond chance
+turns=${RGBDT_TURNS:-3}
 most_growth_kb=40000
 ulimit -n "$(ulimit -H -n)"
 [ "$(ulimit -n)" -ge 2000 ] || fail "1,000 connections need more open files than $(ulimit -n)"
