@@ -49,3 +49,29 @@ kill_process() {  # NAME
 }
 
 helper() { "$bin/live_helper" "$@"; }
+
+at_other() { nsenter "--net=$other_machine" "$@"; }
+
+# Another machine, 10.79.0.2, by a cable that the bus's group leads to; this one is 10.79.0.1.
+start_other_machine() {
+  start machine unshare --net sleep 300
+  other_machine=/proc/${pids[machine]}/ns/net
+  for _ in $(seq 100); do
+    [ "$(readlink "$other_machine")" = "$(readlink /proc/self/ns/net)" ] || break
+    sleep 0.05
+  done
+  ip link add cable type veth peer name cable netns "${pids[machine]}"
+  ip address add 10.79.0.1/24 dev cable
+  ip link set cable up
+  at_other ip address add 10.79.0.2/24 dev cable
+  at_other ip link set cable up
+  at_other ip route add 239.0.0.0/8 dev cable
+  ip route replace 239.0.0.0/8 dev cable
+}
+
+# LOG: what goes into the services, by lcm-logplayer.
+play_inputs() {
+  lcm-logplayer "--lcm-url=$LCM_DEFAULT_URL" \
+    --regexp='^(RIG|LINE_SCAN|ENCODER|.*_IMAGE|CORNER_SELECTION|SESSION_COMMAND)$' "$1" \
+    >"$scratch/logplayer.log" 2>&1 || fail "lcm-logplayer failed"
+}

@@ -14,20 +14,7 @@ fi
 sudo() { "$@"; }  # the command that doctor names begins with it
 log=$scratch/bus.lcmlog
 
-start machine unshare --net sleep 300
-other_machine=/proc/${pids[machine]}/ns/net
-for _ in $(seq 100); do
-  [ "$(readlink "$other_machine")" = "$(readlink /proc/self/ns/net)" ] || break
-  sleep 0.05
-done
-at_other() { nsenter "--net=$other_machine" "$@"; }
-ip link add cable type veth peer name cable netns "${pids[machine]}"
-ip address add 10.79.0.1/24 dev cable
-ip link set cable up
-at_other ip address add 10.79.0.2/24 dev cable
-at_other ip link set cable up
-at_other ip route add 239.0.0.0/8 dev cable
-ip route replace 239.0.0.0/8 dev cable
+start_other_machine
 
 start_logger() {
   start logger lcm-logger --quiet --force "--lcm-url=$LCM_DEFAULT_URL" "$log"

@@ -39,12 +39,6 @@ end() {  # NAME
   stop TERM "${services[@]}" simulator
 }
 
-play() {
-  lcm-logplayer "--lcm-url=$LCM_DEFAULT_URL" \
-    --regexp='^(RIG|LINE_SCAN|ENCODER|.*_IMAGE|CORNER_SELECTION|SESSION_COMMAND)$' "$log" \
-    >"$scratch/logplayer.log" 2>&1 || fail "lcm-logplayer failed"
-}
-
 write_script >"$scratch/session.textproto"
 "$bin/rgbdt" key "$scratch/rig.key" >"$scratch/key.log" || fail "no key was made"
 [ "$(stat -c %a "$scratch/rig.key")" = 600 ] || fail "others may read the key"
@@ -72,7 +66,7 @@ cmp "$scratch/plain/calibration.textproto" "$scratch/keyed/calibration.textproto
 echo "== its log commands nobody who has the key"
 RGBDT_KEY=$scratch/rig.key start_services
 helper ready "${services[@]}" || fail "not every service came up again"
-play
+play_inputs "$log"
 sleep 2  # the next STATUS
 stop TERM "${services[@]}"
 grep -q 'detector: ignored: SESSION_COMMAND was signed .* a recording' "$scratch/detector.log" ||
@@ -87,7 +81,7 @@ start_services
 helper ready "${services[@]}" || fail "not every service came up again"
 "$bin/live_helper" calibration "$views" >"$scratch/replayed" 2>"$scratch/gaps.log" &
 pids[listener]=$!
-play
+play_inputs "$log"
 wait_for listener || fail "no calibration from the log, or with gaps: $(cat "$scratch/gaps.log")"
 stop TERM "${services[@]}"
 helper print "$scratch/keyed/calibration.textproto" >"$scratch/live"

@@ -41,20 +41,7 @@ none_told() {  # WHAT: nothing of it reached any of them
 # Another machine, whose cable the bus's group leads to, and a process of ttl=1, which hears it.
 other_machine=
 if [ "${RGBDT_IN_NAMESPACE-}" = namespace ]; then
-  start machine unshare --net sleep 300
-  other_machine=/proc/${pids[machine]}/ns/net
-  for _ in $(seq 100); do
-    [ "$(readlink "$other_machine")" = "$(readlink /proc/self/ns/net)" ] || break
-    sleep 0.05
-  done
-  at_other() { nsenter "--net=$other_machine" "$@"; }
-  ip link add cable type veth peer name cable netns "${pids[machine]}"
-  ip address add 10.79.0.1/24 dev cable
-  ip link set cable up
-  at_other ip address add 10.79.0.2/24 dev cable
-  at_other ip link set cable up
-  at_other ip route add 239.0.0.0/8 dev cable
-  ip route replace 239.0.0.0/8 dev cable
+  start_other_machine
   addresses+=(10.79.0.1)
   start listener env "LCM_DEFAULT_URL=${LCM_DEFAULT_URL/ttl=0/ttl=1}" \
     "$bin/live_helper" hears_malformed CLOUD

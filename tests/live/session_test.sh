@@ -72,9 +72,7 @@ start_services
 helper ready "${services[@]}" || fail "not every service came up again"
 "$bin/live_helper" calibration "$views" >"$scratch/replayed" 2>"$scratch/gaps.log" &
 pids[listener]=$!
-lcm-logplayer "--lcm-url=$LCM_DEFAULT_URL" \
-  --regexp='^(RIG|LINE_SCAN|ENCODER|.*_IMAGE|CORNER_SELECTION|SESSION_COMMAND)$' "$log" \
-  >"$scratch/logplayer.log" 2>&1 || fail "lcm-logplayer failed"
+play_inputs "$log"
 wait_for listener || fail "no calibration from the log, or with gaps: $(cat "$scratch/gaps.log")"
 stop TERM "${services[@]}"
 no_gaps_in "${services[@]}"

@@ -20,7 +20,7 @@ namespace {
 constexpr Utime kLongestBeat = kMicrosecondsPerSecond;
 constexpr Utime kLinger = 200'000;  // a receiver has asked by then, several times
 constexpr std::size_t kAtOnce = 64;
-constexpr int kPatienceMs = 1000;  // for room in the kernel's buffer
+constexpr int kPatienceMs = 1000;  // for room in the kernel's buffers, since it last took one
 
 Utime Now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -62,14 +62,17 @@ std::string HostName() {
 // All of them. Throws InputError.
 void SendAll(int udp, std::vector<mmsghdr>* messages) {
   std::size_t sent = 0;
+  int waited_ms = 0;
   while (sent < messages->size()) {
     const int count = sendmmsg(udp, messages->data() + sent,
                                static_cast<unsigned>(messages->size() - sent), MSG_NOSIGNAL);
     if (count > 0) {
       sent += static_cast<std::size_t>(count);
+      waited_ms = 0;
     } else if (errno == ENOBUFS || errno == EAGAIN) {
-      pollfd room{udp, POLLOUT, 0};
-      if (poll(&room, 1, kPatienceMs) == 0) throw InputError(std::strerror(ENOBUFS));
+      // Not by POLLOUT: it tells of the socket's buffer, not of the interface's queue.
+      if (waited_ms++ == kPatienceMs) throw InputError(std::strerror(ENOBUFS));
+      poll(nullptr, 0, 1);
     } else if (errno != EINTR) {
       throw InputError(std::strerror(errno));
     }
