@@ -186,5 +186,8 @@ add_custom_target(installed DEPENDS man_pages)
 foreach(component ${rgbdt_components})
   add_dependencies(installed ${rgbdt_libraries_${component}})
 endforeach()
+if(TARGET rgbdt_python_package)
+  add_dependencies(installed rgbdt_python_package)
+endif()
 
 include(${CMAKE_CURRENT_LIST_DIR}/packages.cmake)

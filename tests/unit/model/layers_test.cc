@@ -98,6 +98,9 @@ const std::map<std::string, Folders>& Allowed() {
         "services/bags", "services/import"}},
       {"services/doctor", {"services/bus", "services/posix", "services/drivers/*"}},
       {"services/up", {"services/messages", "services/posix", "services/runtime"}},
+      {"services/python",
+       {"calib/methods", "calib/fuse", "calib/files/schema", "calib/files/points",
+        "calib/files/session", "calib/present/report", "services/messages", "services/bus"}},
       {"services/rgbdt", {"calib/*", "services/*"}},
       {"services", {"calib/*", "services/*"}},
       {"viewer/server", {"calib/present/layout"}},
@@ -181,6 +184,7 @@ const std::vector<Package>& Packages() {
       {"zstd", {"services/bags"}},
       {"lz4", {"services/bags"}},
       {"bzlib", {"services/bags"}},
+      {"pybind11/", {"services/python"}},
   };
   return packages;
 }
