@@ -1,6 +1,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "calib/files/atomic_file.h"
+#include "calib/files/points/cloud_files.h"
+#include "calib/files/points/las_files.h"
+#include "calib/files/points/map_files.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/exports.h"
 #include "calib/files/schema/rig_file.h"
@@ -14,7 +18,7 @@ namespace {
 struct ExportFlags {
   std::string dir, calibration, out, lidar_frame;
   std::vector<std::string> camera_frames;
-  bool anyway = false, mcap = false;
+  bool anyway = false, mcap = false, las = false;
 };
 
 FrameNames FramesOf(const ExportFlags& flags) {
@@ -78,8 +82,47 @@ int RunMcap(const ExportFlags& flags) {
   return EndsWith(true);
 }
 
+// LAZ and COPC need a library that Debian does not have.
+void RequireLas(const std::filesystem::path& out) {
+  const std::string name = out.filename().string();
+  const auto ends = [&](const std::string& end) {
+    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  };
+  if (ends(".las") || ends(".LAS")) return;
+  throw UsageError("--out is \"" + name +
+                   "\"; --las writes FILE.las, uncompressed. For LAZ or COPC: pdal "
+                   "translate FILE.las FILE.laz (or FILE.copc.laz)");
+}
+
+int RunLas(const ExportFlags& flags) {
+  if (!flags.calibration.empty() || flags.anyway || !flags.lidar_frame.empty() ||
+      !flags.camera_frames.empty()) {
+    throw UsageError(
+        "--calibration, --anyway and names of frames are of a session, not of a cloud");
+  }
+  const std::filesystem::path in = flags.dir;
+  const std::filesystem::path out =
+      PathOr(flags.out, std::filesystem::path(in).replace_extension(".las"));
+  RequireLas(out);
+  const std::string bytes = ReadWholeFile(in, kMostPointsBytes);
+  std::size_t points = 0;
+  if (IsMapPly(bytes)) {
+    const MapCloud map = ParseMapPly(bytes, in.string());
+    WriteLas(out, map);
+    points = map.size();
+  } else {
+    const RgbdtCloud cloud = ParseFused(bytes, in.string());
+    WriteLas(out, cloud);
+    points = cloud.size();
+  }
+  std::printf("%zu points, in metres, no coordinate system; wrote %s\n", points, out.c_str());
+  return EndsWith(true);
+}
+
 int RunExport(const ExportFlags& flags) {
+  if (flags.mcap && flags.las) throw UsageError("--mcap is of a log, --las of a cloud: give one");
   if (flags.mcap) return RunMcap(flags);
+  if (flags.las) return RunLas(flags);
   const std::filesystem::path dir = flags.dir;
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);
@@ -104,15 +147,22 @@ void AddExport(CommandLine* program) {
       "With --mcap, a log of lcm-logger as an MCAP that Foxglove, Rerun and PlotJuggler open: "
       "sweeps,\n"
       "fused clouds, images, lenses, transforms, poses and what the processes said.\n"
+      "With --las, a fused cloud or a map (PLY, PCD) as LAS 1.4 for CloudCompare, QGIS and PDAL: "
+      "metres\n"
+      "in steps of 0.1 mm, no coordinate system, colour, temperature [K] as an extra dimension.\n"
       "Examples: rgbdt export out/demo/session --lidar-frame velodyne \\\n"
       "            --camera-frame rgb=camera_optical_frame\n"
-      "          rgbdt export --mcap out/demo/session.lcmlog",
+      "          rgbdt export --mcap out/demo/session.lcmlog\n"
+      "          rgbdt export --las out/demo/fused.ply",
       [flags] { return RunExport(*flags); });
-  verb->Required("DIR", &flags->dir, "session directory; with --mcap: the log");
+  verb->Required("DIR", &flags->dir,
+                 "session directory; with --mcap: the log; with --las: the cloud");
   verb->Flag("--mcap", &flags->mcap, "a log as an MCAP of Foxglove's messages");
+  verb->Flag("--las", &flags->las, "a fused cloud or a map as LAS 1.4");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out,
-               "where to write; default: DIR/export, with --mcap the\nlog's name with .mcap");
+               "where to write; default: DIR/export, with --mcap the\nlog's name with .mcap, with "
+               "--las the cloud's with .las");
   verb->Option("--lidar-frame", &flags->lidar_frame,
                "what ROS calls the LIDAR's frame; default: its name in the rig file");
   verb->Option("--camera-frame", &flags->camera_frames,

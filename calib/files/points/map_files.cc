@@ -164,6 +164,11 @@ MapCloud ParseMapPly(const std::string& bytes, const std::string& where) {
   return FromFile(file, where);
 }
 
+bool IsMapPly(const std::string& bytes) {
+  const std::string head = bytes.substr(0, bytes.find("end_header"));
+  return head.rfind("ply", 0) == 0 && head.find("\ncomment " + kMapComment) != std::string::npos;
+}
+
 MapCloud ReadMapOrCloud(const std::filesystem::path& path) {
   const std::string bytes = ReadWholeFile(path, kMostPointsBytes);
   const std::string where = path.string();

@@ -20,6 +20,9 @@ MapCloud ReadMapPly(const std::filesystem::path& path);
 /// The same from bytes; `where` stands for the file in error messages.
 MapCloud ParseMapPly(const std::string& bytes, const std::string& where);
 
+/// Whether bytes are a map's, by how they begin; whatever follows.
+bool IsMapPly(const std::string& bytes);
+
 /// A map, a fused cloud or any other PLY or PCD with x y z [m] (ReadFused), by what the file begins
 /// with. What is not a map gets the frame "lidar" and voxel_m 0, each point counting once. Throws
 /// InputError naming the file where it cannot be read or has no point.

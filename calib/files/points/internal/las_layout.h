@@ -1,0 +1,36 @@
+#pragma once
+
+// The bytes of a LAS 1.4 file before its points.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "calib/model/time.h"
+
+namespace rgbdt::las {
+
+/// A number of a point for which LAS has no field.
+struct ExtraDimension {
+  enum class Type : std::uint8_t { kUint32 = 5, kFloat = 9 };  ///< the specification's numbers
+  std::string name, description;                               ///< 31 characters at most
+  Type type;
+};
+
+struct Layout {
+  std::uint64_t points = 0;
+  Eigen::Array3d least, most;  ///< [m], of the points as they are written
+  double step_m = 0;
+  std::vector<ExtraDimension> extra;  ///< in the order of the record
+  std::string text;                   ///< for a person
+};
+
+/// Public header and variable length records.
+std::string Head(const Layout& layout);
+
+/// Seconds of adjusted standard GPS time (since 6 January 1980, less 1e9).
+double GpsTime(Utime utime);
+
+}  // namespace rgbdt::las

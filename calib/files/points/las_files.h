@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "calib/model/map_cloud.h"
+#include "calib/model/rgbdt_cloud.h"
+
+namespace rgbdt {
+
+// LAS 1.4 (ASPRS, R15), point record format 7, as CloudCompare, QGIS and PDAL read it. Coordinates
+// are in metres, in steps of kLasStepM; there is no coordinate system, which a text record says,
+// with the frame. Colours have 16 bits (257 times the 8 of ours), intensity 0 to 65535, gps_time is
+// adjusted standard GPS time [s], leap seconds put in. What LAS has no field for are extra
+// dimensions by name: temperature [K], NaN where unknown, and those named below. All throw
+// InputError: vectors that differ in length, no point, a point farther than LAS holds at that step
+// (214 km), a file that cannot be written.
+
+inline constexpr double kLasStepM = 1e-4;
+
+/// Extra dimensions: temperature, temperature_sigma [K], valid (bit i: camera i saw the point; the
+/// text record names them).
+void WriteLas(const std::filesystem::path& path, const RgbdtCloud& cloud);
+
+/// Extra dimensions: temperature, count (points in the voxel). gps_time: when it was last seen.
+void WriteLas(const std::filesystem::path& path, const MapCloud& map);
+
+}  // namespace rgbdt
