@@ -245,6 +245,7 @@ int ShowSession(const Flags& flags) {
   auto detections = rgbdt::DetectSession(session, rgbdt::kAutoMethod, [](const std::string& line) {
                       std::fprintf(stderr, "%s\n", line.c_str());
                     }).views;
+  session = rgbdt::ListedOnly(std::move(session), detections);
   rgbdt::Report report = ReportOf(session, detections);
   const std::string why = WhyRefused(session, report);
   if (!why.empty()) {

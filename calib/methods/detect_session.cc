@@ -4,6 +4,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "calib/methods/board_check.h"
 #include "calib/methods/detect_view.h"
@@ -12,6 +13,8 @@
 
 namespace rgbdt {
 namespace {
+
+constexpr std::size_t kListed = 100;
 
 ViewDetection Unreadable(const Rig& rig, const std::string& view, const std::string& why) {
   ViewDetection detection;
@@ -62,12 +65,34 @@ void SayWhatIsSeenInstead(const Session& session, const CameraSpec& camera,
   }
 }
 
+// In the session's order; of those that could not be read not all: each takes memory, and a line in
+// all that is written.
+SessionDetection Collected(const Session& session, std::vector<std::optional<ViewDetection>> found,
+                           const std::vector<std::string>& unreadable) {
+  const auto read = std::count_if(found.begin(), found.end(),
+                                  [](const auto& detection) { return detection.has_value(); });
+  const std::size_t most = std::max(kListed, static_cast<std::size_t>(read));
+  SessionDetection detection;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::string& name = session.views[i];
+    if (found[i]) {
+      detection.views.push_back(std::move(*found[i]));
+      continue;
+    }
+    if (detection.unreadable.size() < most) {
+      detection.views.push_back(Unreadable(session.rig, name, unreadable[i]));
+    }
+    detection.unreadable.push_back("view " + name + ": " + unreadable[i]);
+  }
+  return detection;
+}
+
 }  // namespace
 
 SessionDetection DetectSession(const Session& session, const std::string& method,
                                const Progress& progress) {
   const std::size_t count = session.views.size();
-  std::vector<ViewDetection> detections(count);
+  std::vector<std::optional<ViewDetection>> found(count);
   std::vector<std::string> unreadable(count);
   std::size_t done = 0;
   std::mutex mutex;
@@ -75,27 +100,39 @@ SessionDetection DetectSession(const Session& session, const std::string& method
     const auto i = static_cast<std::size_t>(number);
     const std::string& name = session.views[i];
     try {
-      detections[i] = DetectView(session.rig, ReadView(session, name), method);
+      found[i] = DetectView(session.rig, ReadView(session, name), method);
     } catch (const std::exception& e) {
       unreadable[i] = e.what();
-      detections[i] = Unreadable(session.rig, name, e.what());
     }
     const std::lock_guard<std::mutex> lock(mutex);
     progress("[" + std::to_string(++done) + "/" + std::to_string(count) + "] view " + name + ": " +
-             (unreadable[i].empty() ? BriefReport(detections[i]) : "not read") +
-             (detections[i].heldout ? " (held out)" : ""));
+             (found[i] ? BriefReport(*found[i]) : "not read") +
+             (found[i] && found[i]->heldout ? " (held out)" : ""));
   });
 
+  SessionDetection detection = Collected(session, std::move(found), unreadable);
   for (const CameraSpec& camera : session.rig.cameras) {
-    SayWhatIsSeenInstead(session, camera, &detections);
-  }
-  SessionDetection detection{std::move(detections), {}};
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!unreadable[i].empty()) {
-      detection.unreadable.push_back("view " + session.views[i] + ": " + unreadable[i]);
-    }
+    SayWhatIsSeenInstead(session, camera, &detection.views);
   }
   return detection;
+}
+
+Session ListedOnly(Session session, const std::vector<ViewDetection>& views) {
+  session.views.clear();
+  for (const ViewDetection& view : views) session.views.push_back(view.view);
+  return session;
+}
+
+Report WithUnlisted(Report report, const Session& session,
+                    const std::vector<ViewDetection>& views) {
+  if (views.size() >= session.views.size()) return report;
+  const std::string warning = std::to_string(session.views.size() - views.size()) +
+                              " more views could not be read; they are neither listed nor counted";
+  for (CameraReport& camera : report.cameras) {
+    auto& all = camera.warnings;  // evaluate takes over those of calibrate
+    if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+  }
+  return report;
 }
 
 }  // namespace rgbdt

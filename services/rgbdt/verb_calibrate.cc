@@ -56,10 +56,12 @@ std::set<std::string> LeftOutOf(const CalibrateFlags& flags, const Session& sess
 // Writes and prints one result, made without the views that are left out.
 ExitCode Finish(const Place& place, const Session& session, const SessionDetection& detection,
                 Report report, const std::set<std::string>& left_out = {}) {
+  report = WithUnlisted(std::move(report), session, detection.views);
   const std::string wrote = WriteIfSolved(place.out, session.rig, report);
   if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
-  WriteReportFiles(place.out, {session, detection.views, reports, {left_out, {}, ""}});
+  const Session listed = ListedOnly(session, detection.views);
+  WriteReportFiles(place.out, {listed, detection.views, reports, {left_out, {}, ""}});
   PrintReport(report, wrote, detection.unreadable);
   return WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report));
 }
@@ -85,14 +87,15 @@ Session OpenAll(const CalibrateFlags& flags) {
   return JoinSessions(std::move(sessions));
 }
 
-// Each part's views of a joined session, in its order.
+// Each part's views of a joined session, in its order. A view is called "PART/VIEW".
 std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewDetection>& views) {
   std::vector<SessionViews> sessions;
-  auto view = views.begin();
   for (const Session::Part& part : joined.parts) {
-    const auto count = static_cast<std::ptrdiff_t>(part.session.views.size());
-    sessions.push_back({part.name, {view, std::next(view, count)}});
-    view += count;
+    SessionViews& of_part = sessions.emplace_back(SessionViews{part.name, {}});
+    std::copy_if(views.begin(), views.end(), std::back_inserter(of_part.detections),
+                 [&](const ViewDetection& view) {
+                   return view.view.substr(0, view.view.rfind('/')) == part.name;
+                 });
   }
   return sessions;
 }

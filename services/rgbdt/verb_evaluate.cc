@@ -74,10 +74,12 @@ int RunEvaluate(const EvaluateFlags& flags) {
   RequireReadable(session, detection.unreadable);
   Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(session.root / "report.json", &report);
+  report = WithUnlisted(std::move(report), session, detection.views);
   const auto truth = TruthPath(flags.truth, session.root);
   if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
-  WriteReportFiles(out, {session, detection.views, reports});
+  const Session listed = ListedOnly(session, detection.views);
+  WriteReportFiles(out, {listed, detection.views, reports});
   PrintReport(report, "wrote to " + out.string() + ":", detection.unreadable);
   PrintUnreadable(detection.unreadable);
   return EndsWith(detection.unreadable.empty());
