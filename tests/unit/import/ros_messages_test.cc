@@ -142,7 +142,9 @@ std::string LivoxMessage(BagEncoding encoding, bool big_endian, std::uint32_t sa
 }
 
 TEST(RosMessages, ALivoxsOwnOfEveryLayout) {
-  for (const auto& [encoding, big_endian] : kLayouts) {
+  for (const auto& layout : kLayouts) {
+    const BagEncoding encoding = layout.encoding;
+    const bool big_endian = layout.big_endian;
     const std::string whole = LivoxMessage(encoding, big_endian, 3, 3);
     const ros::PointCloud cloud = ros::DecodeLivoxCloud(MessageOf(whole), encoding);
     EXPECT_EQ(cloud.header.utime, 1'700'000'000'000'000);
