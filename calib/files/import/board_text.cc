@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "calib/model/beam_priors.h"
 #include "calib/model/errors.h"
@@ -101,8 +102,10 @@ Target ParseBoard(const std::string& text) {
   reader.Require("x");
   board.squares_y = reader.Number<int>("a number of squares");
   if (reader.Take("corners")) {
-    ++board.squares_x;
-    ++board.squares_y;
+    // The largest int is refused below, and is not to overflow before.
+    for (int* squares : {&board.squares_x, &board.squares_y}) {
+      if (*squares < std::numeric_limits<int>::max()) ++*squares;
+    }
   } else {
     reader.Take("squares");
   }
