@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/cloud.h"
 #include "calib/model/image.h"
@@ -51,30 +52,6 @@ py::array Pixels(const py::object& self) {
   return of(pixels.ptr<std::uint8_t>());
 }
 
-const char* FormatName(const Image& image) {
-  switch (image.format) {
-    case PixelFormat::kMono8:
-      return "MONO8";
-    case PixelFormat::kMono16:
-      return "MONO16";
-    case PixelFormat::kBayerRg8:
-      return "BAYER_RG8";
-    case PixelFormat::kBayerGr8:
-      return "BAYER_GR8";
-    case PixelFormat::kBayerGb8:
-      return "BAYER_GB8";
-    case PixelFormat::kBayerBg8:
-      return "BAYER_BG8";
-    case PixelFormat::kBgr8:
-      return "BGR8";
-    case PixelFormat::kJpeg:
-      return "JPEG";
-    case PixelFormat::kPng:
-      return "PNG";
-  }
-  return "";
-}
-
 void BindCloud(py::module_* module) {
   py::class_<Cloud, std::shared_ptr<Cloud>>(*module, "Cloud")
       .def_readonly("sweep_utime", &Cloud::sweep_utime)
@@ -99,7 +76,7 @@ void BindImage(py::module_* module) {
       .def_readonly("camera", &Image::camera)
       .def_readonly("utime", &Image::utime)
       .def_readonly("exposure_s", &Image::exposure_s)
-      .def_property_readonly("format", &FormatName)
+      .def_property_readonly("format", [](const Image& image) { return NameOf(image.format); })
       .def_property_readonly("pixels", &Pixels);
 }
 

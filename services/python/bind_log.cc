@@ -47,7 +47,7 @@ void BindLog(py::module_* module) {
              return std::make_unique<LogReader>(path.string());
            }),
            py::arg("path"))
-      .def("next", &LogReader::Next, py::call_guard<py::gil_scoped_release>())
+      .def("next", &LogReader::Next)  // under the interpreter's lock: threads may share a log
       .def_property_readonly("unreadable_bytes", &LogReader::unreadable_bytes);
   module->def("decode_arrays", &DecodeArrays, py::arg("channel"), py::arg("data"));
 }

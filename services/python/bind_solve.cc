@@ -41,7 +41,8 @@ Calibrated CalibrateDir(const std::filesystem::path& dir, const std::string& met
     throw InputError("no view of " + session.Title() +
                      " could be read; the first: " + detection.unreadable.front());
   }
-  Report report = CalibrateWithout(session.rig, detection.views, without, options);
+  Report report = WithUnlisted(CalibrateWithout(session.rig, detection.views, without, options),
+                               session, detection.views);
   const std::filesystem::path truth = session.root / "truth.textproto";
   Calibration calibration = JudgedCalibration(report, session.rig);
   if (std::filesystem::exists(truth)) report = WithTruth(std::move(report), ReadTruth(truth));

@@ -84,12 +84,8 @@ int RunMcap(const ExportFlags& flags) {
 
 // LAZ and COPC need a library that Debian does not have.
 void RequireLas(const std::filesystem::path& out) {
-  const std::string name = out.filename().string();
-  const auto ends = [&](const std::string& end) {
-    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-  };
-  if (ends(".las") || ends(".LAS")) return;
-  throw UsageError("--out is \"" + name +
+  if (out.extension() == ".las" || out.extension() == ".LAS") return;
+  throw UsageError("--out is \"" + out.filename().string() +
                    "\"; --las writes FILE.las, uncompressed. For LAZ or COPC: pdal "
                    "translate FILE.las FILE.laz (or FILE.copc.laz)");
 }

@@ -16,6 +16,7 @@
 
 #include "calib/model/calibration.h"
 #include "calib/model/errors.h"
+#include "calib/model/map_cloud.h"
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/rig.h"
 #include "calib/model/view_detection.h"
@@ -99,6 +100,7 @@ View MakeView();
 RangeErrors MakeRangeErrors();
 Report MakeReport();
 RgbdtCloud MakeRgbdtCloud(int columns = 60, int rows = 40);
+MapCloud MakeMap();  ///< two voxels
 
 void ExpectSame(const Rigid3& a, const Rigid3& b);
 void ExpectSame(const Cloud& a, const Cloud& b);

@@ -246,6 +246,17 @@ RgbdtCloud MakeRgbdtCloud(int columns, int rows) {
   return cloud;
 }
 
+MapCloud MakeMap() {
+  MapCloud map;
+  map.voxel_m = 0.1;
+  map.points = {{1.25F, -2.5F, 0.1F}, {1e4F, 0, -3}};
+  map.rgb = {{{1, 128, 255}, {0, 0, 0}}};
+  map.temperature_k = {300.25F, kNan};
+  map.count = {7, 4'000'000'000U};
+  map.last_seen = {kNow, kNow + 1};
+  return map;
+}
+
 void ExpectSame(const Rigid3& a, const Rigid3& b) {
   EXPECT_EQ(a.rotation.coeffs(), b.rotation.coeffs());
   EXPECT_EQ(a.translation, b.translation);

@@ -99,7 +99,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/doctor", {"services/bus", "services/posix", "services/drivers/*"}},
       {"services/up", {"services/messages", "services/posix", "services/runtime"}},
       {"services/python",
-       {"calib/methods", "calib/fuse", "calib/files/schema", "calib/files/points",
+       {"calib/methods", "calib/fuse", "calib/files", "calib/files/schema", "calib/files/points",
         "calib/files/session", "calib/present/report", "services/messages", "services/bus"}},
       {"services/rgbdt", {"calib/*", "services/*"}},
       {"services", {"calib/*", "services/*"}},

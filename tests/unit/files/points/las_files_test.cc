@@ -9,34 +9,24 @@ namespace {
 
 using test::ErrorOf;
 using test::kNan;
+using test::MakeMap;
 using test::TempDir;
 using ::testing::HasSubstr;
-
-MapCloud SmallMap() {
-  MapCloud map;
-  map.voxel_m = 0.1;
-  map.points = {{1.25F, -2.5F, 0.1F}, {1e4F, 0, -3}};
-  map.rgb = {{{1, 128, 255}, {0, 0, 0}}};
-  map.temperature_k = {300.25F, kNan};
-  map.count = {7, 4'000'000'000U};
-  map.last_seen = {1'600'000'000'000'000, 0};
-  return map;
-}
 
 // What the files hold, tests/cli/read_las.py reads.
 TEST(LasFiles, ABadCloudIsNotWritten) {
   const TempDir dir;
   EXPECT_THAT(ErrorOf([&] { WriteLas(dir / "a.las", MapCloud{}); }), HasSubstr("no points"));
-  MapCloud map = SmallMap();
+  MapCloud map = MakeMap();
   map.count.pop_back();
   EXPECT_THAT(ErrorOf([&] { WriteLas(dir / "a.las", map); }), HasSubstr("2 points but 1"));
   for (const float wrong : {kNan, 2.2e5F, -2.2e5F}) {
-    map = SmallMap();
+    map = MakeMap();
     map.points[1].z() = wrong;
     EXPECT_THAT(ErrorOf([&] { WriteLas(dir / "a.las", map); }), HasSubstr("214748")) << wrong;
   }
   EXPECT_FALSE(std::filesystem::exists(dir / "a.las"));
-  WriteLas(dir / "a.las", SmallMap());
+  WriteLas(dir / "a.las", MakeMap());
   EXPECT_EQ(ReadWholeFile(dir / "a.las").substr(0, 4), "LASF");
 }
 

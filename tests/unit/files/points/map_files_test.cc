@@ -10,19 +10,9 @@ namespace {
 using test::ErrorOf;
 using test::kNan;
 using test::kNow;
+using test::MakeMap;
 using test::TempDir;
 using ::testing::HasSubstr;
-
-MapCloud SmallMap() {
-  MapCloud map;
-  map.voxel_m = 0.1;
-  map.points = {{1.25F, -2.5F, 0.1F}, {1e4F, 0, -3}};
-  map.rgb = {{{1, 128, 255}, {0, 0, 0}}};
-  map.temperature_k = {300.25F, kNan};
-  map.count = {7, 4'000'000'000U};
-  map.last_seen = {kNow, kNow + 1};
-  return map;
-}
 
 std::string AsciiPly(const std::string& properties, const std::string& data,
                      const std::string& count = "2") {
@@ -32,7 +22,7 @@ std::string AsciiPly(const std::string& properties, const std::string& data,
 
 TEST(MapFiles, ReadsBackWhatItWrote) {
   const TempDir dir;
-  const MapCloud map = SmallMap();
+  const MapCloud map = MakeMap();
   WriteMapPly(dir / "map.ply", map);
   const MapCloud back = ReadMapPly(dir / "map.ply");
   EXPECT_EQ(back.points, map.points);
@@ -48,7 +38,7 @@ TEST(MapFiles, ReadsBackWhatItWrote) {
 TEST(MapFiles, ABadMapIsNotWritten) {
   const TempDir dir;
   EXPECT_THAT(ErrorOf([&] { WriteMapPly(dir / "map.ply", {}); }), HasSubstr("empty"));
-  MapCloud map = SmallMap();
+  MapCloud map = MakeMap();
   map.count.pop_back();
   EXPECT_THAT(ErrorOf([&] { WriteMapPly(dir / "map.ply", map); }), HasSubstr("2 points but 1"));
   EXPECT_FALSE(std::filesystem::exists(dir / "map.ply"));
@@ -56,7 +46,7 @@ TEST(MapFiles, ABadMapIsNotWritten) {
 
 TEST(MapFiles, CutShortAnywhereItIsRefused) {
   const TempDir dir;
-  WriteMapPly(dir / "map.ply", SmallMap());
+  WriteMapPly(dir / "map.ply", MakeMap());
   const std::string bytes = ReadWholeFile(dir / "map.ply");
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THAT(ErrorOf([&] { ParseMapPly(bytes.substr(0, size), "m.ply"); }), HasSubstr("m.ply"));
@@ -66,7 +56,7 @@ TEST(MapFiles, CutShortAnywhereItIsRefused) {
 // Any byte may be wrong: an error or a map, never anything else.
 TEST(MapFiles, DamagedAnywhereItIsReadOrRefused) {
   const TempDir dir;
-  WriteMapPly(dir / "map.ply", SmallMap());
+  WriteMapPly(dir / "map.ply", MakeMap());
   const std::string bytes = ReadWholeFile(dir / "map.ply");
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     for (const char wrong : {'\0', '9', '\xff', '\n', ' '}) {
