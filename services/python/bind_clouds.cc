@@ -15,14 +15,15 @@ namespace {
 
 template <typename Owner, typename Value>
 auto Column(std::vector<Value> Owner::*values) {
-  return
-      [values](py::object self) { return SharedOrNone(self.cast<const Owner&>().*values, self); };
+  return [values](const py::object& self) {
+    return SharedOrNone(self.cast<const Owner&>().*values, self);
+  };
 }
 
 // Of a fused cloud all columns are there, if perhaps of no point.
 template <typename Value>
 auto FusedColumn(std::vector<Value> RgbdtCloud::*values) {
-  return [values](py::object self) {
+  return [values](const py::object& self) {
     const auto& column = self.cast<const RgbdtCloud&>().*values;
     return Shared(column.data(), {Length(column.size())}, self);
   };
