@@ -57,6 +57,7 @@ std::uint16_t Intensity16(float intensity) {
 std::vector<Column> Columns(const Points& points, const std::vector<float>* intensity,
                             const std::vector<Utime>& utime, const Colours& rgb) {
   std::vector<Column> columns;
+  columns.reserve(15);  // with extra dimensions
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back(MakeColumn<std::int32_t>(
         "xyz", [&points, axis](std::size_t i) { return Steps(points[i][axis]); }));

@@ -20,7 +20,6 @@ namespace rgbdt {
 namespace {
 
 using test::RosBytes;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
