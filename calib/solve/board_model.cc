@@ -34,8 +34,28 @@ double BoardPriors::Sigma(int unknown) const {
   if (unknown == kRangeOffset) return range_offset_sigma_m;
   if (unknown == kBeamsMeet) return beams_meet_sigma_m;
   if (unknown == kFringe) return fringe_sigma_m;
+  if (unknown == kBowX || unknown == kTwist || unknown == kBowY) return bow_sigma_m;
   if (unknown == kPrintWidth || unknown == kPrintHeight) return print_sigma;
   return outline_sigma_m;
+}
+
+Eigen::Vector3d BowFactors(const Target& target, const Eigen::Vector2d& at) {
+  const double x = 2 * at.x() / target.width_m;
+  const double y = 2 * at.y() / target.height_m;
+  return {x * x - 1.0 / 3, x * y, y * y - 1.0 / 3};
+}
+
+double BowAt(const Target& target, const std::array<double, kSharedUnknowns>& shared,
+             const Eigen::Vector2d& at) {
+  return BowFactors(target, at).dot(Eigen::Vector3d(shared[kBowX], shared[kTwist], shared[kBowY]));
+}
+
+Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kSharedUnknowns>& shared,
+                            const Eigen::Vector2d& at) {
+  const double x = 2 / target.width_m;
+  const double y = 2 / target.height_m;
+  return {2 * x * x * at.x() * shared[kBowX] + x * y * at.y() * shared[kTwist],
+          2 * y * y * at.y() * shared[kBowY] + x * y * at.x() * shared[kTwist]};
 }
 
 Target PrintedAs(const Target& target, const std::array<double, kSharedUnknowns>& shared) {
@@ -113,13 +133,20 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                  out.per_thickness * shared[kThickness];
   const double blur = priors.blur_rad * out.per_rad;
   out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
-  out.by_beams_meet = outward.dot(by_meet.head<2>() - by_meet.z() * slope) +
-                      shift / upright * by_meet.z() / beam.z();
+  const double across = outward.dot(slope);
+  const Eigen::Vector2d at_by_meet = by_meet.head<2>() - by_meet.z() * slope;
+  out.by_beams_meet = outward.dot(at_by_meet) + shift / upright * by_meet.z() / beam.z();
   // The board moves by delta under the beam: a point at (x, y, 0) goes the other way in its axes,
   // and the beam meets the plane elsewhere by the slope.
-  const double across = outward.dot(slope);
-  out.by_target << across * at.y(), -across * at.x(), outward.x() * at.y() - outward.y() * at.x(),
-      -outward.x(), -outward.y(), across;
+  // A rim that lies behind the mean plane is met there farther in.
+  out.per_bow = across * BowFactors(target, at).transpose();
+  const double bow = BowAt(target, shared, at);
+  const Eigen::RowVector2d bow_slope = BowSlope(target, shared, at);
+  out.beyond_m += across * bow;
+  Eigen::Matrix<double, 2, 6> at_by_target;
+  at_by_target << slope * at.y(), -slope * at.x(), Eigen::Vector2d(at.y(), -at.x()),
+      -Eigen::Matrix2d::Identity(), slope;
+  out.by_target = outward.transpose() * at_by_target;
   // The same motion changes the range, the slant and how much of the rim is seen.
   const Eigen::Vector3d turned = Eigen::Vector3d(outward.x(), outward.y(), 0).cross(beam);
   Eigen::Matrix<double, 1, 6> by_range, by_sideways, by_depth;  // by_depth: of beam.z
@@ -130,9 +157,10 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   out.by_target -= (shift * by_range + (shift * range + shared[kFringe]) * sideways /
                                            (upright * upright) * by_sideways) /
                    upright;
-  if (out.per_thickness > 0) {
-    out.by_target += shared[kThickness] / beam.z() * (by_sideways - across * by_depth);
-  }
+  const Eigen::Matrix<double, 1, 6> by_across = (by_sideways - across * by_depth) / beam.z();
+  if (out.per_thickness > 0) out.by_target += shared[kThickness] * by_across;
+  out.by_target += bow * by_across + across * bow_slope * at_by_target;
+  out.by_beams_meet += across * bow_slope.dot(at_by_meet);
   return out;
 }
 

@@ -39,7 +39,10 @@ constexpr NuisanceLine kNuisances[] = {
     {kPrintWidth, "pattern's width, found less given", "mm/m"},
     {kPrintHeight, "pattern's height, found less given", "mm/m"},
     {kBeamsMeet, "radius at which the LIDAR's beams meet", "mm"},
-    {kFringe, "beam edge, at any range", "mm"}};
+    {kFringe, "beam edge, at any range", "mm"},
+    {kBowX, "board's shape, its ends behind its middle along its width", "mm"},
+    {kTwist, "board's shape, twist", "mm"},
+    {kBowY, "board's shape, its ends behind its middle along its height", "mm"}};
 
 // An unknown that all views share, with its sigma, the variance factor counted in.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {

@@ -16,6 +16,7 @@ from trials import column, figure, mean, median, pick
 UNLIKELY = 22.5  # chi-square of six: beyond it once in a thousand times
 CASES = {"random": "halves", "random_exact_lens": "halves_exact_lens",
          "random_own_lens": "halves_own_lens", "in_order": "in_order"}
+SIDES = (("top", "tab:blue"), ("right", "tab:orange"), ("bottom", "tab:green"), ("left", "tab:red"))
 DIFFERENCES = (("rotation_deg", "deg"), ("translation_mm", "mm"))
 COLUMNS = (*(key for key, _ in DIFFERENCES), "px")
 SINGLE = ("used", "sigma_deg", "sigma_mm", "variance_factor", "edge_plane_deg", "edge_plane_mm",
@@ -30,6 +31,7 @@ class Rig:
         self.splits = pick(trials.read(parts, f"real-{name}"), part=f"real-{name}")
         self.rings = pick(trials.read(parts, f"rings-{name}"), part=f"rings-{name}")
         self.views = pick(trials.read(parts, f"views-{name}"), part=f"views-{name}")
+        self.sides = pick(trials.read(parts, f"sides-{name}"), part=f"sides-{name}")
         with open(parts / f"facts-{name}.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.facts = {row["fact"]: (float(row["value"]), row["unit"]) for row in rows}
@@ -174,14 +176,27 @@ def draw_views(axes, rig):
              title=f"{rig.name}: the board turned about its axes")
 
 
+def draw_sides(axes, rig):
+    """What no unknown of the solve explains: each side's place in the cloud, view by view."""
+    for side, (name, colour) in enumerate(SIDES):
+        own = pick(rig.sides, side=side)
+        axes.errorbar(column(own, "range_m"), column(own, "shift_mrad"), column(own, "sigma_mrad"),
+                      fmt="o", ms=3, lw=0.8, c=colour, label=name)
+    axes.axhline(0, c="k", lw=0.8)
+    axes.legend(fontsize=8)
+    axes.set(xlabel="range [m]", ylabel="outwards of where the solve has it [mrad], 1 sigma",
+             title=f"{rig.name}: sides of the board in the cloud")
+
+
 def draw(rigs, path):
-    plot, axes = plt.subplots(len(rigs), 5, figsize=(25, 4.5 * len(rigs)), squeeze=False)
+    plot, axes = plt.subplots(len(rigs), 6, figsize=(30, 4.5 * len(rigs)), squeeze=False)
     for row, rig in zip(axes, rigs):
         for axis, (key, unit) in zip(row, DIFFERENCES):
             draw_differences(axis, rig, key, unit)
         draw_rings(row[2], rig)
         draw_lens(row[3], rig)
         draw_views(row[4], rig)
+        draw_sides(row[5], rig)
     plot.tight_layout()
     plot.savefig(path, dpi=120)
 

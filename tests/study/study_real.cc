@@ -1,5 +1,5 @@
 // How a recorded session agrees with itself: there is no truth.
-//   study_real SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV
+//   study_real SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV SIDES_CSV
 // SESSION: a session directory of one camera; each view is detected once, held out or not.
 // SPLITS_CSV: random halves of the views, solved apart, a line each, with the lens as the rig file
 // has it, with it taken for exact, and with the one that all views' images give, as it is with
@@ -9,13 +9,11 @@
 // the report has it. The given lens against the session's own: found from
 // the same images as `rgbdt intrinsics` does. RINGS_CSV: how far each ring's points on a board lie
 // behind its plane, along their beams, before and after the cloud is corrected by what the solve
-// found; range_sd_ratio: the RMS of all of them after over before. VIEWS_CSV: by how much the board
-// in each view's cloud is displaced from where its image and the result put it, about and along the
-// target's axes, with the sigma that image and cloud state.
+// found; range_sd_ratio: the RMS of all of them after over before. VIEWS_CSV, SIDES_CSV: what the
+// solve leaves of each view and of each side of its board (recorded_residuals.h).
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <random>
@@ -24,7 +22,6 @@
 #include <vector>
 
 #include "calib/camera/intrinsics.h"
-#include "calib/detect/cloud/plane_regions.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/calibrate.h"
 #include "calib/methods/detect_view.h"
@@ -32,27 +29,16 @@
 #include "calib/model/range_errors.h"
 #include "calib/present/report/verdict.h"
 #include "calib/solve/compare.h"
-#include "calib/solve/guess_cameras.h"
-#include "calib/solve/internal/joint_solve.h"
-#include "calib/solve/internal/view_equations.h"
+#include "tests/study/recorded_residuals.h"
 #include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kInside95 = 12.592;    // chi-square of six degrees of freedom: 95% lie below
-constexpr double kBoardMarginM = 0.05;  // of the board's border, whose points are no plane's
-constexpr double kMostOffPlaneM = 0.1;
+constexpr double kInside95 = 12.592;  // chi-square of six degrees of freedom: 95% lie below
 
 using Detections = std::vector<ViewDetection>;
-
-/// What was recorded, and what detection makes of it.
-struct Recorded {
-  Rig rig;
-  std::vector<Cloud> clouds;  ///< one a view
-  Detections views;
-};
 
 Recorded Record(const std::string& dir) {
   const Session session = OpenSession(dir);
@@ -92,13 +78,6 @@ std::optional<Pose> PoseOf(const CameraReport& report) {
 double Chi2(const Pose& a, const Rigid3& b, const Matrix6d& covariance) {
   const Vector6d delta = Log(a.camera_from_lidar * b.Inverse());
   return delta.dot(SolveSymmetric(covariance, delta));
-}
-
-std::vector<GuessedCamera> Guessed(const Rig& rig, const Detections& views) {
-  CalibrateOptions options;
-  options.first_guess.accept = kVotingGate;  // as CalibrateByBoards does
-  options.first_guess.range_offset_sigma_m = rig.lidar.range_offset_sigma_m;
-  return GuessCameras(options, {ViewsOf(rig.cameras.at(0), views)});
 }
 
 /// The rig with the lens that the session's own images give; nothing where that failed, or where
@@ -253,125 +232,6 @@ void AddComparisons(const Recorded& recorded, const CameraReport& whole, Facts* 
   if (given && own) facts->AddApart("lens", *given, *own, own->covariance);
 }
 
-/// Distances behind the board's plane along the beam [m], of one ring.
-struct Ring {
-  int points = 0;
-  double sum = 0, squares = 0;
-};
-using Rings = std::map<int, Ring>;
-
-// Of the points on a board, the plane fitted to these very points.
-Rings RingsOnBoard(const Cloud& cloud, const Rigid3& lidar_from_target, const Target& target) {
-  Rings rings;
-  if (cloud.ring.size() != cloud.size()) return rings;
-  const Rigid3 target_from_lidar = lidar_from_target.Inverse();
-  std::vector<std::size_t> on;
-  PlaneSums sums;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.IsHit(i)) continue;
-    const Eigen::Vector3d point = cloud.points[i].cast<double>();
-    const Eigen::Vector3d on_target = target_from_lidar * point;
-    if (std::abs(on_target.x()) > target.width_m / 2 - kBoardMarginM ||
-        std::abs(on_target.y()) > target.height_m / 2 - kBoardMarginM ||
-        std::abs(on_target.z()) > kMostOffPlaneM) {
-      continue;
-    }
-    on.push_back(i);
-    sums.Add(point);
-  }
-  if (on.size() < 10) return rings;
-  const Plane plane = sums.Fit();
-  for (const std::size_t i : on) {
-    const Eigen::Vector3d point = cloud.points[i].cast<double>();
-    const double behind = plane.Signed(point) / plane.normal.dot(point.normalized());
-    Ring& ring = rings[cloud.ring[i]];
-    ++ring.points;
-    ring.sum += behind;
-    ring.squares += behind * behind;
-  }
-  return rings;
-}
-
-// Of the boards that the views chose, as measured and corrected by what the solve found.
-bool WriteRings(const Recorded& recorded, const RangeErrors& errors, const std::string& path,
-                Facts* facts) {
-  std::ofstream csv(path);
-  csv << "view,corrected,ring,points,mean_mm,rms_mm\n";
-  const std::vector<GuessedCamera> cameras = Guessed(recorded.rig, recorded.views);
-  double squares[2] = {0, 0};
-  for (std::size_t v = 0; v < recorded.views.size(); ++v) {
-    const CameraView* view = cameras.at(0).views.Find(recorded.views[v].view);
-    if (view == nullptr || !view->cloud->pose) continue;
-    for (const int corrected : {0, 1}) {
-      const Cloud& measured = recorded.clouds[v];
-      const Rings rings = RingsOnBoard(corrected == 1 ? Corrected(measured, errors) : measured,
-                                       view->cloud->pose->sensor_from_target, recorded.rig.target);
-      for (const auto& [number, ring] : rings) {
-        csv << view->view << ',' << corrected << ',' << number << ',' << ring.points << ','
-            << 1e3 * ring.sum / ring.points << ',' << 1e3 * std::sqrt(ring.squares / ring.points)
-            << '\n';
-        squares[corrected] += ring.squares;
-      }
-    }
-  }
-  if (squares[0] > 0) facts->Add("range_sd_ratio", std::sqrt(squares[1] / squares[0]));
-  return static_cast<bool>(csv.flush());
-}
-
-// A board's pose by what a view has of it in this problem, all that views share as the solution has
-// it.
-struct BoardPose {
-  Rigid3 lidar_from_target;
-  Matrix6d covariance;  // of a right delta
-};
-
-BoardPose BoardBy(const BoardProblem& problem, BoardState state, std::size_t view) {
-  constexpr int kRounds = 20;
-  Matrix6d covariance;
-  for (int round = 0; round < kRounds; ++round) {
-    const ViewEquations equations(problem, state, view);
-    const ViewEquations::OwnMatrix h = equations.h().topLeftCorner<kOwnUnknowns, kOwnUnknowns>();
-    const Eigen::VectorXd step =
-        SolveSymmetric(Eigen::MatrixXd(h), Eigen::VectorXd(equations.g().head<kOwnUnknowns>()));
-    Rigid3& board = state.lidar_from_target[view];
-    board = board * Exp(Vector6d(step.head<6>()));
-    for (std::size_t side = 0; side < 4; ++side) {
-      state.side_shift[view][side] += step[6 + static_cast<Eigen::Index>(side)];
-    }
-    covariance = InverseOfSymmetric(Eigen::MatrixXd(h)).topLeftCorner<6, 6>();
-  }
-  return {state.lidar_from_target[view], covariance};
-}
-
-// The board as each view's cloud alone has it against how its image alone has it.
-bool WriteViews(const Recorded& recorded, const std::string& path) {
-  constexpr const char* kAxes[] = {"about x", "about y", "about z",
-                                   "along x", "along y", "along z"};
-  std::ofstream csv(path);
-  csv << "view,axis,value,sigma\n";
-  std::vector<GuessedCamera> cameras = Guessed(recorded.rig, recorded.views);
-  if (!cameras.at(0).guess.camera_from_lidar) return static_cast<bool>(csv.flush());
-  const JointResult result = SolveJointly(MakeJointProblem(
-      recorded.rig.target, std::move(cameras), recorded.rig.lidar.range_offset_sigma_m));
-  BoardProblem by_cloud = result.joint.problem;
-  BoardProblem by_image = result.joint.problem;
-  for (BoardView& view : by_cloud.views) view.images.clear();
-  for (BoardView& view : by_image.views) {
-    view.cloud.crossings.clear();
-    view.cloud.scatter_sigma_m = 0;
-  }
-  for (std::size_t v = 0; v < by_cloud.views.size(); ++v) {
-    const BoardPose cloud = BoardBy(by_cloud, result.solution.state, v);
-    const BoardPose image = BoardBy(by_image, result.solution.state, v);
-    const Vector6d off = Log(image.lidar_from_target.Inverse() * cloud.lidar_from_target);
-    for (int k = 0; k < 6; ++k) {
-      csv << by_cloud.views[v].name << ',' << kAxes[k] << ',' << 1e3 * off[k] << ','
-          << 1e3 * std::sqrt(cloud.covariance(k, k) + image.covariance(k, k)) << '\n';
-    }
-  }
-  return static_cast<bool>(csv.flush());
-}
-
 // Only what was found; all views are counted.
 Recorded FoundOf(Recorded recorded, Facts* facts) {
   facts->Add("recorded", static_cast<double>(recorded.views.size()));
@@ -402,11 +262,11 @@ void Run(const std::vector<std::string>& arguments) {
   }
   splits.Recorded(recorded.rig);
   const RangeErrors errors = whole.calibration.range_errors.value_or(RangeErrors{});
-  const bool written =
-      WriteRings(recorded, errors, arguments[5], &facts) && WriteViews(recorded, arguments[6]);
-  if (!written || !splits.Close() || !facts.Close()) {
-    throw std::runtime_error("cannot write " + arguments[3]);
+  if (const auto ratio = WriteRings(recorded, errors, arguments[5])) {
+    facts.Add("range_sd_ratio", *ratio);
   }
+  WriteResiduals(recorded, arguments[6], arguments[7]);
+  if (!splits.Close() || !facts.Close()) throw std::runtime_error("cannot write " + arguments[3]);
 }
 
 }  // namespace
@@ -414,7 +274,7 @@ void Run(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   return rgbdt::study::StudyMain(
-      {"study_real", "SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV", 7, 7,
+      {"study_real", "SESSION SPLITS SEED SPLITS_CSV FACTS_CSV RINGS_CSV VIEWS_CSV SIDES_CSV", 8, 8,
        rgbdt::study::Run},
       argc, argv);
 }

@@ -68,7 +68,12 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   ImageVector g = ImageVector::Zero();
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!IsSeen(seen[i])) continue;
-    const Eigen::Vector3d& corner = model[image.turned ? model.size() - 1 - i : i];
+    Eigen::Vector3d corner = model[image.turned ? model.size() - 1 - i : i];
+    const Eigen::Vector3d bow = BowFactors(problem_.target, corner.head<2>());
+    corner.z() = BowAt(problem_.target, state_.shared, corner.head<2>());
+    Eigen::Matrix<double, 3, 2> on_board;  // by the pattern's plane
+    on_board << Eigen::Matrix2d::Identity(),
+        BowSlope(problem_.target, state_.shared, corner.head<2>());
     const Eigen::Vector3d p = camera_from_target * corner;
     const auto pixel = Project(image.camera, p);
     if (!pixel) {
@@ -80,7 +85,8 @@ void ViewEquations::AddCorners(const BoardImage& image) {
     Eigen::Matrix<double, 2, kImageUnknowns> j;
     j << -by_point * rotation * CrossMatrix(corner), by_point * rotation,
         -by_point * CrossMatrix(p), by_point, by.rightCols<kLensNumbers>(),
-        by_point * rotation.leftCols<2>() * by_print(corner).asDiagonal();
+        by_point * rotation * on_board * by_print(corner).asDiagonal(),
+        by_point * rotation.col(2) * bow.transpose();
     const Eigen::Vector2d residual = (*pixel - seen[i]) / sigma;
     // Both coordinates together: two degrees of freedom.
     const double squared = residual.squaredNorm() / 2;
@@ -92,7 +98,7 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   Spread(image.camera, h, g);
 }
 
-// From (board, camera, lens, print) to their places among the unknowns.
+// From (board, camera, lens, print, shape) to their places among the unknowns.
 void ViewEquations::Spread(int camera, const ImageMatrix& h, const ImageVector& g) {
   std::array<Eigen::Index, kImageUnknowns> place{};
   std::iota(place.begin(), place.begin() + 6, 0);
@@ -101,6 +107,9 @@ void ViewEquations::Spread(int camera, const ImageMatrix& h, const ImageVector& 
                  [](Eigen::Index at) { return kOwnUnknowns + at; });
   place[6 + kPoseAndLens] = Shared(kPrintWidth);
   place[7 + kPoseAndLens] = Shared(kPrintHeight);
+  for (int k = 0; k < 3; ++k) {
+    place[static_cast<std::size_t>(8 + kPoseAndLens + k)] = Shared(kBowX + k);
+  }
   h_(place, place) += h;
   g_(place) += g;
 }
@@ -131,6 +140,7 @@ void ViewEquations::AddImageSide(const BoardImage& image, const ImageSide& side,
     j.row(end).segment<6>(kOwnUnknowns + SharedPlaces::Pose(camera)) = there->by_camera;
     j.row(end).segment<kLensNumbers>(kOwnUnknowns + places_.Lens(camera)) = there->by_lens;
     j(end, Shared(kOutlineTop + on_board)) = there->by_outline;
+    j.row(end).segment<3>(Shared(kBowX)) = there->by_bow;
   }
   const double px_per_m = PixelsPerMetre(problem_, image);
   for (int end = 0; end < 2; ++end) {
@@ -166,9 +176,14 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   const Eigen::Vector3d from = corners[s] + shift;
   const Eigen::Vector3d to = corners[(s + 1) % 4] + shift;
   const Eigen::Vector2d tangent = along.normalized();
+  const auto at_t = [&](double t) -> Eigen::Vector3d {
+    Eigen::Vector3d point = from + t * (to - from);
+    point.z() = BowAt(problem_.target, state_.shared, point.head<2>());
+    return point;
+  };
   double t = 0.5;  // along the side; Newton's steps put it beside the curve's end
   for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector3d p = camera_from_target * Eigen::Vector3d(from + t * (to - from));
+    const Eigen::Vector3d p = camera_from_target * at_t(t);
     const auto pixel = Project(image.camera, p);
     if (!pixel) return std::nullopt;
     const Eigen::Vector2d by_t = PixelByPoint(lens, p) * rotation * (to - from);
@@ -176,7 +191,7 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
     if (std::abs(speed) < 1e-6) return std::nullopt;
     t += std::clamp(tangent.dot(at - *pixel) / speed, -1.0, 1.0);
   }
-  const Eigen::Vector3d on_target = from + t * (to - from);
+  const Eigen::Vector3d on_target = at_t(t);
   const Eigen::Vector3d p = camera_from_target * on_target;
   const auto pixel = Project(image.camera, p);
   if (!pixel) return std::nullopt;
@@ -184,7 +199,7 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   const PixelDerivatives by = PixelByPointAndLens(lens, p);
   // Where the pixel moves along the curve, t takes that back: along the projected side, which is
   // not quite parallel to the curve.
-  const Eigen::Vector2d by_t = by.leftCols<3>() * rotation * (to - from);
+  const Eigen::Vector2d by_t = by.leftCols<3>() * rotation * (at_t(t + 0.5) - at_t(t - 0.5));
   const Eigen::RowVector2d across =
       normal - normal.dot(by_t) / tangent.dot(by_t) * tangent.transpose();
   const Eigen::Matrix<double, 1, 3> by_point = across * by.leftCols<3>();
@@ -193,7 +208,11 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
   end.by_camera << -by_point * CrossMatrix(p), by_point;
   end.by_target << -by_point * rotation * CrossMatrix(on_target), by_point * rotation;
   end.by_lens = across * by.rightCols<kLensNumbers>();
-  end.by_outline = by_point * rotation * outward;
+  const Eigen::Vector3d outwards(
+      out.x(), out.y(), BowSlope(problem_.target, state_.shared, on_target.head<2>()).dot(out));
+  end.by_outline = by_point * rotation * outwards;
+  end.by_bow =
+      by_point * rotation.col(2) * BowFactors(problem_.target, on_target.head<2>()).transpose();
   return end;
 }
 
@@ -221,7 +240,8 @@ void ViewEquations::AddCrossings() {
                                           lidar_from_target_, state_.shared, side_shift_[side]);
     if (!(r.per_rad > 0)) continue;
     CrossingVector j;
-    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet, -r.per_fringe;
+    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet, -r.per_fringe,
+        r.per_bow.transpose();
     const double sigma = OwnSigma(crossing, r);
     const double squared = r.beyond_m * r.beyond_m / (sigma * sigma);
     // Noise that it shares with its neighbours counts once: in weight, not in what is far off.
@@ -257,8 +277,11 @@ void ViewEquations::SpreadCrossings(int side, int kind, const CrossingMatrix& h,
                                                 Shared(kOutlineTop + side),
                                                 Shared(kBeamsMeet),
                                                 Shared(kFringe),
+                                                Shared(kBowX),
+                                                Shared(kTwist),
+                                                Shared(kBowY),
                                                 6 + side};
-  const std::array<int, kPlaces> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 6};
+  const std::array<int, kPlaces> sum{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 6};
   for (std::size_t a = 0; a < kPlaces; ++a) {
     for (std::size_t b = 0; b < kPlaces; ++b) h_(place[a], place[b]) += h(sum[a], sum[b]);
     g_[place[a]] += g[sum[a]];

@@ -30,8 +30,9 @@ class ViewEquations {
 
  private:
   using Row6 = Eigen::Matrix<double, 1, 6>;
-  // What an image's corners depend on: the board's pose, the camera's, its lens, the print.
-  static constexpr int kImageUnknowns = 6 + kPoseAndLens + 2;
+  // What an image's corners depend on: the board's pose, the camera's, its lens, the print, the
+  // board's shape.
+  static constexpr int kImageUnknowns = 6 + kPoseAndLens + 2 + 3;
   using ImageMatrix = Eigen::Matrix<double, kImageUnknowns, kImageUnknowns>;
   using ImageVector = Eigen::Matrix<double, kImageUnknowns, 1>;
 
@@ -50,14 +51,15 @@ class ViewEquations {
     Row6 by_camera, by_target;
     Eigen::Matrix<double, 1, kLensNumbers> by_lens;
     double by_outline = 0;
+    Eigen::RowVector3d by_bow;
   };
   std::optional<CurveEnd> AtCurveEnd(const BoardImage& image, int side, const Eigen::Vector2d& at,
                                      const Eigen::Vector2d& along) const;
   double OwnSigma(const Crossing& crossing, const CrossingResidual& here) const;
   void AddCrossings();
-  // Over the board's pose, the class's shift, the thickness, the outline, where beams meet and the
-  // fringe.
-  static constexpr int kCrossingUnknowns = 11;
+  // Over the board's pose, the class's shift, the thickness, the outline, where beams meet, the
+  // fringe and the board's shape.
+  static constexpr int kCrossingUnknowns = 14;
   using CrossingMatrix = Eigen::Matrix<double, kCrossingUnknowns, kCrossingUnknowns>;
   using CrossingVector = Eigen::Matrix<double, kCrossingUnknowns, 1>;
   void SpreadCrossings(int side, int kind, const CrossingMatrix& h, const CrossingVector& g);

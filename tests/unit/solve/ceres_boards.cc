@@ -98,9 +98,19 @@ struct Seen {
   }
 };
 
+// A point of the board where its shape has it: a bowl's and a saddle's height over the mean plane.
+template <typename T>
+Point<T> Bent(const Target& target, Point<T> p, const T* shared) {
+  const T x = p[0] / target.width_m;
+  const T y = p[1] / target.height_m;
+  p[2] += shared[kBowX] * (4.0 * x * x - 1.0 / 3) + shared[kTwist] * 4.0 * x * y +
+          shared[kBowY] * (4.0 * y * y - 1.0 / 3);
+  return p;
+}
+
 struct CornerResidual {  // of camera, lens, board, shared
   Seen seen;
-  Eigen::Vector2d pattern;  // its centre on the board
+  Target target;
   Eigen::Vector3d corner;
   Eigen::Vector2d at;
   double sigma;
@@ -109,9 +119,9 @@ struct CornerResidual {  // of camera, lens, board, shared
   bool operator()(T const* const* block, T* residual) const {
     Point<T> printed = Constant<T>(corner);
     for (int k = 0; k < 2; ++k) {
-      printed[k] += (corner[k] - pattern[k]) * block[3][kPrintWidth + k];
+      printed[k] += (corner[k] - target.pattern_offset_m[k]) * block[3][kPrintWidth + k];
     }
-    const Pixel<T> pixel = seen(block[0], block[1], block[2], printed);
+    const Pixel<T> pixel = seen(block[0], block[1], block[2], Bent(target, printed, block[3]));
     residual[0] = (pixel[0] - at.x()) / sigma;
     residual[1] = (pixel[1] - at.y()) / sigma;
     return true;
@@ -120,6 +130,7 @@ struct CornerResidual {  // of camera, lens, board, shared
 
 struct ImageSideResidual {  // of camera, lens, board, shared
   Seen seen;
+  Target target;
   int side;
   Eigen::Vector3d from, to;         // the side's corners
   Eigen::Vector2d at[2], along[2];  // the fitted curve's ends and its directions there
@@ -132,7 +143,7 @@ struct ImageSideResidual {  // of camera, lens, board, shared
     const auto pixel_at = [&](const T& t) {
       Point<T> p;
       for (int k = 0; k < 3; ++k) p[k] = from[k] + t * (to - from)[k] + shift * out[k];
-      return seen(block[0], block[1], block[2], p);
+      return seen(block[0], block[1], block[2], Bent(target, p, block[3]));
     };
     T off[2];
     for (int end = 0; end < 2; ++end) {
@@ -181,11 +192,14 @@ struct CrossingDistance {  // of board, shared, the view's sides
     const T rim = lean < 0.0 ? T(-lean / beam[2]) : T(0);
     const double half = (crossing.side % 2 == 1 ? target.width_m : target.height_m) / 2;
     const int kind = kNoReturnShift + static_cast<int>(crossing.kind) - 1;
-    residual[0] =
-        (Dot<T>(lidar, out) + range * lean - half - block[1][kOutlineTop + crossing.side] -
-         per_rad * (block[1][kind] + block[2][crossing.side]) -
-         1.0 / sqrt(1.0 - lean * lean) * block[1][kFringe] - rim * block[1][kThickness]) /
-        crossing.sigma_m;
+    // The rim's height over the mean plane, at which the beam is so much farther in.
+    const Point<T> met = {lidar[0] + range * beam[0], lidar[1] + range * beam[1], T(0)};
+    const T inwards = Bent(target, met, block[1])[2] * lean / beam[2];
+    residual[0] = (Dot<T>(lidar, out) + range * lean + inwards - half -
+                   block[1][kOutlineTop + crossing.side] -
+                   per_rad * (block[1][kind] + block[2][crossing.side]) -
+                   1.0 / sqrt(1.0 - lean * lean) * block[1][kFringe] - rim * block[1][kThickness]) /
+                  crossing.sigma_m;
     return true;
   }
 };
@@ -488,9 +502,8 @@ class CeresBoards {
     const ImageEdges& edges = *image.edges;
     const auto model = problem_.target.InnerCorners();
     for (std::size_t i = 0; i < model.size(); ++i) {
-      Add(CornerResidual{seen, problem_.target.pattern_offset_m,
-                         model[image.turned ? model.size() - 1 - i : i], edges.corners[i],
-                         kCornerSigmaInflation * edges.corner_sigma_px},
+      Add(CornerResidual{seen, problem_.target, model[image.turned ? model.size() - 1 - i : i],
+                         edges.corners[i], kCornerSigmaInflation * edges.corner_sigma_px},
           2, {camera, lens, board, state_.shared.data()}, new TailLoss(2));
     }
     const auto corners = problem_.target.OutlineCorners();
@@ -508,6 +521,7 @@ class CeresBoards {
       }
       const Eigen::LLT<Eigen::Matrix2d> information(Eigen::Matrix2d(covariance.inverse()));
       Add(ImageSideResidual{seen,
+                            problem_.target,
                             static_cast<int>(s),
                             corners[s],
                             corners[(s + 1) % 4],

@@ -122,6 +122,33 @@ TEST(CalibrateJointly, SidesInImagesThatAreOffCountLess) {
   }
 }
 
+// A bulge makes the focal length seem another, and leans boards that are seen at a slant.
+TEST(CalibrateJointly, ABoardThatIsNotFlatIsFoundWithThePose) {
+  SolveWorldOptions options = Views(12);
+  options.lens_uncertainty.reset();
+  options.print_sigma = kUsualPrintSigma;
+  options.shared[kBowX] = 0.0015;
+  options.shared[kTwist] = -0.001;
+  options.shared[kBowY] = 0.0005;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  constexpr std::pair<const char*, double> kShape[] = {
+      {"board's shape, its ends behind its middle along its width", 1.5},
+      {"board's shape, twist", -1},
+      {"board's shape, its ends behind its middle along its height", 0.5}};
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    const auto& lines = report.cameras[c].nuisance;
+    for (const auto& of : kShape) {
+      const auto found = std::find_if(lines.begin(), lines.end(),
+                                      [&](const Nuisance& line) { return line.name == of.first; });
+      ASSERT_NE(found, lines.end()) << of.first;
+      EXPECT_NEAR(found->estimate.value, of.second, 4 * found->estimate.sigma) << of.first;
+      EXPECT_LT(found->estimate.sigma, 0.3) << of.first;
+    }
+  }
+}
+
 // Squares that are not square lean every board in the images.
 TEST(CalibrateJointly, APatternThatThePrinterStretchedIsFoundWithThePose) {
   SolveWorldOptions options = Views(12);

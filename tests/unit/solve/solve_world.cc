@@ -123,7 +123,21 @@ std::array<double, kSharedUnknowns> SolveWorld::Drawn(bool outline) {
     if (options_.print_sigma == 0) continue;
     drawn[static_cast<std::size_t>(k)] = options_.print_sigma * Normal();
   }
+  for (const int k : {kBowX, kTwist, kBowY}) {
+    if (options_.print_sigma == 0) continue;
+    drawn[static_cast<std::size_t>(k)] = kBowSigmaM * Normal();
+  }
   return drawn;
+}
+
+// Where a point of a flat board lies on one of this shape: a bowl's and a saddle's height over the
+// mean plane.
+Eigen::Vector3d SolveWorld::Bent(const Eigen::Vector3d& flat) const {
+  const double x = flat.x() / rig.target.width_m;
+  const double y = flat.y() / rig.target.height_m;
+  return flat + (shared[kBowX] * (4 * x * x - 1.0 / 3) + shared[kTwist] * 4 * x * y +
+                 shared[kBowY] * (4 * y * y - 1.0 / 3)) *
+                    Eigen::Vector3d::UnitZ();
 }
 
 // The image's corners and sides, and the pose that the corners give.
@@ -135,15 +149,19 @@ ImageEdges SolveWorld::SeeImage(std::size_t c, const Rigid3& camera_from_target)
   // Errors are larger than the corners' scatter tells by what is taken for granted of them.
   image.corner_sigma_px = (c == 0 ? 0.08 : 0.2) / kCornerSigmaInflation;
   for (const Eigen::Vector3d& corner : PrintedAs(rig.target, shared).InnerCorners()) {
-    image.corners.emplace_back(*camera.Project(camera_from_target * corner) +
+    image.corners.emplace_back(*camera.Project(camera_from_target * Bent(corner)) +
                                kCornerSigmaInflation * image.corner_sigma_px *
                                    Eigen::Vector2d(Noise(), Noise()));
   }
   const auto corners = rig.target.OutlineCorners();
   for (std::size_t s = 0; s < 4; ++s) {
     const Eigen::Vector3d out = shared[kOutlineTop + s] * Outward(static_cast<int>(s));
-    const auto chain = ProjectSegment(camera, camera_from_target * (corners[s] + out),
-                                      camera_from_target * (corners[(s + 1) % 4] + out), 20);
+    std::vector<Eigen::Vector2d> chain;
+    for (int i = 0; i <= 20; ++i) {
+      const Eigen::Vector3d on_side =
+          corners[s] + out + i / 20.0 * (corners[(s + 1) % 4] - corners[s]);
+      chain.push_back(*camera.Project(camera_from_target * Bent(on_side)));
+    }
     image.outline_corners[s] = chain.front();
     image.outline.insert(image.outline.end(), chain.begin(), chain.end() - 1);
     for (const Eigen::Vector2d& p : chain) {
@@ -212,8 +230,8 @@ CloudEdges SolveWorld::SeeCloud(const Rigid3& board, const std::array<double, 4>
     const int count =
         static_cast<int>(along.norm() / (kCrossingRad * board.translation.norm())) + 2;
     for (int i = 0; i < count; ++i) {
-      cloud.crossings.push_back(SeeCrossing(board, corners[s] + (i + 0.5) / count * along, side,
-                                            kind, nuisances, shift[s]));
+      cloud.crossings.push_back(SeeCrossing(board, Bent(corners[s] + (i + 0.5) / count * along),
+                                            side, kind, nuisances, shift[s]));
     }
     for (int i = 0; i < 25; ++i) {
       cloud.boundary.emplace_back(board * (corners[s] + i / 25.0 * along));

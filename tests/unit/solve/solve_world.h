@@ -77,6 +77,8 @@ class SolveWorld {
 
   std::array<double, kSharedUnknowns> Drawn(bool outline);
 
+  Eigen::Vector3d Bent(const Eigen::Vector3d& flat) const;
+
   // The image's corners and sides, and the pose that the corners give.
   ImageEdges SeeImage(std::size_t c, const Rigid3& camera_from_target);
 
