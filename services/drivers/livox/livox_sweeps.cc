@@ -11,6 +11,8 @@ namespace {
 
 constexpr Utime kMostGap_us = 2000;         // from packet to packet; 0.2 to 0.5 ms is usual
 constexpr Utime kMostAway_us = 10'000'000;  // farther: somebody set a clock
+// Of a cloud. None sends a quarter of it in a second (Avia: 240,000 beams): the clock stands still.
+constexpr std::size_t kMostPoints = 1'000'000;
 
 }  // namespace
 
@@ -34,7 +36,8 @@ std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival
   const Utime utime = TimeOf(packet, arrival);
   std::optional<Cloud> done;
   const Utime gap = utime - next_;
-  if (any_ && std::abs(gap) > kMostAway_us) {
+  const bool full = cloud_.points.size() + packet.points.size() > kMostPoints;
+  if (any_ && (full || std::abs(gap) > kMostAway_us)) {
     cloud_ = Cloud();
     ++left_out_;
     any_ = false;

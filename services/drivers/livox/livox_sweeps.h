@@ -13,7 +13,7 @@ namespace rgbdt {
 /// A Livox's packets -> clouds of a second each (kLivoxCloud_us), one after the other: hits in the
 /// order in which they were measured, without rings (Cloud::organised is false), as the sensor's
 /// own frame has them, x forward, y left, z up. A cloud of which more than a tenth never came is
-/// left out.
+/// left out, and so are a million points that came while the sensor's clock stood still.
 ///
 /// Times: the packets' own where the sensor follows PTP or GPS; otherwise mapped to the host's
 /// clock from when they arrive (ClockFit).

@@ -15,49 +15,18 @@
 #include "tests/unit/packets/hesai_encoder.h"
 #include "tests/unit/packets/livox_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
+#include "tests/unit/packets/packet_message.h"
 
 namespace rgbdt {
 namespace {
 
+using test::PacketMessage;
 using test::RosBytes;
+using test::Sent;
 using testing::HasSubstr;
 using testing::SizeIs;
 
 constexpr Utime kBegin = 1'700'000'000'000'000;
-
-struct Sent {
-  Utime utime;
-  std::vector<std::uint8_t> bytes;
-};
-
-std::string Text(const std::vector<std::uint8_t>& bytes) { return {bytes.begin(), bytes.end()}; }
-
-// A message of this type that holds these packets.
-std::string MessageOf(const std::string& type, BagEncoding encoding, const Sent* first,
-                      const Sent* last, bool frame_header) {
-  RosBytes m(encoding);
-  if (type.find("PacketMsg") != std::string::npos) return m.Blob(Text(first->bytes)).Bytes();
-  if (type != "hesai_ros_driver/UdpFrame" || frame_header) {
-    m.Header(static_cast<std::uint32_t>(first->utime / 1'000'000), 0, "lidar");
-  }
-  m.Add(static_cast<std::uint32_t>(last - first));
-  for (const Sent* sent = first; sent != last; ++sent) {
-    m.Add(static_cast<std::uint32_t>(sent->utime / 1'000'000));
-    m.Add(static_cast<std::uint32_t>(sent->utime % 1'000'000 * 1000));
-    std::string bytes = Text(sent->bytes);
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    const bool padded = type == "pandar_msgs/PandarScan",
-               fixed = type == "velodyne_msgs/VelodyneScan";
-    if (padded) bytes.resize(1500);
-    if (padded || fixed) {
-      for (const char c : bytes) m.Add(c);
-    } else {
-      m.Blob(bytes);
-    }
-    if (padded || type == "hesai_ros_driver/UdpFrame") m.Add(size);
-  }
-  return m.Bytes();
-}
 
 class BagPacketsTest : public testing::Test {
  protected:
@@ -85,11 +54,11 @@ class BagPacketsTest : public testing::Test {
       const std::size_t end = std::min(sent.size(), i + together);
       const Sent *first = sent.data() + i, *last = sent.data() + end;
       bag.Write(packets, first->utime, first->utime,
-                MessageOf(type, encoding, first, last, frame_header));
+                PacketMessage(type, encoding, first, last, frame_header));
       if (!has_imu || i % 5 != 0) continue;
       const Sent small{first->utime, std::vector<std::uint8_t>(48, 1)};
       bag.Write(imu, first->utime, first->utime,
-                MessageOf(type, encoding, &small, &small + 1, false));
+                PacketMessage(type, encoding, &small, &small + 1, false));
     }
     if (!metadata_.empty()) {
       bag.Write(told, kBegin, kBegin, RosBytes(encoding).Text(metadata_).Bytes());
@@ -257,7 +226,7 @@ TEST(PacketMessages, CutShortOrTooLongTheyAreRefused) {
           "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg"}) {
       Sent sent = one;
       if (std::string(type) == "velodyne_msgs/VelodyneScan") sent.bytes.resize(1206);
-      const std::string whole = MessageOf(type, encoding, &sent, &sent + 1, false);
+      const std::string whole = PacketMessage(type, encoding, &sent, &sent + 1, false);
       const BagTopic topic{"/x", type, encoding};
       const ros::Packets packets = ros::DecodePackets(test::MessageOf(whole), topic);
       ASSERT_THAT(packets.packets, SizeIs(1)) << type;

@@ -192,5 +192,26 @@ TEST(LivoxSweeps, WhatIsLostIsCounted) {
   EXPECT_THAT(much.sweeps->Lost(), HasSubstr("seconds left out, as a tenth or more never came: 1"));
 }
 
+// Whoever sends it: a clock that stands still ends no second, and would fill the memory.
+TEST(LivoxSweeps, AClockThatStandsStillFillsNoCloudWithoutEnd) {
+  const LivoxEncoder encoder{false, 1, 2, kArrival * 1000};
+  const livox::Packet packet = Decode(encoder, encoder.Packet(0));
+  LivoxSweeps sweeps;
+  constexpr std::size_t kMost = 1'000'000;  // points of a cloud
+  const std::size_t packets = 2 * kMost / packet.points.size() + 100;
+  for (std::size_t i = 0; i < packets; ++i) EXPECT_FALSE(sweeps.Add(packet, kArrival));
+  EXPECT_EQ(sweeps.left_out(), 2);
+  // It goes on: what is left of the second, and the next one.
+  std::vector<Cloud> clouds;
+  for (int i = 1; i < 2 * encoder.PacketsPerSecond() + 5; ++i) {
+    const livox::Packet next = Decode(encoder, encoder.Packet(i));
+    if (auto cloud = sweeps.Add(next, kArrival)) clouds.push_back(std::move(*cloud));
+  }
+  ASSERT_THAT(clouds, SizeIs(2));
+  EXPECT_LT(clouds[0].size(), kMost);
+  EXPECT_EQ(clouds[1].size(),
+            packet.points.size() * static_cast<std::size_t>(encoder.PacketsPerSecond()));
+}
+
 }  // namespace
 }  // namespace rgbdt
