@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <limits>
+#include <opencv2/core.hpp>
 
 #include "calib/model/errors.h"
 #include "services/messages/codec.h"
+#include "tests/unit/messages/peak_memory.h"
 #include "tests/unit/messages/random_messages.h"
 
 // Hostile bytes: every outcome is a message or an InputError, and memory stays bounded. Built with
@@ -14,21 +15,12 @@
 namespace rgbdt {
 namespace {
 
+using testing::PeakMemory;
 using testing::RandomMessages;
 
 constexpr int kFlipsPerMessage = 400;
 constexpr std::size_t kForgedBytes = 4500;
-#ifdef __SANITIZE_ADDRESS__
-constexpr std::int64_t kMaxGrowthKb = 1024 * 1024;  // it keeps what is freed for a while
-#else
-constexpr std::int64_t kMaxGrowthKb = 300 * 1024;
-#endif
-
-std::int64_t PeakMemoryKb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss;
-}
+constexpr std::int64_t kMaxGrowth = 300 << 20;  // [bytes]
 
 /// True if the bytes were taken for a message.
 bool Survives(const std::string& channel, const Bytes& bytes) {
@@ -112,7 +104,7 @@ TEST_P(Fuzz, EveryTruncationIsRefused) {
 }
 
 TEST_P(Fuzz, ForgedCountsAtEveryByte) {
-  const std::int64_t before = PeakMemoryKb();
+  const PeakMemory memory;
   const std::int32_t forged[] = {-1,      std::numeric_limits<std::int32_t>::min(),
                                  0,       std::numeric_limits<std::int32_t>::max(),
                                  1 << 30, (1 << 30) + 1,
@@ -131,11 +123,11 @@ TEST_P(Fuzz, ForgedCountsAtEveryByte) {
       }
     }
   }
-  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+  EXPECT_LT(memory.Grown(), kMaxGrowth);
 }
 
 TEST_P(Fuzz, RandomBytesFlipped) {
-  const std::int64_t before = PeakMemoryKb();
+  const PeakMemory memory;
   for (const auto& [channel, whole] : Samples()) {
     const int last = static_cast<int>(whole.size()) - 1;
     for (int round = 0; round < kFlipsPerMessage; ++round) {
@@ -148,7 +140,7 @@ TEST_P(Fuzz, RandomBytesFlipped) {
       Survives(channel, bytes);
     }
   }
-  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+  EXPECT_LT(memory.Grown(), kMaxGrowth);
 }
 
 TEST_P(Fuzz, RandomBytesBehindTheFingerprint) {
@@ -163,9 +155,24 @@ TEST_P(Fuzz, RandomBytesBehindTheFingerprint) {
   }
 }
 
+// What the bounds above and below measure by.
+TEST(FuzzMemory, PeakIsSeenAlthoughAllIsGivenBack) {
+  constexpr int kSize = 64 << 20;
+  const PeakMemory memory;
+  for (int round = 0; round < 8; ++round) {
+    const Bytes taken(kSize, 1);
+    EXPECT_EQ(taken[static_cast<std::size_t>(round)], 1);
+  }
+  EXPECT_GE(memory.Grown(), kSize);
+  EXPECT_LT(memory.Grown(), kSize + kSize / 8);
+  const cv::Mat picture(2, kSize, CV_8U);
+  EXPECT_GE(memory.Grown(), 2 * kSize);
+  EXPECT_LT(memory.Grown(), 2 * kSize + kSize / 8);
+}
+
 // Compressed pictures go through OpenCV: broken files must end in an error or a picture.
 TEST_P(Fuzz, BrokenImageFiles) {
-  const std::int64_t before = PeakMemoryKb();
+  const PeakMemory memory;
   for (const PixelFormat format : {PixelFormat::kPng, PixelFormat::kJpeg}) {
     Image image = random_.Picture(PixelFormat::kBgr8);
     image.format = format;
@@ -178,7 +185,7 @@ TEST_P(Fuzz, BrokenImageFiles) {
       Survives(channel, bytes);
     }
   }
-  EXPECT_LT(PeakMemoryKb() - before, kMaxGrowthKb);
+  EXPECT_LT(memory.Grown(), kMaxGrowth);
 }
 
 TEST(FuzzChannels, EveryTypeOnEveryOtherChannelIsRefused) {
