@@ -1,7 +1,7 @@
 // A Livox's packets, one after the other. The first byte says of which protocol, and whether what a
 // packet tells of its size is put right.
 #include "services/drivers/livox/livox_sweeps.h"
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/sweep_check.h"
 
 namespace rgbdt {
 namespace {
@@ -18,6 +18,11 @@ void MendHead(livox::Protocol protocol, std::string* packet) {
   constexpr std::size_t kBytes[] = {1, 14, 8, 10};  // of a point
   put(1, packet->size());
   put(5, (packet->size() - 36) / kBytes[(*packet)[10] & 3]);
+}
+
+void RequireSecond(const Cloud& cloud) {
+  fuzz::RequireWhole(cloud);
+  fuzz::Require(cloud.utime.size() == cloud.points.size(), "a time a point");
 }
 
 }  // namespace
@@ -38,12 +43,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const auto packet = livox::Decode(protocol, fuzz::Data(bytes), bytes.size());
       fuzz::Require(static_cast<int>(packet.points.size()) + packet.dropped <= packet.beams,
                     "a point a beam");
-      if (const auto cloud = sweeps.Add(packet, arrival)) {
-        fuzz::Require(cloud->points.size() == static_cast<std::size_t>(cloud->beams) &&
-                          cloud->utime.size() == cloud->points.size(),
-                      "a time a point");
-      }
+      if (const auto cloud = sweeps.Add(packet, arrival)) RequireSecond(*cloud);
     });
   }
+  if (const auto last = sweeps.Finish()) RequireSecond(*last);
   return 0;
 }

@@ -66,6 +66,23 @@ void AddVelodyne(Inputs* seeds) {
   (*seeds)["cut"] = (*seeds)["model0"].substr(0, 800);
 }
 
+// Packets of one point that say that they took 6.5 ms each, every 8 ms: few make a second.
+std::string LivoxSeconds(std::uint8_t time_type, std::int64_t first_ns) {
+  using Encoder = test::LivoxEncoder;
+  std::string bytes(1, '\0');
+  for (int number = 0; number < 250; ++number) {
+    std::vector<std::uint8_t> packet = {0};
+    for (const int head : {44, 0xffff, 1, number}) Encoder::Add(head, 2, &packet);
+    packet.insert(packet.end(), {0, 2, time_type});
+    packet.resize(28);
+    Encoder::Add(first_ns + 8'000'000 * std::int64_t{number}, 8, &packet);
+    for (const int centimetres : {300, 50, -20}) Encoder::Add(centimetres, 2, &packet);
+    packet.insert(packet.end(), {90, 0});  // reflectivity, tag
+    bytes += std::string("\0\x7d", 2) + Piece({packet.begin(), packet.end()});
+  }
+  return bytes;
+}
+
 // A word of the time since the one before [64 us], and the packet as a piece.
 void AddLivox(Inputs* seeds) {
   for (const bool sdk1 : {false, true}) {
@@ -83,6 +100,14 @@ void AddLivox(Inputs* seeds) {
       (*seeds)[name + "_mended"] = bytes;
     }
   }
+  constexpr std::int64_t kFirst = 1'700'000'000'000'000'000, kTai = 37'000'000'000;
+  (*seeds)["since_start"] = LivoxSeconds(0, 5'000'000'000);
+  (*seeds)["ptp"] = LivoxSeconds(1, kFirst + kTai);
+  (*seeds)["gps"] = LivoxSeconds(2, kFirst);
+  // Year, month, day, hour, microseconds.
+  constexpr std::int64_t kDate = 23 | 11 << 8 | 14 << 16 | 22 << 24 | std::int64_t{5000} << 32;
+  const auto dated = test::LivoxEncoder{true, 2, 3, kDate}.Packet(0);
+  (*seeds)["dated"] = "\1" + std::string("\0\x10", 2) + Piece({dated.begin(), dated.end()});
 }
 
 void AddPcap(Inputs* seeds) {
