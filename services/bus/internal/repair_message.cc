@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/messages/limits.h"
+
 namespace rgbdt {
 namespace {
 
@@ -47,6 +49,8 @@ RepairMessage DecodeBeat(Reader reader) {
   beat.next = reader.Take<std::uint32_t>();
   beat.datagrams = reader.Take<std::uint64_t>();
   beat.host_utime = reader.Take<std::int64_t>();
+  // A stranger's number: what it is off by is computed, too.
+  if (beat.host_utime < 0 || beat.host_utime > kMaxInteger) return {};
   beat.host = reader.Rest(kMaxHostBytes);
   return beat;
 }

@@ -88,7 +88,10 @@ void RepairedStreams::AddOffset(const Sender& sender, const Beat& beat, Utime no
   Machine& machine = machines_[sender.first];
   machine.name = Printable(beat.host, 64) + " (" + Text(sender.first) + ")";
   machine.offsets.emplace_back(now, beat.host_utime - wall);
-  while (now - machine.offsets.front().first > kClockWindow) machine.offsets.pop_front();
+  while (now - machine.offsets.front().first > kClockWindow ||
+         machine.offsets.size() > kMaxClockSamples) {
+    machine.offsets.pop_front();
+  }
 }
 
 void RepairedStreams::OnRequest(const RepairRequest& request, Utime now) {

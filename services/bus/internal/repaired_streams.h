@@ -19,15 +19,17 @@ namespace rgbdt {
 /// less those that came. Tells how far other machines' clocks are off this one's: by a Beat's stamp
 /// and when it came, less the smallest path of kClockWindow.
 ///
-/// Bounded: 64 senders; 64 MiB of messages that are not whole or wait for such a one, of which the
-/// oldest of the sender that holds most is given up. A sender silent for kForgotten is forgotten.
-/// Times are of any steady clock [us], but `wall`: the machine's [us, UTC].
+/// Bounded: 64 senders; 4096 beats of a machine; 64 MiB of messages that are not whole or wait for
+/// such a one, of which the oldest of the sender that holds most is given up. A sender silent for
+/// kForgotten is forgotten. Times are of any steady clock [us], but `wall`: the machine's [us,
+/// UTC].
 class RepairedStreams {
  public:
   using Sender = Reassembly::Sender;
   static constexpr Utime kForgotten = 30 * kMicrosecondsPerSecond;
   static constexpr Utime kClockWindow = 5 * kMicrosecondsPerSecond;
-  static constexpr std::size_t kClockSamples = 3;  ///< before that nothing is said
+  static constexpr std::size_t kClockSamples = 3;        ///< before that nothing is said
+  static constexpr std::size_t kMaxClockSamples = 4096;  ///< of a machine; then the oldest go
   static constexpr std::size_t kMaxSenders = 64;
   static constexpr std::size_t kMaxBytesHeld = std::size_t{64} << 20;
 

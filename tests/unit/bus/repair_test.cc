@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <random>
 
 #include "services/bus/internal/repaired_streams.h"
@@ -259,6 +260,26 @@ TEST(Repair, MessagesAreWhatTheyWere) {
   EXPECT_EQ(parts.id, 5U);
   ASSERT_EQ(parts.parts.size(), 2U);
   EXPECT_THAT(parts.parts[1].fragments, ElementsAre(1, 65535));
+}
+
+TEST(Repair, ABeatOfNoTimeIsNone) {
+  for (const std::int64_t utime : {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1},
+                                   std::numeric_limits<std::int64_t>::max()}) {
+    const Bytes encoded = Encode(Beat{1, 0, 0, 0, utime, "x"});
+    const RepairMessage message = DecodeRepairMessage(encoded.data(), encoded.size());
+    EXPECT_TRUE(std::holds_alternative<std::monostate>(message)) << utime;
+  }
+}
+
+TEST(Clocks, OfVeryManyBeatsTheNewestCount) {
+  constexpr Utime kWall = 1'500'000'000'000'000;
+  RepairedStreams streams([](const std::string&) { return true; });
+  streams.OnBeat({1, 1}, {7, 0, 0, 0, kWall + 9'000'000, "x"}, 0, kWall);
+  for (std::size_t i = 0; i < RepairedStreams::kMaxClockSamples; ++i) {
+    streams.OnBeat({1, 1}, {7, 0, 0, 0, kWall, "x"}, 1, kWall);
+  }
+  ASSERT_EQ(streams.report().clocks.size(), 1U);
+  EXPECT_EQ(streams.report().clocks[0].ahead, 0);
 }
 
 TEST(Clocks, OtherMachinesClocksAreToldByTheirBeats) {
