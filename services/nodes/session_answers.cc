@@ -212,6 +212,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
     return;
   }
   if (event.kind == EventKind::kProgress) {
+    timeout_.OnProgress(event.source, event.fraction);
     ReportProgress(event.text, event.fraction);
     return;
   }
@@ -238,7 +239,7 @@ bool SessionNode::RestoreSolver(const std::string& why) {
   if (again.empty()) return false;
   if (waiting_ && AnsweredBy(step().kind) == "solver") {
     answered_ = false;
-    step_began_ = now_;
+    timeout_.AskedAgain(now_);
     newest_command_.command = ++command_;  // the answer to the one before is of no use
     again.emplace_back(newest_command_);
   }

@@ -31,7 +31,7 @@ void SessionNode::OnCutOff(const std::string& process, Utime silence) {
   const std::string why = "rgbdt-" + process + " was cut off for " +
                           std::to_string(silence / kMicrosecondsPerSecond) + " s";
   if (!waiting_ || idle()) return;
-  step_began_ = now_;
+  timeout_.AskedAgain(now_);
   const SessionStep::Kind kind = step().kind;
   if (HasPart(process) && kind == SessionStep::Kind::kSweep) spoiled_ = why;
   const bool solves = kind == SessionStep::Kind::kSolve || kind == SessionStep::Kind::kEvaluate;

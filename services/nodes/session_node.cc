@@ -109,10 +109,9 @@ Messages SessionNode::GoOn() {
   if (!StepDone()) {
     if (!waiting_ || finished_) return {};  // it failed
     const bool waits = step().kind == SessionStep::Kind::kWait;
-    if (!waits && ToSeconds(now_ - step_began_) > step().timeout_s) {
+    if (const std::string why = waits ? "" : timeout_.WhyOver(now_); !why.empty()) {
       const std::string clocks = ClockTrouble();
-      Fail("no answer in " + std::to_string(static_cast<int>(step().timeout_s)) + " s; " +
-           WhatIsMissing() + (clocks.empty() ? "" : "; " + clocks));
+      Fail(why + "; " + WhatIsMissing() + (clocks.empty() ? "" : "; " + clocks));
     }
     return RepeatCommand();
   }
@@ -217,7 +216,7 @@ Messages SessionNode::Begin() {
   if (IsHeldUp()) return {};
   waiting_ = true;
   answered_ = false;
-  step_began_ = now_;
+  timeout_.Begin(now_, step().timeout_s);
   switch (step().kind) {
     case SessionStep::Kind::kNextPose:
       view_ = ViewName(++view_number_);
@@ -307,7 +306,7 @@ Messages SessionNode::Send(SessionVerb verb) {
 bool SessionNode::StepDone() {
   switch (step().kind) {
     case SessionStep::Kind::kWait:
-      return ToSeconds(now_ - step_began_) >= step().wait_s;
+      return ToSeconds(now_ - timeout_.began()) >= step().wait_s;
     case SessionStep::Kind::kSave:
       return true;
     case SessionStep::Kind::kCapture:

@@ -12,6 +12,7 @@
 #include "services/nodes/earlier_views.h"
 #include "services/nodes/other_sessions.h"
 #include "services/nodes/solver_views.h"
+#include "services/nodes/step_timeout.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
@@ -34,12 +35,13 @@ struct SessionProgress {
 /// (STATUS). next_pose and sweep end with anybody's done, capture with the detector's and the view
 /// on disk, solve and evaluate with the solver's. save writes the report, and the calibration of
 /// the cameras that were solved; results of an earlier run in the directory are kept aside
-/// (SetResultsAside), once the session begins. A failed event, no answer in the step's time, a
-/// camera that could not be solved, or a file that cannot be written ends the session with the
-/// reason; one that a person leads publishes the reason and goes on. Each capture that a person
-/// asks for is followed by solve and evaluate, so that there always is a report. Corners that a
-/// person picks in an image of a view that is on disk are written to it, and once the detector has
-/// detected it again, a session that a person leads solves again.
+/// (SetResultsAside), once the session begins. A failed event, neither an answer nor new
+/// progress in the step's time (StepTimeout), a camera that could not be solved, or a file that
+/// cannot be written ends the session with the reason; one that a person leads publishes the reason
+/// and goes on. Each capture that a person asks for is followed by solve and evaluate, so that
+/// there always is a report. Corners that a person picks in an image of a view that is on disk are
+/// written to it, and once the detector has detected it again, a session that a person leads solves
+/// again.
 ///
 /// Two sessions on one bus would erase each other's views. For as long as its identity says it
 /// listens and sends nothing but its STATUS; hears it another one, it ends with the reason, and
@@ -173,9 +175,9 @@ class SessionNode : public Node {
   Utime newest_utime_ = 0;
   Utime now_ = 0;               // Advance's newest
   std::optional<Utime> began_;  // its first
-  Utime step_began_ = 0;
-  bool started_ = false;  // everybody was ready
-  bool waiting_ = false;  // the step at hand was begun
+  StepTimeout timeout_;         // of the step at hand
+  bool started_ = false;        // everybody was ready
+  bool waiting_ = false;        // the step at hand was begun
   std::size_t index_ = 0;
   std::int64_t command_ = identity_.FirstCommand();
   SessionCommand newest_command_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
@@ -331,6 +332,61 @@ TEST_F(SessionNodeTest, AnswersToOtherCommandsDoNotCount) {
   stray.kind = EventKind::kDone;
   node_->Handle(stray);
   EXPECT_EQ(Only<SessionCommand>(AdvanceTo(0.3, node_.get())).size(), 1U);
+}
+
+// A busy machine: a sweep that takes three times its time, and tells how far it is.
+TEST_F(SessionNodeTest, ProgressRenewsTheTimeOutAndSilenceAfterItDoesNot) {
+  for (const bool ends : {true, false}) {
+    std::filesystem::remove_all(dir_ / "session");
+    world_ = World();
+    Start(Script({Kind::kSweep, Kind::kCapture}));
+    EverybodyReady();
+    const SessionCommand sweep = Only<SessionCommand>(AdvanceTo(0, node_.get())).back();
+    ASSERT_EQ(sweep.verb, SessionVerb::kSweep);
+    SessionEvent progress = world_.Event(sweep, "simulator");
+    progress.kind = EventKind::kProgress;
+    for (int i = 1; i <= 5; ++i) {
+      AdvanceTo(6 * i - 0.1, node_.get());
+      progress.fraction = 0.1 * i;
+      node_->Handle(progress);
+    }
+    if (ends) {
+      test::HandleAll(node_.get(), world_.Answer(sweep));
+      AdvanceTo(31, node_.get());
+      AdvanceTo(39, node_.get());
+      EXPECT_FALSE(node_->finished()) << "the capture has its own time";
+      continue;
+    }
+    for (double t = 30; t < 39; t += 3) {
+      node_->Handle(progress);  // nothing new
+      AdvanceTo(t, node_.get());
+      EXPECT_FALSE(node_->finished()) << t << ": " << node_->failure();
+    }
+    node_->Handle(progress);
+    AdvanceTo(41, node_.get());
+    EXPECT_THAT(node_->failure(),
+                AllOf(HasSubstr("sweep"), HasSubstr("no answer and no progress in 10 s"),
+                      HasSubstr("simulator was at 50%")));
+  }
+}
+
+TEST_F(SessionNodeTest, AStepThatCreepsOnForeverEnds) {
+  Start(Script({Kind::kSweep}));
+  EverybodyReady();
+  const SessionCommand sweep = Only<SessionCommand>(AdvanceTo(0, node_.get())).back();
+  SessionEvent progress = world_.Event(sweep, "motor");
+  progress.kind = EventKind::kProgress;
+  double t = 0;
+  for (; t < 1000 && !node_->finished(); t += 5) {
+    progress.fraction = t / 1000;
+    node_->Handle(progress);
+    AdvanceTo(t, node_.get());
+  }
+  EXPECT_GT(t, 10 * StepTimeout::kMostTimes);
+  const std::string percent = std::to_string(std::lround(100 * progress.fraction));
+  EXPECT_THAT(node_->failure(),
+              AllOf(HasSubstr("no answer in 100 s, though motor was at " + percent + "%"),
+                    HasSubstr("timeout_s")));
 }
 
 TEST_F(SessionNodeTest, AWaitMayBeLongerThanTheTimeOut) {
