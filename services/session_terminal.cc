@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "calib/model/errors.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 

@@ -20,7 +20,7 @@
 #include "services/bus/bus.h"
 #include "services/command_line/command_line.h"
 #include "services/drivers/net/network_interfaces.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 #include "services/runtime/process.h"
 #include "viewer/finished/finished_node.h"
 #include "viewer/live/bus_monitor.h"

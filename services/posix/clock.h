@@ -6,7 +6,8 @@
 
 namespace rgbdt {
 
-/// The machine's steady clock [us]; its zero is anywhere.
+/// The machine's steady clock [us]; its zero is anywhere. How long something took is by this one:
+/// the other is set while things go on.
 inline Utime SteadyUtime() {
   using Microseconds = std::chrono::duration<Utime, std::micro>;
   return std::chrono::duration_cast<Microseconds>(
@@ -14,7 +15,7 @@ inline Utime SteadyUtime() {
       .count();
 }
 
-/// The machine's wall clock [us, UTC].
+/// The machine's wall clock [us, UTC], for stamps and for comparing them.
 inline Utime HostUtime() {
   using Microseconds = std::chrono::duration<Utime, std::micro>;
   return std::chrono::duration_cast<Microseconds>(

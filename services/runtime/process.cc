@@ -10,7 +10,7 @@
 
 #include "services/bus/bus_key.h"
 #include "services/bus/signed_bus.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 #include "services/runtime/node_runner.h"
 
 namespace rgbdt {

@@ -15,7 +15,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/messages/codec.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {

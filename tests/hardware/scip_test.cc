@@ -301,39 +301,5 @@ TEST(ScipScanner, LeavesTheScannerQuiet) {
   EXPECT_TRUE(quit());
 }
 
-TEST(ScipClock, TimesAskedForTellHowLateScansAre) {
-  ScipClock clock(5000);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> even(0, 1);
-  constexpr Utime kStart = 1'433'160'000'000'000;
-  const auto ms = [](double us) {
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(us * (1 + 50e-6) / 1000) %
-                                      (1 << 24));
-  };
-  double t = 1e9;
-  for (int i = 0; i < 10; ++i, t += 500 + 2000 * even(random)) {
-    const double there = 100 + 50 * even(random);
-    const double back = 100 + 50 * even(random);
-    clock.AddTime(ms(t), kStart + std::llround(t - there), kStart + std::llround(t + back));
-  }
-  double worst = 0, mean = 0;
-  int count = 0;
-  for (; t < 1e9 + 200e6; t += 25'013) {
-    const double late = 9000 + 1500 * even(random);  // of which the scan takes 5000
-    const ScipClock::ScanTime time = clock.AddScan(ms(t), kStart + std::llround(t + late));
-    EXPECT_FALSE(time.was_set);
-    const double error = static_cast<double>(time.utime - kStart) - t;
-    worst = std::max(worst, std::abs(error));
-    mean += error;
-    ++count;
-  }
-  mean /= count;
-  RecordProperty("worst_us", std::to_string(worst));
-  RecordProperty("mean_us", std::to_string(mean));
-  EXPECT_NEAR(static_cast<double>(clock.scan_delay_us()), 9000, 500);
-  EXPECT_LT(std::abs(mean), 400);
-  EXPECT_LT(worst, 1200);
-}
-
 }  // namespace
 }  // namespace rgbdt

@@ -11,7 +11,7 @@
 
 #include "calib/model/errors.h"
 #include "services/drivers/lidar/lidar_node.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
 

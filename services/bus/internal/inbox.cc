@@ -2,22 +2,14 @@
 
 #include <sys/eventfd.h>
 
-#include <chrono>
-
 #include "calib/model/errors.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {
 
 // Names come from strangers, too: forget them all rather than grow.
 constexpr std::size_t kMaxChannels = 1000;
-
-Utime WallClock() {
-  using Microseconds = std::chrono::duration<Utime, std::micro>;
-  return std::chrono::duration_cast<Microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -51,7 +43,7 @@ void Inbox::Add(WholeMessage message) {
   if (waiting.to.empty()) return;
   for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
   waiting.message = std::move(message);
-  waiting.arrived = WallClock();
+  waiting.arrived = HostUtime();
   waiting_.push_back(std::move(waiting));
   if (waiting_.size() == 1) eventfd_write(waits_.get(), 1);
 }

@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <random>
 
 #include "calib/model/errors.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -21,18 +21,6 @@ constexpr Utime kLongestBeat = kMicrosecondsPerSecond;
 constexpr Utime kLinger = 200'000;  // a receiver has asked by then, several times
 constexpr std::size_t kAtOnce = 64;
 constexpr int kPatienceMs = 1000;  // for room in the kernel's buffers, since it last took one
-
-Utime Now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-Utime Wall() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 sockaddr_in GroupOf(const BusUrl& url) {
   sockaddr_in group{};
@@ -112,7 +100,7 @@ void UdpSender::Publish(const std::string& channel, const Bytes& bytes) {
     throw InputError("larger than 65535 datagrams");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  published_ = Now();
+  published_ = SteadyUtime();
   pause_ = kFirstBeat;
   beat_at_ = std::min(published_ + pause_, beaten_ + kLongestBeat);
   const SentMessage& message = sent_.Add(channel, bytes, published_);
@@ -123,7 +111,7 @@ void UdpSender::Publish(const std::string& channel, const Bytes& bytes) {
 void UdpSender::Answer(const RepairRequest& request) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (request.id != id_) return;
-  for (const Bytes& datagram : sent_.Repeat(request.parts, Now())) {
+  for (const Bytes& datagram : sent_.Repeat(request.parts, SteadyUtime())) {
     Bytes wrapped{kRepairMark};
     wrapped.insert(wrapped.end(), datagram.begin(), datagram.end());
     SendControl(wrapped);
@@ -149,8 +137,8 @@ void UdpSender::SendControl(const Bytes& payload) {
 }
 
 void UdpSender::SendBeat() {
-  beaten_ = Now();
-  SendControl(Encode(Beat{id_, sent_.oldest(), sent_.next(), datagrams_, Wall(), host_}));
+  beaten_ = SteadyUtime();
+  SendControl(Encode(Beat{id_, sent_.oldest(), sent_.next(), datagrams_, HostUtime(), host_}));
 }
 
 void UdpSender::BeatIfDue(Utime now) {

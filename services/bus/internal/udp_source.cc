@@ -19,6 +19,7 @@
 #include "services/bus/internal/inbox.h"
 #include "services/bus/internal/repaired_streams.h"
 #include "services/bus/internal/source.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -31,17 +32,6 @@ constexpr auto kTestPatience = std::chrono::seconds(10);
 constexpr int kTestPeriodMs = 100;
 
 constexpr Utime kLongestWaitMs = 1000;
-
-Utime Now() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
-      .count();
-}
-
-Utime Wall() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 std::string Text(const sockaddr_in& address) {
   std::array<char, INET_ADDRSTRLEN> text{};
@@ -131,7 +121,7 @@ class UdpSource : public Source {
   // By the kernel, on the wall clock [us]: on a busy machine it is read much later.
   static Utime ArrivalOf(msghdr* message) {
     const cmsghdr* stamp = CMSG_FIRSTHDR(message);
-    if (stamp == nullptr || stamp->cmsg_type != SCM_TIMESTAMP) return Wall();
+    if (stamp == nullptr || stamp->cmsg_type != SCM_TIMESTAMP) return HostUtime();
     timeval time{};
     std::memcpy(&time, CMSG_DATA(stamp), sizeof time);
     return time.tv_sec * kMicrosecondsPerSecond + time.tv_usec;
@@ -154,7 +144,7 @@ class UdpSource : public Source {
   void TakeMessage(const Datagram& datagram, const char** why) {
     if (sender_ != nullptr) {
       const std::lock_guard<std::mutex> lock(streams_mutex_);
-      const bool taken = streams_.Add(From(), datagram, Now(), why);
+      const bool taken = streams_.Add(From(), datagram, SteadyUtime(), why);
       if (taken) return DeliverStreams();
     }
     auto message = reassembly_.Add(From(), datagram, why);
@@ -167,13 +157,13 @@ class UdpSource : public Source {
     const RepairMessage message = DecodeRepairMessage(datagram.data, datagram.size);
     const std::lock_guard<std::mutex> lock(streams_mutex_);
     if (const auto* beat = std::get_if<Beat>(&message)) {
-      streams_.OnBeat(From(), *beat, Now(), came_);
+      streams_.OnBeat(From(), *beat, SteadyUtime(), came_);
     } else if (const auto* request = std::get_if<RepairRequest>(&message)) {
-      streams_.OnRequest(*request, Now());
+      streams_.OnRequest(*request, SteadyUtime());
       sender_->Answer(*request);
     } else if (const auto* repair = std::get_if<Repair>(&message)) {
       const auto lost = ParseDatagram(repair->datagram.data(), repair->datagram.size(), why);
-      if (lost) streams_.AddRepair(From(), *lost, Now(), why);
+      if (lost) streams_.AddRepair(From(), *lost, SteadyUtime(), why);
     } else {
       *why = "no message of those that repair what is lost";
     }
@@ -188,7 +178,7 @@ class UdpSource : public Source {
   int Tend() {
     if (sender_ == nullptr) return -1;
     const std::lock_guard<std::mutex> lock(streams_mutex_);
-    const Utime now = Now();
+    const Utime now = SteadyUtime();
     for (const RepairRequest& request : streams_.Ask(now)) sender_->Ask(request);
     DeliverStreams();
     sender_->BeatIfDue(now);
@@ -198,7 +188,7 @@ class UdpSource : public Source {
   }
 
   bool Stopped(const pollfd& stop) const {
-    return stop.revents != 0 && (sender_ == nullptr || !sender_->WaitsForRequests(Now()));
+    return stop.revents != 0 && (sender_ == nullptr || !sender_->WaitsForRequests(SteadyUtime()));
   }
 
   void Run() {

@@ -8,7 +8,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/drivers/camera/internal/frame_format.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "calib/model/text.h"
+#include "services/posix/clock.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {
@@ -30,10 +31,8 @@ double SteadyUs() {
 
 // UTC of a moment of the steady clock that lies just behind us.
 Utime ToUtime(double steady_us) {
-  using std::chrono::microseconds;
-  const auto utc = std::chrono::system_clock::now().time_since_epoch();
-  const double since_us = SteadyUs() - steady_us;
-  return std::chrono::duration_cast<microseconds>(utc).count() - std::llround(since_us);
+  const Utime utc = HostUtime();
+  return utc - std::llround(SteadyUs() - steady_us);
 }
 
 std::string Degrees(const TurnedScanner& scanner, std::int64_t ticks) {

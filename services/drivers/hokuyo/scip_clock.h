@@ -12,15 +12,16 @@ namespace rgbdt {
 /// How late the times asked for (TM1) arrive is known: half the way there and back. How late scans
 /// arrive is not: the scan must be over, then comes what the scanner takes to send it. So the scans
 /// of the first seconds are timed by the times asked for, and what they were late at least is taken
-/// off from then on. Asking for times needs the laser off, so it is done once. Where the scanner
-/// gives no times, a scan's own duration is what is taken off.
+/// off from then on. Seconds are the scanner's own, and end where the host's clock is set back
+/// (a scan that arrived before it was made). Asking for times needs the laser off, so it is done
+/// once. Where the scanner gives no times, a scan's own duration is what is taken off.
 class ScipClock {
  public:
   /// `scan_us`: from step 0 to the last one measured.
   explicit ScipClock(Utime scan_us);
 
-  /// A time asked for: sent and arrived [us, UTC].
-  void AddTime(std::uint32_t time_ms, Utime sent, Utime arrival);
+  /// A time asked for: when it arrived [us, UTC], and how long after it was asked for [us].
+  void AddTime(std::uint32_t time_ms, Utime arrival, Utime round_trip);
 
   struct ScanTime {
     Utime utime = 0;       ///< of step 0, on the host's clock
@@ -34,13 +35,15 @@ class ScipClock {
   Utime scan_delay_us() const { return scan_delay_us_; }
 
  private:
-  static constexpr Utime kLearn_us = 2'000'000;
-  bool Learn(std::int64_t ms, Utime arrival);
+  static constexpr std::int64_t kLearnMs = 2000;
+  bool StillLearns(std::int64_t ms, Utime arrival);
+  bool EndLearning();
+  Utime DelayOf(std::int64_t ms, Utime arrival) const;
 
   CounterUnwrapper counter_;
   ClockFit fit_;
   bool learning_ = false;
-  Utime learn_until_ = 0;
+  std::int64_t learn_until_ms_ = 0;  // scanner's clock
   Utime scan_delay_us_;
   std::vector<std::pair<std::int64_t, Utime>> learnt_from_;
 };

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {
@@ -122,10 +123,10 @@ void ScipScanner::AlignClock(Connection& c) {
     return;
   }
   for (int i = 0; i < kTimesAsked; ++i) {
-    const Utime sent = HostUtime();
+    const Utime sent = SteadyUtime();
     const scip::Block reply = Ask(c, scip::kTime);
     try {
-      c.clock->AddTime(scip::ParseTime(reply), sent, c.link.arrival());
+      c.clock->AddTime(scip::ParseTime(reply), c.link.arrival(), c.link.steady_arrival() - sent);
     } catch (const InputError&) {
       report_.Count("bad replies");
     }
@@ -185,23 +186,20 @@ void ScipScanner::OnScan(Connection& c, const scip::Block& block, Utime arrival)
   const std::int64_t lost = std::llround(turns) - 1;
   if (lost > 0) report_.Count("lost lines", lost);
   c.last_ms = time.ms;
-  TellGap(c, time.utime);
+  TellGap(c);
   c.thread.Publish(ToLineScan(c.scanner, scan, time.utime));
   report_.Count("lines");
 }
 
 // The first line of a connection says what was missed since the one before.
-void ScipScanner::TellGap(Connection& c, Utime utime) {
-  if (report_.GetStatus().ready) {
-    last_line_ = utime;
-    return;
-  }
-  if (last_line_ != 0) {
+void ScipScanner::TellGap(Connection& c) {
+  const std::optional<Utime> before = std::exchange(last_line_, c.link.steady_arrival());
+  if (report_.GetStatus().ready) return;
+  if (before) {
     c.thread.Warn(c.link.name() +
-                  Format(": is back; no lines for %.1f s", ToSeconds(utime - last_line_)));
+                  Format(": is back; no lines for %.1f s", ToSeconds(*last_line_ - *before)));
     report_.Count("reconnects");
   }
-  last_line_ = utime;
   report_.Set(c.scanner.model + " at " + c.link.name(), true);
 }
 

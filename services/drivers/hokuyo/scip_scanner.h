@@ -41,11 +41,11 @@ class ScipScanner {
   void Start(Connection& c);
   void Stream(Connection& c);
   void OnScan(Connection& c, const scip::Block& block, Utime arrival);
-  void TellGap(Connection& c, Utime utime);
+  void TellGap(Connection& c);
 
   HokuyoDevice device_;
   DeviceReport report_;
-  Utime last_line_ = 0;  // 0: none yet
+  std::optional<Utime> last_line_;  // when it came, by the steady clock
 };
 
 }  // namespace rgbdt

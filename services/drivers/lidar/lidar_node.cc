@@ -6,7 +6,7 @@
 #include "services/drivers/hokuyo/scip_scanner.h"
 #include "services/drivers/lidar/internal/pcd_folder.h"
 #include "services/drivers/velodyne/velodyne_source.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <memory>
 
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {
@@ -86,6 +86,7 @@ std::string TcpLink::Receive(int timeout_ms) {
   char bytes[16 * 1024];
   const ssize_t got = recv(socket_, bytes, sizeof(bytes), 0);
   arrival_ = HostUtime();
+  steady_arrival_ = SteadyUtime();
   if (got > 0) return std::string(bytes, static_cast<std::size_t>(got));
   if (got == 0) Fail("closed the connection; is another program connected to it?");
   if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return {};

@@ -21,6 +21,8 @@ class TcpLink {
   std::string Receive(int timeout_ms);
   /// When what Receive gave came [us, UTC].
   Utime arrival() const { return arrival_; }
+  /// The same moment by the machine's steady clock, for durations [us].
+  Utime steady_arrival() const { return steady_arrival_; }
   /// "192.168.0.10:10940"
   const std::string& name() const { return name_; }
 
@@ -29,7 +31,7 @@ class TcpLink {
 
   std::string name_;
   int socket_ = -1;
-  Utime arrival_ = 0;
+  Utime arrival_ = 0, steady_arrival_ = 0;
 };
 
 }  // namespace rgbdt

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "services/drivers/velodyne/velodyne_source.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 
 namespace rgbdt {
 namespace {

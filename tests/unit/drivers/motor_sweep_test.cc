@@ -45,7 +45,8 @@ MotorSweep::Step Sweep(const WallClock& wall, Utime stands_from = 1'000'000'000)
 TEST(MotorSweep, AWallClockThatIsSetStopsNoMotor) {
   const Utime second = kMicrosecondsPerSecond;
   EXPECT_TRUE(Sweep([](Utime steady) { return steady; }).done);
-  for (const Utime jump : {-3600 * second, -second, second, 3600 * second}) {
+  for (const Utime jump : {-3600 * second, -10 * second, -second, -second / 5, second / 5, second,
+                           10 * second, 3600 * second}) {
     for (const Utime when : {second / 10, second, 2 * second}) {
       const auto step = Sweep([&](Utime t) { return t + (t < when ? 0 : jump); });
       EXPECT_TRUE(step.done) << jump << " " << when << step.failure;

@@ -73,7 +73,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/messages", {}},
       {"services/posix", {}},
       {"services/bus", {"services/messages", "services/posix"}},
-      {"services/runtime", {"services/bus", "services/messages"}},
+      {"services/runtime", {"services/bus", "services/messages", "services/posix"}},
       {"services/nodes", {"calib/*", "services/messages", "services/runtime"}},
       {"services/simulator",
        {"calib/model", "calib/scan_assembly", "calib/simulate", "services/messages",

@@ -7,7 +7,7 @@
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
-#include "services/runtime/clock.h"
+#include "services/posix/clock.h"
 #include "services/runtime/pacer.h"
 
 namespace rgbdt {
