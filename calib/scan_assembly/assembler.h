@@ -23,8 +23,11 @@ namespace rgbdt {
 /// the midst of the sweep, by the time since the sweep's start and the numbers that are missing.
 /// Refused with an InputError, which changes nothing: a reading that is not after the one before
 /// it, a line seen before, one whose sweep has ended, one more than kKept older than the newest
-/// reading. A clock set back by more than kClockReset begins anew. Between sweeps (sweep_utime 0)
-/// lines make no cloud.
+/// reading. Between sweeps (sweep_utime 0) lines make no cloud.
+///
+/// A clock set back by more than kClockReset, or a log longer than that which is looped, begins
+/// anew. One set back by less is refused until it is again where it was, one set forward leaves a
+/// gap: the sweep at hand lacks lines, which are counted; later ones are as if nothing had been.
 class Assembler {
  public:
   static constexpr std::size_t kMaxWaiting = 1000;               ///< lines

@@ -468,6 +468,40 @@ TEST_F(AssemblerTest, LinesWithoutReadingsAreBounded) {
   EXPECT_TRUE(problems_.empty());
 }
 
+// Lines and readings alike: they bear the times of one clock.
+TEST_F(AssemblerTest, AClockSetInTheMidstOfASweepSpoilsNoLaterOne) {
+  for (const Utime jump_ms : {-10'000, -1000, -200, 200, 1000, 10'000}) {
+    assembler_ = Assembler(MakeScanner());
+    Inputs spoilt = SweepInOrder();
+    for (Input& input : spoilt) {
+      if (UtimeOf(input) < kSweep + kLines / 2 * kLinePeriod) continue;
+      std::visit([&](auto& in) { in.utime += jump_ms * kMs; }, input);
+    }
+    Feed(spoilt);
+    const Inputs next = SweepInOrder(kSweep + 30'000 * kMs + jump_ms * kMs, kLines);
+    problems_.clear();
+    const Chunks chunks = Feed(next);
+    EXPECT_TRUE(problems_.empty()) << jump_ms << ": " << problems_.front();
+    Assembler undisturbed(MakeScanner());
+    const Chunks expected = AddAll(&undisturbed, next);
+    ASSERT_EQ(expected.size(), kLines + 1U);
+    ASSERT_GE(chunks.size(), expected.size()) << jump_ms;
+    // The spoilt sweep may end with the next one's first reading.
+    const Chunks newest(chunks.end() - static_cast<long>(expected.size()), chunks.end());
+    EXPECT_EQ(BytesOfAll(newest), BytesOfAll(expected)) << jump_ms;
+  }
+}
+
+TEST_F(AssemblerTest, AfterAClockThatIsSetBackItIsDeafUntilThatIsWhereItWas) {
+  const auto chunks = Feed(SweepInOrder());
+  ASSERT_EQ(chunks.size(), kLines + 1U);
+  EXPECT_TRUE(Feed(SweepInOrder()).empty()) << "a short log looped: the same times once more";
+  EXPECT_THAT(problems_, ::testing::Contains(HasSubstr("is not after the one before it")));
+  problems_.clear();
+  EXPECT_EQ(Feed(SweepInOrder(kSweepEnd + 1000 * kMs, kLines)).size(), kLines + 1U);
+  EXPECT_TRUE(problems_.empty());
+}
+
 TEST_F(AssemblerTest, AClockSetBackBeginsAnew) {
   // A reading of the far future: a broken clock, or a lie. Then the sweep as if nothing had been.
   Feed({Reading(kSweep + 1'000'000'000'000)});
