@@ -26,8 +26,8 @@ function(rgbdt_debian_package part name)
 endfunction()
 
 rgbdt_debian_package(programs rgbdt
-  DESCRIPTION "Finds where colour and thermal cameras sit relative to a LIDAR, says how"
-              "sure that is, and streams the fused RGB-depth-thermal cloud on an LCM bus."
+  DESCRIPTION "Finds where colour and thermal cameras sit relative to a LIDAR, with the"
+              "uncertainty, and streams the fused RGB-depth-thermal cloud on an LCM bus."
   DEPENDS iproute2)  # lcm-loopback.service
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 # rgbdt replay reads what lcm-logger writes; lcm-firewall.service keeps others out of that.

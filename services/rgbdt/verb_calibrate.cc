@@ -171,7 +171,7 @@ void AddCalibrate(CommandLine* program) {
       "kept\n"
       "aside, as calibration.previous.textproto and so on. Several sessions of one rig are\n"
       "solved together: the lenses and the LIDAR's own errors are the same in all of them, the\n"
-      "poses, too, unless --mounts-moved; whether they are is said.\n"
+      "poses, too, unless --mounts-moved; where they disagree a warning says so.\n"
       "Examples: rgbdt calibrate out/demo/session --out out/again\n"
       "          rgbdt calibrate monday friday --mounts-moved --out out/week",
       [flags] {

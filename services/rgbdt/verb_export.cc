@@ -138,7 +138,7 @@ void AddExport(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "export",
       "Writes a calibration for other tools: static transforms of ROS as command lines, launch\n"
-      "file and URDF, OpenCV YAML, Kalibr's camchain. Each file says which way it goes. A\n"
+      "file and URDF, OpenCV YAML, Kalibr's camchain. Each file states its direction. A\n"
       "calibration that is not to be used, or was made with another rig, is refused.\n"
       "With --mcap, a log of lcm-logger as an MCAP that Foxglove, Rerun and PlotJuggler open: "
       "sweeps,\n"

@@ -1,5 +1,6 @@
 """Pages against the project: what stands in backticks in the first column of TROUBLESHOOTING.md's
-tables is said by a program; every relative link of a page leads to something, a heading included.
+tables is said by a program; every relative link of a page leads to something, a heading included;
+no program and no page has words that are not plain English (WORDS).
 Usage: check_messages.py SOURCE_DIR"""
 import pathlib
 import re
@@ -22,6 +23,34 @@ def said_by_programs():
             text += read(path)
     literals = re.findall(r'"((?:[^"\\\n]|\\.)*)"', re.sub(r'"\s*\n\s*"', "", text))
     return "\n".join(literals).replace('\\"', '"')
+
+
+# What a person cannot understand at once, and what stands instead.
+WORDS = {
+    r"finds? itself\b": "is detected automatically",
+    r"\b[Hh]ow sure\b": "the uncertainty",
+    r"sigma is meant": "1 sigma",
+    r"\bis to go from\b": "expected to improve from",
+    r"\bthing away\b": "remove the other object",
+    r"[Nn]othing can be asked": "not available",
+}
+STARTS = r"(?:^|[.:;] )So,? [a-z]"  # "So" in front of a sentence, in what programs say
+
+
+def check_words(where, text, wrong):
+    for words, instead in wrong.items():
+        for found in re.findall(words, text, re.M):
+            problems.append(f'{where}: says "{found}"; plainer: {instead}')
+
+
+def check_all_words(pages):
+    """The viewer's page has its words between tags, too: its files are read whole."""
+    starts = {STARTS: "leave it out, or say what follows from what"}
+    check_words("a program", said_by_programs(), WORDS | starts)
+    scripts = subprocess.run(["git", "-C", str(root), "ls-files", "scripts", "viewer/page/src"],
+                             capture_output=True, text=True).stdout.splitlines()
+    for path in sorted(pages | {root / name for name in scripts}):
+        check_words(path, re.sub(r'"?\s*\n\s*"?', " ", read(path)), WORDS)
 
 
 def check_messages(page):
@@ -74,6 +103,7 @@ for name in PAGES:
     if name not in check_links(root / "README.md"):
         problems.append(f"README.md does not lead to {name}")
 check_messages(root / "services/rgbdt/TROUBLESHOOTING.md")
+check_all_words(pages)
 for problem in sorted(set(problems)):
     print(problem)
 print(f"{len(pages)} pages")
