@@ -53,7 +53,8 @@ class Builder {
   explicit Builder(const Target& target) {
     joint_.problem.target = target;
     joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
-    if (target.HasPattern() && target.print_sigma > 0) joint_.problem.priors.bow_sigma_m = kBowSigmaM;
+    if (target.HasPattern() && target.print_sigma > 0)
+      joint_.problem.priors.bow_sigma_m = kBowSigmaM;
     if (!target.HasPattern()) {
       joint_.problem.priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
       joint_.problem.priors.fringe_sigma_m = kPlainFringeSigmaM;
