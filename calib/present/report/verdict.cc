@@ -112,12 +112,14 @@ std::vector<const Cause*> CausesToName(const CameraReport& camera, bool alarm) {
 
 void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) return;
+  // Where it left no pose, nothing tells how far that would move.
+  const bool solved = camera.calibration.status != SolveStatus::kNotSolved;
   const char* prefix = "Likeliest cause: ";
   for (const Cause* cause : CausesToName(camera, judgement->grade() >= Grade::kDoubtful)) {
     const std::string sentence = prefix + cause->words + "." + Moves(*cause);
     prefix = "Second likeliest: ";
     if (cause->Sigmas() >= kGivenWrongSigmas) {
-      judgement->Cause(GradeOf(*cause), sentence);
+      judgement->Cause(solved ? GradeOf(*cause) : Grade::kBad, sentence);
     } else {
       judgement->AddReason(sentence);
     }
@@ -126,7 +128,7 @@ void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
 
 // Whether the views fit together at all: before any figure that takes them to.
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
-  if (!camera.contradiction.empty()) judgement->Bad(camera.contradiction);
+  if (!camera.contradiction.empty()) judgement->Cause(Grade::kBad, camera.contradiction);
   const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
   if (camera.rejected.size() >= kManyRejected && 4 * camera.rejected.size() > views) {
     judgement->Doubtful("Rejected: " + std::to_string(camera.rejected.size()) + " of " +

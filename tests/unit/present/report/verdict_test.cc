@@ -178,11 +178,11 @@ TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
     camera.causes = {Wrong(chi2, moves_sigma)};
     return Judge(camera).grade;
   };
-  EXPECT_EQ(grade(8.9, 10), Grade::kGood);  // by chance once in 300 times
-  EXPECT_EQ(grade(9.1, 0.9), Grade::kUsable);
-  EXPECT_EQ(grade(9.1, 1.1), Grade::kDoubtful);
-  EXPECT_EQ(grade(9.1, std::nullopt), Grade::kDoubtful);
-  EXPECT_EQ(grade(9.1, 4.1), Grade::kBad);
+  EXPECT_EQ(grade(12.2, 10), Grade::kGood);  // by chance once in 2,000 times
+  EXPECT_EQ(grade(12.3, 0.9), Grade::kUsable);
+  EXPECT_EQ(grade(12.3, 1.1), Grade::kDoubtful);
+  EXPECT_EQ(grade(12.3, std::nullopt), Grade::kDoubtful);
+  EXPECT_EQ(grade(12.3, 4.1), Grade::kBad);
   EXPECT_THAT(Judge(camera).reasons.at(0),
               AllOf(HasSubstr("Likeliest cause: the squares are 3.0% larger than given."),
                     HasSubstr("moves the result by 4.1 sigma")));
@@ -209,6 +209,18 @@ TEST(Verdict, AnUnsureCauseIsNamedOnlyBesideAnotherAlarm) {
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("Likeliest cause: the squares")));
   camera.contradiction = "Images and clouds are 1 apart";
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Likeliest cause"))));
+}
+
+TEST(Verdict, WhyThereIsNoPoseComesBeforeThatThereIsNone) {
+  CameraReport camera = Good();
+  camera.calibration.status = SolveStatus::kNotSolved;
+  camera.calibration.covariance.reset();
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("There was no solve"));
+  camera.causes = {Wrong(25, std::nullopt)};
+  EXPECT_EQ(Judge(camera).grade, Grade::kBad);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Likeliest cause: the squares"));
+  camera.contradiction = "Images and clouds are 1 apart";
+  EXPECT_EQ(Judge(camera).reasons.at(0), camera.contradiction);
 }
 
 TEST(Verdict, ManyRejectedViewsAreDoubtful) {
