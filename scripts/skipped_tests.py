@@ -1,4 +1,7 @@
-"""Prints how many tests of a JUnit file, as ctest writes it, were skipped and why."""
+"""Prints how many tests were skipped and why, from a JUnit file as ctest writes it.
+
+An entry of ctest is a script that says itself that it was skipped, or a program of GoogleTest, which
+prints `file:line: Skipped` and the reason for each of its tests."""
 
 import collections
 import re
@@ -6,27 +9,26 @@ import sys
 import xml.etree.ElementTree
 
 
-def reason(case):
-    """What the test itself said: GoogleTest prints it after `file:line: Skipped`."""
+def reasons(case):
+    """One for each test of the entry that was skipped."""
     output = case.findtext("system-out") or ""
-    said = re.search(r": Skipped\n(.+)", output)
-    if said:
-        return said.group(1).strip()
+    said = re.findall(r": Skipped\n(.+)", output)
+    if said or case.find("skipped") is None:
+        return [reason.strip() for reason in said]
     lines = [line.strip() for line in output.splitlines() if line.strip()]
-    skipped = case.find("skipped")
-    return lines[-1] if lines else skipped.get("message", "") if skipped is not None else ""
+    return [lines[-1] if lines else case.find("skipped").get("message") or "no reason given"]
 
 
 def main(path):
     cases = xml.etree.ElementTree.parse(path).getroot().findall("testcase")
     skipped = collections.defaultdict(list)
     for case in cases:
-        if case.find("skipped") is not None:
-            skipped[reason(case) or "no reason given"].append(case.get("name"))
+        for reason in reasons(case):
+            skipped[reason].append(case.get("name"))
     count = sum(map(len, skipped.values()))
-    print(f"{count} of {len(cases)} tests skipped" + (":" if count else ""))
+    print(f"{count} tests skipped" + (":" if count else ""))
     for why, names in sorted(skipped.items()):
-        print(f"  {len(names)}: {why}  ({', '.join(sorted(names))})")
+        print(f"  {len(names)}: {why}  ({', '.join(sorted(set(names)))})")
 
 
 if __name__ == "__main__":

@@ -48,8 +48,13 @@ Bundle MakeBundle(const IntrinsicsInput& input, const IntrinsicsStart& start) {
   bundle.choice = input.choice;
   bundle.lens = ParametersOf(start.lens, input.choice);
   bundle.points = input.target.InnerCorners();
-  // Of width and height, each known to print_sigma.
-  bundle.print_aspect_sigma = std::sqrt(2.0) * input.target.print_sigma;
+  for (const Eigen::Vector3d& point : bundle.points) {
+    bundle.bow_factors.push_back(input.target.BowFactors(point.head<2>()));
+  }
+  if (input.target.print_sigma > 0) {  // of width and height, each
+    bundle.board_sigmas = {std::sqrt(2.0) * input.target.print_sigma, kBowSigmaM, kBowSigmaM,
+                           kBowSigmaM};
+  }
   const auto [least, greatest] = FocalRange(input.choice, input.width, input.height);
   bundle.least_focal = 0.2 * least;
   bundle.greatest_focal = 5 * greatest;
@@ -297,10 +302,14 @@ IntrinsicsResult CalibrateIntrinsics(const IntrinsicsInput& input,
   FillViews(input, bundle, selection, &result);
   const auto count = static_cast<Eigen::Index>(bundle.lens.size());
   const Eigen::MatrixXd covariance =
-      ActiveViews(bundle) > 0 ? CovarianceOfLens(bundle) : Eigen::MatrixXd();
+      ActiveViews(bundle) > 0 ? CovarianceOfLensAndBoard(bundle) : Eigen::MatrixXd();
   if (covariance.size() > 0) result.covariance = covariance.topLeftCorner(count, count);
   if (covariance.rows() > count) {
-    result.print_aspect = {bundle.print_aspect, std::sqrt(covariance(count, count))};
+    const auto board = [&](int i) {
+      return Estimate{bundle.board[static_cast<std::size_t>(i)],
+                      std::sqrt(covariance(count + i, count + i))};
+    };
+    result.board = {board(kAspect), board(kBow), board(kBow + 1), board(kBow + 2)};
   }
   result.coverage = CoverageOf(input, options, bundle);
   const std::string why = WhyNotConverged(result, options, solver);

@@ -72,6 +72,12 @@ struct ImageCoverage {
   std::vector<std::string> EmptyParts() const;
 };
 
+/// How the board differs from its drawing, as the views have it.
+struct BoardShape {
+  Estimate aspect;               ///< the squares' height over their width, less one
+  Estimate bow_x, twist, bow_y;  ///< Target::BowFactors [m]; above 0, the middle is nearer
+};
+
 /// A camera's lens and its uncertainty.
 struct IntrinsicsResult {
   Lens lens;
@@ -84,8 +90,7 @@ struct IntrinsicsResult {
   std::vector<double> values;      ///< in that order
   /// In that order, scaled with the variance of the residuals; empty where it is not known.
   Eigen::MatrixXd covariance;
-  /// The squares' height over their width, less one, as the views have it; absent: taken for zero.
-  std::optional<Estimate> print_aspect;
+  std::optional<BoardShape> board;  ///< absent: taken as drawn
   std::vector<IntrinsicsViewFit> views;
   ImageCoverage coverage;
 

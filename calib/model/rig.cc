@@ -148,6 +148,12 @@ std::vector<Eigen::Vector3d> Target::InnerCorners() const {
   return corners;
 }
 
+Eigen::Vector3d Target::BowFactors(const Eigen::Vector2d& at) const {
+  const double x = 2 * at.x() / width_m;
+  const double y = 2 * at.y() / height_m;
+  return {x * x - 1.0 / 3, x * y, y * y - 1.0 / 3};
+}
+
 std::array<Eigen::Vector3d, 4> Target::OutlineCorners() const {
   const double x = 0.5 * width_m;
   const double y = 0.5 * height_m;

@@ -71,6 +71,10 @@ struct LidarSpec {
   std::variant<std::monostate, HokuyoDevice, VelodyneDevice, PcdFolderDevice> device;
 };
 
+/// 1 sigma of each of bow_x, twist and bow_y (Target::BowFactors) where the print is not exact
+/// either: two cameras saw 0.9 mm of the recorded board (0.85 x 0.61 m).
+inline constexpr double kBowSigmaM = 0.001;
+
 /// The checkerboard. Target frame: origin in the board's centre, x to the right along the width,
 /// y down, z away from who looks at it; the printed side is z = 0. The top left square is black:
 /// where squares_x + squares_y is odd, that tells top from bottom.
@@ -91,6 +95,11 @@ struct Target {
   int corners_y() const { return squares_y - 1; }
   /// Inner corners, row by row from the top left, target frame [m]; corners_x() * corners_y().
   std::vector<Eigen::Vector3d> InnerCorners() const;
+  /// No board is quite flat. A point of it lies so far behind its mean plane, to the second order:
+  /// z = bow_x (4 x^2 / w^2 - 1/3) + twist 4 x y / (w h) + bow_y (4 y^2 / h^2 - 1/3), w and h the
+  /// board's width and height; here the factors of the three, at (x, y) of the target [m]. The
+  /// LIDAR's points tell the mean plane; half a turn of the board leaves all three as they are.
+  Eigen::Vector3d BowFactors(const Eigen::Vector2d& at) const;
   /// The board's corners: top left, top right, bottom right, bottom left; target frame [m].
   std::array<Eigen::Vector3d, 4> OutlineCorners() const;
 };

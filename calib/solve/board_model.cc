@@ -39,15 +39,9 @@ double BoardPriors::Sigma(int unknown) const {
   return outline_sigma_m;
 }
 
-Eigen::Vector3d BowFactors(const Target& target, const Eigen::Vector2d& at) {
-  const double x = 2 * at.x() / target.width_m;
-  const double y = 2 * at.y() / target.height_m;
-  return {x * x - 1.0 / 3, x * y, y * y - 1.0 / 3};
-}
-
 double BowAt(const Target& target, const std::array<double, kSharedUnknowns>& shared,
              const Eigen::Vector2d& at) {
-  return BowFactors(target, at).dot(Eigen::Vector3d(shared[kBowX], shared[kTwist], shared[kBowY]));
+  return target.BowFactors(at).dot(Eigen::Vector3d(shared[kBowX], shared[kTwist], shared[kBowY]));
 }
 
 Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kSharedUnknowns>& shared,
@@ -139,7 +133,7 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   // The board moves by delta under the beam: a point at (x, y, 0) goes the other way in its axes,
   // and the beam meets the plane elsewhere by the slope.
   // A rim that lies behind the mean plane is met there farther in.
-  out.per_bow = across * BowFactors(target, at).transpose();
+  out.per_bow = across * target.BowFactors(at).transpose();
   const double bow = BowAt(target, shared, at);
   const Eigen::RowVector2d bow_slope = BowSlope(target, shared, at);
   out.beyond_m += across * bow;

@@ -28,16 +28,14 @@ enum SharedUnknown {
   kPrintHeight,
   kBeamsMeet,  ///< RangeErrors::beams_meet_m
   kFringe,     ///< by how much more a board looks too large at each side, at any range
-  kBowX,       ///< the board's shape (BowOf) [m]
+  kBowX,       ///< the board's shape (Target::BowFactors) [m]
   kTwist,
   kBowY,
   kSharedUnknowns
 };
 
-/// How far a board's middle bulges against its ends, along and across, and its corners are twisted
-/// [m], where its print is not exact either: two cameras saw 0.9 mm of the recorded one (0.85 x
-/// 0.61 m). The other: a board that is taken for flat.
-inline constexpr double kBowSigmaM = 0.001, kNoBowSigmaM = 1e-9;
+/// Of a board that is taken for flat.
+inline constexpr double kNoBowSigmaM = 1e-9;
 
 /// What is known beforehand of the solve's unknowns besides the poses; the values' reasons stand in
 /// beam_priors.h. All but the thickness about zero.
@@ -99,12 +97,8 @@ struct RangeTerms {
 /// are enlarged by this factor.
 inline constexpr double kCornerSigmaInflation = 1.4;
 
-/// No board is quite flat. A point of it lies so far behind its mean plane, to the second order:
-/// z = kBowX (4 x^2 / w^2 - 1/3) + kTwist 4 x y / (w h) + kBowY (4 y^2 / h^2 - 1/3), w and h the
-/// board's width and height; here the factors of the three, at (x, y) of the target. The LIDAR's
-/// points tell the mean plane; half a turn of the board leaves all three as they are.
-Eigen::Vector3d BowFactors(const Target& target, const Eigen::Vector2d& at);
-/// z there, by the three of the shared unknowns, and its slope along the target's x and y.
+/// How far behind its mean plane a board lies at (x, y) of the target (Target::BowFactors), by
+/// three of the shared unknowns, and its slope along the target's x and y.
 double BowAt(const Target& target, const std::array<double, kSharedUnknowns>& shared,
              const Eigen::Vector2d& at);
 Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kSharedUnknowns>& shared,

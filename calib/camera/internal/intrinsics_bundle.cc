@@ -28,27 +28,34 @@ Lens::Model ModelOf(LensChoice choice) {
 }
 
 // predicted - measured [px] of one corner:
-//   r = project(lens; R(pose) * stretched(aspect; point) + t(pose)) - pixel.
+//   r = project(lens; R(pose) * formed(board; point) + t(pose)) - pixel.
 // All choices of a lens by the derivatives of the largest: what one lacks is zero.
 class CornerError : public ceres::CostFunction {
  public:
   CornerError(LensChoice choice, int parameters, const Eigen::Vector3d& point,
-              const Eigen::Vector2d& pixel)
-      : model_(ModelOf(choice)), parameters_(parameters), point_(point), pixel_(pixel) {
+              const Eigen::Vector3d& bow_factors, const Eigen::Vector2d& pixel)
+      : model_(ModelOf(choice)),
+        parameters_(parameters),
+        point_(point),
+        bow_factors_(bow_factors),
+        pixel_(pixel) {
     set_num_residuals(2);
-    mutable_parameter_block_sizes()->assign({parameters, kPose, 1});
+    mutable_parameter_block_sizes()->assign({parameters, kPose, kBoardUnknowns});
   }
 
   bool Evaluate(const double* const* blocks, double* residual, double** jacobians) const override {
-    using Jet = ceres::Jet<double, kLens + kPose + 1>;
+    using Jet = ceres::Jet<double, kLens + kPose + kBoardUnknowns>;
     std::array<Jet, kLens> lens;
     std::array<Jet, kPose> pose;
     for (int i = 0; i < parameters_; ++i) lens[i] = Jet(blocks[0][i], i);
     for (int i = 0; i < kPose; ++i) pose[i] = Jet(blocks[1][i], kLens + i);
     // Half of it each way, about the origin: what else it moves is the pose's.
-    const Jet half = Jet(blocks[2][0], kLens + kPose) / 2.0;
-    const std::array<Jet, 3> in_target = {point_.x() * (1.0 - half), point_.y() * (1.0 + half),
-                                          Jet(point_.z())};
+    const Jet half = Jet(blocks[2][kAspect], kLens + kPose + kAspect) / 2.0;
+    Jet z(point_.z());
+    for (int i = 0; i < 3; ++i) {
+      z += Jet(blocks[2][kBow + i], kLens + kPose + kBow + i) * bow_factors_[i];
+    }
+    const std::array<Jet, 3> in_target = {point_.x() * (1.0 - half), point_.y() * (1.0 + half), z};
     std::array<Jet, 3> p;
     ceres::AngleAxisRotatePoint(pose.data(), in_target.data(), p.data());
     for (int i = 0; i < 3; ++i) p[i] += pose[3 + i];
@@ -62,7 +69,9 @@ class CornerError : public ceres::CostFunction {
       const double* const by = pixel[row].v.data();
       if (jacobians[0]) std::copy_n(by, parameters_, jacobians[0] + row * parameters_);
       if (jacobians[1]) std::copy_n(by + kLens, kPose, jacobians[1] + row * kPose);
-      if (jacobians[2]) jacobians[2][row] = by[kLens + kPose];
+      if (jacobians[2]) {
+        std::copy_n(by + kLens + kPose, kBoardUnknowns, jacobians[2] + row * kBoardUnknowns);
+      }
     }
     return true;
   }
@@ -71,29 +80,34 @@ class CornerError : public ceres::CostFunction {
   static constexpr int kLens = 12, kPose = 6;
   Lens::Model model_;
   int parameters_;
-  Eigen::Vector3d point_;
+  Eigen::Vector3d point_, bow_factors_;
   Eigen::Vector2d pixel_;
 };
 
-// What is known of the print's aspect, as strong as the corners where these scatter as most do.
-class AspectPrior : public ceres::SizedCostFunction<1, 1> {
+// What is known of the board, as strong as the corners where these scatter as most do.
+class BoardPrior : public ceres::SizedCostFunction<kBoardUnknowns, kBoardUnknowns> {
  public:
-  explicit AspectPrior(double sigma) : weight_(kUsualCornerPx / sigma) {}
+  explicit BoardPrior(const BoardNumbers& sigmas) : sigmas_(sigmas) {}
 
   bool Evaluate(const double* const* blocks, double* residual, double** jacobians) const override {
-    residual[0] = weight_ * blocks[0][0];
-    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = weight_;
+    constexpr double kUsualCornerPx = 0.1;
+    const bool derive = jacobians != nullptr && jacobians[0] != nullptr;
+    if (derive) std::fill_n(jacobians[0], kBoardUnknowns * kBoardUnknowns, 0.0);
+    for (std::size_t i = 0; i < kBoardUnknowns; ++i) {
+      const double weight = kUsualCornerPx / sigmas_[i];
+      residual[i] = weight * blocks[0][i];
+      if (derive) jacobians[0][i * kBoardUnknowns + i] = weight;
+    }
     return true;
   }
 
  private:
-  static constexpr double kUsualCornerPx = 0.1;
-  double weight_;
+  BoardNumbers sigmas_;
 };
 
 CornerError ErrorOf(const Bundle& bundle, const BundleView& view, std::size_t corner) {
   return {bundle.choice, static_cast<int>(bundle.lens.size()), bundle.points[corner],
-          view.pixels[corner]};
+          bundle.bow_factors[corner], view.pixels[corner]};
 }
 
 void Hold(int from, std::vector<double>* lens, ceres::Problem* problem) {
@@ -107,7 +121,7 @@ void Hold(int from, std::vector<double>* lens, ceres::Problem* problem) {
 // The blocks that all views share.
 struct SharedBlocks {
   double* lens;
-  double* aspect;
+  double* board;
 };
 
 void AddView(const Bundle& bundle, double loss_scale, const SharedBlocks& shared, BundleView* view,
@@ -116,7 +130,7 @@ void AddView(const Bundle& bundle, double loss_scale, const SharedBlocks& shared
     if (!view->used[i]) continue;
     ceres::LossFunction* loss = loss_scale > 0 ? new ceres::CauchyLoss(loss_scale) : nullptr;
     problem->AddResidualBlock(new CornerError(ErrorOf(bundle, *view, i)), loss, shared.lens,
-                              view->pose.data(), shared.aspect);
+                              view->pose.data(), shared.board);
   }
 }
 
@@ -133,27 +147,27 @@ ceres::Solver::Options SolverOptions(int max_iterations) {
   return solver;
 }
 
-// One view's derivatives by the lens and the print's aspect, with whatever a change of its pose can
+// One view's derivatives by the lens and the board, with whatever a change of its pose can
 // undo projected out: rows of what is left (QR: no squaring of the condition number). Also sums the
 // residuals' squares.
 Eigen::MatrixXd ReducedJacobian(const Bundle& bundle, const BundleView& view, double* squares) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const auto used = std::count(view.used.begin(), view.used.end(), true);
   const auto parameters = static_cast<Eigen::Index>(bundle.lens.size());
-  Eigen::MatrixXd by_shared(2 * used, parameters + 1);
+  Eigen::MatrixXd by_shared(2 * used, parameters + kBoardUnknowns);
   Eigen::MatrixXd by_pose(2 * used, 6);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < view.used.size(); ++i) {
     if (!view.used[i]) continue;
     const CornerError error = ErrorOf(bundle, view, i);
-    const double* blocks[3] = {bundle.lens.data(), view.pose.data(), &bundle.print_aspect};
+    const double* blocks[3] = {bundle.lens.data(), view.pose.data(), bundle.board.data()};
     Eigen::Vector2d residual(0, 0);
-    Eigen::Vector2d aspect_block(0, 0);
     RowMajor lens_block = RowMajor::Zero(2, parameters);
     RowMajor pose_block = RowMajor::Zero(2, 6);
-    double* jacobians[3] = {lens_block.data(), pose_block.data(), aspect_block.data()};
+    RowMajor board_block = RowMajor::Zero(2, kBoardUnknowns);
+    double* jacobians[3] = {lens_block.data(), pose_block.data(), board_block.data()};
     error.Evaluate(blocks, residual.data(), jacobians);
-    by_shared.middleRows<2>(row) << lens_block, aspect_block;
+    by_shared.middleRows<2>(row) << lens_block, board_block;
     by_pose.middleRows<2>(row) = pose_block;
     *squares += residual.squaredNorm();
     row += 2;
@@ -199,18 +213,18 @@ bool Solve(const BundleSolve& options, Bundle* bundle, std::string* why) {
   ceres::Problem problem;
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   double* const lens = bundle->lens.data();
-  double* const aspect = &bundle->print_aspect;
+  double* const board = bundle->board.data();
   for (BundleView& view : bundle->views) {
     if (!view.active) continue;
-    AddView(*bundle, options.loss_scale, {lens, aspect}, &view, &problem);
+    AddView(*bundle, options.loss_scale, {lens, board}, &view, &problem);
     ordering->AddElementToGroup(view.pose.data(), 0);
   }
   ordering->AddElementToGroup(lens, 1);
-  ordering->AddElementToGroup(aspect, 1);
-  if (bundle->print_aspect_sigma > 0) {
-    problem.AddResidualBlock(new AspectPrior(bundle->print_aspect_sigma), nullptr, aspect);
+  ordering->AddElementToGroup(board, 1);
+  if (bundle->board_sigmas) {
+    problem.AddResidualBlock(new BoardPrior(*bundle->board_sigmas), nullptr, board);
   } else {
-    problem.SetParameterBlockConstant(aspect);
+    problem.SetParameterBlockConstant(board);
   }
   Hold(options.parameters, &bundle->lens, &problem);
   for (int i = 0; i < 2; ++i) {  // views that determine no focal length would let it run off
@@ -233,11 +247,11 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view) {
     if (residual.x() == kBehind) return;  // Ceres could not even begin
   }
   std::vector<double> lens = bundle.lens;
-  double aspect = bundle.print_aspect;
+  BoardNumbers board = bundle.board;
   ceres::Problem problem;
-  AddView(bundle, loss_scale, {lens.data(), &aspect}, view, &problem);
+  AddView(bundle, loss_scale, {lens.data(), board.data()}, view, &problem);
   problem.SetParameterBlockConstant(lens.data());
-  problem.SetParameterBlockConstant(&aspect);
+  problem.SetParameterBlockConstant(board.data());
   ceres::Solver::Options solver = SolverOptions(100);
   solver.linear_solver_type = ceres::DENSE_QR;
   ceres::Solver::Summary summary;
@@ -246,7 +260,7 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view) {
 
 std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& view) {
   std::vector<Eigen::Vector2d> residuals;
-  const double* blocks[3] = {bundle.lens.data(), view.pose.data(), &bundle.print_aspect};
+  const double* blocks[3] = {bundle.lens.data(), view.pose.data(), bundle.board.data()};
   for (std::size_t i = 0; i < view.pixels.size(); ++i) {
     Eigen::Vector2d residual(0, 0);
     const CornerError error = ErrorOf(bundle, view, i);
@@ -256,7 +270,7 @@ std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& v
   return residuals;
 }
 
-Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle) {
+Eigen::MatrixXd CovarianceOfLensAndBoard(const Bundle& bundle) {
   std::vector<Eigen::MatrixXd> parts;
   double squares = 0;
   Eigen::Index rows = 0;
@@ -265,17 +279,21 @@ Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle) {
     parts.push_back(ReducedJacobian(bundle, view, &squares));
     rows += parts.back().rows();
   }
-  const bool aspect = bundle.print_aspect_sigma > 0;
-  const auto parameters = static_cast<Eigen::Index>(bundle.lens.size()) + (aspect ? 1 : 0);
+  const Eigen::Index unknown_of_board = bundle.board_sigmas ? kBoardUnknowns : 0;
+  const Eigen::Index of_lens = static_cast<Eigen::Index>(bundle.lens.size());
+  const Eigen::Index parameters = of_lens + unknown_of_board;
   if (rows <= parameters) return {};
   const double variance = squares / static_cast<double>(rows - parameters);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows + (aspect ? 1 : 0), parameters);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(rows + unknown_of_board, parameters);
   Eigen::Index row = 0;
   for (const Eigen::MatrixXd& part : parts) {
     jacobian.middleRows(row, part.rows()) = part.leftCols(parameters);
     row += part.rows();
   }
-  if (aspect) jacobian(rows, parameters - 1) = std::sqrt(variance) / bundle.print_aspect_sigma;
+  for (Eigen::Index i = 0; i < unknown_of_board; ++i) {
+    jacobian(rows + i, of_lens + i) =
+        std::sqrt(variance) / (*bundle.board_sigmas)[static_cast<std::size_t>(i)];
+  }
   if (!jacobian.allFinite()) return {};
   // Columns of length one: pixels and coefficients of r^8 have nothing to do with each other.
   const Eigen::VectorXd length = jacobian.colwise().norm().transpose();

@@ -3,6 +3,8 @@
 // Inside calib/camera only: the lens and the views' poses that explain the corners best.
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,14 +25,21 @@ struct BundleView {
   Vector6d pose;        ///< camera_from_target: rotation vector [rad], translation [m]
 };
 
+/// How the board differs from its drawing, which all views share: the pattern's height over its
+/// width, over what its squares make it, less one; then bow_x, twist and bow_y [m]
+/// (Target::BowFactors). The pattern's size as a whole is the views' distances', and none of the
+/// lens's.
+enum BoardUnknown { kAspect, kBow, kBoardUnknowns = kBow + 3 };
+using BoardNumbers = std::array<double, kBoardUnknowns>;
+
 struct Bundle {
   LensChoice choice = LensChoice::kPinhole5;
   std::vector<double> lens;                    ///< ParametersOf
   double least_focal = 0, greatest_focal = 0;  ///< bounds of fx and fy [px]
   std::vector<Eigen::Vector3d> points;         ///< the target's corners, target frame [m]
-  /// The pattern's height over its width, over what its squares make it, less one; its prior sigma
-  /// (0: it is zero). Its size as a whole is the views' distances', and none of the lens's.
-  double print_aspect = 0, print_aspect_sigma = 0;
+  std::vector<Eigen::Vector3d> bow_factors;    ///< of each of them
+  BoardNumbers board{};
+  std::optional<BoardNumbers> board_sigmas;  ///< known beforehand, about zero; absent: it is zero
   std::vector<BundleView> views;
 };
 
@@ -40,8 +49,8 @@ struct BundleSolve {
   int max_iterations = 150;
 };
 
-/// Levenberg-Marquardt with exact derivatives over the lens, the print's aspect and every active
-/// view's pose. False where it stopped before its end; `why` then says so.
+/// Levenberg-Marquardt with exact derivatives over the lens, the board and every active view's
+/// pose. False where it stopped before its end; `why` then says so.
 bool Solve(const BundleSolve& options, Bundle* bundle, std::string* why);
 
 /// The same for one view's pose alone, active or not, from all of its corners with Cauchy's loss.
@@ -50,9 +59,9 @@ void SolvePose(double loss_scale, const Bundle& bundle, BundleView* view);
 /// Measured - predicted [px] of each corner of a view, active or not.
 std::vector<Eigen::Vector2d> Residuals(const Bundle& bundle, const BundleView& view);
 
-/// Covariance of the lens' parameters and, where it is not known, the print's aspect; the poses
+/// Covariance of the lens' parameters and, where they are not known, the board's numbers; the poses
 /// eliminated, scaled with the residuals' variance. Empty where the corners do not determine every
 /// parameter.
-Eigen::MatrixXd CovarianceOfLens(const Bundle& bundle);
+Eigen::MatrixXd CovarianceOfLensAndBoard(const Bundle& bundle);
 
 }  // namespace rgbdt

@@ -34,11 +34,15 @@ Table ParametersTable(const IntrinsicsResult& result) {
                           {Number(result.Sigma(static_cast<int>(i)), digits)},
                           {i < 4 ? "px" : ""}});
   }
-  if (result.print_aspect) {
-    table.rows.push_back({{"printed squares' height over their width"},
-                          {Number(100 * result.print_aspect->value, 2)},
-                          {Number(100 * result.print_aspect->sigma, 2)},
-                          {"%"}});
+  if (const auto& board = result.board) {
+    const auto add = [&](const char* name, const Estimate& of, double scale, const char* unit) {
+      table.rows.push_back(
+          {{name}, {Number(scale * of.value, 2)}, {Number(scale * of.sigma, 2)}, {unit}});
+    };
+    add("printed squares' height over their width", board->aspect, 100, "%");
+    add("board's bulge towards the camera, along its width", board->bow_x, 1e3, "mm");
+    add("board's bulge towards the camera, along its height", board->bow_y, 1e3, "mm");
+    add("board's twist", board->twist, 1e3, "mm");
   }
   return table;
 }

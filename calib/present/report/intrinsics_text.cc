@@ -42,9 +42,16 @@ std::string ParametersText(const CameraSpec& before, const IntrinsicsResult& res
     }
     text += "\n";
   }
-  if (result.print_aspect) {
-    text += fmt::format("  the printed squares' height over their width: {:+.2f} +- {:.2f}%\n",
-                        100 * result.print_aspect->value, 100 * result.print_aspect->sigma);
+  if (const auto& board = result.board) {
+    const auto mm = [](const Estimate& of) {
+      return fmt::format("{:+.2f} +- {:.2f} mm", 1e3 * of.value, 1e3 * of.sigma);
+    };
+    text += fmt::format(
+        "  the printed squares' height over their width: {:+.2f} +- {:.2f}%\n"
+        "  the board's bulge towards the camera: along its width {}, along its height {}; twist "
+        "{}\n",
+        100 * board->aspect.value, 100 * board->aspect.sigma, mm(board->bow_x), mm(board->bow_y),
+        mm(board->twist));
   }
   return text;
 }

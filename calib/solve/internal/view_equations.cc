@@ -69,7 +69,7 @@ void ViewEquations::AddCorners(const BoardImage& image) {
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!IsSeen(seen[i])) continue;
     Eigen::Vector3d corner = model[image.turned ? model.size() - 1 - i : i];
-    const Eigen::Vector3d bow = BowFactors(problem_.target, corner.head<2>());
+    const Eigen::Vector3d bow = problem_.target.BowFactors(corner.head<2>());
     corner.z() = BowAt(problem_.target, state_.shared, corner.head<2>());
     Eigen::Matrix<double, 3, 2> on_board;  // by the pattern's plane
     on_board << Eigen::Matrix2d::Identity(),
@@ -212,7 +212,7 @@ std::optional<ViewEquations::CurveEnd> ViewEquations::AtCurveEnd(
       out.x(), out.y(), BowSlope(problem_.target, state_.shared, on_target.head<2>()).dot(out));
   end.by_outline = by_point * rotation * outwards;
   end.by_bow =
-      by_point * rotation.col(2) * BowFactors(problem_.target, on_target.head<2>()).transpose();
+      by_point * rotation.col(2) * problem_.target.BowFactors(on_target.head<2>()).transpose();
   return end;
 }
 

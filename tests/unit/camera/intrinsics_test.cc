@@ -87,6 +87,17 @@ void ExpectHonestSigmas(const std::string& name) {
 TEST(Intrinsics, APinholesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("five_coefficients"); }
 TEST(Intrinsics, AFisheyesSigmasAgreeWithTheScatter) { ExpectHonestSigmas("acfr_fisheye"); }
 
+// By how many sigmas the worst of fx, fy, cx and cy is off.
+double WorstSigmas(const IntrinsicsResult& result, const Lens& lens) {
+  const LensNumbers truth = NumbersOf(lens);
+  double sigmas = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double off = result.values[static_cast<std::size_t>(i)] - truth[i];
+    sigmas = std::max(sigmas, std::abs(off) / result.Sigma(i));
+  }
+  return sigmas;
+}
+
 // Paper that the printer stretched, boards turned one way and the other: a lens that had to explain
 // it would be off by many sigmas.
 TEST(Intrinsics, AStretchedPrintIsToldFromTheLens) {
@@ -99,24 +110,36 @@ TEST(Intrinsics, AStretchedPrintIsToldFromTheLens) {
     for (int i = 0; i < 20; ++i) {
       input.views.push_back(boards.Corners(boards.Pose(0.35, 0.85), 0.07));
     }
-    const auto worst = [&](const IntrinsicsResult& result) {
-      const LensNumbers truth = NumbersOf(spec.lens);
-      double sigmas = 0;
-      for (int i = 0; i < 4; ++i) {
-        const double off = result.values[static_cast<std::size_t>(i)] - truth[i];
-        sigmas = std::max(sigmas, std::abs(off) / result.Sigma(i));
-      }
-      return sigmas;
-    };
     const IntrinsicsResult exact = CalibrateIntrinsics(input);
-    EXPECT_FALSE(exact.print_aspect);
-    EXPECT_GT(worst(exact), 4) << name;
+    EXPECT_FALSE(exact.board);
+    EXPECT_GT(WorstSigmas(exact, spec.lens), 4) << name;
     input.target.print_sigma = kUsualPrintSigma;
     const IntrinsicsResult result = CalibrateIntrinsics(input);
-    ASSERT_TRUE(result.print_aspect);
-    EXPECT_NEAR(result.print_aspect->value, -0.004, 4 * result.print_aspect->sigma);
-    EXPECT_LT(result.print_aspect->sigma, 0.0005);
-    EXPECT_LT(worst(result), 4) << name;
+    ASSERT_TRUE(result.board);
+    EXPECT_NEAR(result.board->aspect.value, -0.004, 4 * result.board->aspect.sigma);
+    EXPECT_LT(result.board->aspect.sigma, 0.0005);
+    EXPECT_LT(WorstSigmas(result, spec.lens), 4) << name;
+  }
+}
+
+// A board that bulges by a millimetre and is twisted by half of one.
+TEST(Intrinsics, ABentBoardIsToldFromTheLens) {
+  for (const char* name : {"five_coefficients", "acfr_fisheye"}) {
+    const CameraSpec& spec = SpecNamed(name);
+    IntrinsicsInput input = InputOf(spec, 0, 0, 1);
+    BoardViews boards(spec, input.target, 3, {0.001, -0.0004, 0.0005});
+    for (int i = 0; i < 25; ++i) {
+      input.views.push_back(boards.Corners(boards.Pose(0.35, 0.85), 0.05));
+    }
+    EXPECT_GT(WorstSigmas(CalibrateIntrinsics(input), spec.lens), 4) << name;
+    input.target.print_sigma = kUsualPrintSigma;
+    const IntrinsicsResult result = CalibrateIntrinsics(input);
+    ASSERT_TRUE(result.board);
+    EXPECT_NEAR(result.board->bow_x.value, 0.001, 4 * result.board->bow_x.sigma);
+    EXPECT_NEAR(result.board->bow_y.value, -0.0004, 4 * result.board->bow_y.sigma);
+    EXPECT_NEAR(result.board->twist.value, 0.0005, 4 * result.board->twist.sigma);
+    EXPECT_LT(result.board->bow_x.sigma, 0.0003);
+    EXPECT_LT(WorstSigmas(result, spec.lens), 4) << name;
   }
 }
 

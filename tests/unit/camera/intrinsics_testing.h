@@ -31,8 +31,11 @@ inline double Gauss(Random* random) {
 /// What a camera would be shown: boards wholly in view.
 class BoardViews {
  public:
-  BoardViews(const CameraSpec& spec, const Target& target, std::uint32_t seed)
-      : camera_(spec), target_(target), random_(seed) {}
+  /// `bow_m`: the middle is so much nearer than the ends along the width and along the height, and
+  /// of the corners two lie by the twist in front and two behind.
+  BoardViews(const CameraSpec& spec, const Target& target, std::uint32_t seed,
+             const Eigen::Vector3d& bow_m = Eigen::Vector3d::Zero())
+      : camera_(spec), target_(target), random_(seed), bow_m_(bow_m) {}
 
   /// Tilted by `least_tilt` to `most_tilt` [rad] against the image.
   Rigid3 Pose(double least_tilt, double most_tilt) {
@@ -55,13 +58,20 @@ class BoardViews {
     IntrinsicsView view;
     for (const Eigen::Vector3d& corner : target_.InnerCorners()) {
       view.corners.emplace_back(
-          *camera_.Project(camera_from_target * corner) +
+          *camera_.Project(camera_from_target * Bent(corner)) +
           Eigen::Vector2d(sigma_px * Gauss(&random_), sigma_px * Gauss(&random_)));
     }
     return view;
   }
 
  private:
+  Eigen::Vector3d Bent(const Eigen::Vector3d& corner) const {
+    const double x = corner.x() / (target_.width_m / 2);
+    const double y = corner.y() / (target_.height_m / 2);
+    return corner +
+           Eigen::Vector3d::UnitZ() * (bow_m_[0] * x * x + bow_m_[1] * y * y + bow_m_[2] * x * y);
+  }
+
   // No flatter than 20 degrees.
   static bool FromTheFront(const Rigid3& pose) {
     const Eigen::Vector3d normal = pose.rotation * Eigen::Vector3d::UnitZ();
@@ -79,6 +89,7 @@ class BoardViews {
   Camera camera_;
   Target target_;
   Random random_;
+  Eigen::Vector3d bow_m_;
 };
 
 inline LensChoice ChoiceOf(const Lens& lens) {
