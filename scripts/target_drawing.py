@@ -55,6 +55,135 @@ class Board:
     def pattern(self):
         return self.left, self.top, self.nx * self.side, self.ny * self.side
 
+    def rectangles(self):
+        """(x, y, width, height, black) over the pattern's white ground, in the order to paint."""
+        for x, y in self.squares(True):
+            yield x, y, self.side, self.side, True
+
+    def fields(self):
+        """Of the rig file's target, but for the board's size and the pattern's offset."""
+        return [f"  squares_x: {self.nx} squares_y: {self.ny} square_m: {metres(self.side)}"]
+
+    def title(self):
+        return f"{self.nx}x{self.ny} squares of {text(self.side)} mm"
+
+
+def markers_of(family, border):
+    """Marker number -> its white cells (column, row), and how many cells a side has."""
+    try:
+        import cv2
+    except ImportError:
+        die("markers need Python's OpenCV: apt-get install python3-opencv")
+    number = getattr(cv2.aruco, "DICT_" + family, None)
+    if number is None:
+        die(f"no markers are called '{family}'; expected OpenCV's names, such as 5X5_100")
+    known = cv2.aruco.getPredefinedDictionary(number)
+    cells = known.markerSize + 2 * border
+
+    def white(marker):
+        if marker >= len(known.bytesList):
+            die(f"{family} has {len(known.bytesList)} markers, too few for this board")
+        image = cv2.aruco.drawMarker(known, marker, cells, borderBits=border)
+        return [(x, y) for y in range(cells) for x in range(cells) if image[y][x] > 127]
+
+    return white, cells
+
+
+class Charuco(Board):
+    """A marker in each white square: black, with white cells."""
+
+    def __init__(self, squares, square_mm, board_mm, offset_mm, border, charuco):
+        super().__init__(squares, square_mm, board_mm, offset_mm, border)
+        match = re.fullmatch(r"([0-9A-Za-z_]+)," + NUMBER, charuco)
+        if not match:
+            die(f"--charuco is '{charuco}'; expected something like 5X5_100,75")
+        self.family, self.marker = match.group(1), float(match.group(2))
+        if not 0 < self.marker < self.side:
+            die(f"--charuco: a marker of {self.marker:g} mm is not smaller than its square")
+        self.white, self.cells = markers_of(self.family, 1)
+
+    def rectangles(self):
+        """(x, y, width, height, black) over the pattern's white ground, in the order to paint."""
+        for x, y in self.squares(True):
+            yield x, y, self.side, self.side, True
+        margin = 0.5 * (self.side - self.marker)
+        cell = self.marker / self.cells
+        for number, (x, y) in enumerate(self.squares(False)):
+            yield x + margin, y + margin, self.marker, self.marker, True
+            for column, row in self.white(number):
+                yield x + margin + column * cell, y + margin + row * cell, cell, cell, False
+
+    def fields(self):
+        return [
+            f"  charuco {{ squares_x: {self.nx} squares_y: {self.ny} square_m: {metres(self.side)}",
+            f'            marker_m: {metres(self.marker)} dictionary: "{self.family}" }}',
+        ]
+
+    def title(self):
+        return f"ChArUco, {self.nx}x{self.ny} squares of {text(self.side)} mm"
+
+
+class AprilGrid(Board):
+    """Black tags with white cells, and a black square where four gaps meet."""
+
+    KALIBR_BORDER = 2  # cells
+
+    def __init__(self, grid, board_mm, offset_mm):
+        match = re.fullmatch(r"(\d+)x(\d+)," + NUMBER + "," + NUMBER + r"(?:,(\w+))?", grid)
+        if not match:
+            die(f"--aprilgrid is '{grid}'; expected something like 7x5,130,0.25")
+        self.tags_x, self.tags_y = int(match.group(1)), int(match.group(2))
+        self.tag, self.spacing = float(match.group(3)), float(match.group(4))
+        self.family = match.group(5) or "36h11"
+        if self.tags_x < 2 or self.tags_y < 2 or self.tag <= 0 or not 0 < self.spacing < 2:
+            die("--aprilgrid: expected 2 tags or more each way, a size, a spacing of 0 to 2")
+        self.gap = self.spacing * self.tag
+        # Rows and columns are in turn a gap and a tag wide.
+        self.nx, self.ny = 2 * self.tags_x + 1, 2 * self.tags_y + 1
+        self.side = 0.5 * (self.tag + self.gap)
+        self.width, self.height = parse("--board-mm", board_mm, NUMBER + "x" + NUMBER, "1219.2x914.4")
+        signed = r"(-?[0-9]+(?:\.[0-9]+)?)"
+        self.offset = parse("--offset-mm", offset_mm, signed + "," + signed, "0,0")
+        self.black_border = False
+        self.across = self.tags_x * self.tag + (self.tags_x + 1) * self.gap
+        self.down = self.tags_y * self.tag + (self.tags_y + 1) * self.gap
+        for name, size, needed in (("width", self.width, self.across + 2 * abs(self.offset[0])),
+                                   ("height", self.height, self.down + 2 * abs(self.offset[1]))):
+            if needed > size + 1e-9:
+                die(f"--board-mm: the {name} is {size:g} mm, the pattern needs {needed:g} mm")
+        self.left = 0.5 * (self.width - self.across) + self.offset[0]
+        self.top = 0.5 * (self.height - self.down) + self.offset[1]
+        self.white, self.cells = markers_of("APRILTAG_" + self.family, self.KALIBR_BORDER)
+
+    def pattern(self):
+        return self.left, self.top, self.across, self.down
+
+    def rectangles(self):
+        pitch = self.tag + self.gap
+        for row in range(self.tags_y + 1):
+            for column in range(self.tags_x + 1):
+                yield self.left + column * pitch, self.top + row * pitch, self.gap, self.gap, True
+        cell = self.tag / self.cells
+        for number in range(self.tags_x * self.tags_y):
+            x = self.left + self.gap + (number % self.tags_x) * pitch
+            y = self.top + self.gap + (self.tags_y - 1 - number // self.tags_x) * pitch
+            yield x, y, self.tag, self.tag, True
+            for column, row in self.white(number):
+                yield x + column * cell, y + row * cell, cell, cell, False
+
+    def fields(self):
+        return [
+            f"  aprilgrid {{ tags_x: {self.tags_x} tags_y: {self.tags_y} tag_m: {metres(self.tag)}",
+            f'              spacing: {self.spacing:g} family: "{self.family}" }}',
+        ]
+
+    def title(self):
+        return f"{self.tags_x}x{self.tags_y} AprilTags ({self.family}) of {text(self.tag)} mm"
+
+
+def metres(mm):
+    return f"{mm / 1000:.7f}".rstrip("0").rstrip(".")
+
 
 def text(value):
     return f"{value:.4f}".rstrip("0").rstrip(".")
@@ -71,12 +200,12 @@ def svg(board):
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} '
         f'viewBox="0 0 {text(board.width)} {text(board.height)}">',
-        f"<title>{board.nx}x{board.ny} squares of {text(board.side)} mm on "
-        f"{text(board.width)}x{text(board.height)} mm</title>",
+        f"<title>{board.title()} on {text(board.width)}x{text(board.height)} mm</title>",
         rect(0, 0, board.width, board.height, "black" if board.black_border else "white"),
         rect(*board.pattern(), "white"),
     ]
-    lines += [rect(x, y, board.side, board.side, "black") for x, y in board.squares(True)]
+    for x, y, width, height, black in board.rectangles():
+        lines.append(rect(x, y, width, height, "black" if black else "white"))
     return "\n".join(lines + ["</svg>", ""])
 
 
@@ -101,19 +230,22 @@ def dxf(board):
     codes += [0, "ENDTAB", 0, "ENDSEC", 0, "SECTION", 2, "ENTITIES"]
     codes += polyline("CUT", 0, 0, board.width, board.height)
     codes += polyline("FRAME", *board.pattern())
-    for layer, black in (("BLACK", True), ("WHITE", False)):
-        for x, y in board.squares(black):
-            codes += polyline(layer, x, y, board.side, board.side)
+    if type(board) is Board:
+        for layer, black in (("BLACK", True), ("WHITE", False)):
+            for x, y in board.squares(black):
+                codes += polyline(layer, x, y, board.side, board.side)
+    else:
+        for x, y, width, height, black in board.rectangles():
+            codes += polyline("BLACK" if black else "WHITE", x, y, width, height)
     codes += [0, "ENDSEC", 0, "EOF"]
     return "\n".join(str(code) for code in codes) + "\n"
 
 
 def textproto(board):
-    metres = lambda mm: f"{mm / 1000:.7f}".rstrip("0").rstrip(".")
     lines = [
         "# As drawn. Measure the finished board to 1 mm and write here what it is.",
         "target {",
-        f"  squares_x: {board.nx} squares_y: {board.ny} square_m: {metres(board.side)}",
+        *board.fields(),
         f"  width_m: {metres(board.width)} height_m: {metres(board.height)}",
     ]
     if any(board.offset):
@@ -129,8 +261,15 @@ def write(path, content):
 
 
 def main():
-    board = Board(*sys.argv[1:6])
-    out = sys.argv[6]
+    charuco, aprilgrid, out = sys.argv[6:9]
+    if charuco and aprilgrid:
+        die("--charuco and --aprilgrid are two boards; expected one")
+    if aprilgrid:
+        board = AprilGrid(aprilgrid, sys.argv[3], sys.argv[4])
+    elif charuco:
+        board = Charuco(*sys.argv[1:6], charuco)
+    else:
+        board = Board(*sys.argv[1:6])
     try:
         os.makedirs(out, exist_ok=True)
         for name, content in (("svg", svg), ("dxf", dxf), ("textproto", textproto)):

@@ -59,7 +59,9 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
   const Camera camera(spec);
   ImageEdgesResult found =
       DetectImageEdges(image, camera, target, by_paper ? picks : nullptr, spec.kind);
-  if (found.edges || by_paper || picks == nullptr || !target.HasPattern()) return found;
+  // Markers tell all that picks could.
+  const bool picks_help = target.HasPattern() && !target.markers;
+  if (found.edges || by_paper || picks == nullptr || !picks_help) return found;
   return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
 }
 

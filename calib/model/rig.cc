@@ -102,6 +102,22 @@ void CheckCamera(const CameraSpec& camera, LensNeed lenses) {
           "a colour or 8-bit format for a camera of kind COLOR");
 }
 
+void CheckMarkers(const Target& target, const Markers& markers) {
+  const MarkerFamily* family = FindMarkerFamily(markers.family);
+  Require(family != nullptr, "the target's family of markers", "\"" + markers.family + "\"",
+          "one of " + MarkerFamilyNames());
+  Require(markers.border_bits >= 1 && markers.border_bits <= 4, "the markers' border_bits",
+          std::to_string(markers.border_bits), "1 to 4 (Kalibr's tags: 2)");
+  RequirePositive(markers.side_m, "the markers' side");
+  Require(markers.gap_m >= 0 && markers.gap_m < 2 * kLargestSquareM, "the markers' spacing",
+          std::to_string(markers.gap_m), "metres, 0 or more");
+  Require(markers.grid() || markers.side_m < target.square_m, "target.charuco.marker_m",
+          Exact(markers.side_m), "less than square_m, " + Exact(target.square_m));
+  const auto count = target.MarkerPlaces().size();
+  Require(count <= static_cast<std::size_t>(family->count), "the number of markers on the target",
+          std::to_string(count), Format("%d at most: %s has no more", family->count, family->name));
+}
+
 void CheckTarget(const Target& target) {
   RequirePositive(target.width_m, "target.width_m");
   RequirePositive(target.height_m, "target.height_m");
@@ -121,31 +137,60 @@ void CheckTarget(const Target& target) {
   }
   Require(target.print_sigma >= 0 && target.print_sigma < 0.1, "target.print_sigma",
           std::to_string(target.print_sigma), "0 (exact) to 0.1");
-  const double half_x =
-      0.5 * target.squares_x * target.square_m + std::abs(target.pattern_offset_m.x());
-  const double half_y =
-      0.5 * target.squares_y * target.square_m + std::abs(target.pattern_offset_m.y());
-  Require(half_x <= 0.5 * target.width_m + 1e-6, "target.width_m", std::to_string(target.width_m),
-          "at least the pattern's width " + std::to_string(2 * half_x) + " m");
-  Require(half_y <= 0.5 * target.height_m + 1e-6, "target.height_m",
+  if (target.markers) CheckMarkers(target, *target.markers);
+  const Eigen::Vector2d half = 0.5 * target.PatternSize() + target.pattern_offset_m.cwiseAbs();
+  Require(half.x() <= 0.5 * target.width_m + 1e-6, "target.width_m", std::to_string(target.width_m),
+          "at least the pattern's width " + std::to_string(2 * half.x()) + " m");
+  Require(half.y() <= 0.5 * target.height_m + 1e-6, "target.height_m",
           std::to_string(target.height_m),
-          "at least the pattern's height " + std::to_string(2 * half_y) + " m");
+          "at least the pattern's height " + std::to_string(2 * half.y()) + " m");
 }
 
 }  // namespace
 
+double Target::EdgeAt(int column_or_row) const {
+  if (!markers || !markers->grid()) return column_or_row * square_m;
+  const int gaps = (column_or_row + 1) / 2;
+  return gaps * markers->gap_m + (column_or_row - gaps) * markers->side_m;
+}
+
+bool Target::IsBlack(int column, int row) const {
+  const bool white_first = markers && markers->legacy && squares_y % 2 == 0;
+  return ((column + row) % 2 == 0) != white_first;
+}
+
 std::vector<Eigen::Vector3d> Target::InnerCorners() const {
-  const Eigen::Vector2d square = square_m * print_scale;
+  const auto from_middle = [&](int index, int squares, double scale) {
+    if (!markers || !markers->grid()) return (index - 0.5 * squares) * (square_m * scale);
+    return (EdgeAt(index) - 0.5 * EdgeAt(squares)) * scale;
+  };
   std::vector<Eigen::Vector3d> corners;
   corners.reserve(static_cast<std::size_t>(corners_x() * corners_y()));
-  for (int row = 0; row < corners_y(); ++row) {
-    for (int column = 0; column < corners_x(); ++column) {
-      corners.emplace_back(pattern_offset_m.x() + (column - 0.5 * (corners_x() - 1)) * square.x(),
-                           pattern_offset_m.y() + (row - 0.5 * (corners_y() - 1)) * square.y(),
+  for (int row = 1; row < squares_y; ++row) {
+    for (int column = 1; column < squares_x; ++column) {
+      corners.emplace_back(pattern_offset_m.x() + from_middle(column, squares_x, print_scale.x()),
+                           pattern_offset_m.y() + from_middle(row, squares_y, print_scale.y()),
                            0.0);
     }
   }
   return corners;
+}
+
+std::vector<MarkerPlace> Target::MarkerPlaces() const {
+  std::vector<MarkerPlace> places;
+  if (!markers) return places;
+  const Eigen::Vector2d first = pattern_offset_m - 0.5 * PatternSize();
+  for (int i = 0; i < squares_y; ++i) {
+    const int row = markers->grid() ? squares_y - 1 - i : i;
+    for (int column = 0; column < squares_x; ++column) {
+      const bool here = markers->grid() ? column % 2 == 1 && row % 2 == 1 : !IsBlack(column, row);
+      if (!here) continue;
+      const Eigen::Vector2d middle(EdgeAt(column) + EdgeAt(column + 1),
+                                   EdgeAt(row) + EdgeAt(row + 1));
+      places.push_back({static_cast<int>(places.size()), first + 0.5 * middle});
+    }
+  }
+  return places;
 }
 
 Eigen::Vector3d Target::BowFactors(const Eigen::Vector2d& at) const {
@@ -159,6 +204,15 @@ std::array<Eigen::Vector3d, 4> Target::OutlineCorners() const {
   const double y = 0.5 * height_m;
   return {Eigen::Vector3d(-x, -y, 0), Eigen::Vector3d(x, -y, 0), Eigen::Vector3d(x, y, 0),
           Eigen::Vector3d(-x, y, 0)};
+}
+
+Target GridOfMarkers(int markers_x, int markers_y, const Markers& markers) {
+  Target target;
+  target.squares_x = 2 * markers_x + 1;
+  target.squares_y = 2 * markers_y + 1;
+  target.square_m = 0.5 * (markers.side_m + markers.gap_m);
+  target.markers = markers;
+  return target;
 }
 
 void Rig::Check(LensNeed lenses) const {

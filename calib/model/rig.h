@@ -11,6 +11,7 @@
 #include "calib/model/devices.h"
 #include "calib/model/image.h"
 #include "calib/model/lens.h"
+#include "calib/model/markers.h"
 #include "calib/model/rigid3.h"
 
 namespace rgbdt {
@@ -77,12 +78,15 @@ inline constexpr double kBowSigmaM = 0.001;
 
 /// The checkerboard. Target frame: origin in the board's centre, x to the right along the width,
 /// y down, z away from who looks at it; the printed side is z = 0. The top left square is black:
-/// where squares_x + squares_y is odd, that tells top from bottom.
+/// where squares_x + squares_y is odd, that tells top from bottom. A grid of markers is one, too,
+/// whose rows and columns are in turn as wide as a gap and as a marker, gaps all round: markers and
+/// the small squares between them are black.
 struct Target {
-  int squares_x = 0, squares_y = 0;        ///< along width and height; inner corners: one fewer
-  double square_m = 0;                     ///< side of a square
+  int squares_x = 0, squares_y = 0;  ///< along width and height; inner corners: one fewer
+  double square_m = 0;  ///< side of a square; grid of markers: the mean of gap and marker
   double width_m = 0, height_m = 0;        ///< of the whole board, border included
   Eigen::Vector2d pattern_offset_m{0, 0};  ///< pattern's centre minus board's centre
+  std::optional<Markers> markers;          ///< absent: squares alone
   /// 1 sigma of print_scale, of each: how exactly the pattern has the size that its squares say.
   double print_sigma = 0;
   /// The pattern's width and height over what square_m makes them, as a solve found them.
@@ -95,6 +99,14 @@ struct Target {
   int corners_y() const { return squares_y - 1; }
   /// Inner corners, row by row from the top left, target frame [m]; corners_x() * corners_y().
   std::vector<Eigen::Vector3d> InnerCorners() const;
+  /// From the pattern's left (top) to where that column (row) begins [m]; 0 to squares_x
+  /// (squares_y). As square_m says, whatever print_scale is.
+  double EdgeAt(int column_or_row) const;
+  Eigen::Vector2d PatternSize() const { return {EdgeAt(squares_x), EdgeAt(squares_y)}; }
+  /// Of the square in that column and row.
+  bool IsBlack(int column, int row) const;
+  /// Each marker, by rising number. Empty without markers.
+  std::vector<MarkerPlace> MarkerPlaces() const;
   /// No board is quite flat. A point of it lies so far behind its mean plane, to the second order:
   /// z = bow_x (4 x^2 / w^2 - 1/3) + twist 4 x y / (w h) + bow_y (4 y^2 / h^2 - 1/3), w and h the
   /// board's width and height; here the factors of the three, at (x, y) of the target [m]. The
@@ -103,6 +115,9 @@ struct Target {
   /// The board's corners: top left, top right, bottom right, bottom left; target frame [m].
   std::array<Eigen::Vector3d, 4> OutlineCorners() const;
 };
+
+/// A grid of so many markers along width and height, on a board that is not yet given a size.
+Target GridOfMarkers(int markers_x, int markers_y, const Markers& markers);
 
 struct Rig {
   std::string name;

@@ -73,6 +73,13 @@ void Check(const BoardOptions& o) {
   kCheck.Between(o.print_scale.minCoeff(), 0.9, 1.1, "least of board.print_scale");
   kCheck.Between(o.print_scale.maxCoeff(), 0.9, 1.1, "most of board.print_scale");
   kCheck.Between(o.print_sigma, 0, 0.1, "board.print_sigma");
+  if (o.markers) {
+    const MarkerFamily* family = FindMarkerFamily(o.markers->family);
+    kCheck.Require(family != nullptr, "board.markers.family", 0, "one of " + MarkerFamilyNames());
+    kCheck.Positive(o.markers->side_m, "board.markers.side_m");
+    kCheck.Between(o.markers->border_bits, 1, 4, "board.markers.border_bits");
+    kCheck.NotNegative(o.markers->gap_m, "board.markers.gap_m");
+  }
   kCheck.Require(o.width_m >= o.squares_x * o.square_m * o.print_scale.x(), "board.width_m",
                  o.width_m, "at least the squares' width");
   kCheck.Require(o.height_m >= o.squares_y * o.square_m * o.print_scale.y(), "board.height_m",

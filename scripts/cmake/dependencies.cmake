@@ -19,7 +19,7 @@ endmacro()
 rgbdt_external(Threads::Threads CMAKE "find_dependency(Threads)" LIBS "-pthread")
 rgbdt_external(Eigen3::Eigen CMAKE "find_dependency(Eigen3)" DEBIAN libeigen3-dev REQUIRES eigen3)
 rgbdt_external("opencv_[a-z0-9]+" DEBIAN libopencv-dev
-  CMAKE "find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d video)"
+  CMAKE "find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d video aruco)"
   LIBS "-l@" CFLAGS "-I${OpenCV_INCLUDE_DIRS}")
 rgbdt_external(Ceres::ceres CMAKE "find_dependency(Ceres)" DEBIAN libceres-dev
   REQUIRES "eigen3 libglog" LIBS "-lceres")

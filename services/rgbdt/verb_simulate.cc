@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "calib/files/import/board_text.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
@@ -17,6 +18,7 @@ using simulate::Simulator;
 
 struct SimulateFlags {
   std::string dir;
+  std::string target;
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
   int rings = 0;
@@ -34,6 +36,21 @@ void SetScanner(const SimulateFlags& flags, simulate::Options* options) {
   if (!flags.scanner_error) return;
   options->scanner.guess_lever_m = {0.005, -0.005, 0.005};
   options->scanner.guess_tilt_rad = Eigen::Vector3d(0.5, 0.5, -0.5) * simulate::kDegree;
+}
+
+// Another board than the usual one.
+void SetTarget(const std::string& text, simulate::BoardOptions* board) {
+  if (text.empty()) return;
+  const Target target = ParseBoard(text);
+  if (!target.HasPattern()) {
+    throw UsageError("--target " + text + ": only boards with a pattern are simulated");
+  }
+  board->squares_x = target.squares_x;
+  board->squares_y = target.squares_y;
+  board->square_m = target.square_m;
+  board->markers = target.markers;
+  board->width_m = target.width_m;
+  board->height_m = target.height_m;
 }
 
 // Natural scenes have no board unless asked for, and nobody picks corners of none.
@@ -66,6 +83,7 @@ int RunSimulate(SimulateFlags flags) {
     throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
   SetScene(&flags);
+  SetTarget(flags.target, &flags.options.board);
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
   SetScanner(flags, &options);
@@ -133,6 +151,10 @@ void AddSimulate(CommandLine* program) {
       "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "
       "the rig drives on between views");
   verb->Flag("--board", &flags->board, "with --natural: the board stands there, too");
+  verb->Option("--target", &flags->target,
+               "the board, as rgbdt session's --board: 8x6@0.095,0.85x0.61 or "
+               "charuco@11x8,0.1,0.075,5X5_100,1.2192x0.9144 or "
+               "aprilgrid@7x5,0.13,0.25,36h11,1.2192x0.9144");
   verb->Option("--picked", &flags->picked, "cameras whose corners a person picks");
 }
 

@@ -11,9 +11,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import data_livox  # noqa: E402
+import data_markers  # noqa: E402
 import trials  # noqa: E402
 
-SUBJECTS = (data_livox,)
+SUBJECTS = (data_livox, data_markers)
 
 
 def main():
@@ -22,7 +23,7 @@ def main():
     figures, targets = [], {}
     plot, axes = plt.subplots(1, len(SUBJECTS), figsize=(6 * len(SUBJECTS), 4), squeeze=False)
     for subject, axis in zip(SUBJECTS, axes[0]):
-        figures += subject.figures(parts)
+        figures += list(subject.figures(parts))
         targets.update(subject.TARGETS)
         subject.draw(parts, axis)
     plot.tight_layout()

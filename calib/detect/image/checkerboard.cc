@@ -10,6 +10,7 @@
 #include "calib/detect/image/internal/edge_profiles.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/marked_board.h"
 #include "calib/detect/image/internal/partial_match.h"
 #include "calib/detect/image/internal/pattern_match.h"
 #include "calib/detect/image/internal/saddles.h"
@@ -346,6 +347,7 @@ CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
     result.why = "the image is empty";
     return result;
   }
+  if (target.markers) return FindMarkedBoard(grey, target, saturated_from);
   if (std::min(target.corners_x(), target.corners_y()) < 3) {
     result.why = "a checkerboard with " + Size(target) +
                  " inner corners cannot be told from others; at least 3x3 are needed";

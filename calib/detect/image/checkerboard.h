@@ -20,6 +20,8 @@ struct Checkerboard {
   /// Whether the square above and left of the first corner is darker than its neighbours. Colour
   /// images show black dark; a thermal image shows it light where black is the warmer one.
   bool top_left_dark = false;
+  /// Whether they are in the target's own order for certain, since its markers say so.
+  bool order_known = false;
   /// Typical uncertainty of a corner along its worst direction [px], from the image's noise.
   double sigma_px = 0;
 };
@@ -49,7 +51,7 @@ struct CheckerboardResult {
 /// other follows from the size. A target of another size whose other end is outside the image as
 /// well cannot be told from it. Of several boards the one that fits best is returned.
 /// `saturated_from`: see SaturatedFrom; corners of white that is overexposed are not rounded off
-/// then.
+/// then. A target with markers is found by these (FindMarkedBoard).
 CheckerboardResult FindCheckerboard(const cv::Mat& grey, const Target& target,
                                     double saturated_from = kNeverSaturated);
 

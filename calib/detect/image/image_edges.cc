@@ -247,10 +247,15 @@ Located FromCheckerboard(const Image& image, const cv::Mat& grey, const Camera& 
     return located;
   }
   located.inner = found.board->corners;
-  const bool known = OrderCorners(grey, target, kind == CameraKind::kColor, &located.inner);
+  const bool known = found.board->order_known ||
+                     OrderCorners(grey, target, kind == CameraKind::kColor, &located.inner);
   located.pose = PoseFromCorners(camera, target, located.inner);
   if (!located.pose) {
     located.why = WhyNoFlatBoard(camera);
+    return located;
+  }
+  if (target.markers && located.pose->second_pose_chi2 < kLeastChi2) {
+    located.why = WhyLeanIsUnknown();
     return located;
   }
   located.pose->pose.half_turn_known = known;

@@ -63,7 +63,10 @@ int HalfWindow(const Target& target, const Pixels& corners) {
     if ((i + 1) % columns != 0) look_at(corners[i + 1], corners[i]);
     if (i + columns < corners.size()) look_at(corners[i + columns], corners[i]);
   }
-  return std::clamp(static_cast<int>(0.35 * shortest), 2, 11);
+  // Of ChArUco also beside the markers in two of them.
+  const bool inside = target.markers && !target.markers->grid();
+  const double share = inside ? 0.5 * (1 - target.markers->side_m / target.square_m) : 0.35;
+  return std::clamp(static_cast<int>(share * shortest), 2, 11);
 }
 
 // The same refinement in both images, whatever found the corners: their difference is what counts.
@@ -126,18 +129,25 @@ Pixels NearerOrder(const Pixels& found, const Pixels& before) {
   return reversed < straight ? turned : found;
 }
 
-// The pattern's outermost squares along one of its sides: their centres, target frame, and which
-// inner corner lies between each and the next.
+// The pattern's outermost squares along one of its sides: their centres (of ChArUco: the middle of
+// what is beyond the markers), target frame, and which inner corner lies between each and the next.
 struct OuterSide {
   std::vector<Eigen::Vector3d> squares;
   std::vector<std::size_t> corners;
 };
 
 std::array<OuterSide, 4> OuterSquares(const Target& target) {
+  const Eigen::Vector2d first = target.pattern_offset_m - 0.5 * target.PatternSize();
+  const bool markers_inside = target.markers && !target.markers->grid();
+  const double out = markers_inside ? 0.25 * (target.square_m + target.markers->side_m) : 0;
+  const auto outwards = [&](int index, int squares) {
+    return index == 0 ? -out : index == squares - 1 ? out : 0;
+  };
   const auto at = [&](int column, int row) {
-    return Eigen::Vector3d(
-        target.pattern_offset_m.x() + (column - 0.5 * (target.squares_x - 1)) * target.square_m,
-        target.pattern_offset_m.y() + (row - 0.5 * (target.squares_y - 1)) * target.square_m, 0);
+    const double x = 0.5 * (target.EdgeAt(column) + target.EdgeAt(column + 1));
+    const double y = 0.5 * (target.EdgeAt(row) + target.EdgeAt(row + 1));
+    return Eigen::Vector3d(first.x() + x + outwards(column, target.squares_x),
+                           first.y() + y + outwards(row, target.squares_y), 0);
   };
   const auto corner = [&](int column, int row) {
     return static_cast<std::size_t>(row * target.corners_x() + column);
@@ -225,7 +235,7 @@ std::optional<CornerPose> PoseIn(const Sight& sight, const cv::Mat& grey) {
   }
   const auto found = FindCheckerboard(grey, *sight.target).board;
   if (!found) return std::nullopt;
-  return fitted(NearerOrder(found->corners, sight.corners));
+  return fitted(found->order_known ? found->corners : NearerOrder(found->corners, sight.corners));
 }
 
 // Median distance [px] between where two poses put the corners that were seen.

@@ -34,6 +34,13 @@ class Reader {
     at_ = static_cast<std::size_t>(end.ptr - text_.data());
     return value;
   }
+  // Up to the next comma.
+  std::string Word(const char* what) {
+    const std::string word = text_.substr(at_, text_.find(',', at_) - at_);
+    if (word.empty()) Fail(std::string("expected ") + what);
+    at_ += word.size();
+    return word;
+  }
   void RequireEnd() {
     if (at_ < text_.size()) Fail("expected nothing more");
   }
@@ -41,7 +48,9 @@ class Reader {
     const std::string rest = at_ < text_.size() ? "\"" + text_.substr(at_) + "\"" : "its end";
     throw InputError("--board " + text_ + ": at " + rest + " " + expected +
                      "; it is SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres, such as "
-                     "8x6@0.095,0.85x0.61, or plain@WIDTHxHEIGHT");
+                     "8x6@0.095,0.85x0.61, or plain@WIDTHxHEIGHT, or "
+                     "charuco@SQUARESxSQUARES,SQUARE,MARKER,DICTIONARY,WIDTHxHEIGHT, or "
+                     "aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT");
   }
 
  private:
@@ -69,8 +78,8 @@ void ReadSize(const std::string& text, Reader* reader, Target* board) {
 }
 
 void CheckFits(const std::string& text, const Target& board) {
-  const double width = board.squares_x * board.square_m;
-  const double height = board.squares_y * board.square_m;
+  const double width = board.PatternSize().x();
+  const double height = board.PatternSize().y();
   const auto fits = [&](double across, double up) {
     return across <= board.width_m + 1e-6 && up <= board.height_m + 1e-6;
   };
@@ -87,10 +96,99 @@ void CheckFits(const std::string& text, const Target& board) {
                    "board, border included");
 }
 
+void CheckCount(const std::string& text, int count, const char* of, int least, int most) {
+  if (count >= least && count <= most) return;
+  throw InputError("--board " + text + ": " + std::to_string(count) + " " + of +
+                   Format(" in a row; expected %d to %d", least, most));
+}
+
+// A family of markers that has enough of them for the board.
+void ReadFamily(const std::string& text, const std::string& prefix, const char* what,
+                Reader* reader, Target* board) {
+  const std::string name = reader->Word(what);
+  const MarkerFamily* family = FindMarkerFamily(prefix + name);
+  if (family == nullptr) {
+    throw InputError("--board " + text + ": no markers are called \"" + name +
+                     "\"; expected one of " + MarkerFamilyNames());
+  }
+  board->markers->family = family->name;
+  const auto count = board->MarkerPlaces().size();
+  if (count <= static_cast<std::size_t>(family->count)) return;
+  throw InputError(
+      "--board " + text +
+      Format(": the board has %zu markers, but %s only %d", count, family->name, family->count));
+}
+
+// What every board with a pattern ends with.
+void ReadEnd(const std::string& text, Reader* reader, Target* board) {
+  reader->Require(",");
+  ReadSize(text, reader, board);
+  board->print_sigma = kUsualPrintSigma;
+}
+
+Target ParseCharuco(const std::string& text, Reader* reader) {
+  Target board;
+  reader->Require("@");
+  board.squares_x = reader->Number<int>("a number of squares");
+  reader->Require("x");
+  board.squares_y = reader->Number<int>("a number of squares");
+  CheckCount(text, board.squares_x, "squares", 3, 100);
+  CheckCount(text, board.squares_y, "squares", 3, 100);
+  reader->Require(",");
+  board.square_m = reader->Number<double>("a square's side in metres");
+  CheckMetres(text, board.square_m, "a square's side", 0.01, kMostSquareM);
+  reader->Require(",");
+  board.markers = Markers{};
+  board.markers->side_m = reader->Number<double>("a marker's side in metres");
+  CheckMetres(text, board.markers->side_m, "a marker's side", 0.005, kMostSquareM);
+  if (board.markers->side_m >= board.square_m) {
+    throw InputError("--board " + text + ": a marker of " + Exact(board.markers->side_m) +
+                     " m is not smaller than its square of " + Exact(board.square_m) +
+                     " m; the square comes first");
+  }
+  reader->Require(",");
+  ReadFamily(text, "", "the markers' dictionary, such as 5X5_100", reader, &board);
+  ReadEnd(text, reader, &board);
+  board.markers->legacy = reader->Take(",legacy");
+  reader->RequireEnd();
+  CheckFits(text, board);
+  return board;
+}
+
+Target ParseAprilGrid(const std::string& text, Reader* reader) {
+  Markers markers;
+  reader->Require("@");
+  const int tags_x = reader->Number<int>("a number of tags");
+  reader->Require("x");
+  const int tags_y = reader->Number<int>("a number of tags");
+  CheckCount(text, tags_x, "tags", 2, 49);
+  CheckCount(text, tags_y, "tags", 2, 49);
+  reader->Require(",");
+  markers.side_m = reader->Number<double>("a tag's side in metres");
+  CheckMetres(text, markers.side_m, "a tag's side", 0.01, kMostSquareM);
+  reader->Require(",");
+  const auto spacing = reader->Number<double>("the gap between tags, over a tag's side");
+  if (!(spacing > 0 && spacing < 2)) {
+    throw InputError("--board " + text + ": the spacing is " + Exact(spacing) +
+                     "; expected the gap between tags over a tag's side, as Kalibr's: 0.3 or so");
+  }
+  markers.gap_m = spacing * markers.side_m;
+  markers.border_bits = kKalibrBorderBits;
+  Target board = GridOfMarkers(tags_x, tags_y, markers);
+  reader->Require(",");
+  ReadFamily(text, "APRILTAG_", "the tags' family, such as 36h11", reader, &board);
+  ReadEnd(text, reader, &board);
+  reader->RequireEnd();
+  CheckFits(text, board);
+  return board;
+}
+
 }  // namespace
 
 Target ParseBoard(const std::string& text) {
   Reader reader(text);
+  if (reader.Take("charuco")) return ParseCharuco(text, &reader);
+  if (reader.Take("aprilgrid")) return ParseAprilGrid(text, &reader);
   Target board;
   if (reader.Take("plain")) {
     reader.Require("@");
@@ -109,25 +207,28 @@ Target ParseBoard(const std::string& text) {
   } else {
     reader.Take("squares");
   }
-  for (const int squares : {board.squares_x, board.squares_y}) {
-    if (squares < 3 || squares > 100) {
-      throw InputError("--board " + text + ": " + std::to_string(squares) +
-                       " squares in a row; expected 3 to 100");
-    }
-  }
+  CheckCount(text, board.squares_x, "squares", 3, 100);
+  CheckCount(text, board.squares_y, "squares", 3, 100);
   reader.Require("@");
   board.square_m = reader.Number<double>("a square's side in metres");
   CheckMetres(text, board.square_m, "a square's side", 0.01, kMostSquareM);
-  reader.Require(",");
-  ReadSize(text, &reader, &board);
+  ReadEnd(text, &reader, &board);
   reader.RequireEnd();
-  board.print_sigma = kUsualPrintSigma;
   CheckFits(text, board);
   return board;
 }
 
 std::string DescribeBoard(const Target& board) {
   if (!board.HasPattern()) return Format("plain, %g x %g m", board.width_m, board.height_m);
+  if (board.markers && board.markers->grid()) {
+    return Format("%d x %d %s tags of %g m, %g m apart", board.squares_x / 2, board.squares_y / 2,
+                  board.markers->family.c_str(), board.markers->side_m, board.markers->gap_m);
+  }
+  if (board.markers) {
+    return Format("ChArUco, %d x %d squares of %g m, markers of %g m (%s%s)", board.squares_x,
+                  board.squares_y, board.square_m, board.markers->side_m,
+                  board.markers->family.c_str(), board.markers->legacy ? ", legacy" : "");
+  }
   return Format("%d x %d squares of %g m (%d x %d inner corners)", board.squares_x, board.squares_y,
                 board.square_m, board.corners_x(), board.corners_y());
 }

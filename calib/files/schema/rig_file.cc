@@ -11,6 +11,7 @@
 #include "calib/files/schema/internal/device_convert.h"
 #include "calib/files/schema/internal/lens_convert.h"
 #include "calib/files/schema/internal/rig_convert.h"
+#include "calib/files/schema/internal/target_convert.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/rig.pb.h"
 #include "calib/files/schema/text_proto.h"
@@ -140,34 +141,6 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
   return spec;
 }
 
-Target ToTarget(const proto::Target& target, const Place& place) {
-  Target spec;
-  if (target.has_plain()) {
-    if (target.squares_x() != 0 || target.squares_y() != 0 || target.square_m() != 0 ||
-        target.width_m() != 0 || target.height_m() != 0 || target.pattern_offset_m_size() > 0 ||
-        target.has_print_sigma()) {
-      place.Fail("plain", "stands beside a checkerboard's fields; expected one of the two");
-    }
-    spec.width_m = target.plain().width_m();
-    spec.height_m = target.plain().height_m();
-    return spec;
-  }
-  if (target.squares_x() == 0) {
-    place.Fail("squares_x", "is 0; expected 3 to 100, or plain { width_m: ... height_m: ... }");
-  }
-  spec.squares_x = target.squares_x();
-  spec.squares_y = target.squares_y();
-  spec.square_m = target.square_m();
-  spec.width_m = target.width_m();
-  spec.height_m = target.height_m();
-  spec.print_sigma = target.has_print_sigma() ? target.print_sigma() : kUsualPrintSigma;
-  if (target.pattern_offset_m_size() > 0) {
-    text::RequireNumbers(target.pattern_offset_m(), 2, place, "pattern_offset_m");
-    spec.pattern_offset_m = {target.pattern_offset_m(0), target.pattern_offset_m(1)};
-  }
-  return spec;
-}
-
 // 1400 rather than 1400.0000000000002, wherever both mean the same.
 double TicksPerDegree(double ticks_per_rad) {
   const double exact = ticks_per_rad / kDegreesPerRadian;
@@ -224,23 +197,6 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   }
 }
 
-void FromTarget(const Target& spec, proto::Target* out) {
-  if (!spec.HasPattern()) {
-    out->mutable_plain()->set_width_m(spec.width_m);
-    out->mutable_plain()->set_height_m(spec.height_m);
-    return;
-  }
-  out->set_squares_x(spec.squares_x);
-  out->set_squares_y(spec.squares_y);
-  out->set_square_m(spec.square_m);
-  out->set_width_m(spec.width_m);
-  out->set_height_m(spec.height_m);
-  out->set_print_sigma(spec.print_sigma);
-  if (spec.pattern_offset_m.isZero(0)) return;
-  out->add_pattern_offset_m(spec.pattern_offset_m.x());
-  out->add_pattern_offset_m(spec.pattern_offset_m.y());
-}
-
 // Of devices only which LIDAR it is counts, and only where both say it.
 void KeepModels(proto::Lidar* a, proto::Lidar* b) {
   const bool both = a->has_velodyne() && b->has_velodyne();
@@ -261,7 +217,7 @@ proto::Rig text::FromRig(const Rig& rig) {
   message.set_name(ValidUtf8(rig.name));
   FromLidar(rig.lidar, message.mutable_lidar());
   for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
-  if (rig.target.width_m > 0) FromTarget(rig.target, message.mutable_target());
+  if (rig.target.width_m > 0) text::FromTarget(rig.target, message.mutable_target());
   return message;
 }
 
@@ -272,7 +228,7 @@ Rig text::ToRig(const proto::Rig& message, const Place& place, LensNeed lenses) 
   for (int i = 0; i < message.camera_size(); ++i) {
     rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
   }
-  if (message.has_target()) rig.target = ToTarget(message.target(), place.In("target"));
+  if (message.has_target()) rig.target = text::ToTarget(message.target(), place.In("target"));
   return rig;
 }
 

@@ -28,11 +28,34 @@ double HeatMap::Between(const Eigen::Vector2d& place, double whiteness) const {
   return temperature + (0.5 - whiteness) * black_minus_white_k;
 }
 
+namespace {
+
+// Which column (row) of a pattern a place is in, measured from the pattern's middle [m]; -1:
+// beside.
+double ColumnAt(const Target& target, int columns, double from_middle) {
+  const double at = from_middle + 0.5 * target.EdgeAt(columns);
+  for (int column = 0; column < columns; ++column) {
+    if (at >= target.EdgeAt(column) && at < target.EdgeAt(column + 1)) return column;
+  }
+  return -1;
+}
+
+}  // namespace
+
 Board::Board(const BoardOptions& options, const Rigid3& lidar_from_target, const HeatMap& heat)
     : options_(options),
+      target_(MakeTarget(options)),
       lidar_from_target_(lidar_from_target),
       target_from_lidar_(lidar_from_target.Inverse()),
-      heat_(heat) {}
+      heat_(heat) {
+  if (!options.markers) return;
+  bits_ = std::make_shared<const MarkerBits>(*options.markers);
+  marker_in_.resize(static_cast<std::size_t>(options.squares_x * options.squares_y));
+  for (const MarkerPlace& place : target_.MarkerPlaces()) {
+    const int square = Patch(place.centre.cwiseProduct(options.print_scale)) - 1;
+    marker_in_[static_cast<std::size_t>(square)] = place;
+  }
+}
 
 Mesh Board::Shape() const {
   const double x = 0.5 * options_.width_m;
@@ -65,17 +88,40 @@ std::vector<Mesh> Board::Stand(double ground_z) const {
 
 int Board::Patch(const Eigen::Vector2d& place) const {
   const Eigen::Vector2d square = options_.square_m * options_.print_scale;
-  const double x = place.x() / square.x() + 0.5 * options_.squares_x;
-  const double y = place.y() / square.y() + 0.5 * options_.squares_y;
+  double x = place.x() / square.x() + 0.5 * options_.squares_x;
+  double y = place.y() / square.y() + 0.5 * options_.squares_y;
+  if (options_.markers && options_.markers->grid()) {
+    x = ColumnAt(target_, options_.squares_x, place.x() / options_.print_scale.x());
+    y = ColumnAt(target_, options_.squares_y, place.y() / options_.print_scale.y());
+  }
   if (x < 0 || y < 0 || x >= options_.squares_x || y >= options_.squares_y) return 0;
-  return 1 + static_cast<int>(y) * options_.squares_x + static_cast<int>(x);
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const int square_number = 1 + row * options_.squares_x + column;
+  const auto cell = CellOf(place, column, row);
+  return cell ? 1 + options_.squares_x * options_.squares_y + *cell : square_number;
+}
+
+std::optional<int> Board::CellOf(const Eigen::Vector2d& place, int column, int row) const {
+  if (marker_in_.empty()) return std::nullopt;
+  const int square = row * options_.squares_x + column;
+  const auto& marker = marker_in_[static_cast<std::size_t>(square)];
+  if (!marker) return std::nullopt;
+  const int cells = bits_->cells();
+  const Eigen::Vector2d at = place.cwiseQuotient(options_.print_scale) - marker->centre;
+  const Eigen::Vector2d in_cells = (at / options_.markers->side_m).array() * cells + 0.5 * cells;
+  if ((in_cells.array() < 0).any() || (in_cells.array() >= cells).any()) return std::nullopt;
+  const int x = static_cast<int>(in_cells.x());
+  const int y = static_cast<int>(in_cells.y());
+  if (bits_->IsWhite(marker->id, x, y) != target_.IsBlack(column, row)) return std::nullopt;
+  return (square * cells + y) * cells + x;
 }
 
 bool Board::IsBlack(int patch) const {
   if (patch <= 0) return true;
-  const int column = (patch - 1) % options_.squares_x;
-  const int row = (patch - 1) / options_.squares_x;
-  return (column + row) % 2 == 0;
+  // Cells that differ from their square: black in ChArUco's white ones, white in a grid's black.
+  if (patch > options_.squares_x * options_.squares_y) return !options_.markers->grid();
+  return target_.IsBlack((patch - 1) % options_.squares_x, (patch - 1) / options_.squares_x);
 }
 
 int Board::PatchOf(const Eigen::Vector3d& p) const {
@@ -127,6 +173,7 @@ Target MakeTarget(const BoardOptions& options) {
   target.width_m = options.width_m;
   target.height_m = options.height_m;
   target.print_sigma = options.print_sigma;
+  target.markers = options.markers;
   return target;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "calib/simulate/internal/marker_bits.h"
 #include "calib/simulate/internal/material.h"
 #include "calib/simulate/internal/mesh.h"
 #include "calib/simulate/internal/scene.h"
@@ -37,7 +39,7 @@ struct HeatMap {
   double Between(const Eigen::Vector2d& place, double whiteness) const;
 };
 
-/// The checkerboard where it stands. Front face in z = 0 of the target frame.
+/// The board where it stands. Front face in z = 0 of the target frame.
 class Board {
  public:
   Board(const BoardOptions& options, const Rigid3& lidar_from_target, const HeatMap& heat);
@@ -53,7 +55,8 @@ class Board {
   /// but for what shows under it. LIDAR frame.
   std::vector<Mesh> Stand(double ground_z) const;
 
-  /// Which patch of colour a place [m] lies in: 0 the border, otherwise a square's number from 1.
+  /// Which patch of colour a place [m] lies in: 0 the border, otherwise a square's number from 1;
+  /// after these, cells of markers that are not of their square's colour.
   int Patch(const Eigen::Vector2d& place) const;
   bool IsBlack(int patch) const;
   double Reflectivity(const Eigen::Vector3d& point_in_lidar) const;
@@ -64,7 +67,13 @@ class Board {
   /// Patch of a point in the target frame; -1 on sides and back.
   int PatchOf(const Eigen::Vector3d& point_in_target) const;
 
+  /// Cell of a marker, if there is one of another colour than its square's: its number from 0.
+  std::optional<int> CellOf(const Eigen::Vector2d& place, int column, int row) const;
+
   BoardOptions options_;
+  Target target_;
+  std::shared_ptr<const MarkerBits> bits_;             ///< null: no markers
+  std::vector<std::optional<MarkerPlace>> marker_in_;  ///< each square, row by row
   Rigid3 lidar_from_target_, target_from_lidar_;
   HeatMap heat_;
 };

@@ -114,7 +114,7 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
 }
 
 std::vector<Pixel> PixelsRound(const cv::Mat& grey, const Eigen::Vector2d& place,
-                               const Eigen::Matrix2d& steps) {
+                               const Eigen::Matrix2d& steps, double clear) {
   std::vector<Pixel> pixels;
   const Eigen::Matrix2d grid_from_image = steps.inverse();
   const Eigen::Vector2d reach = CornerReach(steps);
@@ -127,7 +127,8 @@ std::vector<Pixel> PixelsRound(const cv::Mat& grey, const Eigen::Vector2d& place
   for (int y = static_cast<int>(std::ceil(place.y() - ry)); y <= place.y() + ry; ++y) {
     for (int x = static_cast<int>(std::ceil(place.x() - rx)); x <= place.x() + rx; ++x) {
       const Eigen::Vector2d offset = Eigen::Vector2d(x, y) - place;
-      if ((grid_from_image * offset).cwiseAbs().maxCoeff() > kReach) continue;
+      const Eigen::Vector2d off_edges = (grid_from_image * offset).cwiseAbs();
+      if (off_edges.maxCoeff() > kReach || off_edges.minCoeff() > clear) continue;
       if (offset.squaredNorm() > kMostPx * kMostPx) continue;
       pixels.push_back({offset.x(), offset.y(), grey.at<float>(y, x)});
     }
@@ -237,12 +238,13 @@ Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps) {
 
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
-                                   std::optional<double> blur_px, double saturated_from) {
+                                   std::optional<double> blur_px, double saturated_from,
+                                   double clear) {
   const double spacing = steps.colwise().norm().minCoeff();
   if (!(spacing > 3) || !(std::abs(steps.determinant()) > 0.2 * spacing * spacing)) {
     return std::nullopt;
   }
-  const std::vector<Pixel> pixels = PixelsRound(grey, place, steps);
+  const std::vector<Pixel> pixels = PixelsRound(grey, place, steps, clear);
   const auto values = std::count_if(pixels.begin(), pixels.end(),
                                     [&](const Pixel& p) { return p.value < saturated_from; });
   if (values < 2 * kUnknowns) return std::nullopt;

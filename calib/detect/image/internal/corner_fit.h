@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 
@@ -35,11 +36,13 @@ Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps);
 /// what a sensor clips is the blurred corner: taken for values, they round the corner off. `grey`
 /// is CV_32FC1, dead pixels repaired. `steps`: image shift from this corner to the next column
 /// (first) and to the next row [px]; `bends`: second differences of the grid's places, likewise
-/// (GridModel::Bends). Nothing where the fit leaves the neighbourhood of `place`, the pixels are
-/// not all seen or do not look like that.
+/// (GridModel::Bends). `clear`: pixels farther than that from both edges [steps] are not looked at,
+/// since something else is there. Nothing where the fit leaves the neighbourhood of `place`, the
+/// pixels are not all seen or do not look like that.
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
                                    std::optional<double> blur_px = std::nullopt,
-                                   double saturated_from = kNeverSaturated);
+                                   double saturated_from = kNeverSaturated,
+                                   double clear = std::numeric_limits<double>::infinity());
 
 }  // namespace rgbdt

@@ -46,27 +46,36 @@ double GridModel::Spacing(double column, double row) const {
 
 bool GridModel::Agrees(const CornerGrid::value_type& corner, double tolerance) const {
   const auto [column, row] = corner.first;
-  return (At(column, row) - corner.second).norm() < tolerance * Spacing(column, row);
+  return Agrees({Eigen::Vector2d(column, row), corner.second}, tolerance);
+}
+
+bool GridModel::Agrees(const Point& point, double tolerance) const {
+  const double column = point.at.x();
+  const double row = point.at.y();
+  return (At(column, row) - point.place).norm() < tolerance * Spacing(column, row);
 }
 
 std::optional<GridModel> GridModel::Fit(const CornerGrid& grid, double tolerance) {
+  std::vector<Point> points;
+  for (const auto& [at, place] : grid) points.push_back({{at.first, at.second}, place});
+  return Fit(points, tolerance);
+}
+
+std::optional<GridModel> GridModel::Fit(const std::vector<Point>& grid, double tolerance) {
   if (grid.size() < 8) return std::nullopt;
   GridModel model;
-  for (const auto& corner : grid) {
-    model.centre_ += Eigen::Vector2d(corner.first.first, corner.first.second);
-  }
+  for (const Point& point : grid) model.centre_ += point.at;
   model.centre_ /= static_cast<double>(grid.size());
-  for (const auto& corner : grid) {
-    const Eigen::Vector2d at(corner.first.first, corner.first.second);
-    model.scale_ = std::max(model.scale_, (at - model.centre_).cwiseAbs().maxCoeff());
+  for (const Point& point : grid) {
+    model.scale_ = std::max(model.scale_, (point.at - model.centre_).cwiseAbs().maxCoeff());
   }
-  CornerGrid agreeing = grid;
+  std::vector<Point> agreeing = grid;
   for (int round = 0; round < 4; ++round) {
     std::vector<cv::Point2d> from;
     std::vector<cv::Point2d> to;
     for (const auto& [at, place] : agreeing) {
-      from.emplace_back((at.first - model.centre_.x()) / model.scale_,
-                        (at.second - model.centre_.y()) / model.scale_);
+      from.emplace_back((at.x() - model.centre_.x()) / model.scale_,
+                        (at.y() - model.centre_.y()) / model.scale_);
       to.emplace_back(place.x(), place.y());
     }
     const cv::Mat h = cv::findHomography(from, to);
@@ -86,9 +95,9 @@ std::optional<GridModel> GridModel::Fit(const CornerGrid& grid, double tolerance
     model.bend_ = SolveSymmetric(normal, right);
     // Outliers leave step by step: the first fit is drawn towards them.
     const double allowed = round == 0 ? 3 * tolerance : round == 1 ? 1.5 * tolerance : tolerance;
-    CornerGrid next;
-    for (const auto& corner : grid) {
-      if (model.Agrees(corner, allowed)) next.insert(corner);
+    std::vector<Point> next;
+    for (const Point& point : grid) {
+      if (model.Agrees(point, allowed)) next.push_back(point);
     }
     if (next.size() < 8 || 2 * next.size() < grid.size()) return std::nullopt;
     agreeing = std::move(next);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "calib/detect/image/internal/corner_grid.h"
 
@@ -15,6 +16,13 @@ class GridModel {
   /// neighbours are left out. Nothing where fewer than 8, or less than half of them, agree.
   static std::optional<GridModel> Fit(const CornerGrid& grid, double tolerance);
 
+  /// The same of places anywhere on the grid.
+  struct Point {
+    Eigen::Vector2d at{0, 0};     ///< column and row
+    Eigen::Vector2d place{0, 0};  ///< [px]
+  };
+  static std::optional<GridModel> Fit(const std::vector<Point>& points, double tolerance);
+
   /// Place [px] of a column and row, fractions allowed.
   Eigen::Vector2d At(double column, double row) const;
   /// Image shift of one column (first) and one row (second) there [px].
@@ -26,6 +34,7 @@ class GridModel {
   double Spacing(double column, double row) const;
   /// Whether a place lies within `tolerance` (of the distance of neighbours) of where it should.
   bool Agrees(const CornerGrid::value_type& corner, double tolerance) const;
+  bool Agrees(const Point& point, double tolerance) const;
 
  private:
   Eigen::Vector2d centre_{0, 0};  ///< column and row

@@ -4,104 +4,26 @@
 #include <cmath>
 
 #include "calib/detect/image/internal/board_map.h"
-#include "calib/detect/image/internal/corner_fit.h"
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/grid_model.h"
+#include "calib/detect/image/internal/measured_corners.h"
 #include "calib/detect/image/internal/pattern_ends.h"
 #include "calib/detect/image/internal/pick_alignment.h"
 #include "calib/model/linear_algebra.h"
-#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
 
 using Pixels = std::vector<Eigen::Vector2d>;
 
-constexpr int kLeastCorners = 8;
-constexpr double kLeastSpread = 0.7;    // RMS across the corners' longest direction, in squares
-constexpr double kMostResidual = 0.5;   // median of CornerFit::residual, as for FindCheckerboard
 constexpr double kGridTolerance = 0.2;  // of the distance to the next corner
-constexpr double kLeastChi2 = 15;       // CornerPose::second_pose_chi2
 constexpr double kMostPickPx = 12;      // from a pick to the board's corner
 constexpr double kMostOff = 0.4;  // of the corners: what occludes the others reaches into some
 constexpr int kRounds = 3;
 
-// What the image has where inner corners should be, in the target's order.
-struct Measured {
-  std::vector<std::optional<CornerFit>> fits;  // contrast: as of the first corner
-  std::vector<double> spacings;                // [px]
-
-  double MedianOf(double (*value)(const CornerFit&)) const {
-    std::vector<double> values;
-    for (const auto& fit : fits) {
-      if (fit) values.push_back(value(*fit));
-    }
-    return Median(std::move(values));
-  }
-  double contrast() const {
-    return MedianOf([](const CornerFit& f) { return f.contrast; });
-  }
-  double blur_px() const {
-    return MedianOf([](const CornerFit& f) { return f.blur_px; });
-  }
-  double sigma_px() const {
-    return MedianOf([](const CornerFit& f) { return f.sigma_px; });
-  }
-  double residual() const {
-    return MedianOf([](const CornerFit& f) { return f.residual; });
-  }
-  // RMS of what a fit leaves over, in grey values.
-  double noise() const {
-    return MedianOf([](const CornerFit& f) { return f.residual * std::abs(f.contrast); });
-  }
-  std::size_t count() const {
-    const auto good = std::count_if(fits.begin(), fits.end(), [](const auto& f) { return f; });
-    return static_cast<std::size_t>(good);
-  }
-  Pixels places() const {
-    Pixels places;
-    for (const auto& fit : fits) places.push_back(fit ? fit->place : UnseenCorner());
-    return places;
-  }
-};
-
-Measured Measure(const cv::Mat& grey, double saturated_from, const Target& target,
-                 const BoardMap& map, std::optional<double> blur_px) {
-  Measured measured;
-  int index = 0;
-  for (const Eigen::Vector3d& corner : target.InnerCorners()) {
-    const bool even = (index % target.corners_x() + index / target.corners_x()) % 2 == 0;
-    ++index;
-    auto& fit = measured.fits.emplace_back();
-    auto& spacing = measured.spacings.emplace_back(0);
-    const auto grid = GridAt(map, corner.head<2>(), target.square_m);
-    if (!grid) continue;
-    spacing = grid->spacing();
-    fit = FitCorner(grey, grid->place, grid->steps, grid->bends, blur_px, saturated_from);
-    if (fit && !even) fit->contrast = -fit->contrast;
-  }
-  return measured;
-}
-
-// Takes out what does not look like most: light and dark exchanged, another contrast, or a larger
-// residual, as where something covers a part of what was looked at.
-void DropUnlike(Measured* measured) {
-  const double contrast = measured->contrast();
-  const double noise = measured->noise();
-  const double sigma = measured->sigma_px();
-  for (auto& fit : measured->fits) {
-    if (!fit) continue;
-    const double relative = fit->contrast / contrast;
-    const bool similar = relative > 0.25 && relative < 4;
-    const double residual = fit->residual * std::abs(fit->contrast);
-    const bool clean = residual < 1.3 * noise + 0.01 * std::abs(contrast);
-    if (!similar || !clean || fit->sigma_px > 3 * sigma + 0.02) fit.reset();
-  }
-}
-
 // Takes out what does not follow a flat grid through a smooth lens.
-void DropOffGrid(const Target& target, Measured* measured) {
+void DropOffGrid(const Target& target, MeasuredCorners* measured) {
   CornerGrid grid;
   for (std::size_t i = 0; i < measured->fits.size(); ++i) {
     const int index = static_cast<int>(i);
@@ -117,7 +39,7 @@ void DropOffGrid(const Target& target, Measured* measured) {
 
 // Without those beside a corner that was not measured: what occludes that one may reach into what
 // was looked at, too faint to be noticed, and pull the place aside.
-Pixels FarFromHidden(const Target& target, const Measured& measured) {
+Pixels FarFromHidden(const Target& target, const MeasuredCorners& measured) {
   const int columns = target.corners_x();
   const auto hidden = [&](int column, int row) {
     const bool inside = column >= 0 && row >= 0 && column < columns && row < target.corners_y();
@@ -135,7 +57,7 @@ Pixels FarFromHidden(const Target& target, const Measured& measured) {
 
 // Takes out what lies off the pose by more than noise does, and a little for an inexact lens.
 void DropOffPose(const BoardMap& map, const Target& target, double pose_sigma_px,
-                 Measured* measured) {
+                 MeasuredCorners* measured) {
   const double sigma = std::max(measured->sigma_px(), pose_sigma_px);
   const auto corners = target.InnerCorners();
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -148,30 +70,7 @@ void DropOffPose(const BoardMap& map, const Target& target, double pose_sigma_px
   }
 }
 
-// Whether corners are enough and far enough from one line to tell a pose.
-bool Enough(const Target& target, const Pixels& corners) {
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  const auto points = target.InnerCorners();
-  const auto seen = std::count_if(corners.begin(), corners.end(), IsSeen);
-  if (seen < kLeastCorners) return false;
-  const auto count = static_cast<double>(seen);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (IsSeen(corners[i])) middle += points[i].head<2>() / count;
-  }
-  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector2d off = points[i].head<2>() - middle;
-    if (IsSeen(corners[i])) scatter += off * off.transpose() / count;
-  }
-  const double spread = std::sqrt(std::max(0.0, EigensystemOf(scatter).values[0]));
-  return spread > kLeastSpread * target.square_m;
-}
-
-bool Enough(const Target& target, const Measured& measured) {
-  return measured.residual() < kMostResidual && Enough(target, measured.places());
-}
-
-std::string WhyNotEnough(const Target& target, const Measured& measured) {
+std::string WhyNotEnough(const Target& target, const MeasuredCorners& measured) {
   return "of the " + std::to_string(measured.fits.size()) + " inner corners of the " +
          std::to_string(target.squares_x) + "x" + std::to_string(target.squares_y) +
          " squares only " + std::to_string(measured.count()) +
@@ -184,7 +83,7 @@ std::string WhyNotEnough(const Target& target, const Measured& measured) {
 // The pose that the corners farthest from what occludes some agree on; without enough of those,
 // all.
 std::optional<CornerPose> FirstPose(const Camera& camera, const Target& target,
-                                    const Measured& measured) {
+                                    const MeasuredCorners& measured) {
   const Pixels sure = FarFromHidden(target, measured);
   if (Enough(target, sure)) {
     auto pose = PoseFromCorners(camera, target, sure, kMostOff);
@@ -195,12 +94,12 @@ std::optional<CornerPose> FirstPose(const Camera& camera, const Target& target,
 
 // The pose from the corners of `measured`, and these measured again from there.
 std::optional<CornerPose> Settle(const cv::Mat& grey, double saturated_from, const Camera& camera,
-                                 const Target& target, Measured* measured) {
+                                 const Target& target, MeasuredCorners* measured) {
   for (int round = 0; round < kRounds; ++round) {
     const auto pose = FirstPose(camera, target, *measured);
     if (!pose) return std::nullopt;
     const BoardMap map = MapByPose(camera, pose->pose.sensor_from_target);
-    *measured = Measure(grey, saturated_from, target, map, measured->blur_px());
+    *measured = MeasureCorners(grey, saturated_from, target, map, measured->blur_px());
     DropUnlike(measured);
     DropOffPose(map, target, pose->corner_sigma_px, measured);
     if (!Enough(target, *measured)) return std::nullopt;
@@ -256,12 +155,12 @@ PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, co
                                   const Target& target, const std::array<Eigen::Vector2d, 4>& picks,
                                   bool black_is_dark) {
   const cv::Mat repaired = RepairDeadPixels(grey);
-  Measured measured;
+  MeasuredCorners measured;
   measured.fits.resize(target.InnerCorners().size());
   const auto aligned = AlignPicks(repaired, camera, target, picks);
   const auto map = aligned ? MapByOutline(camera, target, aligned->outline) : std::nullopt;
   if (!map) return {std::nullopt, WhyNotEnough(target, measured)};
-  measured = Measure(repaired, saturated_from, target, *map, std::nullopt);
+  measured = MeasureCorners(repaired, saturated_from, target, *map, std::nullopt);
   DropUnlike(&measured);
   DropOffGrid(target, &measured);
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
@@ -269,7 +168,7 @@ PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, co
   if (!Enough(target, measured)) return {std::nullopt, WhyNotEnough(target, measured)};
   if (!pose) return {std::nullopt, WhyNoFlatBoard(camera)};
   if (pose->second_pose_chi2 < kLeastChi2) {
-    return {std::nullopt, "too little of the board can be made out to tell which way it leans"};
+    return {std::nullopt, WhyLeanIsUnknown()};
   }
   std::string why =
       WhyPatternMayBeShifted(repaired, MapByPose(camera, pose->pose.sensor_from_target), target,
@@ -281,8 +180,8 @@ PickedBoardResult FindPickedBoard(const cv::Mat& grey, double saturated_from, co
 
 Pixels CornersNear(const cv::Mat& grey, double saturated_from, const Camera& camera,
                    const Target& target, const Rigid3& camera_from_target) {
-  Measured measured = Measure(RepairDeadPixels(grey), saturated_from, target,
-                              MapByPose(camera, camera_from_target), std::nullopt);
+  MeasuredCorners measured = MeasureCorners(RepairDeadPixels(grey), saturated_from, target,
+                                            MapByPose(camera, camera_from_target), std::nullopt);
   DropUnlike(&measured);
   return measured.places();
 }

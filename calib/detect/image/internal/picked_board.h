@@ -14,6 +14,13 @@
 
 namespace rgbdt {
 
+/// Of CornerPose::second_pose_chi2, for a board of which a part is hidden.
+inline constexpr double kLeastChi2 = 15;
+/// What is said of less.
+inline std::string WhyLeanIsUnknown() {
+  return "too little of the board can be made out to tell which way it leans";
+}
+
 /// The target's checkerboard where a person said that it is.
 struct PickedBoard {
   std::vector<Eigen::Vector2d> corners;  ///< inner corners [px], the target's order; NaN: not seen

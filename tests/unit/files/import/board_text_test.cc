@@ -35,6 +35,36 @@ TEST(BoardText, KnowsPlainBoards) {
   EXPECT_EQ(DescribeBoard(board), "plain, 1.016 x 0.9 m");
 }
 
+TEST(BoardText, KnowsBoardsWithMarkers) {
+  const Target charuco = ParseBoard("charuco@8x6,0.095,0.07,DICT_5X5_100,0.85x0.61,legacy");
+  ASSERT_TRUE(charuco.markers.has_value());
+  EXPECT_EQ(charuco.squares_x, 8);
+  EXPECT_EQ(charuco.squares_y, 6);
+  EXPECT_EQ(charuco.markers->side_m, 0.07);
+  EXPECT_EQ(charuco.markers->family, "5X5_100");
+  EXPECT_TRUE(charuco.markers->legacy);
+  EXPECT_EQ(DescribeBoard(charuco),
+            "ChArUco, 8 x 6 squares of 0.095 m, markers of 0.07 m (5X5_100, legacy)");
+  const Target grid = ParseBoard("aprilgrid@6x5,0.1,0.25,36h11,0.85x0.75");
+  ASSERT_TRUE(grid.markers.has_value());
+  EXPECT_EQ(grid.corners_x(), 12);
+  EXPECT_EQ(grid.corners_y(), 10);
+  EXPECT_EQ(grid.markers->gap_m, 0.025);
+  EXPECT_EQ(DescribeBoard(grid), "6 x 5 APRILTAG_36h11 tags of 0.1 m, 0.025 m apart");
+}
+
+TEST(BoardText, MarkersThatCannotBeAreRefused) {
+  EXPECT_THAT(ErrorOfBoard("charuco@8x6,0.07,0.095,5X5_100,0.85x0.61"),
+              HasSubstr("not smaller than its square"));
+  EXPECT_THAT(ErrorOfBoard("charuco@8x6,0.095,0.07,5X6_100,0.85x0.61"),
+              AllOf(HasSubstr("\"5X6_100\""), HasSubstr("one of 4X4_50, ")));
+  EXPECT_THAT(ErrorOfBoard("charuco@12x9,0.05,0.04,4X4_50,0.85x0.61"),
+              HasSubstr("the board has 54 markers, but 4X4_50 only 50"));
+  EXPECT_THAT(ErrorOfBoard("charuco@8x6,0.095,0.07,0.85x0.61"), HasSubstr("\"0.85x0.61\""));
+  EXPECT_THAT(ErrorOfBoard("aprilgrid@6x5,0.1,25,36h11,0.85x0.75"), HasSubstr("over a tag's side"));
+  EXPECT_THAT(ErrorOfBoard("aprilgrid@6x5,0.1,0.3,36h11,0.7x0.65"), HasSubstr("more than the"));
+}
+
 TEST(BoardText, LengthsThatAreNoMetresAreRefusedWithWhatWasMeant) {
   EXPECT_THAT(ErrorOfBoard("8x6@95,850x610"), AllOf(HasSubstr("millimetres"), HasSubstr("0.095")));
   EXPECT_THAT(ErrorOfBoard("8x6@9.5,0.85x0.61"),

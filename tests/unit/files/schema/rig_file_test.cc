@@ -43,6 +43,53 @@ std::string ErrorOfRig(const std::string& from, const std::string& to) {
   return test::ErrorOf([&] { ParseRig(With(kRig, from, to), "rig.textproto"); });
 }
 
+const char kTarget[] =
+    "target { squares_x: 11 squares_y: 8 square_m: 0.1 width_m: 1.2192 height_m: 0.9144 }";
+
+TEST(RigFile, BoardsWithMarkersAreReadAndWritten) {
+  const auto round = [](const std::string& target) {
+    const Rig rig = ParseRig(With(kRig, kTarget, target), "rig.textproto");
+    return ParseRig(PrintRig(rig), "again").target;
+  };
+  const Target charuco = round(
+      "target { charuco { squares_x: 11 squares_y: 8 square_m: 0.1 marker_m: 0.075 "
+      "dictionary: \"DICT_5X5_100\" legacy: true } width_m: 1.2192 height_m: 0.9144 "
+      "pattern_offset_m: [0.01, 0] }");
+  ASSERT_TRUE(charuco.markers.has_value());
+  EXPECT_EQ(charuco.squares_x, 11);
+  EXPECT_EQ(charuco.markers->side_m, 0.075);
+  EXPECT_TRUE(charuco.markers->legacy);
+  EXPECT_FALSE(charuco.markers->grid());
+  EXPECT_EQ(charuco.MarkerPlaces().size(), 44U);
+  EXPECT_EQ(charuco.pattern_offset_m.x(), 0.01);
+  const Target grid = round(
+      "target { aprilgrid { tags_x: 7 tags_y: 5 tag_m: 0.13 spacing: 0.25 } "
+      "width_m: 1.2192 height_m: 0.9144 }");
+  ASSERT_TRUE(grid.markers.has_value());
+  EXPECT_EQ(grid.squares_x, 15);
+  EXPECT_EQ(grid.squares_y, 11);
+  EXPECT_EQ(grid.markers->family, "APRILTAG_36h11");
+  EXPECT_EQ(grid.markers->border_bits, kKalibrBorderBits);
+  EXPECT_DOUBLE_EQ(grid.markers->gap_m, 0.0325);
+}
+
+TEST(RigFile, BoardsWithMarkersThatCannotBeAreRefused) {
+  EXPECT_THAT(
+      ErrorOfRig("target { squares_x: 11", "target { charuco { squares_x: 3 } squares_x: 11"),
+      HasSubstr("expected one board"));
+  const auto charuco = [](const std::string& rest) {
+    return ErrorOfRig(kTarget, "target { charuco { squares_x: 11 squares_y: 8 square_m: 0.1 " +
+                                   rest + " } width_m: 1.2192 height_m: 0.9144 }");
+  };
+  EXPECT_THAT(charuco("marker_m: 0.075"), HasSubstr("dictionary"));
+  EXPECT_THAT(charuco("marker_m: 0.075 dictionary: \"9X9\""), HasSubstr("one of 4X4_50"));
+  EXPECT_THAT(charuco("marker_m: 0.1 dictionary: \"5X5_100\""), HasSubstr("less than square_m"));
+  EXPECT_THAT(ErrorOfRig(kTarget,
+                         "target { aprilgrid { tags_x: 7 tags_y: 5 tag_m: 0.13 } "
+                         "width_m: 1.2192 height_m: 0.9144 }"),
+              HasSubstr("spacing"));
+}
+
 TEST(RigFile, ALensMayStateHowWellItIsKnown) {
   const auto with = [](const std::string& uncertainty) {
     return With(kRig, "  camera_from_lidar_guess", uncertainty + "\n  camera_from_lidar_guess");
