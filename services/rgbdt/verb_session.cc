@@ -168,13 +168,14 @@ void AddSession(CommandLine* program) {
                  "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
                  "name it is rgb, or thermal where images have 16 bits or the folder says so");
   verb->Required("--clouds", &flags->clouds, "the folder of PCD files");
-  verb->Required("--board", &flags->board,
-                 "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"
-                 "height, a square's side, the whole board with its border. Squares, not inner\n"
-                 "corners, which are one fewer each way and are written 7x5corners@... A board\n"
-                 "without a pattern: plain@WIDTHxHEIGHT. With markers: charuco@SQUARESxSQUARES,SQUARE,\n"
-                 "MARKER,DICTIONARY,WIDTHxHEIGHT[,legacy] (charuco@8x6,0.095,0.07,5X5_100,0.85x0.61),\n"
-                 "or Kalibr's aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT");
+  verb->Required(
+      "--board", &flags->board,
+      "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"
+      "height, a square's side, the whole board with its border. Squares, not inner\n"
+      "corners, which are one fewer each way and are written 7x5corners@... A board\n"
+      "without a pattern: plain@WIDTHxHEIGHT. With markers: charuco@SQUARESxSQUARES,SQUARE,\n"
+      "MARKER,DICTIONARY,WIDTHxHEIGHT[,legacy] (charuco@8x6,0.095,0.07,5X5_100,0.85x0.61),\n"
+      "or Kalibr's aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT");
   verb->Required("--out", &flags->out, "the session directory to write");
   verb->Option("--lens", &flags->lenses,
                "[NAME=]FILE[:PART], in the order of the cameras: YAML of OpenCV, ROS camera_info,\n"
