@@ -87,14 +87,9 @@ CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target,
     result.why = WhyNoMarkers(repaired, target, seen);
     return result;
   }
-  // The two ways of OpenCV differ by one column for all markers but those at the rows' ends.
-  Target other = target;
-  other.markers->legacy = !markers.legacy;
-  const auto otherwise = markers.grid() ? std::nullopt : LayOut(seen, other);
+  const auto otherwise = LayOutOtherWay(target, seen);
   if (otherwise && otherwise->agreed.size() > layout->agreed.size()) {
-    result.why = std::string("the markers lie as on a board that OpenCV drew ") +
-                 (markers.legacy ? "from 4.6 on: take out legacy: true in the rig file"
-                                 : "before 4.6: add legacy: true in the rig file");
+    result.why = WhyOtherWay(target);
     return result;
   }
   const auto wanted = BesideMarkers(target, layout->agreed);

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <opencv2/core.hpp>
-#include <optional>
 
 #include "calib/detect/image/internal/grey_image.h"
-#include "calib/detect/image/internal/marker_layout.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -72,14 +70,7 @@ std::optional<Target> OtherSize(const Target& target, const std::vector<SeenMark
 }
 
 std::string WhyOtherLayout(const Target& target, const std::vector<SeenMarker>& seen) {
-  Target other = target;
-  other.markers->legacy = !other.markers->legacy;
-  if (!target.markers->grid() && target.squares_y % 2 == 0 && LayOut(seen, other)) {
-    return std::string("the markers lie as on a board that OpenCV drew ") +
-           (other.markers->legacy ? "before 4.6: add legacy: true"
-                                  : "from 4.6 on: take out legacy: true") +
-           " in the rig file";
-  }
+  if (target.squares_y % 2 == 0 && LayOutOtherWay(target, seen)) return WhyOtherWay(target);
   const auto size = OtherSize(target, seen);
   if (!size) return "";
   return Format("the markers lie as on a board with %d, not %d in a row; check the rig file",
@@ -115,6 +106,23 @@ std::string WhyNoMarkers(const cv::Mat& grey, const Target& target,
       "%zu markers of %s in the image, too few for a board of %s; is it in view, sharp, "
       "with contrast?",
       seen.size(), family.name, SizeText(target).c_str());
+}
+
+std::optional<MarkerLayout> LayOutOtherWay(const Target& target,
+                                           const std::vector<SeenMarker>& seen) {
+  Markers markers = *target.markers;
+  if (markers.grid()) return std::nullopt;
+  markers.legacy = !markers.legacy;
+  Target other = target;
+  other.markers = markers;
+  return LayOut(seen, other);
+}
+
+std::string WhyOtherWay(const Target& target) {
+  return std::string("the markers lie as on a board that OpenCV drew ") +
+         (target.markers->legacy ? "from 4.6 on: take out legacy: true"
+                                 : "before 4.6: add legacy: true") +
+         " in the rig file";
 }
 
 std::string WhyNotThisBoard(const Target& target, const std::vector<SeenMarker>& seen) {
