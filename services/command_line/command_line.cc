@@ -171,7 +171,7 @@ void CommandLine::ChoiceOf(const std::string& name, std::vector<std::string> nam
     const bool good = std::find(names.begin(), names.end(), given) != names.end();
     return good ? std::string() : "\"" + given + "\" is none of " + all;
   };
-  app_->add_option_function<std::string>(name, choose, help.empty() ? all : all + ": " + help)
+  app_->add_option_function<std::string>(name, choose, help.empty() ? all : all + ":\n" + help)
       ->check(Check(check))
       ->type_name("NAME")
       ->default_str(usual);

@@ -71,9 +71,9 @@ inline ExitCode WorseOf(ExitCode a, ExitCode b) {
 }
 
 /// What `--help` says of the verdicts' exit codes.
-inline void AddVerdictEnds(CommandLine* verb) {
-  verb->Ends(ExitCode::kDoubtful, "the verdict on a camera is `doubtful`");
-  verb->Ends(ExitCode::kDoNotUse, "the verdict on a camera is `do not use`");
+inline void AddVerdictEnds(CommandLine* line, const std::string& verbs = "") {
+  line->Ends(ExitCode::kDoubtful, verbs + "the verdict on a camera is `doubtful`");
+  line->Ends(ExitCode::kDoNotUse, verbs + "the verdict on a camera is `do not use`");
 }
 
 /// In words and figures. False: a camera moved.

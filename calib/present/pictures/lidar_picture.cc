@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -11,7 +12,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr int kWidth = 1060, kTitleHeight = 70, kChartHeight = 320, kLabelHeight = 60;
+constexpr int kWidth = 1060, kTitleHeight = 70, kChartHeight = 320, kLabelHeight = 100, kLabelRow = 38;
 constexpr int kLeft = 130, kRight = 20, kDot = 7, kStroke = 3;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kTitleText = 1.3, kText = 1.0;
@@ -100,7 +101,7 @@ cv::Mat Draw(const Chart& chart) {
     Write(text, {field.x - 14 - WidthOf(text, kText), row_of(value) + 10}, kText, &picture);
   }
   const double space = static_cast<double>(field.width) / static_cast<double>(chart.marks.size());
-  int free_from = 0;
+  std::array<int, 2> free_from{};  // where one label is too near the last it goes a row lower
   for (std::size_t i = 0; i < chart.marks.size(); ++i) {
     const auto& [label, estimate] = chart.marks[i];
     const int x = field.x + static_cast<int>(space * (static_cast<double>(i) + 0.5));
@@ -109,9 +110,12 @@ cv::Mat Draw(const Chart& chart) {
     cv::circle(picture, {x, row_of(estimate.value)}, kDot, kMark, cv::FILLED, cv::LINE_AA);
     const int width = WidthOf(label, kText);
     const int left = std::clamp(x - width / 2, 0, kWidth - width);
-    if (left < free_from) continue;
-    Write(label, {left, field.br().y + 40}, kText, &picture);
-    free_from = left + width + 16;
+    for (std::size_t row = 0; row < free_from.size(); ++row) {
+      if (left < free_from[row]) continue;
+      Write(label, {left, field.br().y + 40 + static_cast<int>(row) * kLabelRow}, kText, &picture);
+      free_from[row] = left + width + 16;
+      break;
+    }
   }
   return picture;
 }

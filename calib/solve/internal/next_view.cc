@@ -57,8 +57,23 @@ std::string Place::Words() const {
   return words;
 }
 
+// Between the lowest and the highest of points, as the LIDAR sees them [rad].
+template <typename Points, typename ToPoint>
+double HeightOf(const Points& points, const ToPoint& to_point) {
+  double low = 10;
+  double high = -10;
+  for (const auto& each : points) {
+    const Eigen::Vector3d p = to_point(each);
+    const double elevation = std::atan2(p.z(), p.head<2>().norm());
+    low = std::min(low, elevation);
+    high = std::max(high, elevation);
+  }
+  return std::max(0.0, high - low);
+}
+
 // How exactly this LIDAR and these cameras see a board, whatever its place.
 struct Exactness {
+  double rings_per_rad = 0;  // of a board's height, as the LIDAR sees it
   double points_per_sr = 0, scatter_sigma_m = 0;
   double crossings_per_rad = 0;  // of a side's apparent length
   double half_width_rad = 0, crossing_sigma_rad = 0;
@@ -66,7 +81,7 @@ struct Exactness {
 };
 
 Exactness ExactnessOf(const BoardProblem& problem) {
-  std::vector<double> points, scatter, crossings, widths, sigmas;
+  std::vector<double> points, scatter, crossings, rings, widths, sigmas;
   std::vector<std::vector<double>> corners(problem.cameras.size());
   const double area = problem.target.width_m * problem.target.height_m;
   const double outline = 2 * (problem.target.width_m + problem.target.height_m);
@@ -77,6 +92,9 @@ Exactness ExactnessOf(const BoardProblem& problem) {
     points.push_back(cloud.points * range * range / (area * std::max(0.1, facing)));
     scatter.push_back(cloud.scatter_sigma_m);
     crossings.push_back(static_cast<double>(cloud.crossings.size()) * range / outline);
+    // Each ring crosses the outline twice.
+    const double height = HeightOf(cloud.crossings, [](const Crossing& c) { return c.point; });
+    rings.push_back(0.5 * static_cast<double>(cloud.crossings.size()) / std::max(1e-3, height));
     for (const Crossing& c : cloud.crossings) {
       widths.push_back(c.half_width_m / range);
       sigmas.push_back(c.sigma_m / range);
@@ -85,8 +103,13 @@ Exactness ExactnessOf(const BoardProblem& problem) {
       corners[static_cast<std::size_t>(image.camera)].push_back(image.edges->corner_sigma_px);
     }
   }
-  Exactness out{Median(points), Median(scatter), Median(crossings),
-                Median(widths), Median(sigmas),  {}};
+  Exactness out{Median(rings),
+                Median(points),
+                Median(scatter),
+                Median(crossings),
+                Median(widths),
+                Median(sigmas),
+                {}};
   for (auto& own : corners) out.corner_sigma_px.push_back(Median(own));
   return out;
 }
@@ -207,19 +230,21 @@ struct Field {
   }
 };
 
-// Where six rings of a spinning LIDAR lie on the board, each crossing its outline twice; fewer are
-// too few (calib/detect/TARGET.md).
-double FarthestRange(const Target& target, const Exactness& exactness) {
-  constexpr double kCrossings = 12;
-  return exactness.crossings_per_rad * 2 * (target.width_m + target.height_m) / kCrossings;
+// Whether six rings of a spinning LIDAR lie on the board; fewer are too few
+// (calib/detect/TARGET.md).
+bool EnoughRings(const Target& target, const Exactness& exactness, const Place& place) {
+  constexpr double kLeastRings = 6;
+  const Rigid3 lidar_from_target = place.LidarFromTarget();
+  const double height = HeightOf(target.OutlineCorners(), [&](const Eigen::Vector3d& corner) {
+    return Eigen::Vector3d(lidar_from_target * corner);
+  });
+  return exactness.rings_per_rad * height >= kLeastRings;
 }
 
 std::vector<Place> PlacesToTry(const BoardProblem& problem, const Exactness& exactness) {
   const Field field(problem);
-  const double farthest = FarthestRange(problem.target, exactness);
   std::vector<Place> places;
   for (const double range : {1.5, 2.0, 3.0, 4.5, 6.0}) {
-    if (range > farthest && !places.empty()) break;
     const double reach = std::atan(0.5 * problem.target.width_m / range);
     for (const double across : {0.0, 0.5, 1.0}) {
       for (const double up : {0.0, 0.5, 1.0}) {
@@ -228,9 +253,13 @@ std::vector<Place> PlacesToTry(const BoardProblem& problem, const Exactness& exa
         };
         for (int towards = 0; towards < 4; ++towards) {
           for (const double roll : {0.0, 30 * kDegree}) {
-            places.push_back({range, between(field.low_azimuth, field.high_azimuth, across),
-                              between(field.low_elevation, field.high_elevation, up), kTilt,
-                              towards * 90 * kDegree, roll});
+            const Place place{range,
+                              between(field.low_azimuth, field.high_azimuth, across),
+                              between(field.low_elevation, field.high_elevation, up),
+                              kTilt,
+                              towards * 90 * kDegree,
+                              roll};
+            if (EnoughRings(problem.target, exactness, place)) places.push_back(place);
           }
         }
       }

@@ -1,5 +1,10 @@
 #include "calib/solve/internal/next_view.h"
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
 #include "calib/methods/calibrate.h"
 #include "tests/unit/solve/solve_world.h"
 
@@ -46,26 +51,42 @@ TEST(FindNextView, WhatItSaysBeforeIsTheWorstSigmaOfTheReport) {
   EXPECT_NEAR(report.next_view->sigma_before_px, worst, 0.05 * worst);
 }
 
-// calib/detect/TARGET.md: six rings, which cross the outline twice each.
+double ElevationOf(const Eigen::Vector3d& point) {
+  return std::atan2(point.z(), point.head<2>().norm());
+}
+
+// How many rings, 3 degrees apart, lie on the board there.
+constexpr double kRingSpacing = 3 * M_PI / 180;
+double RingsOn(const Target& target, const Rigid3& lidar_from_target) {
+  std::vector<double> elevations;
+  for (const Eigen::Vector3d& corner : target.OutlineCorners()) {
+    elevations.push_back(ElevationOf(lidar_from_target * corner));
+  }
+  const auto [low, high] = std::minmax_element(elevations.begin(), elevations.end());
+  return (*high - *low) / kRingSpacing;
+}
+
+// calib/detect/TARGET.md: six rings.
 TEST(FindNextView, ProposesNoPlaceWithTooFewRings) {
   SolveWorldOptions options;
   options.views = 6;
   SolveWorld world(options);
-  double farthest = 0;
+  const Report dense = Calibrate(world.rig, world.detections);
+  ASSERT_TRUE(dense.next_view);
+  EXPECT_LT(RingsOn(world.rig.target, dense.next_view->lidar_from_target), 5);
   for (std::size_t i = 0; i < world.detections.size(); ++i) {
     auto& crossings = world.CloudAt(i).crossings;
-    std::vector<Crossing> few;  // so many that 12 are left at 3.2 m
-    const double range = world.CloudAt(i).centre.norm();
-    const auto wanted = static_cast<std::size_t>(12 * 3.2 / range);
-    for (std::size_t k = 0; k < wanted; ++k)
-      few.push_back(crossings[k * crossings.size() / wanted]);
+    std::set<std::pair<long, int>> taken;  // one for each ring and side
+    std::vector<Crossing> few;
+    for (const Crossing& crossing : crossings) {
+      const long ring = std::lround(ElevationOf(crossing.point) / kRingSpacing);
+      if (taken.insert({ring, crossing.side}).second) few.push_back(crossing);
+    }
     crossings = few;
-    farthest = std::max(farthest, range);
   }
-  ASSERT_GT(farthest, 3.5);
   const Report report = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(report.next_view);
-  EXPECT_LE(report.next_view->lidar_from_target.translation.norm(), 3.5);
+  EXPECT_GT(RingsOn(world.rig.target, report.next_view->lidar_from_target), 5);
 }
 
 TEST(FindNextView, OfCamerasThatSeeNothingInCommonThereIsNone) {

@@ -62,6 +62,7 @@ inline MarkedScene RenderMarked(const simulate::BoardOptions& board, std::uint64
 /// Hides 40% of the board, from its left, behind something of its own brightness.
 inline void HideTwoFifths(std::uint64_t seed, MarkedScene* scene) {
   Random random(seed);
+  scene->image.pixels = scene->image.pixels.clone();  // a copy of the scene has the same
   PaintCover(Camera(scene->spec), scene->target, scene->camera_from_target, Cover::kHalf, -0.1,
              &random, &scene->image.pixels);
 }

@@ -119,10 +119,12 @@ function More() {
   return (
     <details class="cloud-more">
       <summary>View</summary>
-      <ViewButtons />
-      <Appearance />
-      <p class="muted">Drag: turn. Right button or two fingers: move. Wheel or pinch: zoom. Double click: fit. Arrow keys:
-        move, with Shift: turn; + and −: zoom. Tap a point for its values.</p>
+      <div class="cloud-more-body">
+        <ViewButtons />
+        <Appearance />
+        <p class="muted">Drag: turn. Right button or two fingers: move. Wheel or pinch: zoom. Double click: fit. Arrow keys:
+          move, with Shift: turn; + and −: zoom. Tap a point for its values.</p>
+      </div>
     </details>
   );
 }
