@@ -12,7 +12,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr int kWidth = 1060, kTitleHeight = 70, kChartHeight = 320, kLabelHeight = 100, kLabelRow = 38;
+constexpr int kWidth = 1060, kTitleHeight = 70, kChartHeight = 320, kLabelHeight = 100,
+              kLabelRow = 38;
 constexpr int kLeft = 130, kRight = 20, kDot = 7, kStroke = 3;
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kTitleText = 1.3, kText = 1.0;
