@@ -53,7 +53,8 @@ TEST(Acfr, TheMeshIsNoBoard) {
     cv::Mat grey;
     image.convertTo(grey, CV_32FC1);
     for (const auto& [columns, rows] : {std::pair{6, 4}, {6, 6}, {8, 6}, {8, 8}}) {
-      const Target target{columns + 1, rows + 1, 0.1, 0.1 * (columns + 2), 0.1 * (rows + 2)};
+      const Target target{columns + 1,      rows + 1, 0.1, 0.1 * (columns + 2),
+                          0.1 * (rows + 2), {0, 0},   {}};
       EXPECT_FALSE(FindCheckerboard(grey, target).board) << name << " " << columns << "x" << rows;
     }
   }

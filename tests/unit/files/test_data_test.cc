@@ -114,7 +114,7 @@ Rig MakeRig() {
   rig.lidar.turned_scanner =
       TurnedScanner{MakePose(0.01, {0.02, 0.003, -0.1}), 1400 * 180 / M_PI, -77.5, {}};
   rig.cameras = {MakeColour(), MakeThermal()};
-  rig.target = {11, 8, 0.1, 1.2192, 0.9144, {0.001, -0.002}, std::nullopt};
+  rig.target = {11, 8, 0.1, 1.2192, 0.9144, {0.001, -0.002}, {}};
   return rig;
 }
 

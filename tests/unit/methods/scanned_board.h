@@ -14,7 +14,7 @@ namespace rgbdt {
 /// rings half a degree apart, 80 degrees wide.
 struct ScannedBoard {
   static constexpr double kStepRad = 0.5 * M_PI / 180;
-  Target target{9, 6, 0.1, 1.0, 0.7, {0, 0}, 0};
+  Target target{9, 6, 0.1, 1.0, 0.7, {0, 0}, {}};
   double wall_m = 7;  ///< the wall's distance, across x
   Rigid3 lidar_from_target;
   Cloud cloud;

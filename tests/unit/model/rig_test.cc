@@ -28,7 +28,7 @@ Rig GoodRig() {
   camera.format = PixelFormat::kMono16;
   rig.cameras.push_back(camera);
   rig.lidar.turned_scanner = TurnedScanner{{}, 80000, 0, {}};
-  rig.target = {11, 8, 0.1, 1.22, 0.91, {0, 0}};
+  rig.target = {11, 8, 0.1, 1.22, 0.91, {0, 0}, {}};
   return rig;
 }
 
@@ -130,7 +130,7 @@ TEST(Rig, AnUnknownCameraIsAnErrorThatSaysWhichThereAre) {
 }
 
 TEST(Target, InnerCornersLieRowByRowFromTheTopLeft) {
-  const Target target{4, 3, 0.1, 0.5, 0.4, {0.02, -0.01}};
+  const Target target{4, 3, 0.1, 0.5, 0.4, {0.02, -0.01}, {}};
   const auto corners = target.InnerCorners();
   ASSERT_EQ(corners.size(), 6U);  // 3 x 2
   // Symmetric about the pattern's centre: x at -1, 0, 1 squares, y at -1/2, 1/2.
@@ -141,7 +141,7 @@ TEST(Target, InnerCornersLieRowByRowFromTheTopLeft) {
 }
 
 TEST(Target, OutlineGoesRoundFromTheTopLeftAndIgnoresThePatternsOffset) {
-  const Target target{4, 3, 0.1, 0.5, 0.4, {0.02, -0.01}};
+  const Target target{4, 3, 0.1, 0.5, 0.4, {0.02, -0.01}, {}};
   const auto corners = target.OutlineCorners();
   EXPECT_EQ(corners[0], Eigen::Vector3d(-0.25, -0.2, 0));
   EXPECT_EQ(corners[1], Eigen::Vector3d(0.25, -0.2, 0));

@@ -13,7 +13,7 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 constexpr double kSigma = 0.01;  // of a point's distance from the plane [m]
 
-Target WorldTarget() { return {11, 8, 0.1, 1.2, 0.9, {0, 0}}; }
+Target WorldTarget() { return {11, 8, 0.1, 1.2, 0.9, {0, 0}, {}}; }
 
 // What a cloud without noise tells of a board that stands there.
 CloudEdges IdealCloud(const Rigid3& lidar_from_target) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
-const Target kTarget{9, 6, 0.1, 1.0, 0.7, {0, 0}};
+const Target kTarget{9, 6, 0.1, 1.0, 0.7, {0, 0}, {}};
 
 Eigen::Vector3d OutwardOf(int side) {
   const Eigen::Vector3d outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};

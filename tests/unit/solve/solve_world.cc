@@ -43,8 +43,8 @@ Eigen::Vector3d Outward(int side) {
 SolveWorld::SolveWorld(const SolveWorldOptions& options)
     : options_(options), random_(options.seed) {
   rig.hash = "hash";
-  rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}, options.print_sigma};
-  if (options.plain) rig.target = {0, 0, 0, 0.8, 0.8};
+  rig.target = {9, 6, 0.1, 1.0, 0.7, {0, 0}, {}, options.print_sigma};
+  if (options.plain) rig.target = {0, 0, 0, 0.8, 0.8, {0, 0}, {}};
   rig.cameras = {WorldCamera(), Fisheye()};
   for (CameraSpec& camera : rig.cameras) {
     camera.lens_uncertainty = options.lens_uncertainty;
