@@ -49,7 +49,8 @@ std::string WhyOtherFamily(const cv::Mat& grey, const Target& target) {
     most = count;
     name = family.name;
   }
-  if (most < kSure) return "";
+  // A small family's numbers are decoded in what is none of its markers, too.
+  if (most < std::max(kSure, target.MarkerPlaces().size() / 4)) return "";
   return Format(
       "%zu markers of %s are in the image, none of %s; check the board's dictionary in "
       "the rig file",
