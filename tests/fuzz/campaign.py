@@ -30,7 +30,7 @@ calib/files/points/internal/record_table.cc
 calib/files/schema/calibration_file.cc calib/files/schema/proto_convert.cc
 calib/files/schema/report_file.cc calib/files/schema/session_script.cc
 calib/files/schema/text_proto.cc calib/files/schema/internal/device_convert.cc
-calib/files/schema/internal/lens_convert.cc
+calib/files/schema/internal/lens_convert.cc calib/files/schema/internal/target_convert.cc
 calib/files/session/truth_file.cc calib/files/session/view_reader.cc
 services/bags/ services/bags/internal/
 services/bus/log_reader.cc services/bus/internal/datagram.cc services/bus/internal/reassembly.cc

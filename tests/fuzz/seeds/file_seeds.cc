@@ -39,6 +39,21 @@ void AddRigs(Inputs* seeds) {
   (*seeds)["guess_both"] = with(lens,
                                 "camera_from_lidar_guess { quaternion_wxyz: [1, 0, 0, 0] "
                                 "roll_pitch_yaw_deg: [1, 2, 3] }");
+  const auto board = [&](const std::string& pattern) {
+    return small.substr(0, small.find("target {")) + "target { " + pattern +
+           " width_m: 1 height_m: 0.8 }";
+  };
+  (*seeds)["plain"] = board("plain { width_m: 1 height_m: 1 }");
+  for (const std::string rest : {"", "legacy: true", "marker_m: 0.2", "dictionary: \"none\""}) {
+    (*seeds)["charuco " + rest] = board(
+        "charuco { squares_x: 8 squares_y: 6 square_m: 0.1 marker_m: 0.07 "
+        "dictionary: \"4X4_50\" " +
+        rest + " }");
+  }
+  for (const std::string rest : {"", "family: \"36h10\" border_bits: 1", "border_bits: 99"}) {
+    (*seeds)["aprilgrid " + rest] =
+        board("aprilgrid { tags_x: 3 tags_y: 2 tag_m: 0.2 spacing: 0.3 " + rest + " }");
+  }
   (*seeds)["distortion"] = with("fx: 4", "distortion: [1, 2, 3]");
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs")) {
