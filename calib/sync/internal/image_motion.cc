@@ -100,14 +100,13 @@ std::vector<PosedImage> PoseImages(const Camera& camera, const Target& target,
 }
 
 Quadratic LineariseImage(const Camera& camera, const Target& target, const PosedImage& image,
-                         double sigma_px, const Rigid3& camera_from_target,
-                         const Vector6d& by_row) {
+                         double sigma_px, const PoseByRow& at) {
   QuadraticSum sum;
   const std::vector<Eigen::Vector3d> corners = target.InnerCorners();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (!IsSeen(image.corners[i])) continue;
     const double later = RowShare(image.corners[i].y(), camera.height()) - image.middle_row;
-    const Eigen::Vector3d point = Exp(later * by_row) * (camera_from_target * corners[i]);
+    const Eigen::Vector3d point = at(later) * corners[i];
     if (point.z() < 0.05) continue;
     const Seen seen = Project(camera.lens(), point);
     Eigen::Matrix<double, 3, 6> moved;

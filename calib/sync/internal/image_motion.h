@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "calib/camera/camera.h"
@@ -31,11 +32,16 @@ std::vector<PosedImage> PoseImages(const Camera& camera, const Target& target,
 /// All corners turned by half a turn of the target.
 void TurnByHalf(PosedImage* image);
 
-/// What the corners tell of the pose at their middle row and of `by_row`, by how much it changes
-/// over the image's height: a corner at row share s is seen where
-///   Exp(delta + (s - middle_row) by_row) * camera_from_target
-/// puts it. xi's last number stays untold.
+/// camera_from_target when a row was seen, `later` (share of the image's height) below the corners'
+/// middle row.
+using PoseByRow = std::function<Rigid3(double later)>;
+
+/// What the corners tell of the pose at their middle row and of by_row, by how much it changes over
+/// the image's height: a corner at row share s is seen where
+///   Exp(delta + later by_row) * at(later), later = s - middle_row,
+/// puts it. How the board moves from row to row is thus what `at` says, straight or not; what is
+/// added to it is small, and straight. xi's last number stays untold.
 Quadratic LineariseImage(const Camera& camera, const Target& target, const PosedImage& image,
-                         double sigma_px, const Rigid3& camera_from_target, const Vector6d& by_row);
+                         double sigma_px, const PoseByRow& at);
 
 }  // namespace rgbdt::sync

@@ -86,8 +86,10 @@ void MotionEquations::AddImages(std::size_t index) {
     cost->predicted_by_row =
         state.rolling_s * (Adjoint(state.camera_from_lidar) * way.TwistAt(seconds));
     cost->factor = data.variance_factor;
-    cost->quadratic = LineariseImage(data.camera, data_.target, image, data.sigma_px,
-                                     cost->predicted, cost->predicted_by_row);
+    const auto at = [&](double later) {
+      return state.camera_from_lidar * way.At(seconds + later * state.rolling_s);
+    };
+    cost->quadratic = LineariseImage(data.camera, data_.target, image, data.sigma_px, at);
     facts_.camera_misfits[index].point_chi2 += cost->quadratic.misfit;
     facts_.camera_misfits[index].points += cost->quadratic.rows - cost->quadratic.rank;
     facts_.camera_misfits[index].freedom += cost->quadratic.rank;

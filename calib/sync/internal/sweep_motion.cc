@@ -90,7 +90,7 @@ std::optional<SweepMotion> LineariseSweep(const WavedSweep& sweep, const Target&
     const Eigen::Vector3d beam = point / range;
     const auto rough = MeetBoard(motion.lidar_from_target, beam);
     if (!rough || !IsOn(target, rough->place, -0.2)) continue;
-    const Rigid3 pose = Exp(later * motion.twist) * motion.lidar_from_target;
+    const Rigid3 pose = way.At(*when + later);
     const auto met = MeetBoard(pose, beam);
     if (!met || !IsOn(target, met->place, options.margin_m)) continue;
     const double off = range - range_offset_m - met->range;

@@ -23,7 +23,7 @@ struct SweepMotion {
   Rigid3 lidar_from_target;
   Vector6d twist;  ///< as Trajectory::TwistAt
   /// Of xi = (delta; twist; how much longer ranges are than true): a point at time t is on
-  ///   Exp(delta + (t - seconds) twist) * lidar_from_target.
+  ///   Exp(delta + (t - seconds) (twist - the way's)) * the way at t.
   Quadratic quadratic;
   double square = 0;  ///< of the residuals [sigma]
 };

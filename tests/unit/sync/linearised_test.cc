@@ -82,7 +82,7 @@ TEST(LineariseImageTest, TellsThePoseAndItsChangeByRow) {
     image.corners.push_back(pixel);
   }
   const Quadratic quadratic =
-      LineariseImage(camera, target, image, 0.1, predicted, Vector6d::Zero());
+      LineariseImage(camera, target, image, 0.1, [&](double) { return predicted; });
   Quadratic::Vector truth;
   truth << moved, by_row, 0;
   EXPECT_GT(quadratic.rest.norm(), 10);
@@ -90,10 +90,40 @@ TEST(LineariseImageTest, TellsThePoseAndItsChangeByRow) {
   // A board that comes nearer from row to row looks tilted: that alone is not told.
   EXPECT_EQ(quadratic.rank, 11);
   // About the truth nothing is left.
-  const Quadratic there =
-      LineariseImage(camera, target, image, 0.1, Exp(moved) * predicted, by_row);
+  const Quadratic there = LineariseImage(camera, target, image, 0.1, [&](double later) {
+    return Exp(later * by_row) * Exp(moved) * predicted;
+  });
   EXPECT_LT(there.rest.norm(), 1e-3);
   EXPECT_LT(there.misfit, 1e-6);
+}
+
+// A wave that turns about within the read-out: taken as straight, its slope would seem smaller.
+TEST(LineariseImageTest, AMotionThatIsNotStraightLeavesNothing) {
+  const Target target = BoardTarget();
+  const Camera camera(Spec());
+  const Trajectory way = Waves();
+  Eigen::Matrix3d looking;  // along the LIDAR's x
+  looking << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  const Rigid3 camera_from_lidar{Eigen::Quaterniond(looking), {0, 0, 0}};
+  constexpr double kSeconds = 1.2, kRolling = 0.3;
+  const auto at = [&](double later) {
+    return camera_from_lidar * way.At(kSeconds + later * kRolling);
+  };
+  PosedImage image;
+  for (const Eigen::Vector3d& corner : target.InnerCorners()) {
+    Eigen::Vector2d pixel = *camera.Project(at(0) * corner);
+    for (int k = 0; k < 20; ++k) {
+      pixel = *camera.Project(at(RowShare(pixel.y(), camera.height())) * corner);
+    }
+    image.corners.push_back(pixel);
+  }
+  const Quadratic there = LineariseImage(camera, target, image, 0.1, at);
+  EXPECT_LT(there.rest.norm(), 1e-3);
+  const Rigid3 middle = at(0);
+  const Vector6d by_row = kRolling * (Adjoint(camera_from_lidar) * way.TwistAt(kSeconds));
+  const Quadratic straight = LineariseImage(
+      camera, target, image, 0.1, [&](double later) { return Exp(later * by_row) * middle; });
+  EXPECT_GT(straight.rest.norm(), 1);
 }
 
 TEST(LineariseSweepTest, FindsWhatAPlaneTells) {
