@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/comparison_text.h"
@@ -39,10 +40,26 @@ inline void SetAside(const std::filesystem::path& out) {
   if (!kept.empty()) std::fprintf(stderr, "%s\n", kept.c_str());
 }
 
-/// What a verb says that made a report: the table and the files (`wrote`, in words). Of views that
-/// could not be read PrintUnreadable tells the reason.
-inline void PrintReport(const Report& report, const std::string& wrote,
+/// To whom a verb speaks that made a report.
+struct Reader {
+  bool program = false;  ///< stdout is then report.json and nothing else
+};
+
+inline void AddReader(CommandLine* verb, Reader* reader) {
+  verb->Flag("--json", &reader->program,
+             "for programs: print report.json (calib/files/schema/report.proto) on stdout, and\n"
+             "nothing else there");
+}
+
+/// What a verb says that made a report: the table and the files (`wrote`, in words), or report.json
+/// of `out`. Of views that could not be read PrintUnreadable tells the reason.
+inline void PrintReport(const Reader& reader, const Report& report,
+                        const std::filesystem::path& out, const std::string& wrote,
                         const std::vector<std::string>& unreadable) {
+  if (reader.program) {
+    std::fputs(ReadWholeFile(out / "report.json").c_str(), stdout);
+    return;
+  }
   std::vector<std::string> told;
   for (const Said& said : OfViews(unreadable)) told.push_back(said.text);
   std::fputs(Summary(report).FullReport(told).c_str(), stdout);

@@ -16,6 +16,7 @@ namespace {
 struct EvaluateFlags {
   std::string dir, calibration, out, truth;
   bool anyway = false;
+  Reader reader;
 };
 
 // The same camera with the same pose; nothing where there is none.
@@ -80,7 +81,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);
   WriteReportFiles(out, {listed, detection.views, reports});
-  PrintReport(report, "wrote to " + out.string() + ":", detection.unreadable);
+  PrintReport(flags.reader, report, out, "wrote to " + out.string() + ":", detection.unreadable);
   PrintUnreadable(detection.unreadable);
   return EndsWith(detection.unreadable.empty());
 }
@@ -101,6 +102,7 @@ void AddEvaluate(CommandLine* program) {
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
+  AddReader(verb, &flags->reader);
   AddAnyway(verb, &flags->anyway, "the rig is another");
 }
 
