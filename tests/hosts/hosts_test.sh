@@ -81,10 +81,6 @@ end() {
   if [ "$log_host" = log ]; then stop TERM viewer; fi
 }
 
-figure() {  # NAME VALUE UNIT
-  printf '%s %s %s\n' "$@" | tee -a "${RGBDT_FIGURES:-/dev/null}"
-}
-
 make_hosts "$mtu" "${hosts[@]}"
 write_script >"$scratch/session.textproto"
 

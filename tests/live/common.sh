@@ -14,6 +14,10 @@ fail() {
   exit 1
 }
 
+figure() {  # NAME VALUE UNIT: for scripts/study faults
+  printf '%s %s %s\n' "$@" | tee -a "${RGBDT_FIGURES:-/dev/null}"
+}
+
 clean_up() {
   local pid
   for pid in "${pids[@]}"; do kill -KILL "$pid" 2>/dev/null || true; done

@@ -48,10 +48,12 @@ end() {
 }
 
 has_all_views() {
-  local view
+  local view lost=()
   for view in $(seq -f %04.0f "$views"); do
-    [ -s "$folder/views/$view/view.textproto" ] || fail "view $view is missing"
+    [ -s "$folder/views/$view/view.textproto" ] || lost+=("$view")
   done
+  figure views_lost "${#lost[@]}" 1
+  [ "${#lost[@]}" = 0 ] || fail "views are missing: ${lost[*]}"
 }
 
 checksums() { find "$folder/views" -type f -exec cksum {} + | sort; }
@@ -96,6 +98,7 @@ checksums | grep -F -x -f "$scratch/views" | cmp - "$scratch/views" ||
 has_all_views
 cmp "$scratch/undisturbed/calibration.textproto" "$folder/calibration.textproto" ||
   fail "the calibration is not what it is undisturbed"
+figure calibration_identical 1 1
 
 shuffle_turn() {  # all, in an order by RANDOM, which a subshell would draw anew
   local i j other
@@ -108,6 +111,7 @@ shuffle_turn() {  # all, in an order by RANDOM, which a subshell would draw anew
   done
 }
 
+figure kills_planned "$kills" 1
 RANDOM=$seed
 number=0
 turn=()
@@ -116,6 +120,7 @@ while [ "$kills" -gt 0 ]; do
   echo "== each process in turn is killed at a random moment, session $number"
   begin "killed-$number"
   there=-1
+  before=$kills
   # One a view, at any moment of it; more, and none would ever be whole.
   while [ "$kills" -gt 0 ] && another_view_is_taken "$there"; do
     moment=$((RANDOM * a_view_ms / 32768))
@@ -134,6 +139,7 @@ while [ "$kills" -gt 0 ]; do
   cat "$scratch"/killed-session.log "$scratch/session.log" 2>/dev/null | grep 'started anew' || true
   "$bin/rgbdt" compare "$scratch/undisturbed" "$folder" ||
     fail "the calibrations contradict each other"
+  figure kills_survived $((before - kills)) 1
   rm -rf "$folder" "$scratch"/killed-*.log
 done
 echo "passed"

@@ -1,5 +1,5 @@
 """Table, CSV, picture and summary.json of `scripts/study faults`: sessions over several machines whose
-links lose datagrams, or that are cut off."""
+links lose datagrams, or that are cut off, and sessions whose processes are killed."""
 
 import csv
 import json
@@ -14,6 +14,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 from trials import figure  # noqa: E402
 
 TARGETS = {
+    "kills_survived_share": (">=", 1),
+    "calibration_identical_share": (">=", 1),
+    "views_lost": ("<=", 0),
     "loss_1pct_sessions_ok_share": (">=", 1),
     "losses_counted_share": (">=", 0.999),
     "hosts_mbit_s": ("<=", 300),
@@ -44,6 +47,14 @@ def figures_of(rows):
         yield figure("hosts_mbit_s", max(of("hosts_mbit_s")), "Mbit/s")
     if of("ended_well", "garbage"):
         yield figure("garbage_session_ok", min(of("ended_well", "garbage")))
+    # A run that a kill ended told neither of that kill's survival nor of its views.
+    if of("ended_well", "kills"):
+        planned = sum(of("kills_planned"))
+        yield figure("kills_survived_share", sum(of("kills_survived")) / planned if planned else 0)
+        yield figure("calibration_identical_share",
+                     sum(of("calibration_identical")) / len(of("ended_well", "kills")))
+        if of("views_lost"):
+            yield figure("views_lost", sum(of("views_lost")))
 
 
 def table(figures):
