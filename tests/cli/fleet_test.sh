@@ -51,7 +51,7 @@ for name in a b d e; do
     complain "$name: another calibration"
 done
 
-accepts "as JSON" "$bin/rgbdt" calibrate "$scratch/all/a" --out "$scratch/json" --json
-"$bin/rgbdt" calibrate "$scratch/all/a" --out "$scratch/json" --json 2>"$scratch/output" |
-  cmp - "$scratch/json/report.json" || complain "--json: not report.json"
+"$bin/rgbdt" calibrate "$scratch/all/a" --out "$scratch/json" --json >"$scratch/said.json" \
+  2>"$scratch/output" || complain "as JSON: exit code $?"
+cmp "$scratch/said.json" "$scratch/json/report.json" || complain "--json: not report.json"
 verdict

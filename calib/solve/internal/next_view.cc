@@ -92,9 +92,10 @@ Exactness ExactnessOf(const BoardProblem& problem) {
     points.push_back(cloud.points * range * range / (area * std::max(0.1, facing)));
     scatter.push_back(cloud.scatter_sigma_m);
     crossings.push_back(static_cast<double>(cloud.crossings.size()) * range / outline);
-    // Each ring crosses the outline twice.
+    // Each ring crosses the outline twice; the first and the last one are a height apart.
     const double height = HeightOf(cloud.crossings, [](const Crossing& c) { return c.point; });
-    rings.push_back(0.5 * static_cast<double>(cloud.crossings.size()) / std::max(1e-3, height));
+    const double count = 0.5 * static_cast<double>(cloud.crossings.size());
+    rings.push_back(std::max(0.0, count - 1) / std::max(1e-3, height));
     for (const Crossing& c : cloud.crossings) {
       widths.push_back(c.half_width_m / range);
       sigmas.push_back(c.sigma_m / range);

@@ -55,8 +55,8 @@ double ElevationOf(const Eigen::Vector3d& point) {
   return std::atan2(point.z(), point.head<2>().norm());
 }
 
-// How many rings, 3 degrees apart, lie on the board there.
-constexpr double kRingSpacing = 3 * M_PI / 180;
+// How many rings, 6 degrees apart, lie on the board there.
+constexpr double kRingSpacing = 6 * M_PI / 180;
 double RingsOn(const Target& target, const Rigid3& lidar_from_target) {
   std::vector<double> elevations;
   for (const Eigen::Vector3d& corner : target.OutlineCorners()) {
@@ -73,7 +73,7 @@ TEST(FindNextView, ProposesNoPlaceWithTooFewRings) {
   SolveWorld world(options);
   const Report dense = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(dense.next_view);
-  EXPECT_LT(RingsOn(world.rig.target, dense.next_view->lidar_from_target), 5);
+  EXPECT_LT(RingsOn(world.rig.target, dense.next_view->lidar_from_target), 5.5);
   for (std::size_t i = 0; i < world.detections.size(); ++i) {
     auto& crossings = world.CloudAt(i).crossings;
     std::set<std::pair<long, int>> taken;  // one for each ring and side
@@ -86,7 +86,7 @@ TEST(FindNextView, ProposesNoPlaceWithTooFewRings) {
   }
   const Report report = Calibrate(world.rig, world.detections);
   ASSERT_TRUE(report.next_view);
-  EXPECT_GT(RingsOn(world.rig.target, report.next_view->lidar_from_target), 5);
+  EXPECT_GT(RingsOn(world.rig.target, report.next_view->lidar_from_target), 5.5);
 }
 
 TEST(FindNextView, OfCamerasThatSeeNothingInCommonThereIsNone) {
