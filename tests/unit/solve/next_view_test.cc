@@ -79,8 +79,10 @@ TEST(FindNextView, ProposesNoPlaceWithTooFewRings) {
     std::set<std::pair<long, int>> taken;  // one for each ring and side
     std::vector<Crossing> few;
     for (const Crossing& crossing : crossings) {
-      const long ring = std::lround(ElevationOf(crossing.point) / kRingSpacing);
-      if (taken.insert({ring, crossing.side}).second) few.push_back(crossing);
+      const double elevation = ElevationOf(crossing.point);
+      const long ring = std::lround(elevation / kRingSpacing);
+      const bool on_ring = std::abs(elevation - ring * kRingSpacing) < 0.1 * kRingSpacing;
+      if (on_ring && taken.insert({ring, crossing.side}).second) few.push_back(crossing);
     }
     crossings = few;
   }
