@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
@@ -71,6 +72,17 @@ double HeightOf(const Points& points, const ToPoint& to_point) {
   return std::max(0.0, high - low);
 }
 
+// How many rings lie on the board. A cloud that does not tell them apart is of a turned scanner,
+// whose lines cross the outline twice.
+double RingsOn(const CloudEdges& cloud) {
+  std::set<int> rings;
+  for (const PointGroup& group : cloud.groups) {
+    if (group.ring >= 0) rings.insert(group.ring);
+  }
+  return rings.empty() ? 0.5 * static_cast<double>(cloud.crossings.size())
+                       : static_cast<double>(rings.size());
+}
+
 // How exactly this LIDAR and these cameras see a board, whatever its place.
 struct Exactness {
   double rings_per_rad = 0;  // of a board's height, as the LIDAR sees it
@@ -92,10 +104,9 @@ Exactness ExactnessOf(const BoardProblem& problem) {
     points.push_back(cloud.points * range * range / (area * std::max(0.1, facing)));
     scatter.push_back(cloud.scatter_sigma_m);
     crossings.push_back(static_cast<double>(cloud.crossings.size()) * range / outline);
-    // Each ring crosses the outline twice; the first and the last one are a height apart.
+    // The first and the last one are a height apart.
     const double height = HeightOf(cloud.crossings, [](const Crossing& c) { return c.point; });
-    const double count = 0.5 * static_cast<double>(cloud.crossings.size());
-    rings.push_back(std::max(0.0, count - 1) / std::max(1e-3, height));
+    rings.push_back(std::max(0.0, RingsOn(cloud) - 1) / std::max(1e-3, height));
     for (const Crossing& c : cloud.crossings) {
       widths.push_back(c.half_width_m / range);
       sigmas.push_back(c.sigma_m / range);
