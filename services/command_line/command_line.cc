@@ -88,6 +88,12 @@ std::string OneLine(std::string text) {
   return text;
 }
 
+// After the names of a choice: in its line, or in lines of its own.
+std::string Explained(const std::string& help) {
+  if (help.empty()) return "";
+  return (help.find('\n') == std::string::npos ? ": " : ":\n") + help;
+}
+
 // In the columns that options have.
 std::string Footer(const std::map<ExitCode, std::string>& ends) {
   const std::string indent(29, ' ');
@@ -171,7 +177,7 @@ void CommandLine::ChoiceOf(const std::string& name, std::vector<std::string> nam
     const bool good = std::find(names.begin(), names.end(), given) != names.end();
     return good ? std::string() : "\"" + given + "\" is none of " + all;
   };
-  app_->add_option_function<std::string>(name, choose, help.empty() ? all : all + ":\n" + help)
+  app_->add_option_function<std::string>(name, choose, all + Explained(help))
       ->check(Check(check))
       ->type_name("NAME")
       ->default_str(usual);
