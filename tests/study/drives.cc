@@ -1,5 +1,6 @@
 #include "tests/study/drives.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -49,7 +50,74 @@ std::vector<simulate::SceneObject> Plain(double ground) {
            simulate::Paint(simulate::Rgb(0.3, 0.4, 0.2), 0.5, 295)}};
 }
 
+// Where the middle of the streets about a block lies, by the way since its first corner: straight
+// on, and a quarter turn to the left over kCorner, as smooth as a polynomial of the fifth degree.
+constexpr double kSide = 80;    // [m] from crossing to crossing
+constexpr double kCorner = 16;  // [m]
+
+double CornerHeading(double way) {
+  const double u = std::clamp(way / kCorner, 0.0, 1.0);
+  return 0.5 * M_PI * u * u * u * (10 + u * (6 * u - 15));
+}
+
+class BlockLine {
+ public:
+  BlockLine() {
+    // Midpoints, and the turn is symmetric: off by less than a micrometre.
+    Eigen::Vector2d place(0, 0);
+    for (int i = 0; i < kSteps; ++i) {
+      corner_.push_back(place);
+      const double heading = CornerHeading((i + 0.5) * kCorner / kSteps);
+      place += kCorner / kSteps * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    }
+    corner_.push_back(place);
+    straight_ = kSide - 2 * place.x();
+  }
+  double round() const { return 4 * (straight_ + kCorner); }
+  /// x, y [m] and heading [rad]; way 0: behind the first corner.
+  Eigen::Vector3d At(double way) const {
+    const double quarter = straight_ + kCorner;
+    const double leg = std::floor(way / quarter), along = way - leg * quarter;
+    const double in_corner = along - straight_;
+    Eigen::Vector2d place(corner_.back().x() + std::min(along, straight_), 0);
+    if (in_corner > 0) {
+      const double step = in_corner / kCorner * kSteps;
+      const auto i = std::min<std::size_t>(kSteps - 1, static_cast<std::size_t>(step));
+      place += corner_[i] + (step - static_cast<double>(i)) * (corner_[i + 1] - corner_[i]);
+    }
+    const Vector3d turned = WorldFromLeg(leg) * Vector3d(place.x(), place.y(), 0);
+    return {turned.x(), turned.y(), 0.5 * M_PI * leg + CornerHeading(in_corner)};
+  }
+  /// x along the leg's street, from crossing to crossing.
+  static Rigid3 WorldFromLeg(double leg) {
+    const int corner = static_cast<int>(leg - 4 * std::floor(leg / 4));
+    Rigid3 pose = Turned(0.5 * M_PI * corner, 0, 0);
+    pose.translation = {corner == 1 || corner == 2 ? kSide : 0, corner >= 2 ? kSide : 0, 0};
+    return pose;
+  }
+
+ private:
+  static constexpr int kSteps = 1600;
+  std::vector<Eigen::Vector2d> corner_;
+  double straight_;
+};
+
+bool StandsInTheWay(const simulate::SceneObject& object, double ground, const BlockLine& line) {
+  constexpr double kFree = 1.35, kFlat = 0.2;  // [m]
+  const simulate::Bounds bounds = simulate::BoundsOf(object.mesh);
+  if (bounds.high.z() < ground + kFlat) return false;
+  for (double way = 0; way < line.round(); way += 0.5) {
+    const Eigen::Vector2d place = line.At(way).head<2>();
+    const Eigen::Vector2d nearest =
+        place.cwiseMax(bounds.low.head<2>()).cwiseMin(bounds.high.head<2>());
+    if ((place - nearest).norm() < kFree) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+double BlockRound() { return BlockLine().round(); }
 
 Way StreetWay(std::uint64_t seed, double speed, double aside_m, double at_rest_s) {
   simulate::Dice draw(seed, 0, "street way");
@@ -67,6 +135,20 @@ Way StreetWay(std::uint64_t seed, double speed, double aside_m, double at_rest_s
                          0.8 * kDegree * std::sin(0.8 * way + p[3]));
     pose.translation = {way, aside, 0.02 * std::sin(0.9 * way + p[4])};
     return pose;
+  };
+}
+
+Way BlockWay(std::uint64_t seed, double speed) {
+  const Way street = StreetWay(seed, speed);
+  const auto line = std::make_shared<const BlockLine>();
+  return [=](double seconds) {
+    const Rigid3 along = street(seconds);
+    const Vector3d middle = line->At(along.translation.x());
+    Rigid3 block = Turned(middle.z(), 0, 0);
+    block.translation = {middle.x(), middle.y(), 0};
+    Rigid3 aside = along;
+    aside.translation.x() = 0;
+    return block * aside;
   };
 }
 
@@ -96,6 +178,25 @@ Drive::Drive(DriveScene scene, std::uint64_t seed, const simulate::SpinningOptio
 
 Rigid3 Drive::At(Utime utime) const { return way_(ToSeconds(utime - kStart)); }
 
+// Each street is that of another seed; of twins those that lie opposite are the same.
+std::vector<simulate::SceneObject> Drive::Block() const {
+  const BlockLine line;
+  const double ground = options_.world.ground_z_m;
+  std::vector<simulate::SceneObject> objects;
+  for (int leg = 0; leg < 4; ++leg) {
+    simulate::Options own = options_;
+    own.seed = 4 * options_.seed +
+               static_cast<std::uint64_t>(scene_ == DriveScene::kTwins ? leg % 2 : leg);
+    simulate::Thing street({297, 9});
+    // From the crossing on, as far as the houses beyond the next one.
+    street.AddAll(BlockLine::WorldFromLeg(leg), simulate::MakeStreet(own, {297, 9}, 20));
+    for (const simulate::SceneObject& object : street.parts()) {
+      if (!StandsInTheWay(object, ground, line)) objects.push_back(object);
+    }
+  }
+  return objects;
+}
+
 void Drive::MakeWorld(double x_m) {
   const double cell = kCell * std::floor(x_m / kCell);
   if (world_ && (scene_ != DriveScene::kStreet || cell == world_x_)) return;
@@ -114,6 +215,10 @@ void Drive::MakeWorld(double x_m) {
       break;
     case DriveScene::kPlain:
       scene->objects = Plain(ground);
+      break;
+    case DriveScene::kBlock:
+    case DriveScene::kTwins:
+      scene->objects = Block();
       break;
   }
   world_.emplace(std::move(scene), std::nullopt, options_);

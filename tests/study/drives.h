@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "calib/model/cloud.h"
 #include "calib/model/rigid3.h"
@@ -17,6 +18,8 @@ enum class DriveScene {
   kRoom,      ///< likewise, furnished
   kCorridor,  ///< two walls, floor and ceiling, 600 m: nothing tells the way along it
   kPlain,     ///< a flat ground alone
+  kBlock,     ///< four streets about a square, its crossings free of what would stand in the way
+  kTwins,     ///< likewise; from where the LIDAR is half the round later all looks the same
 };
 
 /// A LIDAR's way through a scene: world_from_lidar at a time [s]. The world's z is up, its origin
@@ -29,6 +32,11 @@ using Way = std::function<Rigid3(double seconds)>;
 Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double at_rest_s = 0);
 /// Round the free middle of the room, looking about.
 Way RoomWay(std::uint64_t seed, double speed_mps);
+
+/// Round the block to the left, as long as one likes: a round of BlockRound(), at about this speed
+/// and over streets as StreetWay's.
+Way BlockWay(std::uint64_t seed, double speed_mps);
+double BlockRound();  ///< [m]
 
 /// The sweeps of a spinning LIDAR that moves while it turns: each column of beams starts from where
 /// the LIDAR is at its time. Sweep and noise are functions of (seed, number).
@@ -43,6 +51,7 @@ class Drive {
 
  private:
   void MakeWorld(double x_m);
+  std::vector<simulate::SceneObject> Block() const;
 
   DriveScene scene_;
   simulate::Options options_;

@@ -19,6 +19,8 @@ using Delta = std::array<double, 6>;
 // Chi-square of a loop's six numbers after the solve, beyond which it contradicts the rest: chance
 // would do it once in 10^4 times (27.9) even where its covariance is four times too small.
 constexpr double kMostContradiction = 4 * 27.9;
+// Of the robust weights: what chance does not exceed.
+constexpr double kRobustScale = 5.3;  // sqrt(27.9)
 
 Rigid3 Moved(const Rigid3& pose, const double* delta) {
   return pose * Exp(Vector6d(Eigen::Map<const Vector6d>(delta)));
@@ -47,17 +49,26 @@ Matrix6d RootOfInformation(const Matrix6d& covariance) {
   return Eigen::LLT<Matrix6d>(information).matrixU();
 }
 
+using Poses = std::vector<Rigid3>;
+
+void AddEdge(const PoseEdge& edge, const Poses& start, ceres::LossFunction* loss,
+             std::vector<Delta>* deltas, ceres::Problem* problem) {
+  auto* cost = new ceres::NumericDiffCostFunction<EdgeCost, ceres::CENTRAL, 6, 6, 6>(
+      new EdgeCost{edge, start[edge.from], start[edge.to], RootOfInformation(edge.covariance)});
+  problem->AddResidualBlock(cost, loss, (*deltas)[edge.from].data(), (*deltas)[edge.to].data());
+}
+
 // Poses after one solve of all these edges; nothing where it fails.
-std::optional<std::vector<Rigid3>> Solve(const std::vector<Rigid3>& start,
-                                         const std::vector<PoseEdge>& edges) {
+std::optional<Poses> Solve(const Poses& start, const std::vector<PoseEdge>& chain,
+                           const std::vector<PoseEdge>& loops, bool robust) {
   std::vector<Delta> deltas(start.size(), Delta{});
   ceres::Problem problem;
   for (Delta& delta : deltas) problem.AddParameterBlock(delta.data(), 6);
   problem.SetParameterBlockConstant(deltas.front().data());
-  for (const PoseEdge& edge : edges) {
-    auto* cost = new ceres::NumericDiffCostFunction<EdgeCost, ceres::CENTRAL, 6, 6, 6>(
-        new EdgeCost{edge, start[edge.from], start[edge.to], RootOfInformation(edge.covariance)});
-    problem.AddResidualBlock(cost, nullptr, deltas[edge.from].data(), deltas[edge.to].data());
+  for (const PoseEdge& edge : chain) AddEdge(edge, start, nullptr, &deltas, &problem);
+  for (const PoseEdge& edge : loops) {
+    auto* loss = robust ? new ceres::CauchyLoss(kRobustScale) : nullptr;
+    AddEdge(edge, start, loss, &deltas, &problem);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -67,9 +78,21 @@ std::optional<std::vector<Rigid3>> Solve(const std::vector<Rigid3>& start,
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (!summary.IsSolutionUsable()) return std::nullopt;
-  std::vector<Rigid3> poses;
+  Poses poses;
   for (std::size_t i = 0; i < start.size(); ++i) poses.push_back(Moved(start[i], deltas[i].data()));
   return poses;
+}
+
+double Contradiction(const PoseEdge& loop, const Poses& poses) {
+  const Vector6d off = Off(loop, poses[loop.from], poses[loop.to]);
+  return off.dot(SolveSymmetric(loop.covariance, off));
+}
+
+std::vector<PoseEdge> Picked(const std::vector<PoseEdge>& loops,
+                             const std::vector<std::size_t>& numbers) {
+  std::vector<PoseEdge> picked;
+  for (const std::size_t i : numbers) picked.push_back(loops[i]);
+  return picked;
 }
 
 void CheckEdges(const std::vector<PoseEdge>& edges, std::size_t poses) {
@@ -88,6 +111,13 @@ PoseEdge Chained(const PoseEdge& first, const PoseEdge& second) {
           onward * first.covariance * onward.transpose() + second.covariance};
 }
 
+// (T Exp(d))^-1 = T^-1 Exp(-Ad(T) d)
+PoseEdge Inverted(const PoseEdge& edge) {
+  const Matrix6d back = Adjoint(edge.from_from_to);
+  return {edge.to, edge.from, edge.from_from_to.Inverse(),
+          back * edge.covariance * back.transpose()};
+}
+
 double ChiSquare(const PoseEdge& a, const PoseEdge& b) {
   const Vector6d off = Log(a.from_from_to.Inverse() * b.from_from_to);
   return off.dot(SolveSymmetric(Matrix6d(a.covariance + b.covariance), off));
@@ -100,24 +130,25 @@ std::optional<SolvedGraph> SolveGraph(const std::vector<Rigid3>& start,
   CheckEdges(loops, start.size());
   SolvedGraph graph;
   graph.poses = start;
-  for (std::size_t i = 0; i < loops.size(); ++i) graph.kept.push_back(i);
+  if (loops.empty()) return graph;
+  const auto robust = Solve(start, chain, loops, true);
+  if (!robust) return std::nullopt;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (Contradiction(loops[i], *robust) <= kMostContradiction) graph.kept.push_back(i);
+  }
   while (!graph.kept.empty()) {
-    std::vector<PoseEdge> edges = chain;
-    for (const std::size_t i : graph.kept) edges.push_back(loops[i]);
-    auto poses = Solve(start, edges);
+    const auto poses = Solve(start, chain, Picked(loops, graph.kept), false);
     if (!poses) return std::nullopt;
     std::size_t worst = 0;
     double most = 0;
     for (std::size_t k = 0; k < graph.kept.size(); ++k) {
-      const PoseEdge& loop = loops[graph.kept[k]];
-      const Vector6d off = Off(loop, (*poses)[loop.from], (*poses)[loop.to]);
-      const double chi2 = off.dot(SolveSymmetric(loop.covariance, off));
-      if (chi2 <= most) continue;
-      most = chi2;
+      const double off = Contradiction(loops[graph.kept[k]], *poses);
+      if (off <= most) continue;
+      most = off;
       worst = k;
     }
     if (most <= kMostContradiction) {
-      graph.poses = std::move(*poses);
+      graph.poses = *poses;
       return graph;
     }
     graph.kept.erase(graph.kept.begin() + static_cast<std::ptrdiff_t>(worst));

@@ -19,6 +19,9 @@ struct PoseEdge {
 /// from_from_to over one edge and a next one, with its covariance, as if both were independent.
 PoseEdge Chained(const PoseEdge& first, const PoseEdge& second);
 
+/// to_from_from, with its covariance.
+PoseEdge Inverted(const PoseEdge& edge);
+
 /// By how much two measurements of one way differ, squared over both covariances: 6 expected.
 double ChiSquare(const PoseEdge& a, const PoseEdge& b);
 
@@ -28,8 +31,10 @@ struct SolvedGraph {
 };
 
 /// The poses that fit a chain (edges from each pose to the next one) and the loops best, by least
-/// squares over the covariances. Of loops that contradict the rest, worst first, each is left out,
-/// and all is solved again. Nothing where there is no solution. Throws InputError for an edge to a
+/// squares over the covariances. First with robust weights on the loops (Cauchy), so that those
+/// that contradict what most of them say do not bend the way: these are left out. Then without, and
+/// of loops that still contradict the rest, worst first, each is left out, and all is solved again.
+/// Nothing where there is no solution. Throws InputError for an edge to a
 /// pose that is not there.
 std::optional<SolvedGraph> SolveGraph(const std::vector<Rigid3>& start,
                                       const std::vector<PoseEdge>& chain,

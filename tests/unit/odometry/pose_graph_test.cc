@@ -105,6 +105,29 @@ TEST(PoseGraph, AWrongLoopIsRefusedAndTheRightOnesAreKept) {
   EXPECT_EQ(Farthest(graph->poses), Farthest(right->poses));
 }
 
+// As many wrong loops as right ones: least squares would take the middle.
+TEST(PoseGraph, WrongLoopsThatAgreeWithNothingDoNotBendTheWay) {
+  const Drifted drifted;
+  const Matrix6d loop = Covariance(1e-4, 0.001);
+  std::vector<PoseEdge> loops;
+  for (std::size_t i = 0; i < 4; ++i) loops.push_back(Edge(i, kPoses - 1 - i, loop));
+  const auto right = SolveGraph(drifted.poses, drifted.chain, loops);
+  for (std::size_t i = 0; i < 4; ++i) loops.push_back({3 * i, 30 + i * i, Rigid3{}, loop});
+  const auto graph = SolveGraph(drifted.poses, drifted.chain, loops);
+  ASSERT_TRUE(right && graph);
+  EXPECT_THAT(graph->kept, ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(Farthest(graph->poses), Farthest(right->poses));
+}
+
+TEST(PoseGraph, AnEdgeGoneBackAndForthIsNone) {
+  const PoseEdge edge = Edge(3, 9, Covariance(0.01, 0.1));
+  const PoseEdge back = Inverted(edge);
+  EXPECT_EQ(back.from, 9U);
+  EXPECT_LT(Log(edge.from_from_to * back.from_from_to).norm(), 1e-12);
+  EXPECT_LT((Inverted(back).covariance - edge.covariance).norm(), 1e-12);
+  EXPECT_GT((back.covariance - edge.covariance).norm(), 1e-3);
+}
+
 TEST(PoseGraph, WithoutALoopNothingMoves) {
   const Drifted drifted;
   const auto graph = SolveGraph(drifted.poses, drifted.chain, {});
