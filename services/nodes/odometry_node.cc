@@ -27,6 +27,7 @@ Messages OdometryNode::Handle(const Message& message) {
   const OdometryResult before = newest_;
   newest_ = odometry_.Add(*sweep);
   ++taken_;
+  if (tell_) tell_(*sweep, newest_);
   if (newest_.restarted) {
     ++restarts_;
     Warn("the map is begun anew at sweep " + std::to_string(name) +

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/odometry/odometry.h"
@@ -21,7 +23,11 @@ class OdometryNode : public Node {
  public:
   static constexpr const char* kSource = "odometry";
 
-  explicit OdometryNode(const OdometryOptions& options = {}) : odometry_(options) {}
+  /// Is told of each sweep that was taken, and what came of it.
+  using Taken = std::function<void(const Cloud&, const OdometryResult&)>;
+
+  explicit OdometryNode(const OdometryOptions& options = {}, Taken taken = {})
+      : odometry_(options), tell_(std::move(taken)) {}
 
   std::string name() const override { return "odometry"; }
   std::vector<std::string> Subscriptions() const override { return {"CLOUD"}; }
@@ -33,6 +39,7 @@ class OdometryNode : public Node {
 
  private:
   Odometry odometry_;
+  Taken tell_;
   SweepCollector sweeps_;
   OdometryResult newest_;
   std::int64_t taken_ = 0, poses_ = 0, not_placed_ = 0, degenerate_ = 0, restarts_ = 0;

@@ -66,10 +66,20 @@ bool IsOfWay(const std::string& channel) {
   return channel == "CLOUD" || channel == "POSE" || channel == "RIG";
 }
 
+void Correct(const Keyframes& keyframes, MappedDrive* drive) {
+  drive->closed = CloseLoops(keyframes);
+  for (StampedPose& pose : drive->way) {
+    pose.map_from_lidar = drive->closed->Corrected(pose.utime, pose.map_from_lidar);
+  }
+}
+
 // The log's own poses, or else those of the sweeps; the log's first rig, if it has one.
-std::optional<RigText> FindWay(const std::string& log, MappedDrive* drive,
-                               const std::function<void(double)>& progress) {
-  OdometryNode odometry;
+std::optional<RigText> FindWay(const std::string& log, const DriveOptions& options,
+                               MappedDrive* drive, const std::function<void(double)>& progress) {
+  Keyframes keyframes;
+  OdometryNode odometry({}, [&](const Cloud& sweep, const OdometryResult& found_there) {
+    if (options.close_loops) keyframes.Add(sweep, found_there);
+  });
   std::vector<StampedPose> own, found;
   std::optional<RigText> rig;
   Reader(log, drive, [](const std::string&) { return false; })
@@ -79,7 +89,10 @@ std::optional<RigText> FindWay(const std::string& log, MappedDrive* drive,
             if (const auto* text = std::get_if<RigText>(&message); text != nullptr && !rig) {
               rig = *text;
             }
-            if (const auto* pose = std::get_if<StampedPose>(&message)) own.push_back(*pose);
+            if (const auto* pose = std::get_if<StampedPose>(&message);
+                pose != nullptr && !options.close_loops) {
+              own.push_back(*pose);
+            }
             if (!own.empty()) return;
             for (const Message& answer : odometry.Handle(message)) {
               found.push_back(std::get<StampedPose>(answer));
@@ -88,6 +101,7 @@ std::optional<RigText> FindWay(const std::string& log, MappedDrive* drive,
           progress);
   drive->by_odometry = own.empty();
   drive->way = own.empty() ? std::move(found) : std::move(own);
+  if (options.close_loops && !drive->way.empty()) Correct(keyframes, drive);
   if (drive->by_odometry) {
     for (const auto& [name, count] : odometry.GetStatus().counters) {
       if (name == "sweeps") drive->sweeps = count;
@@ -124,15 +138,14 @@ class PosesAhead {
 
 }  // namespace
 
-MappedDrive MapDrive(const std::string& log, MapperNode* mapper,
-                     const std::function<void(double)>& progress) {
+MappedDrive MapDrive(const std::string& log, MapperNode* mapper, const DriveOptions& options) {
   const auto part = [&](double from) {
-    return [&progress, from](double share) {
-      if (progress) progress(from + 0.5 * share);
+    return [&options, from](double share) {
+      if (options.progress) options.progress(from + 0.5 * share);
     };
   };
   MappedDrive drive;
-  const std::optional<RigText> rig = FindWay(log, &drive, part(0));
+  const std::optional<RigText> rig = FindWay(log, options, &drive, part(0));
   const bool has_rig = rig.has_value();
   if (drive.way.empty()) {
     throw InputError(log + ": it has no POSE, and of its " + std::to_string(drive.sweeps) +

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -17,7 +18,7 @@ namespace {
 
 struct MapFlags {
   std::string log, out = "map.ply";
-  bool drive = false;
+  bool drive = false, close_loops = false;
   VoxelMapOptions options;
 };
 
@@ -71,6 +72,51 @@ void WriteMap(const MapFlags& flags, const MapperNode& node, const MapCloud& map
   }
 }
 
+void TellRefused(const ClosedWay& closed) {
+  if (closed.refused() == 0) return;
+  std::printf(
+      "%zu of %zu places that look alike, or lie near each other, were refused: %zu where the "
+      "sweep "
+      "does not lie on what was seen before, %zu farther off than odometry can be, %zu that no "
+      "others nearby bear out, %zu that contradict the rest\n",
+      closed.refused(), closed.tried, closed.do_not_fit, closed.against_odometry, closed.alone,
+      closed.contradict);
+}
+
+void TellLoops(const ClosedWay& closed) {
+  if (!closed.solved) {
+    std::printf("loops: the poses have no solution; the way is as odometry found it\n");
+  } else if (closed.loops.empty()) {
+    std::printf(
+        "no loop found: way and map are as without --close-loops, which takes a way back to a "
+        "place after %g m or more\n",
+        LoopClosureOptions().least_way_m);
+  } else {
+    std::printf(
+        "%zu loops closed: the end of the way moved by %.2f m, no place by more than %.2f\n",
+        closed.loops.size(), closed.end_moved_m, closed.most_moved_m);
+  }
+  TellRefused(closed);
+}
+
+// A way that comes back near to where it was, long before, with walls that may stand twice.
+bool ComesBack(const std::vector<Eigen::Vector3d>& places) {
+  constexpr double kNear = 10, kLong = 50;  // [m]
+  std::vector<Eigen::Vector3d> kept;
+  std::vector<double> ways;
+  double way = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i > 0) way += (places[i] - places[i - 1]).norm();
+    if (!ways.empty() && way - ways.back() < 1) continue;
+    for (std::size_t k = 0; k < kept.size() && way - ways[k] > kLong; ++k) {
+      if ((kept[k] - places[i]).norm() < kNear) return true;
+    }
+    kept.push_back(places[i]);
+    ways.push_back(way);
+  }
+  return false;
+}
+
 void TellDrive(const MappedDrive& drive) {
   std::vector<Eigen::Vector3d> places;
   double way = 0;
@@ -91,11 +137,33 @@ void TellDrive(const MappedDrive& drive) {
     std::printf("the map was begun anew %lld times: parts of it may lie off each other\n",
                 static_cast<long long>(drive.restarts));
   }
+  if (drive.closed) {
+    TellLoops(*drive.closed);
+  } else if (ComesBack(places)) {
+    std::printf(
+        "the way comes back to where it was: --close-loops corrects what it drifted by in "
+        "between\n");
+  }
+}
+
+// Where the way came back to a place.
+std::vector<Eigen::Vector3d> PlacesOfLoops(const MappedDrive& drive) {
+  std::vector<Eigen::Vector3d> places;
+  if (!drive.closed) return places;
+  const ClosedWay& closed = *drive.closed;
+  for (const ClosedLoop& loop : closed.loops) {
+    const auto at = std::lower_bound(closed.utimes.begin(), closed.utimes.end(), loop.new_utime);
+    places.push_back(
+        closed.after[static_cast<std::size_t>(at - closed.utimes.begin())].translation);
+  }
+  return places;
 }
 
 int RunDrive(const MapFlags& flags) {
   MapperNode node(flags.options);
-  const MappedDrive drive = MapDrive(flags.log, &node);
+  DriveOptions options;
+  options.close_loops = flags.close_loops;
+  const MappedDrive drive = MapDrive(flags.log, &node, options);
   TellDropped(flags.log, drive.dropped, drive.last_problem);
   const MapCloud map = node.map().Cloud();
   if (map.size() == 0) {
@@ -108,7 +176,7 @@ int RunDrive(const MapFlags& flags) {
   WriteFileAtomically(way, TumText(drive.way));
   std::vector<Eigen::Vector3d> places;
   for (const StampedPose& pose : drive.way) places.push_back(pose.map_from_lidar.translation);
-  WritePng(picture, MapPicture(map, places));
+  WritePng(picture, MapPicture(map, places, PlacesOfLoops(drive)));
   TellDrive(drive);
   std::printf("wrote %s (the way, in TUM's format) and %s (from above)\nnext: rgbdt terrain %s\n",
               way.c_str(), picture.c_str(), flags.out.c_str());
@@ -117,7 +185,7 @@ int RunDrive(const MapFlags& flags) {
 
 int RunMap(const MapFlags& flags) {
   flags.options.Check();
-  if (flags.drive) return RunDrive(flags);
+  if (flags.drive || flags.close_loops) return RunDrive(flags);
   MapperNode node(flags.options);
   const LogRead read = ReadLog(flags.log, &node);
   if (read.clouds == 0 && read.sweeps > 0) return RunDrive(flags);
@@ -144,7 +212,8 @@ void AddMap(CommandLine* program) {
       "sweeps (CLOUD) and no fused clouds is a drive: its way comes from POSE or else from the\n"
       "sweeps themselves, as rgbdt-odometry finds it, and is written beside the map (.tum), with "
       "a\n"
-      "picture from above (.png).\n"
+      "picture from above (.png). With --close-loops the way is corrected where it came back to a\n"
+      "place, and so is all that is made of it.\n"
       "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply",
       [flags] { return RunMap(*flags); });
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
@@ -153,6 +222,12 @@ void AddMap(CommandLine* program) {
       "--drive", &flags->drive,
       "as a drive, from CLOUD, though the log has fused clouds: of a rig that moved and was\n"
       "fused without POSE");
+  verb->Flag(
+      "--close-loops", &flags->close_loops,
+      "as a drive whose way is found from the sweeps (POSE is left aside); where it comes back to "
+      "a\n"
+      "place it is corrected for what it drifted by, and the map made with that. Off by default:\n"
+      "the way is then that of rgbdt-odometry, live, and a loop that is no loop cannot bend it");
   verb->Option("--voxel", &flags->options.voxel_m, "edge of a voxel [m]");
   verb->Option("--max-voxels", &flags->options.max_voxels,
                "most voxels kept (80 bytes each); then those not seen for the longest are dropped");

@@ -7,10 +7,10 @@ mkdir "$scratch/kept"
 log=$scratch/fused.lcmlog
 
 # An LCM log of fused clouds (lcmtypes/rgbdt_cloud_t.lcm) over level ground with a crate on it, and
-# one of sweeps (lcmtypes/cloud_t.lcm) of a drive.
+# ones of sweeps (lcmtypes/cloud_t.lcm) of drives.
 drive=$scratch/drive.lcmlog
 "$bin/map_test_log" "$log" "$scratch/other.lcmlog" "$drive" "$scratch/rigged.lcmlog" \
-  "$scratch/truth"
+  "$scratch/truth" "$scratch/loop.lcmlog"
 
 accepts "map" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/kept/map.ply"
 grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
@@ -43,6 +43,31 @@ grep '^18 clouds' "$scratch/output" | cut -d ';' -f 1 | cmp - "$scratch/unrigged
 accepts "the drive again" "$bin/rgbdt" map "$drive" --out "$scratch/drive/again.ply"
 for kind in ply tum png; do
   cmp "$scratch/drive/map.$kind" "$scratch/drive/again.$kind" || complain "the same drive, another $kind"
+done
+# Loops are closed where that is asked; this street is driven once.
+accepts "a drive without a loop" "$bin/rgbdt" map "$drive" --close-loops --out "$scratch/drive/open.ply"
+grep -q '^no loop found: way and map are as without' "$scratch/output" || complain "no loop, and not said"
+for kind in ply tum png; do
+  cmp "$scratch/drive/map.$kind" "$scratch/drive/open.$kind" || complain "no loop, another $kind"
+done
+# There and back: the way ends 1 m beside where it began, looking back.
+accepts "a loop, not closed" "$bin/rgbdt" map "$scratch/loop.lcmlog" --out "$scratch/drive/loop.ply"
+grep -q -- '--close-loops' "$scratch/output" || complain "the way comes back, and nothing is said"
+accepts "a loop" "$bin/rgbdt" map "$scratch/loop.lcmlog" --close-loops --out "$scratch/drive/closed.ply"
+grep -qE '^[1-9][0-9]* loops closed: the end of the way moved by 0\.[0-9]+ m' "$scratch/output" ||
+  complain "loops are not told"
+for kind in ply tum png; do
+  cmp -s "$scratch/drive/loop.$kind" "$scratch/drive/closed.$kind" && complain "closed, the same $kind"
+done
+python3 - "$scratch/drive/closed.tum" <<'END' >"$scratch/output" 2>&1 || complain "closed.tum"
+import math, sys
+lines = [l.split() for l in open(sys.argv[1]) if not l.startswith("#")]
+first, last = ([float(v) for v in l[1:4]] for l in (lines[0], lines[-1]))
+assert abs(math.dist(first, last) - 1) < 0.05, (first, last)
+END
+accepts "a loop again" "$bin/rgbdt" map "$scratch/loop.lcmlog" --close-loops --out "$scratch/drive/again.ply"
+for kind in ply tum png; do
+  cmp "$scratch/drive/closed.$kind" "$scratch/drive/again.$kind" || complain "the same loop, another $kind"
 done
 says=("no POSE" "0 sweeps")
 refuses "a drive without sweeps" "$bin/rgbdt" map "$log" --drive --out "$scratch/kept/map.ply"

@@ -1,7 +1,7 @@
 // Writes LCM logs for map_test.sh: of fused clouds over level ground with a crate, 27 C warm; of
 // poses only; and of the sweeps of a drive through a street, without a rig and with one, and the
-// truth beside it: a line a sweep, time [us] x y z [m]. Usage: map_test_log FUSED OTHER [DRIVE
-// RIGGED TRUTH]
+// truth beside it: a line a sweep, time [us] x y z [m]; and of a drive that comes back to where it
+// began. Usage: map_test_log FUSED OTHER [DRIVE RIGGED TRUTH [LOOP]]
 #include <cmath>
 #include <fstream>
 
@@ -48,6 +48,28 @@ void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
 }
 
+rgbdt::CloudChunk Chunk(int sweep, rgbdt::study::Drive* drive) {
+  rgbdt::CloudChunk chunk;
+  chunk.seq = sweep;
+  chunk.cloud = drive->Sweep(sweep);
+  chunk.sweep_end = true;
+  chunk.sweep_lines = chunk.cloud.lines;
+  return chunk;
+}
+
+// 38 m along a street and back again.
+void WriteLoop(const char* path) {
+  constexpr double kLength = 38, kSpeed = 8;
+  rgbdt::simulate::SpinningOptions lidar = rgbdt::simulate::SpinningLidar(32);
+  lidar.azimuth_step_rad *= 6;
+  rgbdt::study::Drive drive(rgbdt::study::DriveScene::kStreet, 4, lidar,
+                            rgbdt::study::ThereAndBackWay(kLength, kSpeed));
+  rgbdt::test::LogWriter log(path);
+  const double seconds = rgbdt::study::ThereAndBackSeconds(kLength, kSpeed);
+  for (int i = 0; 0.1 * i < seconds; ++i) Write(&log, Chunk(i, &drive));
+  log.Close();
+}
+
 void WriteDrive(const char* log_path, const char* rigged_path, const char* truth_path) {
   rgbdt::simulate::SpinningOptions lidar = rgbdt::simulate::SpinningLidar(32);
   lidar.azimuth_step_rad *= 4;
@@ -59,11 +81,7 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
   std::ofstream truth(truth_path);
   truth.precision(9);
   for (int i = 0; i < 20; ++i) {
-    rgbdt::CloudChunk chunk;
-    chunk.seq = i;
-    chunk.cloud = drive.Sweep(i);
-    chunk.sweep_end = true;
-    chunk.sweep_lines = chunk.cloud.lines;
+    const rgbdt::CloudChunk chunk = Chunk(i, &drive);
     const Utime last = chunk.cloud.utime.back();
     const Eigen::Vector3d place = drive.At(last).translation;
     truth << last << ' ' << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
@@ -78,7 +96,7 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3 && argc != 6) return 1;
+  if (argc != 3 && argc != 6 && argc != 7) return 1;
   rgbdt::test::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
@@ -88,6 +106,7 @@ int main(int argc, char** argv) {
   pose.source = "odometry";
   Write(&other, pose);
   other.Close();
-  if (argc == 6) WriteDrive(argv[3], argv[4], argv[5]);
+  if (argc >= 6) WriteDrive(argv[3], argv[4], argv[5]);
+  if (argc == 7) WriteLoop(argv[6]);
   return 0;
 }

@@ -102,6 +102,22 @@ class BlockLine {
   double straight_;
 };
 
+// How far a rig is that sets off and stops softly, on a stretch of `length` [m], and for how long.
+struct Stretch {
+  static constexpr double kTurning = 5;  // [s] for half a turn
+  static constexpr double kBraking = 3;  // [m/s^2]
+  double length, speed;
+
+  double Ramp() const { return speed / kBraking; }
+  double Seconds() const { return length / speed + Ramp(); }
+  double At(double t) const {
+    const double after = std::clamp(t, 0.0, Seconds()), rest = Seconds() - after;
+    if (after < Ramp()) return 0.5 * kBraking * after * after;
+    if (rest < Ramp()) return length - 0.5 * kBraking * rest * rest;
+    return speed * (after - 0.5 * Ramp());
+  }
+};
+
 bool StandsInTheWay(const simulate::SceneObject& object, double ground, const BlockLine& line) {
   constexpr double kFree = 1.35, kFlat = 0.2;  // [m]
   const simulate::Bounds bounds = simulate::BoundsOf(object.mesh);
@@ -134,6 +150,25 @@ Way StreetWay(std::uint64_t seed, double speed, double aside_m, double at_rest_s
     Rigid3 pose = Turned(heading, 0.6 * kDegree * std::sin(1.1 * way + p[2]),
                          0.8 * kDegree * std::sin(0.8 * way + p[3]));
     pose.translation = {way, aside, 0.02 * std::sin(0.9 * way + p[4])};
+    return pose;
+  };
+}
+
+double ThereAndBackSeconds(double length, double speed) {
+  return 2 * Stretch{length, speed}.Seconds() + Stretch::kTurning;
+}
+
+Way ThereAndBackWay(double length, double speed) {
+  constexpr double kAside = 0.5;  // [m] of the street's middle
+  const Stretch stretch{length, speed};
+  return [stretch](double seconds) {
+    const double after = seconds - stretch.Seconds();
+    const double u = std::clamp(after / Stretch::kTurning, 0.0, 1.0);
+    const double turned = u * u * u * (10 + u * (6 * u - 15));
+    const double back = stretch.At(after - Stretch::kTurning);
+    const double x = stretch.At(seconds) - back, way = stretch.At(seconds) + back;
+    Rigid3 pose = Turned(M_PI * turned, 0.01 * std::sin(1.1 * way), 0.014 * std::sin(0.8 * way));
+    pose.translation = {x, kAside * std::cos(M_PI * turned), 0.02 * std::sin(0.9 * way)};
     return pose;
   };
 }

@@ -33,6 +33,10 @@ Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double
 /// Round the free middle of the room, looking about.
 Way RoomWay(std::uint64_t seed, double speed_mps);
 
+/// Along x for `length_m`, half a turn on the spot, and back beside where it came from. Sets off
+/// and stops softly each way; stands for good at its end, after ThereAndBackSeconds.
+Way ThereAndBackWay(double length_m, double speed_mps);
+double ThereAndBackSeconds(double length_m, double speed_mps);
 /// Round the block to the left, as long as one likes: a round of BlockRound(), at about this speed
 /// and over streets as StreetWay's.
 Way BlockWay(std::uint64_t seed, double speed_mps);

@@ -59,7 +59,8 @@ cv::Vec3b ByHeight(float share) {
 
 }  // namespace
 
-cv::Mat MapPicture(const MapCloud& map, const std::vector<Eigen::Vector3d>& way, int most_px) {
+cv::Mat MapPicture(const MapCloud& map, const std::vector<Eigen::Vector3d>& way,
+                   const std::vector<Eigen::Vector3d>& loops, int most_px) {
   if (map.points.empty()) throw InputError("the map has no points to draw");
   const View view = ViewOf(map, most_px);
   const auto [low, high] = HeightRange(map);
@@ -77,6 +78,9 @@ cv::Mat MapPicture(const MapCloud& map, const std::vector<Eigen::Vector3d>& way,
   }
   for (std::size_t i = 1; i < way.size(); ++i) {
     cv::line(picture, view.At(way[i - 1]), view.At(way[i]), cv::Scalar(40, 40, 255), 2);
+  }
+  for (const Eigen::Vector3d& place : loops) {
+    cv::circle(picture, view.At(place), 6, cv::Scalar(60, 230, 60), 2);
   }
   return picture;
 }
