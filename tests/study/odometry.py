@@ -1,6 +1,7 @@
 """Table, CSV, picture and summary.json of `scripts/study odometry`: how far a spinning LIDAR's
 odometry drifts, how fast it is, and whether it says what it is not told, against the synthetic
-truth. KITTI's relative error (Geiger, Lenz and Urtasun 2012), here over 100 m, from every tenth
+truth. And how thick the walls of a map are whose drive came back to where it began, with its loops
+closed; how many loops are false. KITTI's relative error (Geiger, Lenz and Urtasun 2012), here over 100 m, from every tenth
 sweep on; TUM's absolute trajectory error (Sturm et al. 2012), aligned with the truth."""
 
 import math
@@ -18,6 +19,7 @@ from trials import column, figure, mean, median, pick  # noqa: E402
 
 DRIVES = {"street-32": "street, 32 rings", "street-16": "street, 16 rings", "room-32": "room, 32"}
 NOT_TOLD = {"corridor-32": "corridor", "plain-32": "plain"}
+WALLS = {"true_mm": "true poses", "open_mm": "odometry alone", "closed_mm": "loops closed"}
 PERIOD = 0.1  # [s] of a sweep
 TARGETS = {
     "odometry_percent": ("<=", 0.3),
@@ -26,6 +28,9 @@ TARGETS = {
     "odometry_degenerate_false": ("<=", 0),
     "odometry_lost": ("<=", 0),
     "odometry_way_over_sigma": ("in", 0.5, 1.5),
+    "map_wall_mm": ("<=", 30),
+    "map_false_loops": ("<=", 0),
+    "map_drives_without_loop": ("<=", 0),
 }
 
 
@@ -144,6 +149,33 @@ def figures_of(rows):
         yield figure(f"{name}_drives", len(own))
 
 
+def map_figures_of(rows):
+    """Of drives round a block; false loops of those through twins, too."""
+    own = [r for r in rows if r["part"].startswith("map-block-")]
+    yield figure("map_wall_mm", median(column(own, "closed_mm")), "mm")
+    yield figure("map_wall_worst_mm", max(column(own, "closed_mm")), "mm")
+    yield figure("map_wall_open_mm", median(column(own, "open_mm")), "mm")
+    yield figure("map_wall_true_mm", median(column(own, "true_mm")), "mm")
+    yield figure("map_end_off_m", median(column(own, "closed_end_m")), "m")
+    yield figure("map_end_off_open_m", median(column(own, "open_end_m")), "m")
+    yield figure("map_ate_m", median(column(own, "closed_rms_m")), "m")
+    yield figure("map_ate_open_m", median(column(own, "open_rms_m")), "m")
+    yield figure("map_close_s", max(column(own, "seconds")), "s")
+    yield figure("map_drives_without_loop", sum(r["loops"] == 0 for r in own))
+    yield figure("map_drives", len(own))
+    yield figure("map_false_loops", sum(column(rows, "false_loops")))
+    yield figure("map_twin_drives", len(rows) - len(own))
+
+
+def map_table(rows):
+    head = ["drive", "way m", "loops", "false", "tried", "refused", "end off m, open", "closed"]
+    head += ["walls", *(f"{label} mm" for label in WALLS.values())]
+    keys = ("part", "way_m", "loops", "false_loops", "tried", "refused", "open_end_m")
+    keys += ("closed_end_m", "walls", *WALLS)
+    lines = [["" if r[key] is None else r[key] for key in keys] for r in rows]
+    return trials.grid(head, lines) + "\n"
+
+
 def table(rows):
     head = ["drive", "way m", "%", "deg/100 m", "ATE m", "realtime", "slowest ms", "lost"]
     keys = ("way_m", "percent", "deg_per_100m", "ate_m", "realtime", "slowest_ms", "lost")
@@ -181,9 +213,13 @@ def main():
     missing = [kind for kind in (*DRIVES, *NOT_TOLD) if not runs(rows, kind)]
     if missing:
         sys.exit(f"study: no {', '.join(missing)} in {out / 'parts'}")
+    maps = trials.read(out / "parts", "map-")
+    if not any(r["part"].startswith("map-block-") for r in maps):
+        sys.exit(f"study: no drive round a block in {out / 'parts'}")
     draw(rows, out / "odometry.png")
-    figures = list(figures_of(rows))
-    trials.write(out, "odometry", rows, figures, table(rows) + trials.table(figures, TARGETS))
+    figures = [*figures_of(rows), *map_figures_of(maps)]
+    tables = table(rows) + map_table(maps) + trials.table(figures, TARGETS)
+    trials.write(out, "odometry", rows, figures, tables)
 
 
 main()
