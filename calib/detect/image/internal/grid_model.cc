@@ -61,15 +61,15 @@ std::optional<GridModel> GridModel::Fit(const CornerGrid& grid, double tolerance
   return Fit(points, tolerance);
 }
 
-std::optional<GridModel> GridModel::Fit(const std::vector<Point>& grid, double tolerance) {
-  if (grid.size() < 8) return std::nullopt;
+std::optional<GridModel> GridModel::Fit(const std::vector<Point>& points, double tolerance) {
+  if (points.size() < 8) return std::nullopt;
   GridModel model;
-  for (const Point& point : grid) model.centre_ += point.at;
-  model.centre_ /= static_cast<double>(grid.size());
-  for (const Point& point : grid) {
+  for (const Point& point : points) model.centre_ += point.at;
+  model.centre_ /= static_cast<double>(points.size());
+  for (const Point& point : points) {
     model.scale_ = std::max(model.scale_, (point.at - model.centre_).cwiseAbs().maxCoeff());
   }
-  std::vector<Point> agreeing = grid;
+  std::vector<Point> agreeing = points;
   for (int round = 0; round < 4; ++round) {
     std::vector<cv::Point2d> from;
     std::vector<cv::Point2d> to;
@@ -96,10 +96,10 @@ std::optional<GridModel> GridModel::Fit(const std::vector<Point>& grid, double t
     // Outliers leave step by step: the first fit is drawn towards them.
     const double allowed = round == 0 ? 3 * tolerance : round == 1 ? 1.5 * tolerance : tolerance;
     std::vector<Point> next;
-    for (const Point& point : grid) {
+    for (const Point& point : points) {
       if (model.Agrees(point, allowed)) next.push_back(point);
     }
-    if (next.size() < 8 || 2 * next.size() < grid.size()) return std::nullopt;
+    if (next.size() < 8 || 2 * next.size() < points.size()) return std::nullopt;
     agreeing = std::move(next);
   }
   return model;
