@@ -104,7 +104,7 @@ Rigid3 ClosedWay::Corrected(Utime utime, const Rigid3& world_from_lidar) const {
   };
   if (next == utimes.begin()) return moved_as(0);
   const auto b = static_cast<std::size_t>(next - utimes.begin());
-  const Rigid3 from = moved_as(b - 1);
+  Rigid3 from = moved_as(b - 1);
   if (next == utimes.end()) return from;
   const double share = ToSeconds(utime - utimes[b - 1]) / ToSeconds(utimes[b] - utimes[b - 1]);
   return from * Exp(Vector6d(share * Log(from.Inverse() * moved_as(b))));

@@ -36,7 +36,7 @@ class Reader {
   }
   // Up to the next comma.
   std::string Word(const char* what) {
-    const std::string word = text_.substr(at_, text_.find(',', at_) - at_);
+    std::string word = text_.substr(at_, text_.find(',', at_) - at_);
     if (word.empty()) Fail(std::string("expected ") + what);
     at_ += word.size();
     return word;

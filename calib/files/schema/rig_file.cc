@@ -236,15 +236,15 @@ Rig ReadRig(const std::filesystem::path& path, LensNeed lenses) {
   return ParseRig(ReadWholeFile(path), path.string(), lenses);
 }
 
-Rig ParseRig(const std::string& source, const std::string& where, LensNeed lenses) {
+Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses) {
   proto::Rig message;
   Place::Tree tree;
-  const Place place = text::ParseText(source, where, &message, &tree);
+  const Place place = rgbdt::text::ParseText(text, where, &message, &tree);
   if (!message.has_lidar()) place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
   if (!message.has_target()) place.Fail("target", "is missing; expected target { ... }");
-  Rig rig = text::ToRig(message, place, lenses);
-  rig.text = source;
-  rig.hash = HashOfRigText(source);
+  Rig rig = rgbdt::text::ToRig(message, place, lenses);
+  rig.text = text;
+  rig.hash = HashOfRigText(text);
   try {
     rig.Check(lenses);
   } catch (const InputError& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "calib/odometry/internal/registration.h"
 
@@ -88,9 +89,9 @@ LoopCheck CheckLoop(const PlaneMap& map, const Keyframe& frame, const std::vecto
   LoopCheck best;
   best.why_not = "nowhere to start from";
   for (const Rigid3& start : starts) {
-    const LoopCheck check = CheckFrom(start, map, frame, options);
+    LoopCheck check = CheckFrom(start, map, frame, options);
     if (check.why_not.empty()) return check;
-    if (check.overlap * check.fit >= best.overlap * best.fit) best = check;
+    if (check.overlap * check.fit >= best.overlap * best.fit) best = std::move(check);
   }
   return best;
 }

@@ -91,6 +91,7 @@ double Contradiction(const PoseEdge& loop, const Poses& poses) {
 std::vector<PoseEdge> Picked(const std::vector<PoseEdge>& loops,
                              const std::vector<std::size_t>& numbers) {
   std::vector<PoseEdge> picked;
+  picked.reserve(numbers.size());
   for (const std::size_t i : numbers) picked.push_back(loops[i]);
   return picked;
 }

@@ -76,6 +76,7 @@ void TurnByHalf(PosedImage* image) {
 std::vector<PosedImage> PoseImages(const Camera& camera, const Target& target,
                                    const std::vector<WavedImage>& images, int* repeated) {
   std::vector<const WavedImage*> by_time;
+  by_time.reserve(images.size());
   for (const WavedImage& image : images) by_time.push_back(&image);
   std::stable_sort(by_time.begin(), by_time.end(),
                    [](const WavedImage* a, const WavedImage* b) { return a->utime < b->utime; });

@@ -21,7 +21,7 @@ std::string SizeText(const Target& target) {
 // The largest of each size: the smaller ones are its beginning.
 bool HasAll(const MarkerFamily& family) {
   const std::string name = family.name;
-  return name.find("X") == std::string::npos || family.count == 1000;
+  return name.find('X') == std::string::npos || family.count == 1000;
 }
 
 bool SameMarkers(const MarkerFamily& a, const MarkerFamily& b) {
