@@ -31,7 +31,7 @@ class MotionEquations {
   };
 
   void AddWay();
-  void AddImages(std::size_t camera);
+  void AddImages(std::size_t index);  // of a camera
   void AddSweeps();
   void AddChangePriors(const std::vector<double>& now, std::vector<double>* changes);
   void AddPriors();
