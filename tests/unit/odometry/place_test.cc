@@ -23,7 +23,7 @@ odometry::Place Seen(double along, double aside, double yaw, std::uint64_t stree
   const Cloud sweep = drive.Sweep(0);
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3f& p : sweep.points) {
-    if (p.allFinite()) points.push_back(p.cast<double>());
+    if (p.allFinite()) points.emplace_back(p.cast<double>());
   }
   return odometry::PlaceOf(points).value();
 }
