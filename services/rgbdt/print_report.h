@@ -40,23 +40,17 @@ inline void SetAside(const std::filesystem::path& out) {
   if (!kept.empty()) std::fprintf(stderr, "%s\n", kept.c_str());
 }
 
-/// To whom a verb speaks that made a report.
-struct Reader {
-  bool program = false;  ///< stdout is then report.json and nothing else
-};
-
-inline void AddReader(CommandLine* verb, Reader* reader) {
-  verb->Flag("--json", &reader->program,
+inline void AddJson(CommandLine* verb, bool* json) {
+  verb->Flag("--json", json,
              "for programs: print report.json (calib/files/schema/report.proto) on stdout, and\n"
              "nothing else there");
 }
 
 /// What a verb says that made a report: the table and the files (`wrote`, in words), or report.json
-/// of `out`. Of views that could not be read PrintUnreadable tells the reason.
-inline void PrintReport(const Reader& reader, const Report& report,
-                        const std::filesystem::path& out, const std::string& wrote,
-                        const std::vector<std::string>& unreadable) {
-  if (reader.program) {
+/// of `out` alone (`json`). Of views that could not be read PrintUnreadable tells the reason.
+inline void PrintReport(bool json, const Report& report, const std::filesystem::path& out,
+                        const std::string& wrote, const std::vector<std::string>& unreadable) {
+  if (json) {
     std::fputs(ReadWholeFile(out / "report.json").c_str(), stdout);
     return;
   }

@@ -29,13 +29,13 @@ struct CalibrateFlags {
   bool separate = false;
   bool range_offset = false;
   bool mounts_moved = false;
-  Reader reader;
+  bool json = false;
 };
 
-// Where one result goes, what it is compared with, and who is told.
+// Where one result goes, what it is compared with, and whether it is told as JSON.
 struct Place {
   std::filesystem::path out, truth;
-  Reader reader;
+  bool json = false;
 };
 
 SessionDetection Detect(const Session& session, const std::string& method) {
@@ -64,7 +64,7 @@ ExitCode Finish(const Place& place, const Session& session, const SessionDetecti
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);
   WriteReportFiles(place.out, {listed, detection.views, reports, {left_out, {}, ""}});
-  PrintReport(place.reader, report, place.out, wrote, detection.unreadable);
+  PrintReport(place.json, report, place.out, wrote, detection.unreadable);
   return WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report));
 }
 
@@ -73,10 +73,9 @@ ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const std::set<std::string> left_out = LeftOutOf(flags, session);
   SetAside(PathOr(flags.out, session.root));
   const SessionDetection detection = Detect(session, flags.options.method);
-  const ExitCode end =
-      Finish({PathOr(flags.out, session.root), TruthPath(flags.truth, session.root), flags.reader},
-             session, detection,
-             CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
+  const ExitCode end = Finish(
+      {PathOr(flags.out, session.root), TruthPath(flags.truth, session.root), flags.json}, session,
+      detection, CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
   PrintUnreadable(detection.unreadable);
   return end;
 }
@@ -118,10 +117,10 @@ ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   const Report report =
       WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons);
   const ExitCode end =
-      Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root), flags.reader},
+      Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root), flags.json},
              session, detection, report);
   PrintUnreadable(detection.unreadable);
-  if (!flags.reader.program) PrintComparisons(comparisons);
+  if (!flags.json) PrintComparisons(comparisons);
   return end;
 }
 
@@ -140,16 +139,16 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
   const std::vector<Session> parts = PartsOf(session);
   ExitCode end = EndsIf(detection.unreadable.empty());
   for (std::size_t s = 0; s < parts.size(); ++s) {
-    if (!flags.reader.program) {
+    if (!flags.json) {
       std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
     }
     const Place place{OutOf(flags, views[s].name),
-                      TruthPath(flags.truth, parts[s].parts[0].session.root), flags.reader};
+                      TruthPath(flags.truth, parts[s].parts[0].session.root), flags.json};
     end = WorseOf(end, Finish(place, parts[s], {views[s].detections, detection.unreadable},
                               result.reports[s]));
   }
   PrintUnreadable(detection.unreadable);
-  if (!flags.reader.program) PrintComparisons(result.comparisons);
+  if (!flags.json) PrintComparisons(result.comparisons);
   return end;
 }
 
@@ -208,7 +207,7 @@ void AddCalibrate(CommandLine* program) {
                "leave this view out; may be given again. rgbdt-viewer --session DIR shows what\n"
                "leaving views out changes");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
-  AddReader(verb, &flags->reader);
+  AddJson(verb, &flags->json);
 }
 
 }  // namespace rgbdt

@@ -16,7 +16,7 @@ namespace {
 struct EvaluateFlags {
   std::string dir, calibration, out, truth;
   bool anyway = false;
-  Reader reader;
+  bool json = false;
 };
 
 // The same camera with the same pose; nothing where there is none.
@@ -81,7 +81,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);
   WriteReportFiles(out, {listed, detection.views, reports});
-  PrintReport(flags.reader, report, out, "wrote to " + out.string() + ":", detection.unreadable);
+  PrintReport(flags.json, report, out, "wrote to " + out.string() + ":", detection.unreadable);
   PrintUnreadable(detection.unreadable);
   return EndsWith(detection.unreadable.empty());
 }
@@ -102,7 +102,7 @@ void AddEvaluate(CommandLine* program) {
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
-  AddReader(verb, &flags->reader);
+  AddJson(verb, &flags->json);
   AddAnyway(verb, &flags->anyway, "the rig is another");
 }
 

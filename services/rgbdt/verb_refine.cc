@@ -22,7 +22,7 @@ struct RefineFlags {
   std::string dir, calibration, prior, out, truth;
   bool search = false, anyway = false;
   RefineOptions options;
-  Reader reader;
+  bool json = false;
 };
 
 struct ReadViews {
@@ -120,7 +120,7 @@ int RunRefine(RefineFlags flags) {
   const auto truth = TruthPath(flags.truth, session.root);
   if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
   WriteReportFiles(out, {session, WithoutBoards(report), {report}});
-  PrintReport(flags.reader, report, out, wrote, read.unreadable);
+  PrintReport(flags.json, report, out, wrote, read.unreadable);
   PrintUnreadable(read.unreadable);
   return static_cast<int>(WorseOf(EndsIf(read.unreadable.empty()), EndOf(report)));
 }
@@ -161,7 +161,7 @@ void AddRefine(CommandLine* program) {
                "edge-grid, depth discontinuities (Levinson and Thrun 2013)");
   verb->Option("--out", &flags->out, "where to write; default: DIR/refined, of a log out/refine");
   verb->Option("--truth", &flags->truth, "truth.textproto; default: DIR's, where there is one");
-  AddReader(verb, &flags->reader);
+  AddJson(verb, &flags->json);
   AddAnyway(verb, &flags->anyway, "the rig is another");
 }
 
