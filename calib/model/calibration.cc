@@ -26,6 +26,10 @@ const char* NameOf(SolveStatus status) {
   return "converged";
 }
 
+std::string TextOf(SolveStatus status, const std::string& detail) {
+  return detail.empty() ? NameOf(status) : std::string(NameOf(status)) + ": " + detail;
+}
+
 // Of a chi-square over its degrees of freedom: its cube root is nearly normal (Wilson and Hilferty
 // 1931).
 double NormalOf(double mean_square, double freedom) {
@@ -35,9 +39,9 @@ double NormalOf(double mean_square, double freedom) {
 
 }  // namespace
 
-std::string CameraCalibration::StatusText() const {
-  return detail.empty() ? NameOf(status) : std::string(NameOf(status)) + ": " + detail;
-}
+std::string CameraCalibration::StatusText() const { return TextOf(status, detail); }
+
+std::string LidarCalibration::StatusText() const { return TextOf(status, detail); }
 
 PoseAndLensCovariance CameraCalibration::PoseAndLens() const {
   PoseAndLensCovariance out = WithExactLens(*covariance);
@@ -53,9 +57,12 @@ CameraSpec CameraCalibration::WithSolvedLens(CameraSpec spec) const {
 }
 
 Calibration Report::ToCalibration() const {
-  Calibration calibration{method, rig_hash, utime, {}, {}};
+  Calibration calibration{method, rig_hash, utime, {}};
   for (const CameraReport& camera : cameras) {
     if (camera.calibration.solved()) calibration.cameras.push_back(camera.calibration);
+  }
+  for (const LidarReport& lidar : lidars) {
+    if (lidar.calibration.solved()) calibration.lidars.push_back(lidar.calibration);
   }
   return calibration;
 }
@@ -66,6 +73,11 @@ double ViewScatter::Chance() const {
 
 double Cause::Sigmas() const {
   return freedom == 1 ? std::sqrt(chi2) : std::max(0.0, NormalOf(chi2 / freedom, freedom));
+}
+
+PoseError ErrorOfLidar(const Rigid3& estimate, const Rigid3& truth) {
+  return {RotationDistance(estimate, truth) * 180.0 / M_PI,
+          (estimate.translation - truth.translation).norm() * 1000.0};
 }
 
 PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth) {
@@ -84,6 +96,11 @@ Report WithTruth(Report report, const Truth& truth) {
     for (StartResult& start : camera.other_starts) {
       start.truth_error = ErrorOf(start.calibration.camera_from_lidar, found->second);
     }
+  }
+  for (LidarReport& lidar : report.lidars) {
+    const auto found = truth.reference_from_lidar.find(lidar.calibration.lidar);
+    if (found == truth.reference_from_lidar.end()) continue;
+    lidar.truth_error = ErrorOfLidar(lidar.calibration.reference_from_lidar, found->second);
   }
   return report;
 }

@@ -76,6 +76,25 @@ struct CameraCalibration {
   std::string StatusText() const;
 };
 
+/// Where a LIDAR beside the reference sits: point_in_reference = reference_from_lidar *
+/// point_in_lidar.
+struct LidarCalibration {
+  std::string lidar;
+  Rigid3 reference_from_lidar;
+  /// Of delta (rigid3.h), the reference's axes: reference_from_lidar = Exp(delta) * estimate.
+  /// Absent: not estimated.
+  std::optional<Matrix6d> covariance{};
+  SolveStatus status = SolveStatus::kNotSolved;
+  std::string detail{};  ///< in words: why, and what to do; empty where there is nothing to say
+
+  bool solved() const {
+    return status != SolveStatus::kNotSolved && status != SolveStatus::kUndetermined;
+  }
+  bool converged() const { return status == SolveStatus::kConverged; }
+  /// As CameraCalibration::StatusText.
+  std::string StatusText() const;
+};
+
 struct Calibration {
   std::string method;    ///< "paper"
   std::string rig_hash;  ///< the rig it was made with
@@ -83,6 +102,7 @@ struct Calibration {
   std::vector<CameraCalibration> cameras;
   /// What it holds for (SensorsOf the rig it was made with); absent: not known.
   std::optional<Rig> sensors{};
+  std::vector<LidarCalibration> lidars{};  ///< beside the reference
 
   const CameraCalibration* Find(const std::string& camera) const {
     for (const CameraCalibration& c : cameras) {
@@ -246,6 +266,23 @@ struct CameraReport {
   double detect_image_s = 0, detect_cloud_s = 0, solve_s = 0;  ///< computing time, all views
 };
 
+/// 1 sigma of a further LIDAR's pose, from its covariance.
+struct LidarSigma {
+  std::array<double, 3> rotation_deg{};    ///< about the reference's x, y, z
+  std::array<double, 3> translation_mm{};  ///< of the LIDAR's origin, along the reference's x, y, z
+};
+
+struct LidarReport {
+  LidarCalibration calibration;
+  std::optional<Rigid3> first_guess;  ///< reference_from_lidar that the solve began from
+  std::vector<std::string> used;      ///< views whose cloud of this LIDAR had a say
+  std::vector<RejectedView> rejected;
+  std::vector<std::string> warnings;
+  std::optional<LidarSigma> sigma;  ///< absent: no covariance
+  std::vector<Nuisance> nuisance;   ///< its own; the board's stand with the cameras
+  std::optional<PoseError> truth_error;
+};
+
 /// Two cameras' pose relative to each other, by way of the LIDAR against by their images alone.
 struct Closure {
   std::string from, to;         ///< cameras; the pose is to_from_from
@@ -284,8 +321,9 @@ struct Report {
   std::vector<CameraReport> cameras;
   std::vector<Closure> closure;
   std::optional<NextView> next_view;
+  std::vector<LidarReport> lidars{};  ///< beside the reference, in the rig's order
 
-  /// The cameras that were solved: a guess is no calibration.
+  /// The cameras and LIDARs that were solved: a guess is no calibration.
   Calibration ToCalibration() const;
 };
 
@@ -295,10 +333,14 @@ struct Truth {
   std::map<std::string, Rigid3> lidar_from_target;  ///< by view
   /// By view, of a rig that drives; not in files.
   std::map<std::string, Rigid3> world_from_lidar{};
+  std::map<std::string, Rigid3> reference_from_lidar{};  ///< by further LIDAR
 };
 
 /// Error of `estimate` against `truth`, both camera_from_lidar.
 PoseError ErrorOf(const Rigid3& estimate, const Rigid3& truth);
+
+/// Likewise, both reference_from_lidar; the distance is that between the LIDAR's two origins.
+PoseError ErrorOfLidar(const Rigid3& estimate, const Rigid3& truth);
 
 /// A report with what only truth can tell.
 [[nodiscard]] Report WithTruth(Report report, const Truth& truth);

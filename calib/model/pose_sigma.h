@@ -11,6 +11,12 @@ namespace rgbdt {
 /// Nothing where the calibration has no covariance, or none that is finite.
 std::optional<PoseError> WorstAxisSigma(const CameraCalibration& calibration);
 
+/// The same of a further LIDAR's pose; of its origin in the reference's frame.
+std::optional<PoseError> WorstAxisSigma(const LidarCalibration& calibration);
+
+/// Along and about the reference's axes; needs a covariance.
+LidarSigma SigmaOf(const LidarCalibration& calibration);
+
 /// From one calibration of a camera to another.
 struct PoseChange {
   PoseError difference;

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "calib/model/errors.h"
 #include "calib/model/linear_algebra.h"
@@ -146,6 +147,37 @@ void CheckTarget(const Target& target) {
           "at least the pattern's height " + std::to_string(2 * half.y()) + " m");
 }
 
+// `field` names the LIDAR.
+void CheckLidar(const LidarSpec& lidar, const std::string& field) {
+  if (lidar.turned_scanner) {
+    const double ticks = lidar.turned_scanner->ticks_per_rad;
+    Require(std::isfinite(ticks) && ticks != 0, field + ".turned_scanner.ticks_per_degree",
+            std::to_string(ticks), "a number other than zero (negative: turns the other way)");
+    Require(std::isfinite(lidar.turned_scanner->zero_ticks), field + ".turned_scanner.zero_ticks",
+            std::to_string(lidar.turned_scanner->zero_ticks), "a finite number");
+    CheckPose(lidar.turned_scanner->motor_from_scanner,
+              field + ".turned_scanner.motor_from_scanner");
+  }
+  RequirePositive(lidar.range_sigma_m, field + ".range_sigma_m");
+  RequireMetres(lidar.range_sigma_m, kMostNoiseM, field + ".range_sigma_m");
+  Require(lidar.range_offset_sigma_m >= 0 && std::isfinite(lidar.range_offset_sigma_m),
+          field + ".range_offset_sigma_m", std::to_string(lidar.range_offset_sigma_m),
+          "a number not less than zero");
+}
+
+// `names` are the cameras'. Files and frames are called after further LIDARs.
+void CheckFurtherLidars(const Rig& rig, std::set<std::string> names) {
+  Require(rig.further_lidars.size() < 8, "number of LIDARs",
+          std::to_string(rig.further_lidars.size() + 1), "1 to 8");
+  names.insert(rig.lidar.name);
+  for (const LidarSpec& lidar : rig.further_lidars) {
+    CheckName(lidar.name, "lidar.name");
+    Require(names.insert(lidar.name).second, "lidar.name", "\"" + lidar.name + "\" twice",
+            "a name of its own for each sensor");
+    CheckLidar(lidar, "lidar \"" + lidar.name + "\"");
+  }
+}
+
 }  // namespace
 
 double Target::EdgeAt(int column_or_row) const {
@@ -224,19 +256,8 @@ void Rig::Check(LensNeed lenses) const {
     Require(names.insert(camera.name).second, "camera.name", "\"" + camera.name + "\" twice",
             "a name of its own for each camera");
   }
-  if (lidar.turned_scanner) {
-    const double ticks = lidar.turned_scanner->ticks_per_rad;
-    Require(std::isfinite(ticks) && ticks != 0, "lidar.turned_scanner.ticks_per_degree",
-            std::to_string(ticks), "a number other than zero (negative: turns the other way)");
-    Require(std::isfinite(lidar.turned_scanner->zero_ticks), "lidar.turned_scanner.zero_ticks",
-            std::to_string(lidar.turned_scanner->zero_ticks), "a finite number");
-    CheckPose(lidar.turned_scanner->motor_from_scanner, "lidar.turned_scanner.motor_from_scanner");
-  }
-  RequirePositive(lidar.range_sigma_m, "lidar.range_sigma_m");
-  RequireMetres(lidar.range_sigma_m, kMostNoiseM, "lidar.range_sigma_m");
-  Require(lidar.range_offset_sigma_m >= 0 && std::isfinite(lidar.range_offset_sigma_m),
-          "lidar.range_offset_sigma_m", std::to_string(lidar.range_offset_sigma_m),
-          "a number not less than zero");
+  CheckLidar(lidar, "lidar");
+  CheckFurtherLidars(*this, std::move(names));
   CheckTarget(target);
 }
 

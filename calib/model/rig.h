@@ -121,11 +121,14 @@ Target GridOfMarkers(int markers_x, int markers_y, const Markers& markers);
 
 struct Rig {
   std::string name;
-  LidarSpec lidar;
+  LidarSpec lidar;  ///< the reference: its frame is the rig's LIDAR frame
   std::vector<CameraSpec> cameras;
   Target target;
   std::string text;  ///< the rig file as read: what the bus carries
   std::string hash;  ///< of the text; a calibration names the rig it was made with
+  /// LIDARs beside the reference, in the rig file's order; their poses are solved for
+  /// (Calibration::lidars).
+  std::vector<LidarSpec> further_lidars{};
 
   /// Throws InputError naming the field and its value.
   void Check(LensNeed lenses = LensNeed::kKnown) const;

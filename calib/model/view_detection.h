@@ -149,6 +149,12 @@ struct CloudDetection {
   double detect_s = 0;  ///< computing time
 };
 
+/// What detection makes of a further LIDAR's cloud, in that LIDAR's own frame.
+struct LidarDetection {
+  std::string lidar;
+  CloudDetection cloud;
+};
+
 /// All that one view shows of the target: each camera's image, and the cloud once.
 struct ViewDetection {
   std::string view;  ///< its name, e.g. "0001"
@@ -156,7 +162,9 @@ struct ViewDetection {
   Utime sweep_utime = 0;
   bool heldout = false;
   std::vector<ImageDetection> images;  ///< one a camera, in the rig's order
-  CloudDetection cloud;
+  CloudDetection cloud;                ///< the reference's
+  /// One a further LIDAR, in the rig's order. Not on the bus.
+  std::vector<LidarDetection> further_clouds{};
 
   const ImageDetection* Find(const std::string& camera) const {
     for (const ImageDetection& image : images) {
@@ -182,13 +190,20 @@ struct TargetStatus {
   Eigen::Vector3d centre{0, 0, 0};       ///< LIDAR: of the board's points, LIDAR frame [m]
 };
 
+/// A further LIDAR's cloud, in its own frame.
+struct LidarCloud {
+  std::string lidar;
+  Cloud cloud;
+};
+
 /// Everything detection needs for one view.
 struct View {
   std::string name;
   bool heldout = false;
-  Cloud cloud;
+  Cloud cloud;                ///< the reference's
   std::vector<Image> images;  ///< one a camera
   std::vector<CornerSelection> picks;
+  std::vector<LidarCloud> further_clouds{};  ///< of further LIDARs, those that there are
 };
 
 }  // namespace rgbdt

@@ -5,6 +5,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/lens_convert.h"
+#include "calib/files/schema/internal/lidar_convert.h"
 #include "calib/files/schema/internal/report_parts.h"
 #include "calib/files/schema/internal/rig_convert.h"
 #include "calib/files/schema/proto_convert.h"
@@ -24,6 +25,10 @@ constexpr char kComment[] =
     "A point at z > 0 then goes through the lens to its pixel: the one given here, or else the\n"
     "rig's. The camera's position in the LIDAR frame is -R^T * translation_m. `rgbdt export`\n"
     "writes other tools' files.";
+
+constexpr char kLidars[] =
+    "\nOf LIDARs beside the reference, whose frame the LIDAR frame is, reference_from_lidar:\n"
+    "  point_in_reference = R(quaternion_wxyz) * point_in_lidar + translation_m";
 
 // A minute is no offset of a clock, a second no read-out.
 constexpr double kMostOffset = 60, kMostRolling = 1;
@@ -102,6 +107,13 @@ Calibration ReadCalibration(const std::filesystem::path& path) {
       at.Fail("camera", "is \"" + message.camera(i).camera() + "\" for the second time");
     }
   }
+  for (int i = 0; i < message.lidar_size(); ++i) {
+    const Place at = place.In("lidar", i);
+    calibration.lidars.push_back(text::ToLidarCalibration(message.lidar(i), at));
+    if (!names.insert(message.lidar(i).lidar()).second) {
+      at.Fail("lidar", "is \"" + message.lidar(i).lidar() + "\" for the second time");
+    }
+  }
   if (message.has_sensors()) {
     calibration.sensors = text::ToRig(message.sensors(), place.In("sensors"), LensNeed::kKnown);
   }
@@ -119,8 +131,12 @@ std::string PrintCalibration(const Calibration& calibration) {
   for (const CameraCalibration& camera : calibration.cameras) {
     FromCamera(camera, message.add_camera());
   }
+  for (const LidarCalibration& lidar : calibration.lidars) {
+    text::FromLidarCalibration(lidar, message.add_lidar());
+  }
   if (calibration.sensors) *message.mutable_sensors() = text::FromRig(*calibration.sensors);
-  return text::PrintText(message, kComment);
+  return text::PrintText(message,
+                         kComment + std::string(calibration.lidars.empty() ? "" : kLidars));
 }
 
 void WriteCalibration(const std::filesystem::path& path, const Calibration& calibration) {

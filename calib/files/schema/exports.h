@@ -41,6 +41,8 @@ void ExportRosLaunch(const std::filesystem::path& path, const Rig& rig,
                      const Calibration& calibration, const FrameNames& frames = {});
 
 /// A URDF: a link for the LIDAR and for each camera, a fixed joint from the one to the other.
+/// LIDARs beside the reference are links likewise, and transforms of the other two files, their
+/// frames called as the rig calls them.
 void ExportUrdf(const std::filesystem::path& path, const Rig& rig, const Calibration& calibration,
                 const FrameNames& frames = {});
 

@@ -23,10 +23,14 @@ constexpr char kDirection[] =
     "LIDAR frame, point_in_lidar = lidar_from_camera * point_in_camera, the inverse of\n"
     "calibration.textproto.";
 
-// One camera as ROS sees it.
+constexpr char kFurtherDirection[] =
+    "Of a LIDAR beside the first: its pose in the first one's frame, reference_from_lidar as in\n"
+    "calibration.textproto.";
+
+// One camera, or one LIDAR beside the reference, as ROS sees it.
 struct Joint {
-  std::string camera, parent, child;
-  Eigen::Vector3d xyz;      // of lidar_from_camera [m]
+  std::string sensor, name, parent, child;
+  Eigen::Vector3d xyz;      // of parent_from_child [m]
   Eigen::Quaterniond xyzw;  // its rotation
   std::string warning;      // empty: none
 };
@@ -62,20 +66,55 @@ std::string CameraFrame(const std::string& camera, const FrameNames& frames) {
   return named == frames.cameras.end() ? camera + "_optical_frame" : Checked(named->second);
 }
 
+std::string WarningOf(const LidarCalibration& lidar) {
+  if (lidar.converged()) return {};
+  std::string text = "WARNING: " + lidar.lidar + " did not converge: " + lidar.StatusText();
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return text;
+}
+
+Joint JointOf(const LidarCalibration& lidar, const std::string& reference) {
+  const std::string child = Cleaned(lidar.lidar, "lidar2");
+  return {child,
+          child + "_joint",
+          reference,
+          child,
+          lidar.reference_from_lidar.translation,
+          text::Normalised(lidar.reference_from_lidar.rotation),
+          WarningOf(lidar)};
+}
+
+// What the frames are, and which way the transforms go.
+std::string DirectionOf(const Calibration& calibration) {
+  std::string text = std::string(kFrames) + "\n" + kDirection;
+  if (!calibration.lidars.empty()) text += std::string("\n") + kFurtherDirection;
+  return text;
+}
+
 std::vector<Joint> JointsOf(const Rig& rig, const Calibration& calibration,
                             const FrameNames& frames) {
   for (const auto& named : frames.cameras) rig.Camera(named.first);
   const std::string lidar = LidarFrame(rig, frames);
   std::set<std::string> taken{lidar};
   std::vector<Joint> joints;
-  for (const Exported& camera : exports::Match(rig, calibration)) {
-    const Rigid3 lidar_from_camera = camera.calibration.camera_from_lidar.Inverse();
-    const std::string child = CameraFrame(camera.spec.name, frames);
+  const auto take = [&](const std::string& child) {
     if (!taken.insert(child).second) {
       throw InputError("the frame \"" + child + "\" twice; give each camera and the LIDAR its own");
     }
-    joints.push_back({camera.spec.name, lidar, child, lidar_from_camera.translation,
-                      text::Normalised(lidar_from_camera.rotation), StatusWarning(camera)});
+  };
+  for (const Exported& camera : exports::Match(rig, calibration)) {
+    const Rigid3 lidar_from_camera = camera.calibration.camera_from_lidar.Inverse();
+    const std::string child = CameraFrame(camera.spec.name, frames);
+    take(child);
+    joints.push_back({camera.spec.name, camera.spec.name + "_optical_joint", lidar, child,
+                      lidar_from_camera.translation, text::Normalised(lidar_from_camera.rotation),
+                      StatusWarning(camera)});
+  }
+  for (const LidarCalibration& further : calibration.lidars) {
+    joints.push_back(JointOf(further, lidar));
+    take(joints.back().child);
   }
   return joints;
 }
@@ -90,7 +129,7 @@ std::string Ros2Options(const Joint& joint) {
 }
 
 std::string CommandLines(const Joint& joint) {
-  return "\n" + HashComment(joint.camera) +
+  return "\n" + HashComment(joint.sensor) +
          (joint.warning.empty() ? "" : HashComment(joint.warning)) +
          "# ROS 2\nros2 run tf2_ros static_transform_publisher " + Ros2Options(joint) +
          "\n# ROS 1 (x y z qx qy qz qw parent child)\n"
@@ -105,7 +144,7 @@ std::string LaunchNode(const Joint& joint) {
          "      pkg: \"tf2_ros\"\n"
          "      exec: \"static_transform_publisher\"\n"
          "      name: \"publish_pose_of_" +
-         joint.camera + "\"\n      args: \"" + Ros2Options(joint) + "\"\n";
+         joint.sensor + "\"\n      args: \"" + Ros2Options(joint) + "\"\n";
 }
 
 // rotation = Rz(yaw) * Ry(pitch) * Rx(roll), as roll, pitch, yaw [rad]. Roll is what is left once
@@ -130,17 +169,17 @@ std::string XmlComment(std::string text) {
 std::string UrdfJoint(const Joint& joint) {
   const Eigen::Vector3d rpy = RollPitchYaw(joint.xyzw);
   return "\n" + (joint.warning.empty() ? "" : "  " + XmlComment(joint.warning)) +
-         "  <link name=\"" + joint.child + "\"/>\n  <joint name=\"" + joint.camera +
-         "_optical_joint\" type=\"fixed\">\n    <parent link=\"" + joint.parent +
-         "\"/>\n    <child link=\"" + joint.child + "\"/>\n    <origin xyz=\"" +
-         List(joint.xyz.data(), 3) + "\" rpy=\"" + List(rpy.data(), 3) + "\"/>\n  </joint>\n";
+         "  <link name=\"" + joint.child + "\"/>\n  <joint name=\"" + joint.name +
+         "\" type=\"fixed\">\n    <parent link=\"" + joint.parent + "\"/>\n    <child link=\"" +
+         joint.child + "\"/>\n    <origin xyz=\"" + List(joint.xyz.data(), 3) + "\" rpy=\"" +
+         List(rpy.data(), 3) + "\"/>\n  </joint>\n";
 }
 
 }  // namespace
 
 void ExportRosStaticTransform(const std::filesystem::path& path, const Rig& rig,
                               const Calibration& calibration, const FrameNames& frames) {
-  std::string text = HashComment(std::string(kFrames) + "\n" + kDirection);
+  std::string text = HashComment(DirectionOf(calibration));
   for (const Joint& joint : JointsOf(rig, calibration, frames)) text += CommandLines(joint);
   WriteFileAtomically(path, text);
 }
@@ -148,8 +187,7 @@ void ExportRosStaticTransform(const std::filesystem::path& path, const Rig& rig,
 void ExportRosLaunch(const std::filesystem::path& path, const Rig& rig,
                      const Calibration& calibration, const FrameNames& frames) {
   std::string text =
-      HashComment(std::string("For `ros2 launch FILE`. ") + kFrames + "\n" + kDirection) +
-      "launch:\n";
+      HashComment("For `ros2 launch FILE`. " + DirectionOf(calibration)) + "launch:\n";
   for (const Joint& joint : JointsOf(rig, calibration, frames)) text += LaunchNode(joint);
   WriteFileAtomically(path, text);
 }
@@ -159,7 +197,7 @@ void ExportUrdf(const std::filesystem::path& path, const Rig& rig, const Calibra
   const std::vector<Joint> joints = JointsOf(rig, calibration, frames);
   std::string text =
       "<?xml version=\"1.0\"?>\n" +
-      XmlComment(std::string(kFrames) + "\n" + kDirection +
+      XmlComment(DirectionOf(calibration) +
                  "\nrpy is roll, pitch, yaw [rad]: rotation = Rz(yaw) * Ry(pitch) * Rx(roll).\n"
                  "Where a robot's own URDF has the LIDAR's link, leave it out here.") +
       "<robot name=\"" + Cleaned(rig.name, "rig") + "\">\n  <link name=\"" + joints[0].parent +

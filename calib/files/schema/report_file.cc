@@ -11,6 +11,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/internal/lens_convert.h"
+#include "calib/files/schema/internal/lidar_convert.h"
 #include "calib/files/schema/internal/report_parts.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/report.pb.h"
@@ -279,6 +280,9 @@ std::string ReportToJson(const Report& report) {
   for (const CameraReport& camera : report.cameras) {
     FromCamera(camera, &(*message.mutable_cameras())[ValidUtf8(camera.calibration.camera)]);
   }
+  for (const LidarReport& lidar : report.lidars) {
+    text::FromLidarReport(lidar, message.add_lidars());
+  }
   text::FromRigWide(report, &message);
   return ToJson(message);
 }
@@ -302,6 +306,10 @@ Report ReportFromJson(const std::string& json, const std::string& where) {
     at.append(": camera \"").append(name).append("\"");
     const Place place(at, camera.GetDescriptor(), nullptr);
     report.cameras.push_back(ToCamera(name, camera, place));
+  }
+  const Place place(where, message.GetDescriptor(), nullptr);
+  for (int i = 0; i < message.lidars_size(); ++i) {
+    report.lidars.push_back(text::ToLidarReport(message.lidars(i), place.In("lidars", i)));
   }
   text::ToRigWide(message, where, &report);
   std::sort(report.cameras.begin(), report.cameras.end(),

@@ -197,7 +197,7 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   }
 }
 
-// Of devices only which LIDAR it is counts, and only where both say it.
+// Of devices only which LIDAR it is counts, and only where both say it; the motor does not.
 void KeepModels(proto::Lidar* a, proto::Lidar* b) {
   const bool both = a->has_velodyne() && b->has_velodyne();
   for (proto::Lidar* lidar : {a, b}) {
@@ -207,7 +207,24 @@ void KeepModels(proto::Lidar* a, proto::Lidar* b) {
       lidar->mutable_velodyne()->clear_port();
       lidar->mutable_velodyne()->clear_pcap();
     }
+    lidar->mutable_turned_scanner()->clear_dynamixel();
   }
+}
+
+// What the rig's LIDARs have in common; the reference may be called otherwise.
+void KeepLidars(proto::Rig* a, proto::Rig* b) {
+  const int both = std::min(a->lidar_size(), b->lidar_size());
+  for (int i = 0; i < both; ++i) KeepModels(a->mutable_lidar(i), b->mutable_lidar(i));
+  for (proto::Rig* rig : {a, b}) rig->mutable_lidar(0)->clear_name();
+}
+
+// "lidar[0].turned_scanner" is the reference's, of which most rigs have no other.
+std::string ReferenceByName(std::string line) {
+  const std::string indexed = "lidar[0]";
+  for (std::size_t at = line.find(indexed); at != std::string::npos; at = line.find(indexed, at)) {
+    line.erase(at + indexed.size() - 3, 3);
+  }
+  return line;
 }
 
 }  // namespace
@@ -215,7 +232,8 @@ void KeepModels(proto::Lidar* a, proto::Lidar* b) {
 proto::Rig text::FromRig(const Rig& rig) {
   proto::Rig message;
   message.set_name(ValidUtf8(rig.name));
-  FromLidar(rig.lidar, message.mutable_lidar());
+  FromLidar(rig.lidar, message.add_lidar());
+  for (const LidarSpec& lidar : rig.further_lidars) FromLidar(lidar, message.add_lidar());
   for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
   if (rig.target.width_m > 0) text::FromTarget(rig.target, message.mutable_target());
   return message;
@@ -224,7 +242,11 @@ proto::Rig text::FromRig(const Rig& rig) {
 Rig text::ToRig(const proto::Rig& message, const Place& place, LensNeed lenses) {
   Rig rig;
   rig.name = message.name();
-  rig.lidar = ToLidar(message.lidar(), place.In("lidar"));
+  // A message of sensors alone may have none.
+  if (message.lidar_size() > 0) rig.lidar = ToLidar(message.lidar(0), place.In("lidar"));
+  for (int i = 1; i < message.lidar_size(); ++i) {
+    rig.further_lidars.push_back(ToLidar(message.lidar(i), place.In("lidar", i)));
+  }
   for (int i = 0; i < message.camera_size(); ++i) {
     rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
   }
@@ -240,7 +262,8 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses)
   proto::Rig message;
   Place::Tree tree;
   const Place place = rgbdt::text::ParseText(text, where, &message, &tree);
-  if (!message.has_lidar()) place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
+  if (message.lidar_size() == 0)
+    place.Fail("lidar", "is missing; expected lidar { name: \"...\" }");
   if (!message.has_target()) place.Fail("target", "is missing; expected target { ... }");
   Rig rig = rgbdt::text::ToRig(message, place, lenses);
   rig.text = text;
@@ -264,11 +287,9 @@ std::string PrintRig(const Rig& rig) {
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   proto::Rig was = text::FromRig(a);
   proto::Rig is = text::FromRig(b);
-  KeepModels(was.mutable_lidar(), is.mutable_lidar());
+  KeepLidars(&was, &is);
   for (proto::Rig* rig : {&was, &is}) {
     rig->clear_name();
-    rig->mutable_lidar()->clear_name();
-    rig->mutable_lidar()->mutable_turned_scanner()->clear_dynamixel();
     for (proto::Camera& camera : *rig->mutable_camera()) {
       camera.clear_device();
       camera.clear_camera_from_lidar_guess();
@@ -288,7 +309,7 @@ std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   std::istringstream in(text);
   // What only stands elsewhere is no difference.
   for (std::string line; std::getline(in, line);) {
-    if (line.rfind("moved:", 0) != 0) lines.push_back(line);
+    if (line.rfind("moved:", 0) != 0) lines.push_back(ReferenceByName(line));
   }
   return lines;
 }

@@ -24,6 +24,11 @@ Truth ReadTruth(const std::filesystem::path& path) {
     truth.lidar_from_target[view.view()] =
         text::ToRigid3(view.lidar_from_target(), place.In("view", i).In("lidar_from_target"));
   }
+  for (int i = 0; i < message.lidar_size(); ++i) {
+    const proto::TruthLidar& lidar = message.lidar(i);
+    truth.reference_from_lidar[lidar.lidar()] = text::ToRigid3(
+        lidar.reference_from_lidar(), place.In("lidar", i).In("reference_from_lidar"));
+  }
   if (truth.camera_from_lidar.empty()) {
     place.Fail("camera", "is missing; expected camera { camera: NAME camera_from_lidar { ... } }");
   }
@@ -41,6 +46,11 @@ void WriteTruth(const std::filesystem::path& path, const Truth& truth, const std
     proto::TruthView* view = message.add_view();
     view->set_view(ValidUtf8(name));
     text::FromRigid3(lidar_from_target, view->mutable_lidar_from_target());
+  }
+  for (const auto& [name, reference_from_lidar] : truth.reference_from_lidar) {
+    proto::TruthLidar* lidar = message.add_lidar();
+    lidar->set_lidar(ValidUtf8(name));
+    text::FromRigid3(reference_from_lidar, lidar->mutable_reference_from_lidar());
   }
   WriteFileAtomically(
       path, text::PrintText(message,

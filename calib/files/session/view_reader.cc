@@ -165,6 +165,9 @@ void CheckTimes(const proto::View& message, const Image& image, const Place& pla
                           "moment (0: time unknown)");
 }
 
+const std::string& LidarNameOf(const LidarSpec& lidar) { return lidar.name; }
+const std::string& LidarNameOf(const LidarCloud& cloud) { return cloud.lidar; }
+
 enum class WithCloud { kYes, kNo };
 
 // view.textproto, of which `place` says where its fields stand.
@@ -203,6 +206,30 @@ Cloud ReadCloudOf(const ViewFile& file, const Place& place) {
   return ReadFor(place, "cloud", [&] { return ReadPcd(cloud, file.message.sweep_utime()); });
 }
 
+// Of LIDARs beside the rig's reference; a view need not have one of each.
+std::vector<LidarCloud> ReadFurtherClouds(const ViewFile& file, const Rig& rig,
+                                          const Place& place) {
+  std::vector<LidarCloud> clouds;
+  for (int i = 0; i < file.message.further_cloud_size(); ++i) {
+    const proto::FurtherCloud& message = file.message.further_cloud(i);
+    const Place at = place.In("further_cloud", i);
+    const auto is_it = [&](const auto& of) { return LidarNameOf(of) == message.lidar(); };
+    if (std::none_of(rig.further_lidars.begin(), rig.further_lidars.end(), is_it)) {
+      at.Fail("lidar", "is \"" + message.lidar() +
+                           "\"; expected the name of one of the rig's LIDARs after the first");
+    }
+    if (std::any_of(clouds.begin(), clouds.end(), is_it)) {
+      at.Fail("lidar", "is \"" + message.lidar() + "\" for the second time");
+    }
+    if (message.file().empty()) at.Fail("file", "is missing; expected the PCD file's path");
+    const fs::path path = FileOf(file.folder, message.file(), at, "file");
+    clouds.push_back({message.lidar(), ReadFor(at, "file", [&] {
+                        return ReadPcd(path, file.message.sweep_utime());
+                      })});
+  }
+  return clouds;
+}
+
 View Read(const Session& session, const std::string& view, WithCloud with_cloud) {
   ViewFile file;
   const Place place = ReadViewFile(session, view, &file);
@@ -222,7 +249,10 @@ View Read(const Session& session, const std::string& view, WithCloud with_cloud)
       result.picks.push_back(ReadPicks(message.image(i), result.images.back(), at));
     }
   }
-  if (cloud) result.cloud = ReadCloudOf(file, place);
+  if (cloud) {
+    result.cloud = ReadCloudOf(file, place);
+    result.further_clouds = ReadFurtherClouds(file, session.rig, place);
+  }
   return result;
 }
 

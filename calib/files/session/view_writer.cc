@@ -123,6 +123,12 @@ void WriteView(const fs::path& session_dir, const View& view) {
     FromImage(image, FreeName(image.camera, &taken), message.add_image());
   }
   for (const CornerSelection& picks : view.picks) FromPicks(view, picks, &message);
+  for (const LidarCloud& further : view.further_clouds) {
+    CheckName(further.lidar, "view " + view.name + ": the LIDAR's name");
+    proto::FurtherCloud* out = message.add_further_cloud();
+    out->set_lidar(ValidUtf8(further.lidar));
+    out->set_file("cloud_" + ValidUtf8(further.lidar) + ".pcd");
+  }
 
   std::error_code ignored;
   const bool is_new = !fs::exists(folder, ignored);
@@ -130,6 +136,10 @@ void WriteView(const fs::path& session_dir, const View& view) {
   try {
     if (is_new) fs::remove_all(writes, ignored);  // what a killed process left
     WritePcd(writes / "cloud.pcd", view.cloud);
+    for (std::size_t i = 0; i < view.further_clouds.size(); ++i) {
+      WritePcd(writes / message.further_cloud(static_cast<int>(i)).file(),
+               view.further_clouds[i].cloud);
+    }
     for (std::size_t i = 0; i < view.images.size(); ++i) {
       WritePng(writes / message.image(static_cast<int>(i)).file(), view.images[i].pixels);
     }
