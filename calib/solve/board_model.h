@@ -37,6 +37,13 @@ enum SharedUnknown {
 /// Of a board that is taken for flat.
 inline constexpr double kNoBowSigmaM = 1e-9;
 
+/// Whether an unknown tells of the LIDAR that sees the board, so that each LIDAR has its own; all
+/// others are the board's.
+constexpr bool IsOfLidar(int unknown) {
+  return unknown <= kMergedShift || unknown == kRangeOffset || unknown == kBeamsMeet ||
+         unknown == kFringe;
+}
+
 /// What is known beforehand of the solve's unknowns besides the poses; the values' reasons stand in
 /// beam_priors.h. All but the thickness about zero.
 struct BoardPriors {

@@ -7,12 +7,11 @@
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
+#include "calib/solve/internal/board_priors.h"
 #include "calib/solve/internal/view_equations.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kExactLensSigma = 1e-6;  // [px], and of the distortion
 
 constexpr int kLocal = kOwnUnknowns;
 using LocalMatrix = Eigen::Matrix<double, kLocal, kLocal>;
@@ -37,63 +36,6 @@ Reduced Reduce(const ViewEquations& equations, double damping) {
       equations.h().bottomRightCorner(shared, shared) - coupling.transpose() * out.own.by_shared;
   out.shared.gradient = equations.g().tail(shared) - coupling.transpose() * out.own.step;
   return out;
-}
-
-// Of a lens's numbers; those that are exact are held to next to nothing.
-LensCovariance InformationOfLens(LensCovariance prior) {
-  for (Eigen::Index i = 0; i < kLensNumbers; ++i) {
-    if (!(prior(i, i) > 0)) prior(i, i) = kExactLensSigma * kExactLensSigma;
-  }
-  // In units of the sigmas: pixels and coefficients differ by orders of magnitude.
-  const LensNumbers scale = prior.diagonal().cwiseSqrt().cwiseInverse();
-  const LensCovariance correlation = scale.asDiagonal() * prior * scale.asDiagonal();
-  return scale.asDiagonal() * InverseOfSymmetric(correlation) * scale.asDiagonal();
-}
-
-LensNumbers OffGivenLens(const BoardProblem& problem, const BoardState& state, std::size_t camera) {
-  return NumbersOf(state.lenses[camera]) - NumbersOf(problem.cameras[camera].lens());
-}
-
-double InformationOfTerm(const BoardProblem& problem, std::size_t term) {
-  const double sigma = problem.SigmaOfTerm(term);
-  return 1 / (sigma * sigma);
-}
-
-// The terms of one kind, rings or octaves: [first, last).
-struct Kind {
-  std::size_t first = 0, last = 0;
-};
-std::array<Kind, 2> KindsOf(const RangeTerms& ranges) {
-  return {Kind{0, ranges.rings.size()}, Kind{ranges.rings.size(), ranges.Count()}};
-}
-
-double MeanOf(const RangeTerms& ranges, const Kind& kind, const std::vector<double>& terms) {
-  double mean = 0;
-  for (std::size_t i = kind.first; i < kind.last; ++i) mean += ranges.shares[i] * terms[i];
-  return mean;
-}
-
-double PriorCost(const BoardProblem& problem, const BoardState& state) {
-  const BoardPriors& priors = problem.priors;
-  const auto means = priors.Means();
-  double cost = 0;
-  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
-    if (!problem.HasOwnLens(c)) continue;
-    const LensNumbers off = OffGivenLens(problem, state, c);
-    cost += off.dot(InformationOfLens(problem.lens_priors[c]) * off);
-  }
-  for (int k = 0; k < kSharedUnknowns; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double off = state.shared[i] - means[i];
-    cost += off * off / (priors.Sigma(k) * priors.Sigma(k));
-  }
-  for (std::size_t i = 0; i < state.range_terms.size(); ++i) {
-    cost += state.range_terms[i] * state.range_terms[i] * InformationOfTerm(problem, i);
-  }
-  for (const Kind& kind : KindsOf(problem.ranges)) {
-    cost += std::pow(MeanOf(problem.ranges, kind, state.range_terms) / kMeanTermSigmaM, 2);
-  }
-  return cost;
 }
 
 // Where a step leads, and its length in sigmas, squared.
@@ -141,16 +83,49 @@ BoardState MovedBy(BoardState state, const SharedPlaces& places, const Eigen::Ve
   for (std::size_t i = 0; i < state.range_terms.size(); ++i) {
     state.range_terms[i] += x[places.RangeTerm(i)];
   }
+  for (std::size_t l = 0; l < state.lidars.size(); ++l) {
+    LidarState& lidar = state.lidars[l];
+    lidar.reference_from_lidar =
+        Exp(x.segment<6>(places.LidarPose(l))) * lidar.reference_from_lidar;
+    for (int k = 0; k < kSharedUnknowns; ++k) {
+      if (IsOfLidar(k)) lidar.shared[static_cast<std::size_t>(k)] += x[places.Of(l, k)];
+    }
+    for (std::size_t i = 0; i < lidar.range_terms.size(); ++i) {
+      lidar.range_terms[i] += x[places.RangeTerm(l, i)];
+    }
+  }
   return state;
 }
 
 // A view's own unknowns, changed.
-void MoveView(const LocalVector& local, Rigid3* lidar_from_target,
-              std::array<double, 4>* side_shift) {
-  *lidar_from_target = *lidar_from_target * Exp(Vector6d(local.head<6>()));
+void MoveView(const LocalVector& local, std::size_t view, BoardState* state) {
+  Rigid3& board = state->lidar_from_target[view];
+  board = board * Exp(Vector6d(local.head<6>()));
   for (int side = 0; side < 4; ++side) {
-    (*side_shift)[static_cast<std::size_t>(side)] += local[6 + side];
+    state->side_shift[view][static_cast<std::size_t>(side)] += local[6 + side];
   }
+}
+
+// The sides as further LIDARs see them follow from all else.
+void MoveFurtherSides(const ViewEquations& equations, const LocalVector& local,
+                      const Eigen::VectorXd& shared, double stretch, std::size_t view,
+                      BoardState* state) {
+  if (state->lidars.empty()) return;
+  Eigen::VectorXd x(local.size() + shared.size());
+  x << local, shared;
+  for (std::size_t l = 0; l < state->lidars.size(); ++l) {
+    const Eigen::Vector4d step = equations.further()[l].SideStep(x);
+    for (int side = 0; side < 4; ++side) {
+      state->lidars[l].side_shift[view][static_cast<std::size_t>(side)] += stretch * step[side];
+    }
+  }
+}
+
+// How many of the shared unknowns before this one each LIDAR has of its own.
+Eigen::Index OwnOfLidar(int before) {
+  Eigen::Index count = 0;
+  for (int k = 0; k < before; ++k) count += IsOfLidar(k) ? 1 : 0;
+  return count;
 }
 
 // All views' equations at a state, and what follows from them.
@@ -184,7 +159,8 @@ class Step {
     for (std::size_t v = 0; v < reduced.size(); ++v) {
       const LocalVector local = reduced[v].own.step - reduced[v].own.by_shared * x;
       stepped.size += local.dot(equations_[v].h().topLeftCorner<kLocal, kLocal>() * local);
-      MoveView(stretch * local, &stepped.state.lidar_from_target[v], &stepped.state.side_shift[v]);
+      MoveView(stretch * local, v, &stepped.state);
+      MoveFurtherSides(equations_[v], local, x, stretch, v, &stepped.state);
     }
     return stepped;
   }
@@ -217,7 +193,8 @@ class Step {
 
 }  // namespace
 
-BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar) {
+BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar,
+                   const std::vector<Rigid3>& reference_from_lidar) {
   BoardState state;
   state.camera_from_lidar = camera_from_lidar;
   for (const Camera& camera : problem.cameras) state.lenses.push_back(camera.lens());
@@ -226,6 +203,14 @@ BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camer
   for (const BoardView& view : problem.views) {
     state.lidar_from_target.push_back(view.cloud.pose->sensor_from_target);
     state.side_shift.push_back({});
+  }
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
+    const BoardProblem& lidar = problem.lidars[l];
+    LidarState& own = state.lidars.emplace_back();
+    own.reference_from_lidar = reference_from_lidar[l];
+    own.shared = lidar.priors.Means();
+    own.range_terms.assign(lidar.ranges.Count(), 0);
+    own.side_shift.resize(problem.views.size());
   }
   return state;
 }
@@ -246,6 +231,18 @@ BoardStart Part(const BoardProblem& problem, const std::vector<std::size_t>& vie
     part.start.lidar_from_target.push_back(state.lidar_from_target[v]);
     part.start.side_shift.push_back(state.side_shift[v]);
   }
+  part.problem.lidars = problem.lidars;
+  part.start.lidars = state.lidars;
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
+    std::vector<BoardView>& clouds = part.problem.lidars[l].views;
+    std::vector<std::array<double, 4>>& shifts = part.start.lidars[l].side_shift;
+    clouds.clear();
+    shifts.clear();
+    for (const std::size_t v : views) {
+      clouds.push_back(problem.lidars[l].views[v]);
+      shifts.push_back(state.lidars[l].side_shift[v]);
+    }
+  }
   return part;
 }
 
@@ -262,7 +259,7 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
   BoardState there = MovedBy(some.start, SharedPlaces(problem), x);
   for (std::size_t i = 0; i < views.size(); ++i) {
     const OwnUnknowns& own = all.own[views[i]];
-    MoveView(own.step - own.by_shared * x, &there.lidar_from_target[i], &there.side_shift[i]);
+    MoveView(own.step - own.by_shared * x, i, &there);
   }
   const Step step(some.problem, there);
   Stepped last = step.Take(0);
@@ -308,43 +305,6 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start, 
   return solution;
 }
 
-ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& state) {
-  const SharedPlaces places(problem);
-  const Eigen::Index size = places.Count();
-  const auto means = problem.priors.Means();
-  ViewInformation out{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
-  for (int k = 0; k < kSharedUnknowns; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const double sigma = problem.priors.Sigma(k);
-    out.information(places.Of(k), places.Of(k)) = 1 / (sigma * sigma);
-    out.gradient[places.Of(k)] = -(state.shared[i] - means[i]) / (sigma * sigma);
-  }
-  for (std::size_t i = 0; i < problem.ranges.Count(); ++i) {
-    const Eigen::Index at = places.RangeTerm(i);
-    out.information(at, at) = InformationOfTerm(problem, i);
-    out.gradient[at] = -state.range_terms[i] * out.information(at, at);
-  }
-  for (const Kind& kind : KindsOf(problem.ranges)) {
-    const double weight = 1 / (kMeanTermSigmaM * kMeanTermSigmaM);
-    const double mean = MeanOf(problem.ranges, kind, state.range_terms);
-    for (std::size_t i = kind.first; i < kind.last; ++i) {
-      const double by = weight * problem.ranges.shares[i];
-      for (std::size_t k = kind.first; k < kind.last; ++k) {
-        out.information(places.RangeTerm(i), places.RangeTerm(k)) += by * problem.ranges.shares[k];
-      }
-      out.gradient[places.RangeTerm(i)] -= by * mean;
-    }
-  }
-  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
-    if (!problem.HasOwnLens(c)) continue;
-    const Eigen::Index at = places.Lens(c);
-    const LensCovariance information = InformationOfLens(problem.lens_priors[c]);
-    out.information.block<kLensNumbers, kLensNumbers>(at, at) = information;
-    out.gradient.segment<kLensNumbers>(at) = -information * OffGivenLens(problem, state, c);
-  }
-  return out;
-}
-
 SharedPlaces::SharedPlaces(const BoardProblem& problem) : shared_(Pose(problem.cameras.size())) {
   Eigen::Index next = shared_ + kSharedUnknowns;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
@@ -354,6 +314,19 @@ SharedPlaces::SharedPlaces(const BoardProblem& problem) : shared_(Pose(problem.c
   }
   range_terms_ = next;
   count_ = next + static_cast<Eigen::Index>(problem.ranges.Count());
+  for (const BoardProblem& lidar : problem.lidars) {
+    lidars_.push_back(count_);
+    count_ += 6 + OwnOfLidar(kSharedUnknowns) + static_cast<Eigen::Index>(lidar.ranges.Count());
+  }
+}
+
+Eigen::Index SharedPlaces::Of(std::size_t lidar, int shared_unknown) const {
+  if (!IsOfLidar(shared_unknown)) return Of(shared_unknown);
+  return lidars_[lidar] + 6 + OwnOfLidar(shared_unknown);
+}
+
+Eigen::Index SharedPlaces::RangeTerm(std::size_t lidar, std::size_t term) const {
+  return lidars_[lidar] + 6 + OwnOfLidar(kSharedUnknowns) + static_cast<Eigen::Index>(term);
 }
 
 std::array<Eigen::Index, kPoseAndLens> SharedPlaces::PoseAndLens(std::size_t camera) const {
@@ -367,6 +340,10 @@ PoseAndLensCovariance BoardSolution::PoseAndLens(const SharedPlaces& all,
                                                  std::size_t camera) const {
   const auto places = all.PoseAndLens(camera);
   return covariance(places, places);
+}
+
+bool HasCloud(const BoardProblem& problem, std::size_t lidar, std::size_t view) {
+  return problem.lidars[lidar].views[view].cloud.pose.has_value();
 }
 
 ViewInformation InformationOf(const BoardProblem& problem, const BoardState& state,

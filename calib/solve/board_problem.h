@@ -40,6 +40,10 @@ struct BoardProblem {
   RangeTerms ranges;
   /// The LIDAR is taken for exact: groups of points are not told apart.
   bool ranges_exact = false;
+  /// LIDARs beside the one in whose frame all is solved, each as a problem without cameras: its
+  /// clouds, in step with `views` (without crossings and points where it saw no board), what is
+  /// known of it, and its range terms. The board's unknowns (not IsOfLidar) are this problem's.
+  std::vector<BoardProblem> lidars{};
 
   /// The first camera with this one's lens.
   std::size_t LensOf(std::size_t camera) const {
@@ -53,6 +57,14 @@ struct BoardProblem {
   }
 };
 
+/// Values of a further LIDAR's unknowns.
+struct LidarState {
+  Rigid3 reference_from_lidar;
+  std::array<double, kSharedUnknowns> shared{};   ///< as BoardState::shared, where IsOfLidar
+  std::vector<double> range_terms;                ///< by term of its problem's `ranges` [m]
+  std::vector<std::array<double, 4>> side_shift;  ///< by view and side [rad]
+};
+
 /// Values of all unknowns.
 struct BoardState {
   std::vector<Rigid3> camera_from_lidar;
@@ -61,10 +73,12 @@ struct BoardState {
   std::vector<Rigid3> lidar_from_target;          ///< by view
   std::vector<std::array<double, 4>> side_shift;  ///< by view and side [rad]
   std::vector<double> range_terms;                ///< by term of BoardProblem::ranges [m]
+  std::vector<LidarState> lidars{};               ///< by BoardProblem::lidars
 };
 
 /// Places of the unknowns that all views share: each camera's pose (delta, rigid3.h),
-/// SharedUnknown, each lens (NumbersOf), range offsets (RangeTerms).
+/// SharedUnknown, each lens (NumbersOf), range offsets (RangeTerms); then of each further LIDAR its
+/// pose (reference_from_lidar = Exp(delta) * estimate), its own SharedUnknowns, its range offsets.
 class SharedPlaces {
  public:
   explicit SharedPlaces(const BoardProblem& problem);
@@ -76,6 +90,10 @@ class SharedPlaces {
   Eigen::Index RangeTerm(std::size_t term) const {
     return range_terms_ + static_cast<Eigen::Index>(term);
   }
+  Eigen::Index LidarPose(std::size_t lidar) const { return lidars_[lidar]; }
+  /// As further LIDAR `lidar` has it; the board's is everybody's.
+  Eigen::Index Of(std::size_t lidar, int shared_unknown) const;
+  Eigen::Index RangeTerm(std::size_t lidar, std::size_t term) const;
   Eigen::Index Count() const { return count_; }
   /// Of a camera's pose and its lens.
   std::array<Eigen::Index, kPoseAndLens> PoseAndLens(std::size_t camera) const;
@@ -83,6 +101,7 @@ class SharedPlaces {
  private:
   Eigen::Index shared_, range_terms_ = 0, count_ = 0;
   std::vector<Eigen::Index> lenses_;  // by camera
+  std::vector<Eigen::Index> lidars_;  // where each one's unknowns begin
 };
 
 /// What one view says of the shared unknowns, its own ones eliminated: the cost is
@@ -111,6 +130,9 @@ struct BoardSolution {
   PoseAndLensCovariance PoseAndLens(const SharedPlaces& all, std::size_t camera) const;
 };
 
+/// Whether a further LIDAR's cloud has a say in a view.
+bool HasCloud(const BoardProblem& problem, std::size_t lidar, std::size_t view);
+
 /// Least squares over all cameras, boards and nuisances together, robust. Residuals, each whitened:
 ///
 ///  - corners: project(camera_from_lidar * lidar_from_target * corner) - seen, through the whole
@@ -122,7 +144,9 @@ struct BoardSolution {
 ///  - points on the board: their distances from its plane, a quadratic form for each group of them
 ///    (CloudEdges::groups), or one for all of a view (CloudEdges::scatter); what the rings of one
 ///    view are off by besides is noise that the points of a ring share;
-///  - the priors, of each lens, too: its numbers are unknowns like the others.
+///  - the priors, of each lens, too: its numbers are unknowns like the others;
+///  - of each further LIDAR the same crossings, points and priors, of the same boards by way of its
+///    own pose.
 ///
 /// A crossing's distance to the fitted outline in the image is the difference of the second and the
 /// third: both refer to the same side of the same board, whose pose all sensors share. Gauss-Newton
@@ -150,7 +174,8 @@ BoardSolution SolveSome(const BoardProblem& problem, const BoardSolution& all,
                         const std::vector<std::size_t>& views);
 
 /// Each view's board where its cloud puts it, the given lenses, nothing else known.
-BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar);
+BoardState StartOf(const BoardProblem& problem, const std::vector<Rigid3>& camera_from_lidar,
+                   const std::vector<Rigid3>& reference_from_lidar = {});
 
 /// What the priors tell of the shared unknowns at a state.
 ViewInformation PriorInformation(const BoardProblem& problem, const BoardState& state);

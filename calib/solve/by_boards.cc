@@ -14,125 +14,14 @@
 #include "calib/solve/internal/cross_check.h"
 #include "calib/solve/internal/disagreement.h"
 #include "calib/solve/internal/edges_planes.h"
+#include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "calib/solve/internal/next_view.h"
+#include "calib/solve/internal/nuisances.h"
 
 namespace rgbdt {
 namespace {
-
-struct NuisanceLine {
-  SharedUnknown unknown;
-  const char* name;
-  const char* unit;  // of a thousandth of the unknown's own
-};
-constexpr NuisanceLine kNuisances[] = {
-    {kNoReturnShift, "beam edge, nothing beyond", "mrad"},
-    {kFarShift, "beam edge, far background", "mrad"},
-    {kMergedShift, "beam edge, background just behind", "mrad"},
-    {kThickness, "board's thickness", "mm"},
-    {kOutlineTop, "board's top side, beyond its pattern", "mm"},
-    {kOutlineRight, "board's right side, beyond its pattern", "mm"},
-    {kOutlineBottom, "board's bottom side, beyond its pattern", "mm"},
-    {kOutlineLeft, "board's left side, beyond its pattern", "mm"},
-    {kRangeOffset, "range offset", "mm"},
-    {kPrintWidth, "pattern's width, found less given", "mm/m"},
-    {kPrintHeight, "pattern's height, found less given", "mm/m"},
-    {kBeamsMeet, "radius at which the LIDAR's beams meet", "mm"},
-    {kFringe, "beam edge, at any range", "mm"},
-    {kBowX, "board's shape, its ends behind its middle along its width", "mm"},
-    {kTwist, "board's shape, twist", "mm"},
-    {kBowY, "board's shape, its ends behind its middle along its height", "mm"}};
-
-// An unknown that all views share, with its sigma, the variance factor counted in.
-Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
-  const auto at = SharedPlaces(result.joint.problem).Of(unknown);
-  return {result.solution.state.shared[static_cast<std::size_t>(unknown)],
-          std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)))};
-}
-
-// How much single sides differ, which no class explains: the solve's own estimate, from so many
-// sides.
-std::optional<Nuisance> SideScatter(const JointProblem& joint) {
-  double sides = 0;
-  for (const BoardView& view : joint.problem.views) {
-    sides += static_cast<double>(std::count(view.sides.begin(), view.sides.end(), true));
-  }
-  if (sides == 0) return std::nullopt;
-  const double sigma = joint.problem.priors.side_sigma_rad;
-  return Nuisance{"beam edge, scatter of single sides",
-                  "mrad",
-                  {1000 * sigma, 1000 * sigma / std::sqrt(2 * sides)}};
-}
-
-// How much rings differ within a view, beyond their points' noise.
-std::optional<Nuisance> ScatterOfRings(const JointProblem& joint) {
-  const double sigma = joint.problem.priors.ring_view_sigma_m;
-  double rings = 0;
-  for (const BoardView& view : joint.problem.views) {
-    rings += static_cast<double>(view.cloud.groups.size());
-  }
-  if (!(sigma > 0)) return std::nullopt;
-  return Nuisance{"rings' ranges, scatter within a view",
-                  "mm",
-                  {1000 * sigma, 1000 * sigma / std::sqrt(2 * std::max(1.0, rings))}};
-}
-
-// The lens's focal lengths and centre, as found less as given.
-std::vector<Nuisance> LensLines(const JointResult& result, std::size_t camera) {
-  constexpr const char* kLines[] = {"lens: focal length fx, found less given", "lens: fy",
-                                    "lens: centre cx", "lens: cy"};
-  if (result.joint.problem.lens_priors[camera].isZero(0)) return {};
-  const PoseAndLensCovariance covariance = CovarianceOf(result, camera);
-  const LensNumbers off = NumbersOf(result.solution.state.lenses[camera]) -
-                          NumbersOf(result.joint.problem.cameras[camera].lens());
-  std::vector<Nuisance> lines;
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    lines.push_back({kLines[i], "px", {off[i], std::sqrt(covariance(6 + i, 6 + i))}});
-  }
-  return lines;
-}
-
-std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera) {
-  std::vector<Nuisance> nuisances;
-  for (const NuisanceLine& line : kNuisances) {
-    const Estimate estimate = EstimateOf(result, line.unknown);
-    // Where the prior's sigma is left, the data say nothing of it.
-    if (estimate.sigma > 0.98 * result.joint.problem.priors.Sigma(line.unknown)) continue;
-    nuisances.push_back({line.name, line.unit, {1000 * estimate.value, 1000 * estimate.sigma}});
-  }
-  if (auto scatter = SideScatter(result.joint)) nuisances.push_back(*scatter);
-  if (auto scatter = ScatterOfRings(result.joint)) nuisances.push_back(*scatter);
-  for (Nuisance& line : LensLines(result, camera)) nuisances.push_back(std::move(line));
-  return nuisances;
-}
-
-// An offset of one of the problem's terms, with its sigma, the variance factor counted in.
-Estimate TermOf(const JointResult& result, std::size_t term) {
-  const Eigen::Index at = SharedPlaces(result.joint.problem).RangeTerm(term);
-  return {result.solution.state.range_terms[term],
-          std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)))};
-}
-
-// Nothing where the LIDAR was taken for exact.
-std::optional<RangeErrors> RangeErrorsOf(const JointResult& result) {
-  const BoardPriors& priors = result.joint.problem.priors;
-  const RangeTerms& terms = result.joint.problem.ranges;
-  RangeErrors errors;
-  const bool offset = priors.range_offset_sigma_m > kNoRangeOffsetSigmaM;
-  const bool meet = priors.beams_meet_sigma_m > kNoBeamsMeetSigmaM;
-  if (!offset && !meet && terms.Count() == 0) return std::nullopt;
-  if (offset) errors.offset_m = EstimateOf(result, kRangeOffset);
-  if (meet) errors.beams_meet_m = EstimateOf(result, kBeamsMeet);
-  for (std::size_t i = 0; i < terms.rings.size(); ++i) {
-    errors.rings.push_back({terms.rings[i], TermOf(result, i)});
-  }
-  for (std::size_t i = 0; i < terms.octaves; ++i) {
-    errors.intensities.push_back(
-        {terms.first_octave + static_cast<double>(i), TermOf(result, terms.rings.size() + i)});
-  }
-  return errors;
-}
 
 CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
   const bool converged = result.solution.converged;
@@ -221,6 +110,7 @@ struct SolvedGroup {
   std::vector<GuessedCamera> cameras;
   std::vector<MountChange> changes;  // indices into `cameras`
   std::optional<NextView> next_view;
+  std::vector<LidarReport> lidars;
 };
 
 std::size_t ImagesUsed(const JointResult& result) {
@@ -234,9 +124,15 @@ std::size_t ImagesUsed(const JointResult& result) {
 // views before any guess.
 JointResult SolveWithLensFound(const Target& target, const CalibrateOptions& options,
                                std::vector<GuessedCamera> cameras,
-                               const std::vector<CameraViews>& detected) {
-  const double offset_sigma_m = options.first_guess.range_offset_sigma_m;
-  JointResult result = SolveJointly(MakeJointProblem(target, std::move(cameras), offset_sigma_m));
+                               const std::vector<CameraViews>& detected,
+                               const std::vector<LidarViews>& lidars) {
+  const auto solve = [&](std::vector<GuessedCamera> guessed) {
+    JointProblem joint =
+        MakeJointProblem(target, std::move(guessed), options.first_guess.range_offset_sigma_m);
+    AddLidars(lidars, options.min_views, &joint);
+    return SolveJointly(std::move(joint));
+  };
+  JointResult result = solve(std::move(cameras));
   std::vector<CameraViews> posed;
   bool refuted = false;
   for (std::size_t c = 0; c < detected.size(); ++c) {
@@ -250,15 +146,15 @@ JointResult SolveWithLensFound(const Target& target, const CalibrateOptions& opt
   for (const GuessedCamera& camera : guessed) {
     if (!camera.guess.camera_from_lidar) return result;
   }
-  JointResult again = SolveJointly(MakeJointProblem(target, std::move(guessed), offset_sigma_m));
+  JointResult again = solve(std::move(guessed));
   return ImagesUsed(again) < ImagesUsed(result) ? std::move(result) : std::move(again);
 }
 
 SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
-                       std::vector<GuessedCamera> cameras,
-                       const std::vector<CameraViews>& detected) {
+                       std::vector<GuessedCamera> cameras, const std::vector<CameraViews>& detected,
+                       const std::vector<LidarViews>& lidars) {
   const Stopwatch watch;
-  JointResult result = SolveWithLensFound(target, options, std::move(cameras), detected);
+  JointResult result = SolveWithLensFound(target, options, std::move(cameras), detected, lidars);
   const double seconds = watch.Seconds();
   std::vector<std::vector<Cause>> causes = GivenWrong(result);
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
@@ -268,6 +164,7 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   }
   result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;
+  solved.lidars = ReportsOfLidars(result);
   solved.changes = ChangesOf(result);
   if (options.diagnostics) {
     result = CrossValidate(std::move(result), options.folds);
@@ -297,6 +194,12 @@ std::vector<std::vector<std::size_t>> GroupsOf(const std::vector<GuessedCamera>&
   return groups;
 }
 
+// Where no camera has a first guess: it is the cameras that tell which boards are the target.
+LidarReport WithoutCamera(LidarReport report) {
+  report.calibration.detail = "no camera was calibrated, and cameras tell which board it is";
+  return report;
+}
+
 // Of cameras that are solved apart, the worst one's.
 std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView> b) {
   return b && (!a || b->sigma_before_px > a->sigma_before_px) ? std::move(b) : std::move(a);
@@ -323,6 +226,12 @@ std::vector<GuessedCamera> GuessOrSayWhyNot(const Target& target, const Calibrat
 
 CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions& options,
                                     std::vector<CameraViews> cameras) {
+  return CalibrateWithLidars(target, options, std::move(cameras), {});
+}
+
+CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptions& options,
+                                      std::vector<CameraViews> cameras,
+                                      std::vector<LidarViews> lidars) {
   CalibratedCameras out;
   CalibrateOptions pairing = options;
   pairing.first_guess.accept = kVotingGate;  // what contradicts the rest is found by the solve
@@ -335,13 +244,16 @@ CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions
       together.push_back(std::move(guessed[c]));
       detected.push_back(cameras[c]);
     }
-    SolvedGroup solved = SolveGroup(target, pairing, std::move(together), detected);
+    SolvedGroup solved = SolveGroup(target, pairing, std::move(together), detected, lidars);
+    if (!lidars.empty()) out.lidars = std::move(solved.lidars);
+    lidars.clear();  // the first group has them
     for (std::size_t i = 0; i < group.size(); ++i) guessed[group[i]] = std::move(solved.cameras[i]);
     for (MountChange& change : solved.changes) {
       out.changes.push_back({group[change.from], group[change.to], std::move(change.moved)});
     }
     out.next_view = Worse(std::move(out.next_view), std::move(solved.next_view));
   }
+  for (LidarViews& left : lidars) out.lidars.push_back(WithoutCamera(std::move(left.report)));
   if (options.diagnostics) out.closure = CloseLoops(guessed);
   out.cameras = WithoutGuesses(std::move(guessed));
   return out;

@@ -7,6 +7,7 @@
 #include "calib/solve/camera_views.h"
 #include "calib/solve/evaluate.h"
 #include "calib/solve/first_guess.h"
+#include "calib/solve/lidar_views.h"
 #include "calib/solve/options.h"
 
 namespace rgbdt {
@@ -21,7 +22,8 @@ struct MountChange {
 /// What a method makes of the cameras' views: each one's report, and what they say together.
 struct CalibratedCameras {
   std::vector<CameraViews> cameras;
-  std::vector<MountChange> changes;  ///< of cameras of one name, each against the first of them
+  std::vector<LidarReport> lidars{};  ///< beside the reference
+  std::vector<MountChange> changes;   ///< of cameras of one name, each against the first of them
   std::vector<Closure> closure;
   std::optional<NextView> next_view;
 };

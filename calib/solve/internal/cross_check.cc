@@ -38,11 +38,13 @@ struct Judged {
   std::vector<double> worse;  // by view left out: the refined misfit minus the guess's
 };
 
-// A view left out against a camera's pose, by that camera's image alone; bounded, so that one wrong
-// view does not decide.
+// A view left out against a camera's pose, by that camera's image and the reference's cloud alone;
+// bounded, so that one wrong view does not decide.
 Misfit MisfitOf(const JointProblem& joint, const BoardSolution& fold, std::size_t view,
                 std::size_t camera, const Rigid3& camera_from_lidar, const Lens& lens) {
   auto [alone, state] = Part(joint.problem, {view}, joint.start);
+  alone.lidars.clear();
+  state.lidars.clear();
   std::vector<BoardImage>& images = alone.views[0].images;
   images.erase(
       std::remove_if(images.begin(), images.end(),

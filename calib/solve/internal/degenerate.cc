@@ -28,15 +28,25 @@ Eigen::Vector3d MeanNormal(const std::vector<Rigid3>& boards) {
   return sum.norm() > 1e-9 ? Eigen::Vector3d(sum.normalized()) : Eigen::Vector3d::UnitZ();
 }
 
-const char* AxisOf(const Eigen::Vector3d& v) {
+const char* NameOf(PoseOf of) { return of == PoseOf::kCamera ? "camera" : "LIDAR"; }
+
+// Of the camera's axes, or the reference LIDAR's.
+const char* AxisOf(const Eigen::Vector3d& v, PoseOf of) {
   Eigen::Index axis = 0;
   v.cwiseAbs().maxCoeff(&axis);
-  return axis == 0 ? "x (right)" : axis == 1 ? "y (down)" : "z (forward)";
+  if (of == PoseOf::kLidar) {
+    return axis == 0   ? "reference's x (forward)"
+           : axis == 1 ? "reference's y (left)"
+                       : "reference's z (up)";
+  }
+  return axis == 0   ? "camera's x (right)"
+         : axis == 1 ? "camera's y (down)"
+                     : "camera's z (forward)";
 }
 
 }  // namespace
 
-std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target) {
+std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target, PoseOf of) {
   if (lidar_from_target.empty()) return "no view";
   const Eigen::Vector3d normal = MeanNormal(lidar_from_target);
   double angle = 0;
@@ -55,32 +65,31 @@ std::string WhyDegenerate(const std::vector<Rigid3>& lidar_from_target) {
                 ? std::string("only one view")
                 : "the board was parallel to itself in all " +
                       std::to_string(lidar_from_target.size()) + " views") +
-           "; shifts of the camera across the board's normal " + Direction(normal) +
+           "; shifts of the " + NameOf(of) + " across the board's normal " + Direction(normal) +
            " and turns about it (LIDAR frame) are loose. Next: tilt the board by 20 to 40 deg, to "
            "different sides";
   }
   if (apart < kOnePlaceM) {
     return "the board was at one place in all " + std::to_string(lidar_from_target.size()) +
-           " views; a turn of the camera about that place (" + PlaceText(middle) +
+           " views; a turn of the " + NameOf(of) + " about that place (" + PlaceText(middle) +
            ", LIDAR frame) and a shift of it look alike. Next: hold the board nearer, farther, and "
            "to both sides";
   }
   return "";
 }
 
-std::string WhyLoose(const Matrix6d& covariance) {
+std::string WhyLoose(const Matrix6d& covariance, PoseOf of) {
   const Eigensystem<3> turns = EigensystemOf(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
   const Eigensystem<3> shifts =
       EigensystemOf(Eigen::Matrix3d(covariance.bottomRightCorner<3, 3>()));
   const double turn = std::sqrt(std::max(0.0, turns.values[2]));
   const double shift = std::sqrt(std::max(0.0, shifts.values[2]));
   if (turn <= kLooseRad && shift <= kLooseM) return "";
-  const std::string loose =
-      turn / kLooseRad >= shift / kLooseM
-          ? Format("turns about the camera's %s are known to %.1f deg only (1 sigma)",
-                   AxisOf(turns.vectors.col(2)), turn * 180 / M_PI)
-          : Format("shifts along the camera's %s are known to %.0f mm only (1 sigma)",
-                   AxisOf(shifts.vectors.col(2)), shift * 1000);
+  const std::string loose = turn / kLooseRad >= shift / kLooseM
+                                ? Format("turns about the %s are known to %.1f deg only (1 sigma)",
+                                         AxisOf(turns.vectors.col(2), of), turn * 180 / M_PI)
+                                : Format("shifts along the %s are known to %.0f mm only (1 sigma)",
+                                         AxisOf(shifts.vectors.col(2), of), shift * 1000);
   return loose + "; add views with the board elsewhere and tilted otherwise";
 }
 

@@ -17,6 +17,12 @@ JointResult HoldEdgesAgainstPlanes(JointResult result) {
   BoardProblem planes = all;
   std::deque<ImageEdges> without_sides;
   for (BoardView& view : edges.views) view.cloud.scatter_sigma_m = 0;
+  for (BoardProblem& lidar : edges.lidars) {
+    for (BoardView& view : lidar.views) view.cloud.scatter_sigma_m = 0;
+  }
+  for (BoardProblem& lidar : planes.lidars) {
+    for (BoardView& view : lidar.views) view.cloud.crossings.clear();
+  }
   for (BoardView& view : planes.views) {
     view.cloud.crossings.clear();
     if (!all.target.HasPattern()) continue;

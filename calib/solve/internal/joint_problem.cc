@@ -52,13 +52,7 @@ class Builder {
  public:
   explicit Builder(const Target& target) {
     joint_.problem.target = target;
-    joint_.problem.priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
-    if (target.HasPattern() && target.print_sigma > 0)
-      joint_.problem.priors.bow_sigma_m = kBowSigmaM;
-    if (!target.HasPattern()) {
-      joint_.problem.priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
-      joint_.problem.priors.fringe_sigma_m = kPlainFringeSigmaM;
-    }
+    joint_.problem.priors = PriorsOf(target);
   }
 
   void Add(GuessedCamera guessed) {
@@ -73,14 +67,8 @@ class Builder {
 
   JointProblem Finish(double range_offset_sigma_m) {
     BoardProblem& problem = joint_.problem;
-    problem.ranges_exact = range_offset_sigma_m == 0;
-    // A plain board's rim, which images show beside its front, leans it there as an offset of the
-    // ranges would: such boards are no evidence of one, unless nothing is to be known of it.
-    const bool offset = range_offset_sigma_m > 0 &&
-                        (problem.target.HasPattern() || range_offset_sigma_m >= kRangeOffsetSigmaM);
     AddLensPriors();
-    if (!problem.ranges_exact) OpenBeams(&problem);
-    if (offset) problem.priors.range_offset_sigma_m = range_offset_sigma_m;
+    const bool offset = OpenRanges(range_offset_sigma_m, &problem);
     std::vector<Rigid3> poses;
     for (const GuessedCamera& c : joint_.cameras) poses.push_back(*c.guess.camera_from_lidar);
     joint_.start = StartOf(problem, poses);
@@ -144,6 +132,28 @@ class Builder {
 };
 
 }  // namespace
+
+BoardPriors PriorsOf(const Target& target) {
+  BoardPriors priors;
+  priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
+  if (target.HasPattern() && target.print_sigma > 0) priors.bow_sigma_m = kBowSigmaM;
+  if (!target.HasPattern()) {
+    priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
+    priors.fringe_sigma_m = kPlainFringeSigmaM;
+  }
+  return priors;
+}
+
+bool OpenRanges(double range_offset_sigma_m, BoardProblem* problem) {
+  problem->ranges_exact = range_offset_sigma_m == 0;
+  // A plain board's rim, which images show beside its front, leans it there as an offset of the
+  // ranges would: such boards are no evidence of one, unless nothing is to be known of it.
+  const bool offset = range_offset_sigma_m > 0 &&
+                      (problem->target.HasPattern() || range_offset_sigma_m >= kRangeOffsetSigmaM);
+  if (!problem->ranges_exact) OpenBeams(problem);
+  if (offset) problem->priors.range_offset_sigma_m = range_offset_sigma_m;
+  return offset;
+}
 
 void OpenBeams(BoardProblem* problem) {
   if (HasRings(*problem)) problem->priors.beams_meet_sigma_m = kBeamsMeetSigmaM;

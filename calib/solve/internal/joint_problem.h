@@ -5,6 +5,7 @@
 #include "calib/solve/board_problem.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/guess_cameras.h"
+#include "calib/solve/lidar_views.h"
 
 namespace rgbdt {
 
@@ -12,8 +13,17 @@ namespace rgbdt {
 struct JointProblem {
   BoardProblem problem;
   BoardState start;
-  std::vector<GuessedCamera> cameras;  ///< in the order of problem.cameras
+  std::vector<GuessedCamera> cameras;     ///< in the order of problem.cameras
+  std::vector<LidarViews> lidars{};       ///< in the order of problem.lidars
+  std::vector<LidarViews> lidars_left{};  ///< those without a first guess
 };
+
+/// What is known of board and beam before any view.
+BoardPriors PriorsOf(const Target& target);
+
+/// What a LIDAR's ranges are off by becomes unknown, as far as `range_offset_sigma_m` and the
+/// target let it (MakeJointProblem); whether a common offset does.
+bool OpenRanges(double range_offset_sigma_m, BoardProblem* problem);
 
 /// Where the LIDAR's clouds tell lasers apart, the radius at which its beams meet becomes an
 /// unknown.

@@ -8,7 +8,10 @@
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 #include "calib/solve/internal/evidence.h"
+#include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/range_terms.h"
+#include "calib/solve/internal/scatter_sigmas.h"
+#include "calib/solve/internal/swap_reference.h"
 #include "calib/solve/internal/view_scatter.h"
 
 namespace rgbdt {
@@ -16,8 +19,7 @@ namespace {
 
 constexpr double kChanceChi2 = 30;  // six degrees of freedom: 4 in 100,000 lie beyond
 constexpr double kMedianChi2 = 5.348;
-constexpr double kSideSigmas = 4;
-const char* const kSideNames[] = {"top", "right", "bottom", "left"};
+constexpr double kToDecide = 1e-2;  // a tenth of a sigma
 
 using Index = Eigen::Index;
 
@@ -32,7 +34,7 @@ double ScatterOf(const std::vector<Contradiction>& contradictions) {
   return std::max(1.0, chi2[chi2.size() / 2] / kMedianChi2);
 }
 
-// Images left of a camera.
+// How many images are left of a camera.
 int ImagesOf(const BoardProblem& problem, int camera) {
   int count = 0;
   for (const BoardView& view : problem.views) {
@@ -41,72 +43,29 @@ int ImagesOf(const BoardProblem& problem, int camera) {
   return count;
 }
 
+// Of each camera, then of each further LIDAR.
+std::vector<int> ViewsOfSensors(const BoardProblem& problem) {
+  std::vector<int> views;
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
+    views.push_back(ImagesOf(problem, static_cast<int>(c)));
+  }
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) views.push_back(CloudsOf(problem, l));
+  return views;
+}
+
 const Contradiction* WorstToReject(const JointProblem& joint,
                                    const std::vector<Contradiction>& contradictions,
                                    const std::vector<int>& at_first) {
   const double limit = kChanceChi2 * ScatterOf(contradictions);
+  const std::vector<int> now = ViewsOfSensors(joint.problem);
   const Contradiction* worst = nullptr;
   for (const Contradiction& c : contradictions) {
-    const int camera = joint.problem.views[c.view].images[c.image].camera;
-    const int left = ImagesOf(joint.problem, camera);
-    if (left <= 3 || 3 * (left - 1) < 2 * at_first[static_cast<std::size_t>(camera)]) continue;
+    const std::size_t sensor = SensorOf(joint.problem, c);
+    const int left = now[sensor];
+    if (left <= 3 || 3 * (left - 1) < 2 * at_first[sensor]) continue;
     if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
   }
   return worst;
-}
-
-// How far sides differ among themselves, by the data: never less than the physics says. The shifts
-// as found, over how many of them the data tell (MacKay 1992).
-double SideSigma(const JointProblem& joint, const BoardSolution& solution) {
-  const double prior = joint.problem.priors.side_sigma_rad;
-  double sum = 0;
-  double told = 0;
-  for (std::size_t v = 0; v < joint.problem.views.size(); ++v) {
-    for (std::size_t side = 0; side < 4; ++side) {
-      if (!joint.problem.views[v].sides[side]) continue;
-      const double shift = solution.state.side_shift[v][side];
-      sum += shift * shift;
-      told += 1 - solution.side_variance[v][side] / (prior * prior);
-    }
-  }
-  const double least = BoardPriors().side_sigma_rad;
-  return told > 1 ? std::max(least, std::sqrt(sum / told)) : least;
-}
-
-// The range offset as the views have it, as if nothing had been known of it: one step from the
-// solution.
-Estimate FreeRangeOffset(const JointProblem& joint, const BoardSolution& solution) {
-  const Index at = SharedPlaces(joint.problem).Of(kRangeOffset);
-  const double offset = solution.state.shared[kRangeOffset];
-  ViewInformation all = PriorInformation(joint.problem, solution.state);
-  all.information(at, at) = 1 / (kRangeOffsetSigmaM * kRangeOffsetSigmaM);
-  all.gradient[at] = -offset * all.information(at, at);
-  for (const ViewInformation& view : solution.views) {
-    all.information += view.information;
-    all.gradient += view.gradient;
-  }
-  const Eigen::MatrixXd covariance = InverseOfSymmetric(all.information);
-  const Eigen::VectorXd step = covariance * all.gradient;
-  return {offset + step[at], std::sqrt(covariance(at, at))};
-}
-
-// How far the board's sides in the images lie from where the rest puts them, beyond what their own
-// fits say: boards are not quite straight, and show their rims. Robust, as what contradicts the
-// rest is still among them; nothing where chance may make as much.
-double ImageSideSigma(const BoardProblem& problem, const BoardState& state) {
-  std::vector<double> off;
-  std::vector<double> sigma;
-  for (std::size_t v = 0; v < problem.views.size(); ++v) {
-    for (const ImageSideEnd& end : ImageSideEnds(problem, state, v)) {
-      off.push_back(std::abs(end.beside_m));
-      sigma.push_back(end.sigma_m);
-    }
-  }
-  if (off.size() < 16) return 0;
-  const double scatter = Median(std::move(off)) / 0.6745;
-  const double stated = Median(std::move(sigma));
-  return scatter * scatter > 2 * stated * stated ? std::sqrt(scatter * scatter - stated * stated)
-                                                 : 0;
 }
 
 // Solves, and again without what contradicts the rest.
@@ -114,9 +73,7 @@ class JointSolver {
  public:
   explicit JointSolver(JointProblem joint) : state_(joint.start) {
     result_.joint = std::move(joint);
-    for (std::size_t c = 0; c < Joint().cameras.size(); ++c) {
-      images_at_first_.push_back(ImagesOf(Problem(), static_cast<int>(c)));
-    }
+    views_at_first_ = ViewsOfSensors(Problem());
   }
 
   JointResult Solve() {
@@ -128,12 +85,16 @@ class JointSolver {
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Problem(), result_.solution);
-      const Contradiction* worst = WorstToReject(Joint(), contradictions, images_at_first_);
+      const Contradiction* worst = WorstToReject(Joint(), contradictions, views_at_first_);
       if (worst != nullptr) {
-        RejectImage(*worst);
+        if (worst->lidar) {
+          RejectCloud(*worst, &Joint());
+        } else {
+          RejectImage(*worst);
+        }
         continue;
       }
-      if (DropSide()) continue;
+      if (DropSide() || DropFurtherSide()) continue;
       FitScatter();
       Settle();
       result_.view_scatter = ViewScatterOf(Problem(), result_.solution);
@@ -153,8 +114,7 @@ class JointSolver {
 
   // As exactly as it takes to decide what to solve next: to a tenth of a sigma.
   void SolveOnce() {
-    constexpr double kSettled = 1e-2;
-    result_.solution = SolveBoards(Problem(), state_, kSettled);
+    result_.solution = SolveBoards(Problem(), state_, kToDecide);
     state_ = result_.solution.state;
   }
 
@@ -211,35 +171,40 @@ class JointSolver {
     Problem().views.erase(Problem().views.begin() + at);
     state_.lidar_from_target.erase(state_.lidar_from_target.begin() + at);
     state_.side_shift.erase(state_.side_shift.begin() + at);
+    for (std::size_t l = 0; l < state_.lidars.size(); ++l) {
+      if (HasCloud(Problem(), l, worst.view)) {
+        Joint().lidars[l].report.rejected.push_back(
+            {Problem().lidars[l].views[worst.view].name, "no camera's image of the view was used"});
+      }
+      Problem().lidars[l].views.erase(Problem().lidars[l].views.begin() + at);
+      state_.lidars[l].side_shift.erase(state_.lidars[l].side_shift.begin() + at);
+    }
   }
 
   // The side whose own shift is the least likely, out. False: none is unlikely enough.
   bool DropSide() {
-    const double most = kSideSigmas * Problem().priors.side_sigma_rad;
-    double worst = most;
-    std::size_t view = 0;
-    std::size_t side = 0;
-    for (std::size_t v = 0; v < Problem().views.size(); ++v) {
-      for (std::size_t s = 0; s < 4; ++s) {
-        // A rectangle needs three.
-        const auto& sides = Problem().views[v].sides;
-        if (!sides[s] || std::count(sides.begin(), sides.end(), true) < 4) continue;
-        const double shift = std::abs(state_.side_shift[v][s]);
-        if (shift <= worst) continue;
-        worst = shift;
-        view = v;
-        side = s;
-      }
-    }
-    if (worst <= most) return false;
-    Problem().views[view].sides[side] = false;
-    for (const BoardImage& image : Problem().views[view].images) {
+    const auto side = LeastLikelySide(Problem(), state_.side_shift);
+    if (!side) return false;
+    BoardView& view = Problem().views[side->view];
+    view.sides[side->side] = false;
+    for (const BoardImage& image : view.images) {
       Joint().cameras[static_cast<std::size_t>(image.camera)].views.report.warnings.push_back(
-          "view " + Problem().views[view].name + ": the board's " + kSideNames[side] +
-          " side in the cloud lies " + Fixed(worst * 1000, 1) +
-          " mrad from where the other sides put it; that side is left out, the view is used");
+          SideIsOut(view.name, *side));
     }
     return true;
+  }
+
+  // The same of the further LIDARs' clouds.
+  bool DropFurtherSide() {
+    for (std::size_t l = 0; l < state_.lidars.size(); ++l) {
+      const auto side = LeastLikelySide(Problem().lidars[l], state_.lidars[l].side_shift);
+      if (!side) continue;
+      BoardView& view = Problem().lidars[l].views[side->view];
+      view.sides[side->side] = false;
+      Joint().lidars[l].report.warnings.push_back(SideIsOut(view.name, *side));
+      return true;
+    }
+    return false;
   }
 
   // Solves again until what ranges are off by agrees with the views.
@@ -255,19 +220,30 @@ class JointSolver {
   void FitScatter() {
     constexpr int kRounds = 12;
     for (int round = 0; round < kRounds; ++round) {
-      const double before = Problem().priors.side_sigma_rad;
-      const double now = SideSigma(Joint(), result_.solution);
-      const bool sides = std::abs(now - before) > 0.03 * before;
-      if (sides) Problem().priors.side_sigma_rad = now;
-      const bool ranges = FitRangeTerms(result_.solution, &Problem(), &state_);
-      if (!sides && !ranges) return;
+      bool changed = FitScatterOnce(result_.solution);
+      // Each further LIDAR's as if it were the reference.
+      for (std::size_t l = 0; l < state_.lidars.size(); ++l) {
+        SwapReference(l, &Problem(), &state_);
+        changed = FitScatterOnce(SolveBoards(Problem(), state_, kToDecide)) || changed;
+        SwapReference(l, &Problem(), &state_);
+      }
+      if (!changed) return;
       SolveOnce();
     }
   }
 
+  // Of the reference's clouds at a solution: whether anything changed.
+  bool FitScatterOnce(const BoardSolution& solution) {
+    const double before = Problem().priors.side_sigma_rad;
+    const double now = SideSigma(Problem(), solution);
+    const bool sides = std::abs(now - before) > 0.03 * before;
+    if (sides) Problem().priors.side_sigma_rad = now;
+    return FitRangeTerms(solution, &Problem(), &state_) || sides;
+  }
+
   JointResult result_;
   BoardState state_;
-  std::vector<int> images_at_first_;  // of each camera
+  std::vector<int> views_at_first_;  // as ViewsOfSensors
 };
 
 std::vector<LensOff> LensesOff(const JointResult& result) {
@@ -289,7 +265,7 @@ JointResult SolveWithOffset(JointProblem joint) {
   const double known = joint.problem.priors.range_offset_sigma_m;
   // NaN, where the views say nothing, refutes nothing.
   const auto refuted = [&](const JointResult& result, double sigmas) {
-    const Estimate free = FreeRangeOffset(result.joint, result.solution);
+    const Estimate free = FreeRangeOffset(result.joint.problem, result.solution);
     const double sigma = std::sqrt(result.variance_factor) * free.sigma;
     return std::abs(free.value) > sigmas * std::hypot(sigma, known);
   };

@@ -216,10 +216,14 @@ std::optional<Eigen::MatrixXd> Expected(const BoardProblem& problem, const Board
   for (std::size_t c = 0; c < images->size(); ++c) {
     view.images.push_back({static_cast<int>(c), &(*images)[c], false});
   }
-  const BoardProblem alone{problem.target, problem.cameras, problem.lens_priors, problem.lens_of,
-                           {view},         problem.priors,  problem.ranges};
-  const BoardState there{state.camera_from_lidar, state.lenses, state.shared,
-                         {lidar_from_target},     {{}},         state.range_terms};
+  auto [alone, there] = Part(problem, {}, state);
+  alone.views = {view};
+  there.lidar_from_target = {lidar_from_target};
+  there.side_shift = {{}};
+  for (std::size_t l = 0; l < alone.lidars.size(); ++l) {  // it is not said to see the board there
+    alone.lidars[l].views = {BoardView()};
+    there.lidars[l].side_shift = {{}};
+  }
   return InformationOf(alone, there, 0).information;
 }
 

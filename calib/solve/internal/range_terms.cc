@@ -199,6 +199,10 @@ double SigmaOf(const Wide& wide, std::size_t first, std::size_t count, double no
   std::vector<Index> others(static_cast<std::size_t>(places.RangeTerm(0)));
   std::iota(others.begin(), others.end(), Index{0});
   others.insert(others.end(), other.begin(), other.end());
+  // What further LIDARs add.
+  for (Index at = places.RangeTerm(wide.problem.ranges.Count()); at < places.Count(); ++at) {
+    others.push_back(at);
+  }
   ViewInformation said = Marginal(wide.all, kept, others);
   Eigen::VectorXd values(static_cast<Index>(count));
   for (std::size_t i = 0; i < count; ++i) {

@@ -23,11 +23,23 @@ double PixelsPerMetre(const BoardProblem& problem, const BoardImage& image) {
 }  // namespace
 
 ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view)
+    : ViewEquations(problem, state, problem.views[view], state.lidar_from_target[view],
+                    state.side_shift[view]) {
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
+    further_.emplace_back(problem, state, places_, l, view);
+    further_.back().AddTo(&h_, &g_);
+    cost_ += further_.back().cost();
+  }
+}
+
+ViewEquations::ViewEquations(const BoardProblem& problem, const BoardState& state,
+                             const BoardView& view, const Rigid3& lidar_from_target,
+                             const std::array<double, 4>& side_shift)
     : problem_(problem),
-      view_(problem.views[view]),
+      view_(view),
       state_(state),
-      lidar_from_target_(state.lidar_from_target[view]),
-      side_shift_(state.side_shift[view]),
+      lidar_from_target_(lidar_from_target),
+      side_shift_(side_shift),
       places_(problem),
       h_(Eigen::MatrixXd::Zero(Size(), Size())),
       g_(Eigen::VectorXd::Zero(Size())) {

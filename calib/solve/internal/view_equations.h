@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "calib/solve/board_problem.h"
+#include "calib/solve/internal/further_cloud.h"
 
 namespace rgbdt {
-
-inline constexpr int kOwnUnknowns = 10;  ///< of a view: its board's pose, its four sides' shifts
 
 /// One view's normal equations about a state: h x = g, x the step. Its own unknowns come first
 /// (board's pose: right delta, lidar_from_target * Exp(delta); then sides' shifts [rad]), then the
@@ -19,6 +18,9 @@ class ViewEquations {
   using OwnMatrix = Eigen::Matrix<double, kOwnUnknowns, kOwnUnknowns>;
 
   ViewEquations(const BoardProblem& problem, const BoardState& state, std::size_t view);
+  /// Without further LIDARs, of a view that need not be among the problem's; must outlive it, too.
+  ViewEquations(const BoardProblem& problem, const BoardState& state, const BoardView& view,
+                const Rigid3& lidar_from_target, const std::array<double, 4>& side_shift);
 
   double cost() const { return cost_; }  ///< robust, whitened, squared
   const Eigen::MatrixXd& h() const { return h_; }
@@ -27,6 +29,8 @@ class ViewEquations {
   const std::vector<RingOff>& rings_off() const { return rings_off_; }
   /// What the points on the board alone add to `h` of the own unknowns.
   const OwnMatrix& of_points() const { return of_points_; }
+  /// What each further LIDAR adds, which is in `h`, `g` and `cost`.
+  const std::vector<FurtherCloud>& further() const { return further_; }
 
  private:
   using Row6 = Eigen::Matrix<double, 1, 6>;
@@ -82,6 +86,7 @@ class ViewEquations {
   std::vector<ImageSideEnd> image_side_ends_;
   std::vector<RingOff> rings_off_;
   OwnMatrix of_points_;
+  std::vector<FurtherCloud> further_;
 };
 
 }  // namespace rgbdt

@@ -22,39 +22,74 @@ BoardSolution Without(const BoardProblem& problem, const BoardSolution& all, std
   return SolveSome(problem, all, others);
 }
 
+// Of the cameras' poses, then the further LIDARs'.
+std::vector<Index> PlacesOfPoses(const BoardProblem& problem) {
+  const SharedPlaces places(problem);
+  std::vector<Index> poses;
+  const auto add = [&](Index first) {
+    for (Index k = 0; k < 6; ++k) poses.push_back(first + k);
+  };
+  for (std::size_t c = 0; c < problem.cameras.size(); ++c) add(SharedPlaces::Pose(c));
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) add(places.LidarPose(l));
+  return poses;
+}
+
+// Their poses, in the same order.
+std::vector<Rigid3> PosesOf(const BoardState& state) {
+  std::vector<Rigid3> poses = state.camera_from_lidar;
+  for (const LidarState& lidar : state.lidars) poses.push_back(lidar.reference_from_lidar);
+  return poses;
+}
+
+// A view's images and further clouds, nothing said of them yet.
+std::vector<Contradiction> SensorsOf(const BoardProblem& problem, std::size_t view) {
+  std::vector<Contradiction> sensors;
+  for (std::size_t s = 0; s < problem.views[view].images.size(); ++s) {
+    sensors.push_back({view, s, std::nullopt});
+  }
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
+    if (HasCloud(problem, l, view)) sensors.push_back({view, 0, l});
+  }
+  return sensors;
+}
+
 }  // namespace
+
+std::size_t SensorOf(const BoardProblem& problem, const Contradiction& contradiction) {
+  if (contradiction.lidar) return problem.cameras.size() + *contradiction.lidar;
+  return static_cast<std::size_t>(
+      problem.views[contradiction.view].images[contradiction.image].camera);
+}
 
 std::vector<Contradiction> Contradictions(const BoardProblem& problem,
                                           const BoardSolution& solution) {
-  const auto cameras = static_cast<Index>(6 * problem.cameras.size());
+  const std::vector<Index> poses = PlacesOfPoses(problem);
+  const auto count = static_cast<Index>(poses.size());
   // Nuisances as they are: a view's own and the others' then add up.
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(cameras, cameras);
-  for (const ViewInformation& view : solution.views) {
-    all += view.information.topLeftCorner(cameras, cameras);
-  }
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
+  for (const ViewInformation& view : solution.views) all += view.information(poses, poses);
   std::vector<Contradiction> out;
   for (std::size_t v = 0; v < problem.views.size(); ++v) {
-    const BoardView& view = problem.views[v];
-    // The view's cameras only: of others it says nothing.
+    // The view's sensors only: of others it says nothing.
+    const std::vector<Contradiction> sensors = SensorsOf(problem, v);
     std::vector<Index> place;
-    for (const BoardImage& image : view.images) {
-      for (Index k = 0; k < 6; ++k) place.push_back(6 * image.camera + k);
+    for (const Contradiction& sensor : sensors) {
+      const auto first = static_cast<Index>(6 * SensorOf(problem, sensor));
+      for (Index k = 0; k < 6; ++k) place.push_back(first + k);
     }
-    const auto own = Eigen::MatrixXd(
-        solution.views[v].information.topLeftCorner(cameras, cameras)(place, place));
-    const auto gradient = Eigen::VectorXd(solution.views[v].gradient.head(cameras)(place));
-    const Eigen::MatrixXd others =
-        all - solution.views[v].information.topLeftCorner(cameras, cameras);
+    const Eigen::MatrixXd of_view = solution.views[v].information(poses, poses);
+    const auto own = Eigen::MatrixXd(of_view(place, place));
+    const auto gradient =
+        Eigen::VectorXd(Eigen::VectorXd(solution.views[v].gradient(poses))(place));
+    const Eigen::MatrixXd others = all - of_view;
     const Eigen::MatrixXd others_covariance = InverseOfSymmetric(others)(place, place);
     const Eigen::MatrixXd covariance = InverseOfSymmetric(own) + others_covariance;
     const Eigen::VectorXd off = covariance * gradient;
-    for (std::size_t s = 0; s < view.images.size(); ++s) {
+    for (std::size_t s = 0; s < sensors.size(); ++s) {
       const auto at = static_cast<Index>(6 * s);
       const Matrix6d block = covariance.block<6, 6>(at, at);
       const Vector6d delta = off.segment<6>(at);
-      Contradiction c;
-      c.view = v;
-      c.image = s;
+      Contradiction c = sensors[s];
       c.chi2 = delta.dot(SolveSymmetric(block, delta));
       c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
       c.centre_mm = delta.tail<3>().norm() * 1000;
@@ -79,28 +114,30 @@ std::optional<ViewScatter> ViewScatterOf(const BoardProblem& problem,
   const std::size_t views = problem.views.size();
   if (views < 4) return std::nullopt;
   const std::size_t parts = std::min(views, kMostParts);
+  const std::vector<Index> places = PlacesOfPoses(problem);
   double moved = 0;
   double expected = 0;
   double expected2 = 0;
   for (std::size_t part = 0; part < parts; ++part) {
     const BoardSolution without = Without(problem, solution, part, parts);
-    for (std::size_t c = 0; c < problem.cameras.size(); ++c) {
-      const auto at = static_cast<Index>(6 * c);
+    const std::vector<Rigid3> poses = PosesOf(solution.state);
+    const std::vector<Rigid3> poses_without = PosesOf(without.state);
+    for (std::size_t c = 0; c < poses.size(); ++c) {
+      const Index at = places[6 * c];
       const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
       const Matrix6d covariance_without = without.covariance.block<6, 6>(at, at);
       const Matrix6d more = SolveSymmetric(covariance, covariance_without) - Matrix6d::Identity();
-      const Vector6d move =
-          Log(without.state.camera_from_lidar[c] * solution.state.camera_from_lidar[c].Inverse());
+      const Vector6d move = Log(poses_without[c] * poses[c].Inverse());
       moved += move.dot(SolveSymmetric(covariance, move));
       expected += more.trace();
       expected2 += (more * more).trace();
     }
   }
   if (!(expected > 0) || !std::isfinite(moved)) return std::nullopt;
-  // Cameras of one view share its cloud: their moves are correlated, and count but once.
+  // Sensors of one view share its cloud: their moves are correlated, and count but once.
   std::size_t together = 1;
-  for (const BoardView& view : problem.views) {
-    together = std::max(together, view.images.size());
+  for (std::size_t v = 0; v < views; ++v) {
+    together = std::max(together, SensorsOf(problem, v).size());
   }
   const double chance = std::sqrt(2 * expected2 * static_cast<double>(together)) / expected;
   return ViewScatter{moved / expected, 2 / (chance * chance)};

@@ -9,15 +9,20 @@
 
 namespace rgbdt {
 
-/// How far a view's own estimate of a camera is from that of all the others.
+/// How far a view's own estimate of a camera, or of a further LIDAR, is from that of all others.
 struct Contradiction {
-  std::size_t view = 0, image = 0;  ///< BoardProblem::views, BoardView::images
-  double chi2 = 0;                  ///< six degrees of freedom
+  std::size_t view = 0, image = 0;     ///< BoardProblem::views, BoardView::images
+  std::optional<std::size_t> lidar{};  ///< of this further LIDAR instead, whose cloud it is
+  double chi2 = 0;                     ///< six degrees of freedom
   double rotation_deg = 0, centre_mm = 0;
 };
 
-/// Of every image whose camera other views have, too, by the normal equations at the solution:
-/// the view alone would step by information^-1 gradient, the others without it the other way.
+/// Whose pose it is about: a camera's index, or the number of cameras and a further LIDAR's index.
+std::size_t SensorOf(const BoardProblem& problem, const Contradiction& contradiction);
+
+/// Of every image whose camera other views have, too, and likewise of every further cloud, by the
+/// normal equations at the solution: the view alone would step by information^-1 gradient, the
+/// others without it the other way.
 std::vector<Contradiction> Contradictions(const BoardProblem& problem,
                                           const BoardSolution& solution);
 

@@ -77,6 +77,29 @@ void SolveWorld::AddView(const Rigid3& board) {
   detections.push_back(std::move(detection));
 }
 
+LidarViews SolveWorld::SeenBy(const std::string& lidar, const Rigid3& reference_from_lidar,
+                              double ranges_off_m) {
+  LidarViews views;
+  views.report.calibration.lidar = lidar;
+  views.range_offset_sigma_m = 0.02;
+  const auto of_reference = shared;
+  const auto drawn = Drawn(false);
+  for (const std::size_t k : {kNoReturnShift, kFarShift, kMergedShift}) {
+    if (options_.draw_nuisances) shared[k] = drawn[k];
+  }
+  shared[kRangeOffset] = ranges_off_m;
+  for (std::size_t v = 0; v < detections.size(); ++v) {
+    std::array<double, 4> shift{};
+    for (double& side : shift) side = options_.side_sigma_rad * Normal();
+    CloudDetection seen;
+    seen.candidates = {
+        SeeCloud(reference_from_lidar.Inverse() * lidar_from_target[v], shift, v % 3 == 1)};
+    views.Add(detections[v].view, seen);
+  }
+  shared = of_reference;
+  return views;
+}
+
 bool SolveWorld::Seen(const Rigid3& board, double margin_px) const {
   const Eigen::Vector3d away = board.translation.normalized();
   if (away.dot(board.rotation * Eigen::Vector3d::UnitZ()) < 0.5) return false;

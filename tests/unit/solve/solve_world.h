@@ -59,6 +59,11 @@ class SolveWorld {
   /// The board held once more.
   void AddView(const Rigid3& board);
 
+  /// What a second LIDAR sees in all views so far, made as the reference's clouds are; its ranges
+  /// fall short by `ranges_off_m`, and classes of edges are shifted anew where nuisances are drawn.
+  LidarViews SeenBy(const std::string& lidar, const Rigid3& reference_from_lidar,
+                    double ranges_off_m);
+
   ImageEdges& ImageAt(std::size_t view, std::size_t camera) {
     return *detections[view].images[camera].edges;
   }
