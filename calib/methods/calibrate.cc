@@ -9,6 +9,7 @@
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
 #include "calib/methods/single_shot/by_single_shot.h"
+#include "calib/model/pose_sigma.h"
 #include "calib/solve/by_boards.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/evaluate.h"
@@ -24,14 +25,24 @@ CameraViews WithGuessChecked(CameraViews camera) {
   return camera;
 }
 
+LidarReport NotByThis(LidarReport report) {
+  report.calibration.detail = "only method \"auto\" solves for several LIDARs";
+  return report;
+}
+
 CalibratedCameras CalibrateCameras(const Target& target, const CalibrateOptions& options,
-                                   std::vector<CameraViews> cameras) {
+                                   std::vector<CameraViews> cameras,
+                                   std::vector<LidarViews> lidars) {
+  if (options.method == kAutoMethod) {
+    return CalibrateWithLidars(target, options, std::move(cameras), std::move(lidars));
+  }
   const auto by = options.method == kPlaneMethod          ? CalibrateByPlanes
                   : options.method == kLineScanMethod     ? CalibrateByLineScan
                   : options.method == kBearingAngleMethod ? CalibrateByBearingAngle
-                  : options.method == kSingleShotMethod   ? CalibrateBySingleShot
-                                                          : CalibrateByBoards;
-  return by(target, options, std::move(cameras));
+                                                          : CalibrateBySingleShot;
+  CalibratedCameras calibrated = by(target, options, std::move(cameras));
+  for (LidarViews& lidar : lidars) calibrated.lidars.push_back(NotByThis(std::move(lidar.report)));
+  return calibrated;
 }
 
 }  // namespace
@@ -45,7 +56,10 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
-    CalibratedCameras calibrated = CalibrateCameras(rig.target, with_rig, std::move(cameras));
+    CalibratedCameras calibrated =
+        CalibrateCameras(rig.target, with_rig, std::move(cameras),
+                         LidarViewsOf(rig, detections, options.first_guess.range_offset_sigma_m));
+    report.lidars = std::move(calibrated.lidars);
     cameras = std::move(calibrated.cameras);
     for (CameraViews& camera : cameras) camera = WithGuessChecked(std::move(camera));
     report.closure = std::move(calibrated.closure);
@@ -75,6 +89,11 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
     const EdgeModel edges{rig.target, BoardPriors().Means(), {}};
     report.cameras.push_back(JudgeEdges(
         edges, views.Usable(), JudgeCamera(camera, views.Usable(), std::move(views.report))));
+  }
+  for (const LidarCalibration& lidar : calibration.lidars) {
+    LidarReport& given = report.lidars.emplace_back();
+    given.calibration = lidar;
+    if (lidar.covariance) given.sigma = SigmaOf(lidar);
   }
   return report;
 }

@@ -23,6 +23,9 @@ ViewDetection Unreadable(const Rig& rig, const std::string& view, const std::str
     detection.images.push_back({camera.name, 0, std::nullopt, why, 0});
   }
   detection.cloud.why_not = why;
+  for (const LidarSpec& lidar : rig.further_lidars) {
+    detection.further_clouds.push_back({lidar.name, {{}, why, 0}});
+  }
   return detection;
 }
 

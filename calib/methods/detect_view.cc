@@ -168,6 +168,25 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
   return detection;
 }
 
+// Of the LIDARs beside the reference. Only "auto" solves for their poses.
+std::vector<LidarDetection> DetectFurther(const Rig& rig, const View& view) {
+  std::vector<LidarDetection> detections;
+  for (const LidarSpec& lidar : rig.further_lidars) {
+    LidarDetection& detection = detections.emplace_back(LidarDetection{lidar.name, {}});
+    const auto found =
+        std::find_if(view.further_clouds.begin(), view.further_clouds.end(),
+                     [&](const LidarCloud& cloud) { return cloud.lidar == lidar.name; });
+    if (found == view.further_clouds.end()) {
+      detection.cloud.why_not = "the view has no cloud of this LIDAR";
+      continue;
+    }
+    Rig as_reference = rig;
+    as_reference.lidar = lidar;
+    detection.cloud = DetectCloud(as_reference, found->cloud, {}, kAutoMethod);
+  }
+  return detections;
+}
+
 }  // namespace
 
 ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
@@ -184,6 +203,7 @@ ViewDetection DetectView(const Rig& rig, const View& view, const std::string& me
     detection.images.push_back(DetectImage(camera, rig.target, view, by_paper));
   }
   detection.cloud = DetectCloud(rig, view.cloud, detection.images, method);
+  if (method == kAutoMethod) detection.further_clouds = DetectFurther(rig, view);
   return detection;
 }
 

@@ -46,6 +46,18 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->solve_s = before.solve_s;
 }
 
+// All of a LIDAR beside the reference whose pose is the same.
+void KeepFromSolve(const Report& before, LidarReport* lidar) {
+  for (const LidarReport& other : before.lidars) {
+    const Rigid3& pose = other.calibration.reference_from_lidar;
+    const Rigid3& given = lidar->calibration.reference_from_lidar;
+    if (other.calibration.lidar == lidar->calibration.lidar &&
+        RotationDistance(pose, given) < 1e-9 && CentreDistance(pose, given) < 1e-9) {
+      *lidar = other;
+    }
+  }
+}
+
 // What only the solve could tell is kept from the report that it wrote; what it tells of the
 // cameras together, where all of them are still the same.
 void KeepFromSolve(const std::filesystem::path& path, Report* report) {
@@ -57,6 +69,7 @@ void KeepFromSolve(const std::filesystem::path& path, Report* report) {
     if (same != nullptr) KeepFromSolve(*same, &camera);
     all_same = all_same && same != nullptr;
   }
+  for (LidarReport& lidar : report->lidars) KeepFromSolve(before, &lidar);
   if (!all_same) return;
   report->closure = before.closure;
   report->next_view = before.next_view;
