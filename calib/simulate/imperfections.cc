@@ -6,6 +6,7 @@
 
 #include "calib/model/beam_priors.h"
 #include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/spinning.h"
 
 namespace rgbdt::simulate {
@@ -57,6 +58,10 @@ std::string Line(const char* format, Values... values) {
   return std::string(line) + "\n";
 }
 
+bool IsOff(const BeamOptions& beam) {
+  return beam.range_offset_m != 0 || beam.dark_range_m != 0 || beam.dark_noise != 1;
+}
+
 std::string BeamText(const BeamOptions& beam) {
   return Line("ranges: %+.1f mm, black ones %+.1f mm more and %.1f times as noisy",
               1e3 * beam.range_offset_m, 1e3 * beam.dark_range_m, beam.dark_noise) +
@@ -82,6 +87,11 @@ void MakeImperfect(Options* options) {
   DrawPrint(options->seed, &options->board);
   DrawBeam(options->seed, &options->scanner);
   if (options->livox) DrawBeam(options->seed, &*options->livox);
+  for (std::size_t i = 0; i < options->further_lidars.size(); ++i) {
+    SpinningOptions* spinning = &options->further_lidars[i].spinning;
+    DrawBeam(SeedOfLidar(options->seed, i), spinning);
+    DrawRings(SeedOfLidar(options->seed, i), spinning);
+  }
   if (!options->spinning) return;
   DrawBeam(options->seed, &*options->spinning);
   DrawRings(options->seed, &*options->spinning);
@@ -101,11 +111,16 @@ std::string ImperfectionsText(const Options& options) {
         Line("pattern: printed %.5f wide, %.5f high of what its squares say", print.x(), print.y());
   }
   const BeamOptions& beam = options.beam();
-  if (beam.range_offset_m != 0 || beam.dark_range_m != 0 || beam.dark_noise != 1)
-    text += BeamText(beam);
+  if (IsOff(beam)) text += BeamText(beam);
   const auto& spinning = options.spinning;
   if (spinning && (spinning->ring_bias_sigma_m != 0 || spinning->beams_meet_m != 0)) {
     text += RingsText(*spinning, options.seed);
+  }
+  for (std::size_t i = 0; i < options.further_lidars.size(); ++i) {
+    const FurtherLidarOptions& lidar = options.further_lidars[i];
+    if (!IsOff(lidar.spinning)) continue;
+    text += lidar.name + ":\n" + BeamText(lidar.spinning) +
+            RingsText(lidar.spinning, SeedOfLidar(options.seed, i));
   }
   return text;
 }

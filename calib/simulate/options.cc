@@ -126,6 +126,16 @@ void Check(const HolderOptions& o) {
   kCheck.Between(o.person_aside_m, -2, 2, "holder.person_aside_m");
 }
 
+void Check(const FurtherLidarOptions& o) {
+  const std::string field = "LIDAR \"" + o.name + "\" ";
+  o.spinning.Check();
+  kCheck.Require(o.position_m.norm() < 5, "length of " + field + "position_m", o.position_m.norm(),
+                 "less than 5");
+  kCheck.Between(o.position_spread_m, 0, 1, field + "position_spread_m");
+  kCheck.Between(o.tilt_rad, 0, 30 * kDegree, field + "tilt_rad");
+  kCheck.Between(o.turn_rad, 0, 180 * kDegree, field + "turn_rad");
+}
+
 }  // namespace
 
 ScannerOptions FullTurnScanner() {
@@ -213,6 +223,7 @@ void Options::Check() const {
   kCheck.NotNegative(pick_sigma_px, "pick_sigma_px");
   kCheck.Between(supersampling, 1, 16, "supersampling");
   kCheck.Between(threads, 0, 256, "threads");
+  for (const FurtherLidarOptions& lidar : further_lidars) simulate::Check(lidar);
 }
 
 void UseLidar(int rings, Options* options) {
@@ -225,6 +236,17 @@ void UseLidar(int rings, Options* options) {
   }
   options->spinning = SpinningLidar(rings);
   if (rings == 64) options->world.ground_z_m = -2;
+}
+
+void AddLidar(int rings, Options* options) {
+  constexpr double kAside = 0.5;
+  const std::size_t before = options->further_lidars.size();
+  FurtherLidarOptions& lidar = options->further_lidars.emplace_back();
+  lidar.name = "lidar" + std::to_string(before + 2);
+  lidar.spinning = SpinningLidar(rings);
+  const double side = before % 2 == 0 ? 1 : -1;
+  if (rings == 64) options->world.ground_z_m = -2;
+  lidar.position_m = {-0.1, side * kAside * static_cast<double>(1 + before / 2), 0.1};
 }
 
 }  // namespace rgbdt::simulate

@@ -73,6 +73,17 @@ CameraOptions DefaultColorCamera();
 /// 640x480, f = 530 px, 14 bit in Mono16, blur 1 px, NETD 50 mK.
 CameraOptions DefaultThermalCamera();
 
+/// A spinning LIDAR beside the rig's own, which is the reference.
+struct FurtherLidarOptions {
+  std::string name;
+  SpinningOptions spinning;
+  Eigen::Vector3d position_m{0, 0, 0};  ///< nominal, of its origin, the reference's frame
+  double position_spread_m = 0.05;      ///< truth differs by up to this along each axis
+  double tilt_rad = 3 * kDegree;        ///< of its z from the reference's, up to this
+  /// Turned about its z by up to this, either way. No farther: boards stay off its grid's seam.
+  double turn_rad = 120 * kDegree;
+};
+
 /// The checkerboard, its stand and its heat. Heat that is absent takes the scene's own value, which
 /// is several kelvin outdoors and less in `indoor` and `night` (it was warmed in the sun before).
 struct BoardOptions {
@@ -154,6 +165,7 @@ struct Options {
   double pick_sigma_px = 1.5;               ///< of a picked corner, along x and along y
   int supersampling = 5;                    ///< n x n rays in a pixel that holds an edge
   int threads = 0;                          ///< 0: as many as the machine has; same result
+  std::vector<FurtherLidarOptions> further_lidars;  ///< beside the rig's LIDAR
 
   /// Whether the rig's LIDAR is the turned scanner.
   bool turned() const { return !spinning && !livox; }
@@ -168,5 +180,9 @@ struct Options {
 /// turned scanner. That of 64 rings looks down and stands 2 m high, or no board would be wholly in
 /// its field.
 void UseLidar(int rings, Options* options);
+
+/// Adds a spinning LIDAR of so many rings beside the rig's own, half a metre to its left, the next
+/// one to its right: "lidar2", "lidar3" and so on. One of 64 rings raises the rig as UseLidar does.
+void AddLidar(int rings, Options* options);
 
 }  // namespace rgbdt::simulate

@@ -56,6 +56,9 @@ Simulator::Impl::Impl(const Options& o)
     truth.camera_from_lidar[camera.name] = poses.back();
     cameras.emplace_back(camera, poses.back(), options.supersampling, options.threads);
   }
+  for (const FurtherLidarOptions& lidar : options.further_lidars) {
+    truth.reference_from_lidar[lidar.name] = DrawReferenceFromLidar(lidar, options.seed);
+  }
   rig = MakeRig(options, scanner, *scene, poses);
 }
 
@@ -137,6 +140,18 @@ Cloud Simulator::Revolution(Utime utime) const {
   if (o.turned()) throw InputError("simulator: the rig has a turned scanner; call Line");
   if (o.livox) return LivoxCloud(impl_->world(), *o.livox, o.seed, utime, o.threads);
   return SpinningSweep(impl_->world(), *o.spinning, o.seed, utime, o.threads);
+}
+
+std::vector<LidarCloud> Simulator::FurtherRevolutions(Utime utime) const {
+  const Options& o = impl_->options;
+  std::vector<LidarCloud> clouds;
+  for (std::size_t i = 0; i < o.further_lidars.size(); ++i) {
+    const FurtherLidarOptions& lidar = o.further_lidars[i];
+    clouds.push_back(
+        {lidar.name, SpinningSweep(impl_->world(), lidar.spinning, SeedOfLidar(o.seed, i), utime,
+                                   o.threads, impl_->truth.reference_from_lidar.at(lidar.name))});
+  }
+  return clouds;
 }
 
 EncoderReading Simulator::Encoder(Utime utime, Utime sweep_utime) const {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "calib/model/calibration.h"
 #include "calib/model/cloud.h"
@@ -22,8 +23,9 @@ class Simulator {
   /// What the user would know: lenses, the hand-measured (wrong) guesses, the target. `text` and
   /// `hash` are empty.
   const Rig& rig() const;
-  /// camera_from_lidar of each camera; of every view shown so far lidar_from_target (where there is
-  /// a board) and world_from_lidar (of natural scenes).
+  /// camera_from_lidar of each camera, reference_from_lidar of each further LIDAR; of every view
+  /// shown so far lidar_from_target (where there is a board) and world_from_lidar (of natural
+  /// scenes).
   const Truth& truth() const;
 
   /// Puts the board at view `index` (0, 1, ...; the pose is a function of seed and index) and
@@ -39,6 +41,8 @@ class Simulator {
   /// A revolution of the spinning LIDAR, or a Livox's cloud; throws InputError where the rig has
   /// neither.
   Cloud Revolution(Utime utime) const;
+  /// A revolution of each LIDAR beside the rig's own, in its own frame.
+  std::vector<LidarCloud> FurtherRevolutions(Utime utime) const;
   /// The encoder at a time; sweep_utime 0: standing still between sweeps.
   EncoderReading Encoder(Utime utime, Utime sweep_utime) const;
   Image TakeImage(const std::string& camera, Utime utime) const;

@@ -21,6 +21,7 @@ struct SimulateFlags {
   std::string target;
   int views = 12;
   std::vector<std::string> picked = {"thermal"};
+  std::vector<std::string> further;
   int rings = 0;
   bool full_turn = false, scanner_error = false, imperfect = false, board = false;
   simulate::Options options;
@@ -78,6 +79,17 @@ Cloud TakeCloud(const Simulator& simulator, const simulate::Options& options, Ut
   return TakeSweep(simulator, begin);
 }
 
+// LIDARs beside the rig's own.
+void AddFurtherLidars(const std::vector<std::string>& further, simulate::Options* options) {
+  for (const std::string& lidar : further) {
+    const auto rings = simulate::kLidarRings.find(lidar);
+    if (rings == simulate::kLidarRings.end() || rings->second <= 0) {
+      throw UsageError("--further-lidar is \"" + lidar + "\"; expected vlp16, 32, 64 or 128");
+    }
+    simulate::AddLidar(rings->second, options);
+  }
+}
+
 int RunSimulate(SimulateFlags flags) {
   if (flags.views < 1 || flags.views > 9999) {
     throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
@@ -86,6 +98,7 @@ int RunSimulate(SimulateFlags flags) {
   SetTarget(flags.target, &flags.options.board);
   simulate::Options options = flags.options;
   simulate::UseLidar(flags.rings, &options);
+  AddFurtherLidars(flags.further, &options);
   SetScanner(flags, &options);
   if (flags.imperfect) simulate::MakeImperfect(&options);
   const std::string off_by = simulate::ImperfectionsText(options);
@@ -103,6 +116,7 @@ int RunSimulate(SimulateFlags flags) {
     std::fprintf(stderr, "[%d/%d] view %s: rendering, sweeping\n", i + 1, flags.views, name);
     simulator.ShowView(i, view.name);
     view.cloud = TakeCloud(simulator, options, &now);
+    view.further_clouds = simulator.FurtherRevolutions(view.cloud.sweep_utime);
     now += kMicrosecondsPerSecond;
     for (const CameraSpec& camera : rig.cameras) {
       view.images.push_back(simulator.TakeImage(camera.name, now));
@@ -138,6 +152,9 @@ void AddSimulate(CommandLine* program) {
   verb->Choice("--scene", &flags->options.scene, simulate::kSceneNames, "");
   verb->Choice("--lidar", &flags->rings, simulate::kLidarRings,
                "a turned scanner, a spinning LIDAR by its rings, or a Livox, a second each");
+  verb->Option("--further-lidar", &flags->further,
+               "a spinning LIDAR beside that one, which sees the board, too: vlp16, 32, 64 or 128; "
+               "may be given again");
   verb->Flag("--full-turn", &flags->full_turn,
              "the scanner turns by 360 degrees with a line of 270, as `rgbdt scanner` needs it");
   verb->Flag("--scanner-error", &flags->scanner_error,

@@ -6,6 +6,7 @@
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/livox.h"
 #include "calib/simulate/internal/noise.h"
+#include "calib/simulate/internal/rig_defaults.h"
 
 namespace rgbdt::simulate {
 namespace {
@@ -66,15 +67,18 @@ bool InImage(const CameraRenderer& camera, double margin, const Eigen::Vector3d&
          pixel->y() < camera.options().height - 1 - border;
 }
 
+bool InSpinningField(const SpinningOptions& spinning, const Eigen::Vector3d& point, double margin) {
+  const double elevation = std::atan2(point.z(), point.head<2>().norm());
+  return elevation > spinning.elevations_rad.front() + margin &&
+         elevation < spinning.elevations_rad.back() - margin;
+}
+
 bool InField(const Options& options, const Eigen::Vector3d& point) {
   const double margin = options.pose.sweep_margin_rad;
   const double azimuth = std::atan2(point.y(), point.x());
   const double elevation = std::atan2(point.z(), point.head<2>().norm());
   if (options.livox) return InLivoxField(options.livox->model, point, margin);
-  if (options.spinning) {
-    return elevation > options.spinning->elevations_rad.front() + margin &&
-           elevation < options.spinning->elevations_rad.back() - margin;
-  }
+  if (options.spinning) return InSpinningField(*options.spinning, point, margin);
   const ScannerOptions& s = options.scanner;
   return azimuth > s.sweep_start_rad + margin &&
          azimuth < s.sweep_start_rad + s.sweep_rad - margin &&
@@ -103,15 +107,48 @@ bool Hidden(const World& empty, const Eigen::Vector3d& sensor, const Eigen::Vect
   return empty.caster().Blocked(sensor, offset.normalized(), offset.norm());
 }
 
-/// Elevation that later attempts draw closer to: the middle of the LIDAR's field, but no lower than
+/// Why a place on the board does not do for the LIDARs beside the reference; empty: it does.
+std::string WhyNotSeenByFurther(const Options& options, const World& empty,
+                                const std::vector<Rigid3>& reference_from_lidar,
+                                const Eigen::Vector3d& point) {
+  for (std::size_t i = 0; i < reference_from_lidar.size(); ++i) {
+    const FurtherLidarOptions& lidar = options.further_lidars[i];
+    if (!InSpinningField(lidar.spinning, reference_from_lidar[i].Inverse() * point,
+                         options.pose.sweep_margin_rad)) {
+      return "outside the field of " + lidar.name;
+    }
+    if (Hidden(empty, reference_from_lidar[i].translation, point))
+      return "hidden from " + lidar.name;
+  }
+  return "";
+}
+
+std::vector<Rigid3> FurtherPoses(const Options& options) {
+  std::vector<Rigid3> reference_from_lidar;
+  for (const FurtherLidarOptions& lidar : options.further_lidars) {
+    reference_from_lidar.push_back(DrawReferenceFromLidar(lidar, options.seed));
+  }
+  return reference_from_lidar;
+}
+
+/// Lowest and highest elevation that all spinning LIDARs see, added up.
+double TwiceMiddle(const Options& options) {
+  double low = options.spinning->elevations_rad.front();
+  double high = options.spinning->elevations_rad.back();
+  for (const FurtherLidarOptions& lidar : options.further_lidars) {
+    low = std::max(low, lidar.spinning.elevations_rad.front());
+    high = std::min(high, lidar.spinning.elevations_rad.back());
+  }
+  return low + high;
+}
+
+/// Elevation that later attempts draw closer to: the middle of the LIDARs' field, but no lower than
 /// a board may hang.
 double MiddleElevation(const Options& options, double range) {
   const bool mid360 = options.livox && options.livox->model == LivoxModel::kMid360;
   if (!options.spinning && !mid360) return 0;
   constexpr double kMid360Middle = 22.5 * kDegree;
-  const double twice =
-      mid360 ? 2 * kMid360Middle
-             : options.spinning->elevations_rad.front() + options.spinning->elevations_rad.back();
+  const double twice = mid360 ? 2 * kMid360Middle : TwiceMiddle(options);
   const double radius = 0.5 * std::hypot(options.board.width_m, options.board.height_m);
   const double lowest = options.world.ground_z_m + options.pose.clearance_m + radius;
   const double middle = std::sin(0.5 * twice);
@@ -184,6 +221,7 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
   }
   if (wholly && !InField(options, lidar_from_target.translation))
     return "outside the LIDAR's field";
+  const std::vector<Rigid3> further = FurtherPoses(options);
   for (const Eigen::Vector3d& place : Places(options.board)) {
     const Eigen::Vector3d point = lidar_from_target * place;
     if (wholly && options.pose.whole_in_lidar && !InField(options, point)) {
@@ -200,6 +238,8 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
     const Eigen::Vector3d sensor =
         options.turned() ? scanner.Centre(azimuth) : Eigen::Vector3d::Zero();
     if (Hidden(empty, sensor, point)) return "hidden from the LIDAR";
+    const std::string why_not = WhyNotSeenByFurther(options, empty, further, point);
+    if (!why_not.empty()) return why_not;
     for (const CameraRenderer& camera : cameras) {
       if (Hidden(empty, camera.CentreInLidar(), point)) {
         return "hidden from " + camera.options().name;

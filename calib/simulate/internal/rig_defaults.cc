@@ -30,6 +30,26 @@ Rigid3 DrawCameraFromLidar(const CameraOptions& camera, std::uint64_t seed) {
   return camera_from_lidar;
 }
 
+Rigid3 DrawReferenceFromLidar(const FurtherLidarOptions& lidar, std::uint64_t seed) {
+  const Noise noise(seed, 0, lidar.name + " mount");
+  const double heading = noise.Uniform(0, 0, 2 * M_PI);  // of the axis that it is tilted about
+  const Eigen::Vector3d axis(std::cos(heading), std::sin(heading), 0);
+  Rigid3 reference_from_lidar =
+      RotationAbout(axis, lidar.tilt_rad * noise.Uniform(1, 0.3, 1)) *
+      RotationAbout(Eigen::Vector3d::UnitZ(), lidar.turn_rad * noise.Uniform(2, -1, 1));
+  reference_from_lidar.rotation.normalize();
+  for (int k = 0; k < 3; ++k) {
+    reference_from_lidar.translation[k] =
+        lidar.position_m[k] +
+        lidar.position_spread_m * noise.Uniform(3 + static_cast<std::uint64_t>(k), -1, 1);
+  }
+  return reference_from_lidar;
+}
+
+std::uint64_t SeedOfLidar(std::uint64_t seed, std::size_t index) {
+  return seed + (index + 1) * 0x9e3779b97f4a7c15U;
+}
+
 Rigid3 DrawGuess(const Options& options, const std::string& camera,
                  const Rigid3& camera_from_lidar) {
   const Noise noise(options.seed, 0, camera + " guess");
@@ -71,6 +91,11 @@ Rig MakeRig(const Options& options, const Scanner& scanner, const SceneModel& sc
     rig.lidar.turned_scanner = GuessOf(options.scanner, scanner.geometry());
   }
   rig.lidar.range_sigma_m = options.beam().range_sigma_m;
+  for (const FurtherLidarOptions& further : options.further_lidars) {
+    LidarSpec& lidar = rig.further_lidars.emplace_back();
+    lidar.name = further.name;
+    lidar.range_sigma_m = further.spinning.range_sigma_m;
+  }
   for (std::size_t i = 0; i < options.cameras.size(); ++i) {
     const CameraOptions& from = options.cameras[i];
     CameraSpec camera;

@@ -15,6 +15,13 @@ class Noise;
 /// along -y, y along -z), moved and tilted by what seed and name draw.
 Rigid3 DrawCameraFromLidar(const CameraOptions& camera, std::uint64_t seed);
 
+/// Where a LIDAR beside the rig's own truly sits: its nominal place, moved, turned and tilted by
+/// what seed and name draw. point_in_reference = reference_from_lidar * point_in_lidar.
+Rigid3 DrawReferenceFromLidar(const FurtherLidarOptions& lidar, std::uint64_t seed);
+
+/// Of the noise of LIDAR `index` of Options::further_lidars.
+std::uint64_t SeedOfLidar(std::uint64_t seed, std::size_t index);
+
 /// What a person would measure: the truth turned by up to `guess_rotation_rad`, with the camera's
 /// centre moved by up to `guess_translation_m` (both at least 0.4 times that).
 Rigid3 DrawGuess(const Options& options, const std::string& camera,

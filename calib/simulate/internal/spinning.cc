@@ -46,9 +46,13 @@ Cloud EmptyGrid(const SpinningOptions& options, Utime utime) {
 }
 
 /// A ring of beams, without noise.
-std::vector<BeamReturn> CastRing(const World& world, const SpinningOptions& options, int ring) {
+std::vector<BeamReturn> CastRing(const World& world, const SpinningOptions& options,
+                                 const Rigid3& world_from_lidar, int ring) {
   const double elevation = options.elevations_rad[static_cast<std::size_t>(ring)];
-  const Eigen::Vector3d start(0, 0, -options.beams_meet_m * std::tan(elevation));
+  const Eigen::Matrix3d rotation = world_from_lidar.rotation.toRotationMatrix();
+  const Eigen::Vector3d start =
+      rotation * Eigen::Vector3d(0, 0, -options.beams_meet_m * std::tan(elevation)) +
+      world_from_lidar.translation;
   const std::vector<Eigen::Vector3d> sub_rays = SubRays(options, elevation);
   std::vector<BeamReturn> returns(static_cast<std::size_t>(options.columns()));
   std::vector<Eigen::Vector3d> directions;
@@ -56,7 +60,9 @@ std::vector<BeamReturn> CastRing(const World& world, const SpinningOptions& opti
     directions.clear();
     for (int column = first; column < std::min(first + kBlock, options.columns()); ++column) {
       const double azimuth = Azimuth(options, ring, column);
-      for (const Eigen::Vector3d& ray : sub_rays) directions.push_back(Turned(ray, azimuth));
+      for (const Eigen::Vector3d& ray : sub_rays) {
+        directions.emplace_back(rotation * Turned(ray, azimuth));
+      }
     }
     CastBeams(world, options, start, directions, static_cast<int>(sub_rays.size()),
               &returns[static_cast<std::size_t>(first)]);
@@ -92,13 +98,13 @@ double RingBias(const SpinningOptions& options, std::uint64_t seed, int ring) {
 }
 
 Cloud SpinningSweep(const World& world, const SpinningOptions& options, std::uint64_t seed,
-                    Utime utime, int threads) {
+                    Utime utime, int threads, const Rigid3& world_from_lidar) {
   options.Check();
   Cloud cloud = EmptyGrid(options, utime);
   const Noise noise(seed, utime, "spinning lidar");
   ForEach(options.rings(), threads, [&](int ring) {
     const double bias = RingBias(options, seed, ring);
-    FillRing(options, CastRing(world, options, ring), noise, bias, ring, &cloud);
+    FillRing(options, CastRing(world, options, world_from_lidar, ring), noise, bias, ring, &cloud);
   });
   return cloud;
 }

@@ -139,6 +139,46 @@ TEST(Simulator, CloudLiesOnTheBoard) {
   EXPECT_GT(std::sqrt(squares / count), 0.006);
 }
 
+/// Distances [m] of a cloud's points on the board from its plane.
+std::vector<double> OffTheBoard(const Cloud& cloud, const Rigid3& lidar_from_target) {
+  std::vector<double> off;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    const Eigen::Vector3d p = lidar_from_target.Inverse() * point.cast<double>();
+    if (std::abs(p.x()) < 0.55 && std::abs(p.y()) < 0.4 && std::abs(p.z()) < 0.2) {
+      off.push_back(p.z());
+    }
+  }
+  return off;
+}
+
+TEST(Simulator, FurtherLidarsSeeTheSameBoardFromWhereTheTruthPutsThem) {
+  Options options = SmallOptions();
+  UseLidar(32, &options);
+  AddLidar(16, &options);
+  AddLidar(32, &options);
+  Simulator simulator(options);
+  ASSERT_EQ(simulator.rig().further_lidars.size(), 2U);
+  EXPECT_EQ(simulator.rig().further_lidars[1].name, "lidar3");
+  simulator.ShowView(1, "0001");
+  const Rigid3& board = simulator.truth().lidar_from_target.at("0001");
+  const std::vector<LidarCloud> clouds = simulator.FurtherRevolutions(kStart);
+  ASSERT_EQ(clouds.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(clouds[i].lidar, simulator.rig().further_lidars[i].name);
+    const Rigid3& reference_from_lidar = simulator.truth().reference_from_lidar.at(clouds[i].lidar);
+    EXPECT_GT(reference_from_lidar.translation.norm(), 0.3);
+    const std::vector<double> off =
+        OffTheBoard(clouds[i].cloud, reference_from_lidar.Inverse() * board);
+    ASSERT_GT(off.size(), 80U) << clouds[i].lidar;
+    double squares = 0;
+    for (const double z : off) squares += z * z;
+    const double rms = std::sqrt(squares / static_cast<double>(off.size()));
+    EXPECT_LT(rms, 1.1 * options.further_lidars[i].spinning.range_sigma_m);
+    EXPECT_GT(rms, 0.5 * options.further_lidars[i].spinning.range_sigma_m);
+  }
+  EXPECT_NE(clouds[0].cloud.points[9000], simulator.Revolution(kStart).points[9000]);
+}
+
 TEST(Simulator, PicksScatterRoundTheTrueCorners) {
   Simulator simulator(SmallOptions());
   simulator.ShowView(2, "0001");
