@@ -10,11 +10,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+import data_lidars  # noqa: E402
 import data_livox  # noqa: E402
 import data_markers  # noqa: E402
 import trials  # noqa: E402
 
-SUBJECTS = (data_livox, data_markers)
+SUBJECTS = (data_livox, data_markers, data_lidars)
 
 
 def main():

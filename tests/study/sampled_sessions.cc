@@ -25,6 +25,7 @@ simulate::Options OptionsOf(const SampledOptions& sampled, std::uint64_t seed) {
   options.scene = static_cast<simulate::Scene>(seed % 3);
   options.threads = 1;
   simulate::UseLidar(sampled.rings, &options);
+  for (const int rings : sampled.further_rings) simulate::AddLidar(rings, &options);
   return options;
 }
 
@@ -40,6 +41,30 @@ BeamModel ModelOf(const SampledOptions& sampled, const simulate::Options& option
       options.spinning ? options.spinning->range_sigma_m : options.scanner.range_sigma_m;
   model.thickness_m = options.board.thickness_m;
   return model;
+}
+
+// A LIDAR beside the rig's own: its noise model, and where it is.
+struct FurtherLidar {
+  simulate::Options options;  // whose own LIDAR it is
+  BeamModel model;
+  ClassShifts shifts{};
+  Rigid3 reference_from_lidar;
+};
+
+FurtherLidar MakeFurtherLidar(SampledOptions sampled, const simulate::Options& rig,
+                              std::size_t index) {
+  const simulate::FurtherLidarOptions& lidar = rig.further_lidars[index];
+  FurtherLidar further;
+  further.options = rig;
+  further.options.seed = simulate::SeedOfLidar(rig.seed, index);
+  further.options.spinning = lidar.spinning;
+  further.options.livox.reset();
+  sampled.rings = lidar.spinning.rings();
+  further.model = ModelOf(sampled, further.options);
+  further.shifts =
+      DrawClassShifts(further.model, Noise(further.options.seed, 0, "sampled classes"));
+  further.reference_from_lidar = simulate::DrawReferenceFromLidar(lidar, rig.seed);
+  return further;
 }
 
 // The lens as a rig file might have it.
@@ -73,6 +98,7 @@ class SessionSampler {
     }
     session_.rig = MakeRig(options_, scanner_, *scene_, mounts);
     session_.rig.lidar.range_offset_sigma_m = session_.model.range_offset_sigma_m;
+    for (std::size_t i = 0; i < options_.further_lidars.size(); ++i) AddFurther(i);
     session_.true_cameras = session_.rig.cameras;
     session_.rig.target.print_sigma = sampled.print_sigma;
     session_.true_target = session_.rig.target;
@@ -94,6 +120,28 @@ class SessionSampler {
   }
 
  private:
+  void AddFurther(std::size_t index) {
+    further_.push_back(MakeFurtherLidar(sampled_, options_, index));
+    LidarSpec& lidar = session_.rig.further_lidars[index];
+    lidar.range_offset_sigma_m = further_.back().model.range_offset_sigma_m;
+    session_.truth.reference_from_lidar[lidar.name] = further_.back().reference_from_lidar;
+  }
+
+  CloudDetection LookAtCloud(const FurtherLidar& lidar, const LidarSpec& spec,
+                             const Rigid3& reference_from_target, int pose) const {
+    const SampledCloud cloud =
+        SampleCloud(lidar.options, session_.true_target,
+                    lidar.reference_from_lidar.Inverse() * reference_from_target, lidar.model,
+                    lidar.shifts, Noise(lidar.options.seed, pose + 1, "sampled cloud"));
+    BoardInCloudOptions detector;
+    detector.range_sigma_m = spec.range_sigma_m;
+    BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
+    CloudDetection detection;
+    detection.why_not = boards.candidates.empty() ? boards.why : "";
+    detection.candidates = std::move(boards.candidates);
+    return detection;
+  }
+
   // Nothing, where no board is found in the cloud; it has not happened.
   void AddView(int pose) {
     const int index = static_cast<int>(session_.views.size());
@@ -120,6 +168,11 @@ class SessionSampler {
       detection.images.push_back(
           LookAtImage(session_.true_cameras[c], session_.rig.cameras[c].lens, view, pose));
     }
+    for (std::size_t i = 0; i < further_.size(); ++i) {
+      const LidarSpec& spec = session_.rig.further_lidars[i];
+      detection.further_clouds.push_back(
+          {spec.name, LookAtCloud(further_[i], spec, view.lidar_from_target, pose)});
+    }
     session_.detections.push_back(std::move(detection));
     session_.truth.lidar_from_target[view.name] = view.lidar_from_target;
     session_.views.push_back(std::move(view));
@@ -145,6 +198,7 @@ class SessionSampler {
   simulate::Scanner scanner_;
   std::vector<simulate::CameraRenderer> renderers_;  // only to ask what lies in an image
   ClassShifts shifts_{};
+  std::vector<FurtherLidar> further_;
   SampledSession session_;
 };
 

@@ -25,6 +25,8 @@ struct SampledOptions {
   double print_sigma = 0;
   /// The LIDAR is off by what real ones are, see DrawBeamPhysics.
   bool physics = false;
+  /// Rings of spinning LIDARs beside that one, each with a beam model of its own.
+  std::vector<int> further_rings{};
 };
 
 /// By what a lens of the rig is off (1 sigma): 0.4% of fx and of fy, 6 px in the centre, 0.02 in
@@ -55,7 +57,7 @@ struct SampledSession {
   BeamModel model;
   Truth truth;
   std::vector<SampledView> views;
-  std::vector<ViewDetection> detections;  ///< one a view
+  std::vector<ViewDetection> detections;  ///< one a view, further LIDARs' clouds with it
 };
 
 /// "0001" for view 0: as `rgbdt simulate` names them.

@@ -5,6 +5,7 @@
 
 #include "calib/model/method.h"
 #include "calib/present/report/internal/fit_tables.h"
+#include "calib/present/report/internal/lidar_tables.h"
 #include "calib/present/report/internal/uncertainty_tables.h"
 #include "calib/present/report/words.h"
 
@@ -71,6 +72,8 @@ ReportContent ContentOf(const Report& report) {
   }
   AddIfAny(DetectionTable(report), &content.tables);
   AddIfAny(ClosureTable(report), &content.tables);
+  AddIfAny(FurtherLidarsTable(report), &content.tables);
+  AddIfAny(FurtherNuisanceTable(report), &content.tables);
   if (report.next_view) content.next_view = WordsOf(*report.next_view);
   return content;
 }

@@ -9,6 +9,7 @@
 
 #include "calib/model/method.h"
 #include "calib/model/pose_sigma.h"
+#include "calib/present/report/internal/lidar_tables.h"
 #include "calib/present/report/said_once.h"
 #include "calib/present/report/verdict.h"
 
@@ -98,6 +99,11 @@ std::string Warnings(const Report& report, const std::vector<std::string>& told)
     }
     for (const std::string& warning : camera.warnings) warnings.push_back({name, "", warning});
   }
+  for (const LidarReport& lidar : report.lidars) {
+    const std::string& name = lidar.calibration.lidar;
+    for (const RejectedView& view : lidar.rejected) rejected.push_back({name, view.view, view.why});
+    for (const std::string& warning : lidar.warnings) warnings.push_back({name, "", warning});
+  }
   std::string text;
   for (const auto& [said, what] :
        {std::pair{statuses, ""}, {rejected, "rejected"}, {warnings, ""}}) {
@@ -110,7 +116,9 @@ std::string Warnings(const Report& report, const std::vector<std::string>& told)
 
 bool Summary::converged() const {
   return std::all_of(report_.cameras.begin(), report_.cameras.end(),
-                     [](const CameraReport& c) { return c.calibration.converged(); });
+                     [](const CameraReport& c) { return c.calibration.converged(); }) &&
+         std::all_of(report_.lidars.begin(), report_.lidars.end(),
+                     [](const LidarReport& l) { return l.calibration.converged(); });
 }
 
 std::string Summary::BriefReport() const {
@@ -203,7 +211,7 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  text += Warnings(report_, told);
+  text += FurtherLidarLines(report_) + Warnings(report_, told);
   if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
   return text;
 }

@@ -12,7 +12,7 @@ class Summary {
  public:
   explicit Summary(const Report& report) : report_(report) {}
 
-  /// Whether every camera has a pose to use.
+  /// Whether every camera, and every LIDAR beside the reference, has a pose to use.
   bool converged() const;
   /// One line: how each camera's solve ended, and its projection uncertainty; of the paper's
   /// method the mean distance transform.

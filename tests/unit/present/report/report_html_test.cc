@@ -104,6 +104,24 @@ TEST(ReportHtml, TheVerdictFollowsTheFigures) {
               HasSubstr("only 2; take 5"));
 }
 
+TEST(ReportHtml, LidarsBesideTheReferenceAreInThePage) {
+  Report report = test::MakeReport();
+  EXPECT_THAT(HtmlOf(report), Not(HasSubstr("LIDARs beside the reference")));
+  LidarReport& lidar = report.lidars.emplace_back();
+  lidar.calibration.lidar = "rear<b>";
+  lidar.calibration.reference_from_lidar.translation = {-0.3, 0.35, 0.2};
+  lidar.calibration.status = SolveStatus::kConverged;
+  lidar.sigma = LidarSigma{{0.01, 0.02, 0.03}, {0.4, 0.5, 0.6}};
+  lidar.nuisance = {{"range offset", "mm", {3.5, 0.6}}};
+  lidar.rejected = {{"0002", "the board moved"}};
+  const std::string page = HtmlOf(report);
+  EXPECT_THAT(page, HasSubstr("LIDARs beside the reference: reference_from_lidar"));
+  EXPECT_THAT(page, HasSubstr("rear&lt;b&gt;"));
+  EXPECT_THAT(page, HasSubstr("-0.3000, 0.3500, 0.2000 m"));
+  EXPECT_THAT(page, HasSubstr("0.0100, 0.0200, 0.0300"));
+  EXPECT_THAT(page, HasSubstr("view 0002 is not used: the board moved."));
+}
+
 TEST(ReportHtml, PicturesAreInThePage) {
   const std::string page = ReportHtml(
       ContentOf(test::MakeReport()),

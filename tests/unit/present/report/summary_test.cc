@@ -55,6 +55,27 @@ TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheProjection) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
 
+TEST(Summary, HasALineForEachLidarBesideTheReference) {
+  Report report = MakeReport();
+  LidarReport& lidar = report.lidars.emplace_back();
+  lidar.calibration.lidar = "rear";
+  lidar.calibration.reference_from_lidar.translation = {-0.3, 0.35, 0.2};
+  lidar.calibration.status = SolveStatus::kConverged;
+  lidar.calibration.covariance = Matrix6d::Identity() * 1e-8;
+  lidar.used.resize(7);
+  lidar.rejected = {{"0002", "the board moved"}};
+  lidar.truth_error = PoseError{0.0123, 0.94};
+  const std::string text = FullReport(report);
+  EXPECT_THAT(LineOf(text, "LIDAR rear: converged; 7 views used, 1 not"),
+              HasSubstr("at -0.3000, 0.3500, 0.2000 m; 1 sigma, worst axis: 0.0057 deg"));
+  EXPECT_THAT(text, HasSubstr("against truth: 0.0123 deg 0.94 mm"));
+  EXPECT_THAT(text, HasSubstr("the board moved"));
+  EXPECT_TRUE(Summary(report).converged());
+  lidar.calibration.status = SolveStatus::kNotSolved;
+  EXPECT_FALSE(Summary(report).converged());
+  EXPECT_THAT(LineOf(FullReport(report), "LIDAR rear: not calibrated"), Not(HasSubstr("deg")));
+}
+
 TEST(Summary, LeavesOutWhatNobodyWorkedOut) {
   const std::string table = FullReport(MakeReport());
   EXPECT_THAT(table, Not(HasSubstr("sigma")));
