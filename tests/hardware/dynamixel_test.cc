@@ -13,6 +13,7 @@
 #include "services/drivers/dynamixel/serial_port.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/dynamixel_peer.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
@@ -21,7 +22,6 @@ using test::DynamixelPeer;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr double kDegree = 3.14159265358979 / 180;
 constexpr double kTicksPerDegree = 501923 / 360.0;
 
 // Where the peer's port is, a sweep of 60 degrees at 90 degrees a second.

@@ -8,6 +8,7 @@
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "tests/hardware/device_harness.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
@@ -15,14 +16,12 @@ namespace {
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-constexpr Utime kStart = 1'433'160'000'000'000;
-
 TEST(PcdNames, NumbersAreTimes) {
-  EXPECT_EQ(UtimeOfName("1433160000"), kStart);
-  EXPECT_EQ(UtimeOfName("1433160000.25"), kStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250"), kStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250000"), kStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250000999"), kStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000"), kDevicesStart);
+  EXPECT_EQ(UtimeOfName("1433160000.25"), kDevicesStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250"), kDevicesStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000"), kDevicesStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000999"), kDevicesStart + 250'000);
   for (const char* name :
        {"", "0001", "cloud", "1433160000a", "-5", "1433160000.2.5", "99999999999999999999", "."}) {
     EXPECT_FALSE(UtimeOfName(name)) << name;
@@ -64,17 +63,17 @@ class PcdFolderTest : public ::testing::Test {
 };
 
 TEST_F(PcdFolderTest, InOrderWithTheirOwnTimes) {
-  Write("b.pcd", 2, kStart + 50'000);
-  Write("a.pcd", 1, kStart);
-  Write("c.pcd", 3, kStart + 120'000);
+  Write("b.pcd", 2, kDevicesStart + 50'000);
+  Write("a.pcd", 1, kDevicesStart);
+  Write("c.pcd", 3, kDevicesStart + 120'000);
   const auto begin = std::chrono::steady_clock::now();
   const Collected collected = PlayAll();
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(119));
   const auto chunks = collected.All<CloudChunk>();
   ASSERT_EQ(chunks.size(), 3u);
-  EXPECT_EQ(chunks[0].cloud.sweep_utime, kStart);
-  EXPECT_EQ(chunks[1].cloud.sweep_utime, kStart + 50'000);
-  EXPECT_EQ(chunks[2].cloud.sweep_utime, kStart + 120'000);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kDevicesStart);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kDevicesStart + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kDevicesStart + 120'000);
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(chunks[static_cast<std::size_t>(i)].sweep_end);
     EXPECT_EQ(chunks[static_cast<std::size_t>(i)].sweep_lines, 2);
@@ -88,16 +87,16 @@ TEST_F(PcdFolderTest, TimesFromNamesOrApart) {
   Write("z.pcd", 3);
   const auto chunks = PlayAll().All<CloudChunk>();
   ASSERT_EQ(chunks.size(), 3u);
-  EXPECT_EQ(chunks[0].cloud.sweep_utime, kStart);
-  EXPECT_EQ(chunks[1].cloud.sweep_utime, kStart + 50'000);
-  EXPECT_EQ(chunks[2].cloud.sweep_utime, kStart + 70'000);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kDevicesStart);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kDevicesStart + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kDevicesStart + 70'000);
 }
 
 TEST_F(PcdFolderTest, BadOnesAreNamedAndPassedOver) {
-  Write("1.pcd", 1, kStart);
+  Write("1.pcd", 1, kDevicesStart);
   std::ofstream(fs::path(device_.folder) / "2.pcd") << "no cloud";
-  Write("3.pcd", 3, kStart - 10);
-  Write("4.pcd", 4, kStart + 10'000);
+  Write("3.pcd", 3, kDevicesStart - 10);
+  Write("4.pcd", 4, kDevicesStart + 10'000);
   std::ofstream(fs::path(device_.folder) / "readme.txt") << "not looked at";
   const Collected collected = PlayAll();
   ASSERT_EQ(collected.Count<CloudChunk>(), 2u);

@@ -14,6 +14,7 @@
 #include "services/drivers/velodyne/velodyne_source.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
+#include "tests/numbers.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // PCL's grabbers never close their recording nor free what lies in their queue when they stop.
@@ -29,9 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 using Model = VelodyneDevice::Model;
 using PclCloud = pcl::PointCloud<pcl::PointXYZI>;
-
-constexpr double kDegree = M_PI / 180;
-constexpr Utime kStart = 1'433'160'000'000'000;
 
 VelodyneEncoder Encoder(Model model) {
   VelodyneEncoder encoder;
@@ -51,7 +49,8 @@ std::string Record(const VelodyneEncoder& encoder, int packets) {
   PcapWriter writer;
   writer.Begin();
   for (int i = 0; i < packets; ++i) {
-    writer.Add(kStart + std::llround((i + 1) * encoder.PacketDuration_us()), encoder.Packet(i));
+    writer.Add(kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us()),
+               encoder.Packet(i));
   }
   std::string name = (fs::temp_directory_path() / "rgbdt_pcl_XXXXXX").string();
   close(mkstemp(name.data()));

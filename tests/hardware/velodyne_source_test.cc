@@ -14,14 +14,13 @@
 #include "services/posix/clock.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
 
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
-
-constexpr Utime kStart = 1'433'160'000'000'000;
 
 VelodyneEncoder Encoder() { return MadeUpVelodyne(VelodyneEncoder::Model::kVlp16); }
 
@@ -38,8 +37,10 @@ class Files : public ::testing::Test {
   std::string Record(PcapWriter writer, const VelodyneEncoder& encoder, int packets) const {
     writer.Begin();
     for (int i = 0; i < packets; ++i) {
-      writer.Add(kStart + std::llround((i + 1) * encoder.PacketDuration_us()), encoder.Packet(i));
-      if (i % 10 == 0) writer.Add(kStart, std::vector<std::uint8_t>(554));  // a position packet
+      writer.Add(kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us()),
+                 encoder.Packet(i));
+      if (i % 10 == 0)
+        writer.Add(kDevicesStart, std::vector<std::uint8_t>(554));  // a position packet
     }
     writer.Save(Path("recording.pcap"));
     return Path("recording.pcap");
@@ -81,7 +82,8 @@ TEST_F(VelodyneRecording, OfAnyKindIsPlayed) {
       EXPECT_EQ(chunks[1].sweep_lines, 16);
       EXPECT_EQ(chunks[0].cloud.beams, 1800);
       // 90 degrees on, at 0.4 degrees a block.
-      EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kStart), 225 * 110.592, 2);
+      EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kDevicesStart), 225 * 110.592,
+                  2);
       EXPECT_EQ(source.report().count("packets"), 160);
       EXPECT_EQ(source.report().count("bad packets"), 0);
       EXPECT_TRUE(collected.warnings.empty());
@@ -113,7 +115,7 @@ TEST_F(VelodyneRecording, DamageInsideIsToldAndTheRestIsPlayed) {
   PcapWriter writer;
   writer.Begin();
   for (int i = 0; i < 160; ++i) {
-    const Utime utime = kStart + std::llround((i + 1) * encoder.PacketDuration_us());
+    const Utime utime = kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us());
     auto packet = encoder.Packet(i);
     if (i == 50) packet.resize(700);
     if (i == 60) packet[0] = 1;

@@ -5,6 +5,7 @@
 
 #include "calib/model/errors.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -16,7 +17,6 @@ using test::ErrorOf;
 using test::Only;
 using ::testing::HasSubstr;
 
-constexpr Utime kSweep = 1'500'000'000'000'000;
 constexpr Utime kMs = 1000;
 constexpr int kLines = 25;
 constexpr Utime kLinePeriod = 40 * kMs;

@@ -6,6 +6,7 @@
 #include "services/nodes/assembler_node.h"
 #include "services/simulator/simulator_node.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -17,10 +18,9 @@ using test::ErrorOf;
 using test::Only;
 using ::testing::HasSubstr;
 
-constexpr Utime kSweep = 1'500'000'000'000'000;
 constexpr Utime kCommand = kSweep + 2 * kMicrosecondsPerSecond;
 
-const Rig& TinyRig() {
+const Rig& SmallRig() {
   static const Rig rig = test::RigOf(simulate::Simulator(test::TinyOptions()));
   return rig;
 }
@@ -38,7 +38,7 @@ SessionCommand Capture(std::vector<std::string> picked = {}) {
 
 // Grey all over: no board.
 Image Blank(const std::string& name, Utime utime = kCommand) {
-  const CameraSpec& camera = TinyRig().Camera(name);
+  const CameraSpec& camera = SmallRig().Camera(name);
   Image image;
   image.camera = name;
   image.utime = utime;
@@ -63,7 +63,7 @@ Messages EmptySweep() {
 
 class DetectorNodeTest : public ::testing::Test {
  protected:
-  DetectorNodeTest() { node_.Handle(test::TextOf(TinyRig())); }
+  DetectorNodeTest() { node_.Handle(test::TextOf(SmallRig())); }
   DetectorNode node_;
 };
 
@@ -71,7 +71,7 @@ TEST(DetectorNodeRigTest, BeforeTheRigNothingIsTaken) {
   DetectorNode node;
   EXPECT_FALSE(node.GetStatus().ready);
   EXPECT_THAT(ErrorOf([&] { node.Handle(Capture()); }), HasSubstr("no rig heard yet"));
-  node.Handle(test::TextOf(TinyRig()));
+  node.Handle(test::TextOf(SmallRig()));
   EXPECT_TRUE(node.GetStatus().ready);
 }
 
@@ -204,7 +204,7 @@ TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
 
 TEST(DetectorNodeReplayTest, WhereNobodyWatchesItDoesNotLook) {
   DetectorNode node(kAutoMethod, DetectorNode::Looks::kNo);
-  node.Handle(test::TextOf(TinyRig()));
+  node.Handle(test::TextOf(SmallRig()));
   node.Handle(Blank("thermal"));
   EXPECT_TRUE(node.Advance(kMicrosecondsPerSecond).empty());
 }
@@ -223,7 +223,7 @@ TEST_F(DetectorNodeTest, AnotherRigForgetsEverything) {
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Capture());
   node_.Handle(Blank("rgb"));
-  RigText other = test::TextOf(TinyRig());
+  RigText other = test::TextOf(SmallRig());
   other.text += "# moved\n";
   other.hash = HashOfRigText(other.text);
   node_.Handle(other);

@@ -8,6 +8,7 @@
 
 #include "services/messages/codec.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -17,9 +18,6 @@ using test::Counter;
 using test::ErrorOf;
 using test::Only;
 using ::testing::HasSubstr;
-
-constexpr Utime kNow = 1'500'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 const simulate::Simulator& Simulator() {
   static const simulate::Simulator simulator(test::TinyOptions());

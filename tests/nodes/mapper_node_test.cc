@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 
@@ -14,9 +15,7 @@ using test::Counter;
 
 using ::testing::HasSubstr;
 
-constexpr Utime kNow = 1'500'000'000'000'000;
-
-RgbdtCloud Chunk(float x, Utime utime = kNow) {
+RgbdtCloud FusedChunk(float x, Utime utime = kNow) {
   RgbdtCloud cloud;
   cloud.sweep_utime = kNow;
   cloud.points = {{x, 0.01F, 0.01F}, {x, 0.02F, 0.02F}};
@@ -38,8 +37,8 @@ MapperNode Node() {
 TEST(MapperNode, MapsChunksAndSaysNothing) {
   MapperNode node = Node();
   EXPECT_THAT(node.GetStatus().text, HasSubstr("RGBDT_CLOUD"));
-  EXPECT_TRUE(node.Handle(Chunk(1.05F)).empty());
-  EXPECT_TRUE(node.Handle(Chunk(2.05F)).empty());
+  EXPECT_TRUE(node.Handle(FusedChunk(1.05F)).empty());
+  EXPECT_TRUE(node.Handle(FusedChunk(2.05F)).empty());
   EXPECT_EQ(node.map().size(), 2U);
   EXPECT_THAT(node.GetStatus().text, HasSubstr("LIDAR frame"));
   EXPECT_EQ(Counter(node.GetStatus(), "clouds"), 2);
@@ -49,8 +48,8 @@ TEST(MapperNode, MapsChunksAndSaysNothing) {
 
 TEST(MapperNode, WithTheFirstPoseItBeginsAnew) {
   MapperNode node = Node();
-  node.Handle(Chunk(1.05F));
-  RgbdtCloud posed = Chunk(2.05F);
+  node.Handle(FusedChunk(1.05F));
+  RgbdtCloud posed = FusedChunk(2.05F);
   posed.map_from_lidar = Rigid3();
   posed.frame_utime = kNow;
   node.Handle(posed);
@@ -61,11 +60,11 @@ TEST(MapperNode, WithTheFirstPoseItBeginsAnew) {
 
 TEST(MapperNode, APoseThatIsMissingIsRefusedAndTheMapStays) {
   MapperNode node = Node();
-  RgbdtCloud posed = Chunk(1.05F);
+  RgbdtCloud posed = FusedChunk(1.05F);
   posed.map_from_lidar = Rigid3();
   posed.frame_utime = kNow;
   node.Handle(posed);
-  EXPECT_THAT(InputErrorOf([&] { node.Handle(Chunk(2.05F)); }), HasSubstr("pose"));
+  EXPECT_THAT(InputErrorOf([&] { node.Handle(FusedChunk(2.05F)); }), HasSubstr("pose"));
   EXPECT_EQ(node.map().size(), 1U);
   EXPECT_THAT(node.GetStatus().text, HasSubstr("pose stream"));
 }
@@ -80,14 +79,14 @@ TEST(MapperNode, SavesAMapThatHasChangedAndNotTooOften) {
     return std::filesystem::exists(dir / "map.ply");
   };
   EXPECT_FALSE(saved_at(0)) << "a map without points";
-  node.Handle(Chunk(1));
+  node.Handle(FusedChunk(1));
   EXPECT_TRUE(saved_at(1));
-  node.Handle(Chunk(2));
+  node.Handle(FusedChunk(2));
   EXPECT_FALSE(saved_at(3)) << "it took two seconds";
   EXPECT_FALSE(saved_at(22));
   EXPECT_TRUE(saved_at(23));
   EXPECT_FALSE(saved_at(1000)) << "nothing has changed";
-  node.Handle(Chunk(3));
+  node.Handle(FusedChunk(3));
   node.Save();
   EXPECT_TRUE(std::filesystem::exists(dir / "map.ply"));
 }
@@ -98,7 +97,7 @@ TEST(MapperNode, AMapThatCannotBeSavedIsAWarningAndIsTriedAgain) {
   MapperNode node(VoxelMapOptions(), dir / "file" / "map.ply", kMicrosecondsPerSecond);
   std::vector<std::string> warnings;
   node.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
-  node.Handle(Chunk(1));
+  node.Handle(FusedChunk(1));
   for (const Utime now : {0, 1, 2'000'000}) node.Advance(now);
   ASSERT_EQ(warnings.size(), 2U);
   EXPECT_THAT(warnings[1], HasSubstr("cannot create the folder " + (dir / "file").string()));

@@ -7,6 +7,7 @@
 #include "services/nodes/shot_collector.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/twins.h"
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
@@ -17,9 +18,6 @@ using test::Only;
 using ::testing::Each;
 using ::testing::Gt;
 using ::testing::HasSubstr;
-
-constexpr Utime kSecond = kMicrosecondsPerSecond;
-constexpr double kDegree = simulate::kDegree;
 
 // A furnished room, one sweep a second.
 const SceneWorld& Room() {

@@ -5,6 +5,7 @@
 
 #include "services/nodes/fuser_node.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 using test::Only;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kDegree = M_PI / 180;
 
 CameraSpec Spec() {
   CameraSpec spec;

@@ -15,6 +15,7 @@
 #include "services/simulator/simulator_node.h"
 #include "tests/nodes/session_world.h"
 #include "tests/nodes/twins.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/solve/board_world.h"
 
@@ -27,8 +28,6 @@ using test::TinyRig;
 using test::Twins;
 using ::testing::Each;
 using ::testing::Gt;
-
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 RigText Garbage() { return {0, "another hash", "cameras { nonsense }"}; }
 
@@ -52,7 +51,7 @@ CornerSelection PicksOf(const std::string& camera, Utime utime) {
   return picks;
 }
 
-CloudChunk Chunk(Utime sweep, int line, int beams, bool end) {
+CloudChunk ChunkOf(Utime sweep, int line, int beams, bool end) {
   CloudChunk chunk;
   chunk.cloud.sweep_utime = sweep;
   chunk.cloud.first_line = line;
@@ -68,7 +67,7 @@ CloudChunk Chunk(Utime sweep, int line, int beams, bool end) {
   return chunk;
 }
 
-SessionCommand Capture(std::int64_t number, Utime sweep) {
+SessionCommand CaptureOf(std::int64_t number, Utime sweep) {
   SessionCommand command;
   command.command = number;
   command.verb = SessionVerb::kCapture;
@@ -84,8 +83,8 @@ Messages Views(int count) {
   for (int view = 1; view <= count; ++view) {
     const Utime sweep = kStart + view * 10 * kSecond;
     messages.push_back(Blank(TinyRig().cameras[0], sweep + kSecond));
-    for (int line = 0; line < 3; ++line) messages.push_back(Chunk(sweep, line, 4, line == 2));
-    messages.push_back(Capture(view, sweep));
+    for (int line = 0; line < 3; ++line) messages.push_back(ChunkOf(sweep, line, 4, line == 2));
+    messages.push_back(CaptureOf(view, sweep));
     messages.push_back(Blank(TinyRig().cameras[1], sweep + kSecond));
     messages.push_back(PicksOf("rgb", sweep + kSecond));
   }
@@ -143,12 +142,12 @@ TEST(Refusal, Assembler) {
 TEST(Refusal, Detector) {
   DetectorNode node, twin;
   Twins twins(&node, &twin, ForgetDurations);
-  CloudChunk endless = Chunk(kStart + 10 * kSecond, 0, 4, false);
+  CloudChunk endless = ChunkOf(kStart + 10 * kSecond, 0, 4, false);
   endless.cloud.first_line = 1'000'000'000;
   twins.bad = {Garbage(), WrongSize(), OfAStranger(), PicksOf("front", kStart + 11 * kSecond),
                endless};
-  twins.Feed({test::TextOf(TinyRig()), Chunk(kStart + 10 * kSecond, 0, 4, false)});
-  twins.bad.push_back(Chunk(kStart + 10 * kSecond, 0, 7, false));
+  twins.Feed({test::TextOf(TinyRig()), ChunkOf(kStart + 10 * kSecond, 0, 4, false)});
+  twins.bad.push_back(ChunkOf(kStart + 10 * kSecond, 0, 7, false));
   twins.Feed(Views(2));
   EXPECT_THAT(twins.refused, Each(Gt(1)));
   EXPECT_EQ(test::Counter(node.GetStatus(), "views"), 2);
@@ -182,9 +181,9 @@ TEST(Refusal, Fuser) {
   // A jump is taken as it is: what follows is where it says, what was before is given up.
   const Utime later = kStart + 30 * kSecond;
   for (int i = 0; i < 3; ++i) good.push_back(Pose(later + i * 100'000, 0.1 * i));
-  good.push_back(Chunk(later, 0, 4, false));
+  good.push_back(ChunkOf(later, 0, 4, false));
   for (int i = 3; i < 6; ++i) good.push_back(Pose(later + i * 100'000, 1000 + 0.1 * i));
-  good.push_back(Chunk(later, 1, 4, true));
+  good.push_back(ChunkOf(later, 1, 4, true));
   twins.Feed(good);
   EXPECT_THAT(twins.refused, Each(Gt(10)));
   EXPECT_EQ(test::Counter(node.GetStatus(), "pose jumps"), 1);
@@ -201,8 +200,8 @@ TEST(Refusal, AJumpOfThePoseIsNotRefused) {
   node.Handle(Pose(kStart, 0));
   EXPECT_NO_THROW(node.Handle(Pose(jump, 1000)));
   begun_there.Handle(Pose(jump, 1000));
-  for (const Message& message :
-       Messages{Pose(jump + 100'000, 1000.1), Chunk(jump, 0, 4, false), Chunk(jump, 1, 4, true)}) {
+  for (const Message& message : Messages{Pose(jump + 100'000, 1000.1), ChunkOf(jump, 0, 4, false),
+                                         ChunkOf(jump, 1, 4, true)}) {
     EXPECT_EQ(test::BytesOf(node.Handle(message)), test::BytesOf(begun_there.Handle(message)));
   }
 }

@@ -5,6 +5,7 @@
 
 #include "services/nodes/detector_node.h"
 #include "tests/nodes/nodes_testing.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -13,11 +14,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr Utime kSweep = 1'500'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
-constexpr Utime kCommand = kSweep + 13 * kSecond;
+constexpr Utime kCaptureTime = kSweep + 13 * kSecond;
 
-Rig MakeRig() {
+Rig TwoCameras() {
   Rig rig;
   for (const char* name : {"rgb", "thermal"}) {
     CameraSpec camera;
@@ -27,7 +26,7 @@ Rig MakeRig() {
   return rig;
 }
 
-CloudChunk Chunk(Utime sweep, int first_line, int lines = 1, int beams = 4) {
+CloudChunk LinesOf(Utime sweep, int first_line, int lines = 1, int beams = 4) {
   CloudChunk chunk;
   chunk.cloud.sweep_utime = sweep;
   chunk.cloud.first_line = first_line;
@@ -60,7 +59,7 @@ CornerSelection Picks(const std::string& camera, Utime image_utime) {
   return picks;
 }
 
-SessionCommand Capture(Utime utime = kCommand, Utime sweep = kSweep,
+SessionCommand Capture(Utime utime = kCaptureTime, Utime sweep = kSweep,
                        std::vector<std::string> picked = {}) {
   SessionCommand command;
   command.command = 3;
@@ -76,14 +75,14 @@ SessionCommand Capture(Utime utime = kCommand, Utime sweep = kSweep,
 class ViewCollectorTest : public ::testing::Test {
  protected:
   void AddSweep(Utime sweep = kSweep, int lines = 3) {
-    for (int i = 0; i < lines; ++i) collector_.Add(Chunk(sweep, i));
+    for (int i = 0; i < lines; ++i) collector_.Add(LinesOf(sweep, i));
     collector_.Add(End(sweep, lines));
   }
-  void AddImages(Utime utime = kCommand) {
+  void AddImages(Utime utime = kCaptureTime) {
     for (const CameraSpec& camera : rig_.cameras) collector_.Add(MakeImage(camera.name, utime));
   }
 
-  Rig rig_ = MakeRig();
+  Rig rig_ = TwoCameras();
   ViewCollector collector_;
 };
 
@@ -94,15 +93,15 @@ TEST_F(ViewCollectorTest, WhatArrivesFirstDoesNotMatter) {
     for (const int what : order) {
       EXPECT_FALSE(collector.Take(rig_).has_value());
       if (what == 0) {
-        for (int i = 0; i < 3; ++i) collector.Add(Chunk(kSweep, i));
+        for (int i = 0; i < 3; ++i) collector.Add(LinesOf(kSweep, i));
         collector.Add(End(kSweep, 3));
       } else if (what == 1) {
-        collector.Begin(Capture(kCommand, kSweep, {"thermal"}));
+        collector.Begin(Capture(kCaptureTime, kSweep, {"thermal"}));
       } else if (what == 2) {
-        collector.Add(MakeImage("rgb", kCommand));
-        collector.Add(MakeImage("thermal", kCommand));
+        collector.Add(MakeImage("rgb", kCaptureTime));
+        collector.Add(MakeImage("thermal", kCaptureTime));
       } else {
-        collector.Add(Picks("thermal", kCommand));
+        collector.Add(Picks("thermal", kCaptureTime));
       }
     }
     const auto view = collector.Take(rig_);
@@ -113,25 +112,25 @@ TEST_F(ViewCollectorTest, WhatArrivesFirstDoesNotMatter) {
     EXPECT_EQ(view->cloud.lines, 3);
     ASSERT_EQ(view->images.size(), 2U);
     ASSERT_EQ(view->picks.size(), 1U);
-    EXPECT_EQ(view->picks.front().image_utime, kCommand);
+    EXPECT_EQ(view->picks.front().image_utime, kCaptureTime);
     EXPECT_FALSE(collector.Take(rig_).has_value()) << "only once";
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST_F(ViewCollectorTest, TheFirstImageAtOrAfterTheCommandCounts) {
   AddSweep();
-  AddImages(kCommand - kSecond);
-  AddImages(kCommand - 1);
+  AddImages(kCaptureTime - kSecond);
+  AddImages(kCaptureTime - 1);
   collector_.Begin(Capture());
   EXPECT_FALSE(collector_.Take(rig_).has_value());
   EXPECT_THAT(collector_.Missing(rig_), HasSubstr("an image of camera rgb"));
-  collector_.Add(MakeImage("rgb", kCommand));
-  collector_.Add(MakeImage("rgb", kCommand + kSecond));
-  collector_.Add(MakeImage("thermal", kCommand + 2 * kSecond));
+  collector_.Add(MakeImage("rgb", kCaptureTime));
+  collector_.Add(MakeImage("rgb", kCaptureTime + kSecond));
+  collector_.Add(MakeImage("thermal", kCaptureTime + 2 * kSecond));
   const auto view = collector_.Take(rig_);
   ASSERT_TRUE(view.has_value());
-  EXPECT_EQ(view->images[0].utime, kCommand);
-  EXPECT_EQ(view->images[1].utime, kCommand + 2 * kSecond);
+  EXPECT_EQ(view->images[0].utime, kCaptureTime);
+  EXPECT_EQ(view->images[1].utime, kCaptureTime + 2 * kSecond);
 }
 
 TEST_F(ViewCollectorTest, ImagesFromTheSweepsStartAndMiddleComeAfterTheViewsOwn) {
@@ -147,23 +146,23 @@ TEST_F(ViewCollectorTest, ImagesFromTheSweepsStartAndMiddleComeAfterTheViewsOwn)
                      times.begin() + static_cast<std::ptrdiff_t>(i) + 10);
       }
     }
-    collector.Add(Chunk(kSweep, 0));
+    collector.Add(LinesOf(kSweep, 0));
     collector.Add(End(kSweep, 1));
     for (const Utime utime : times) collector.Add(MakeImage("thermal", utime));
     SessionCommand capture;
     capture.verb = SessionVerb::kCapture;
     capture.view = "0001";
-    capture.utime = kCommand;
+    capture.utime = kCaptureTime;
     capture.sweep_utime = kSweep;
     collector.Begin(capture);
-    collector.Add(MakeImage("rgb", kCommand));
-    collector.Add(MakeImage("thermal", kCommand));
-    const auto view = collector.Take(MakeRig());
+    collector.Add(MakeImage("rgb", kCaptureTime));
+    collector.Add(MakeImage("thermal", kCaptureTime));
+    const auto view = collector.Take(TwoCameras());
     ASSERT_TRUE(view);
     ASSERT_EQ(view->images.size(), 4U);
     EXPECT_EQ(view->images[0].camera, "rgb");
     EXPECT_EQ(view->images[1].camera, "thermal");
-    EXPECT_EQ(view->images[1].utime, kCommand);
+    EXPECT_EQ(view->images[1].utime, kCaptureTime);
     EXPECT_EQ(view->images[2].camera, "thermal");
     EXPECT_EQ(view->images[2].utime, kSweep);
     EXPECT_NEAR(ToSeconds(view->images[3].utime - kSweep), 6.5, 0.6);
@@ -177,15 +176,15 @@ TEST_F(ViewCollectorTest, ImagesFromTheSweepsStartAndMiddleComeAfterTheViewsOwn)
 TEST_F(ViewCollectorTest, ItStaysTheFirstHoweverManyCome) {
   AddSweep();
   collector_.Begin(Capture());
-  for (int i = 0; i < 10; ++i) collector_.Add(MakeImage("rgb", kCommand + i * kSecond / 4));
-  collector_.Add(MakeImage("thermal", kCommand));
-  EXPECT_EQ(collector_.Take(rig_)->images[0].utime, kCommand);
+  for (int i = 0; i < 10; ++i) collector_.Add(MakeImage("rgb", kCaptureTime + i * kSecond / 4));
+  collector_.Add(MakeImage("thermal", kCaptureTime));
+  EXPECT_EQ(collector_.Take(rig_)->images[0].utime, kCaptureTime);
 }
 
 TEST_F(ViewCollectorTest, AnImageTooLongAfterTheCommandDoesNotCount) {
   AddSweep();
   collector_.Begin(Capture());
-  AddImages(kCommand + ViewCollector::kImageWait + 1);
+  AddImages(kCaptureTime + ViewCollector::kImageWait + 1);
   EXPECT_FALSE(collector_.Take(rig_).has_value());
   EXPECT_THAT(collector_.Missing(rig_), HasSubstr("an image of camera thermal"));
 }
@@ -193,32 +192,32 @@ TEST_F(ViewCollectorTest, AnImageTooLongAfterTheCommandDoesNotCount) {
 TEST_F(ViewCollectorTest, ImagesWhileTheShutterCorrectsAreSkipped) {
   AddSweep();
   collector_.Begin(Capture());
-  collector_.Add(MakeImage("rgb", kCommand));
+  collector_.Add(MakeImage("rgb", kCaptureTime));
   for (int i = 0; i < 8; ++i) {
-    Image image = MakeImage("thermal", kCommand + i * kSecond / 10);
+    Image image = MakeImage("thermal", kCaptureTime + i * kSecond / 10);
     image.shutter_correcting = true;
     collector_.Add(image);
   }
   EXPECT_FALSE(collector_.Take(rig_).has_value());
-  collector_.Add(MakeImage("thermal", kCommand + kSecond));
-  EXPECT_EQ(collector_.Take(rig_)->images[1].utime, kCommand + kSecond);
+  collector_.Add(MakeImage("thermal", kCaptureTime + kSecond));
+  EXPECT_EQ(collector_.Take(rig_)->images[1].utime, kCaptureTime + kSecond);
 }
 
 TEST_F(ViewCollectorTest, PicksOfAnotherImageDoNotCount) {
   AddSweep();
   AddImages();
-  collector_.Begin(Capture(kCommand, kSweep, {"rgb"}));
-  collector_.Add(Picks("rgb", kCommand - kSecond));
+  collector_.Begin(Capture(kCaptureTime, kSweep, {"rgb"}));
+  collector_.Add(Picks("rgb", kCaptureTime - kSecond));
   EXPECT_FALSE(collector_.Take(rig_).has_value());
   EXPECT_EQ(collector_.Missing(rig_), "picked corners for camera rgb");
-  collector_.Add(Picks("rgb", kCommand));
+  collector_.Add(Picks("rgb", kCaptureTime));
   EXPECT_TRUE(collector_.Take(rig_).has_value());
 }
 
 TEST_F(ViewCollectorTest, PicksThatNobodyAskedForStayOut) {
   AddSweep();
   AddImages();
-  collector_.Add(Picks("rgb", kCommand));
+  collector_.Add(Picks("rgb", kCaptureTime));
   collector_.Begin(Capture());
   EXPECT_TRUE(collector_.Take(rig_)->picks.empty());
 }
@@ -228,7 +227,7 @@ TEST_F(ViewCollectorTest, MissingNamesEverything) {
   collector_.Begin(Capture());
   EXPECT_EQ(collector_.Missing(rig_), "the end of sweep " + std::to_string(kSweep) +
                                           ", an image of camera rgb, an image of camera thermal");
-  for (int i = 0; i < 3; ++i) collector_.Add(Chunk(kSweep, i));
+  for (int i = 0; i < 3; ++i) collector_.Add(LinesOf(kSweep, i));
   EXPECT_THAT(collector_.Missing(rig_), HasSubstr("the end of sweep"));
   collector_.Add(End(kSweep, 3));
   EXPECT_THAT(collector_.Missing(rig_), Not(HasSubstr("sweep")));
@@ -236,7 +235,7 @@ TEST_F(ViewCollectorTest, MissingNamesEverything) {
 
 TEST_F(ViewCollectorTest, ANewCaptureReplacesAnIncompleteOne) {
   collector_.Begin(Capture());
-  const Utime next = kCommand + 20 * kSecond;
+  const Utime next = kCaptureTime + 20 * kSecond;
   AddSweep(kSweep + 20 * kSecond);
   SessionCommand second = Capture(next, kSweep + 20 * kSecond);
   second.view = "0002";
@@ -259,13 +258,13 @@ TEST_F(ViewCollectorTest, ResetForgetsCaptureAndSweeps) {
 
 TEST_F(ViewCollectorTest, AClockSetBackForgetsTheImagesFromBefore) {
   AddSweep();
-  for (int i = 0; i < 5; ++i) AddImages(kCommand + 1000 * kSecond + i);
-  AddImages(kCommand);
-  AddImages(kCommand + kSecond);
+  for (int i = 0; i < 5; ++i) AddImages(kCaptureTime + 1000 * kSecond + i);
+  AddImages(kCaptureTime);
+  AddImages(kCaptureTime + kSecond);
   collector_.Begin(Capture());
   const auto view = collector_.Take(rig_);
   ASSERT_TRUE(view.has_value());
-  EXPECT_EQ(view->images[0].utime, kCommand);
+  EXPECT_EQ(view->images[0].utime, kCaptureTime);
 }
 
 }  // namespace

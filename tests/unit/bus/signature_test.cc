@@ -6,20 +6,13 @@
 #include <random>
 
 #include "services/messages/codec.h"
+#include "tests/numbers.h"
+#include "tests/unit/bus/bus_key.h"
 
 namespace rgbdt {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr Utime kNow = 1'700'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
-
-BusKey KeyOf(std::uint8_t byte) {
-  BusKey key;
-  key.bytes.fill(byte);
-  return key;
-}
 
 class SignatureTest : public ::testing::Test {
  protected:

@@ -5,18 +5,13 @@
 #include "calib/model/errors.h"
 #include "services/messages/codec.h"
 #include "services/messages/limits.h"
+#include "tests/unit/bus/bus_key.h"
 
 namespace rgbdt {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-BusKey KeyOf(std::uint8_t byte) {
-  BusKey key;
-  key.bytes.fill(byte);
-  return key;
-}
 
 Bytes Command(const std::string& view) {
   SessionCommand command;

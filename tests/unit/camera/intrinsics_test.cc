@@ -4,19 +4,13 @@
 #include <opencv2/calib3d.hpp>
 
 #include "tests/unit/camera/intrinsics_testing.h"
+#include "tests/unit/camera/lenses.h"
 
 namespace rgbdt {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-const CameraSpec& SpecNamed(const std::string& name) {
-  static const std::vector<NamedLens> lenses = Lenses();
-  return std::find_if(lenses.begin(), lenses.end(),
-                      [&](const NamedLens& lens) { return lens.name == name; })
-      ->spec;
-}
 
 class IntrinsicsOf : public testing::TestWithParam<NamedLens> {};
 

@@ -3,16 +3,10 @@
 #include <algorithm>
 
 #include "tests/unit/camera/intrinsics_testing.h"
+#include "tests/unit/camera/lenses.h"
 
 namespace rgbdt {
 namespace {
-
-const CameraSpec& SpecNamed(const std::string& name) {
-  static const std::vector<NamedLens> lenses = Lenses();
-  return std::find_if(lenses.begin(), lenses.end(),
-                      [&](const NamedLens& lens) { return lens.name == name; })
-      ->spec;
-}
 
 // Of made corners of that lens, asked for another model.
 LensComparison Compare(const CameraSpec& spec, LensChoice asked, std::uint32_t seed,

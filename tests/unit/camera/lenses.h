@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -51,5 +52,13 @@ inline std::vector<NamedLens> Lenses() {
 }
 
 inline std::string NameOf(const testing::TestParamInfo<NamedLens>& info) { return info.param.name; }
+
+/// The lens of Lenses() with this name.
+inline const CameraSpec& SpecNamed(const std::string& name) {
+  static const std::vector<NamedLens> lenses = Lenses();
+  return std::find_if(lenses.begin(), lenses.end(),
+                      [&](const NamedLens& lens) { return lens.name == name; })
+      ->spec;
+}
 
 }  // namespace rgbdt

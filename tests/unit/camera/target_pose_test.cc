@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "calib/detect/image/internal/corner_order.h"
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 Target Board() {
   Target target;

@@ -6,13 +6,12 @@
 #include <random>
 
 #include "calib/model/errors.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr Utime kStart = 1'433'160'000'000'000;
 
 // A device that is read every `period_us` of true time; its clock runs `drift` fast.
 struct Device {
@@ -43,12 +42,12 @@ Errors Follow(const Device& device, unsigned seed, double seconds, double after_
   for (double t = 0; t < seconds * 1e6; t += device.period_us) {
     const std::int64_t ticks = device.Ticks(t);
     const double delay = device.constant_us + jitter(random);
-    EXPECT_TRUE(fit.Add(ticks, kStart + std::llround(t + delay)));
+    EXPECT_TRUE(fit.Add(ticks, kDevicesStart + std::llround(t + delay)));
     if (t < after_s * 1e6) continue;
     // Half a tick: a counter shows the tick that has passed.
     const Utime host =
         fit.ToHost(static_cast<double>(ticks) + (device.tick_us > 1 ? 0.5 : 0)).value();
-    const double error = static_cast<double>(host - kStart) - t;
+    const double error = static_cast<double>(host - kDevicesStart) - t;
     errors.worst_us = std::max(errors.worst_us, std::abs(error));
     errors.rms_us += error * error;
     ++count;
@@ -100,7 +99,7 @@ TEST(ClockFit, FindsTheRateAndKeepsToItsBound) {
     std::mt19937 random(7);
     std::exponential_distribution<double> jitter(1e-3);
     for (double t = 0; t < 60e6; t += 25'000) {
-      fit.Add(device.Ticks(t), kStart + std::llround(t + jitter(random)));
+      fit.Add(device.Ticks(t), kDevicesStart + std::llround(t + jitter(random)));
     }
     EXPECT_NEAR(fit.rate(), std::max(-drift, -500e-6), 5e-6);
   }
@@ -109,13 +108,13 @@ TEST(ClockFit, FindsTheRateAndKeepsToItsBound) {
 TEST(ClockFit, BeforeTheBaseTheLeastDelayWithRateOne) {
   ClockFit fit;
   EXPECT_FALSE(fit.ToHost(0));
-  fit.Add(1000, kStart + 700);
-  EXPECT_EQ(fit.ToHost(1000), kStart + 700);
-  fit.Add(101'000, kStart + 100'200);
-  EXPECT_EQ(fit.ToHost(1000), kStart + 200);
+  fit.Add(1000, kDevicesStart + 700);
+  EXPECT_EQ(fit.ToHost(1000), kDevicesStart + 700);
+  fit.Add(101'000, kDevicesStart + 100'200);
+  EXPECT_EQ(fit.ToHost(1000), kDevicesStart + 200);
   EXPECT_EQ(fit.rate(), 0);
-  fit.Add(201'000, kStart + 200'900);
-  EXPECT_EQ(fit.ToHost(201'000), kStart + 200'200);
+  fit.Add(201'000, kDevicesStart + 200'900);
+  EXPECT_EQ(fit.ToHost(201'000), kDevicesStart + 200'200);
 }
 
 TEST(ClockFit, AClockThatIsSetStartsAnewAndSaysSo) {
@@ -131,7 +130,7 @@ TEST(ClockFit, AClockThatIsSetStartsAnewAndSaysSo) {
       const bool set = i >= 400;
       const std::int64_t ticks =
           200'000'000'000 + i * 25'000LL + (set ? static_cast<std::int64_t>(device_s * 1e6) : 0);
-      host = kStart + i * 25'000LL + (set ? static_cast<Utime>(host_s * 1e6) : 0);
+      host = kDevicesStart + i * 25'000LL + (set ? static_cast<Utime>(host_s * 1e6) : 0);
       if (!fit.Add(ticks, host + 300 + i * 37 % 200)) ++restarts;
       mapped = fit.ToHost(static_cast<double>(ticks)).value();
     }
@@ -144,8 +143,8 @@ TEST(ClockFit, AStallIsNoStep) {
   ClockFit fit;
   for (int i = 0; i < 4000; ++i) {
     const Utime delay = i >= 1000 && i < 1060 ? (1060 - i) * 25'000 : 0;  // 1.5 s pile up
-    EXPECT_TRUE(fit.Add(i * 25'000LL, kStart + i * 25'000LL + delay));
-    EXPECT_NEAR(static_cast<double>(*fit.ToHost(i * 25e3) - kStart - i * 25'000LL), 0, 5);
+    EXPECT_TRUE(fit.Add(i * 25'000LL, kDevicesStart + i * 25'000LL + delay));
+    EXPECT_NEAR(static_cast<double>(*fit.ToHost(i * 25e3) - kDevicesStart - i * 25'000LL), 0, 5);
   }
   EXPECT_LE(fit.size(), 601u);
 }
@@ -153,9 +152,9 @@ TEST(ClockFit, AStallIsNoStep) {
 TEST(ClockFit, ReadingsOutOfOrderAndTwiceAreTaken) {
   ClockFit fit;
   for (const int i : {0, 2, 1, 3, 3, 2, 400, 399, 400}) {
-    EXPECT_TRUE(fit.Add(i * 25'000LL, kStart + i * 25'000LL + 10));
+    EXPECT_TRUE(fit.Add(i * 25'000LL, kDevicesStart + i * 25'000LL + 10));
   }
-  EXPECT_NEAR(static_cast<double>(*fit.ToHost(1e7) - kStart), 1e7 + 10, 1);
+  EXPECT_NEAR(static_cast<double>(*fit.ToHost(1e7) - kDevicesStart), 1e7 + 10, 1);
 }
 
 TEST(ClockFit, BadOptionsAreNamed) {
@@ -178,14 +177,15 @@ TEST(CounterUnwrapper, GoesOnWhereTheCounterWraps) {
 }
 
 TEST(PtpToUtc, TakesWholeSecondsAway) {
-  EXPECT_EQ(PtpToUtc(kStart + 37'000'000, kStart + 900), kStart) << "TAI";
-  EXPECT_EQ(PtpToUtc(kStart, kStart + 900), kStart) << "UTC";
-  EXPECT_EQ(PtpToUtc(kStart + 37'000'000, kStart + 150'000), kStart) << "a late arrival";
+  EXPECT_EQ(PtpToUtc(kDevicesStart + 37'000'000, kDevicesStart + 900), kDevicesStart) << "TAI";
+  EXPECT_EQ(PtpToUtc(kDevicesStart, kDevicesStart + 900), kDevicesStart) << "UTC";
+  EXPECT_EQ(PtpToUtc(kDevicesStart + 37'000'000, kDevicesStart + 150'000), kDevicesStart)
+      << "a late arrival";
 }
 
 TEST(PtpToUtc, AClockOfItsOwnIsNotBelieved) {
-  EXPECT_FALSE(PtpToUtc(5'000'000, kStart));
-  EXPECT_FALSE(PtpToUtc(kStart + 500'000, kStart));
+  EXPECT_FALSE(PtpToUtc(5'000'000, kDevicesStart));
+  EXPECT_FALSE(PtpToUtc(kDevicesStart + 500'000, kDevicesStart));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kPeriod = 33'333;
+constexpr Utime kFrame = 33'333;
 
 // 14 bit counts at 30 Hz: a scene of 400 counts' spread, or the shutter's flat face; 3 counts of
 // noise in both.
@@ -33,7 +33,7 @@ class Core {
 
 class ShutterWatchTest : public ::testing::Test {
  protected:
-  bool Add(const cv::Mat& frame) { return watch_.Add(frame, now_ += kPeriod); }
+  bool Add(const cv::Mat& frame) { return watch_.Add(frame, now_ += kFrame); }
   Core core_;
   ShutterWatch watch_;
   Utime now_ = 1'500'000'000'000'000;
@@ -50,7 +50,7 @@ TEST_F(ShutterWatchTest, AFrozenPictureIsFlaggedFromItsFirstRepetitionUntilItHas
   for (int i = 0; i < 15; ++i) EXPECT_TRUE(Add(frozen.clone()));
   int flagged = 0;
   for (int i = 0; i < 30; ++i) flagged += Add(core_.Scene()) ? 1 : 0;
-  EXPECT_EQ(flagged, ShutterWatch::kSettle / kPeriod);
+  EXPECT_EQ(flagged, ShutterWatch::kSettle / kFrame);
 }
 
 TEST_F(ShutterWatchTest, ASlowCoresRepeatedFramesAreUsed) {
@@ -68,8 +68,7 @@ TEST_F(ShutterWatchTest, ASlowCoresRepeatedFramesAreUsed) {
 TEST_F(ShutterWatchTest, WhatStandsForLongIsNoCorrection) {
   const cv::Mat still = core_.Scene();
   const Utime begun = now_;
-  while (now_ - begun < ShutterWatch::kLongest + ShutterWatch::kSettle + kPeriod)
-    Add(still.clone());
+  while (now_ - begun < ShutterWatch::kLongest + ShutterWatch::kSettle + kFrame) Add(still.clone());
   for (int i = 0; i < 30; ++i) EXPECT_FALSE(Add(still.clone()));
 }
 

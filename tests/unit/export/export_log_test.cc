@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr Utime kNow = 1'700'000'000'000'000;
+constexpr Utime kStart = 1'700'000'000'000'000;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const char kRig[] = R"(
@@ -56,7 +56,7 @@ RgbdtCloud Fused(Utime sweep, bool end, bool whole) {
   cloud.sweep_end = end;
   cloud.whole_sweep = whole;
   cloud.cameras = {"rgb"};
-  cloud.calibration_utime = {kNow};
+  cloud.calibration_utime = {kStart};
   cloud.points = {{1, 0, 0}};
   cloud.intensity = {0.5F};
   cloud.utime = {sweep};
@@ -68,7 +68,7 @@ RgbdtCloud Fused(Utime sweep, bool end, bool whole) {
 
 CalibrationMessage Calibrated(SolveStatus status) {
   CalibrationMessage message;
-  message.utime = kNow - 50;
+  message.utime = kStart - 50;
   message.rig_hash = HashOfRigText(kRig);
   message.method = "auto";
   message.calibration.camera = "rgb";
@@ -111,16 +111,16 @@ class ExportingLog : public testing::Test {
 
   test::TempDir dir_;
   test::LogWriter log_;
-  Utime last_ = kNow - 1000;  // nothing is logged before the first sensor time
+  Utime last_ = kStart - 1000;  // nothing is logged before the first sensor time
 };
 
 TEST_F(ExportingLog, SweepsComeAsTheyEndAndThoseThatAreTornAreCounted) {
   Status early;  // before any sensor's time
   early.process = "assembler";
   Add(early);
-  for (const int line : {0, 1, 2}) Add(Chunk(kNow, line, 3));
-  for (const int line : {0, 2}) Add(Chunk(kNow + 100'000, line, 3));  // one is lost
-  Add(Chunk(kNow + 200'000, 0, 3));                                   // never ends
+  for (const int line : {0, 1, 2}) Add(Chunk(kStart, line, 3));
+  for (const int line : {0, 2}) Add(Chunk(kStart + 100'000, line, 3));  // one is lost
+  Add(Chunk(kStart + 200'000, 0, 3));                                   // never ends
   const ExportedLog exported = Export();
   EXPECT_EQ(exported.topics.at("/lidar/points").messages, 2);
   EXPECT_EQ(exported.torn_sweeps, 2);
@@ -135,10 +135,10 @@ TEST_F(ExportingLog, SweepsComeAsTheyEndAndThoseThatAreTornAreCounted) {
 }
 
 TEST_F(ExportingLog, OfFusedCloudsTheWholeSweepsOnce) {
-  Add(Fused(kNow, false, false));
-  Add(Fused(kNow, true, false));
-  Add(Fused(kNow, false, true));
-  Add(Fused(kNow, true, true));
+  Add(Fused(kStart, false, false));
+  Add(Fused(kStart, true, false));
+  Add(Fused(kStart, false, true));
+  Add(Fused(kStart, true, true));
   Export();
   const auto clouds = Read<foxglove::PointCloud>("/fused/points");
   ASSERT_THAT(clouds, SizeIs(1));
@@ -147,11 +147,11 @@ TEST_F(ExportingLog, OfFusedCloudsTheWholeSweepsOnce) {
 
 // Chunks that were fused on the way are put into the frame of the first.
 TEST_F(ExportingLog, FusedChunksOfARigThatMovesAreOneCloud) {
-  RgbdtCloud first = Fused(kNow, false, false), second = Fused(kNow, true, false);
+  RgbdtCloud first = Fused(kStart, false, false), second = Fused(kStart, true, false);
   first.map_from_lidar = Rigid3{Eigen::Quaterniond::Identity(), {10, 0, 0}};
-  first.frame_utime = kNow;
+  first.frame_utime = kStart;
   second.map_from_lidar = Rigid3{Eigen::Quaterniond::Identity(), {12, 0, 0}};
-  second.frame_utime = kNow + 5;
+  second.frame_utime = kStart + 5;
   Add(first);
   Add(second);
   Export();
@@ -165,7 +165,7 @@ TEST_F(ExportingLog, FusedChunksOfARigThatMovesAreOneCloud) {
 
 TEST_F(ExportingLog, ACalibrationTakesAGuesssPlaceAndTheLensGoesWithIt) {
   const RigText rig{0, HashOfRigText(kRig), kRig};
-  Add(Chunk(kNow, 0, 1));
+  Add(Chunk(kStart, 0, 1));
   Add(rig);
   Add(Calibrated(SolveStatus::kDegenerate));  // not to be used: told, no transform
   Add(Calibrated(SolveStatus::kConverged));
@@ -186,7 +186,7 @@ TEST_F(ExportingLog, ACalibrationTakesAGuesssPlaceAndTheLensGoesWithIt) {
 }
 
 TEST_F(ExportingLog, ACalibrationThatComesBeforeItsRigIsKept) {
-  Add(Chunk(kNow, 0, 1));
+  Add(Chunk(kStart, 0, 1));
   Add(Calibrated(SolveStatus::kConverged));
   Add(RigText{0, HashOfRigText(kRig), kRig});
   const ExportedLog exported = Export();
@@ -197,7 +197,7 @@ TEST_F(ExportingLog, ACalibrationThatComesBeforeItsRigIsKept) {
 }
 
 TEST_F(ExportingLog, AnotherRigsCalibrationGivesWayToTheGuess) {
-  Add(Chunk(kNow, 0, 1));
+  Add(Chunk(kStart, 0, 1));
   CalibrationMessage other = Calibrated(SolveStatus::kConverged);
   other.rig_hash = HashOfRigText("another");
   Add(other);
@@ -211,7 +211,7 @@ TEST_F(ExportingLog, AnotherRigsCalibrationGivesWayToTheGuess) {
 TEST_F(ExportingLog, AJpegGoesOnAsItWasSent) {
   Image image;
   image.camera = "rgb";
-  image.utime = kNow;
+  image.utime = kStart;
   image.format = PixelFormat::kJpeg;
   image.pixels = cv::Mat(16, 16, CV_8UC3, cv::Scalar(10, 20, 30));
   Add(image);
@@ -228,7 +228,7 @@ TEST_F(ExportingLog, AJpegGoesOnAsItWasSent) {
 }
 
 TEST_F(ExportingLog, APoseIsATransformToo) {
-  Add(StampedPose{0, kNow, "odometry", {Eigen::Quaterniond::Identity(), {1, 2, 3}}});
+  Add(StampedPose{0, kStart, "odometry", {Eigen::Quaterniond::Identity(), {1, 2, 3}}});
   Export({"velodyne", {}});
   EXPECT_EQ(Read<foxglove::PoseInFrame>("/pose").at(0).pose().position().z(), 3);
   const auto transform = Read<foxglove::FrameTransforms>("/tf").at(0).transforms(0);
@@ -239,7 +239,7 @@ TEST_F(ExportingLog, APoseIsATransformToo) {
 TEST_F(ExportingLog, AProblemIsAWarningOnce) {
   Status status;
   status.process = "fuser";
-  status.utime = kNow;
+  status.utime = kStart;
   status.text = "fuses";
   Add(status);
   status.last_problem = "a gap";
@@ -254,7 +254,7 @@ TEST_F(ExportingLog, AProblemIsAWarningOnce) {
 }
 
 TEST_F(ExportingLog, WhatCannotBeReadCostsItselfAlone) {
-  Add(Chunk(kNow, 0, 1));
+  Add(Chunk(kStart, 0, 1));
   log_.Write("CLOUD", Bytes(100, 7), 42);
   log_.Write("NOBODYS", Bytes(100, 7), 42);
   const ExportedLog exported = Export();
@@ -272,7 +272,7 @@ TEST_F(ExportingLog, WithoutAnythingToExportTheOldFileStays) {
 }
 
 TEST_F(ExportingLog, FramesHaveNamesOfTheirOwn) {
-  Add(Chunk(kNow, 0, 1));
+  Add(Chunk(kStart, 0, 1));
   log_.Close();
   for (const ExportFrames& frames : {ExportFrames{"a b", {}}, ExportFrames{"x", {{"rgb", "x"}}},
                                      ExportFrames{"", {{"rgb", ""}}}}) {

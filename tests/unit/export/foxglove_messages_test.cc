@@ -14,8 +14,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kNow = 1'700'000'000'123'457;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr Utime kStamp = 1'700'000'000'123'457;
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 // Keeps the bytes as long as the message.
 struct Sent {
@@ -30,16 +30,16 @@ struct Sent {
 
 Cloud Sweep() {
   Cloud sweep;
-  sweep.sweep_utime = kNow;
+  sweep.sweep_utime = kStamp;
   sweep.lines = 2;
   sweep.beams = 2;
-  sweep.points = {{1, 2, 3}, {kNan, kNan, kNan}, {4, 5, 6}, {-1, 0, 2}};
-  sweep.directions.assign(4, {kNan, kNan, kNan});
+  sweep.points = {{1, 2, 3}, {kNotANumber, kNotANumber, kNotANumber}, {4, 5, 6}, {-1, 0, 2}};
+  sweep.directions.assign(4, {kNotANumber, kNotANumber, kNotANumber});
   sweep.directions[1] = {0, 0.6F, 0.8F};
   sweep.origins = {{0, 0, 0.1F}, {0, 0, 0.2F}};
-  sweep.intensity = {0.25F, kNan, 1, 0};
+  sweep.intensity = {0.25F, kNotANumber, 1, 0};
   sweep.ring = {0, 1, 0, 1};
-  sweep.utime = {kNow, kNow + 1, kNow + 9'999'999, kNow + 3};
+  sweep.utime = {kStamp, kStamp + 1, kStamp + 9'999'999, kStamp + 3};
   return sweep;
 }
 
@@ -48,9 +48,9 @@ TEST(Foxglove, ASweepComesBackBitForBit) {
   const Sent sent(ToFoxglove(sweep, "lidar"));
   const ros::PointCloud read = ros::DecodePointCloud(sent.message, BagEncoding::kProtobuf);
   EXPECT_EQ(read.header.frame, "lidar");
-  EXPECT_EQ(read.header.utime, kNow);
+  EXPECT_EQ(read.header.utime, kStamp);
   const Cloud back = ToCloud(read, "/lidar");
-  EXPECT_EQ(back.sweep_utime, kNow);
+  EXPECT_EQ(back.sweep_utime, kStamp);
   EXPECT_TRUE(back.organised);
   EXPECT_EQ(back.lines, 2);
   EXPECT_EQ(back.beams, 2);
@@ -78,14 +78,14 @@ TEST(Foxglove, ACloudWithoutOrderHasNone) {
 
 TEST(Foxglove, AFusedCloudHasColourTemperatureAndItsPlace) {
   RgbdtCloud cloud;
-  cloud.sweep_utime = kNow;
+  cloud.sweep_utime = kStamp;
   cloud.points = {{1, 2, 3}, {4, 5, 6}};
   cloud.intensity = {0.5F, 0.25F};
-  cloud.utime = {kNow, kNow + 5};
+  cloud.utime = {kStamp, kStamp + 5};
   cloud.rgb = {{10, 20, 30}, {0, 0, 0}};
-  cloud.temperature_k = {300, kNan};
-  cloud.temperature_sigma_k = {0.5F, kNan};
-  cloud.thermal_counts = {3000, kNan};
+  cloud.temperature_k = {300, kNotANumber};
+  cloud.temperature_sigma_k = {0.5F, kNotANumber};
+  cloud.thermal_counts = {3000, kNotANumber};
   cloud.valid = {3, 0};
   foxglove::PointCloud out = ToFoxglove(cloud, "lidar");
   EXPECT_EQ(out.frame_id(), "lidar");
@@ -103,10 +103,10 @@ TEST(Foxglove, AFusedCloudHasColourTemperatureAndItsPlace) {
   EXPECT_EQ(at("temperature", 0, float{}), 300);
   EXPECT_EQ(at("temperature_sigma", 0, float{}), 0.5F);
   EXPECT_EQ(at("valid", 0, std::uint32_t{}), 3U);
-  EXPECT_NEAR(at("timestamp", 1, double{}), ToSeconds(kNow + 5), 3e-7);
+  EXPECT_NEAR(at("timestamp", 1, double{}), ToSeconds(kStamp + 5), 3e-7);
 
   cloud.map_from_lidar = Rigid3{Eigen::Quaterniond::Identity(), {7, 8, 9}};
-  cloud.frame_utime = kNow + 10;
+  cloud.frame_utime = kStamp + 10;
   out = ToFoxglove(cloud, "lidar");
   EXPECT_EQ(out.frame_id(), "map");
   EXPECT_EQ(out.pose().position().y(), 8);
@@ -124,14 +124,14 @@ TEST(Foxglove, ImagesOfEveryKindComeBack) {
         std::pair(PixelFormat::kBayerGb8, CV_8UC1), std::pair(PixelFormat::kBayerBg8, CV_8UC1),
         std::pair(PixelFormat::kBgr8, CV_8UC3)}) {
     Image image;
-    image.utime = kNow;
+    image.utime = kStamp;
     image.format = format;
     const cv::Mat wide(3, 7, type, cv::Scalar(10, 20, 30));
     image.pixels = wide(cv::Rect(1, 0, 5, 3));  // its rows are apart
     const Sent sent(ToFoxglove(image, "optical"));
     const Image back = ToImage(ros::DecodeImage(sent.message, BagEncoding::kProtobuf), "/cam");
     EXPECT_EQ(back.format, format);
-    EXPECT_EQ(back.utime, kNow);
+    EXPECT_EQ(back.utime, kStamp);
     EXPECT_EQ(cv::norm(back.pixels, image.pixels), 0);
   }
 }
@@ -146,7 +146,7 @@ TEST(Foxglove, LensesOfEveryModelComeBack) {
     for (int i = 0; i < coefficients; ++i) {
       camera.lens.distortion[static_cast<std::size_t>(i)] = 0.1 / (1 + i);
     }
-    const Sent sent(ToFoxglove(camera, kNow, "optical"));
+    const Sent sent(ToFoxglove(camera, kStamp, "optical"));
     const auto info = ros::DecodeCameraInfo(sent.message, BagEncoding::kProtobuf);
     const auto lens = ToLens(info, {"/cam/camera_info", "", "cam", 0, 1, std::nullopt});
     ASSERT_TRUE(lens.has_value());
@@ -158,7 +158,7 @@ TEST(Foxglove, TransformsSayWhichWay) {
   foxglove::FrameTransforms sent_transforms;
   const Rigid3 base_from_lidar =
       RotationAbout({0, 0, 1}, 0.5) * Rigid3{Eigen::Quaterniond::Identity(), {1, 2, 3}};
-  *sent_transforms.add_transforms() = ToFoxglove(base_from_lidar, "base", "lidar", kNow);
+  *sent_transforms.add_transforms() = ToFoxglove(base_from_lidar, "base", "lidar", kStamp);
   const Sent sent(sent_transforms);
   const auto transforms = ros::DecodeTransforms(sent.message, BagEncoding::kProtobuf);
   ASSERT_EQ(transforms.size(), 1U);

@@ -35,13 +35,13 @@ cv::Mat CountsPicture() {
   return counts;
 }
 
-constexpr Utime kNow = 10'000'000;
+constexpr Utime kStart = 10'000'000;
 
 FusionCamera Ready(CameraKind kind, const Rigid3& camera_from_lidar = {}) {
   const CameraSpec spec = SpecOf(kind);
   FusionCamera camera(spec);
   const bool thermal = kind == CameraKind::kThermal;
-  camera.AddImage({kNow, thermal ? CountsPicture() : ColourPicture(), spec.radiometry});
+  camera.AddImage({kStart, thermal ? CountsPicture() : ColourPicture(), spec.radiometry});
   camera.calibrated = true;
   camera.camera_from_lidar = camera_from_lidar;
   return camera;
@@ -49,11 +49,11 @@ FusionCamera Ready(CameraKind kind, const Rigid3& camera_from_lidar = {}) {
 
 Cloud CloudOf(const std::vector<Eigen::Vector3f>& points) {
   Cloud cloud;
-  cloud.sweep_utime = kNow;
+  cloud.sweep_utime = kStart;
   cloud.lines = 1;
   cloud.beams = static_cast<int>(points.size());
   cloud.points = points;
-  cloud.utime.assign(points.size(), kNow + 5);
+  cloud.utime.assign(points.size(), kStart + 5);
   for (std::size_t i = 0; i < points.size(); ++i) {
     cloud.intensity.push_back(0.1F * static_cast<float>(i));
   }
@@ -75,7 +75,7 @@ TEST(Fuse, APointTakesThePixelsColourAndCounts) {
                                 {Ready(CameraKind::kColor), Ready(CameraKind::kThermal)}, 0.01);
   ASSERT_EQ(fused.size(), 2U);
   EXPECT_THAT(fused.cameras, ElementsAre("rgb", "thermal"));
-  EXPECT_EQ(fused.sweep_utime, kNow);
+  EXPECT_EQ(fused.sweep_utime, kStart);
   EXPECT_EQ(fused.rgb[0], RgbAt(7, 22));
   EXPECT_EQ(fused.rgb[1], RgbAt(20, 15));
   const float counts = CountsPicture().at<float>(22, 7);
@@ -83,7 +83,7 @@ TEST(Fuse, APointTakesThePixelsColourAndCounts) {
   EXPECT_NEAR(fused.temperature_k[0], 0.04 * counts, 0.001);
   EXPECT_THAT(fused.valid, ElementsAre(3U, 3U));
   EXPECT_THAT(fused.intensity, ElementsAre(0, 0.1F));
-  EXPECT_THAT(fused.utime, ElementsAre(kNow + 5, kNow + 5));
+  EXPECT_THAT(fused.utime, ElementsAre(kStart + 5, kStart + 5));
 }
 
 TEST(Fuse, BetweenPixelsItTakesTheBilinearValue) {
@@ -111,7 +111,7 @@ TEST(Fuse, TheImagesBorderPixelsCount) {
   cv::Mat around(32, 42, CV_32F, cv::Scalar(kNan));
   cv::Mat picture = around(cv::Rect(0, 0, 41, 31));
   CountsPicture().copyTo(picture);
-  camera.AddImage({kNow, picture, spec.radiometry});
+  camera.AddImage({kStart, picture, spec.radiometry});
   camera.calibrated = true;
   const RgbdtCloud fused =
       Fuse(CloudOf({{-20.F / 64, -15.F / 64, 1}, {20.F / 64, 15.F / 64, 1}}), {camera}, 0.01);
@@ -151,7 +151,7 @@ TEST(Fuse, NoColourBeyondTheFold) {
   CameraSpec spec = SpecOf(CameraKind::kColor);
   spec.lens.distortion = {-0.5};
   FusionCamera camera(spec);
-  camera.AddImage({kNow, ColourPicture(), {}});
+  camera.AddImage({kStart, ColourPicture(), {}});
   camera.calibrated = true;
   const RgbdtCloud fused = Fuse(CloudOf({{1.4F, 0, 1}, {0.028F, 0, 1}}), {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0U, 1U));
@@ -177,10 +177,10 @@ TEST(Fuse, WithoutACalibrationNothingIsColoured) {
 TEST(Fuse, EveryPointIsServedByTheImageOfItsOwnTime) {
   FusionCamera camera(SpecOf(CameraKind::kColor));
   camera.calibrated = true;
-  camera.AddImage({kNow, cv::Mat(31, 41, CV_8UC3, cv::Scalar(1, 1, 1)), {}});
-  camera.AddImage({kNow + 100, cv::Mat(31, 41, CV_8UC3, cv::Scalar(2, 2, 2)), {}});
+  camera.AddImage({kStart, cv::Mat(31, 41, CV_8UC3, cv::Scalar(1, 1, 1)), {}});
+  camera.AddImage({kStart + 100, cv::Mat(31, 41, CV_8UC3, cv::Scalar(2, 2, 2)), {}});
   Cloud cloud = CloudOf({Seen(20, 15, 2), Seen(20, 15, 2), Seen(20, 15, 2)});
-  cloud.utime = {kNow - 1, kNow + 99, kNow + 100};
+  cloud.utime = {kStart - 1, kStart + 99, kStart + 100};
   const RgbdtCloud fused = Fuse(cloud, {camera}, 0.01);
   EXPECT_THAT(fused.valid, ElementsAre(0U, 1U, 1U));
   EXPECT_EQ(fused.rgb[1][0], 1);
@@ -191,7 +191,8 @@ TEST(Fuse, EveryPointIsServedByTheImageOfItsOwnTime) {
 FusionCamera Even(CameraKind kind, double value, const Rigid3& camera_from_lidar = {}) {
   FusionCamera camera(SpecOf(kind));
   const int type = kind == CameraKind::kThermal ? CV_32FC1 : CV_8UC3;
-  camera.AddImage({kNow, cv::Mat(31, 41, type, cv::Scalar::all(value)), camera.spec().radiometry});
+  camera.AddImage(
+      {kStart, cv::Mat(31, 41, type, cv::Scalar::all(value)), camera.spec().radiometry});
   camera.calibrated = true;
   camera.camera_from_lidar = camera_from_lidar;
   return camera;
@@ -240,7 +241,7 @@ TEST(Fuse, TheImagesBorderCountsLessAndSaturationNextToNothing) {
 // of the left.
 TEST(Fuse, WhatIsBehindSomethingElseIsNotColoured) {
   Cloud cloud;
-  cloud.sweep_utime = kNow;
+  cloud.sweep_utime = kStart;
   cloud.lines = 25;
   cloud.beams = 35;
   std::vector<bool> hidden;
@@ -279,7 +280,7 @@ TEST(Fuse, ACloudThatTellsNoTimesIsAsOldAsItsSweep) {
   cloud.utime.clear();
   cloud.intensity.clear();
   const RgbdtCloud fused = Fuse(cloud, {Ready(CameraKind::kColor)}, 0.01);
-  EXPECT_THAT(fused.utime, ElementsAre(kNow));
+  EXPECT_THAT(fused.utime, ElementsAre(kStart));
   EXPECT_TRUE(std::isnan(fused.intensity[0]));
   EXPECT_THAT(fused.valid, ElementsAre(1U));
 }

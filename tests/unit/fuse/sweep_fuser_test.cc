@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -10,9 +11,6 @@ namespace {
 using testing::Each;
 using testing::ElementsAre;
 using testing::SizeIs;
-
-constexpr Utime kNow = 1'500'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 // A wall 5 m ahead, x = 5 in the map, painted in waves.
 double PaintAt(const Eigen::Vector3d& in_map) {

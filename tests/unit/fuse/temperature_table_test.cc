@@ -19,7 +19,7 @@ Radiometry Linear() {
   return r;
 }
 
-Radiometry Planck() {
+Radiometry PlanckOfA655() {
   Radiometry r;
   r.kind = Radiometry::Kind::kPlanck;
   r.r = 366545;
@@ -32,7 +32,7 @@ Radiometry Planck() {
 }
 
 TEST(TemperatureTable, IsTheFormula) {
-  for (const Radiometry& r : {Linear(), Planck()}) {
+  for (const Radiometry& r : {Linear(), PlanckOfA655()}) {
     const TemperatureTable table(r, 0.05);
     for (const float counts : {3000.F, 3000.25F, 7499.5F, 12000.75F}) {
       EXPECT_NEAR(table.At(counts).kelvin, KelvinOf(r, counts), 2e-4);
@@ -53,7 +53,7 @@ TEST(TemperatureTable, WithoutRadiometryAndBeyondItsCountsThereIsNone) {
 TEST(TemperatureTable, ManyAtOnceAreTheSame) {
   std::vector<float> counts = {-1, 65536, std::nanf(""), 0, 65535};
   for (int i = 0; i < 40; ++i) counts.push_back(2000.F + 311.3F * static_cast<float>(i));
-  for (const Radiometry& r : {Radiometry{}, Linear(), Planck()}) {
+  for (const Radiometry& r : {Radiometry{}, Linear(), PlanckOfA655()}) {
     const TemperatureTable table(r, 0.05);
     std::vector<float> kelvin(counts.size()), sigma_k(counts.size());
     table.At(counts.data(), counts.size(), kelvin.data(), sigma_k.data());
@@ -76,7 +76,7 @@ TEST(TemperatureTable, ItsSigmaIsThatOfItsErrors) {
   constexpr double kNetd = 0.05;
   std::mt19937 engine(3);
   std::normal_distribution<double> normal;
-  for (const Radiometry& r : {Linear(), Planck()}) {
+  for (const Radiometry& r : {Linear(), PlanckOfA655()}) {
     Radiometry black = r;
     black.emissivity = 1;
     // Counts of a black body at 300 K, and 1 K more of it: by bisection, not by the inverse.

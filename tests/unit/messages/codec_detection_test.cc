@@ -101,7 +101,7 @@ void ExpectSame(const ViewDetection& a, const ViewDetection& b) {
   }
 }
 
-constexpr int kRounds = 100;
+constexpr int kDetectionRounds = 100;
 
 class DetectionOnTheWire : public ::testing::Test {
  protected:
@@ -132,7 +132,7 @@ class DetectionOnTheWire : public ::testing::Test {
 };
 
 TEST_F(DetectionOnTheWire, ComesBackWhole) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kDetectionRounds; ++round) {
     const ViewDetection a = random_.Seen();
     ASSERT_NO_FATAL_FAILURE(ExpectSame(a, ThroughTheWire(a)));
   }

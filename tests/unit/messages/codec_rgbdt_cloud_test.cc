@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using testing::RandomMessages;
 using testing::ThroughTheWire;
 
-constexpr int kRounds = 100;
+constexpr int kCloudRounds = 100;
 
 // The same numbers, a NaN for a NaN.
 void ExpectSame(const std::vector<float>& a, const std::vector<float>& b) {
@@ -43,7 +43,7 @@ class RgbdtCloudOnTheWire : public ::testing::Test {
 };
 
 TEST_F(RgbdtCloudOnTheWire, ComesBackWhole) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kCloudRounds; ++round) {
     const RgbdtCloud a = random_.Fused();
     const RgbdtCloud b = ThroughTheWire(a);
     EXPECT_EQ(a.seq, b.seq);

@@ -4,6 +4,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/methods/paper/by_paper.h"
+#include "tests/numbers.h"
 #include "tests/unit/solve/board_world.h"
 
 namespace rgbdt {
@@ -11,8 +12,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-constexpr double kDegree = M_PI / 180;
 
 Rig RigOf(const BoardWorld& world, const Rigid3& guess) {
   Rig rig;

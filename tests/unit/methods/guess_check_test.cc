@@ -5,14 +5,14 @@
 
 #include <cmath>
 
+#include "tests/numbers.h"
+
 namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-constexpr double kDegree = M_PI / 180;
 
 // A camera that looks along the LIDAR's x: its axes are x right, y down, z forward.
 Rigid3 Result() { return {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {0.1, -0.2, 0.05}}; }

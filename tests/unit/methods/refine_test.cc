@@ -4,14 +4,13 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/linear_algebra.h"
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = simulate::kDegree;
 
 /// A furnished room, looked at by small cameras from a rig that drives on.
 simulate::Options SmallRoom() {

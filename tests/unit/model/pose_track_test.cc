@@ -1,12 +1,10 @@
 #include "calib/model/pose_track.h"
 
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr Utime kNow = 1'500'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 // A rig that drives a bend: 2 m/s, 0.5 rad/s.
 StampedPose Driven(Utime utime) {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Rig GoodRig() {
@@ -67,10 +67,10 @@ INSTANTIATE_TEST_SUITE_P(
             [](Rig* r) { r->cameras[1].height = 20001; }},
         Bad{"fx", "lens.fx", "0.0", [](Rig* r) { r->cameras[0].lens.fx = 0; }},
         Bad{"fy", "lens.fy", "-500", [](Rig* r) { r->cameras[0].lens.fy = -500; }},
-        Bad{"cx", "lens.cx", "nan", [](Rig* r) { r->cameras[0].lens.cx = kNan; }},
+        Bad{"cx", "lens.cx", "nan", [](Rig* r) { r->cameras[0].lens.cx = kNotANumber; }},
         Bad{"cy", "lens.cy", "inf", [](Rig* r) { r->cameras[0].lens.cy = kInfinity; }},
         Bad{"distortion", "lens.distortion", "nan",
-            [](Rig* r) { r->cameras[0].lens.distortion[7] = kNan; }},
+            [](Rig* r) { r->cameras[0].lens.distortion[7] = kNotANumber; }},
         Bad{"readout_negative", "readout_s", "-0.1",
             [](Rig* r) { r->cameras[0].readout_s = -0.1; }},
         Bad{"readout_infinite", "readout_s", "inf",
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"emissivity_percent", "radiometry.emissivity", "95",
             [](Rig* r) { r->cameras[1].radiometry.emissivity = 95; }},
         Bad{"guess", "camera_from_lidar_guess", "not a pose",
-            [](Rig* r) { r->cameras[0].camera_from_lidar_guess->translation.x() = kNan; }},
+            [](Rig* r) { r->cameras[0].camera_from_lidar_guess->translation.x() = kNotANumber; }},
         Bad{"guess_quaternion", "camera_from_lidar_guess", "not a pose",
             [](Rig* r) { r->cameras[0].camera_from_lidar_guess->rotation.coeffs().setZero(); }},
         Bad{"color_16_bit", "pixel format", "MONO16",
@@ -88,15 +88,18 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ticks", "ticks_per_degree", "0.0",
             [](Rig* r) { r->lidar.turned_scanner->ticks_per_rad = 0; }},
         Bad{"zero_ticks", "zero_ticks", "nan",
-            [](Rig* r) { r->lidar.turned_scanner->zero_ticks = kNan; }},
+            [](Rig* r) { r->lidar.turned_scanner->zero_ticks = kNotANumber; }},
         Bad{"motor_from_scanner", "motor_from_scanner", "not a pose",
-            [](Rig* r) { r->lidar.turned_scanner->motor_from_scanner.translation.z() = kNan; }},
+            [](Rig* r) {
+              r->lidar.turned_scanner->motor_from_scanner.translation.z() = kNotANumber;
+            }},
         Bad{"range_sigma", "lidar.range_sigma_m", "0.0",
             [](Rig* r) { r->lidar.range_sigma_m = 0; }},
         Bad{"squares_x", "target.squares_x", "2", [](Rig* r) { r->target.squares_x = 2; }},
         Bad{"squares_y", "target.squares_y", "101", [](Rig* r) { r->target.squares_y = 101; }},
         Bad{"square", "target.square_m", "-0.1", [](Rig* r) { r->target.square_m = -0.1; }},
-        Bad{"board_width", "target.width_m", "nan", [](Rig* r) { r->target.width_m = kNan; }},
+        Bad{"board_width", "target.width_m", "nan",
+            [](Rig* r) { r->target.width_m = kNotANumber; }},
         Bad{"board_height", "target.height_m", "0.0", [](Rig* r) { r->target.height_m = 0; }},
         Bad{"pattern_wider_than_board", "target.width_m", "1.09",
             [](Rig* r) { r->target.width_m = 1.09; }},
@@ -111,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"range_sigma_in_millimetres", "lidar.range_sigma_m is 10", "0.01",
             [](Rig* r) { r->lidar.range_sigma_m = 10; }},
         Bad{"pattern_offset", "target.pattern_offset_m", "nan",
-            [](Rig* r) { r->target.pattern_offset_m.x() = kNan; }}),
+            [](Rig* r) { r->target.pattern_offset_m.x() = kNotANumber; }}),
     [](const testing::TestParamInfo<Bad>& info) { return info.param.name; });
 
 TEST(Rig, AGoodOnePasses) {

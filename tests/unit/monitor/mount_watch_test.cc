@@ -5,14 +5,13 @@
 #include <opencv2/core.hpp>
 
 #include "calib/model/errors.h"
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = simulate::kDegree;
 
 // A furnished room, looked at by small cameras (a pixel is 0.21 degrees) from a rig that drives on.
 const SceneWorld& Room() {

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/numbers.h"
+
 namespace rgbdt {
 namespace {
-
-constexpr Utime kNow = 1'500'000'000'000'000;
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 // 5 m/s and half a radian a second.
 Rigid3 MapFromRig(Utime utime) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib/model/errors.h"
+#include "tests/numbers.h"
 #include "tests/study/drives.h"
 
 namespace rgbdt {
@@ -21,8 +22,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
-
-constexpr double kDegree = M_PI / 180;
 
 // Half the columns: for what does not need to be exact.
 simulate::SpinningOptions Lidar(int rings = 32, int share = 2) {

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/numbers.h"
 #include "tests/study/drives.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 // Seen from where the LIDAR stands, looking `yaw` to the left of along the street.
 odometry::Place Seen(double along, double aside, double yaw, std::uint64_t street = 4) {

@@ -3,6 +3,7 @@
 
 #include "services/drivers/hesai/hesai_sweeps.h"
 #include "services/packets/packet_sweeps.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/packets/hesai_encoder.h"
@@ -14,8 +15,7 @@ using test::HesaiEncoder;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-constexpr double kDegree = M_PI / 180;
-constexpr Utime kSecond = HesaiEncoder::kSecond;
+constexpr Utime kHesaiSecond = HesaiEncoder::kSecond;
 
 // Three turns and a half from the front on, of which some packets are lost.
 struct Driven {
@@ -25,7 +25,8 @@ struct Driven {
     for (int i = 0; i * blocks < 360 * 7 / 2 + blocks; ++i) {
       if (i >= first_lost && i < end_lost) continue;
       const int us = 50 * blocks * i;
-      for (Cloud& cloud : sweeps->Add(encoder.Packet(100 * blocks * i % 36000, us), kSecond + us)) {
+      for (Cloud& cloud :
+           sweeps->Add(encoder.Packet(100 * blocks * i % 36000, us), kHesaiSecond + us)) {
         done.push_back(std::move(cloud));
       }
     }
@@ -81,7 +82,7 @@ TEST(HesaiSweeps, TimesAreTheSensorsUnlessItsClockWasNeverSet) {
   HesaiEncoder encoder;
   // The first block after the back is the fifth of the packet that begins at 176 degrees.
   const Cloud sweep = Turns(encoder).at(0);
-  EXPECT_NEAR(static_cast<double>(sweep.sweep_utime), kSecond + 17600 + 5.632 - 3 * 50, 1);
+  EXPECT_NEAR(static_cast<double>(sweep.sweep_utime), kHesaiSecond + 17600 + 5.632 - 3 * 50, 1);
   const std::size_t top = 15 * 360;  // channel 0
   EXPECT_NEAR(static_cast<double>(sweep.utime[top]), sweep.sweep_utime + 0.368, 1);
   EXPECT_NEAR(static_cast<double>(sweep.utime[0]), sweep.sweep_utime + 0.368 + 15 * 3.024, 1);

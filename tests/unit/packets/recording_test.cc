@@ -9,6 +9,7 @@
 #include "services/drivers/ouster/ouster_sweeps.h"
 #include "services/drivers/pcap/pcap_reader.h"
 #include "tests/hardware/velodyne_encoder.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/packets/ouster_encoder.h"
@@ -22,8 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr Utime kNow = 1'700'000'000'000'000;
-constexpr double kDegree = M_PI / 180;
+constexpr Utime kRecorded = 1'700'000'000'000'000;
 
 const char* const kProfiles[] = {"LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL",
                                  "RNG15_RFL8_NIR8"};
@@ -58,7 +58,7 @@ class Recordings : public testing::Test {
     const int in_turn = encoder.columns / encoder.columns_per_packet;
     for (int i = first; i < first + count; ++i) {
       if (std::count(left_out.begin(), left_out.end(), i) != 0) continue;
-      writer.Add(kNow + 1600 * i, encoder.Packet(i / in_turn, i % in_turn));
+      writer.Add(kRecorded + 1600 * i, encoder.Packet(i / in_turn, i % in_turn));
     }
     return Save(writer);
   }
@@ -147,26 +147,27 @@ TEST_F(Recordings, AClockThatShowsTheTimeIsTaken) {
 
 TEST_F(Recordings, AClockOfPtpIsLaidOnUtc) {
   OusterEncoder encoder;
-  encoder.first_ns = (kNow + 37'000'000) * 1000;
+  encoder.first_ns = (kRecorded + 37'000'000) * 1000;
   Read(Record(encoder, 0, 6), {dir_ / "os.json", 0});
   ASSERT_THAT(sweeps_, SizeIs(3));
-  EXPECT_EQ(sweeps_[0].sweep_utime, kNow);
-  EXPECT_EQ(sweeps_[2].sweep_utime, kNow + 2 * 32 * 97);
+  EXPECT_EQ(sweeps_[0].sweep_utime, kRecorded);
+  EXPECT_EQ(sweeps_[2].sweep_utime, kRecorded + 2 * 32 * 97);
 }
 
 TEST_F(Recordings, AnOustersLatePacketKeepsItsTime) {
   OusterEncoder encoder;
-  encoder.first_ns = (kNow + 37'000'000) * 1000;
+  encoder.first_ns = (kRecorded + 37'000'000) * 1000;
   OusterSweeps sweeps(ouster::ParseMetadata(encoder.Metadata(), "os.json"));
   std::vector<Cloud> done;
   for (int i = 0; i < 6; ++i) {
     const auto bytes = encoder.Packet(i / 2, i % 2);
     const Utime late = i == 2 ? 500'000 : 0;
     const auto packet = ouster::Decode(sweeps.metadata(), bytes.data(), bytes.size());
-    if (auto sweep = sweeps.Add(packet, kNow + 1600 * i + late)) done.push_back(std::move(*sweep));
+    if (auto sweep = sweeps.Add(packet, kRecorded + 1600 * i + late))
+      done.push_back(std::move(*sweep));
   }
   ASSERT_THAT(done, SizeIs(2));
-  EXPECT_EQ(done[1].sweep_utime, kNow + 32 * 97);
+  EXPECT_EQ(done[1].sweep_utime, kRecorded + 32 * 97);
 }
 
 TEST_F(Recordings, AVelodyneIsKnownByItsPackets) {
@@ -174,7 +175,7 @@ TEST_F(Recordings, AVelodyneIsKnownByItsPackets) {
   PcapWriter writer;
   writer.Begin();
   for (int i = 0; i < 3 * encoder.PacketsPerTurn(); ++i) {
-    writer.Add(kNow + static_cast<Utime>(i * encoder.PacketDuration_us()), encoder.Packet(i));
+    writer.Add(kRecorded + static_cast<Utime>(i * encoder.PacketDuration_us()), encoder.Packet(i));
   }
   const Recording recording = Read(Save(writer));
   EXPECT_EQ(recording.sensor, "VLP-16");
@@ -189,7 +190,7 @@ TEST_F(Recordings, OfTwoLidarsOnOnePortTheOneOfMorePacketsIsTaken) {
     PcapWriter writer;
     writer.Begin();
     for (int i = 0; i < 3 * encoder.PacketsPerTurn(); ++i) {
-      const Utime utime = kNow + static_cast<Utime>(i * encoder.PacketDuration_us());
+      const Utime utime = kRecorded + static_cast<Utime>(i * encoder.PacketDuration_us());
       writer.from = {192, 168, 1, 201};
       writer.Add(utime, encoder.Packet(i));
       writer.from = {192, 168, 1, 202};
@@ -214,7 +215,7 @@ TEST_F(Recordings, OfTwoLidarsOnOnePortTheOneOfMorePacketsIsTaken) {
 
 TEST_F(Recordings, BecomePcdFilesNamedByTheirTimes) {
   OusterEncoder encoder;
-  encoder.first_ns = kNow * 1000;
+  encoder.first_ns = kRecorded * 1000;
   const auto path = Record(encoder, 0, 4);
   WriteRecordingAsPcds(path, {dir_ / "os.json", 0}, dir_ / "out");
   std::vector<std::string> names;

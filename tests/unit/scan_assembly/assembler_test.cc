@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -16,7 +17,6 @@ using Input = std::variant<LineScan, EncoderReading>;
 using Inputs = std::vector<Input>;
 using Chunks = std::vector<CloudChunk>;
 
-constexpr Utime kSweep = 1'500'000'000'000'000;
 constexpr Utime kMs = 1000;
 constexpr int kLines = 25;
 constexpr Utime kLinePeriod = 40 * kMs;

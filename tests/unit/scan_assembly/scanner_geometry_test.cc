@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/numbers.h"
 #include "tests/study/scanner_scenes.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/scan_assembly/room.h"
@@ -15,7 +16,6 @@ using study::ObservableCovariance;
 using study::ScannerErrorOf;
 using testing::HasSubstr;
 
-constexpr double kDegree = M_PI / 180;
 enum Direction { kRx, kRy, kRz, kTx, kTy, kTz, kZero };
 
 Vector6d Delta(double deg, double m) {

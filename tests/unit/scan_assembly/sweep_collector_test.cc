@@ -1,13 +1,12 @@
 #include "calib/scan_assembly/sweep_collector.h"
 
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr Utime kSweep = 1'500'000'000'000'000;
 
 CloudChunk Chunk(Utime sweep, int first_line, int lines = 1, int beams = 4) {
   CloudChunk chunk;

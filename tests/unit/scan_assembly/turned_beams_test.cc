@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kLines = 60, kBeams = 150;
+constexpr int kTurnedLines = 60, kBeams = 150;
 
 struct Assembled {
   Cloud cloud;
@@ -27,7 +27,7 @@ Assembled Assemble(const TurnedScanner& scanner, double first, double last, doub
   Random random(5);
   Assembled made;
   std::vector<CloudChunk> chunks;
-  for (int n = 0; n < kLines; ++n) {
+  for (int n = 0; n < kTurnedLines; ++n) {
     LineScan line;
     line.first_angle_rad = first;
     line.angle_step_rad = (last - first) / (kBeams - 1);
@@ -36,7 +36,7 @@ Assembled Assemble(const TurnedScanner& scanner, double first, double last, doub
       const bool miss = random.Uniform(0, 1) < 0.1;
       line.range.push_back(miss ? std::numeric_limits<float>::quiet_NaN()
                                 : static_cast<float>(random.Uniform(1, 8)));
-      angles.push_back(0.3 + turn * (n + static_cast<double>(b) / kBeams) / kLines);
+      angles.push_back(0.3 + turn * (n + static_cast<double>(b) / kBeams) / kTurnedLines);
     }
     AppendLine(line, angles, &made.beams);
     CloudChunk chunk;

@@ -5,12 +5,12 @@
 #include <deque>
 
 #include "calib/solve/first_guess.h"
+#include "tests/numbers.h"
 #include "tests/unit/solve/board_world.h"
 
 namespace rgbdt {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kSigma = 0.01;  // of a point's distance from the plane [m]
 
 Target WorldTarget() { return {11, 8, 0.1, 1.2, 0.9, {0, 0}, {}}; }

@@ -2,12 +2,11 @@
 
 #include <list>
 
+#include "tests/numbers.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 const Target kTarget{9, 6, 0.1, 1.0, 0.7, {0, 0}, {}};
 

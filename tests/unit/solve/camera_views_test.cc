@@ -9,7 +9,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 // Of one view: the board is seen by "rgb", "thermal" and LIDAR.
-ViewDetection Seen() {
+ViewDetection OneView() {
   SolveWorldOptions options;
   options.views = 1;
   return SolveWorld(options).detections[0];
@@ -26,7 +26,7 @@ void Fail(CloudDetection* cloud, const std::string& why) {
 }
 
 TEST(CameraViewOf, PairsACamerasImageWithTheLikeliestCandidate) {
-  ViewDetection detection = Seen();
+  ViewDetection detection = OneView();
   detection.heldout = true;
   detection.cloud.candidates.push_back(detection.cloud.candidates[0]);
   detection.cloud.candidates[1].centre.x() += 1;
@@ -42,14 +42,14 @@ TEST(CameraViewOf, PairsACamerasImageWithTheLikeliestCandidate) {
 }
 
 TEST(CameraViewOf, OneCamerasImageSaysNothingOfTheOther) {
-  ViewDetection detection = Seen();
+  ViewDetection detection = OneView();
   Fail(&detection.images[0], "no checkerboard");
   EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "no checkerboard");
   EXPECT_TRUE(CameraViewOf("thermal", detection).usable());
 }
 
 TEST(CameraViewOf, TellsOfImageAndCloudApart) {
-  ViewDetection detection = Seen();
+  ViewDetection detection = OneView();
   Fail(&detection.cloud, "no plane of the board's size");
   EXPECT_EQ(CameraViewOf("rgb", detection).rejected, "no plane of the board's size");
   Fail(&detection.images[0], "no checkerboard");
@@ -60,7 +60,7 @@ TEST(CameraViewOf, TellsOfImageAndCloudApart) {
 }
 
 TEST(CameraViewOf, WhatIsMissingWithoutAReasonIsNamed) {
-  const ViewDetection seen = Seen();
+  const ViewDetection seen = OneView();
   EXPECT_THAT(CameraViewOf("front", seen).rejected, HasSubstr("no image of this camera"));
   ViewDetection detection = seen;
   detection.images[0].edges.reset();
@@ -71,7 +71,7 @@ TEST(CameraViewOf, WhatIsMissingWithoutAReasonIsNamed) {
 }
 
 TEST(CameraViewOf, ABoardThatMovedIsRejectedThoughItsEdgesAreKnown) {
-  ViewDetection detection = Seen();
+  ViewDetection detection = OneView();
   detection.images[0].why_not = "the board moved";
   const CameraView view = CameraViewOf("rgb", detection);
   EXPECT_EQ(view.rejected, "the board moved");
@@ -80,7 +80,7 @@ TEST(CameraViewOf, ABoardThatMovedIsRejectedThoughItsEdgesAreKnown) {
 
 // The paper's method: each camera's picks and guess say where to look.
 TEST(CameraViewOf, ACandidateOfOneCameraIsItsAlone) {
-  ViewDetection detection = Seen();
+  ViewDetection detection = OneView();
   detection.cloud.candidates.push_back(detection.cloud.candidates[0]);
   detection.cloud.candidates[0].camera = "thermal";
   detection.cloud.candidates[1].camera = "rgb";

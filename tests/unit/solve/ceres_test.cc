@@ -177,7 +177,7 @@ void OpenRanges(JointProblem* joint) {
   joint->start.range_terms.assign(ranges.Count(), 0);
 }
 
-BoardState StartOff(const JointProblem& joint) {
+BoardState NearStart(const JointProblem& joint) {
   Random random(5);
   BoardState start = joint.start;
   for (Rigid3& pose : start.camera_from_lidar) {
@@ -224,8 +224,8 @@ TEST_P(SolveBoardsAndCeres, FindTheSame) {
   JointProblem joint = session.Joint(GetParam().range_offset_sigma_m);
   if (GetParam().rings) OpenRanges(&joint);
   if (GetParam().sides_bent) joint.problem.priors.image_side_sigma_m = 0.0005;
-  const BoardSolution ours = SolveToTheEnd(joint.problem, StartOff(joint));
-  const BoardState theirs = SolveByCeres(joint.problem, StartOff(joint));
+  const BoardSolution ours = SolveToTheEnd(joint.problem, NearStart(joint));
+  const BoardState theirs = SolveByCeres(joint.problem, NearStart(joint));
   const MatrixXd jacobian = JacobianByCeres(joint.problem, ours.state);
   // All unknowns' distance in sigmas; loose directions count for nothing.
   EXPECT_LT((jacobian * Between(joint.problem, ours.state, theirs)).norm(), kOptimumSigmas);

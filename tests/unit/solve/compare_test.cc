@@ -4,12 +4,11 @@
 #include <limits>
 
 #include "calib/model/linear_algebra.h"
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 CameraSpec Spec() {
   CameraSpec spec;

@@ -29,7 +29,7 @@ struct Told {
   }
 };
 
-LensNumbers Normals(std::mt19937* random) {
+LensNumbers NormalNumbers(std::mt19937* random) {
   std::normal_distribution<double> normal;
   LensNumbers out;
   for (double& number : out) number = normal(*random);
@@ -45,9 +45,9 @@ TEST(AgainstPrior, IsChiSquareWhereThePriorHolds) {
   int freedom = 0;
   int alarms = 0;
   for (int i = 0; i < kDraws; ++i) {
-    const LensNumbers truth = root * Normals(&random);
+    const LensNumbers truth = root * NormalNumbers(&random);
     const LensOff off =
-        AgainstPrior(told.Estimate(truth, Normals(&random)), told.prior, told.Posterior());
+        AgainstPrior(told.Estimate(truth, NormalNumbers(&random)), told.prior, told.Posterior());
     sum += off.chi2 / kDraws;
     freedom = off.freedom;
     alarms += off.contradicts() ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <functional>
 
+#include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
 namespace rgbdt {
@@ -12,8 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using Surface = std::function<double(double x, double y)>;
-
-constexpr double kDegree = M_PI / 180;
 
 // Points every `apart` metres over [-size, size]^2, with noise in z.
 MapCloud Sampled(const Surface& surface, double size = 4, double apart = 0.04,

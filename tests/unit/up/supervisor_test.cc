@@ -9,6 +9,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "services/up/up_node.h"
+#include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -17,8 +18,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr Utime kSecond = kMicrosecondsPerSecond;
 
 class SupervisorTest : public ::testing::Test {
  protected:

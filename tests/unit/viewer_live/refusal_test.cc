@@ -12,7 +12,7 @@ namespace {
 using test::kStart;
 using test::TinyRig;
 
-class Posts : public Outbox {
+class PostedText : public Outbox {
  public:
   void Send(Post post) override { all += post.topic + ": " + post.make() + "\n"; }
   void Forget(const std::string& prefix) override { all += "forget " + prefix + "\n"; }
@@ -20,7 +20,7 @@ class Posts : public Outbox {
 };
 
 TEST(Refusal, LiveNode) {
-  Posts posts, twins_posts;
+  PostedText posts, twins_posts;
   LiveNode node, twin;
   node.PostTo(&posts);
   twin.PostTo(&twins_posts);

@@ -22,7 +22,7 @@ namespace {
 using simulate::CloudWorld;
 using ::testing::HasSubstr;
 
-constexpr Utime kSweep = 1'000'000'000;
+constexpr Utime kSweepTime = 1'000'000'000;
 
 // rings 0: the turned scanner.
 simulate::Options Physics(int rings, std::uint64_t seed = 1) {
@@ -73,7 +73,7 @@ class AnyLidar : public ::testing::TestWithParam<int> {};
 TEST_P(AnyLidar, FindsTheBoardInTheWholeCloud) {
   for (int view = 0; view < 6; ++view) {
     const CloudWorld world(Physics(GetParam()), view);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(GetParam()));
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(GetParam()));
     ASSERT_FALSE(boards.candidates.empty()) << "view " << view << ": " << boards.why;
     const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
     EXPECT_LT(error.head<3>().norm(), 0.03) << "view " << view;
@@ -83,7 +83,7 @@ TEST_P(AnyLidar, FindsTheBoardInTheWholeCloud) {
 
 TEST_P(AnyLidar, OrderAndMissesAndRingsAreNotNeeded) {
   const CloudWorld world(Physics(GetParam(), 2), 1);
-  const Cloud sweep = world.Sweep(kSweep);
+  const Cloud sweep = world.Sweep(kSweepTime);
   for (const bool keep_ring : {true, false}) {
     const Cloud loose = simulate::Unorganised(sweep, keep_ring, 7);
     ASSERT_FALSE(loose.organised);
@@ -102,7 +102,7 @@ TEST(BoardInCloud, ItsCovarianceIsThatOfItsErrors) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       for (int view = 0; view < 6; ++view) {
         const CloudWorld world(Physics(rings, seed), view);
-        const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+        const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(rings));
         if (boards.candidates.empty()) continue;
         const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
         chi2 += error.dot(boards.candidates[0].pose->covariance.ldlt().solve(error));
@@ -127,7 +127,7 @@ TEST(BoardInCloud, ATiltedBoardsPlaneDoesNotLean) {
   constexpr int kViews = 6;
   for (int view = 0; view < kViews; ++view) {
     const CloudWorld world(options, view);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(0));
     ASSERT_FALSE(boards.candidates.empty()) << boards.why;
     chi2 += TiltOf(boards.candidates[0], world.lidar_from_target()).chi2;
   }
@@ -157,7 +157,7 @@ TEST(BoardInCloud, NoisierDarkPointsCountForLess) {
     options.spinning->dark_noise = 5;
     for (int view = 0; view < 6; ++view) {
       const CloudWorld world(options, view);
-      Cloud cloud = world.Sweep(kSweep);
+      Cloud cloud = world.Sweep(kSweepTime);
       weighed.Add(cloud, world);
       cloud.intensity.clear();
       alike.Add(cloud, world);
@@ -182,7 +182,7 @@ TEST(BoardInCloud, NoiseThatNeighboursShareIsCountedOnce) {
     std::normal_distribution<float> normal;
     for (int view = 0; view < 6; ++view) {
       const CloudWorld world(options, view);
-      Cloud cloud = world.Sweep(kSweep);
+      Cloud cloud = world.Sweep(kSweepTime);
       float noise = 0;
       for (Eigen::Vector3f& point : cloud.points) {
         noise = static_cast<float>(kAlike) * noise +
@@ -206,12 +206,12 @@ TEST(BoardInCloud, WhatLooksAlikeIsNoBoard) {
     options.clutter.panel = rings == 0;
     options.clutter.max_azimuth_rad = 80 * simulate::kDegree;
     const CloudWorld world(options, 0);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(rings));
     ASSERT_FALSE(boards.candidates.empty()) << boards.why;
     EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
     const CloudWorld without(options, std::nullopt);
     EXPECT_TRUE(
-        FindBoards(without.Sweep(kSweep), world.target(), Detection(rings)).candidates.empty())
+        FindBoards(without.Sweep(kSweepTime), world.target(), Detection(rings)).candidates.empty())
         << rings;
   }
 }
@@ -221,7 +221,7 @@ TEST(BoardInCloud, ASecondBoardIsACandidateToo) {
   options.clutter.second_board = true;
   options.clutter.max_azimuth_rad = 28 * simulate::kDegree;
   const CloudWorld world(options, 0);  // where neither hides the other
-  const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+  const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(0));
   ASSERT_EQ(boards.candidates.size(), 2U) << boards.why;
   const double nearer = std::min(CentreError(boards.candidates[0], world.lidar_from_target()),
                                  CentreError(boards.candidates[1], world.lidar_from_target()));
@@ -233,7 +233,7 @@ TEST(BoardInCloud, HeldByAPersonItIsFound) {
     simulate::Options options = Physics(rings, 5);
     options.clutter.holder = simulate::Holder::kPerson;
     const CloudWorld world(options, 2);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(rings));
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(rings));
     ASSERT_FALSE(boards.candidates.empty()) << boards.why;
     EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
   }
@@ -244,7 +244,7 @@ TEST(BoardInCloud, WhatIsFlushWithTheBoardLeavesTheRightPlaceAmongTheCandidates)
   options.clutter.holder = simulate::Holder::kEasel;
   for (int view = 0; view < 5; ++view) {
     const CloudWorld world(options, view);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(0));
     double nearest = 1e9;
     for (const CloudEdges& c : boards.candidates) {
       nearest = std::min(nearest, CentreError(c, world.lidar_from_target()));
@@ -258,7 +258,7 @@ TEST(BoardInCloud, ABoardOfAnotherSizeIsNamedWithBothSizes) {
   Target smaller = world.target();
   smaller.width_m = 0.85;
   smaller.height_m = 0.61;
-  const auto boards = FindBoards(world.Sweep(kSweep), smaller, Detection(0));
+  const auto boards = FindBoards(world.Sweep(kSweepTime), smaller, Detection(0));
   EXPECT_TRUE(boards.candidates.empty());
   EXPECT_THAT(boards.why, HasSubstr("the rig file says 0.61 x 0.85 m"));
   EXPECT_THAT(boards.why, HasSubstr("measured 0.9"));
@@ -268,7 +268,7 @@ TEST(BoardInCloud, ABoardOfAnotherSizeIsNamedWithBothSizes) {
 TEST(BoardInCloud, EmptyCloudsAndCloudsOfNothingSaySo) {
   const CloudWorld world(Physics(0), 0);
   EXPECT_THAT(FindBoards(Cloud(), world.target()).why, HasSubstr("0 points"));
-  Cloud cloud = world.Sweep(kSweep);
+  Cloud cloud = world.Sweep(kSweepTime);
   for (Eigen::Vector3f& p : cloud.points) {
     p = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   }
@@ -316,7 +316,7 @@ TEST(BoardInCloud, NoCloudIsTooOdd) {
 
 TEST(BoardInCloud, TheSameCloudGivesTheSameBits) {
   const CloudWorld world(Physics(32, 8), 0);
-  const Cloud cloud = world.Sweep(kSweep);
+  const Cloud cloud = world.Sweep(kSweepTime);
   const auto a = FindBoards(cloud, world.target(), Detection(32));
   const auto b = FindBoards(cloud, world.target(), Detection(32));
   ASSERT_EQ(a.candidates.size(), b.candidates.size());
@@ -330,7 +330,7 @@ TEST(BoardInCloud, ANoisierLidarThanTheRigSaysIsNoHindrance) {
     simulate::Options options = Physics(rings, 9);
     (rings == 0 ? options.scanner.range_sigma_m : options.spinning->range_sigma_m) = 0.03;
     const CloudWorld world(options, 0);
-    const auto boards = FindBoards(world.Sweep(kSweep), world.target(), Detection(0));  // 10 mm
+    const auto boards = FindBoards(world.Sweep(kSweepTime), world.target(), Detection(0));  // 10 mm
     ASSERT_FALSE(boards.candidates.empty()) << rings << ": " << boards.why;
     EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06);
   }
@@ -356,7 +356,7 @@ TEST(BoardInCloud, ItsPointsAreToldApartByRingAndBrightness) {
     simulate::Options options = Physics(rings, 3);
     (rings == 0 ? options.scanner.dark_range_m : options.spinning->dark_range_m) = 0.015;
     const CloudWorld world(options, 0);
-    Cloud cloud = world.Sweep(kSweep);
+    Cloud cloud = world.Sweep(kSweepTime);
     const auto boards = FindBoards(cloud, world.target(), Detection(rings));
     ASSERT_FALSE(boards.candidates.empty()) << boards.why;
     const CloudEdges& board = boards.candidates[0];

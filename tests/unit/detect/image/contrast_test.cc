@@ -29,7 +29,7 @@ cv::Mat Board(float step, float slope) {
   return grey;
 }
 
-std::vector<Eigen::Vector2d> Corners() {
+std::vector<Eigen::Vector2d> BoardCorners() {
   std::vector<Eigen::Vector2d> corners;
   for (int row = 1; row < 5; ++row) {
     for (int column = 1; column < 7; ++column) {
@@ -40,31 +40,31 @@ std::vector<Eigen::Vector2d> Corners() {
 }
 
 TEST(SquareContrast, IsTheStepBetweenSquaresWhateverItsSign) {
-  EXPECT_NEAR(SquareContrast(Board(15, 0), SmallTarget(), Corners()), 15, 1e-3);
-  EXPECT_NEAR(SquareContrast(Board(-15, 0), SmallTarget(), Corners()), 15, 1e-3);
-  EXPECT_NEAR(SquareContrast(Board(0, 0), SmallTarget(), Corners()), 0, 1e-3);
+  EXPECT_NEAR(SquareContrast(Board(15, 0), SmallTarget(), BoardCorners()), 15, 1e-3);
+  EXPECT_NEAR(SquareContrast(Board(-15, 0), SmallTarget(), BoardCorners()), 15, 1e-3);
+  EXPECT_NEAR(SquareContrast(Board(0, 0), SmallTarget(), BoardCorners()), 0, 1e-3);
 }
 
 // From square to square the slope makes 40 counts, more than the squares' own 15.
 TEST(SquareContrast, ASlopeOverTheBoardDoesNotCount) {
-  EXPECT_NEAR(SquareContrast(Board(15, 2), SmallTarget(), Corners()), 15, 2);
+  EXPECT_NEAR(SquareContrast(Board(15, 2), SmallTarget(), BoardCorners()), 15, 2);
 }
 
 TEST(SquareContrast, AHandOverAFewSquaresDoesNotCount) {
   cv::Mat grey = Board(15, 0);
   grey(cv::Rect(40, 20, 30, 30)).setTo(9000);
-  EXPECT_NEAR(SquareContrast(grey, SmallTarget(), Corners()), 15, 1e-3);
+  EXPECT_NEAR(SquareContrast(grey, SmallTarget(), BoardCorners()), 15, 1e-3);
 }
 
 TEST(SquareContrast, SquaresOutsideTheImageAreNone) {
-  std::vector<Eigen::Vector2d> corners = Corners();
+  std::vector<Eigen::Vector2d> corners = BoardCorners();
   for (Eigen::Vector2d& corner : corners) corner.x() += 1000;
   EXPECT_EQ(SquareContrast(Board(15, 0), SmallTarget(), corners), 0);
 }
 
 // Of a board of which a column lies outside the image.
 TEST(SquareContrast, CornersThatAreNotSeenDoNotCount) {
-  std::vector<Eigen::Vector2d> corners = Corners();
+  std::vector<Eigen::Vector2d> corners = BoardCorners();
   const double all = SquareContrast(Board(50, 0), SmallTarget(), corners);
   for (std::size_t i = 0; i < corners.size(); i += 6) corners[i].setConstant(std::nan(""));
   EXPECT_NEAR(SquareContrast(Board(50, 0), SmallTarget(), corners), all, 1e-6);

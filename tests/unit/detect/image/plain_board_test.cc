@@ -5,11 +5,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/camera/camera.h"
+#include "tests/numbers.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 CameraSpec Spec() {
   CameraSpec spec;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr Utime kUtime = 1'433'160'000'000'000;
 
-struct Figures {
+struct SideFigures {
   int sides = 0, seen = 0, beyond_3_sigma = 0;
   double squares = 0, normalised = 0, largest = 0;
 
@@ -36,7 +36,7 @@ double Off(const Camera& camera, const Rigid3& camera_from_target, const Eigen::
 }
 
 void Add(const Camera& camera, const Target& target, const Rigid3& truth,
-         const std::array<ImageSide, 4>& sides, Figures* figures) {
+         const std::array<ImageSide, 4>& sides, SideFigures* figures) {
   const auto corners = target.OutlineCorners();
   for (std::size_t i = 0; i < 4; ++i) {
     ++figures->sides;
@@ -69,7 +69,7 @@ TargetPose PoseNear(const Camera& camera, const Target& target, const Rigid3& tr
 }
 
 TEST(RenderedSides, LieWhereTheTruthProjectsWithinTheirSigma) {
-  std::map<std::string, Figures> figures;
+  std::map<std::string, SideFigures> figures;
   Random random(1);
   for (const simulate::Scene scene : {simulate::Scene::kOutdoor, simulate::Scene::kIndoor}) {
     simulate::Options options;
@@ -127,7 +127,7 @@ TEST(RenderedSides, DetectionGivesPoseSigmaAndSides) {
   EXPECT_THAT(edges.outline_corners[0],
               EigenNear(*camera.Project(truth * target.OutlineCorners()[0]), 0.5));
   EXPECT_THAT(edges.corners[0], EigenNear(*camera.Project(truth * target.InnerCorners()[0]), 0.3));
-  Figures figures;
+  SideFigures figures;
   Add(camera, target, truth, edges.sides, &figures);
   EXPECT_GE(figures.seen, 2);
   EXPECT_LT(figures.largest, 0.3);

@@ -57,16 +57,16 @@ class Corners {
   std::uniform_real_distribution<double> even_{-1, 1};
 };
 
-struct Figures {
+struct SaturatedFigures {
   int lost = 0;
   double rms_px = 0;  ///< of an error along x or y
   double nees = 0;    ///< of the error along x or y by the stated sigma, mean
   Eigen::Vector2d mean_error{0, 0};
 };
 
-Figures Measure(double exposure, double noise, double level, bool blur_known) {
+SaturatedFigures Measure(double exposure, double noise, double level, bool blur_known) {
   Corners corners(exposure, noise);
-  Figures f;
+  SaturatedFigures f;
   int count = 0;
   for (int i = 0; i < kTrials; ++i) {
     const Corners::Shot shot = corners.Next();
@@ -98,7 +98,7 @@ TEST(SaturatedCorner, IsWhereItIsAndItsSigmaIsTheError) {
       for (const bool blur_known : {false, true}) {
         SCOPED_TRACE(testing::Message() << "noise " << noise << ", exposure " << exposure
                                         << ", blur known " << blur_known);
-        const Figures f = Measure(exposure, noise, kLevel, blur_known);
+        const SaturatedFigures f = Measure(exposure, noise, kLevel, blur_known);
         EXPECT_LE(f.lost, kTrials / 100);
         EXPECT_LT(f.rms_px,
                   1.15 * clear_px);  // what is clipped costs nothing: the edges are steeper
@@ -114,8 +114,8 @@ TEST(SaturatedCorner, IsWhereItIsAndItsSigmaIsTheError) {
 // What it is for.
 TEST(SaturatedCorner, TakenForValuesSaturationMovesIt) {
   for (const double exposure : {1.6, 2.0, 3.0}) {
-    const Figures bounds = Measure(exposure, 1, kLevel, true);
-    const Figures values = Measure(exposure, 1, kNeverSaturated, true);
+    const SaturatedFigures bounds = Measure(exposure, 1, kLevel, true);
+    const SaturatedFigures values = Measure(exposure, 1, kNeverSaturated, true);
     EXPECT_GT(values.rms_px, 4 * bounds.rms_px) << exposure;
   }
 }

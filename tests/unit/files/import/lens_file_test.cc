@@ -89,7 +89,7 @@ std::string ErrorOfLens(const std::string& text, const LensWanted& wanted = Want
 }
 
 // `text` with the first `was` made `is`.
-std::string With(std::string text, const std::string& was, const std::string& is) {
+std::string Exchanged(std::string text, const std::string& was, const std::string& is) {
   return text.replace(text.find(was), was.size(), is);
 }
 
@@ -135,7 +135,7 @@ TEST(LensFile, RosCameraInfo) {
       "  data: [1, 2, 3, 4]\n";
   ExpectUsualNumbers(Parse(fisheye));
   EXPECT_EQ(Parse(fisheye).lens.model, Lens::Model::kFisheye);
-  const FileLens plumb_bob = Parse(With(fisheye, "equidistant", "plumb_bob"));
+  const FileLens plumb_bob = Parse(Exchanged(fisheye, "equidistant", "plumb_bob"));
   EXPECT_EQ(plumb_bob.lens.model, Lens::Model::kPinhole);
   EXPECT_THAT(plumb_bob.lens.distortion, ElementsAre(1, 2, 3, 4, 0, 0, 0, 0));
 }
@@ -196,7 +196,7 @@ TEST(LensFile, WhatRgbdtExportWroteComesBack) {
 }
 
 TEST(LensFile, FourCoefficientsNeedAModel) {
-  const std::string four = With(kOpenCv, ", 0.125 ]", " ]");
+  const std::string four = Exchanged(kOpenCv, ", 0.125 ]", " ]");
   EXPECT_THAT(ErrorOfLens(four),
               AllOf(HasSubstr("lens.yaml:13: distortion_coefficients"), HasSubstr("--fisheye")));
   LensWanted wanted = Wanted();
@@ -211,29 +211,30 @@ TEST(LensFile, FourCoefficientsNeedAModel) {
 
 TEST(LensFile, WhatOurModelsCannotExpressNamesTheField) {
   const std::string more = "0.125, 0, 0, 0, ";
-  ExpectUsualNumbers(Parse(With(kOpenCv, "0.125", more + "0, 0, 0, 0")));
+  ExpectUsualNumbers(Parse(Exchanged(kOpenCv, "0.125", more + "0, 0, 0, 0")));
   EXPECT_THAT(
-      ErrorOfLens(With(kOpenCv, "0.125", more + "0, 0.5, 0, 0")),
+      ErrorOfLens(Exchanged(kOpenCv, "0.125", more + "0, 0.5, 0, 0")),
       AllOf(HasSubstr("distortion_coefficients has 0.5 as number 10"), HasSubstr("thin prism")));
-  EXPECT_THAT(ErrorOfLens(With(kOpenCv, "0.125", "0.125, 1")), HasSubstr("4, 5 or 8"));
-  EXPECT_THAT(ErrorOfLens(With(kOpenCv, "500., 0.", "500., 0.5")), HasSubstr("skew of 0.5"));
-  EXPECT_THAT(ErrorOfLens(With(kOpenCv, "500., 0., 320.5", "500., 0.")), HasSubstr("8 numbers"));
-  EXPECT_THAT(ErrorOfLens(With(kOpenCv, "501.5", "-1")), HasSubstr("positive focal lengths"));
-  EXPECT_THAT(ErrorOfLens(With(kOpenCv, "501.5", "abc")),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kOpenCv, "0.125", "0.125, 1")), HasSubstr("4, 5 or 8"));
+  EXPECT_THAT(ErrorOfLens(Exchanged(kOpenCv, "500., 0.", "500., 0.5")), HasSubstr("skew of 0.5"));
+  EXPECT_THAT(ErrorOfLens(Exchanged(kOpenCv, "500., 0., 320.5", "500., 0.")),
+              HasSubstr("8 numbers"));
+  EXPECT_THAT(ErrorOfLens(Exchanged(kOpenCv, "501.5", "-1")), HasSubstr("positive focal lengths"));
+  EXPECT_THAT(ErrorOfLens(Exchanged(kOpenCv, "501.5", "abc")),
               AllOf(HasSubstr("lens.yaml:11: camera_matrix"), HasSubstr("abc")));
-  EXPECT_THAT(ErrorOfLens(With(kCameraInfo, "rational_polynomial", "thin_prism")),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kCameraInfo, "rational_polynomial", "thin_prism")),
               AllOf(HasSubstr("lens.yaml:6: distortion_model is \"thin_prism\""),
                     HasSubstr("equidistant")));
-  EXPECT_THAT(ErrorOfLens(With(kCameraInfo, "k: [500.0, 0.0, 320.5, 0.0, 501.5, 240.25",
-                               "k: [0, 0, 0, 0, 0, 0")),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kCameraInfo, "k: [500.0, 0.0, 320.5, 0.0, 501.5, 240.25",
+                                    "k: [0, 0, 0, 0, 0, 0")),
               HasSubstr("never calibrated"));
-  EXPECT_THAT(ErrorOfLens(With(kCameraInfo, "x_offset: 0", "x_offset: 8")),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kCameraInfo, "x_offset: 0", "x_offset: 8")),
               HasSubstr("roi.x_offset is 8"));
   LensWanted wanted = Wanted();
   wanted.cameras = 2;
-  EXPECT_THAT(ErrorOfLens(With(kCamchain, "pinhole", "omni"), wanted),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kCamchain, "pinhole", "omni"), wanted),
               AllOf(HasSubstr("cam0.camera_model is \"omni\""), HasSubstr("--fisheye")));
-  EXPECT_THAT(ErrorOfLens(With(kCamchain, "radtan", "fov"), wanted),
+  EXPECT_THAT(ErrorOfLens(Exchanged(kCamchain, "radtan", "fov"), wanted),
               HasSubstr("cam0.distortion_model is \"fov\""));
 }
 

@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-bool Same(const cv::Mat& a, const cv::Mat& b) {
+bool SameImage(const cv::Mat& a, const cv::Mat& b) {
   return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
@@ -103,7 +103,7 @@ TEST_F(SessionDir, GivesBackTheWholeView) {
     EXPECT_EQ(b.device_utime, a.device_utime);
     EXPECT_EQ(b.exposure_s, a.exposure_s);
     EXPECT_EQ(b.format, a.format);
-    EXPECT_TRUE(Same(b.pixels, a.pixels)) << a.camera;
+    EXPECT_TRUE(SameImage(b.pixels, a.pixels)) << a.camera;
   }
   EXPECT_EQ(back.images[1].radiometry.kind, Radiometry::Kind::kLinear);
   EXPECT_EQ(back.images[1].radiometry.gain, 0.04);
@@ -259,7 +259,7 @@ TEST_F(SessionDir, MoreThanOneImageACamera) {
   ASSERT_EQ(back.images.size(), 3u);
   EXPECT_EQ(back.images[2].camera, "rgb");
   EXPECT_EQ(cv::countNonZero(back.images[2].pixels), 0);
-  EXPECT_TRUE(Same(back.images[0].pixels, view.images[0].pixels));
+  EXPECT_TRUE(SameImage(back.images[0].pixels, view.images[0].pixels));
 }
 
 TEST_F(SessionDir, ViewsOfOnesOwnFilesNeedLittle) {

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-SolveWorldOptions Exact() {
+SolveWorldOptions ExactCorners() {
   SolveWorldOptions options;
   options.noise = 0;
   return options;
@@ -51,7 +51,7 @@ TEST(PoseFromAngles, IsExactWhereverTheCameraIs) {
 }
 
 TEST(SolveCornerPicks, RecoversThePoseExactlyWithoutAGuess) {
-  const SolveWorld world(Exact());
+  const SolveWorld world(ExactCorners());
   for (std::size_t c = 0; c < 2; ++c) {
     const auto result = SolveCornerPicks(world.rig.cameras[c], TruePicks(world, c));
     EXPECT_EQ(result.status, SolveStatus::kConverged) << result.detail;
@@ -61,7 +61,7 @@ TEST(SolveCornerPicks, RecoversThePoseExactlyWithoutAGuess) {
 
 TEST(SolveCornerPicks, ItsCovarianceIsTheUsualOne) {
   constexpr int kSessions = 60;
-  SolveWorld world(Exact());
+  SolveWorld world(ExactCorners());
   const std::vector<CornerPick> exact = TruePicks(world, 0);
   double chi2 = 0;
   for (int session = 0; session < kSessions; ++session) {
@@ -79,7 +79,7 @@ TEST(SolveCornerPicks, ItsCovarianceIsTheUsualOne) {
 }
 
 TEST(SolveCornerPicks, FewAreTooFew) {
-  const SolveWorld world(Exact());
+  const SolveWorld world(ExactCorners());
   std::vector<CornerPick> picks = TruePicks(world, 0);
   picks.resize(7);
   const auto result = SolveCornerPicks(world.rig.cameras[0], picks);
@@ -88,14 +88,14 @@ TEST(SolveCornerPicks, FewAreTooFew) {
 }
 
 TEST(SolveCornerPicks, WrongPairsAreNoCalibration) {
-  const SolveWorld world(Exact());
+  const SolveWorld world(ExactCorners());
   std::vector<CornerPick> picks = TruePicks(world, 0);
   for (std::size_t i = 0; i + 1 < picks.size(); ++i) picks[i].pixel = picks[i + 1].pixel;
   EXPECT_FALSE(SolveCornerPicks(world.rig.cameras[0], picks).converged());
 }
 
 TEST(CalibrateByBearingAngle, PairsCornersOfCloudsToldFromEitherEnd) {
-  SolveWorld world(Exact());
+  SolveWorld world(ExactCorners());
   for (std::size_t v = 0; v < world.lidar_from_target.size(); ++v) {
     const auto corners = world.rig.target.OutlineCorners();
     const std::size_t turned = v % 2 == 1 ? 2 : 0;  // as SolveWorld tells clouds

@@ -1,13 +1,12 @@
 #include "calib/methods/edge_grid/by_edge_grid.h"
 
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = simulate::kDegree;
 
 TEST(EdgesOnEdges, IsLargestAtTheTruth) {
   const SceneWorld world(2);

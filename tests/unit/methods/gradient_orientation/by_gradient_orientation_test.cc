@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
@@ -9,9 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kDegree = simulate::kDegree;
 constexpr int kRows = 9, kColumns = 11;
-constexpr double kStep = 0.01;  // [rad]
+constexpr double kBeamStep = 0.01;  // [rad]
 
 // A wall of points about x, in lines of equal elevation, seen from the origin.
 Cloud Wall() {
@@ -20,8 +20,8 @@ Cloud Wall() {
   cloud.beams = kColumns;
   for (int r = 0; r < kRows; ++r) {
     for (int c = 0; c < kColumns; ++c) {
-      const double y = kStep * (c - kColumns / 2);
-      const double z = kStep * (r - kRows / 2);
+      const double y = kBeamStep * (c - kColumns / 2);
+      const double z = kBeamStep * (r - kRows / 2);
       cloud.points.push_back((5 * Eigen::Vector3d(1, y, z).normalized()).cast<float>());
       cloud.intensity.push_back(0);
     }

@@ -1,13 +1,12 @@
 #include "calib/methods/mutual_information/by_mutual_information.h"
 
+#include "tests/numbers.h"
 #include "tests/unit/methods/scene/scene_world.h"
 
 namespace rgbdt {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = simulate::kDegree;
 
 TEST(ReflectivityAgainstGrey, IsLargestAtTheTruth) {
   const SceneWorld world(2);

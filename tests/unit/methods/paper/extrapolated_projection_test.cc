@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "tests/numbers.h"
 #include "tests/unit/solve/board_world.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 Eigen::Vector3d Towards(double angle, double side) {
   return {std::sin(angle) * std::cos(side), std::sin(angle) * std::sin(side), std::cos(angle)};

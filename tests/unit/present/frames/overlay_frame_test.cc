@@ -9,7 +9,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 double WorstResidual(const Overlay& overlay) {
   double worst = 0;
@@ -80,9 +80,9 @@ TEST(LayOnImage, PointsComeWhereTheCameraSeesThem) {
     points.emplace_back((lidar_from_camera * in_camera).cast<float>());
   };
   add({0.4, -0.3, 2});
-  add({0, 0, -2});                        // behind it
-  add({3, 0, 2});                         // beside its image
-  points.emplace_back(kNan, kNan, kNan);  // a miss
+  add({0, 0, -2});                                             // behind it
+  add({3, 0, 2});                                              // beside its image
+  points.emplace_back(kNotANumber, kNotANumber, kNotANumber);  // a miss
   add({-0.8, 0.5, 5});
   const auto laid = LayOnImage(spec, camera_from_lidar, points);
   ASSERT_EQ(laid.size(), 2U);  // of two, no order is another than theirs
@@ -152,7 +152,7 @@ cv::Mat Thumb(Bright bright) {
       cloud.intensity.push_back(bright(y, z) ? 0.7F : 0.1F);
     }
   }
-  cloud.points.emplace_back(kNan, kNan, kNan);
+  cloud.points.emplace_back(kNotANumber, kNotANumber, kNotANumber);
   cloud.intensity.push_back(0.5F);
   const ParsedFrame frame = Parse(BoardThumbFrame("0001", board, cloud));
   EXPECT_EQ(frame.header.at("type"), "thumb");

@@ -18,7 +18,7 @@ json SessionJson(const SessionState& state, const Rig* rig) {
   return Parse(SessionFrame(state, rig)).header;
 }
 
-ImageDetection Found(const std::string& camera) {
+ImageDetection FoundBy(const std::string& camera) {
   ImageEdges edges;
   edges.outline_corners = {Eigen::Vector2d(1, 2), Eigen::Vector2d(9, 2.5), Eigen::Vector2d(9, 8),
                            Eigen::Vector2d(1, 8)};
@@ -56,7 +56,7 @@ SessionState Finished() {
   state.calibration = state.report->ToCalibration();
   for (const char* camera : {"rgb", "thermal"}) state.calibration_utime[camera] = test::kNow;
   for (const char* view : {"0001", "0003", "0006"}) {
-    state.views.push_back(ViewOf(view, {Found("rgb"), Found("thermal")}));
+    state.views.push_back(ViewOf(view, {FoundBy("rgb"), FoundBy("thermal")}));
   }
   return state;
 }
@@ -109,8 +109,9 @@ TEST(SessionFrame, WhatRunsIsThere) {
 TEST(SessionFrame, ViewsSayWhatWasFoundInThem) {
   const Rig rig = test::MakeRig();
   SessionState state;
-  state.views = {ViewOf("0001", {Found("rgb"), Missed("thermal")}), ViewOf("0002", {Found("rgb")}),
-                 ViewOf("0003", {Found("rgb"), Missed("thermal")},
+  state.views = {ViewOf("0001", {FoundBy("rgb"), Missed("thermal")}),
+                 ViewOf("0002", {FoundBy("rgb")}),
+                 ViewOf("0003", {FoundBy("rgb"), Missed("thermal")},
                         CloudDetection{{}, "no plane of its size", 0})};
   state.views[1].heldout = true;
   state.views[1].waits = "for thermal";
@@ -162,8 +163,8 @@ TEST(SessionFrame, PicksAreWantedWhereAnImageWasLookedAtInVainNewestFirst) {
   ImageDetection unread = Missed("rgb");
   unread.utime = 0;
   state.views = {ViewOf("0001", {Missed("thermal")}),
-                 ViewOf("0002", {Missed("rgb"), Found("thermal")}),
-                 ViewOf("0003", {Found("rgb")}, missed),  // corners would not help
+                 ViewOf("0002", {Missed("rgb"), FoundBy("thermal")}),
+                 ViewOf("0003", {FoundBy("rgb")}, missed),  // corners would not help
                  ViewOf("0004", {unread})};
   const json wanted = SessionJson(state, &rig).at("pick_wanted");
   ASSERT_EQ(wanted.size(), 2U);
@@ -178,7 +179,7 @@ TEST(SessionFrame, BeforeTheFirstSolveItSaysHowManyViewsAreMissing) {
   const Rig rig = test::MakeRig();
   SessionState state;
   for (const char* view : {"0001", "0002", "0003"}) {
-    state.views.push_back(ViewOf(view, {Found("rgb"), Missed("thermal")}));
+    state.views.push_back(ViewOf(view, {FoundBy("rgb"), Missed("thermal")}));
   }
   const json frame = SessionJson(state, &rig);
   EXPECT_EQ(frame.at("verdict").at("grade"), "none");
@@ -211,7 +212,7 @@ TEST(SessionFrame, AFinishedOneHasFiguresVerdictsAndTheReport) {
   EXPECT_TRUE(views[0].at("cameras").at(0).at("edge_rms_mm").is_null());
   EXPECT_EQ(views[1].at("cameras").at(0).at("edge_rms_mm"), 1.0 / 11);
   EXPECT_EQ(views[1].at("cameras").at(0).at("plane_rms_mm"), 1.0 / 13);
-  // Found, but the solver left it out.
+  // FoundBy, but the solver left it out.
   EXPECT_EQ(views[2].at("cameras").at(0).at("state"), "rejected");
   EXPECT_EQ(views[2].at("cameras").at(0).at("why"), "the board is not in view");
   EXPECT_THAT(frame.at("next_view").at("gain").get<std::string>(),
