@@ -6,10 +6,11 @@
 #include <cmath>
 #include <optional>
 
+#include "calib/present/report/internal/degrees.h"
+
 namespace rgbdt {
 namespace {
 
-constexpr double kDegreesPerRadian = 180 / M_PI;
 constexpr double kContrastInNetd = 6;  // what detection needs between squares
 
 std::string HeadText(const CameraSpec& before, const CameraCorners& corners,

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "calib/model/pose_sigma.h"
+#include "calib/present/report/internal/degrees.h"
 #include "calib/present/report/words.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr double kDegreesPerRadian = 180 / M_PI;
 
 template <typename Axes>
 Row AxesRow(const std::string& name, const Axes& axes, int decimals, const std::string& unit) {

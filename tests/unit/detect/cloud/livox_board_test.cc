@@ -7,7 +7,7 @@
 namespace rgbdt {
 namespace {
 
-simulate::Options Physics(int lidar) {
+simulate::Options LivoxPhysics(int lidar) {
   simulate::Options options;
   simulate::UseLidar(lidar, &options);
   options.pose.min_range_m = 3;
@@ -19,7 +19,7 @@ simulate::Options Physics(int lidar) {
 TEST(LivoxBoard, IsFoundInASecond) {
   for (const int lidar : {simulate::kMid360, simulate::kAvia}) {
     for (int view = 0; view < 4; ++view) {
-      const simulate::Options options = Physics(lidar);
+      const simulate::Options options = LivoxPhysics(lidar);
       const simulate::CloudWorld world(options, view);
       BoardInCloudOptions detection;
       detection.range_sigma_m = options.livox->range_sigma_m;
@@ -38,7 +38,7 @@ TEST(LivoxBoard, IsFoundInASecond) {
 
 TEST(LivoxBoard, IsNotFoundWhereThereIsNone) {
   for (const int lidar : {simulate::kMid360, simulate::kAvia}) {
-    simulate::Options options = Physics(lidar);
+    simulate::Options options = LivoxPhysics(lidar);
     options.clutter.panel = options.clutter.door = true;
     const simulate::CloudWorld world(options, std::nullopt);
     BoardInCloudOptions detection;
