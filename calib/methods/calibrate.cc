@@ -4,12 +4,12 @@
 
 #include "calib/methods/bearing_angle/by_bearing_angle.h"
 #include "calib/methods/internal/guess_check.h"
+#include "calib/methods/internal/lidar_parts.h"
 #include "calib/methods/internal/report_parts.h"
 #include "calib/methods/line_scan/by_line_scan.h"
 #include "calib/methods/paper/by_paper.h"
 #include "calib/methods/plane/by_planes.h"
 #include "calib/methods/single_shot/by_single_shot.h"
-#include "calib/model/pose_sigma.h"
 #include "calib/solve/by_boards.h"
 #include "calib/solve/camera_views.h"
 #include "calib/solve/evaluate.h"
@@ -25,11 +25,6 @@ CameraViews WithGuessChecked(CameraViews camera) {
   return camera;
 }
 
-LidarReport NotByThis(LidarReport report) {
-  report.calibration.detail = "only method \"auto\" solves for several LIDARs";
-  return report;
-}
-
 CalibratedCameras CalibrateCameras(const Target& target, const CalibrateOptions& options,
                                    std::vector<CameraViews> cameras,
                                    std::vector<LidarViews> lidars) {
@@ -40,9 +35,7 @@ CalibratedCameras CalibrateCameras(const Target& target, const CalibrateOptions&
                   : options.method == kLineScanMethod     ? CalibrateByLineScan
                   : options.method == kBearingAngleMethod ? CalibrateByBearingAngle
                                                           : CalibrateBySingleShot;
-  CalibratedCameras calibrated = by(target, options, std::move(cameras));
-  for (LidarViews& lidar : lidars) calibrated.lidars.push_back(NotByThis(std::move(lidar.report)));
-  return calibrated;
+  return by(target, options, std::move(cameras));
 }
 
 }  // namespace
@@ -53,12 +46,20 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   const CalibrateOptions with_rig = WithRig(options, rig);
   Report report = BlankReport(rig, options.method, detections);
   std::vector<CameraViews> cameras = ViewsOfCameras(rig, detections);
+  std::vector<LidarViews> lidars =
+      LidarViewsOf(rig, detections, options.first_guess.range_offset_sigma_m);
+  if (options.method == kAutoMethod) {
+    lidars = WithClouds(std::move(lidars), &cameras);
+  } else {
+    for (const LidarViews& lidar : lidars) {
+      SayNotCalibrated(lidar, "only method \"auto\" solves for several LIDARs", &cameras);
+    }
+  }
   if (options.method == kPaperMethod) {
     for (CameraViews& camera : cameras) camera.report = CalibrateByPaper(options, camera);
   } else {
     CalibratedCameras calibrated =
-        CalibrateCameras(rig.target, with_rig, std::move(cameras),
-                         LidarViewsOf(rig, detections, options.first_guess.range_offset_sigma_m));
+        CalibrateCameras(rig.target, with_rig, std::move(cameras), std::move(lidars));
     report.lidars = std::move(calibrated.lidars);
     cameras = std::move(calibrated.cameras);
     for (CameraViews& camera : cameras) camera = WithGuessChecked(std::move(camera));
@@ -91,9 +92,7 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
         edges, views.Usable(), JudgeCamera(camera, views.Usable(), std::move(views.report))));
   }
   for (const LidarCalibration& lidar : calibration.lidars) {
-    LidarReport& given = report.lidars.emplace_back();
-    given.calibration = lidar;
-    if (lidar.covariance) given.sigma = SigmaOf(lidar);
+    report.lidars.push_back(JudgedLidar(lidar, detections));
   }
   return report;
 }

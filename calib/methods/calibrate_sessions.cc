@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "calib/methods/internal/lidar_parts.h"
 #include "calib/methods/internal/report_parts.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
@@ -46,6 +47,11 @@ CalibratedSessions CalibrateSessions(const Rig& rig, const std::vector<SessionVi
   for (const SessionViews& session : sessions) {
     std::vector<CameraViews> own = ViewsOfCameras(rig, session.detections);
     std::move(own.begin(), own.end(), std::back_inserter(cameras));
+  }
+  for (const LidarSpec& lidar : rig.further_lidars) {
+    LidarViews views;
+    views.report.calibration.lidar = lidar.name;
+    SayNotCalibrated(views, "mounts that may have moved are solved for cameras alone", &cameras);
   }
   CalibratedCameras calibrated =
       CalibrateByBoards(rig.target, WithRig(options, rig), std::move(cameras));

@@ -274,18 +274,31 @@ const CameraSpec& Rig::Camera(const std::string& camera_name) const {
   throw InputError("the rig has no camera \"" + camera_name + "\"; it has: " + names);
 }
 
+namespace {
+
+LidarSpec SensorOf(const LidarSpec& lidar) {
+  LidarSpec sensor;
+  sensor.name = lidar.name;
+  if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
+    VelodyneDevice model;
+    model.model = velodyne->model;
+    sensor.device = model;
+  }
+  if (lidar.turned_scanner) {
+    sensor.turned_scanner = lidar.turned_scanner;
+    sensor.turned_scanner->motor.reset();
+  }
+  return sensor;
+}
+
+}  // namespace
+
 Rig SensorsOf(const Rig& rig) {
   Rig sensors;
   sensors.name = rig.name;
-  sensors.lidar.name = rig.lidar.name;
-  if (const auto* velodyne = std::get_if<VelodyneDevice>(&rig.lidar.device)) {
-    VelodyneDevice model;
-    model.model = velodyne->model;
-    sensors.lidar.device = model;
-  }
-  if (rig.lidar.turned_scanner) {
-    sensors.lidar.turned_scanner = rig.lidar.turned_scanner;
-    sensors.lidar.turned_scanner->motor.reset();
+  sensors.lidar = SensorOf(rig.lidar);
+  for (const LidarSpec& lidar : rig.further_lidars) {
+    sensors.further_lidars.push_back(SensorOf(lidar));
   }
   for (const CameraSpec& camera : rig.cameras) {
     CameraSpec& sensor = sensors.cameras.emplace_back();

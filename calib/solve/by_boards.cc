@@ -17,8 +17,10 @@
 #include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
+#include "calib/solve/internal/lidar_reports.h"
 #include "calib/solve/internal/next_view.h"
 #include "calib/solve/internal/nuisances.h"
+#include "calib/solve/internal/scatter_sigmas.h"
 
 namespace rgbdt {
 namespace {
@@ -39,15 +41,6 @@ CameraCalibration CalibrationOf(const JointResult& result, std::size_t camera) {
   return calibration;
 }
 
-std::string RangesAreOff(const Estimate& offset, double known_m) {
-  return Format(
-      "the LIDAR's ranges are %.1f +- %.1f mm too %s; the rig file has them exact to %.1f "
-      "mm (lidar.range_offset_sigma_m). The views decided. Check the ranges against a tape "
-      "measure, and raise that number",
-      1000 * std::abs(offset.value), 1000 * offset.sigma, offset.value > 0 ? "short" : "long",
-      1000 * known_m);
-}
-
 // A camera's report with what the joint solve found, which took `seconds`.
 CameraReport WithSolution(const JointResult& result, std::size_t camera, double seconds) {
   CameraReport report = result.joint.cameras[camera].views.report;
@@ -55,9 +48,10 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
   report.nuisance = NuisancesOf(result, camera);
   report.view_scatter = result.view_scatter;
   report.variance_factor = result.variance_factor;
-  if (result.refuted_range_offset_sigma_m) {
-    report.warnings.push_back(RangesAreOff(report.calibration.range_errors->offset_m,
-                                           *result.refuted_range_offset_sigma_m));
+  for (const RefutedOffset& refuted : result.refuted_offsets) {
+    if (refuted.lidar) continue;
+    report.warnings.push_back(
+        RangesAreOff(report.calibration.range_errors->offset_m, refuted.known_m));
   }
   report.solve_s += seconds / static_cast<double>(result.joint.cameras.size());
   return report;
@@ -127,9 +121,9 @@ JointResult SolveWithLensFound(const Target& target, const CalibrateOptions& opt
                                const std::vector<CameraViews>& detected,
                                const std::vector<LidarViews>& lidars) {
   const auto solve = [&](std::vector<GuessedCamera> guessed) {
-    JointProblem joint =
-        MakeJointProblem(target, std::move(guessed), options.first_guess.range_offset_sigma_m);
-    AddLidars(lidars, options.min_views, &joint);
+    const double offset_sigma_m = options.first_guess.range_offset_sigma_m;
+    JointProblem joint = MakeJointProblem(target, std::move(guessed), offset_sigma_m);
+    AddLidars(lidars, options.min_views, offset_sigma_m, &joint);
     return SolveJointly(std::move(joint));
   };
   JointResult result = solve(std::move(cameras));
@@ -150,11 +144,24 @@ JointResult SolveWithLensFound(const Target& target, const CalibrateOptions& opt
   return ImagesUsed(again) < ImagesUsed(result) ? std::move(result) : std::move(again);
 }
 
+// With the further LIDARs where these fit the cameras; where not, they are left, with the reason.
+JointResult SolveWithLidars(const Target& target, const CalibrateOptions& options,
+                            std::vector<GuessedCamera> cameras,
+                            const std::vector<CameraViews>& detected,
+                            const std::vector<LidarViews>& lidars) {
+  JointResult with = SolveWithLensFound(target, options, cameras, detected, lidars);
+  const std::string why = WhyLidarsDoNotFit(with);
+  if (why.empty()) return with;
+  JointResult alone = SolveWithLensFound(target, options, std::move(cameras), detected, {});
+  alone.joint.lidars_left = LeftOut(lidars, why);
+  return alone;
+}
+
 SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
                        std::vector<GuessedCamera> cameras, const std::vector<CameraViews>& detected,
                        const std::vector<LidarViews>& lidars) {
   const Stopwatch watch;
-  JointResult result = SolveWithLensFound(target, options, std::move(cameras), detected, lidars);
+  JointResult result = SolveWithLidars(target, options, std::move(cameras), detected, lidars);
   const double seconds = watch.Seconds();
   std::vector<std::vector<Cause>> causes = GivenWrong(result);
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
@@ -164,14 +171,15 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   }
   result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;
-  solved.lidars = ReportsOfLidars(result);
+  solved.lidars = ReportsOfLidars(result, options.min_views);
   solved.changes = ChangesOf(result);
+  const EdgeModel edges = EdgesOf(result);
   if (options.diagnostics) {
-    result = CrossValidate(std::move(result), options.folds);
+    // Parts of the views may not tell where a further LIDAR is; the cameras they do.
+    result = CrossValidate(WithoutLidars(std::move(result)), options.folds);
     // Of a session that is over there is no next view.
     if (solved.changes.empty()) solved.next_view = FindNextView(result);
   }
-  const EdgeModel edges = EdgesOf(result);
   solved.cameras = std::move(result.joint.cameras);
   for (GuessedCamera& camera : solved.cameras) {
     camera.views = Judged(edges, std::move(camera.views));

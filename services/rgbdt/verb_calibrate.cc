@@ -185,8 +185,9 @@ void AddCalibrate(CommandLine* program) {
           flags->options.first_guess.range_offset_sigma_m = kRangeOffsetSigmaM;
         return RunCalibrate(*flags);
       });
-  verb->Ends(ExitCode::kFailed,
-             "failed, or not all of it: a camera did not converge, or a view could not be read");
+  verb->Ends(
+      ExitCode::kFailed,
+      "failed, or not all of it: a camera or LIDAR did not converge, or a view could not be read");
   AddVerdictEnds(verb);
   verb->Required("DIR", &flags->dirs, "session directories (rig.textproto, views/)");
   verb->Option("--out", &flags->out,

@@ -59,6 +59,10 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
     if (other == nullptr) continue;
     out.cameras.push_back(Compare(camera, *other, rig ? &rig->Camera(camera.camera) : nullptr));
   }
+  for (const Named* named : {&a, &b}) {
+    if (named->calibration.lidars.empty()) continue;
+    std::printf("%s: LIDARs beside the reference are not compared\n", named->name.c_str());
+  }
   if (out.cameras.empty()) {
     throw InputError(a.name + " and " + b.name + " have no camera in common");
   }

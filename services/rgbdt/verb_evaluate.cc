@@ -46,14 +46,27 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->solve_s = before.solve_s;
 }
 
-// All of a LIDAR beside the reference whose pose is the same.
-void KeepFromSolve(const Report& before, LidarReport* lidar) {
+// What only the solve tells of a LIDAR beside the reference, where its pose is the same.
+void KeepFromSolve(const LidarReport& before, LidarReport* lidar) {
+  const Rigid3& pose = before.calibration.reference_from_lidar;
+  const Rigid3& given = lidar->calibration.reference_from_lidar;
+  if (RotationDistance(pose, given) > 1e-9 || CentreDistance(pose, given) > 1e-9) return;
+  lidar->first_guess = before.first_guess;
+  lidar->rejected = before.rejected;
+  lidar->nuisance = before.nuisance;
+  lidar->warnings.insert(lidar->warnings.end(), before.warnings.begin(), before.warnings.end());
+}
+
+// Those without a pose have their reason in the report alone.
+void KeepFromSolve(const Report& before, std::vector<LidarReport>* lidars) {
   for (const LidarReport& other : before.lidars) {
-    const Rigid3& pose = other.calibration.reference_from_lidar;
-    const Rigid3& given = lidar->calibration.reference_from_lidar;
-    if (other.calibration.lidar == lidar->calibration.lidar &&
-        RotationDistance(pose, given) < 1e-9 && CentreDistance(pose, given) < 1e-9) {
-      *lidar = other;
+    const auto same = std::find_if(lidars->begin(), lidars->end(), [&](const LidarReport& lidar) {
+      return lidar.calibration.lidar == other.calibration.lidar;
+    });
+    if (same != lidars->end()) {
+      KeepFromSolve(other, &*same);
+    } else if (!other.calibration.solved()) {
+      lidars->push_back(other);
     }
   }
 }
@@ -69,7 +82,7 @@ void KeepFromSolve(const std::filesystem::path& path, Report* report) {
     if (same != nullptr) KeepFromSolve(*same, &camera);
     all_same = all_same && same != nullptr;
   }
-  for (LidarReport& lidar : report->lidars) KeepFromSolve(before, &lidar);
+  KeepFromSolve(before, &report->lidars);
   if (!all_same) return;
   report->closure = before.closure;
   report->next_view = before.next_view;

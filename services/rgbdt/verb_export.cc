@@ -123,7 +123,7 @@ int RunExport(const ExportFlags& flags) {
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);
   const Calibration calibration = ReadCalibration(files.calibration);
-  PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse()));
+  PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse(), Further::kUsed));
   const std::filesystem::path out = PathOr(flags.out, dir / "export");
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {
     std::printf("wrote %s: %s\n", file.path.c_str(), file.purpose.c_str());

@@ -105,7 +105,8 @@ void AddReplay(CommandLine* program) {
       "earlier run are kept aside, as calibration.previous.textproto and so on.\n"
       "Example: rgbdt replay out/demo/session.lcm --out out/replay",
       [flags] { return RunReplay(*flags); });
-  verb->Ends(ExitCode::kFailed, "failed, a camera did not converge, or a calibration was refused");
+  verb->Ends(ExitCode::kFailed,
+             "failed, a camera or LIDAR did not converge, or a calibration was refused");
   AddVerdictEnds(verb);
   verb->Required("LOG", &flags->log, "log written by lcm-logger");
   verb->Option("--out", &flags->out, "where to write");

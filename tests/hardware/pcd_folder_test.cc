@@ -17,11 +17,11 @@ using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
 TEST(PcdNames, NumbersAreTimes) {
-  EXPECT_EQ(UtimeOfName("1433160000"), kDevicesStart);
-  EXPECT_EQ(UtimeOfName("1433160000.25"), kDevicesStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250"), kDevicesStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250000"), kDevicesStart + 250'000);
-  EXPECT_EQ(UtimeOfName("1433160000250000999"), kDevicesStart + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000"), kJune2015);
+  EXPECT_EQ(UtimeOfName("1433160000.25"), kJune2015 + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250"), kJune2015 + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000"), kJune2015 + 250'000);
+  EXPECT_EQ(UtimeOfName("1433160000250000999"), kJune2015 + 250'000);
   for (const char* name :
        {"", "0001", "cloud", "1433160000a", "-5", "1433160000.2.5", "99999999999999999999", "."}) {
     EXPECT_FALSE(UtimeOfName(name)) << name;
@@ -63,17 +63,17 @@ class PcdFolderTest : public ::testing::Test {
 };
 
 TEST_F(PcdFolderTest, InOrderWithTheirOwnTimes) {
-  Write("b.pcd", 2, kDevicesStart + 50'000);
-  Write("a.pcd", 1, kDevicesStart);
-  Write("c.pcd", 3, kDevicesStart + 120'000);
+  Write("b.pcd", 2, kJune2015 + 50'000);
+  Write("a.pcd", 1, kJune2015);
+  Write("c.pcd", 3, kJune2015 + 120'000);
   const auto begin = std::chrono::steady_clock::now();
   const Collected collected = PlayAll();
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(119));
   const auto chunks = collected.All<CloudChunk>();
   ASSERT_EQ(chunks.size(), 3u);
-  EXPECT_EQ(chunks[0].cloud.sweep_utime, kDevicesStart);
-  EXPECT_EQ(chunks[1].cloud.sweep_utime, kDevicesStart + 50'000);
-  EXPECT_EQ(chunks[2].cloud.sweep_utime, kDevicesStart + 120'000);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kJune2015);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kJune2015 + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kJune2015 + 120'000);
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(chunks[static_cast<std::size_t>(i)].sweep_end);
     EXPECT_EQ(chunks[static_cast<std::size_t>(i)].sweep_lines, 2);
@@ -87,16 +87,16 @@ TEST_F(PcdFolderTest, TimesFromNamesOrApart) {
   Write("z.pcd", 3);
   const auto chunks = PlayAll().All<CloudChunk>();
   ASSERT_EQ(chunks.size(), 3u);
-  EXPECT_EQ(chunks[0].cloud.sweep_utime, kDevicesStart);
-  EXPECT_EQ(chunks[1].cloud.sweep_utime, kDevicesStart + 50'000);
-  EXPECT_EQ(chunks[2].cloud.sweep_utime, kDevicesStart + 70'000);
+  EXPECT_EQ(chunks[0].cloud.sweep_utime, kJune2015);
+  EXPECT_EQ(chunks[1].cloud.sweep_utime, kJune2015 + 50'000);
+  EXPECT_EQ(chunks[2].cloud.sweep_utime, kJune2015 + 70'000);
 }
 
 TEST_F(PcdFolderTest, BadOnesAreNamedAndPassedOver) {
-  Write("1.pcd", 1, kDevicesStart);
+  Write("1.pcd", 1, kJune2015);
   std::ofstream(fs::path(device_.folder) / "2.pcd") << "no cloud";
-  Write("3.pcd", 3, kDevicesStart - 10);
-  Write("4.pcd", 4, kDevicesStart + 10'000);
+  Write("3.pcd", 3, kJune2015 - 10);
+  Write("4.pcd", 4, kJune2015 + 10'000);
   std::ofstream(fs::path(device_.folder) / "readme.txt") << "not looked at";
   const Collected collected = PlayAll();
   ASSERT_EQ(collected.Count<CloudChunk>(), 2u);

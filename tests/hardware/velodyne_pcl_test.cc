@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 using Model = VelodyneDevice::Model;
 using PclCloud = pcl::PointCloud<pcl::PointXYZI>;
 
-VelodyneEncoder Encoder(Model model) {
+VelodyneEncoder ModelEncoder(Model model) {
   VelodyneEncoder encoder;
   encoder.model = static_cast<VelodyneEncoder::Model>(static_cast<int>(model) - 1);
   encoder.block_turn = model == Model::kVlp16 ? 40 : 20;
@@ -49,8 +49,7 @@ std::string Record(const VelodyneEncoder& encoder, int packets) {
   PcapWriter writer;
   writer.Begin();
   for (int i = 0; i < packets; ++i) {
-    writer.Add(kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us()),
-               encoder.Packet(i));
+    writer.Add(kJune2015 + std::llround((i + 1) * encoder.PacketDuration_us()), encoder.Packet(i));
   }
   std::string name = (fs::temp_directory_path() / "rgbdt_pcl_XXXXXX").string();
   close(mkstemp(name.data()));
@@ -147,13 +146,13 @@ void Compare(Model model, pcl::HDLGrabber* grabber, const std::string& file) {
 }
 
 TEST(VelodyneAgainstPcl, Vlp16) {
-  const std::string file = Record(Encoder(Model::kVlp16), 5 * 75);
+  const std::string file = Record(ModelEncoder(Model::kVlp16), 5 * 75);
   pcl::VLPGrabber grabber(file);
   Compare(Model::kVlp16, &grabber, file);
 }
 
 TEST(VelodyneAgainstPcl, Hdl32e) {
-  const std::string file = Record(Encoder(Model::kHdl32e), 5 * 150);
+  const std::string file = Record(ModelEncoder(Model::kHdl32e), 5 * 150);
   pcl::HDLGrabber grabber("", file);
   Compare(Model::kHdl32e, &grabber, file);
 }

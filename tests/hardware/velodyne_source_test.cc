@@ -37,10 +37,9 @@ class Files : public ::testing::Test {
   std::string Record(PcapWriter writer, const VelodyneEncoder& encoder, int packets) const {
     writer.Begin();
     for (int i = 0; i < packets; ++i) {
-      writer.Add(kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us()),
+      writer.Add(kJune2015 + std::llround((i + 1) * encoder.PacketDuration_us()),
                  encoder.Packet(i));
-      if (i % 10 == 0)
-        writer.Add(kDevicesStart, std::vector<std::uint8_t>(554));  // a position packet
+      if (i % 10 == 0) writer.Add(kJune2015, std::vector<std::uint8_t>(554));  // a position packet
     }
     writer.Save(Path("recording.pcap"));
     return Path("recording.pcap");
@@ -82,8 +81,7 @@ TEST_F(VelodyneRecording, OfAnyKindIsPlayed) {
       EXPECT_EQ(chunks[1].sweep_lines, 16);
       EXPECT_EQ(chunks[0].cloud.beams, 1800);
       // 90 degrees on, at 0.4 degrees a block.
-      EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kDevicesStart), 225 * 110.592,
-                  2);
+      EXPECT_NEAR(static_cast<double>(chunks[0].cloud.sweep_utime - kJune2015), 225 * 110.592, 2);
       EXPECT_EQ(source.report().count("packets"), 160);
       EXPECT_EQ(source.report().count("bad packets"), 0);
       EXPECT_TRUE(collected.warnings.empty());
@@ -115,7 +113,7 @@ TEST_F(VelodyneRecording, DamageInsideIsToldAndTheRestIsPlayed) {
   PcapWriter writer;
   writer.Begin();
   for (int i = 0; i < 160; ++i) {
-    const Utime utime = kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us());
+    const Utime utime = kJune2015 + std::llround((i + 1) * encoder.PacketDuration_us());
     auto packet = encoder.Packet(i);
     if (i == 50) packet.resize(700);
     if (i == 60) packet[0] = 1;

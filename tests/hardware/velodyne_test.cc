@@ -33,7 +33,7 @@ Turned Revolve(
     if (lost(i)) continue;
     const auto bytes = encoder.Packet(i);
     const auto packet = velodyne::Decode(velodyne::SensorOf(model), bytes.data(), bytes.size());
-    const auto arrival = kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us());
+    const auto arrival = kJune2015 + std::llround((i + 1) * encoder.PacketDuration_us());
     for (Cloud& cloud : run.sweeps.Add(packet, arrival)) run.clouds.push_back(std::move(cloud));
   }
   return run;
@@ -102,7 +102,7 @@ TEST_P(Velodyne, TimesAndAzimuthsBelongTogether) {
       }();
       // The head has turned evenly since the recording began.
       const Eigen::Vector3f& d = cloud.directions[i];
-      const double passed = static_cast<double>(cloud.utime[i] - kDevicesStart);
+      const double passed = static_cast<double>(cloud.utime[i] - kJune2015);
       const double block_us =
           encoder.PacketDuration_us() / 12 * (model == Model::kHdl64e ? 2.0 : 1.0);
       const double head = 90 + passed / block_us * encoder.block_turn / 100;
@@ -221,7 +221,7 @@ TEST(VelodynePackets, RandomBytesDoNoHarm) {
     try {
       const auto packet =
           velodyne::Decode(velodyne::SensorOf(Model::kVlp32c), bytes.data(), bytes.size());
-      for (const Cloud& cloud : sweeps.Add(packet, kDevicesStart + 1000 * i)) {
+      for (const Cloud& cloud : sweeps.Add(packet, kJune2015 + 1000 * i)) {
         EXPECT_EQ(cloud.size(), static_cast<std::size_t>(cloud.lines * cloud.beams));
       }
     } catch (const InputError&) {
@@ -238,7 +238,7 @@ TEST(VelodyneSweeps, AClockThatStandsStillLeavesTheArrivals) {
     std::fill(bytes.begin() + 1200, bytes.begin() + 1204, 0);
     const auto packet =
         velodyne::Decode(velodyne::SensorOf(Model::kVlp16), bytes.data(), bytes.size());
-    for (Cloud& c : sweeps.Add(packet, kDevicesStart + std::llround((i + 1) * 1327.104))) {
+    for (Cloud& c : sweeps.Add(packet, kJune2015 + std::llround((i + 1) * 1327.104))) {
       clouds.push_back(std::move(c));
     }
   }
@@ -257,7 +257,7 @@ TEST(VelodyneSweeps, PacketsThatComeTwiceOrLateArePassedOver) {
       const auto bytes = encoder.Packet(number);
       const auto packet =
           velodyne::Decode(velodyne::SensorOf(Model::kVlp16), bytes.data(), bytes.size());
-      const auto arrival = kDevicesStart + std::llround((i + 1) * encoder.PacketDuration_us());
+      const auto arrival = kJune2015 + std::llround((i + 1) * encoder.PacketDuration_us());
       for (Cloud& c : sweeps.Add(packet, arrival)) clouds.push_back(std::move(c));
     }
   }

@@ -20,7 +20,7 @@ std::string Url() {
   return ttl == std::string::npos ? url : url.replace(ttl, 5, "ttl=1");
 }
 
-Bytes Numbered(int number, std::size_t size) {
+Bytes NumberedBytes(int number, std::size_t size) {
   Bytes bytes(size);
   for (std::size_t i = 0; i < size; ++i) {
     bytes[i] = static_cast<std::uint8_t>(i * 31 + static_cast<std::size_t>(number));
@@ -71,9 +71,9 @@ TEST(RepairedBus, OtherLcmProgramsHearIt) {
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{1}, std::size_t{1390}, std::size_t{1391}, std::size_t{70'000},
         std::size_t{2'900'000}, std::size_t{10}}) {
-    bus.Publish("A", Numbered(static_cast<int>(sent++), size));
+    bus.Publish("A", NumberedBytes(static_cast<int>(sent++), size));
     ASSERT_TRUE(lcm.Has(sent)) << size;
-    EXPECT_EQ(lcm.came.back(), Numbered(static_cast<int>(sent) - 1, size)) << size;
+    EXPECT_EQ(lcm.came.back(), NumberedBytes(static_cast<int>(sent) - 1, size)) << size;
   }
 }
 
@@ -85,7 +85,7 @@ TEST(RepairedBus, HearsOtherLcmProgramsAndItself) {
     came.emplace_back(data, data + size);
   });
   for (int i = 0; i < 20; ++i) {
-    const Bytes bytes = Numbered(i, i % 3 == 0 ? 200'000 : 100);
+    const Bytes bytes = NumberedBytes(i, i % 3 == 0 ? 200'000 : 100);
     if (i % 2 == 0) {
       bus.Publish("A", bytes);
     } else {

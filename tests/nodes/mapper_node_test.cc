@@ -28,14 +28,14 @@ RgbdtCloud FusedChunk(float x, Utime utime = kNow) {
   return cloud;
 }
 
-MapperNode Node() {
+MapperNode NewMapper() {
   VoxelMapOptions options;
   options.voxel_m = 0.1;
   return MapperNode(options);
 }
 
 TEST(MapperNode, MapsChunksAndSaysNothing) {
-  MapperNode node = Node();
+  MapperNode node = NewMapper();
   EXPECT_THAT(node.GetStatus().text, HasSubstr("RGBDT_CLOUD"));
   EXPECT_TRUE(node.Handle(FusedChunk(1.05F)).empty());
   EXPECT_TRUE(node.Handle(FusedChunk(2.05F)).empty());
@@ -47,7 +47,7 @@ TEST(MapperNode, MapsChunksAndSaysNothing) {
 }
 
 TEST(MapperNode, WithTheFirstPoseItBeginsAnew) {
-  MapperNode node = Node();
+  MapperNode node = NewMapper();
   node.Handle(FusedChunk(1.05F));
   RgbdtCloud posed = FusedChunk(2.05F);
   posed.map_from_lidar = Rigid3();
@@ -59,7 +59,7 @@ TEST(MapperNode, WithTheFirstPoseItBeginsAnew) {
 }
 
 TEST(MapperNode, APoseThatIsMissingIsRefusedAndTheMapStays) {
-  MapperNode node = Node();
+  MapperNode node = NewMapper();
   RgbdtCloud posed = FusedChunk(1.05F);
   posed.map_from_lidar = Rigid3();
   posed.frame_utime = kNow;

@@ -56,7 +56,7 @@ CloudChunk WholeSweep(Cloud cloud) {
 }
 
 // Images, then the sweep, view by view.
-Messages Drive() {
+Messages DriveMessages() {
   Messages messages;
   const std::size_t cameras = RoomRig().cameras.size();
   for (std::size_t v = 0; v < Room().clouds.size(); ++v) {
@@ -94,7 +94,7 @@ TEST(MonitorNode, SaysOfEachCameraWhetherItHolds) {
   EXPECT_THAT(node.GetStatus().text, HasSubstr("waits for a sweep"));
   std::vector<std::string> warnings;
   node.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
-  const std::vector<MountCheck> checks = Watch(&node, Drive());
+  const std::vector<MountCheck> checks = Watch(&node, DriveMessages());
   ASSERT_EQ(checks.size(), 12U);
   const MountCheck &rgb = checks[10], &thermal = checks[11];
   EXPECT_EQ(rgb.state, MountState::kHolds) << rgb.text;
@@ -114,7 +114,7 @@ TEST(MonitorNode, OfSweepsThatComeFastOneIsLookedAtNowAndThen) {
   MonitorNode node;  // every two seconds
   node.Handle(test::TextOf(RoomRig()));
   node.Handle(Calibrated(0));
-  EXPECT_EQ(Watch(&node, Drive()).size(), 3U);
+  EXPECT_EQ(Watch(&node, DriveMessages()).size(), 3U);
   EXPECT_EQ(Counter(node.GetStatus(), "sweeps"), 6);
   // The clock is set back: time begins anew.
   CloudChunk early = WholeSweep(Room().clouds[0]);
@@ -134,7 +134,7 @@ Rigid3 MapFromRig(Utime utime, Utime sweep) {
 
 Messages DriveInMotion(bool with_poses) {
   Messages messages;
-  for (Message& message : Drive()) {
+  for (Message& message : DriveMessages()) {
     auto* chunk = std::get_if<CloudChunk>(&message);
     if (chunk == nullptr) {
       messages.push_back(std::move(message));
@@ -204,7 +204,7 @@ TEST(MonitorNode, SendsTheCalibrationThatItIsGiven) {
   FuserNode fuser;
   for (const Message& message : said) fuser.Handle(message);
   EXPECT_TRUE(fuser.HasCalibrations());
-  EXPECT_EQ(Watch(&node, Drive()).back().calibration_utime, 7);
+  EXPECT_EQ(Watch(&node, DriveMessages()).back().calibration_utime, 7);
   given.calibration.cameras[0].status = SolveStatus::kContradicted;
   EXPECT_THROW(MonitorNode(EverySweep(), given), InputError);
 }
@@ -215,7 +215,7 @@ TEST(MonitorNode, WhatIsNotToBeUsedIsNotWatched) {
   CalibrationMessage bad = Calibrated(0);
   bad.calibration.status = SolveStatus::kDegenerate;
   node.Handle(bad);
-  EXPECT_TRUE(Watch(&node, Drive()).empty());
+  EXPECT_TRUE(Watch(&node, DriveMessages()).empty());
   EXPECT_THAT(node.GetStatus().text, HasSubstr("rgb is not watched"));
 }
 
@@ -233,7 +233,7 @@ TEST(MonitorNode, RefusesAndIsAsBefore) {
   twins.bad = {RigText{0, "another hash", "cameras { nonsense }"}, small, stranger, of_another,
                endless};
   Messages good = {test::TextOf(RoomRig()), Calibrated(0)};
-  for (Message& message : Drive()) good.push_back(std::move(message));
+  for (Message& message : DriveMessages()) good.push_back(std::move(message));
   twins.Feed(good);
   EXPECT_THAT(twins.refused, Each(Gt(10)));
 }

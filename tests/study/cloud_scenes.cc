@@ -5,6 +5,7 @@
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/spinning.h"
+#include "tests/numbers.h"
 #include "tests/simulated_variants.h"
 
 namespace rgbdt::study {
@@ -13,7 +14,6 @@ namespace {
 using simulate::CloudWorld;
 using simulate::Options;
 
-constexpr Utime kUtime = 1'433'160'000'000'000;
 constexpr int kViewsPerSeed = 10;  // then scenery, clutter and noise are drawn afresh
 constexpr double kPi = 3.14159265358979323846;
 // A board 1.52 m across is not wholly within 30 degrees where it is nearer.
@@ -51,7 +51,7 @@ std::string NameOf(simulate::Scene scene) {
 
 CloudScene Render(const CloudWorld& world, const Options& options, int index) {
   CloudScene made;
-  made.cloud = world.Sweep(kUtime + index);
+  made.cloud = world.Sweep(kJune2015 + index);
   made.form = "organised";
   if (index / 3 % 2 == 1) {  // independent of the scene, which changes with every index
     const bool ring = index / 6 % 2 == 1;

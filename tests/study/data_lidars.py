@@ -1,6 +1,8 @@
 """The rows of `scripts/study data` about two LIDARs in one rig: how far the pose of one relative to
 the other is off, and whether its covariance says so."""
 
+import math
+
 import trials
 from trials import column, figure, mean, median, pick
 
@@ -21,8 +23,11 @@ def figures(parts):
         mine = [r for r in pick(rows, how=how) if r["has_sigma"] == 1]
         if not mine:
             continue
-        yield figure(f"lidar_lidar_deg_median{suffix}", median(column(mine, "rotation_deg")), "deg")
-        yield figure(f"lidar_lidar_mm_median{suffix}", median(column(mine, "translation_mm")), "mm")
+        # A session without a pose is off by more than any other.
+        lost = [math.inf] * (len(pick(rows, how=how)) - len(mine))
+        turns, moves = column(mine, "rotation_deg"), column(mine, "translation_mm")
+        yield figure(f"lidar_lidar_deg_median{suffix}", median(turns + lost), "deg")
+        yield figure(f"lidar_lidar_mm_median{suffix}", median(moves + lost), "mm")
         yield figure(f"lidar_lidar_nees{suffix}", mean(column(mine, "nees")))
         yield figure(f"lidar_lidar_inside95{suffix}", mean([r["nees"] <= INSIDE_95 for r in mine]))
         yield figure(f"lidar_lidar_sessions{suffix}", len(pick(rows, how=how)))

@@ -11,13 +11,13 @@
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/scene.h"
+#include "tests/numbers.h"
 #include "tests/study/sampled_images.h"
 #include "tests/study/sampled_sessions.h"
 
 namespace rgbdt::study {
 namespace {
 
-constexpr Utime kUtime = 1'433'160'000'000'000;
 constexpr int kViewsPerSeed = 10;  // then scenery, clutter and noise are drawn afresh
 
 int LidarOf(simulate::LivoxModel model) {
@@ -80,7 +80,7 @@ class SessionMaker {
     const auto index = static_cast<int>(session_.detections.size());
     ViewDetection detection;
     detection.view = ViewName(index);
-    detection.sweep_utime = kUtime + 7'654'321 * static_cast<Utime>(index);
+    detection.sweep_utime = kJune2015 + 7'654'321 * static_cast<Utime>(index);
     const simulate::CloudWorld world(options_, lidar_from_target);
     BoardInCloudOptions detector;
     detector.range_sigma_m = session_.rig.lidar.range_sigma_m;
@@ -133,7 +133,7 @@ void RenderLivoxClouds(simulate::LivoxModel model, int count, std::uint64_t seed
     CloudScene scene;
     try {
       const simulate::CloudWorld world(options, index);
-      scene.cloud = world.Sweep(kUtime + 7'654'321 * static_cast<Utime>(index));
+      scene.cloud = world.Sweep(kJune2015 + 7'654'321 * static_cast<Utime>(index));
       scene.target = world.target();
       scene.lidar_from_target = world.lidar_from_target();
     } catch (const InputError&) {  // no room for the board, or for the clutter

@@ -14,6 +14,7 @@
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/rig_defaults.h"
+#include "tests/numbers.h"
 #include "tests/study/sampled_images.h"
 
 namespace rgbdt::study {
@@ -22,7 +23,6 @@ namespace {
 using simulate::CloudWorld;
 using simulate::Noise;
 
-constexpr Utime kUtime = 1'433'160'000'000'000;
 constexpr int kTriesPerView = 25;  // until the board lies in both images and both methods find it
 constexpr int kBandHalf = 2;       // a 5x5 window (paper II-A.1)
 
@@ -99,12 +99,12 @@ class Maker {
   }
 
   bool LookAt(const CloudWorld& world, int index) {
-    const Cloud cloud = world.Sweep(kUtime + index);
+    const Cloud cloud = world.Sweep(kJune2015 + index);
     BoardInCloudOptions options;
     options.range_sigma_m = session_.rig.lidar.range_sigma_m;
     ViewDetection by_boards;
     by_boards.view = (index < 9 ? "000" : "00") + std::to_string(index + 1);
-    by_boards.sweep_utime = kUtime + index;
+    by_boards.sweep_utime = kJune2015 + index;
     by_boards.cloud.candidates = FindBoards(cloud, session_.rig.target, options).candidates;
     if (by_boards.cloud.candidates.empty()) return false;
     for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
@@ -113,7 +113,7 @@ class Maker {
                                 session_.camera_from_lidar[c] * world.lidar_from_target(),
                                 Noise(seed_, index + 1, camera));
       if (!image) return false;
-      by_boards.images.push_back({camera, kUtime + index, std::move(image), "", 0});
+      by_boards.images.push_back({camera, kJune2015 + index, std::move(image), "", 0});
     }
     if (paired_.paper) {
       auto by_paper = ByPaper(cloud, by_boards);

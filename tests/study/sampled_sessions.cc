@@ -10,14 +10,13 @@
 #include "calib/simulate/internal/board_poses.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/scene.h"
+#include "tests/numbers.h"
 #include "tests/study/sampled_images.h"
 
 namespace rgbdt::study {
 namespace {
 
 using simulate::Noise;
-
-constexpr Utime kUtime = 1'433'160'000'000'000;
 
 simulate::Options OptionsOf(const SampledOptions& sampled, std::uint64_t seed) {
   simulate::Options options;
@@ -162,7 +161,7 @@ class SessionSampler {
     ViewDetection detection;
     detection.view = view.name;
     detection.heldout = view.heldout;
-    detection.sweep_utime = kUtime + pose;
+    detection.sweep_utime = kJune2015 + pose;
     detection.cloud.candidates = std::move(boards.candidates);
     for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
       detection.images.push_back(
@@ -182,7 +181,7 @@ class SessionSampler {
                              int pose) const {
     ImageDetection detection;
     detection.camera = camera.name;
-    detection.utime = kUtime + pose;
+    detection.utime = kJune2015 + pose;
     const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
     detection.edges = SampledEdges(
         camera, given, session_.true_target,

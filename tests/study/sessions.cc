@@ -9,6 +9,7 @@
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/noise.h"
+#include "tests/numbers.h"
 #include "tests/study/cloud_scenes.h"
 #include "tests/study/sampled_images.h"
 
@@ -20,7 +21,6 @@ using simulate::kDegree;
 using simulate::Noise;
 using simulate::Options;
 
-constexpr Utime kUtime = 1'433'160'000'000'000;
 constexpr int kTriesPerView = 20;  // until the board lies in the image
 constexpr double kCameraAsideM = 0.3;
 constexpr double kCameraTiltRad = 5 * kDegree;
@@ -143,7 +143,7 @@ class SessionMaker {
   }
 
   CloudDetection LookAtCloud(const CloudWorld& world, int index) const {
-    Cloud cloud = world.Sweep(kUtime + index);
+    Cloud cloud = world.Sweep(kJune2015 + index);
     Turn(turn_, &cloud);
     BoardInCloudOptions options;
     options.range_sigma_m =

@@ -55,6 +55,26 @@ std::vector<std::string> ThrowUnlessAnyway(std::vector<std::string> against, Use
   return against;
 }
 
+// Which LIDAR is the reference matters where there are several, and those that were calibrated are
+// to be there; one that was not, or came later, changes nothing.
+void AddLidarDifferences(const Calibration& calibration, const Rig& is,
+                         std::vector<std::string>* lines) {
+  const Rig& was = *calibration.sensors;
+  const bool several = !was.further_lidars.empty() || !is.further_lidars.empty();
+  if (several && was.lidar.name != is.lidar.name) {
+    lines->push_back("the first lidar, in whose frame all is: \"" + was.lidar.name + "\" -> \"" +
+                     is.lidar.name + "\"");
+  }
+  for (const LidarCalibration& lidar : calibration.lidars) {
+    const auto found =
+        std::find_if(is.further_lidars.begin(), is.further_lidars.end(),
+                     [&](const LidarSpec& spec) { return spec.name == lidar.lidar; });
+    if (found == is.further_lidars.end()) {
+      lines->push_back("lidar " + lidar.lidar + ": not among the rig's LIDARs after the first");
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> SensorDifferences(const Calibration& calibration, const Rig& rig) {
@@ -62,6 +82,7 @@ std::vector<std::string> SensorDifferences(const Calibration& calibration, const
   const Rig is = SensorsOf(rig);
   std::vector<std::string> lines;
   AddDifferences(LidarOf(was), LidarOf(is), &lines);
+  AddLidarDifferences(calibration, is, &lines);
   for (const CameraCalibration& camera : calibration.cameras) {
     const CameraSpec* before = Find(was, camera.camera);
     const CameraSpec* now = Find(is, camera.camera);
@@ -100,6 +121,14 @@ std::string WhyNotToUse(const CameraCalibration& camera, const std::string& name
          " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
 }
 
+std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name) {
+  if (lidar.converged()) return "";
+  std::string why = lidar.StatusText();
+  while (!why.empty() && why.back() == '.') why.pop_back();
+  return (name.empty() ? "" : name + ": ") + "the pose of LIDAR " + lidar.lidar +
+         " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
+}
+
 std::vector<std::string> RequireSameRig(const Calibration& calibration, const Rig& rig,
                                         const UseNames& names, Use use) {
   const std::string why = WhyAnotherRig(calibration, rig, names);
@@ -107,11 +136,15 @@ std::vector<std::string> RequireSameRig(const Calibration& calibration, const Ri
 }
 
 std::vector<std::string> RequireSound(const Calibration& calibration, const Rig& rig,
-                                      const UseNames& names, Use use) {
+                                      const UseNames& names, Use use, Further further) {
   std::vector<std::string> against = RequireSameRig(calibration, rig, names, use);
   for (const CameraCalibration& camera : calibration.cameras) {
     const std::string why = WhyNotToUse(camera, names.calibration);
     if (!why.empty()) against.push_back(why);
+  }
+  for (const LidarCalibration& lidar : calibration.lidars) {
+    const std::string why = WhyNotToUse(lidar, names.calibration);
+    if (!why.empty() && further == Further::kUsed) against.push_back(why);
   }
   return ThrowUnlessAnyway(std::move(against), use);
 }

@@ -36,10 +36,17 @@ std::string WhyAnotherRig(const Calibration& calibration, const Rig& rig, const 
 /// it may be. `name`: of the file that it stands in; empty: none.
 std::string WhyNotToUse(const CameraCalibration& camera, const std::string& name = "");
 
+/// The same of a further LIDAR's pose.
+std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name = "");
+
+/// Whether the poses of LIDARs beside the reference are used, too.
+enum class Further { kUnused, kUsed };
+
 /// All of this, of a calibration that is to be used with a rig: throws InputError with the first
 /// that speaks against it. With Use::kAnyway nothing is thrown, and all that does is returned.
 std::vector<std::string> RequireSound(const Calibration& calibration, const Rig& rig,
-                                      const UseNames& names, Use use);
+                                      const UseNames& names, Use use,
+                                      Further further = Further::kUnused);
 
 /// The same of the rig alone: for who judges the calibration itself.
 std::vector<std::string> RequireSameRig(const Calibration& calibration, const Rig& rig,

@@ -101,7 +101,9 @@ std::vector<Joint> JointsOf(const Rig& rig, const Calibration& calibration,
   std::vector<Joint> joints;
   const auto take = [&](const std::string& child) {
     if (!taken.insert(child).second) {
-      throw InputError("the frame \"" + child + "\" twice; give each camera and the LIDAR its own");
+      throw InputError("the frame \"" + child +
+                       "\" twice; give each camera and the LIDAR its own (a further LIDAR's "
+                       "is its name in the rig file)");
     }
   };
   for (const Exported& camera : exports::Match(rig, calibration)) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
@@ -230,6 +231,12 @@ std::vector<LidarCloud> ReadFurtherClouds(const ViewFile& file, const Rig& rig,
   return clouds;
 }
 
+// To the bit, and where there was no return, too.
+bool SamePoints(const Cloud& a, const Cloud& b) {
+  return a.points.size() == b.points.size() &&
+         std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof a.points[0]) == 0;
+}
+
 View Read(const Session& session, const std::string& view, WithCloud with_cloud) {
   ViewFile file;
   const Place place = ReadViewFile(session, view, &file);
@@ -252,6 +259,12 @@ View Read(const Session& session, const std::string& view, WithCloud with_cloud)
   if (cloud) {
     result.cloud = ReadCloudOf(file, place);
     result.further_clouds = ReadFurtherClouds(file, session.rig, place);
+    for (std::size_t i = 0; i < result.further_clouds.size(); ++i) {
+      if (!SamePoints(result.further_clouds[i].cloud, result.cloud)) continue;
+      place.In("further_cloud", static_cast<int>(i))
+          .Fail("file", "holds the points of the view's own cloud; expected those of LIDAR \"" +
+                            result.further_clouds[i].lidar + "\"");
+    }
   }
   return result;
 }

@@ -413,6 +413,17 @@ Calibration JudgedCalibration(const Report& report, const Rig& rig) {
       camera.detail = verdict.reasons.front();
     }
   }
+  // Solved together: what contradicts the cameras' views has the LIDARs' poses bent, too.
+  const auto contradicted =
+      std::find_if(calibration.cameras.begin(), calibration.cameras.end(),
+                   [](const auto& camera) { return camera.status == SolveStatus::kContradicted; });
+  if (contradicted == calibration.cameras.end()) return calibration;
+  for (LidarCalibration& lidar : calibration.lidars) {
+    if (!lidar.converged()) continue;
+    lidar.status = SolveStatus::kContradicted;
+    lidar.detail = "it was solved together with camera " + contradicted->camera +
+                   ", which is not to be used: " + contradicted->detail;
+  }
   return calibration;
 }
 

@@ -46,8 +46,8 @@ double MeanOf(const RangeTerms& ranges, const Kind& kind, const std::vector<doub
   return mean;
 }
 
-double CostOfTerms(const BoardProblem& of_lidar, const std::vector<double>& terms) {
-  double cost = 0;
+// The cost with one LIDAR's range terms.
+double WithTerms(const BoardProblem& of_lidar, const std::vector<double>& terms, double cost) {
   for (std::size_t i = 0; i < terms.size(); ++i) {
     cost += terms[i] * terms[i] * InformationOfTerm(of_lidar, i);
   }
@@ -112,14 +112,14 @@ double PriorCost(const BoardProblem& problem, const BoardState& state) {
     const double off = state.shared[i] - means[i];
     cost += off * off / (priors.Sigma(k) * priors.Sigma(k));
   }
-  cost += CostOfTerms(problem, state.range_terms);
+  cost = WithTerms(problem, state.range_terms, cost);
   if (problem.lidars.empty()) return cost;
   const SharedPlaces places(problem);
   for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
     for (const OwnPrior& own : OwnPriors(problem, state, places, l)) {
       cost += own.off * own.off / (own.sigma * own.sigma);
     }
-    cost += CostOfTerms(problem.lidars[l], state.lidars[l].range_terms);
+    cost = WithTerms(problem.lidars[l], state.lidars[l].range_terms, cost);
   }
   return cost;
 }

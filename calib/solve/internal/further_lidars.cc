@@ -7,11 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "calib/model/pose_sigma.h"
 #include "calib/model/text.h"
 #include "calib/solve/first_guess.h"
-#include "calib/solve/internal/degenerate.h"
-#include "calib/solve/internal/nuisances.h"
 
 namespace rgbdt {
 namespace {
@@ -95,18 +92,27 @@ std::string WhyNoGuess(const FirstGuess& guess) {
          " of them); do its clouds belong to these views, and did the board stand still?";
 }
 
+// Views whose boards are seen by this LIDAR, and by nobody else: said, as nobody would know why.
+void RejectUnused(const BoardProblem& reference, LidarViews* lidar) {
+  for (const auto& [name, candidates] : lidar->candidates) {
+    const auto used = std::find_if(reference.views.begin(), reference.views.end(),
+                                   [&view = name](const BoardView& b) { return b.name == view; });
+    if (used == reference.views.end()) {
+      lidar->report.rejected.push_back(
+          {name, "neither a camera's image nor the reference's cloud of this view was used"});
+    }
+  }
+}
+
 // Nothing, and the report says why, where there is no first guess.
 std::optional<BoardProblem> ProblemOf(const BoardProblem& reference, int min_views,
-                                      LidarViews* lidar) {
+                                      double reference_offset_sigma_m, LidarViews* lidar) {
   const BoardPairs pairs(reference, *lidar);
   const auto seen = std::count_if(pairs.all().begin(), pairs.all().end(),
                                   [](const CameraView& pair) { return pair.image != nullptr; });
   LidarReport& report = lidar->report;
   if (seen < min_views) {
-    report.calibration.detail = Format(
-        "%d views in which this LIDAR, the reference and a camera see the board; at least "
-        "%d are needed",
-        static_cast<int>(seen), min_views);
+    report.calibration.detail = TooFewClouds(static_cast<int>(seen), min_views);
     return std::nullopt;
   }
   const FirstGuess guess = pairs.Guess();
@@ -121,47 +127,38 @@ std::optional<BoardProblem> ProblemOf(const BoardProblem& reference, int min_vie
   problem.target = reference.target;
   problem.priors = PriorsOf(reference.target);
   problem.views = CloudsBy(pairs, *guess.camera_from_lidar, &report);
+  const auto clouds =
+      std::count_if(problem.views.begin(), problem.views.end(),
+                    [](const BoardView& view) { return view.cloud.pose.has_value(); });
+  if (clouds < min_views) {
+    report.calibration.detail = TooFewClouds(static_cast<int>(clouds), min_views);
+    return std::nullopt;
+  }
   OpenRanges(lidar->range_offset_sigma_m, &problem);
+  // What hides an offset by a plain board is its rim in images, of which two clouds know nothing.
+  if (lidar->range_offset_sigma_m > 0 && !reference.target.HasPattern()) {
+    const bool held = reference.priors.range_offset_sigma_m < reference_offset_sigma_m;
+    problem.priors.range_offset_sigma_m =
+        std::hypot(lidar->range_offset_sigma_m, held ? reference_offset_sigma_m : 0);
+  }
   return problem;
-}
-
-LidarReport ReportOf(const JointResult& result, std::size_t index) {
-  const BoardProblem& problem = result.joint.problem;
-  const BoardState& state = result.solution.state;
-  LidarReport report = result.joint.lidars[index].report;
-  std::vector<Rigid3> boards;
-  for (std::size_t v = 0; v < problem.views.size(); ++v) {
-    if (!HasCloud(problem, index, v)) continue;
-    report.used.push_back(problem.views[v].name);
-    boards.push_back(state.lidar_from_target[v]);
-  }
-  LidarCalibration& calibration = report.calibration;
-  const Eigen::Index at = SharedPlaces(problem).LidarPose(index);
-  calibration.reference_from_lidar = state.lidars[index].reference_from_lidar;
-  const Matrix6d covariance =
-      result.variance_factor * result.solution.covariance.block<6, 6>(at, at);
-  const bool converged = result.solution.converged;
-  calibration.status = converged ? SolveStatus::kConverged : SolveStatus::kNotConverged;
-  calibration.detail = converged ? "" : "the joint solve did not settle";
-  report.nuisance = NuisancesOfLidar(result, index);
-  std::string why = WhyDegenerate(boards, PoseOf::kLidar);
-  if (why.empty()) why = WhyLoose(covariance, PoseOf::kLidar);
-  if (!why.empty()) {
-    calibration.status = SolveStatus::kDegenerate;
-    calibration.detail = std::move(why);
-    return report;
-  }
-  calibration.covariance = 0.5 * (covariance + covariance.transpose());
-  report.sigma = SigmaOf(calibration);
-  return report;
 }
 
 }  // namespace
 
-void AddLidars(std::vector<LidarViews> lidars, int min_views, JointProblem* joint) {
+std::string TooFewClouds(int views, int needed) {
+  return Format(
+      "%d views in which this LIDAR, the reference and a camera see the board alike; at least %d "
+      "are needed",
+      views, needed);
+}
+
+void AddLidars(std::vector<LidarViews> lidars, int min_views, double reference_offset_sigma_m,
+               JointProblem* joint) {
   std::vector<Rigid3> guesses;
   for (LidarViews& lidar : lidars) {
-    auto problem = ProblemOf(joint->problem, min_views, &lidar);
+    RejectUnused(joint->problem, &lidar);
+    auto problem = ProblemOf(joint->problem, min_views, reference_offset_sigma_m, &lidar);
     if (!problem) {
       joint->lidars_left.push_back(std::move(lidar));
       continue;
@@ -190,15 +187,6 @@ void RejectCloud(const Contradiction& worst, JointProblem* joint) {
               "mm elsewhere; did board or rig move, or does something stand against the board?",
               CloudsOf(joint->problem, lidar) - 1, worst.rotation_deg, worst.centre_mm)});
   view.cloud = {};
-}
-
-std::vector<LidarReport> ReportsOfLidars(const JointResult& result) {
-  std::vector<LidarReport> reports;
-  for (std::size_t l = 0; l < result.joint.lidars.size(); ++l) {
-    reports.push_back(ReportOf(result, l));
-  }
-  for (const LidarViews& lidar : result.joint.lidars_left) reports.push_back(lidar.report);
-  return reports;
 }
 
 }  // namespace rgbdt

@@ -17,7 +17,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kChanceChi2 = 30;  // six degrees of freedom: 4 in 100,000 lie beyond
 constexpr double kMedianChi2 = 5.348;
 constexpr double kToDecide = 1e-2;  // a tenth of a sigma
 
@@ -56,7 +55,7 @@ std::vector<int> ViewsOfSensors(const BoardProblem& problem) {
 const Contradiction* WorstToReject(const JointProblem& joint,
                                    const std::vector<Contradiction>& contradictions,
                                    const std::vector<int>& at_first) {
-  const double limit = kChanceChi2 * ScatterOf(contradictions);
+  const double limit = kContradictionChi2 * ScatterOf(contradictions);
   const std::vector<int> now = ViewsOfSensors(joint.problem);
   const Contradiction* worst = nullptr;
   for (const Contradiction& c : contradictions) {
@@ -97,12 +96,7 @@ class JointSolver {
       if (DropSide() || DropFurtherSide()) continue;
       FitScatter();
       Settle();
-      result_.view_scatter = ViewScatterOf(Problem(), result_.solution);
-      if (const auto& scatter = result_.view_scatter) {
-        result_.variance_factor = FactorFor(
-            scatter->factor, scatter->freedom,
-            AsStated(Contradictions(Problem(), result_.solution), Problem().views.size()));
-      }
+      JudgeScatter();
       break;
     }
     return std::move(result_);
@@ -151,6 +145,28 @@ class JointSolver {
       if (!(std::abs(now - sigma) > 0.05 * sigma)) return;
       sigma = now;
       SolveOnce();
+    }
+  }
+
+  // By how much variances are enlarged: the cameras' together, each further LIDAR's by itself, as
+  // one of few views moves far more than the rest.
+  void JudgeScatter() {
+    const auto contradictions = Contradictions(Problem(), result_.solution);
+    const auto factor = [&](const std::optional<ViewScatter>& scatter,
+                            std::optional<std::size_t> lidar, std::size_t views) {
+      if (!scatter) return 1.0;
+      std::vector<Contradiction> own;
+      for (const Contradiction& c : contradictions) {
+        if (c.lidar == lidar) own.push_back(c);
+      }
+      return FactorFor(scatter->factor, scatter->freedom, AsStated(own, views));
+    };
+    result_.view_scatter = ViewScatterOf(Problem(), result_.solution);
+    result_.variance_factor = factor(result_.view_scatter, std::nullopt, Problem().views.size());
+    result_.lidar_factors.clear();
+    for (std::size_t l = 0; l < Problem().lidars.size(); ++l) {
+      result_.lidar_factors.push_back(factor(ViewScatterOf(Problem(), result_.solution, l), l,
+                                             static_cast<std::size_t>(CloudsOf(Problem(), l))));
     }
   }
 
@@ -260,29 +276,64 @@ std::vector<LensOff> LensesOff(const JointResult& result) {
   return off;
 }
 
-// With the range offset free where the views refute what is known of it.
-JointResult SolveWithOffset(JointProblem joint) {
-  const double known = joint.problem.priors.range_offset_sigma_m;
-  // NaN, where the views say nothing, refutes nothing.
-  const auto refuted = [&](const JointResult& result, double sigmas) {
-    const Estimate free = FreeRangeOffset(result.joint.problem, result.solution);
-    const double sigma = std::sqrt(result.variance_factor) * free.sigma;
-    return std::abs(free.value) > sigmas * std::hypot(sigma, known);
-  };
-  if (known >= kRangeOffsetSigmaM || !joint.problem.target.HasPattern()) {
-    return JointSolver(std::move(joint)).Solve();
+// Range offsets that are held closer than is usual. The reference's by a plain board is no unknown.
+std::vector<RefutedOffset> HeldOffsets(const BoardProblem& problem) {
+  std::vector<RefutedOffset> held;
+  const double reference = problem.priors.range_offset_sigma_m;
+  if (reference < kRangeOffsetSigmaM && problem.target.HasPattern()) {
+    held.push_back({std::nullopt, reference});
   }
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
+    const double known = problem.lidars[l].priors.range_offset_sigma_m;
+    if (known < kRangeOffsetSigmaM) held.push_back({l, known});
+  }
+  return held;
+}
+
+// Those of them that the views put beyond so many sigmas.
+std::vector<RefutedOffset> RefutedOf(const std::vector<RefutedOffset>& held,
+                                     const JointResult& result, double sigmas) {
+  std::vector<RefutedOffset> refuted;
+  for (const RefutedOffset& offset : held) {
+    const Estimate free = FreeRangeOffset(result.joint.problem, result.solution, offset.lidar);
+    const double factor =
+        offset.lidar ? result.lidar_factors[*offset.lidar] : result.variance_factor;
+    const double sigma = std::sqrt(factor) * free.sigma;
+    // NaN, where the views say nothing, refutes nothing.
+    if (std::abs(free.value) > sigmas * std::hypot(sigma, offset.known_m)) {
+      refuted.push_back(offset);
+    }
+  }
+  return refuted;
+}
+
+void FreeOffset(BoardProblem* of_lidar) {
+  of_lidar->priors.range_offset_sigma_m = kRangeOffsetSigmaM;
+  of_lidar->ranges_exact = false;
+  OpenBeams(of_lidar);
+}
+
+// With the range offsets free that the views refute what is known of.
+JointResult SolveWithOffset(JointProblem joint) {
+  const std::vector<RefutedOffset> held = HeldOffsets(joint.problem);
+  if (held.empty()) return JointSolver(std::move(joint)).Solve();
   JointProblem open = joint;
-  open.problem.priors.range_offset_sigma_m = kRangeOffsetSigmaM;
-  open.problem.ranges_exact = false;
-  OpenBeams(&open.problem);
-  JointResult held = JointSolver(std::move(joint)).Solve();
-  if (!refuted(held, 4)) return held;
-  JointResult found = JointSolver(std::move(open)).Solve();
+  JointResult found = JointSolver(std::move(joint)).Solve();
+  const std::vector<RefutedOffset> refuted = RefutedOf(held, found, 4);
+  if (refuted.empty()) return found;
+  for (const RefutedOffset& offset : refuted) {
+    FreeOffset(offset.lidar ? &open.problem.lidars[*offset.lidar] : &open.problem);
+  }
+  JointResult free = JointSolver(std::move(open)).Solve();
   // Views that contradict the rest then may have made it up.
-  if (!refuted(found, 3)) return held;
-  found.refuted_range_offset_sigma_m = known;
-  return found;
+  if (RefutedOf(refuted, free, 3).size() < refuted.size()) return found;
+  free.refuted_offsets = refuted;
+  return free;
+}
+
+Halves ApartBy(const Rigid3& a, const Rigid3& b, const Matrix6d& covariance) {
+  const Vector6d delta = Log(a * b.Inverse());
+  return {ErrorOf(a, b), delta.dot(SolveSymmetric(covariance, delta))};
 }
 
 }  // namespace
@@ -319,13 +370,31 @@ JointResult SolveJointly(JointProblem joint) {
 
 Halves Apart(const BoardSolution& a, const BoardSolution& b, double variance_factor,
              std::size_t camera) {
-  const Rigid3& pose_a = a.state.camera_from_lidar[camera];
-  const Rigid3& pose_b = b.state.camera_from_lidar[camera];
   const Index at = SharedPlaces::Pose(camera);
-  const Matrix6d covariance =
-      variance_factor * (a.covariance.block<6, 6>(at, at) + b.covariance.block<6, 6>(at, at));
-  const Vector6d delta = Log(pose_a * pose_b.Inverse());
-  return {ErrorOf(pose_a, pose_b), delta.dot(SolveSymmetric(covariance, delta))};
+  return ApartBy(
+      a.state.camera_from_lidar[camera], b.state.camera_from_lidar[camera],
+      variance_factor * (a.covariance.block<6, 6>(at, at) + b.covariance.block<6, 6>(at, at)));
+}
+
+Halves LidarApart(const BoardSolution& a, const BoardSolution& b, const JointResult& result,
+                  std::size_t lidar) {
+  const Index at = SharedPlaces(result.joint.problem).LidarPose(lidar);
+  return ApartBy(a.state.lidars[lidar].reference_from_lidar,
+                 b.state.lidars[lidar].reference_from_lidar,
+                 result.lidar_factors[lidar] *
+                     (a.covariance.block<6, 6>(at, at) + b.covariance.block<6, 6>(at, at)));
+}
+
+JointResult WithoutLidars(JointResult result) {
+  if (result.joint.problem.lidars.empty()) return result;
+  result.joint.problem.lidars.clear();
+  result.joint.start.lidars.clear();
+  result.joint.lidars.clear();
+  result.lidar_factors.clear();
+  BoardState state = std::move(result.solution.state);
+  state.lidars.clear();
+  result.solution = SolveBoards(result.joint.problem, state);
+  return result;
 }
 
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {

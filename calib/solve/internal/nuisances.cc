@@ -30,15 +30,15 @@ constexpr NuisanceLine kNuisances[] = {
     {kTwist, "board's shape, twist", "mm"},
     {kBowY, "board's shape, its ends behind its middle along its height", "mm"}};
 
-// Of the unknown at this place, the variance factor counted in.
-double SigmaAt(const JointResult& result, Eigen::Index at) {
-  return std::sqrt(std::max(0.0, result.variance_factor * result.solution.covariance(at, at)));
+// Of the unknown at this place, a factor of variance counted in.
+double SigmaAt(const JointResult& result, Eigen::Index at, double factor) {
+  return std::sqrt(std::max(0.0, factor * result.solution.covariance(at, at)));
 }
 
 // An unknown that all views share.
 Estimate EstimateOf(const JointResult& result, SharedUnknown unknown) {
   return {result.solution.state.shared[static_cast<std::size_t>(unknown)],
-          SigmaAt(result, SharedPlaces(result.joint.problem).Of(unknown))};
+          SigmaAt(result, SharedPlaces(result.joint.problem).Of(unknown), result.variance_factor)};
 }
 
 // How much single sides differ, which no class explains: the solve's own estimate, from so many
@@ -98,7 +98,7 @@ void Append(std::optional<Nuisance> line, std::vector<Nuisance>* nuisances) {
 // An offset of one of the problem's terms.
 Estimate TermOf(const JointResult& result, std::size_t term) {
   const Eigen::Index at = SharedPlaces(result.joint.problem).RangeTerm(term);
-  return {result.solution.state.range_terms[term], SigmaAt(result, at)};
+  return {result.solution.state.range_terms[term], SigmaAt(result, at, result.variance_factor)};
 }
 
 }  // namespace
@@ -115,6 +115,12 @@ std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera)
   return nuisances;
 }
 
+Estimate RangeOffsetOfLidar(const JointResult& result, std::size_t lidar) {
+  return {result.solution.state.lidars[lidar].shared[kRangeOffset],
+          SigmaAt(result, SharedPlaces(result.joint.problem).Of(lidar, kRangeOffset),
+                  result.lidar_factors[lidar])};
+}
+
 std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t lidar) {
   const BoardProblem& of_lidar = result.joint.problem.lidars[lidar];
   const LidarState& state = result.solution.state.lidars[lidar];
@@ -122,8 +128,9 @@ std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t li
   std::vector<Nuisance> nuisances;
   for (const NuisanceLine& line : kNuisances) {
     if (!IsOfLidar(line.unknown)) continue;
-    const Estimate estimate{state.shared[static_cast<std::size_t>(line.unknown)],
-                            SigmaAt(result, places.Of(lidar, line.unknown))};
+    const Estimate estimate{
+        state.shared[static_cast<std::size_t>(line.unknown)],
+        SigmaAt(result, places.Of(lidar, line.unknown), result.lidar_factors[lidar])};
     Append(LineOf(line, estimate, of_lidar.priors), &nuisances);
   }
   Append(SideScatter(of_lidar), &nuisances);

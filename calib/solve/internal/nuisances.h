@@ -14,6 +14,7 @@ namespace rgbdt {
 /// Of the board, the reference LIDAR and camera `camera`'s lens.
 std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera);
 /// Of a further LIDAR alone.
+Estimate RangeOffsetOfLidar(const JointResult& result, std::size_t lidar);
 std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t lidar);
 
 /// What the reference LIDAR is off by; nothing where it was taken for exact.

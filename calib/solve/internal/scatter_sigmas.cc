@@ -34,9 +34,12 @@ double SideSigma(const BoardProblem& problem, const BoardSolution& solution) {
   return told > 1 ? std::max(least, std::sqrt(sum / told)) : least;
 }
 
-Estimate FreeRangeOffset(const BoardProblem& problem, const BoardSolution& solution) {
-  const Index at = SharedPlaces(problem).Of(kRangeOffset);
-  const double offset = solution.state.shared[kRangeOffset];
+Estimate FreeRangeOffset(const BoardProblem& problem, const BoardSolution& solution,
+                         std::optional<std::size_t> lidar) {
+  const SharedPlaces places(problem);
+  const Index at = lidar ? places.Of(*lidar, kRangeOffset) : places.Of(kRangeOffset);
+  const auto& shared = lidar ? solution.state.lidars[*lidar].shared : solution.state.shared;
+  const double offset = shared[kRangeOffset];
   ViewInformation all = PriorInformation(problem, solution.state);
   all.information(at, at) = 1 / (kRangeOffsetSigmaM * kRangeOffsetSigmaM);
   all.gradient[at] = -offset * all.information(at, at);
@@ -47,6 +50,15 @@ Estimate FreeRangeOffset(const BoardProblem& problem, const BoardSolution& solut
   const Eigen::MatrixXd covariance = InverseOfSymmetric(all.information);
   const Eigen::VectorXd step = covariance * all.gradient;
   return {offset + step[at], std::sqrt(covariance(at, at))};
+}
+
+std::string RangesAreOff(const Estimate& offset, double known_m) {
+  return Format(
+      "the LIDAR's ranges are %.1f +- %.1f mm too %s; the rig file has them exact to %.1f "
+      "mm (lidar.range_offset_sigma_m). The views decided. Check the ranges against a tape "
+      "measure, and raise that number",
+      1000 * std::abs(offset.value), 1000 * offset.sigma, offset.value > 0 ? "short" : "long",
+      1000 * known_m);
 }
 
 double ImageSideSigma(const BoardProblem& problem, const BoardState& state) {

@@ -16,8 +16,12 @@ namespace rgbdt {
 double SideSigma(const BoardProblem& problem, const BoardSolution& solution);
 
 /// The range offset as the views have it, as if nothing had been known of it: one step from the
-/// solution.
-Estimate FreeRangeOffset(const BoardProblem& problem, const BoardSolution& solution);
+/// solution. Of a further LIDAR, or of the reference.
+Estimate FreeRangeOffset(const BoardProblem& problem, const BoardSolution& solution,
+                         std::optional<std::size_t> lidar = std::nullopt);
+
+/// That the views refute what was known of it [m, 1 sigma], in words.
+std::string RangesAreOff(const Estimate& offset, double known_m);
 
 /// How far the board's sides in the images lie from where the rest puts them, beyond what their own
 /// fits say: boards are not quite straight, and show their rims. Robust, as what contradicts the

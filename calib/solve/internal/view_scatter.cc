@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/rigid3.h"
@@ -12,12 +13,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-// The result without every `parts`-th view from `part` on.
-BoardSolution Without(const BoardProblem& problem, const BoardSolution& all, std::size_t part,
-                      std::size_t parts) {
+// The result without every `parts`-th of these views from `part` on.
+BoardSolution Without(const BoardProblem& problem, const BoardSolution& all,
+                      const std::vector<std::size_t>& views, std::size_t part, std::size_t parts) {
+  std::vector<bool> left_out(problem.views.size(), false);
+  for (std::size_t i = part; i < views.size(); i += parts) left_out[views[i]] = true;
   std::vector<std::size_t> others;
   for (std::size_t v = 0; v < problem.views.size(); ++v) {
-    if (v % parts != part) others.push_back(v);
+    if (!left_out[v]) others.push_back(v);
   }
   return SolveSome(problem, all, others);
 }
@@ -41,6 +44,15 @@ std::vector<Rigid3> PosesOf(const BoardState& state) {
   return poses;
 }
 
+// By how much a small motion of its pose moves the camera's centre, in its axes, or the further
+// LIDAR's origin, in the reference's [m].
+Eigen::Vector3d MoveOfOrigin(const BoardState& state, const Contradiction& of,
+                             const Vector6d& delta) {
+  if (!of.lidar) return delta.tail<3>();
+  const Eigen::Vector3d& origin = state.lidars[*of.lidar].reference_from_lidar.translation;
+  return delta.head<3>().cross(origin) + delta.tail<3>();
+}
+
 // A view's images and further clouds, nothing said of them yet.
 std::vector<Contradiction> SensorsOf(const BoardProblem& problem, std::size_t view) {
   std::vector<Contradiction> sensors;
@@ -51,6 +63,38 @@ std::vector<Contradiction> SensorsOf(const BoardProblem& problem, std::size_t vi
     if (HasCloud(problem, l, view)) sensors.push_back({view, 0, l});
   }
   return sensors;
+}
+
+// How these sensors' poses (SensorOf) move when each of these views is left out in turn, of whose
+// moves `together` count once.
+std::optional<ViewScatter> ScatterOf(const BoardProblem& problem, const BoardSolution& solution,
+                                     const std::vector<std::size_t>& views,
+                                     const std::vector<std::size_t>& sensors, double together) {
+  constexpr std::size_t kMostParts = 10;
+  if (views.size() < 4) return std::nullopt;
+  const std::size_t parts = std::min(views.size(), kMostParts);
+  const std::vector<Index> places = PlacesOfPoses(problem);
+  double moved = 0;
+  double expected = 0;
+  double expected2 = 0;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const BoardSolution without = Without(problem, solution, views, part, parts);
+    const std::vector<Rigid3> poses = PosesOf(solution.state);
+    const std::vector<Rigid3> poses_without = PosesOf(without.state);
+    for (const std::size_t s : sensors) {
+      const Index at = places[6 * s];
+      const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
+      const Matrix6d covariance_without = without.covariance.block<6, 6>(at, at);
+      const Matrix6d more = SolveSymmetric(covariance, covariance_without) - Matrix6d::Identity();
+      const Vector6d move = Log(poses_without[s] * poses[s].Inverse());
+      moved += move.dot(SolveSymmetric(covariance, move));
+      expected += more.trace();
+      expected2 += (more * more).trace();
+    }
+  }
+  if (!(expected > 0) || !std::isfinite(moved)) return std::nullopt;
+  const double chance = std::sqrt(2 * expected2 * together) / expected;
+  return ViewScatter{moved / expected, 2 / (chance * chance)};
 }
 
 }  // namespace
@@ -92,7 +136,7 @@ std::vector<Contradiction> Contradictions(const BoardProblem& problem,
       Contradiction c = sensors[s];
       c.chi2 = delta.dot(SolveSymmetric(block, delta));
       c.rotation_deg = delta.head<3>().norm() * 180 / M_PI;
-      c.centre_mm = delta.tail<3>().norm() * 1000;
+      c.centre_mm = 1000 * MoveOfOrigin(solution.state, c, delta).norm();
       if (std::isfinite(c.chi2)) out.push_back(c);  // not where no other view has this camera
     }
   }
@@ -110,37 +154,23 @@ double AsStated(const std::vector<Contradiction>& contradictions, std::size_t vi
 
 std::optional<ViewScatter> ViewScatterOf(const BoardProblem& problem,
                                          const BoardSolution& solution) {
-  constexpr std::size_t kMostParts = 10;
-  const std::size_t views = problem.views.size();
-  if (views < 4) return std::nullopt;
-  const std::size_t parts = std::min(views, kMostParts);
-  const std::vector<Index> places = PlacesOfPoses(problem);
-  double moved = 0;
-  double expected = 0;
-  double expected2 = 0;
-  for (std::size_t part = 0; part < parts; ++part) {
-    const BoardSolution without = Without(problem, solution, part, parts);
-    const std::vector<Rigid3> poses = PosesOf(solution.state);
-    const std::vector<Rigid3> poses_without = PosesOf(without.state);
-    for (std::size_t c = 0; c < poses.size(); ++c) {
-      const Index at = places[6 * c];
-      const Matrix6d covariance = solution.covariance.block<6, 6>(at, at);
-      const Matrix6d covariance_without = without.covariance.block<6, 6>(at, at);
-      const Matrix6d more = SolveSymmetric(covariance, covariance_without) - Matrix6d::Identity();
-      const Vector6d move = Log(poses_without[c] * poses[c].Inverse());
-      moved += move.dot(SolveSymmetric(covariance, move));
-      expected += more.trace();
-      expected2 += (more * more).trace();
-    }
-  }
-  if (!(expected > 0) || !std::isfinite(moved)) return std::nullopt;
-  // Sensors of one view share its cloud: their moves are correlated, and count but once.
+  std::vector<std::size_t> views(problem.views.size());
+  std::iota(views.begin(), views.end(), 0);
+  std::vector<std::size_t> cameras(problem.cameras.size());
+  std::iota(cameras.begin(), cameras.end(), 0);
+  // Images of one view share its cloud: their moves are correlated, and count but once.
   std::size_t together = 1;
-  for (std::size_t v = 0; v < views; ++v) {
-    together = std::max(together, SensorsOf(problem, v).size());
+  for (const BoardView& view : problem.views) together = std::max(together, view.images.size());
+  return ScatterOf(problem, solution, views, cameras, static_cast<double>(together));
+}
+
+std::optional<ViewScatter> ViewScatterOf(const BoardProblem& problem, const BoardSolution& solution,
+                                         std::size_t lidar) {
+  std::vector<std::size_t> views;
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    if (HasCloud(problem, lidar, v)) views.push_back(v);
   }
-  const double chance = std::sqrt(2 * expected2 * static_cast<double>(together)) / expected;
-  return ViewScatter{moved / expected, 2 / (chance * chance)};
+  return ScatterOf(problem, solution, views, {problem.cameras.size() + lidar}, 1);
 }
 
 }  // namespace rgbdt

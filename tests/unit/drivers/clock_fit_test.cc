@@ -42,12 +42,12 @@ Errors Follow(const Device& device, unsigned seed, double seconds, double after_
   for (double t = 0; t < seconds * 1e6; t += device.period_us) {
     const std::int64_t ticks = device.Ticks(t);
     const double delay = device.constant_us + jitter(random);
-    EXPECT_TRUE(fit.Add(ticks, kDevicesStart + std::llround(t + delay)));
+    EXPECT_TRUE(fit.Add(ticks, kJune2015 + std::llround(t + delay)));
     if (t < after_s * 1e6) continue;
     // Half a tick: a counter shows the tick that has passed.
     const Utime host =
         fit.ToHost(static_cast<double>(ticks) + (device.tick_us > 1 ? 0.5 : 0)).value();
-    const double error = static_cast<double>(host - kDevicesStart) - t;
+    const double error = static_cast<double>(host - kJune2015) - t;
     errors.worst_us = std::max(errors.worst_us, std::abs(error));
     errors.rms_us += error * error;
     ++count;
@@ -99,7 +99,7 @@ TEST(ClockFit, FindsTheRateAndKeepsToItsBound) {
     std::mt19937 random(7);
     std::exponential_distribution<double> jitter(1e-3);
     for (double t = 0; t < 60e6; t += 25'000) {
-      fit.Add(device.Ticks(t), kDevicesStart + std::llround(t + jitter(random)));
+      fit.Add(device.Ticks(t), kJune2015 + std::llround(t + jitter(random)));
     }
     EXPECT_NEAR(fit.rate(), std::max(-drift, -500e-6), 5e-6);
   }
@@ -108,13 +108,13 @@ TEST(ClockFit, FindsTheRateAndKeepsToItsBound) {
 TEST(ClockFit, BeforeTheBaseTheLeastDelayWithRateOne) {
   ClockFit fit;
   EXPECT_FALSE(fit.ToHost(0));
-  fit.Add(1000, kDevicesStart + 700);
-  EXPECT_EQ(fit.ToHost(1000), kDevicesStart + 700);
-  fit.Add(101'000, kDevicesStart + 100'200);
-  EXPECT_EQ(fit.ToHost(1000), kDevicesStart + 200);
+  fit.Add(1000, kJune2015 + 700);
+  EXPECT_EQ(fit.ToHost(1000), kJune2015 + 700);
+  fit.Add(101'000, kJune2015 + 100'200);
+  EXPECT_EQ(fit.ToHost(1000), kJune2015 + 200);
   EXPECT_EQ(fit.rate(), 0);
-  fit.Add(201'000, kDevicesStart + 200'900);
-  EXPECT_EQ(fit.ToHost(201'000), kDevicesStart + 200'200);
+  fit.Add(201'000, kJune2015 + 200'900);
+  EXPECT_EQ(fit.ToHost(201'000), kJune2015 + 200'200);
 }
 
 TEST(ClockFit, AClockThatIsSetStartsAnewAndSaysSo) {
@@ -130,7 +130,7 @@ TEST(ClockFit, AClockThatIsSetStartsAnewAndSaysSo) {
       const bool set = i >= 400;
       const std::int64_t ticks =
           200'000'000'000 + i * 25'000LL + (set ? static_cast<std::int64_t>(device_s * 1e6) : 0);
-      host = kDevicesStart + i * 25'000LL + (set ? static_cast<Utime>(host_s * 1e6) : 0);
+      host = kJune2015 + i * 25'000LL + (set ? static_cast<Utime>(host_s * 1e6) : 0);
       if (!fit.Add(ticks, host + 300 + i * 37 % 200)) ++restarts;
       mapped = fit.ToHost(static_cast<double>(ticks)).value();
     }
@@ -143,8 +143,8 @@ TEST(ClockFit, AStallIsNoStep) {
   ClockFit fit;
   for (int i = 0; i < 4000; ++i) {
     const Utime delay = i >= 1000 && i < 1060 ? (1060 - i) * 25'000 : 0;  // 1.5 s pile up
-    EXPECT_TRUE(fit.Add(i * 25'000LL, kDevicesStart + i * 25'000LL + delay));
-    EXPECT_NEAR(static_cast<double>(*fit.ToHost(i * 25e3) - kDevicesStart - i * 25'000LL), 0, 5);
+    EXPECT_TRUE(fit.Add(i * 25'000LL, kJune2015 + i * 25'000LL + delay));
+    EXPECT_NEAR(static_cast<double>(*fit.ToHost(i * 25e3) - kJune2015 - i * 25'000LL), 0, 5);
   }
   EXPECT_LE(fit.size(), 601u);
 }
@@ -152,9 +152,9 @@ TEST(ClockFit, AStallIsNoStep) {
 TEST(ClockFit, ReadingsOutOfOrderAndTwiceAreTaken) {
   ClockFit fit;
   for (const int i : {0, 2, 1, 3, 3, 2, 400, 399, 400}) {
-    EXPECT_TRUE(fit.Add(i * 25'000LL, kDevicesStart + i * 25'000LL + 10));
+    EXPECT_TRUE(fit.Add(i * 25'000LL, kJune2015 + i * 25'000LL + 10));
   }
-  EXPECT_NEAR(static_cast<double>(*fit.ToHost(1e7) - kDevicesStart), 1e7 + 10, 1);
+  EXPECT_NEAR(static_cast<double>(*fit.ToHost(1e7) - kJune2015), 1e7 + 10, 1);
 }
 
 TEST(ClockFit, BadOptionsAreNamed) {
@@ -177,15 +177,14 @@ TEST(CounterUnwrapper, GoesOnWhereTheCounterWraps) {
 }
 
 TEST(PtpToUtc, TakesWholeSecondsAway) {
-  EXPECT_EQ(PtpToUtc(kDevicesStart + 37'000'000, kDevicesStart + 900), kDevicesStart) << "TAI";
-  EXPECT_EQ(PtpToUtc(kDevicesStart, kDevicesStart + 900), kDevicesStart) << "UTC";
-  EXPECT_EQ(PtpToUtc(kDevicesStart + 37'000'000, kDevicesStart + 150'000), kDevicesStart)
-      << "a late arrival";
+  EXPECT_EQ(PtpToUtc(kJune2015 + 37'000'000, kJune2015 + 900), kJune2015) << "TAI";
+  EXPECT_EQ(PtpToUtc(kJune2015, kJune2015 + 900), kJune2015) << "UTC";
+  EXPECT_EQ(PtpToUtc(kJune2015 + 37'000'000, kJune2015 + 150'000), kJune2015) << "a late arrival";
 }
 
 TEST(PtpToUtc, AClockOfItsOwnIsNotBelieved) {
-  EXPECT_FALSE(PtpToUtc(5'000'000, kDevicesStart));
-  EXPECT_FALSE(PtpToUtc(kDevicesStart + 500'000, kDevicesStart));
+  EXPECT_FALSE(PtpToUtc(5'000'000, kJune2015));
+  EXPECT_FALSE(PtpToUtc(kJune2015 + 500'000, kJune2015));
 }
 
 }  // namespace

@@ -24,15 +24,15 @@ TEST(ScipClock, TimesAskedForTellHowLateScansAre) {
   for (int i = 0; i < 10; ++i, t += 500 + 2000 * even(random)) {
     const double there = 100 + 50 * even(random);
     const double back = 100 + 50 * even(random);
-    clock.AddTime(ms(t), kDevicesStart + std::llround(t + back), std::llround(there + back));
+    clock.AddTime(ms(t), kJune2015 + std::llround(t + back), std::llround(there + back));
   }
   double worst = 0, mean = 0;
   int count = 0;
   for (; t < 1e9 + 200e6; t += 25'013) {
     const double late = 9000 + 1500 * even(random);  // of which the scan takes 5000
-    const ScipClock::ScanTime time = clock.AddScan(ms(t), kDevicesStart + std::llround(t + late));
+    const ScipClock::ScanTime time = clock.AddScan(ms(t), kJune2015 + std::llround(t + late));
     EXPECT_FALSE(time.was_set);
-    const double error = static_cast<double>(time.utime - kDevicesStart) - t;
+    const double error = static_cast<double>(time.utime - kJune2015) - t;
     worst = std::max(worst, std::abs(error));
     mean += error;
     ++count;
@@ -53,7 +53,7 @@ TEST(ScipClock, AHostsClockThatIsSetIsToldOnceAndCostsNoTime) {
     for (const double jump : {-10.0, -1.0, -0.2, 0.2, 1.0, 10.0}) {
       ScipClock clock(5000);
       const auto host = [&](double t) {
-        return kDevicesStart + std::llround(t + (t < when ? 0 : jump * kSecond));
+        return kJune2015 + std::llround(t + (t < when ? 0 : jump * kSecond));
       };
       const auto ms = [](double t) { return static_cast<std::uint32_t>(t / 1000); };
       for (double t = 0; t < 20'000; t += 2000) clock.AddTime(ms(t), host(t + 125), 250);

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 constexpr BagEncoding kProto = BagEncoding::kProtobuf;
 
-foxglove::PointCloud Cloud() {
+foxglove::PointCloud CloudMessage() {
   foxglove::PointCloud cloud;
   cloud.mutable_timestamp()->set_seconds(1'700'000'000);
   cloud.set_frame_id("/lidar");
@@ -32,7 +32,7 @@ foxglove::PointCloud Cloud() {
 }
 
 TEST(FoxgloveReader, AnyByteMayBeAnyOther) {
-  const std::string whole = Cloud().SerializeAsString();
+  const std::string whole = CloudMessage().SerializeAsString();
   const BagTopic topic{"/lidar", "foxglove.PointCloud", kProto};
   std::mt19937 random(1);
   int refused = 0;
@@ -55,7 +55,7 @@ TEST(FoxgloveReader, AnyByteMayBeAnyOther) {
 
 // Each field is small enough, all together are not; the data's own bytes do not count.
 TEST(FoxgloveReader, OnlyTheDataMayBeLarge) {
-  foxglove::PointCloud cloud = Cloud();
+  foxglove::PointCloud cloud = CloudMessage();
   cloud.set_data(std::string(3 << 20, 'x'));
   EXPECT_EQ(ros::DecodePointCloud(MessageOf(cloud.SerializeAsString()), kProto).size, 3U << 20);
   for (int i = 0; i < 40; ++i) cloud.add_fields()->set_name(std::string(60'000, 'n'));
@@ -69,7 +69,7 @@ TEST(FoxgloveReader, AMillionEmptyPartsTakeNoMemory) {
   for (int i = 0; i < 1'000'000; ++i) bytes += std::string("\x2a\x00", 2);  // an empty field
   EXPECT_THAT(test::ErrorOf([&] { ros::DecodePointCloud(MessageOf(bytes), kProto); }),
               HasSubstr("more than 10000 fields"));
-  foxglove::PointCloud cloud = Cloud();
+  foxglove::PointCloud cloud = CloudMessage();
   cloud.mutable_fields(0)->set_name(std::string(100'000, 'x'));
   const std::string large = cloud.SerializeAsString();
   EXPECT_THAT(test::ErrorOf([&] { ros::DecodePointCloud(MessageOf(large), kProto); }),
@@ -77,7 +77,7 @@ TEST(FoxgloveReader, AMillionEmptyPartsTakeNoMemory) {
 }
 
 TEST(FoxgloveReader, NumbersThatDoNotFitEachOther) {
-  foxglove::PointCloud cloud = Cloud();
+  foxglove::PointCloud cloud = CloudMessage();
   cloud.set_point_stride(5);
   std::string bytes = cloud.SerializeAsString();
   EXPECT_THROW(ros::DecodePointCloud(MessageOf(bytes), kProto), InputError);

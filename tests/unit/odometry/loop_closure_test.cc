@@ -55,7 +55,7 @@ struct DriftedWay {
 };
 
 // `back`: the street of the way back.
-DriftedWay Drive(std::uint64_t there, std::uint64_t back, const Vector6d& drift) {
+DriftedWay DriveBackBy(std::uint64_t there, std::uint64_t back, const Vector6d& drift) {
   study::Drive first = Street(there), second = Street(back);
   Keyframes keyframes;
   DriftedWay drifted;
@@ -92,7 +92,7 @@ double Farthest(const std::vector<Rigid3>& found, const std::vector<Rigid3>& tru
 }
 
 TEST(LoopClosure, TheWayBackOtherWayAboutTakesTheDriftOut) {
-  const DriftedWay drifted = Drive(4, 4, Drift());
+  const DriftedWay drifted = DriveBackBy(4, 4, Drift());
   const ClosedWay& closed = drifted.closed;
   ASSERT_THAT(closed.before, SizeIs(drifted.truth.size()));
   ASSERT_GT(closed.loops.size(), 5U);
@@ -119,7 +119,7 @@ TEST(LoopClosure, TheWayBackOtherWayAboutTakesTheDriftOut) {
 }
 
 TEST(LoopClosure, AnotherStreetClosesNoLoop) {
-  const DriftedWay drifted = Drive(4, 5, Drift());
+  const DriftedWay drifted = DriveBackBy(4, 5, Drift());
   EXPECT_THAT(drifted.closed.loops, IsEmpty());
   EXPECT_EQ(drifted.closed.most_moved_m, 0);
 }

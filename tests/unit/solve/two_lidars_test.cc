@@ -45,7 +45,7 @@ struct TwoLidars {
 
   JointProblem Joint() const {
     JointProblem joint = SolveSession(world).Joint(0.02);
-    AddLidars({second}, 3, &joint);
+    AddLidars({second}, 3, 0.02, &joint);
     return joint;
   }
 
@@ -205,6 +205,56 @@ TEST(TwoLidars, WhichOfASquaresTurnsItIsIsToldByTheViewsTogether) {
   ASSERT_EQ(found.lidars[0].calibration.status, SolveStatus::kConverged);
   EXPECT_EQ(found.lidars[0].used.size(), 10U);
   EXPECT_LT(Chi2(found.lidars[0].calibration), kMostChi2);
+}
+
+// By a plain board the reference's offset is no unknown: what is common to both stays with the
+// cameras, their difference does not go into the pose.
+TEST(TwoLidars, RangesThatDifferBetweenTheTwoAreToldByAPlainBoard) {
+  SolveWorldOptions options;
+  options.plain = true;
+  const CalibratedCameras found = TwoLidars(options, 0.015).Solve();
+  ASSERT_EQ(found.lidars[0].calibration.status, SolveStatus::kConverged);
+  EXPECT_LT(Chi2(found.lidars[0].calibration), kMostChi2);
+}
+
+TEST(TwoLidars, ARangeOffsetThatTheViewsRefuteIsFreedAndSaid) {
+  TwoLidars session(Views(10), 0.03);
+  session.second.range_offset_sigma_m = 0.002;
+  const CalibratedCameras found = session.Solve();
+  ASSERT_EQ(found.lidars[0].calibration.status, SolveStatus::kConverged);
+  EXPECT_THAT(found.lidars[0].warnings, Contains(HasSubstr("the LIDAR's ranges are")));
+  EXPECT_LT(Chi2(found.lidars[0].calibration), kMostChi2);
+}
+
+TEST(TwoLidars, WhereTooFewCloudsAreLeftToTellWhichIsWrongThePoseIsNotToBeUsed) {
+  TwoLidars session(Views(10));
+  for (const char* view : {"0001", "0002", "0003", "0004", "0005", "0006", "0007"}) {
+    session.second.candidates.erase(view);
+  }
+  CloudEdges& cloud = session.second.candidates["0009"][0];
+  const Eigen::Vector3d move(0.1, 0.05, 0.1);
+  cloud.pose->sensor_from_target.translation += move;
+  cloud.centre += move;
+  for (Crossing& crossing : cloud.crossings) crossing.point += move;
+  const CalibratedCameras found = session.Solve();
+  EXPECT_FALSE(found.lidars[0].calibration.converged());
+  EXPECT_NE(found.lidars[0].calibration.detail, "");
+  for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(session.Chi2Of(found, c), kMostChi2);
+}
+
+TEST(TwoLidars, CloudsOfAnotherScaleAreNotTakenForAPose) {
+  TwoLidars session(Views(10));
+  for (auto& [view, candidates] : session.second.candidates) {
+    for (CloudEdges& cloud : candidates) {
+      cloud.pose->sensor_from_target.translation *= 1.05;
+      cloud.centre *= 1.05;
+      for (Crossing& crossing : cloud.crossings) crossing.point *= 1.05;
+    }
+  }
+  const CalibratedCameras found = session.Solve();
+  const LidarCalibration& lidar = found.lidars[0].calibration;
+  EXPECT_TRUE(!lidar.converged() || Chi2(lidar) < kMostChi2);
+  for (std::size_t c = 0; c < 2; ++c) EXPECT_LT(session.Chi2Of(found, c), kMostChi2);
 }
 
 }  // namespace

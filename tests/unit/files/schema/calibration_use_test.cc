@@ -56,6 +56,40 @@ TEST(CalibrationUse, WhatMovesNoCameraDoesNotCount) {
   EXPECT_EQ(WhyAnotherRig(CalibrationOf(rig), read, kNames), "");
 }
 
+Rig WithRear() {
+  Rig rig = test::MakeRig();
+  rig.further_lidars.emplace_back().name = "rear";
+  return rig;
+}
+
+TEST(CalibrationUse, WhichLidarIsTheReferenceCountsWhereThereAreSeveral) {
+  const Rig rig = Read(WithRear());
+  Rig exchanged = WithRear();
+  std::swap(exchanged.lidar, exchanged.further_lidars[0]);
+  EXPECT_THAT(WhyAnotherRig(CalibrationOf(rig), Read(exchanged), kNames),
+              HasSubstr("the first lidar, in whose frame all is"));
+}
+
+TEST(CalibrationUse, ALidarThatWasCalibratedIsToBeThereAndOneThatWasNotDoesNotCount) {
+  const Rig one = Read(test::MakeRig());
+  const Rig two = Read(WithRear());
+  EXPECT_EQ(WhyAnotherRig(CalibrationOf(one), two, kNames), "");
+  EXPECT_EQ(WhyAnotherRig(CalibrationOf(two), one, kNames), "");
+  Calibration calibration = CalibrationOf(two);
+  calibration.lidars = {{"rear", {}, Matrix6d::Identity(), SolveStatus::kConverged}};
+  EXPECT_EQ(WhyAnotherRig(calibration, Read(WithRear(), "# by hand\n"), kNames), "");
+  EXPECT_THAT(WhyAnotherRig(calibration, one, kNames), HasSubstr("lidar rear: not among"));
+}
+
+TEST(CalibrationUse, AFurtherLidarsPoseThatIsNotToBeUsedSpeaksAgainstItWhereItIsUsed) {
+  const Rig rig = Read(WithRear());
+  Calibration calibration = CalibrationOf(rig);
+  calibration.lidars = {{"rear", {}, Matrix6d::Identity(), SolveStatus::kDegenerate, "too loose"}};
+  EXPECT_THAT(RequireSound(calibration, rig, kNames, Use::kAnyway), IsEmpty());
+  EXPECT_THAT(RequireSound(calibration, rig, kNames, Use::kAnyway, Further::kUsed),
+              ElementsAre(HasSubstr("the pose of LIDAR rear is not to be used")));
+}
+
 TEST(CalibrationUse, WhatDiffersIsSaidFieldByField) {
   const Rig rig = Read(test::MakeRig());
   Rig other = test::MakeRig();

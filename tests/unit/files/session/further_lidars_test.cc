@@ -104,6 +104,7 @@ class FurtherClouds : public ::testing::Test {
     view.name = "0001";
     view.further_clouds = {{"rear", test::MakeCloud()}};
     view.further_clouds[0].cloud.sweep_utime = view.cloud.sweep_utime;
+    for (Eigen::Vector3f& point : view.further_clouds[0].cloud.points) point.x() += 0.5F;
     WriteView(dir_.path(), view);
   }
 
@@ -125,6 +126,11 @@ TEST_F(FurtherClouds, StandBesideTheReferences) {
   EXPECT_EQ(back.further_clouds[0].lidar, "rear");
   EXPECT_EQ(back.further_clouds[0].cloud.points.size(), test::MakeCloud().points.size());
   EXPECT_EQ(back.further_clouds[0].cloud.sweep_utime, back.cloud.sweep_utime);
+}
+
+TEST_F(FurtherClouds, ThePointsOfTheReferenceAreNotAnothers) {
+  EXPECT_THAT(ErrorOf("further_cloud { lidar: \"rear\" file: \"cloud.pcd\" }\n"),
+              HasSubstr("holds the points of the view's own cloud"));
 }
 
 TEST_F(FurtherClouds, OfALidarThatTheRigDoesNotHaveAreRefused) {
