@@ -21,6 +21,7 @@ using odometry::PlaneMap;
 using odometry::Registration;
 using odometry::SweepMotion;
 using odometry::TimedSweep;
+using odometry::Untold;
 
 constexpr std::size_t kFewestPoints = 300;
 constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
@@ -31,6 +32,12 @@ constexpr double kLeastKept = 2;     // [m], however full the map is
 constexpr double kLeastFit = 0.7;    // of the matched points within 0.1 m of their plane
 constexpr std::size_t kFewestMatched = 100;
 constexpr double kMostAcceleration = 40;  // [m/s^2] and [rad/s^2]: faster is a jump
+
+// A sweep that lies so much worse on the map than usual may have found the wrong place: it is tried
+// from turns that change by so much about each axis, too.
+constexpr double kWorse = 1.3;
+constexpr double kOtherTurn = 0.2;  // [rad/s]
+constexpr double kUsualOver = 10;   // sweeps
 
 // Before anything is seen: 1 sigma.
 constexpr double kFirstSpeed = 15;  // [m/s]
@@ -83,6 +90,7 @@ struct Odometry::Impl {
   Utime middle = 0;                 // of `motion`
   Motion motion;
   int lost = 0;
+  double usual_residual_m = 0;  // of the sweeps before; 0: not known
   Eigen::Vector3d forgotten_at{0, 0, 0};
 
   OdometryResult Add(const Cloud& cloud);
@@ -91,6 +99,7 @@ struct Odometry::Impl {
   void Lose(const TimedSweep& sweep, double seconds);
   void Follow(TimedSweep sweep, double seconds, OdometryResult* result);
   Registration Second(const TimedSweep& sweep);
+  Registration Next(const TimedSweep& sweep, const Motion& before, double seconds) const;
   std::string WhyNot(const Registration& found, const Motion& before, double seconds) const;
   void Grow(const TimedSweep& sweep);
   void Report(const TimedSweep& sweep, OdometryResult* result) const;
@@ -103,6 +112,7 @@ void Odometry::Impl::Begin(TimedSweep sweep) {
   motion = Unknown(motion.world_from_lidar);
   forgotten_at = motion.world_from_lidar.translation;
   lost = 0;
+  usual_residual_m = 0;
   begun = anew = true;
   first = std::move(sweep);
 }
@@ -121,7 +131,7 @@ Registration Odometry::Impl::Second(const TimedSweep& sweep) {
     map.Add(odometry::InWorld(*first, SweepMotion(start, velocity, first->seconds)),
             start.translation);
     before.covariance = weak.covariance;
-    found = odometry::Register(sweep, map, before, true, options);
+    found = odometry::Register(sweep, map, before, before, Untold::kAtTheEnd, options);
     const Vector6d way = Log(start.Inverse() * found.motion.world_from_lidar) / seconds;
     if (!way.allFinite()) break;
     const double change = (way - velocity).norm();
@@ -131,6 +141,30 @@ Registration Odometry::Impl::Second(const TimedSweep& sweep) {
     if (change < kStraight) break;
   }
   return found;
+}
+
+// On the map. Where a turn sets in, points find planes that are not theirs, and those that find
+// none are not missed: the place at which most points lie near a plane is the right one.
+Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
+                                  double seconds) const {
+  Registration best =
+      odometry::Register(sweep, map, before, before, Untold::kFromTheBeginning, options);
+  bool fits = WhyNot(best, before, seconds).empty();
+  if (fits && best.residual_m <= kWorse * usual_residual_m) return best;
+  if (usual_residual_m == 0) return best;
+  for (int start = 0; start < 7; ++start) {
+    Vector6d turn = Vector6d::Zero();
+    if (start > 0) turn[(start - 1) / 2] = start % 2 == 1 ? kOtherTurn : -kOtherTurn;
+    Motion other = before;
+    other.velocity += turn;
+    other.world_from_lidar = before.world_from_lidar * Exp(Vector6d(seconds * turn));
+    Registration found = odometry::Register(sweep, map, before, other, Untold::kAtTheEnd, options);
+    if (!WhyNot(found, before, seconds).empty()) continue;
+    if (fits && found.near <= best.near) continue;
+    fits = true;
+    best = std::move(found);
+  }
+  return best;
 }
 
 std::string Odometry::Impl::WhyNot(const Registration& found, const Motion& before,
@@ -225,8 +259,7 @@ OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
 
 void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* result) {
   const Motion before = odometry::Predict(motion, seconds, options);
-  const Registration found =
-      first ? Second(sweep) : odometry::Register(sweep, map, before, false, options);
+  const Registration found = first ? Second(sweep) : Next(sweep, before, seconds);
   result->matched = found.matched;
   result->residual_m = found.residual_m;
   result->iterations = found.iterations;
@@ -234,6 +267,8 @@ void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* re
   result->converged = result->reason.empty();
   if (result->converged) {
     lost = 0;
+    usual_residual_m += usual_residual_m > 0 ? (found.residual_m - usual_residual_m) / kUsualOver
+                                             : found.residual_m;
     first.reset();
     motion = found.motion;
     middle = sweep.middle;

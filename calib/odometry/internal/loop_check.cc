@@ -65,9 +65,9 @@ std::string WhyNot(const LoopCheck& found, const Registration& registered, const
 
 LoopCheck CheckFrom(const Rigid3& start, const PlaneMap& map, const Keyframe& frame,
                     const OdometryOptions& options) {
-  // Hardly anything is known: directions that are not told are looked for at the end only.
-  const Registration found =
-      Register(frame.sweep, map, Start(start, frame.velocity), true, options);
+  // Hardly anything is known.
+  const Motion before = Start(start, frame.velocity);
+  const Registration found = Register(frame.sweep, map, before, before, Untold::kAtTheEnd, options);
   LoopCheck check;
   check.old_from_new = found.motion.world_from_lidar;
   Vector6d common;

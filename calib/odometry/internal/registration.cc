@@ -11,9 +11,14 @@ namespace {
 
 constexpr int kMostIterations = 25;
 constexpr double kOnPlane = 0.1;       // [m]
+constexpr double kNearPlane = 0.03;    // [m]
 constexpr double kLeastScale = 0.003;  // [m] of distances
 constexpr double kSettled = 0.02;      // [m] after smaller steps points keep their planes
 constexpr double kDone = 3e-4;         // [m], of the lever for turns
+// Before a sweep has found its place its points are farther from their planes than these scatter,
+// which does not make what the planes tell less: [m]
+constexpr double kMostScatter = 0.02;
+constexpr double kAccelerationLasts = 0.1;  // [s]
 // A beam as wide as most that grazes a plane comes back from its near end: [rad]
 constexpr double kGrazing = 0.05;
 constexpr int kMostSearches = 10;    // iterations in which points look for their planes
@@ -28,6 +33,7 @@ struct Residual {
   double distance = 0;
   Vector6d slope = Vector6d::Zero();
   double weight = 0;
+  double common = 0;  // variance of what the plane is off by, for all of its points [m^2]
 };
 
 struct Normal {
@@ -37,28 +43,31 @@ struct Normal {
 
 class Solver {
  public:
-  Solver(const TimedSweep& sweep, const PlaneMap& map, const Motion& before, bool first,
-         const OdometryOptions& options)
-      : sweep_(sweep), map_(map), before_(before), first_(first), options_(options) {
-    result_.motion = before;
+  Solver(const TimedSweep& sweep, const PlaneMap& map, const Motion& before, const Motion& start,
+         Untold untold, const OdometryOptions& options)
+      : sweep_(sweep), map_(map), before_(before), untold_(untold), options_(options) {
+    result_.motion = start;
     matches_.resize(sweep.selected.size());
   }
 
   Registration Solve() {
     bool settled = false;
+    double step = 0;
     for (int i = 0; i < kMostIterations && !result_.converged; ++i) {
       Evaluate(!settled);
       if (result_.matched < kFewest) return result_;
-      if (!first_ && (i == 0 || i == 3)) FindDegenerate();
-      const double step = Step();
+      if (untold_ == Untold::kFromTheBeginning && (i == 0 || i == 3)) FindDegenerate(kMostScatter);
+      step = Step();
       ++result_.iterations;
       if (settled && step < kDone) {
         result_.converged = true;
       }
       settled = settled || step < kSettled || i + 1 == kMostSearches;
     }
+    // Robust weights may go on moving it by millimetres: less than it is known to.
+    result_.converged = result_.converged || (settled && step < kSettled);
     Evaluate(false);
-    FindDegenerate();
+    FindDegenerate(result_.converged ? scale_ : kMostScatter);
     for (int i = 0; i < 2; ++i) {
       Step();
       Evaluate(false);
@@ -70,6 +79,7 @@ class Solver {
  private:
   void Evaluate(bool match);
   void Weigh(bool scale);
+  double WeightOf(const Residual& r, double scatter) const;
   Normal Data() const;
   Vector12d Off() const;
   void Move(const Vector12d& step);
@@ -79,12 +89,12 @@ class Solver {
   Told ToldDirections() const;
   double Step();
   Matrix12d Covariance() const;
-  void FindDegenerate();
+  void FindDegenerate(double most_scatter);
 
   const TimedSweep& sweep_;
   const PlaneMap& map_;
   const Motion& before_;
-  bool first_;
+  Untold untold_;
   const OdometryOptions& options_;
   Directions directions_;
   std::vector<Match> matches_;
@@ -126,10 +136,12 @@ void Solver::Weigh(bool scale) {
   std::vector<double> distances;
   double squared = 0;
   std::size_t on_plane = 0;
+  result_.near = 0;
   for (const Residual& r : residuals_) {
     distances.push_back(std::abs(r.distance));
     squared += r.in_middle.squaredNorm();
     if (distances.back() < kOnPlane) ++on_plane;
+    if (distances.back() < kNearPlane) ++result_.near;
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
@@ -147,10 +159,15 @@ void Solver::Weigh(bool scale) {
   for (const Residual& r : residuals_) count(r.match) += 1;
   for (Residual& r : residuals_) {
     const Plane& plane = *r.match.plane;
-    const double whitened = r.distance / (2 * scale_);
-    const double common = count(r.match) * plane.mean_variance;
-    r.weight = 1 / ((scale_ * scale_ + common) * (1 + whitened * whitened));
+    r.common = count(r.match) * plane.mean_variance;
+    r.weight = WeightOf(r, scale_);
   }
+}
+
+// Of a point whose own scatter is this [m].
+double Solver::WeightOf(const Residual& r, double scatter) const {
+  const double whitened = r.distance / (2 * scale_);
+  return 1 / ((scatter * scatter + r.common) * (1 + whitened * whitened));
 }
 
 // Each point's slope by the velocity is that by the motion times the point's time, so three sums of
@@ -228,11 +245,12 @@ Matrix12d Solver::Covariance() const {
          rest * before_.covariance * rest.transpose();
 }
 
-void Solver::FindDegenerate() {
+void Solver::FindDegenerate(double most_scatter) {
   Information information;
+  const double scatter = std::min(scale_, most_scatter);
   const Eigen::Quaterniond middle_from_world = result_.motion.world_from_lidar.rotation.conjugate();
   for (const Residual& r : residuals_) {
-    information.Add({r.in_middle, r.weight, r.slope, r.match, middle_from_world});
+    information.Add({r.in_middle, WeightOf(r, scatter), r.slope, r.match, middle_from_world});
   }
   directions_ = information.Told(result_.lever_m, options_.degenerate_m);
   result_.degenerate = directions_.degenerate;
@@ -255,18 +273,20 @@ Motion Predict(const Motion& before, double seconds, const OdometryOptions& opti
   Vector6d acceleration;
   acceleration << Eigen::Vector3d::Constant(options.turn_radps2),
       Eigen::Vector3d::Constant(options.acceleration_mps2);
-  // Constant within the time, another each time.
-  Eigen::Matrix<double, 12, 6> by_acceleration;
-  by_acceleration << 0.5 * seconds * seconds * Matrix6d::Identity(), seconds * Matrix6d::Identity();
-  by_acceleration = by_acceleration * acceleration.asDiagonal();
-  after.covariance = onward * before.covariance * onward.transpose() +
-                     by_acceleration * by_acceleration.transpose();
+  const double t = std::abs(seconds);
+  const Vector6d density = kAccelerationLasts * acceleration.cwiseAbs2();
+  Matrix12d noise = Matrix12d::Zero();
+  noise.topLeftCorner<6, 6>().diagonal() = t * t * t / 3 * density;
+  noise.topRightCorner<6, 6>().diagonal() = noise.bottomLeftCorner<6, 6>().diagonal() =
+      0.5 * t * seconds * density;
+  noise.bottomRightCorner<6, 6>().diagonal() = t * density;
+  after.covariance = onward * before.covariance * onward.transpose() + noise;
   return after;
 }
 
 Registration Register(const TimedSweep& sweep, const PlaneMap& map, const Motion& before,
-                      bool first, const OdometryOptions& options) {
-  return Solver(sweep, map, before, first, options).Solve();
+                      const Motion& start, Untold untold, const OdometryOptions& options) {
+  return Solver(sweep, map, before, start, untold, options).Solve();
 }
 
 }  // namespace rgbdt::odometry

@@ -20,8 +20,10 @@ struct Motion {
   Matrix12d covariance = Matrix12d::Zero();
 };
 
-/// The motion so much later: on with the same velocity, which white acceleration changes. `before`
-/// may be `seconds` earlier or later.
+/// The motion so much later: on with the same velocity, which white acceleration changes
+/// (Bar-Shalom et al. 2001, 6.2.2). An acceleration that were constant in between would let each
+/// correction of the pose change the velocity by twice its share, so that its error came back with
+/// the other sign, as large, sweep after sweep. `before` may be `seconds` earlier or later.
 Motion Predict(const Motion& before, double seconds, const OdometryOptions& options);
 
 struct Registration {
@@ -31,17 +33,20 @@ struct Registration {
   std::size_t matched = 0;  ///< of the selected points
   double residual_m = 0;    ///< median distance of these
   double fit = 0;           ///< share of these that lie within 0.1 m of their plane
+  std::size_t near = 0;     ///< how many of these lie within 0.03 m of it
   /// Directions that the sweep does not tell: orthonormal columns, of a small motion in the
   /// middle's LIDAR axes with turns times `lever_m`.
   Eigen::Matrix<double, 6, Eigen::Dynamic> degenerate;
   double lever_m = 1;  ///< root mean square distance of the matched points
 };
 
+/// When a direction that the data do not tell is left to what was known before: from the beginning,
+/// or at the end only, where the way there may lead over planes that do not tell.
+enum class Untold { kFromTheBeginning, kAtTheEnd };
+
 /// The motion that puts a sweep's points on the map's planes, with what was known before: Gauss and
-/// Newton, with Cauchy's weights on the distances by their median. Where the data do not tell a
-/// direction it is left to what was known before; `first`: at the end only, for where hardly
-/// anything was known the way there may lead over planes that do not tell.
+/// Newton from `start`, with Cauchy's weights on the distances by their median.
 Registration Register(const TimedSweep& sweep, const PlaneMap& map, const Motion& before,
-                      bool first, const OdometryOptions& options);
+                      const Motion& start, Untold untold, const OdometryOptions& options);
 
 }  // namespace rgbdt::odometry
