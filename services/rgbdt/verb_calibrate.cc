@@ -171,7 +171,8 @@ void AddCalibrate(CommandLine* program) {
   auto flags = std::make_shared<CalibrateFlags>();
   CommandLine* verb = program->Verb(
       "calibrate",
-      "Finds each camera's pose relative to the LIDAR from a session directory.\n"
+      "Finds each camera's pose relative to the LIDAR from a session directory; of a rig with\n"
+      "several LIDARs the others' poses relative to the first, too.\n"
       "Writes calibration.textproto, report.json and report.html; those of an earlier run are "
       "kept\n"
       "aside, as calibration.previous.textproto and so on. Several sessions of one rig are\n"
@@ -197,10 +198,11 @@ void AddCalibrate(CommandLine* program) {
              "auto: each session has poses of its own, written to OUT/SESSION, since a camera was\n"
              "touched in between; how far each one moved is said with its uncertainty");
   verb->Flag("--range-offset", &flags->range_offset,
-             "auto: take the LIDAR's ranges to be off by any constant, whatever the rig file\n"
+             "auto: take each LIDAR's ranges to be off by any constant, whatever the rig file\n"
              "says of them (lidar.range_offset_sigma_m)");
   verb->Flag("--separate", &flags->separate,
-             "auto: solve cameras separately, not all in one problem");
+             "auto: solve cameras separately, not all in one problem; further LIDARs go with\n"
+             "the first of them");
   verb->Flag("--smooth-field", &flags->options.smooth_field,
              "paper: extend the distance field beyond the images' borders, so that points\n"
              "outside are drawn back; otherwise half of them must lie inside");
