@@ -139,6 +139,10 @@ install(FILES ${rgbdt_made}/rgbdt-config.cmake ${rgbdt_made}/rgbdt-config-versio
 
 # The wire and the files: schemas for every language, and what was made of them for C++.
 file(GLOB lcm_types CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lcmtypes/*.lcm)
+if(TARGET rgbdt_lcmtypes_jar)
+  install(FILES ${PROJECT_BINARY_DIR}/java/rgbdt.jar DESTINATION ${CMAKE_INSTALL_DATADIR}/java
+          COMPONENT dev)
+endif()
 install(FILES ${lcm_types} ${PROJECT_SOURCE_DIR}/lcmtypes/README.md
         DESTINATION ${rgbdt_share}/lcmtypes COMPONENT dev)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lcmtypes/include/ DESTINATION ${rgbdt_headers}

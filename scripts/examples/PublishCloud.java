@@ -1,8 +1,9 @@
 // A spinning LIDAR of your own for rgbdt: publishes a sweep a second on CLOUD until it is stopped.
 // Needs Debian's default-jdk-headless and liblcm-java. From the repository's root:
-//   lcm-gen -j --jpath out/types lcmtypes/cloud_t.lcm
-//   javac -cp /usr/share/java/lcm.jar:out/types -d out/classes scripts/examples/PublishCloud.java
-//   java -cp /usr/share/java/lcm.jar:out/classes PublishCloud
+//   cmake --preset release -DRGBDT_JAVA=ON && cmake --build build --target rgbdt_lcmtypes_jar
+//   jars=/usr/share/java/lcm.jar:build/java/rgbdt.jar
+//   javac -cp $jars -d out/classes scripts/examples/PublishCloud.java
+//   java -cp $jars:out/classes PublishCloud
 import lcm.lcm.LCM;
 import rgbdt.cloud_t;
 

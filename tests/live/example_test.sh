@@ -5,7 +5,8 @@ set -euo pipefail
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-jar=/usr/share/java/lcm.jar
+lcm_jar=/usr/share/java/lcm.jar
+types_jar=$1/../java/rgbdt.jar
 source_dir=$3
 
 case $2 in
@@ -14,14 +15,13 @@ case $2 in
     helper hears LINE_SCAN 20 || fail "its lines are not as they should be"
     ;;
   cloud)
-    if ! command -v javac >/dev/null || [ ! -f "$jar" ]; then
-      echo "no javac or no $jar: apt-get install default-jdk-headless liblcm-java"
+    if ! command -v javac >/dev/null || [ ! -f "$lcm_jar" ] || [ ! -f "$types_jar" ]; then
+      echo "no rgbdt.jar: apt-get install default-jdk-headless liblcm-java; cmake -DRGBDT_JAVA=ON"
       exit 77
     fi
-    lcm-gen -j --jpath "$scratch/types" "$source_dir/lcmtypes/cloud_t.lcm"
-    javac -cp "$jar:$scratch/types" -d "$scratch/classes" \
+    javac -cp "$lcm_jar:$types_jar" -d "$scratch/classes" \
       "$source_dir/scripts/examples/PublishCloud.java"
-    start example java -cp "$jar:$scratch/classes" PublishCloud
+    start example java -cp "$lcm_jar:$types_jar:$scratch/classes" PublishCloud
     helper hears CLOUD 3 || fail "its clouds are not as they should be"
     ;;
   *) fail "unknown example $2" ;;
