@@ -194,7 +194,9 @@ PoseNumbers Draw(const Options& options, int index, int attempt) {
   // Near views weigh more in a calibration and are more easily detected: prefer them a little.
   n.range = o.min_range_m +
             (o.max_range_m - o.min_range_m) * std::pow(spread(0, 0, 1), o.near_preference);
-  const double medium = o.min_range_m + 0.4 * (o.max_range_m - o.min_range_m);
+  // Two LIDARs' fields, tilted against each other, have room for a board farther away.
+  const double share = options.further_lidars.empty() ? 0.4 : 0.7;
+  const double medium = o.min_range_m + share * (o.max_range_m - o.min_range_m);
   // A far place has more room than a near one, but the scene may end before it.
   const double far_inwards = wholly ? std::pow(0.985, std::max(0, attempt - kFarAttempts)) : 1;
   n.range = medium + (n.range - medium) * (n.range < medium ? inwards : far_inwards);
