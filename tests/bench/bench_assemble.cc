@@ -15,11 +15,11 @@
 #include "tests/bench/measure.h"
 #include "tests/bench/stages.h"
 #include "tests/bench/turning_scanner.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::bench {
 namespace {
 
-constexpr Utime kStart = 1'433'160'000'000'000;
 constexpr int kReadingsPerLine = TurningScanner::kLinePeriod / TurningScanner::kReadingPeriod;
 
 // The scanner's messages without end, in the order in which they are sent: a sweep's lines are
@@ -38,7 +38,7 @@ class LineStream {
     for (int k = 1; k < kReadingsPerLine; ++k) take(Reading(k));
     Message& message = lines_[static_cast<std::size_t>(number_ % TurningScanner::kSweepLines)];
     auto& line = std::get<LineScan>(message);
-    line.utime = kStart + number_ * TurningScanner::kLinePeriod;
+    line.utime = kJune2015 + number_ * TurningScanner::kLinePeriod;
     line.seq = number_;
     take(message);
     take(Reading(kReadingsPerLine));
@@ -48,7 +48,7 @@ class LineStream {
  private:
   Message Reading(int k) const { return scanner_.Reading(number_ * kReadingsPerLine + k); }
 
-  TurningScanner scanner_{kStart};
+  TurningScanner scanner_{kJune2015};
   Messages lines_;
   std::int64_t number_ = 0;
 };
@@ -122,7 +122,7 @@ std::function<void()> ByPcl(std::int64_t points) {
       Eigen::Translation3d(scanner.motor_from_scanner.translation) *
       scanner.motor_from_scanner.rotation;
   std::vector<float> cosines, sines;
-  const LineScan like = TurningScanner(kStart).Line(0);
+  const LineScan like = TurningScanner(kJune2015).Line(0);
   for (int i = 0; i < TurningScanner::kBeams; ++i) {
     const double a = like.first_angle_rad + i * like.angle_step_rad;
     cosines.push_back(static_cast<float>(std::cos(a)));

@@ -15,35 +15,34 @@
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
+#include "tests/numbers.h"
 #include "tests/study/paired_sessions.h"
 
 namespace rgbdt::bench {
 namespace {
 
-constexpr Utime kStart = 1'433'160'000'000'000;
-
 // A line as the assembler sends it, misses and all.
 CloudChunk LineChunk() {
-  const LineScan line = TurningScanner(kStart).Line(0);
+  const LineScan line = TurningScanner(kJune2015).Line(0);
   const std::vector<double> angles(line.range.size(), 0.1);
   CloudChunk chunk;
   chunk.cloud = LineToCloud(*MakeBenchRig().rig.lidar.turned_scanner, line, angles);
-  chunk.cloud.sweep_utime = kStart;
+  chunk.cloud.sweep_utime = kJune2015;
   return chunk;
 }
 
 CloudChunk ChunkOf(std::int64_t points) {
   CloudChunk chunk;
-  chunk.cloud = ScannedRoom(kAllRound, points, kStart);
+  chunk.cloud = ScannedRoom(kAllRound, points, kJune2015);
   return chunk;
 }
 
 RgbdtCloud FusedOf(std::int64_t points) {
-  const Cloud cloud = ScannedRoom(kAllRound, points, kStart);
+  const Cloud cloud = ScannedRoom(kAllRound, points, kJune2015);
   RgbdtCloud fused;
-  fused.sweep_utime = kStart;
+  fused.sweep_utime = kJune2015;
   fused.cameras = {"rgb", "thermal"};
-  fused.calibration_utime = {kStart, kStart};
+  fused.calibration_utime = {kJune2015, kJune2015};
   fused.points = cloud.points;
   fused.intensity = cloud.intensity;
   fused.utime = cloud.utime;
@@ -58,7 +57,7 @@ RgbdtCloud FusedOf(std::int64_t points) {
 Status StatusOfANode() {
   Status status;
   status.process = "fuser";
-  status.utime = kStart;
+  status.utime = kJune2015;
   status.ready = true;
   status.text = "fusing";
   status.last_problem = "RGB_IMAGE: the message is cut short";
@@ -70,21 +69,21 @@ Status StatusOfANode() {
 
 SessionCommand Capture() {
   SessionCommand command;
-  command.utime = kStart;
+  command.utime = kJune2015;
   command.verb = SessionVerb::kCapture;
   command.view = "0007";
-  command.sweep_utime = kStart;
+  command.sweep_utime = kJune2015;
   command.picked_cameras = {"thermal"};
   return command;
 }
 
 SessionEvent Progress() {
   SessionEvent event;
-  event.utime = kStart;
+  event.utime = kJune2015;
   event.source = "simulator";
   event.kind = EventKind::kProgress;
   event.text = "sweeping";
-  event.sweep_utime = kStart;
+  event.sweep_utime = kJune2015;
   event.fraction = 0.5;
   return event;
 }
@@ -92,14 +91,14 @@ SessionEvent Progress() {
 CornerSelection Picks() {
   CornerSelection picks;
   picks.camera = "thermal";
-  picks.utime = picks.image_utime = kStart;
+  picks.utime = picks.image_utime = kJune2015;
   picks.corners = {Eigen::Vector2d{10, 10}, {90, 10}, {90, 80}, {10, 80}};
   return picks;
 }
 
 StampedPose PoseOfTheRig() {
   StampedPose pose;
-  pose.utime = kStart;
+  pose.utime = kJune2015;
   pose.source = "odometry";
   return pose;
 }
@@ -112,9 +111,9 @@ Messages FromASession() {
     const auto session = study::MakePairedSession(options, seed);
     if (!session) continue;
     ViewDetection detection = session->by_boards.front();
-    for (ImageDetection& image : detection.images) image.utime = kStart;
+    for (ImageDetection& image : detection.images) image.utime = kJune2015;
     ReportText report;
-    report.utime = kStart;
+    report.utime = kJune2015;
     report.json = ReportToJson(Calibrate(session->rig, session->by_boards));
     return {detection, report};
   }
@@ -123,14 +122,14 @@ Messages FromASession() {
 
 Messages OneOfEach() {
   const BenchRig rig = MakeBenchRig();
-  const TurningScanner scanner(kStart);
+  const TurningScanner scanner(kJune2015);
   Messages messages = {scanner.Line(0), scanner.Reading(0), LineChunk(),
                        ChunkOf(10'000), ChunkOf(100'000),   FusedOf(400),
                        FusedOf(5'000),  FusedOf(50'000),    Picks(),
                        PoseOfTheRig(),  rig.text,           Capture(),
-                       Progress(),      StatusOfANode(),    rig.Calibrations(kStart).front()};
+                       Progress(),      StatusOfANode(),    rig.Calibrations(kJune2015).front()};
   for (const CameraSpec& camera : rig.rig.cameras) {
-    messages.emplace_back(PictureOf(camera, kStart, 0));
+    messages.emplace_back(PictureOf(camera, kJune2015, 0));
   }
   for (Message& message : FromASession()) messages.push_back(std::move(message));
   return messages;
@@ -172,8 +171,8 @@ void RegisterMessage(const Message& made) {
   const auto check = std::make_shared<SignatureCheck>(BusKey());
   add("sign", "rgbdt", [bytes, signer, check, channel = ChannelOf(made)] {
     Bytes message(*bytes);
-    signer->Sign(channel, kStart, &message);
-    if (!check->WhyNot(channel, message.data(), message.size(), kStart).empty()) {
+    signer->Sign(channel, kJune2015, &message);
+    if (!check->WhyNot(channel, message.data(), message.size(), kJune2015).empty()) {
       throw std::runtime_error("a signed message was refused");
     }
   });

@@ -9,11 +9,11 @@
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/stages.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::bench {
 namespace {
 
-constexpr Utime kStart = 1'433'160'000'000'000;
 constexpr std::int64_t kPointsByCameras = 100'000;
 
 // The rig's two cameras in turn, each with a name of its own.
@@ -32,9 +32,9 @@ Scene MakeScene(const Field& field, std::int64_t points, int cameras) {
     scene.specs.push_back(rig.rig.cameras[like]);
     scene.specs.back().name += std::to_string(c);
     scene.camera_from_lidar.push_back(rig.camera_from_lidar[like]);
-    scene.images.push_back(PictureOf(scene.specs.back(), kStart, c));
+    scene.images.push_back(PictureOf(scene.specs.back(), kJune2015, c));
   }
-  scene.cloud = ScannedRoom(field, points, kStart + kMicrosecondsPerSecond / 10);
+  scene.cloud = ScannedRoom(field, points, kJune2015 + kMicrosecondsPerSecond / 10);
   return scene;
 }
 
@@ -85,7 +85,7 @@ std::function<void()> Ours(const Field& field, std::int64_t points, int cameras)
     fuser->SetCalibration(c,
                           {scene.specs[c].name, scene.camera_from_lidar[c], std::nullopt,
                            SolveStatus::kConverged, ""},
-                          kStart);
+                          kJune2015);
   }
   RequireSeen(fuser->FuseChunk(*cloud), field, cameras);
   return [=] {
@@ -120,7 +120,7 @@ void RegisterBoth(const char* row, const Field& field, std::int64_t points, int 
 
 void RegisterDemosaic() {
   const CameraSpec spec = MakeBenchRig().rig.cameras.at(0);
-  const auto image = std::make_shared<const Image>(PictureOf(spec, kStart, 0));
+  const auto image = std::make_shared<const Image>(PictureOf(spec, kJune2015, 0));
   const std::int64_t pixels = std::int64_t{spec.width} * spec.height;
   Register({"demosaic", "rgbdt", pixels, "pixels"}, [=] {
     return [=] {

@@ -24,6 +24,7 @@
 #include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::bench {
 namespace {
@@ -31,7 +32,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::microseconds;
 
-constexpr Utime kStart = 1'433'160'000'000'000;
 constexpr int kWarmUpSeconds = 3;
 constexpr Utime kFramePeriod = kMicrosecondsPerSecond / 10;
 constexpr int kPictures = 4;
@@ -135,7 +135,7 @@ class Run {
       Publish(scanner_.Reading(t / TurningScanner::kReadingPeriod), &bus);
       if (t % kMicrosecondsPerSecond != 0) continue;
       PublishRig(&bus);
-      for (Message& message : rig_.Calibrations(kStart)) {
+      for (Message& message : rig_.Calibrations(kJune2015)) {
         SetSeq(calibrations++, &message);
         Publish(message, &bus);
       }
@@ -148,12 +148,12 @@ class Run {
     const CameraSpec& camera = rig_.rig.cameras[c];
     std::vector<Image> pictures;
     pictures.reserve(kPictures);
-    for (int k = 0; k < kPictures; ++k) pictures.push_back(PictureOf(camera, kStart, k));
+    for (int k = 0; k < kPictures; ++k) pictures.push_back(PictureOf(camera, kJune2015, k));
     std::int64_t frame = 0;
     for (Utime t = static_cast<Utime>(c) * 37'000; t <= EndOfData(); t += kFramePeriod) {
       WaitUntil(t + FromSeconds(camera.readout_s));
       Image& image = pictures[static_cast<std::size_t>(frame % kPictures)];
-      image.utime = kStart + t;
+      image.utime = kJune2015 + t;
       image.seq = image.frame_number = frame++;
       Publish(image, &bus);
     }
@@ -161,7 +161,7 @@ class Run {
 
   void Take(const RgbdtCloud& cloud) {
     if (cloud.whole_sweep || cloud.utime.empty()) return;
-    const Utime number = (cloud.utime.front() - kStart) / TurningScanner::kLinePeriod;
+    const Utime number = (cloud.utime.front() - kJune2015) / TurningScanner::kLinePeriod;
     if (number < 0 || number >= static_cast<Utime>(lines_.size())) return;
     Line& line = lines_[static_cast<std::size_t>(number)];
     line.received_us = SinceStart();
@@ -181,7 +181,7 @@ class Run {
 
   LcmBus bus_{""};
   BenchRig rig_ = MakeBenchRig();
-  const TurningScanner scanner_{kStart};
+  const TurningScanner scanner_{kJune2015};
   std::vector<Line> lines_;
   std::set<std::string> ready_;
   Clock::time_point start_;

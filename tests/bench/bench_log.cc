@@ -10,11 +10,11 @@
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
 #include "tests/log_writer.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::bench {
 namespace {
 
-constexpr Utime kStart = 1'433'160'000'000'000;
 constexpr int kPictures = 4;  // of each camera, one after the other
 
 class Log {
@@ -22,7 +22,7 @@ class Log {
   Log(int frames_per_second, const std::string& path)
       : log_(path), frame_period_(kMicrosecondsPerSecond / frames_per_second) {
     for (const CameraSpec& camera : rig_.rig.cameras) {
-      for (int k = 0; k < kPictures; ++k) pictures_.push_back(PictureOf(camera, kStart, k));
+      for (int k = 0; k < kPictures; ++k) pictures_.push_back(PictureOf(camera, kJune2015, k));
     }
   }
 
@@ -37,7 +37,7 @@ class Log {
     if (t % kMicrosecondsPerSecond == 0) {
       rig_.text.seq = t / kMicrosecondsPerSecond;
       Put(rig_.text, t);
-      for (Message& message : rig_.Calibrations(kStart)) {
+      for (Message& message : rig_.Calibrations(kJune2015)) {
         SetSeq(calibrations_++, &message);
         Put(message, t);
       }
@@ -53,20 +53,20 @@ class Log {
     const std::int64_t frame = t / frame_period_;
     for (std::size_t c = 0; c < rig_.rig.cameras.size(); ++c) {
       Image image = pictures_[c * kPictures + static_cast<std::size_t>(frame % kPictures)];
-      image.utime = kStart + t;
+      image.utime = kJune2015 + t;
       image.seq = image.frame_number = frame;
       Put(image, t);
     }
   }
 
   void Put(const Message& message, Utime t) {
-    log_.Write(ChannelOf(message), Encode(message), kStart + t);
+    log_.Write(ChannelOf(message), Encode(message), kJune2015 + t);
   }
 
   test::LogWriter log_;
   Utime frame_period_;
   BenchRig rig_ = MakeBenchRig();
-  TurningScanner scanner_{kStart};
+  TurningScanner scanner_{kJune2015};
   std::vector<Image> pictures_;
   std::int64_t calibrations_ = 0;
 };

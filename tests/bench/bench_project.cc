@@ -6,11 +6,10 @@
 #include "tests/bench/measure.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/stages.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::bench {
 namespace {
-
-constexpr Utime kStart = 1'433'160'000'000'000;
 
 struct Input {
   CameraSpec spec;
@@ -21,7 +20,7 @@ struct Input {
 std::shared_ptr<const Input> MakeInput(std::int64_t points) {
   const BenchRig rig = MakeBenchRig();
   return std::make_shared<Input>(Input{rig.rig.cameras.at(0), rig.camera_from_lidar.at(0),
-                                       ScannedRoom(kInView, points, kStart).points});
+                                       ScannedRoom(kInView, points, kJune2015).points});
 }
 
 std::function<void()> Ours(std::int64_t points) {

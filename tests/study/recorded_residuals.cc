@@ -11,11 +11,11 @@
 #include "calib/solve/guess_cameras.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "calib/solve/internal/view_equations.h"
+#include "tests/numbers.h"
 
 namespace rgbdt::study {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kBoardMarginM = 0.05;  // of the board's border, whose points are no plane's
 constexpr double kMostOffPlaneM = 0.1;
 

@@ -29,13 +29,13 @@
 #include "calib/model/range_errors.h"
 #include "calib/present/report/verdict.h"
 #include "calib/solve/compare.h"
+#include "tests/numbers.h"
 #include "tests/study/recorded_residuals.h"
 #include "tests/study/study_main.h"
 
 namespace rgbdt::study {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kInside95 = 12.592;  // chi-square of six degrees of freedom: 95% lie below
 
 using Detections = std::vector<ViewDetection>;

@@ -7,7 +7,7 @@ namespace {
 
 using Inputs = std::map<std::string, std::string>;
 
-const std::vector<std::string>& Messages() {
+const std::vector<std::string>& ViewerMessages() {
   static const std::vector<std::string> messages = {
       R"({"type":"hello","token":"secret"})",
       R"({"type":"watch","cloud":true,"cameras":["rgb","ir"],"overlay_cloud":false,"points":1000})",
@@ -32,9 +32,9 @@ std::string Frame(int opcode, const std::string& text, bool last = true) {
   return bytes + std::string(4, '\0') + text;
 }
 
-void AddMessages(Inputs* seeds) {
-  for (std::size_t i = 0; i < Messages().size(); ++i) {
-    (*seeds)["message" + std::to_string(i)] = Messages()[i];
+void AddViewerMessages(Inputs* seeds) {
+  for (std::size_t i = 0; i < ViewerMessages().size(); ++i) {
+    (*seeds)["message" + std::to_string(i)] = ViewerMessages()[i];
   }
   (*seeds)["array"] = "[1]";
   (*seeds)["deep"] = std::string(200, '[');
@@ -76,14 +76,14 @@ void AddRequests(Inputs* seeds) {
 }
 
 void AddSockets(Inputs* seeds) {
-  const std::string hello = '\1' + Frame(1, Messages()[0]);
+  const std::string hello = '\1' + Frame(1, ViewerMessages()[0]);
   (*seeds)["hello"] = hello;
-  for (std::size_t i = 0; i < Messages().size(); ++i) {
-    (*seeds)["message" + std::to_string(i)] = hello + Frame(1, Messages()[i]);
+  for (std::size_t i = 0; i < ViewerMessages().size(); ++i) {
+    (*seeds)["message" + std::to_string(i)] = hello + Frame(1, ViewerMessages()[i]);
   }
-  (*seeds)["first"] = '\1' + Frame(1, Messages()[2]);
+  (*seeds)["first"] = '\1' + Frame(1, ViewerMessages()[2]);
   (*seeds)["stranger"] =
-      '\1' + Frame(1, R"({"type":"hello","token":"guess"})") + Frame(1, Messages()[5]);
+      '\1' + Frame(1, R"({"type":"hello","token":"guess"})") + Frame(1, ViewerMessages()[5]);
   (*seeds)["pieces"] = hello + Frame(1, R"({"type":"ack",)", false) + Frame(0, R"("id":1})");
   (*seeds)["binary"] = hello + Frame(2, "abc");
   (*seeds)["ping"] = hello + Frame(9, "are you there") + Frame(10, "");
@@ -99,7 +99,7 @@ void AddSockets(Inputs* seeds) {
 }  // namespace
 
 void AddViewerSeeds(Seeds* seeds) {
-  AddMessages(&(*seeds)["viewer_message"]);
+  AddViewerMessages(&(*seeds)["viewer_message"]);
   AddRequests(&(*seeds)["viewer_http"]);
   AddSockets(&(*seeds)["viewer_socket"]);
 }
