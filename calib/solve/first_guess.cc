@@ -215,8 +215,10 @@ std::string WhyNone(const Views& views, const Vote& vote) {
   for (const CameraView& view : unmirrored) turned.push_back(&view);
   const int mirrored = VoteAmong(turned).best.views;
   if (mirrored > vote.best.views && 2 * mirrored > static_cast<int>(views.size())) {
-    return "the images are mirrored: " + std::to_string(mirrored) + " of " + of +
-           " agree once left and right are swapped; turn that off in the camera";
+    return "images or clouds are mirrored: " + std::to_string(mirrored) + " of " + of +
+           " agree once left and right are swapped; turn that off in the camera, or, where an "
+           "image "
+           "is as a person sees it, check that the cloud's y points to the left";
   }
   return "the views do not agree where the camera is (at most " + std::to_string(vote.best.views) +
          " of " + of + "); do images and clouds belong together?";
