@@ -36,8 +36,11 @@ constexpr double kMostAcceleration = 40;  // [m/s^2] and [rad/s^2]: faster is a 
 // A sweep that lies so much worse on the map than usual may have found the wrong place: it is tried
 // from turns that change by so much about each axis, too.
 constexpr double kWorse = 1.3;
-constexpr double kOtherTurn = 0.2;  // [rad/s]
-constexpr double kUsualOver = 10;   // sweeps
+constexpr double kMuchWorse = 2;      // and so much worse is another place
+constexpr double kLeastBad = 0.02;    // [m]
+constexpr double kLeastShare = 0.75;  // of the share that finds a plane as a rule
+constexpr double kOtherTurn = 0.2;    // [rad/s]
+constexpr double kUsualOver = 10;     // sweeps
 
 // Before anything is seen: 1 sigma.
 constexpr double kFirstSpeed = 15;  // [m/s]
@@ -52,6 +55,10 @@ Motion Unknown(const Rigid3& world_from_lidar) {
       Eigen::Vector3d::Constant(kFirstSpeed);
   motion.covariance.diagonal() = sigma.cwiseAbs2();
   return motion;
+}
+
+double ShareOf(std::size_t matched, std::size_t selected) {
+  return static_cast<double>(matched) / static_cast<double>(std::max<std::size_t>(1, selected));
 }
 
 std::string Text(const char* format, double a, double b) {
@@ -91,6 +98,7 @@ struct Odometry::Impl {
   Motion motion;
   int lost = 0;
   double usual_residual_m = 0;  // of the sweeps before; 0: not known
+  double usual_share = 0;       // of their points, on planes seen before
   Eigen::Vector3d forgotten_at{0, 0, 0};
 
   OdometryResult Add(const Cloud& cloud);
@@ -100,7 +108,8 @@ struct Odometry::Impl {
   void Follow(TimedSweep sweep, double seconds, OdometryResult* result);
   Registration Second(const TimedSweep& sweep);
   Registration Next(const TimedSweep& sweep, const Motion& before, double seconds) const;
-  std::string WhyNot(const Registration& found, const Motion& before, double seconds) const;
+  std::string WhyNot(const TimedSweep& sweep, const Registration& found, const Motion& before,
+                     double seconds) const;
   void Grow(const TimedSweep& sweep);
   void Report(const TimedSweep& sweep, OdometryResult* result) const;
 };
@@ -112,7 +121,7 @@ void Odometry::Impl::Begin(TimedSweep sweep) {
   motion = Unknown(motion.world_from_lidar);
   forgotten_at = motion.world_from_lidar.translation;
   lost = 0;
-  usual_residual_m = 0;
+  usual_residual_m = usual_share = 0;
   begun = anew = true;
   first = std::move(sweep);
 }
@@ -149,7 +158,7 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
                                   double seconds) const {
   Registration best =
       odometry::Register(sweep, map, before, before, Untold::kFromTheBeginning, options);
-  bool fits = WhyNot(best, before, seconds).empty();
+  bool fits = WhyNot(sweep, best, before, seconds).empty();
   if (fits && best.residual_m <= kWorse * usual_residual_m) return best;
   if (usual_residual_m == 0) return best;
   for (int start = 0; start < 7; ++start) {
@@ -159,7 +168,9 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
     other.velocity += turn;
     other.world_from_lidar = before.world_from_lidar * Exp(Vector6d(seconds * turn));
     Registration found = odometry::Register(sweep, map, before, other, Untold::kAtTheEnd, options);
-    if (!WhyNot(found, before, seconds).empty()) continue;
+    if (!WhyNot(sweep, found, before, seconds).empty()) continue;
+    // Of seven places one may fit somehow that is none.
+    if (!fits && found.residual_m > kWorse * usual_residual_m) continue;
     if (fits && found.near <= best.near) continue;
     fits = true;
     best = std::move(found);
@@ -167,8 +178,8 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
   return best;
 }
 
-std::string Odometry::Impl::WhyNot(const Registration& found, const Motion& before,
-                                   double seconds) const {
+std::string Odometry::Impl::WhyNot(const TimedSweep& sweep, const Registration& found,
+                                   const Motion& before, double seconds) const {
   if (found.matched < kFewestMatched) {
     return Text("%.0f points of the sweep lie on planes seen before; expected %.0f or more",
                 static_cast<double>(found.matched), kFewestMatched);
@@ -177,6 +188,17 @@ std::string Odometry::Impl::WhyNot(const Registration& found, const Motion& befo
     return Text(
         "%.0f%% of the sweep's points that lie near a plane fit it; expected %.0f%% or more",
         100 * found.fit, 100 * kLeastFit);
+  }
+  const double worse = usual_residual_m > 0 ? found.residual_m / usual_residual_m : 0;
+  if (worse > kMuchWorse && found.residual_m > kLeastBad) {
+    return Text("the sweep's points lie %.0f mm off the map (median) where %.0f mm is usual",
+                1000 * found.residual_m, 1000 * usual_residual_m);
+  }
+  const double share = ShareOf(found.matched, sweep.selected.size());
+  if (worse > kWorse && share < kLeastShare * usual_share) {
+    return Text(
+        "%.0f%% of the sweep's points lie on planes seen before, and badly; %.0f%% is usual",
+        100 * share, 100 * usual_share);
   }
   const Vector6d change = (found.motion.velocity - before.velocity) / seconds;
   const double most = change.cwiseAbs().maxCoeff();
@@ -263,12 +285,13 @@ void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* re
   result->matched = found.matched;
   result->residual_m = found.residual_m;
   result->iterations = found.iterations;
-  result->reason = WhyNot(found, first ? found.motion : before, seconds);
+  result->reason = WhyNot(sweep, found, first ? found.motion : before, seconds);
   result->converged = result->reason.empty();
   if (result->converged) {
     lost = 0;
-    usual_residual_m += usual_residual_m > 0 ? (found.residual_m - usual_residual_m) / kUsualOver
-                                             : found.residual_m;
+    const double weight = usual_residual_m > 0 ? 1 / kUsualOver : 1;
+    usual_residual_m += weight * (found.residual_m - usual_residual_m);
+    usual_share += weight * (ShareOf(found.matched, sweep.selected.size()) - usual_share);
     first.reset();
     motion = found.motion;
     middle = sweep.middle;

@@ -1,6 +1,7 @@
 #include "calib/solve/internal/lidar_reports.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -28,6 +29,66 @@ const Contradiction* WorstLeft(const std::vector<Contradiction>& contradictions,
     if (worst == nullptr || c.chi2 > worst->chi2) worst = &c;
   }
   return worst;
+}
+
+// By how much larger a further LIDAR has the distances between the boards than the reference: a
+// similarity with the rotation that was found (Umeyama 1991).
+Estimate ScaleOf(const JointResult& result, std::size_t lidar) {
+  const BoardProblem& problem = result.joint.problem;
+  const Eigen::Quaterniond turn = result.solution.state.lidars[lidar].reference_from_lidar.rotation;
+  std::vector<Eigen::Vector3d> here, there;
+  Eigen::Vector3d mean_here = Eigen::Vector3d::Zero(), mean_there = Eigen::Vector3d::Zero();
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    if (!HasCloud(problem, lidar, v)) continue;
+    const auto& pose = problem.lidars[lidar].views[v].cloud.pose;
+    if (!pose || !problem.views[v].cloud.pose) continue;
+    here.push_back(problem.views[v].cloud.pose->sensor_from_target.translation);
+    there.emplace_back(turn * pose->sensor_from_target.translation);
+    mean_here += here.back();
+    mean_there += there.back();
+  }
+  const auto count = static_cast<double>(here.size());
+  if (count < 4) return {1, std::numeric_limits<double>::infinity()};
+  double product = 0, square = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    here[i] -= mean_here / count;
+    there[i] -= mean_there / count;
+    product += here[i].dot(there[i]);
+    square += here[i].squaredNorm();
+  }
+  const double scale = product / square;
+  double off = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) off += (there[i] - scale * here[i]).squaredNorm();
+  return {scale, std::sqrt(off / (3 * count - 7) / square)};
+}
+
+// What its clouds do that those of a LIDAR on the rig, before this board, do not; empty: nothing.
+std::string WhyNotOfThisRig(const JointResult& result, std::size_t lidar, std::size_t used) {
+  constexpr double kLeastScale = 0.01, kSigmas = 4;
+  constexpr double kMostSideScatter = 4e-3;  // [rad]; recorded boards have 2e-3
+  const Estimate scale = ScaleOf(result, lidar);
+  if (std::abs(scale.value - 1) > kLeastScale + kSigmas * scale.sigma) {
+    return Format(
+        "this LIDAR has the boards %.1f +- %.1f %% farther from each other than the reference; are "
+        "the clouds of both in metres, and do they belong to the same views?",
+        100 * (scale.value - 1), 100 * scale.sigma);
+  }
+  std::size_t contradict = 0;
+  for (const RejectedView& view : result.joint.lidars[lidar].report.rejected) {
+    contradict += view.why.find("contradicts") != std::string::npos ? 1 : 0;
+  }
+  if (4 * contradict > used + contradict) {
+    return Format("%d of %d views contradict the others; do clouds and views belong together?",
+                  static_cast<int>(contradict), static_cast<int>(used + contradict));
+  }
+  const double scatter = result.joint.problem.lidars[lidar].priors.side_sigma_rad;
+  if (scatter > kMostSideScatter) {
+    return Format(
+        "the board's sides in its clouds lie %.1f mrad from where they should, each other way; is "
+        "it the rig file's board, and did it stand still?",
+        1000 * scatter);
+  }
+  return "";
 }
 
 // With its covariance, as far as the views tell it.
@@ -72,29 +133,30 @@ LidarReport ReportOf(const JointResult& result, const std::vector<Contradiction>
   report.nuisance = NuisancesOfLidar(result, index);
   for (const RefutedOffset& refuted : result.refuted_offsets) {
     if (refuted.lidar == index) {
-      report.warnings.push_back(
-          RangesAreOff(RangeOffsetOfLidar(result, index), refuted.known_m));
+      report.warnings.push_back(RangesAreOff(RangeOffsetOfLidar(result, index), refuted.known_m));
     }
   }
   if (count < kFewViews) {
-    report.warnings.push_back(
-        Format("only %d views; take %d or more in which this LIDAR sees the board", count,
-               kFewViews));
+    report.warnings.push_back(Format(
+        "only %d views; take %d or more in which this LIDAR sees the board", count, kFewViews));
   }
   calibration.status = SolveStatus::kConverged;
   report = WithPose(result, index, boards, std::move(report));
   if (calibration.status != SolveStatus::kConverged) return report;
   const double factor = result.lidar_factors[index];
-  if (count < min_views) {
+  if (std::string why = WhyNotOfThisRig(result, index, boards.size()); !why.empty()) {
+    calibration.status = SolveStatus::kContradicted;
+    calibration.detail = std::move(why);
+  } else if (count < min_views) {
     calibration.status = SolveStatus::kDegenerate;
     calibration.detail = TooFewClouds(count, min_views);
   } else if (const Contradiction* left = WorstLeft(contradictions, factor, index)) {
     calibration.status = SolveStatus::kContradicted;
-    calibration.detail =
-        Format("the clouds contradict each other, and too few are left to tell which is wrong: "
-               "view %s by itself would put this LIDAR %.2f deg and %.0f mm elsewhere. Add views, "
-               "or take this one out",
-               problem.views[left->view].name.c_str(), left->rotation_deg, left->centre_mm);
+    calibration.detail = Format(
+        "the clouds contradict each other, and too few are left to tell which is wrong: "
+        "view %s by itself would put this LIDAR %.2f deg and %.0f mm elsewhere. Add views, "
+        "or take this one out",
+        problem.views[left->view].name.c_str(), left->rotation_deg, left->centre_mm);
   }
   return report;
 }
