@@ -97,7 +97,8 @@ std::string FurtherLidarLines(const Report& report) {
     if (calibration.solved()) {
       lines += "; in the reference's frame at " + Translation(calibration);
     }
-    if (const auto worst = WorstAxisSigma(calibration)) {
+    const auto worst = WorstAxisSigma(calibration);
+    if (calibration.solved() && worst) {
       lines += Format("; 1 sigma, worst axis: %.4f deg %.2f mm", worst->rotation_deg,
                       worst->translation_mm);
     }
