@@ -23,18 +23,19 @@ processes=(detector solver fuser viewer)
 [ -z "${RGBDT_RECEIVE_BUFFER-}" ] ||
   export LCM_DEFAULT_URL="${LCM_DEFAULT_URL%recv_buf_size=*}recv_buf_size=$RGBDT_RECEIVE_BUFFER"
 
-now() { cut -d ' ' -f 1 /proc/uptime; }
+page_kb=$(($(getconf PAGESIZE) / 1024))
 
-# Into memory.csv once a second, for so many seconds.
+# Into memory.csv once a second, for so many seconds; by the shell alone, as others want the machine.
 watch() {  # SECONDS
-  local name end resident descriptors
+  local name end now pages descriptors
   end=$((SECONDS + $1))
   while [ "$SECONDS" -lt "$end" ]; do
     for name in "${processes[@]}"; do
-      kill -0 "${pids[$name]}" 2>/dev/null || fail "$name is gone"
-      resident=$(awk '/^VmRSS:/ { print $2 }' "/proc/${pids[$name]}/status")
+      read -r now _ </proc/uptime
+      read -r _ pages _ <"/proc/${pids[$name]}/statm" || fail "$name is gone"
+      [ "$pages" -gt 0 ] || fail "$name has ended"
       descriptors=("/proc/${pids[$name]}/fd/"*)
-      echo "$(now),$name,$resident,${#descriptors[@]}" >>"$out/memory.csv"
+      echo "$now,$name,$((pages * page_kb)),${#descriptors[@]}" >>"$out/memory.csv"
     done
     kill -0 "${pids[rig]}" 2>/dev/null || fail "soak_rig is gone"
     [ ! -t 1 ] || printf '\r%4d s to go ' $((end - SECONDS))
