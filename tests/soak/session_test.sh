@@ -49,7 +49,7 @@ end_company() {
 }
 
 last_count() {  # PROCESS COUNTER: in its last words
-  sed -n "s/.*: stopped;.*, $2 \([0-9]*\).*/\1/p" "$scratch/$1.log" | tail -n 1
+  sed -n "s/.*: stopped;.*, $2 \([0-9][0-9]*\).*/\1/p" "$scratch/$1.log" | tail -n 1
 }
 
 now_ms() { date +%s%3N; }

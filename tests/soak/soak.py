@@ -21,7 +21,9 @@ HEARS = {
     "solver": ("RIG", "SESSION_COMMAND"),
 }
 POINTS_HZ = 128_000 * 10  # soak_rig.cc, at a load of 1
-KEPT_POINTS = 6_000_000  # of sweeps, in detector and viewer: until then they grow (services/README.md)
+# Detector and viewer grow until they have what they keep (services/README.md, view_collector.h):
+KEPT_POINTS = 6_000_000  # of sweeps
+KEPT_SECONDS = 60  # of images
 LATE_MS = 100  # a sweep's time at a load of 1
 BOUNDS = {
     "soak_rss_growth_mb": ("<=", 5),
@@ -122,19 +124,20 @@ def why_not_held(run):
 
 
 def growth(run, begin, end, column):
-    """Of the process that grew most, from the first to the last tenth."""
-    tenth = (end - begin) / 10
+    """Of the process that grew most, from the first to the last tenth of its samples."""
     most = -float("inf")
     for process in {m[1] for m in run.memory}:
-        mean = lambda a, b: (lambda v: sum(v) / len(v))(  # noqa: E731
-            [m[column] for m in run.memory if m[1] == process and a <= m[0] <= b])
-        most = max(most, mean(end - tenth, end) - mean(begin, begin + tenth))
+        values = [m[column] for m in run.memory if m[1] == process and begin <= m[0] <= end]
+        if len(values) < 10:
+            sys.exit(f"soak: the machine has no time: {len(values)} looks at the memory of {process}")
+        tenth = len(values) // 10
+        most = max(most, (sum(values[-tenth:]) - sum(values[:tenth])) / tenth)
     return most
 
 
 def figures_of(run, default):
-    warm = run.begin + 5 + KEPT_POINTS / (POINTS_HZ * run.load)
-    if run.steady_end - warm < 20:
+    warm = run.begin + 5 + max(KEPT_SECONDS, KEPT_POINTS / (POINTS_HZ * run.load))
+    if run.steady_end - warm < 15:
         sys.exit(f"soak: too short: {run.steady_end - run.begin:.0f} s, of which "
                  f"{warm - run.begin:.0f} s fill buffers")
     fifth = (run.steady_end - warm) / 5
