@@ -3,7 +3,7 @@
 # scripts/in-namespace.
 # Usage: session_test.sh BIN_DIR garbage|busy
 #   garbage  another program publishes garbage on all our channels, a thousand messages a second
-#   busy     four programs a processor that only compute share the machine
+#   busy     two programs a processor that only compute share the machine
 # RGBDT_FIGURES=FILE: figures as lines "NAME VALUE UNIT".
 set -euo pipefail
 # shellcheck source=tests/live/common.sh
@@ -32,7 +32,7 @@ begin_company() {
   if [ "$company" = garbage ]; then
     start flood "$bin/live_helper" flood "$garbage_hz"
   else
-    for i in $(seq $((4 * $(nproc)))); do start "busy-$i" sh -c 'while :; do :; done'; done
+    for i in $(seq $((2 * $(nproc)))); do start "busy-$i" sh -c 'while :; do :; done'; done
   fi
 }
 
@@ -44,7 +44,7 @@ end_company() {
     figure garbage_hz "$hz" 1/s
     [ "$hz" -ge $((garbage_hz * 9 / 10)) ] || fail "only $hz messages a second were made"
   else
-    for i in $(seq $((4 * $(nproc)))); do kill_process "busy-$i"; done
+    for i in $(seq $((2 * $(nproc)))); do kill_process "busy-$i"; done
   fi
 }
 
