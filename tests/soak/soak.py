@@ -95,7 +95,7 @@ class Run:
     def latencies(self, begin, end):
         return [ms for t, _, ms in self.latency if begin <= t < end and ms is not None]
 
-    def recovery(self, what, bound_ms):
+    def recovery(self, what):
         """From the overload's end until each CLOUD of a whole second came back in time [s]."""
         _, released = self.overloads[what]
         after = [(t, ms) for t, _, ms in self.latency if t >= released]
@@ -103,7 +103,7 @@ class Run:
         for t, ms in after:
             if t >= since + 1:
                 return since - released
-            if ms is None or ms > bound_ms:
+            if ms is None or ms > LATE_MS:
                 since = t + (0 if ms is None else 1e-3 * ms)
         return since - released if after and after[-1][0] >= since + 1 else 1e9
 
@@ -155,7 +155,7 @@ def figures_of(run, default):
     yield "soak_images_missed", run.missed_by_all("_IMAGE", 0, run.steady_end), "1"
     yield "soak_clouds_missed", run.missed_by_all("CLOUD", 0, run.steady_end), "1"
     if "handler" in run.overloads:
-        yield from figures_of_overloads(run, max(LATE_MS, 2 * first))
+        yield from figures_of_overloads(run)
     yield "dropped_counted_share", run.counted_share(), "1"
     if default:
         for kind, name in (("_IMAGE", "images"), ("CLOUD", "clouds"), ("SESSION_COMMAND", "commands")):
@@ -164,7 +164,7 @@ def figures_of(run, default):
             yield f"default_{name}_missed_share", default.missed_by_all(kind) / sent, "1"
 
 
-def figures_of_overloads(run, bound_ms):
+def figures_of_overloads(run):
     held, released = run.overloads["handler"]
     stopped, _ = run.overloads["process"]
     # What a stopped process's socket could not hold is lost, whatever it is: the session asks again.
@@ -176,7 +176,7 @@ def figures_of_overloads(run, bound_ms):
     yield "stopped_s", run.overloads["process"][1] - stopped, "s"
     yield "stopped_messages_dropped", sum(run.missed_by_all(k, stopped) for k in kinds), "1"
     yield "stopped_commands_dropped", run.missed_by_all("SESSION_COMMAND", stopped), "1"
-    both = {what: run.recovery(what, bound_ms) for what in ("handler", "process")}
+    both = {what: run.recovery(what) for what in ("handler", "process")}
     yield "recovery_held_s", both["handler"], "s"
     yield "recovery_stopped_s", both["process"], "s"
     yield "recovery_s", max(both.values()), "s"
