@@ -5,12 +5,14 @@
 #include <sys/socket.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <map>
 #include <optional>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "calib/files/schema/calibration_file.h"
@@ -41,6 +43,8 @@ int Usage() {
       "it;\n"
       "                         prints what it says; exit code 3: it failed\n"
       "  garbage PROCESS...     publishes garbage on every channel until each names some\n"
+      "  flood HZ               garbage on every channel, so many a second, until SIGTERM; prints\n"
+      "                         how many a second it became\n"
       "  forge PROCESS...       publishes unsigned commands, rigs, calibrations, ... until each\n"
       "                         says in its status that it ignored some\n"
       "  keep_signed LOG OUT    a log without what is not signed there; prints how many went\n"
@@ -168,6 +172,26 @@ int Garbage(const Arguments& processes) {
                 static_cast<long long>(listener.Counter(process, "dropped")),
                 listener.statuses[process].last_problem.c_str());
   }
+  return 0;
+}
+
+int Flood(const Arguments& arguments) {
+  static volatile std::sig_atomic_t stopped = 0;
+  std::signal(SIGTERM, [](int) { stopped = 1; });
+  const std::chrono::duration<double> period(1 / std::stod(arguments.at(0)));
+  const auto garbage = MakeGarbage();
+  LcmBus bus("");
+  std::int64_t sent = 0;
+  const Clock::time_point start = Clock::now();
+  while (stopped == 0) {
+    const auto& [channel, bytes] = garbage[static_cast<std::size_t>(sent) % garbage.size()];
+    bus.Publish(channel, bytes);
+    ++sent;
+    std::this_thread::sleep_until(
+        start + std::chrono::duration_cast<Clock::duration>(static_cast<double>(sent) * period));
+  }
+  const std::chrono::duration<double> took = Clock::now() - start;
+  std::printf("%.0f\n", static_cast<double>(sent) / took.count());
   return 0;
 }
 
@@ -386,6 +410,7 @@ int Run(const std::string& verb, const Arguments& arguments) {
   if (verb == "ready") return Ready(arguments);
   if (verb == "ask") return Ask(arguments);
   if (verb == "garbage") return Garbage(arguments);
+  if (verb == "flood") return Flood(arguments);
   if (verb == "forge") return Forge(arguments);
   if (verb == "keep_signed") return KeepSigned(arguments);
   if (verb == "calibration") return PrintLive(arguments);

@@ -1,5 +1,6 @@
 """Table, CSV, picture and summary.json of `scripts/study faults`: sessions over several machines whose
-links lose datagrams, or that are cut off, and sessions whose processes are killed."""
+links lose datagrams, or that are cut off, sessions whose processes are killed, or that have a busy
+machine or garbage beside them, and a soak."""
 
 import csv
 import json
@@ -21,7 +22,13 @@ TARGETS = {
     "losses_counted_share": (">=", 0.999),
     "hosts_mbit_s": ("<=", 300),
     "garbage_session_ok": (">=", 1),
+    "busy_session_ok": (">=", 1),
+    "soak_rss_growth_mb": ("<=", 5),
+    "recovery_s": ("<=", 1),
+    "commands_lost": ("<=", 0),
 }
+SOAK = ("soak_load", "soak_s", "soak_rss_growth_mb", "soak_descriptor_growth", "soak_p99_first_ms",
+        "soak_p99_last_ms", "recovery_s", "commands_lost", "dropped_counted_share")
 
 
 def read(parts):
@@ -47,6 +54,11 @@ def figures_of(rows):
         yield figure("hosts_mbit_s", max(of("hosts_mbit_s")), "Mbit/s")
     if of("ended_well", "garbage"):
         yield figure("garbage_session_ok", min(of("ended_well", "garbage")))
+    if of("ended_well", "busy"):
+        yield figure("busy_session_ok", min(of("ended_well", "busy")))
+    for r in rows:
+        if r["fault"] == "soak" and r["name"] in SOAK:
+            yield figure(r["name"], r["value"], r["unit"])
     # A run that a kill ended told neither of that kill's survival nor of its views.
     if of("ended_well", "kills"):
         planned = sum(of("kills_planned"))
