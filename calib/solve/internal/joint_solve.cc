@@ -9,6 +9,7 @@
 #include "calib/model/text.h"
 #include "calib/solve/internal/evidence.h"
 #include "calib/solve/internal/further_lidars.h"
+#include "calib/solve/internal/held_offsets.h"
 #include "calib/solve/internal/range_terms.h"
 #include "calib/solve/internal/scatter_sigmas.h"
 #include "calib/solve/internal/swap_reference.h"
@@ -276,43 +277,6 @@ std::vector<LensOff> LensesOff(const JointResult& result) {
   return off;
 }
 
-// Range offsets that are held closer than is usual. The reference's by a plain board is no unknown.
-std::vector<RefutedOffset> HeldOffsets(const BoardProblem& problem) {
-  std::vector<RefutedOffset> held;
-  const double reference = problem.priors.range_offset_sigma_m;
-  if (reference < kRangeOffsetSigmaM && problem.target.HasPattern()) {
-    held.push_back({std::nullopt, reference});
-  }
-  for (std::size_t l = 0; l < problem.lidars.size(); ++l) {
-    const double known = problem.lidars[l].priors.range_offset_sigma_m;
-    if (known < kRangeOffsetSigmaM) held.push_back({l, known});
-  }
-  return held;
-}
-
-// Those of them that the views put beyond so many sigmas.
-std::vector<RefutedOffset> RefutedOf(const std::vector<RefutedOffset>& held,
-                                     const JointResult& result, double sigmas) {
-  std::vector<RefutedOffset> refuted;
-  for (const RefutedOffset& offset : held) {
-    const Estimate free = FreeRangeOffset(result.joint.problem, result.solution, offset.lidar);
-    const double factor =
-        offset.lidar ? result.lidar_factors[*offset.lidar] : result.variance_factor;
-    const double sigma = std::sqrt(factor) * free.sigma;
-    // NaN, where the views say nothing, refutes nothing.
-    if (std::abs(free.value) > sigmas * std::hypot(sigma, offset.known_m)) {
-      refuted.push_back(offset);
-    }
-  }
-  return refuted;
-}
-
-void FreeOffset(BoardProblem* of_lidar) {
-  of_lidar->priors.range_offset_sigma_m = kRangeOffsetSigmaM;
-  of_lidar->ranges_exact = false;
-  OpenBeams(of_lidar);
-}
-
 // With the range offsets free that the views refute what is known of.
 JointResult SolveWithOffset(JointProblem joint) {
   const std::vector<RefutedOffset> held = HeldOffsets(joint.problem);
@@ -322,7 +286,7 @@ JointResult SolveWithOffset(JointProblem joint) {
   const std::vector<RefutedOffset> refuted = RefutedOf(held, found, 4);
   if (refuted.empty()) return found;
   for (const RefutedOffset& offset : refuted) {
-    FreeOffset(offset.lidar ? &open.problem.lidars[*offset.lidar] : &open.problem);
+    FreeOffset(offset, &open.problem);
   }
   JointResult free = JointSolver(std::move(open)).Solve();
   // Views that contradict the rest then may have made it up.
