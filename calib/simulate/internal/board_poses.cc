@@ -240,7 +240,7 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
     const Eigen::Vector3d sensor =
         options.turned() ? scanner.Centre(azimuth) : Eigen::Vector3d::Zero();
     if (Hidden(empty, sensor, point)) return "hidden from the LIDAR";
-    const std::string why_not = WhyNotSeenByFurther(options, empty, further, point);
+    std::string why_not = WhyNotSeenByFurther(options, empty, further, point);
     if (!why_not.empty()) return why_not;
     for (const CameraRenderer& camera : cameras) {
       if (Hidden(empty, camera.CentreInLidar(), point)) {
