@@ -246,7 +246,8 @@ void AddLidar(int rings, Options* options) {
   lidar.spinning = SpinningLidar(rings);
   const double side = before % 2 == 0 ? 1 : -1;
   if (rings == 64) options->world.ground_z_m = -2;
-  lidar.position_m = {-0.1, side * kAside * static_cast<double>(1 + before / 2), 0.1};
+  const std::size_t pair = 1 + before / 2;
+  lidar.position_m = {-0.1, side * kAside * static_cast<double>(pair), 0.1};
 }
 
 }  // namespace rgbdt::simulate
