@@ -19,8 +19,7 @@ double DistanceBetween(const Rigid3& reference_from_lidar, const CloudDetection&
   for (const CloudEdges& a : reference.candidates) {
     for (const CloudEdges& b : further.candidates) {
       if (!a.pose || !b.pose) continue;
-      const Eigen::Vector3d there =
-          reference_from_lidar * b.pose->sensor_from_target.translation;
+      const Eigen::Vector3d there = reference_from_lidar * b.pose->sensor_from_target.translation;
       least = std::min(least, (there - a.pose->sensor_from_target.translation).norm());
     }
   }
@@ -72,15 +71,16 @@ LidarReport JudgedLidar(const LidarCalibration& lidar,
     }
   }
   if (distances.empty()) {
-    report.warnings.emplace_back("no view by which to judge this pose: none has the board in its "
-                                 "cloud and in the reference's");
+    report.warnings.emplace_back(
+        "no view by which to judge this pose: none has the board in its "
+        "cloud and in the reference's");
     return report;
   }
   const double median = Median(distances);
-  const std::string found =
-      Format("on these views the board's middle lies %.0f mm from where the reference has it "
-             "(median of %d)",
-             1000 * median, static_cast<int>(distances.size()));
+  const std::string found = Format(
+      "on these views the board's middle lies %.0f mm from where the reference has it "
+      "(median of %d)",
+      1000 * median, static_cast<int>(distances.size()));
   if (median > kMost && lidar.converged()) {
     report.calibration.status = SolveStatus::kContradicted;
     report.calibration.detail = found + "; did the LIDAR move? Calibrate anew";
