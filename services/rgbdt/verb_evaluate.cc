@@ -54,7 +54,10 @@ void KeepFromSolve(const LidarReport& before, LidarReport* lidar) {
   lidar->first_guess = before.first_guess;
   lidar->rejected = before.rejected;
   lidar->nuisance = before.nuisance;
-  lidar->warnings.insert(lidar->warnings.end(), before.warnings.begin(), before.warnings.end());
+  for (const std::string& warning : before.warnings) {
+    const auto said = std::find(lidar->warnings.begin(), lidar->warnings.end(), warning);
+    if (said == lidar->warnings.end()) lidar->warnings.push_back(warning);
+  }
 }
 
 // Those without a pose have their reason in the report alone.

@@ -233,7 +233,7 @@ std::vector<LidarCloud> ReadFurtherClouds(const ViewFile& file, const Rig& rig,
 
 // To the bit, and where there was no return, too.
 bool SamePoints(const Cloud& a, const Cloud& b) {
-  return a.points.size() == b.points.size() &&
+  return !a.points.empty() && a.points.size() == b.points.size() &&
          std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof a.points[0]) == 0;
 }
 
