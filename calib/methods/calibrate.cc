@@ -51,8 +51,8 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   if (options.method == kAutoMethod) {
     lidars = WithClouds(std::move(lidars), &cameras);
   } else {
-    for (const LidarViews& lidar : lidars) {
-      SayNotCalibrated(lidar, "only method \"auto\" solves for several LIDARs", &cameras);
+    for (const LidarSpec& lidar : rig.further_lidars) {
+      SayNotCalibrated(lidar.name, "only method \"auto\" solves for several LIDARs", &cameras);
     }
   }
   if (options.method == kPaperMethod) {

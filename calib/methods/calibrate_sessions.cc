@@ -49,9 +49,8 @@ CalibratedSessions CalibrateSessions(const Rig& rig, const std::vector<SessionVi
     std::move(own.begin(), own.end(), std::back_inserter(cameras));
   }
   for (const LidarSpec& lidar : rig.further_lidars) {
-    LidarViews views;
-    views.report.calibration.lidar = lidar.name;
-    SayNotCalibrated(views, "mounts that may have moved are solved for cameras alone", &cameras);
+    SayNotCalibrated(lidar.name, "mounts that may have moved are solved for cameras alone",
+                     &cameras);
   }
   CalibratedCameras calibrated =
       CalibrateByBoards(rig.target, WithRig(options, rig), std::move(cameras));

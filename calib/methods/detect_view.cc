@@ -172,17 +172,13 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
 std::vector<LidarDetection> DetectFurther(const Rig& rig, const View& view) {
   std::vector<LidarDetection> detections;
   for (const LidarSpec& lidar : rig.further_lidars) {
-    LidarDetection& detection = detections.emplace_back(LidarDetection{lidar.name, {}});
     const auto found =
         std::find_if(view.further_clouds.begin(), view.further_clouds.end(),
                      [&](const LidarCloud& cloud) { return cloud.lidar == lidar.name; });
-    if (found == view.further_clouds.end()) {
-      detection.cloud.why_not = "the view has no cloud of this LIDAR";
-      continue;
-    }
+    if (found == view.further_clouds.end()) continue;  // a view need not have one
     Rig as_reference = rig;
     as_reference.lidar = lidar;
-    detection.cloud = DetectCloud(as_reference, found->cloud, {}, kAutoMethod);
+    detections.push_back({lidar.name, DetectCloud(as_reference, found->cloud, {}, kAutoMethod)});
   }
   return detections;
 }

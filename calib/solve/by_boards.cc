@@ -149,6 +149,7 @@ JointResult SolveWithLidars(const Target& target, const CalibrateOptions& option
                             std::vector<GuessedCamera> cameras,
                             const std::vector<CameraViews>& detected,
                             const std::vector<LidarViews>& lidars) {
+  if (lidars.empty()) return SolveWithLensFound(target, options, std::move(cameras), detected, {});
   JointResult with = SolveWithLensFound(target, options, cameras, detected, lidars);
   const std::string why = WhyLidarsDoNotFit(with);
   if (why.empty()) return with;

@@ -216,9 +216,8 @@ std::string WhyNone(const Views& views, const Vote& vote) {
   const int mirrored = VoteAmong(turned).best.views;
   if (mirrored > vote.best.views && 2 * mirrored > static_cast<int>(views.size())) {
     return "images or clouds are mirrored: " + std::to_string(mirrored) + " of " + of +
-           " agree once left and right are swapped; turn that off in the camera, or, where an "
-           "image "
-           "is as a person sees it, check that the cloud's y points to the left";
+           " agree once left and right are swapped; turn that off in the camera, or, where its "
+           "images are as a person sees them, check that the clouds' y points to the left";
   }
   return "the views do not agree where the camera is (at most " + std::to_string(vote.best.views) +
          " of " + of + "); do images and clouds belong together?";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct LidarViews {
   std::map<std::string, std::vector<CloudEdges>> candidates;
   /// How well a constant that its ranges may be off by is known [m], 1 sigma; 0: it is exact.
   double range_offset_sigma_m = 0;
+  std::size_t contradicting = 0;  ///< clouds that were left out as they contradict the others
   LidarReport report;
 
   /// What detection made of its cloud in a view; without a board with a pose in it, the view is

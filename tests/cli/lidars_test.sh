@@ -31,6 +31,12 @@ PYTHON
 accepts "its export" "$bin/rgbdt" export "$session" --out "$scratch/export"
 grep -q 'link name="lidar2"' "$scratch/export/cameras.urdf" || complain "it is not in the URDF"
 
+# A rig that has a second LIDAR, of which no view has a cloud: said, and the cameras are calibrated.
+sed -i '/^further_cloud {/,/^}/d' "$session"/views/*/view.textproto
+accepts "views without its clouds" "$bin/rgbdt" calibrate "$session" --out "$scratch/without"
+grep -q "LIDAR lidar2 is not calibrated: no view has a cloud of it" "$scratch/output" ||
+  complain "it is not said that there is no cloud of the second LIDAR"
+
 misuses "a second LIDAR that turns" "$bin/rgbdt" simulate "$scratch/refused" --further-lidar turned
 
 verdict

@@ -28,11 +28,10 @@ double DistanceBetween(const Rigid3& reference_from_lidar, const CloudDetection&
 
 }  // namespace
 
-void SayNotCalibrated(const LidarViews& lidar, const std::string& why,
+void SayNotCalibrated(const std::string& lidar, const std::string& why,
                       std::vector<CameraViews>* cameras) {
   for (CameraViews& camera : *cameras) {
-    camera.report.warnings.push_back("LIDAR " + lidar.report.calibration.lidar +
-                                     " is not calibrated: " + why);
+    camera.report.warnings.push_back("LIDAR " + lidar + " is not calibrated: " + why);
   }
 }
 
@@ -41,7 +40,7 @@ std::vector<LidarViews> WithClouds(std::vector<LidarViews> lidars,
   std::vector<LidarViews> with;
   for (LidarViews& lidar : lidars) {
     if (lidar.candidates.empty() && lidar.report.rejected.empty()) {
-      SayNotCalibrated(lidar,
+      SayNotCalibrated(lidar.report.calibration.lidar,
                        "no view has a cloud of it; name them in the views of a recorded session "
                        "(further_cloud in view.textproto; live sessions have one LIDAR)",
                        cameras);

@@ -13,7 +13,7 @@
 namespace rgbdt {
 
 /// Said with the cameras, as there is no result to say it with.
-void SayNotCalibrated(const LidarViews& lidar, const std::string& why,
+void SayNotCalibrated(const std::string& lidar, const std::string& why,
                       std::vector<CameraViews>* cameras);
 
 /// Those of whom there is any cloud; of the others it is said that there is none.

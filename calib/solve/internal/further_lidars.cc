@@ -181,6 +181,7 @@ int CloudsOf(const BoardProblem& problem, std::size_t lidar) {
 void RejectCloud(const Contradiction& worst, JointProblem* joint) {
   const std::size_t lidar = *worst.lidar;
   BoardView& view = joint->problem.lidars[lidar].views[worst.view];
+  ++joint->lidars[lidar].contradicting;
   joint->lidars[lidar].report.rejected.push_back(
       {view.name,
        Format("contradicts the other %d views: by itself it would put this LIDAR %.2f deg and %.0f "

@@ -73,10 +73,7 @@ std::string WhyNotOfThisRig(const JointResult& result, std::size_t lidar, std::s
         "the clouds of both in metres, and do they belong to the same views?",
         100 * (scale.value - 1), 100 * scale.sigma);
   }
-  std::size_t contradict = 0;
-  for (const RejectedView& view : result.joint.lidars[lidar].report.rejected) {
-    contradict += view.why.find("contradicts") != std::string::npos ? 1 : 0;
-  }
+  const std::size_t contradict = result.joint.lidars[lidar].contradicting;
   if (4 * contradict > used + contradict) {
     return Format("%d of %d views contradict the others; do clouds and views belong together?",
                   static_cast<int>(contradict), static_cast<int>(used + contradict));
@@ -198,8 +195,10 @@ std::vector<LidarViews> LeftOut(std::vector<LidarViews> lidars, const std::strin
 
 std::vector<LidarReport> ReportsOfLidars(const JointResult& result, int min_views) {
   std::vector<LidarReport> reports;
-  const std::vector<Contradiction> contradictions =
-      Contradictions(result.joint.problem, result.solution);
+  std::vector<Contradiction> contradictions;
+  if (!result.joint.lidars.empty()) {
+    contradictions = Contradictions(result.joint.problem, result.solution);
+  }
   for (std::size_t l = 0; l < result.joint.lidars.size(); ++l) {
     reports.push_back(ReportOf(result, contradictions, min_views, l));
   }
