@@ -30,9 +30,8 @@ double DistanceBetween(const Rigid3& reference_from_lidar, const CloudDetection&
 
 void SayNotCalibrated(const std::string& lidar, const std::string& why,
                       std::vector<CameraViews>* cameras) {
-  for (CameraViews& camera : *cameras) {
-    camera.report.warnings.push_back("LIDAR " + lidar + " is not calibrated: " + why);
-  }
+  const std::string warning = "LIDAR " + lidar + " is not calibrated: " + why;
+  for (CameraViews& camera : *cameras) camera.report.warnings.push_back(warning);
 }
 
 std::vector<LidarViews> WithClouds(std::vector<LidarViews> lidars,
