@@ -15,6 +15,7 @@
 #include "services/nodes/session_node.h"
 #include "services/runtime/process.h"
 #include "services/session_terminal.h"
+#include "services/verdict_ends.h"
 
 namespace {
 
@@ -69,7 +70,10 @@ int Run(const Flags& flags) {
     }
     return rgbdt::EndsWith(false);
   }
-  if (node->finished()) return code;
+  if (node->finished()) {
+    const auto& report = node->report();
+    return code == 0 && report ? static_cast<int>(rgbdt::EndOf(*report)) : code;
+  }
   if (code == 0) {
     std::fprintf(stderr, "rgbdt-session: stopped before its end: %s\n",
                  node->GetStatus().text.c_str());
@@ -88,6 +92,7 @@ int main(int argc, char** argv) {
       "--out out/session\n"
       "         rgbdt-session --rig out/rig.textproto --out out/session");
   line.Ends(rgbdt::ExitCode::kFailed, "failed, or ended before its end; stderr says why");
+  rgbdt::AddVerdictEnds(&line, "the session is whole, but ");
   Flags flags;
   line.Option("FILE", &flags.script, "session.textproto; without it the viewer's page leads");
   line.Option("--rig", &flags.rig, "rig.textproto; default: the one that the script names");

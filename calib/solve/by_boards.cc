@@ -107,6 +107,12 @@ struct SolvedGroup {
   std::vector<LidarReport> lidars;
 };
 
+// Whether something is surely given wrong: that bends all else, too.
+bool IsExplained(const std::vector<Cause>& causes) {
+  return std::any_of(causes.begin(), causes.end(),
+                     [](const Cause& cause) { return cause.Sigmas() >= kGivenWrongSigmas; });
+}
+
 std::size_t ImagesUsed(const JointResult& result) {
   std::size_t images = 0;
   for (const BoardView& view : result.joint.problem.views) images += view.images.size();
@@ -165,10 +171,13 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   JointResult result = SolveWithLidars(target, options, std::move(cameras), detected, lidars);
   const double seconds = watch.Seconds();
   std::vector<std::vector<Cause>> causes = GivenWrong(result);
+  const std::optional<Cause> beyond = FarthestBeyondPriors(result);
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
     CameraReport& report = result.joint.cameras[c].views.report;
     report = WithSolution(result, c, seconds);
     report.causes = std::move(causes[c]);
+    // Where nothing that was given explains it.
+    if (beyond && !IsExplained(report.causes)) report.causes.push_back(*beyond);
   }
   result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;

@@ -107,7 +107,8 @@ class SessionNode : public Node {
   /// A person's Enter is to be noticed.
   Utime LongestWait() const override { return 20'000; }
 
-  const std::string& failure() const { return failure_; }  ///< empty: none so far
+  const std::string& failure() const { return failure_; }          ///< empty: none so far
+  const std::optional<Report>& report() const { return report_; }  ///< of the newest solve
 
  private:
   const SessionStep& step() const { return script_.steps[index_]; }

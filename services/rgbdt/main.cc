@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
       "rgbdt",
       "rgbdt: where a colour and a thermal camera sit relative to a LIDAR, and their fused cloud.\n"
       "Example: rgbdt simulate out/synthetic && rgbdt calibrate out/synthetic");
-  rgbdt::AddVerdictEnds(&line, "calibrate, refine, replay: ");
+  rgbdt::AddVerdictEnds(&line, "calibrate, evaluate, refine, replay: ");
   rgbdt::AddSession(&line);
 #ifdef RGBDT_HAS_DRIVERS
   const rgbdt::PacketImport packets{rgbdt::ImportPackets, rgbdt::ReadPacketsInBag};

@@ -14,6 +14,7 @@
 #include "calib/present/report/verdict.h"
 #include "calib/present/report/words.h"
 #include "services/command_line/command_line.h"
+#include "services/verdict_ends.h"
 
 namespace rgbdt {
 
@@ -58,33 +59,6 @@ inline void PrintReport(bool json, const Report& report, const std::filesystem::
   for (const Said& said : OfViews(unreadable)) told.push_back(said.text);
   std::fputs(Summary(report).FullReport(told).c_str(), stdout);
   std::printf("%s report.json, report.html\n", wrote.c_str());
-}
-
-/// How a verb ends that made a report: failed where a camera did not converge, else by the worst
-/// verdict.
-inline ExitCode EndOf(const Report& report) {
-  if (!Summary(report).converged()) return ExitCode::kFailed;
-  const Grade grade = GradeOf(report);
-  return grade >= Grade::kNone       ? ExitCode::kDoNotUse
-         : grade == Grade::kDoubtful ? ExitCode::kDoubtful
-                                     : ExitCode::kDone;
-}
-
-/// The worse of two ends.
-inline ExitCode WorseOf(ExitCode a, ExitCode b) {
-  const auto badness = [](ExitCode code) {
-    return code == ExitCode::kDone       ? 0
-           : code == ExitCode::kDoubtful ? 1
-           : code == ExitCode::kFailed   ? 2
-                                         : 3;
-  };
-  return badness(a) < badness(b) ? b : a;
-}
-
-/// What `--help` says of the verdicts' exit codes.
-inline void AddVerdictEnds(CommandLine* line, const std::string& verbs = "") {
-  line->Ends(ExitCode::kDoubtful, verbs + "the verdict on a camera is `doubtful`");
-  line->Ends(ExitCode::kDoNotUse, verbs + "the verdict on a camera is `do not use`");
 }
 
 /// In words and figures. False: a camera moved.

@@ -112,7 +112,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   WriteReportFiles(out, {listed, detection.views, reports});
   PrintReport(flags.json, report, out, "wrote to " + out.string() + ":", detection.unreadable);
   PrintUnreadable(detection.unreadable);
-  return EndsWith(detection.unreadable.empty());
+  return static_cast<int>(WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report)));
 }
 
 }  // namespace
@@ -122,11 +122,14 @@ void AddEvaluate(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "evaluate",
       "Judges a calibration on a session's views, used and held out, and against the truth of a\n"
-      "simulated session. Writes report.json and report.html. A calibration that was made with\n"
-      "another rig is refused.\n"
+      "simulated session. Writes report.json and report.html over those of calibrate, whose "
+      "findings\n"
+      "it keeps. A calibration that was made with another rig is refused.\n"
       "Example: rgbdt evaluate out/demo/session --calibration out/again/calibration.textproto",
       [flags] { return RunEvaluate(*flags); });
-  verb->Ends(ExitCode::kFailed, "failed, or a view could not be read");
+  verb->Ends(ExitCode::kFailed,
+             "failed, the solve of a camera had not converged, or a view could not be read");
+  AddVerdictEnds(verb);
   verb->Required("DIR", &flags->dir, "session directory");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out, "where to write; default: DIR");

@@ -8,6 +8,7 @@
 
 #include "calib/detect/image/checkerboard.h"
 #include "calib/methods/calibrate.h"
+#include "calib/present/report/verdict.h"
 
 namespace rgbdt {
 namespace {
@@ -23,6 +24,7 @@ TEST(Acfr, TheBoardsFindThemselves) {
   const Report report = Calibrate(rig, detected->views);
   const CameraReport& camera = report.cameras.at(0);
   ASSERT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
+  EXPECT_LE(GradeOf(report), Grade::kUsable) << Judge(camera).reasons.front();
   // The views together choose the board and leave out what is none: at least 12 of 14 clouds.
   EXPECT_GE(camera.used.size() + camera.heldout.size(), 12U);
   const PoseError error = ErrorOf(*camera.first_guess, PublishedCameraFromLidar());
@@ -40,6 +42,9 @@ TEST(Acfr, EveryBoardBeforeTheRollerDoorIsFound) {
   for (const ViewDetection& view : detected->views) {
     EXPECT_TRUE(view.images.at(0).edges) << view.view << ": " << view.images.at(0).why_not;
   }
+  const Report report = Calibrate(detected->session.rig, detected->views);
+  EXPECT_TRUE(report.cameras.at(0).calibration.converged());
+  EXPECT_LE(GradeOf(report), Grade::kUsable) << Judge(report.cameras.at(0)).reasons.front();
 }
 
 // Behind the board hangs a wire mesh, of squares of eight pixels.

@@ -7,6 +7,7 @@
 
 #include "calib/methods/calibrate.h"
 #include "calib/model/statistics.h"
+#include "calib/present/report/verdict.h"
 #include "tests/real/acfr.h"
 
 namespace rgbdt {
@@ -49,6 +50,8 @@ TEST(Plain, TheViewsTogetherTellEachBoardsTurn) {
   Rig& rig = detected->session.rig;
   const CameraReport camera = Calibrate(rig, detected->views).cameras.at(0);
   ASSERT_TRUE(camera.calibration.converged()) << camera.calibration.StatusText();
+  const Verdict verdict = Judge(camera);
+  EXPECT_LE(verdict.grade, Grade::kUsable) << verdict.reasons.front();
   const Halves open = HalvesOf(rig, detected->views);
   rig.cameras.at(0).lens_uncertainty = LensUncertainty{};
   const Halves exact = HalvesOf(rig, detected->views);

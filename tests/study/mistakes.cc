@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "calib/present/report/verdict.h"
 
@@ -93,6 +94,12 @@ bool MostAreRejected(const CameraReport& camera, const std::string& words) {
   return 2 * static_cast<std::size_t>(rejected) > views;
 }
 
+bool Says(const Verdict& verdict, const std::string& words) {
+  return std::any_of(
+      verdict.reasons.begin(), verdict.reasons.end(),
+      [&](const std::string& reason) { return reason.find(words) != std::string::npos; });
+}
+
 }  // namespace
 
 std::vector<Mistake> AllMistakes(const Target& target) {
@@ -143,14 +150,16 @@ bool Names(const Mistake& mistake, const std::string& cause) {
 
 std::vector<std::string> CausesRead(const CameraReport& camera) {
   constexpr std::size_t kRead = 2;
+  constexpr std::pair<const char*, const char*> kRejected[] = {
+      {"no board of the target's size in the cloud", kSizeInCloud},
+      {"measure it (width_m, height_m)", "board's size"},
+      {"check the lens in the rig", "lens"}};
   if (camera.contradiction.rfind("Images and clouds are", 0) == 0) return {kPairing};
-  std::vector<std::string> read;
-  if (MostAreRejected(camera, "no board of the target's size in the cloud")) {
-    read.emplace_back(kSizeInCloud);
-  }
-  if (MostAreRejected(camera, "measure it (width_m, height_m)")) read.emplace_back("board's size");
-  if (MostAreRejected(camera, "check the lens in the rig")) read.emplace_back("lens");
   const Verdict verdict = Judge(camera);
+  std::vector<std::string> read;
+  for (const auto& [words, cause] : kRejected) {
+    if (MostAreRejected(camera, words) && Says(verdict, words)) read.emplace_back(cause);
+  }
   for (const std::string& reason : verdict.reasons) {
     for (const Cause& cause : camera.causes) {
       const bool said = reason.find(cause.words) != std::string::npos;

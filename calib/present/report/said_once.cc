@@ -97,6 +97,15 @@ std::vector<std::string> SaidOnce(const std::vector<Said>& all, const std::strin
   return lines;
 }
 
+SaidAlike MostSaid(const std::vector<Said>& all) {
+  SaidAlike most;
+  for (const Group& group : ByCamera(all)) {
+    if (group.views.size() <= most.count) continue;
+    most = {group.views.size(), {group.cameras.front(), group.views.front(), group.text}};
+  }
+  return most;
+}
+
 std::vector<Said> OfViews(const std::vector<std::string>& lines) {
   const std::string begin = "view ";
   std::vector<Said> all;

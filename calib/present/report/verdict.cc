@@ -5,81 +5,22 @@
 #include <utility>
 #include <vector>
 
-#include "calib/model/statistics.h"
-#include "calib/present/report/said_once.h"
+#include "calib/present/report/internal/judge_views.h"
+#include "calib/present/report/internal/judgement.h"
 #include "calib/present/report/words.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr std::size_t kFewViews = 5;
-// Held-out views always fit a little worse; beyond this the solve is overfitted.
-constexpr double kWorse = 1.5, kWorsePx = 0.5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
-// Of what edges alone and planes alone say: so far apart nobody knows which of them is right.
-constexpr double kFarApartDeg = 1, kFarApartMm = 100;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
-// Of the views' scatter over what is stated (variance): above the first it is said, and the
-// enlarged sigma makes good for it; above the second nobody knows what the views have wrong.
-constexpr double kMuchScatter = 2.5, kMostScatter = 6;
-constexpr double kUnlikely = 1e-3;
-// Of held-out views' RMS [sigma]: beyond it most views contradict the pose, whatever noise does.
-constexpr double kWrongWhitened = 5;
-// Of views left out, over what is expected: by chance the mean over eight views stays below this.
-constexpr double kMostMisfit = 2;
 // Of what was given wrong, in sigmas of the pose that it moves.
 constexpr double kMovesLittle = 1, kMovesMuch = 4;
 // What is less likely than this is not named as a cause.
 constexpr double kLeastNamedSigmas = 1;
 constexpr std::size_t kMostNamed = 2;
-constexpr std::size_t kManyRejected = 3;
-constexpr char kWhyViewsDisagree[] =
-    "Check the lens (rgbdt intrinsics), the board's size in the rig file, and that board and rig "
-    "stood still.";
-
-// What speaks against the result comes first, in the order in which it was said.
-class Judgement {
- public:
-  void AddReason(const std::string& sentence) { others_.push_back(sentence); }
-  void Usable(const std::string& sentence) { Say(Grade::kUsable, sentence); }
-  void Doubtful(const std::string& sentence) { Say(Grade::kDoubtful, sentence); }
-  void Bad(const std::string& sentence) { Say(Grade::kBad, sentence); }
-  Grade grade() const { return grade_; }
-  /// Before all else of this grade.
-  void Cause(Grade grade, const std::string& sentence) {
-    grade_ = std::max(grade_, grade);
-    causes_.emplace_back(grade, sentence);
-  }
-  /// Nothing else matters beside it.
-  void Headline(const std::string& headline) { headline_ = headline; }
-  /// What is worst comes first.
-  Verdict Finish() {
-    against_.insert(against_.begin(), causes_.begin(), causes_.end());
-    std::stable_sort(against_.begin(), against_.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
-    Verdict verdict{grade_, headline_, {}};
-    for (const auto& [grade, sentence] : against_) verdict.reasons.push_back(sentence);
-    verdict.reasons.insert(verdict.reasons.end(), others_.begin(), others_.end());
-    if (!headline_.empty()) return verdict;
-    verdict.headline = grade_ == Grade::kGood       ? "Good: no sign that it is wrong."
-                       : grade_ == Grade::kUsable   ? "Usable."
-                       : grade_ == Grade::kDoubtful ? "Doubtful: something does not fit together."
-                                                    : "Do not use it.";
-    return verdict;
-  }
-
- private:
-  void Say(Grade grade, const std::string& sentence) {
-    grade_ = std::max(grade_, grade);
-    against_.emplace_back(grade, sentence);
-  }
-
-  Grade grade_ = Grade::kGood;
-  std::string headline_;
-  std::vector<std::pair<Grade, std::string>> causes_, against_;
-  std::vector<std::string> others_;  // reasons that are no alarm
-};
 
 std::string Moves(const Cause& cause) {
   if (!cause.moves_sigma) return "";
@@ -126,78 +67,6 @@ void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
   }
 }
 
-// Whether the views fit together at all: before any figure that takes them to.
-void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
-  if (!camera.contradiction.empty()) judgement->Cause(Grade::kBad, camera.contradiction);
-  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
-  if (camera.rejected.size() >= kManyRejected && 4 * camera.rejected.size() > views) {
-    judgement->Doubtful("Rejected: " + std::to_string(camera.rejected.size()) + " of " +
-                        Count(views, "view") + "; why stands in the table of views.");
-  }
-  double misfit = 0;
-  double expected = 0;
-  for (const Fold& fold : camera.folds) {
-    misfit += fold.misfit / static_cast<double>(camera.folds.size());
-    expected += fold.expected_misfit / static_cast<double>(camera.folds.size());
-  }
-  if (misfit > kMostMisfit * expected) {
-    judgement->Usable(
-        "The views contradict each other: what the others say misses a view by a "
-        "chi-square of " +
-        Number(misfit, 0) + " where " + Number(expected, 0) +
-        " is expected (50 is the most that is counted). " + kWhyViewsDisagree);
-  }
-  const auto& scatter = camera.view_scatter;
-  if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) return;
-  const std::string scatters =
-      "The views scatter " + Number(std::sqrt(scatter->factor), 1) +
-      " times as much as their own sigmas say; the stated sigma was enlarged for it, but what "
-      "moves all of them alike is not in it. " +
-      kWhyViewsDisagree;
-  if (scatter->factor > kMostScatter) {
-    judgement->Doubtful(scatters);
-  } else {
-    judgement->Usable(scatters);
-  }
-}
-
-void JudgeScene(const SceneCheck& scene, Judgement* judgement) {
-  judgement->AddReason("Images show " + Number(100 * scene.shown, 0) + "% of the " +
-                       Number(scene.edges, 0) + " depth edges of the clouds.");
-  if (!scene.heldout_start || !scene.heldout_result) {
-    judgement->Usable(
-        "It was not checked: no sweep was left out, or none of those shows depth edges.");
-    return;
-  }
-  if (*scene.heldout_result < *scene.heldout_start) return;  // the status says it
-  judgement->AddReason(
-      "On sweeps that the solver never saw, edges are met at least as well as by the start "
-      "(log-likelihood of an edge " +
-      Number(*scene.heldout_result, 3) + ", by the start " + Number(*scene.heldout_start, 3) +
-      ").");
-}
-
-void JudgeFit(const CameraReport& camera, Judgement* judgement) {
-  if (camera.scene) return JudgeScene(*camera.scene, judgement);
-  const TrainHeldout& rms = camera.edge_rms_px;
-  if (!rms.heldout) {
-    judgement->Usable("It was not checked: no view that was kept from the solver could be used.");
-    return;
-  }
-  const std::string held =
-      "On views that the solver never saw, the board's outline is met within " +
-      Number(*rms.heldout, 2) + " px RMS";
-  if (!rms.train) {
-    judgement->AddReason(held + ".");
-  } else if (*rms.heldout > kWorse * *rms.train + kWorsePx) {
-    judgement->Usable(held + ", clearly worse than the " + Number(*rms.train, 2) +
-                      " px on the views used: take more views, at other distances and tilts.");
-  } else {
-    judgement->AddReason(held + ", as well as on the views used (" + Number(*rms.train, 2) +
-                         " px).");
-  }
-}
-
 // Another start that ended elsewhere and fits clearly worse is only a bad start.
 bool FitsWorse(const StartResult& start, const CameraReport& camera) {
   const std::optional<double>& result = camera.distance_transform_px.train;
@@ -229,13 +98,6 @@ void JudgeStarts(const CameraReport& camera, Judgement* judgement) {
     judgement->AddReason("From " + Count(camera.other_starts.size(), "other start") +
                          " it comes to the same result.");
   }
-}
-
-// Without a pose: why views could not be used; what is alike is said once.
-void JudgeRejections(const CameraReport& camera, Judgement* judgement) {
-  std::vector<Said> rejected;
-  for (const RejectedView& view : camera.rejected) rejected.push_back({"", view.view, view.why});
-  for (const std::string& line : SaidOnce(rejected, "rejected")) judgement->Bad(line + ".");
 }
 
 void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next_view,
@@ -281,73 +143,6 @@ void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
   }
 }
 
-void JudgeHalves(const Halves& halves, Judgement* judgement) {
-  const std::string differ = "Two halves of the views, each solved separately, differ by " +
-                             PoseErrorText(halves.difference);
-  if (halves.chi2 > kUnlikelyChi2) {
-    judgement->Doubtful(differ + ", more than their sigmas allow (chi-square " +
-                        Number(halves.chi2, 1) + ", by chance above " + Number(kUnlikelyChi2, 1) +
-                        " once in a thousand times): the stated uncertainty cannot be trusted.");
-  } else {
-    judgement->AddReason(differ +
-                         (std::isnan(halves.chi2) ? "." : ", no more than their sigmas allow."));
-  }
-}
-
-// Where the solver found that their own sigmas do not allow it, it enlarged the stated one.
-void JudgeEdgesAndPlanes(const Halves& apart, Judgement* judgement) {
-  const bool far =
-      apart.difference.rotation_deg > kFarApartDeg || apart.difference.translation_mm > kFarApartMm;
-  const bool agree = !(apart.chi2 > kUnlikelyChi2);
-  const bool allowed = agree || apart.sigma_enlarged.has_value();
-  if (agree && !far) return;
-  const std::string put = "The boards' edges alone and their planes alone put the camera " +
-                          PoseErrorText(apart.difference) + " apart, ";
-  const std::string off =
-      "the LIDAR's beams or ranges, the lens or the board's size are off in a way that is not "
-      "known";
-  if (allowed) {
-    judgement->Usable(put + "and the stated sigma is large enough to allow it: " + off + ".");
-    return;
-  }
-  const std::string why = put + "more than their sigmas allow (chi-square " +
-                          Number(apart.chi2, 1) + "): " + off +
-                          ", and the result may be off by more than stated.";
-  if (far) {
-    judgement->Doubtful(why);
-  } else {
-    judgement->Usable(why);
-  }
-}
-
-// Of the held-out views' own RMS [sigma]: a single one that is wrong does not count.
-std::optional<double> MedianWhitened(const CameraReport& camera) {
-  std::vector<double> rms;
-  for (const ViewQuality& view : camera.views) {
-    if (view.heldout && view.edge_rms_whitened) rms.push_back(*view.edge_rms_whitened);
-  }
-  return rms.empty() ? camera.edge_rms_whitened.heldout : std::optional(Median(std::move(rms)));
-}
-
-// Sigmas that are enlarged because views scatter already say what crossings do.
-void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
-  const std::optional<double>& rms = camera.edge_rms_whitened.heldout;
-  if (!rms) return;
-  const double most = kMostWhitened * std::sqrt(camera.variance_factor);
-  const std::string miss = "On the held-out views the beams miss the board's edge by " +
-                           Number(*rms, 2) + " sigmas (RMS; expected: 1): they are ";
-  if (*MedianWhitened(camera) > kWrongWhitened * std::sqrt(camera.variance_factor)) {
-    judgement->Bad(miss + "not where this pose puts them.");
-  } else if (*rms > most && *MedianWhitened(camera) > most) {
-    judgement->Doubtful(miss +
-                        "less exact than stated, and the stated uncertainty cannot be trusted.");
-  } else if (*rms > most) {
-    judgement->Usable(miss + "less exact than stated in some views, not in most.");
-  } else if (*rms < kLeastWhitened) {
-    judgement->AddReason(miss + "more exact than stated.");
-  }
-}
-
 }  // namespace
 
 const ColouringSigma* JudgedColouring(const CameraReport& camera) {
@@ -362,10 +157,7 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
   Judgement judgement;
   JudgeStatus(camera, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
-  JudgeFit(camera, &judgement);
-  JudgeWhitened(camera, &judgement);
-  if (camera.halves) JudgeHalves(*camera.halves, &judgement);
-  if (camera.edges_planes) JudgeEdgesAndPlanes(*camera.edges_planes, &judgement);
+  JudgeResiduals(camera, &judgement);
   if (const auto* at = JudgedColouring(camera)) JudgeColouring(*at, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {

@@ -25,8 +25,8 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 ///    more than 4 of its sigmas.
 ///  - doubtful: something was given wrong that moves the pose by more than 1 sigma, or nobody knows
 ///    how far; more than a quarter of the views were rejected; views scatter far more than they
-///    state; halves or held-out views contradict the stated uncertainty, edges and planes each
-///    other by far.
+///    state; beams and planes are missed by more than LIDARs leave; halves or held-out views
+///    contradict the stated uncertainty, edges and planes each other by far.
 ///  - usable: it could be more exact, or better checked: few views, nothing held out, a
 ///    projection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
 ///    which the enlarged sigma makes good for; a method that states no uncertainty.

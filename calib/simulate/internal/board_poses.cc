@@ -11,8 +11,8 @@
 namespace rgbdt::simulate {
 namespace {
 
-/// Attempts in which a far board stays as far as it was drawn.
-constexpr int kFarAttempts = 100;
+/// Attempts of a round, and those in which a far board stays as far as it was drawn.
+constexpr int kAttempts = 400, kFarAttempts = 100;
 
 /// What a pose is made of. Angles against the line of sight from the LIDAR.
 struct PoseNumbers {
@@ -174,16 +174,19 @@ double ShareOutside(const BoardOptions& board, const std::vector<CameraRenderer>
   return double(most) / (kSteps * kSteps);
 }
 
-/// Attempt 0 spreads evenly; later ones draw closer to the middle and to a medium range.
-PoseNumbers Draw(const Options& options, int index, int attempt) {
+/// Attempt 0 spreads evenly; later ones draw closer to the middle and to a medium range. Where none
+/// of a first round does, a second one begins anew, each pose far from the one before.
+PoseNumbers Draw(const Options& options, int index, int number) {
+  const bool first_round = number < kAttempts;
+  const int attempt = number % kAttempts;
   const PoseOptions& o = options.pose;
   const Noise shifts(options.seed, 0, "pose");
-  const Noise jitter(options.seed, index + 1, "pose " + std::to_string(attempt));
+  const Noise jitter(options.seed, index + 1, "pose " + std::to_string(number));
   const bool wholly = o.outside_image == 0;
   const auto spread = [&](int axis, double low, double high) {
     double u = Spread(index, axis, shifts.Uniform(static_cast<std::uint64_t>(axis)));
-    if (attempt > 0) {
-      const double reach = wholly ? 0.1 : 0.5;
+    if (number > 0) {
+      const double reach = wholly && first_round ? 0.1 : 0.5;
       u += reach * jitter.Uniform(static_cast<std::uint64_t>(axis), -1, 1);
       u -= std::floor(u);
     }
@@ -253,15 +256,14 @@ std::string WhyNotSeen(const Options& options, const World& empty, const Scanner
 
 Rigid3 BoardPose(const Options& options, const World& empty, const Scanner& scanner,
                  const std::vector<CameraRenderer>& cameras, int index) {
-  constexpr int kAttempts = 400;
   std::string why;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < 2 * kAttempts; ++attempt) {
     Rigid3 pose = MakePose(Draw(options, index, attempt));
     why = WhyNotSeen(options, empty, scanner, cameras, pose);
     if (why.empty()) return pose;
   }
   throw InputError("simulator: no place for the board in view " + std::to_string(index) +
-                   " (the last of " + std::to_string(kAttempts) + " tried is " + why +
+                   " (the last of " + std::to_string(2 * kAttempts) + " tried is " + why +
                    "); give pose.* more room or a smaller board");
 }
 

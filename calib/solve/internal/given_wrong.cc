@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "calib/model/linear_algebra.h"
@@ -24,6 +25,7 @@ constexpr double kSizeToleranceM = 0.003;      // of a board's width and height
 constexpr double kPlainSizeToleranceM = 0.04;  // its rim is seen, too
 constexpr double kPlaceToleranceM = 0.002;     // of the pattern on the board
 
+constexpr char kWholeLens[] = "lens";
 constexpr char kFindTheLens[] =
     "Find the lens with 20 views or more all over the image (rgbdt intrinsics)";
 
@@ -96,8 +98,13 @@ class Tester {
       add(PatternPlace());
     }
     add(Larger(BoardSize(), SizeByClouds()));
+    // A part of a lens that is surely wrong says more than that the whole is.
+    const auto rank = [](const Cause& cause) {
+      const bool sure = cause.Sigmas() >= kGivenWrongSigmas;
+      return std::tuple(!sure, cause.name == kWholeLens, -cause.Sigmas());
+    };
     std::stable_sort(causes.begin(), causes.end(),
-                     [](const Cause& a, const Cause& b) { return a.Sigmas() > b.Sigmas(); });
+                     [&](const Cause& a, const Cause& b) { return rank(a) < rank(b); });
     return causes;
   }
 
@@ -226,7 +233,7 @@ class Tester {
     const Index count = NumbersOfDistortion();
     Eigen::MatrixXd distortion = Eigen::MatrixXd::Zero(count, kLensNumbers);
     for (Index i = 0; i < count; ++i) distortion(i, 4 + i) = 1;
-    Cause all{"lens",
+    Cause all{kWholeLens,
               Format("the lens of %s in the rig file contradicts these views: they put the focal "
                      "length %+.2f%%, the centre %+.1f, %+.1f px off. The lens found here is used "
                      "and stands in the calibration. %s and put it into the rig file",

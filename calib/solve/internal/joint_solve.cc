@@ -10,6 +10,8 @@
 #include "calib/solve/internal/evidence.h"
 #include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/held_offsets.h"
+#include "calib/solve/internal/lens_by_images.h"
+#include "calib/solve/internal/lenses_off.h"
 #include "calib/solve/internal/range_terms.h"
 #include "calib/solve/internal/scatter_sigmas.h"
 #include "calib/solve/internal/swap_reference.h"
@@ -263,20 +265,6 @@ class JointSolver {
   std::vector<int> views_at_first_;  // as ViewsOfSensors
 };
 
-std::vector<LensOff> LensesOff(const JointResult& result) {
-  const SharedPlaces places(result.joint.problem);
-  std::vector<LensOff> off;
-  for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
-    const Index at = places.Lens(c);
-    off.push_back(
-        AgainstPrior(NumbersOf(result.solution.state.lenses[c]) -
-                         NumbersOf(result.joint.problem.cameras[c].lens()),
-                     result.joint.problem.lens_priors[c],
-                     result.solution.covariance.block<kLensNumbers, kLensNumbers>(at, at)));
-  }
-  return off;
-}
-
 // With the range offsets free that the views refute what is known of.
 JointResult SolveWithOffset(JointProblem joint) {
   const std::vector<RefutedOffset> held = HeldOffsets(joint.problem);
@@ -295,6 +283,27 @@ JointResult SolveWithOffset(JointProblem joint) {
   return free;
 }
 
+LensCovariance UsualPrior(const CameraSpec& camera) {
+  return UsualLensUncertainty(camera.lens, camera.width, camera.height).covariance;
+}
+
+// Where the views scatter far beyond noise and a camera's images alone contradict its lens, which
+// was taken for exact: all is solved with such lenses as uncertain as any.
+void OpenExactLenses(JointProblem* joint, JointResult* result) {
+  constexpr double kCannotBe = 6;  // of variance
+  if (!result->view_scatter || !(result->view_scatter->factor > kCannotBe)) return;
+  bool open = false;
+  for (std::size_t c = 0; c < joint->cameras.size(); ++c) {
+    if (!joint->problem.HasOwnLens(c) || !joint->problem.lens_priors[c].isZero(0)) continue;
+    const CameraViews& views = joint->cameras[c].views;
+    const auto lens = FindLensByImages(joint->problem.target, views);
+    if (!lens || !ImagesRefute(*lens, views.spec->lens)) continue;
+    joint->problem.lens_priors[c] = UsualPrior(*views.spec);
+    open = true;
+  }
+  if (open) *result = SolveWithOffset(*joint);
+}
+
 Halves ApartBy(const Rigid3& a, const Rigid3& b, const Matrix6d& covariance) {
   const Vector6d delta = Log(a * b.Inverse());
   return {ErrorOf(a, b), delta.dot(SolveSymmetric(covariance, delta))};
@@ -303,33 +312,24 @@ Halves ApartBy(const Rigid3& a, const Rigid3& b, const Matrix6d& covariance) {
 }  // namespace
 
 JointResult SolveJointly(JointProblem joint) {
+  const std::vector<LensCovariance> given = joint.problem.lens_priors;
   JointProblem wider = joint;
   JointResult result = SolveWithOffset(std::move(joint));
-  result.lenses_off = LensesOff(result);
+  OpenExactLenses(&wider, &result);
+  std::vector<LensOff> off = LensesOff(result);
   bool contradicted = false;
-  std::vector<LensCovariance> given = wider.problem.lens_priors;
   for (std::size_t c = 0; c < wider.cameras.size(); ++c) {
-    const LensOff& off = result.lenses_off[c];
-    if (!off.contradicts()) continue;
+    if (!off[c].contradicts()) continue;
     // As little as of any lens, and as much worse than that as they say: numbers that were held
     // exactly, of a distortion left out, must move, too.
-    const CameraSpec& spec = *wider.cameras[c].views.spec;
     LensCovariance& prior = wider.problem.lens_priors[c];
-    prior += UsualLensUncertainty(spec.lens, spec.width, spec.height).covariance;
-    prior *= off.chi2 / off.freedom;
+    prior += UsualPrior(*wider.cameras[c].views.spec);
+    prior *= off[c].chi2 / off[c].freedom;
     contradicted = true;
   }
-  if (!contradicted) return result;
-  JointResult again = SolveWithOffset(std::move(wider));
-  again.lenses_off = std::move(result.lenses_off);
-  for (std::size_t c = 0; c < again.joint.cameras.size(); ++c) {
-    LensOff& off = again.lenses_off[c];
-    off.off = NumbersOf(again.solution.state.lenses[c]) -
-              NumbersOf(again.joint.problem.cameras[c].lens());
-    off.covariance =
-        given[c] + CovarianceOf(again, c).bottomRightCorner<kLensNumbers, kLensNumbers>();
-  }
-  return again;
+  if (contradicted) result = SolveWithOffset(std::move(wider));
+  result.lenses_off = AgainstGiven(result, given, std::move(off));
+  return result;
 }
 
 Halves Apart(const BoardSolution& a, const BoardSolution& b, double variance_factor,

@@ -39,7 +39,8 @@ struct JointResult {
 /// crossings are out, and a warning says so. Where the views put a range offset beyond 4 sigma
 /// of what its prior allows, all is solved again with it free (the reference's not by a plain
 /// board); where they contradict what is known of a lens, with that known as much worse as they
-/// say.
+/// say; where they scatter far beyond noise, lenses that are stated as exact and that the images
+/// alone contradict are as uncertain as any.
 JointResult SolveJointly(JointProblem joint);
 
 /// How far two solutions put a camera, or a further LIDAR, apart, against both covariances, a

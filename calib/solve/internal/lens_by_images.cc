@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "calib/camera/lens_choice.h"
+#include "calib/model/linear_algebra.h"
 #include "calib/model/text.h"
+#include "calib/solve/internal/lens_check.h"
 
 namespace rgbdt {
 namespace {
@@ -46,6 +48,17 @@ std::optional<LensByImages> FindLensByImages(const Target& target, const CameraV
   if (input.views.size() < kLeastViews) return std::nullopt;
   lens.result = CalibrateIntrinsics(input);
   return lens;
+}
+
+bool ImagesRefute(const LensByImages& lens, const Lens& given) {
+  const IntrinsicsResult& found = lens.result;
+  const Eigen::Index count = found.covariance.rows();
+  if (!found.converged || count == 0 || found.lens.model != given.model) return false;
+  const Eigen::VectorXd off = (NumbersOf(found.lens) - NumbersOf(given)).head(count);
+  LensOff refuted;
+  refuted.chi2 = off.dot(SolveSymmetric(Eigen::MatrixXd(4 * found.covariance), off));
+  refuted.freedom = static_cast<int>(count);
+  return refuted.contradicts();
 }
 
 std::optional<Cause> OtherModel(const LensByImages& lens, const CameraSpec& camera) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/model/text.h"
+
 namespace rgbdt {
 namespace {
 
@@ -33,6 +35,12 @@ constexpr NuisanceLine kNuisances[] = {
 // Of the unknown at this place, a factor of variance counted in.
 double SigmaAt(const JointResult& result, Eigen::Index at, double factor) {
   return std::sqrt(std::max(0.0, factor * result.solution.covariance(at, at)));
+}
+
+// The outline's and the pattern's, which somebody measured.
+bool IsOfGivenSize(SharedUnknown unknown) {
+  return (unknown >= kOutlineTop && unknown <= kOutlineLeft) || unknown == kPrintWidth ||
+         unknown == kPrintHeight;
 }
 
 // An unknown that all views share.
@@ -136,6 +144,30 @@ std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t li
   Append(SideScatter(of_lidar), &nuisances);
   Append(ScatterOfRings(of_lidar), &nuisances);
   return nuisances;
+}
+
+std::optional<Cause> FarthestBeyondPriors(const JointResult& result) {
+  const BoardPriors& priors = result.joint.problem.priors;
+  const auto means = priors.Means();
+  std::optional<Cause> farthest;
+  for (const NuisanceLine& line : kNuisances) {
+    if (IsOfGivenSize(line.unknown)) continue;
+    const Estimate estimate = EstimateOf(result, line.unknown);
+    const double prior = priors.Sigma(line.unknown);
+    if (!LineOf(line, estimate, priors)) continue;
+    // As far as an estimate that is pulled to its mean can be off it by chance.
+    const double told = prior * prior - estimate.sigma * estimate.sigma;
+    const double off = estimate.value - means[static_cast<std::size_t>(line.unknown)];
+    if (farthest && off * off / told <= farthest->chi2) continue;
+    farthest = Cause{
+        "beams or board",
+        Format("%s: %.1f +- %.1f %s, where %.1f +- %.1f is usual. Check that the board is flat "
+               "and as large as the rig file says, and the LIDAR's beam against its data sheet",
+               line.name, 1000 * estimate.value, 1000 * estimate.sigma, line.unit,
+               1000 * means[static_cast<std::size_t>(line.unknown)], 1000 * prior),
+        off * off / told};
+  }
+  return farthest;
 }
 
 std::optional<RangeErrors> RangeErrorsOf(const JointResult& result) {

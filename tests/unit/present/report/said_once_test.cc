@@ -57,6 +57,14 @@ TEST(SaidOnce, OfManyViewsTheFirstAreNamed) {
               ElementsAre("200 views not read (1, 2, 3, 4, 5, 6, 7, 8, ...), 1: dark"));
 }
 
+TEST(SaidOnce, WhatIsSaidMostOften) {
+  EXPECT_EQ(MostSaid({}).count, 0U);
+  const SaidAlike most = MostSaid({{"", "1", "dark"}, {"", "2", "12 mm"}, {"", "3", "7 mm"}});
+  EXPECT_EQ(most.count, 2U);
+  EXPECT_EQ(most.first.view, "2");
+  EXPECT_EQ(most.first.text, "12 mm");
+}
+
 TEST(SaidOnce, LinesAreTakenApart) {
   EXPECT_THAT(
       SaidOnce(OfViews({"view monday/0001: /d/0001/a.png: none", "3 messages dropped",

@@ -234,6 +234,30 @@ TEST(Verdict, ManyRejectedViewsAreDoubtful) {
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Rejected: 4 of 13 views"));
 }
 
+TEST(Verdict, WhyMostViewsWereRejectedIsSaid) {
+  CameraReport camera = Good();
+  camera.used = {"1", "2", "3"};
+  camera.rejected = {{"a", "too dark"}, {"b", "no board in 12 s"}, {"c", "no board in 5 s"}};
+  EXPECT_EQ(Judge(camera).reasons.at(0), "Rejected: 3 of " +
+                                             std::to_string(6 + camera.heldout.size()) +
+                                             " views; 2 of them alike, as b: no board in 12 s.");
+  camera.rejected.back().why = "glare";
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("why stands in the table of views"));
+}
+
+// Whatever sigma is stated: sensors do not leave that much.
+TEST(Verdict, ResidualsBeyondWhatLidarsLeaveAreDoubtful) {
+  for (TrainHeldout CameraReport::*rms :
+       {&CameraReport::edge_rms_mm, &CameraReport::plane_rms_mm}) {
+    CameraReport camera = Good();
+    camera.*rms = {30, 59};
+    EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+    camera.*rms = {75, 59};
+    EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+    EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("by up to 75 mm RMS"));
+  }
+}
+
 TEST(Verdict, AMethodWithoutACovarianceIsNoMoreThanUsable) {
   CameraReport camera = Good();
   camera.calibration.covariance.reset();

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "calib/model/calibration.h"
+#include "calib/present/report/internal/judgement.h"
+
+namespace rgbdt {
+
+/// Whether the views fit together at all: before any figure that takes them to.
+void JudgeAgreement(const CameraReport& camera, Judgement* judgement);
+
+/// Whether the boards, or the scene, lie in the images where the pose puts them: in pixels, on the
+/// board in millimetres, and in their sigmas; halves, and edges against planes.
+void JudgeResiduals(const CameraReport& camera, Judgement* judgement);
+
+/// Without a pose: why views could not be used; what is alike is said once.
+void JudgeRejections(const CameraReport& camera, Judgement* judgement);
+
+}  // namespace rgbdt

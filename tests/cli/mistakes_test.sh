@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# What people give wrong beside a session is named, first on the terminal, and ends as it should.
+# Usage: mistakes_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+here=$(dirname "${BASH_SOURCE[0]}")
+
+accepts "a session" "$bin/rgbdt" simulate "$scratch/right" --views 8 --lidar 32
+
+# names MISTAKE EXIT_CODE WORDS...: all in the lines that `rgbdt calibrate` prints of this mistake.
+names() {
+  local what=$1 expected=$2 code=0 word
+  shift 2
+  /usr/bin/python3 -B "$here/spoil.py" "$scratch/right" "$scratch/$what" "$what"
+  timeout 120 "$bin/rgbdt" calibrate "$scratch/$what" >"$scratch/output" 2>&1 || code=$?
+  [ "$code" -eq "$expected" ] || complain "$what: exit code $code, not $expected"
+  for word in "$@"; do
+    grep -qF -- "$word" "$scratch/output" || complain "$what: no word of '$word'"
+  done
+}
+
+names none 0 "rgb: Usable"
+names "cloud in millimetres" 1 "rgb: Do not use it" "its unit seems to be the millimetre"
+names "cloud in camera axes" 1 "rgb: Do not use it" "its axes seem to be a camera's"
+names "cloud mirrored" 1 "rgb: Do not use it" "images or clouds are mirrored"
+names "images mirrored" 1 "rgb: Do not use it" "images or clouds are mirrored"
+names "clouds of the next view" 1 "rgb: Do not use it. Images and clouds are 1 apart"
+names "guess inverted" 0 "it seems to be lidar_from_camera. Write its inverse"
+names "board in millimetres" 1 "target.width_m is 1219.2; expected metres"
+names "board's sides exchanged" 1 "expected at least the pattern's width"
+names "inner corners" 1 "rgb: Do not use it" "count squares, not inner corners"
+names "fx and cx exchanged" 0 "rgb: Usable. Likeliest cause: fx and cx of rgb are exchanged"
+names "focal length 10% too long" 0 \
+  "rgb: Usable. Likeliest cause: the focal length of rgb in the rig file is" "% too long"
+names "squares 5% too large" 4 "Likeliest cause: the squares are" "smaller than given"
+
+verdict
