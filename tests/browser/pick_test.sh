@@ -7,7 +7,6 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 seed=5
-services=(assembler detector solver fuser)
 session=$scratch/session
 truth=$scratch/truth.textproto
 log=$scratch/session.lcmlog

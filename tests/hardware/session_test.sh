@@ -10,11 +10,7 @@ views=5
 session=$scratch/session
 mkdir "$scratch/world" "$session"
 
-for view in $(seq "$views"); do
-  echo 'step { next_pose {} }' 'step { sweep {} }'
-  echo "step { capture { heldout: $([ "$view" = 3 ] && echo true || echo false) } }"
-done >"$scratch/session.textproto"
-echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }' >>"$scratch/session.textproto"
+session_script "$views" 3 >"$scratch/session.textproto"
 
 for process in assembler detector solver fuser; do start "$process" "$bin/rgbdt-$process"; done
 start_hardware "$scratch/world" "$scratch/rig.textproto" "$session/truth.textproto" --seed 2

@@ -20,7 +20,6 @@ mtu=${3:-1500}
 views=${4:-4}
 cut_seconds=${5:-0}
 speed=4
-services=(assembler detector solver fuser)
 hosts=(sensor compute)
 log_host=compute
 [ "${RGBDT_HOSTS-2}" = 4 ] && hosts+=(log viewer) log_host=log
@@ -29,17 +28,6 @@ can_have_hosts || {
   echo "SKIPPED: no bridges or no nftables in a namespace here"
   exit 77
 }
-
-write_script() {
-  local view
-  for view in $(seq "$views"); do
-    echo 'step { next_pose {} }' 'step { sweep {} }' \
-      "step { capture { heldout: $([ "$view" = 3 ] && echo true || echo false) } }"
-  done
-  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
-}
-
-now_ms() { date +%s%3N; }
 
 begin() {  # NAME
   local process
@@ -56,14 +44,14 @@ begin() {  # NAME
   at compute "$bin/live_helper" ready "${services[@]}" simulator || fail "not every process came up"
 }
 
-begin_session() {
+lead_session() {
   began=$(now_ms)
   bytes_before=$(all_bytes)
   start session nsenter --target "${host_pids[$log_host]}" --net --uts "$bin/rgbdt-session" \
     "$scratch/session.textproto" --rig "$scratch/rig.textproto" --out "$folder"
 }
 
-end_session() {
+await_session() {
   wait_for session || fail "the session ended with exit code $?: $(tail -n 1 "$scratch/session.log")"
   took_ms=$(($(now_ms) - began))
   bytes=$(($(all_bytes) - bytes_before))
@@ -82,12 +70,12 @@ end() {
 }
 
 make_hosts "$mtu" "${hosts[@]}"
-write_script >"$scratch/session.textproto"
+session_script "$views" 3 >"$scratch/session.textproto"
 
 echo "== ${#hosts[@]} hosts, MTU $mtu, nothing lost"
 begin undisturbed
-begin_session
-end_session
+lead_session
+await_session
 end
 lost=$(last_count assembler 'datagrams lost')
 [ "${lost:-0}" = 0 ] || echo "note: $lost datagrams were lost by a busy machine"
@@ -97,7 +85,7 @@ figure hosts_mbit_s "$((bytes * 8 / took_ms / 1000))" Mbit/s
 echo "== $permille in 1000 datagrams are lost on the way to each host"
 begin lossy
 [ "$permille" = 0 ] || lose "$permille" "${hosts[@]}"
-begin_session
+lead_session
 if [ "$cut_seconds" != 0 ]; then
   until grep -qs 'view 0002: asked for a sweep' "$scratch/session.log"; do
     kill -0 "${pids[session]}" || fail "the session ended before its second view"
@@ -107,7 +95,7 @@ if [ "$cut_seconds" != 0 ]; then
   sleep "$cut_seconds"
   plug_in sensor
 fi
-end_session
+await_session
 true_loss=$(dropped compute)
 lose_nothing_more
 end

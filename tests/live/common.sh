@@ -4,6 +4,7 @@
 bin=$1
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/rgbdt-live-XXXXXX")
 declare -A pids=()
+services=(assembler detector solver fuser)  # of a session
 
 fail() {
   printf 'FAILED: %s\n' "$*" >&2
@@ -53,6 +54,32 @@ kill_process() {  # NAME
 }
 
 helper() { "$bin/live_helper" "$@"; }
+
+session_script() {  # VIEWS [HELD_OUT]: of so many views, one of which is kept from the solver
+  local view
+  for view in $(seq "$1"); do
+    echo 'step { next_pose {} }' 'step { sweep {} }' \
+      "step { capture { heldout: $([ "$view" = "${2-}" ] && echo true || echo false) } }"
+  done
+  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
+}
+
+# NAME SPEED [OPTION...]: the session of $scratch/session.textproto into $scratch/NAME, with $services
+# and a simulator of its own.
+begin_session() {
+  local name=$1 speed=$2 process
+  shift 2
+  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process" "$@"; done
+  start simulator "$bin/rgbdt-simulator" --speed "$speed" --rig "$scratch/rig.textproto" "$@"
+  helper ready "${services[@]}" simulator || fail "not every process came up"
+  start "$name" "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/rig.textproto" \
+    --out "$scratch/$name" "$@"
+}
+
+end_session() {  # NAME
+  wait_for "$1" || fail "the session ended with exit code $?"
+  stop TERM "${services[@]}" simulator
+}
 
 at_other() { nsenter "--net=$other_machine" "$@"; }
 

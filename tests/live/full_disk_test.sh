@@ -12,7 +12,6 @@ fi
 # shellcheck source=tests/live/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-services=(assembler detector solver fuser)
 disk=$scratch/disk
 session=$disk/session
 

@@ -9,53 +9,30 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 views=4
 speed=6
-services=(assembler detector solver fuser)
 log=$scratch/keyed.lcmlog
 
-write_script() {
-  for _ in $(seq "$views"); do
-    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
-  done
-  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
-}
-
-start_services() {  # OPTION...
+start_services() {
   local process
-  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process" "$@"; done
+  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process"; done
 }
 
-begin() {  # NAME OPTION...: a session, with processes of its own
-  local name=$1
-  shift
-  start_services "$@"
-  start simulator "$bin/rgbdt-simulator" --speed "$speed" --rig "$scratch/rig.textproto" "$@"
-  helper ready "${services[@]}" simulator || fail "not every process came up"
-  start "$name" "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/rig.textproto" \
-    --out "$scratch/$name" "$@"
-}
-
-end() {  # NAME
-  wait_for "$1" || fail "the session ended with exit code $?"
-  stop TERM "${services[@]}" simulator
-}
-
-write_script >"$scratch/session.textproto"
+session_script "$views" >"$scratch/session.textproto"
 "$bin/rgbdt" key "$scratch/rig.key" >"$scratch/key.log" || fail "no key was made"
 [ "$(stat -c %a "$scratch/rig.key")" = 600 ] || fail "others may read the key"
 
 echo "== without a key"
-begin plain
-end plain
+begin_session plain "$speed"
+end_session plain
 
 echo "== with a key, and unsigned commands"
 start logger nice -n -10 lcm-logger --quiet --force "--lcm-url=$LCM_DEFAULT_URL" "$log"
-begin keyed --key "$scratch/rig.key"
+begin_session keyed "$speed" --key "$scratch/rig.key"
 until [ -s "$scratch/keyed/views/0001/view.textproto" ]; do
   kill -0 "${pids[keyed]}" || fail "the session ended before its first view"
   sleep 0.05
 done
 helper forge "${services[@]}" simulator session || fail "not every process named what is unsigned"
-end keyed
+end_session keyed
 stop INT logger
 helper keep_signed "$log" "$scratch/signed.lcmlog" >"$scratch/dropped"
 [ "$(cat "$scratch/dropped")" -gt 10 ] || fail "the forged messages are not in the log"

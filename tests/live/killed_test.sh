@@ -12,7 +12,6 @@ kills=${RGBDT_KILLS:-5}
 seed=${RGBDT_SEED:-1}
 views=8
 speed=4
-services=(assembler detector solver fuser)
 
 write_script() {
   local view

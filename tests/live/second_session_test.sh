@@ -8,28 +8,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 views=4
 speed=6
-services=(assembler detector solver fuser)
-
-write_script() {
-  for _ in $(seq "$views"); do
-    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
-  done
-  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
-}
-
-begin() {  # NAME: a session, with processes of its own
-  local process
-  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process"; done
-  start simulator "$bin/rgbdt-simulator" --speed "$speed" --rig "$scratch/rig.textproto"
-  helper ready "${services[@]}" simulator || fail "not every process came up"
-  start "$1" "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/rig.textproto" \
-    --out "$scratch/$1"
-}
-
-end() {  # NAME
-  wait_for "$1" || fail "the session ended with exit code $?"
-  stop TERM "${services[@]}" simulator
-}
 
 refused() {  # NAME ARGUMENT...: a session that is refused while the one called disturbed goes on
   local name=$1 code=0
@@ -43,21 +21,21 @@ refused() {  # NAME ARGUMENT...: a session that is refused while the one called 
   kill -0 "${pids[disturbed]}" || fail "the first session had ended: $name came too late"
 }
 
-write_script >"$scratch/session.textproto"
+session_script "$views" >"$scratch/session.textproto"
 echo "== undisturbed"
-begin undisturbed
-end undisturbed
+begin_session undisturbed "$speed"
+end_session undisturbed
 if grep 'another rgbdt-session' "$scratch/undisturbed.log"; then fail "there was no other"; fi
 
 echo "== a second and a third session come"
-begin disturbed
+begin_session disturbed "$speed"
 until [ -s "$scratch/disturbed/views/0002/view.textproto" ]; do
   kill -0 "${pids[disturbed]}" || fail "the session ended before its second view"
   sleep 0.05
 done
 refused second "$scratch/session.textproto"
 refused third
-end disturbed
+end_session disturbed
 [ "$(grep -c 'another rgbdt-session is on this bus' "$scratch/disturbed.log")" = 2 ] ||
   fail "the first session did not warn of each of the others, once"
 cmp "$scratch/undisturbed/calibration.textproto" "$scratch/disturbed/calibration.textproto" ||

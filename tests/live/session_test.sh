@@ -8,7 +8,6 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 views=5
 speed=6
-services=(assembler detector solver fuser)
 session=$scratch/session
 log=$scratch/session.lcmlog
 

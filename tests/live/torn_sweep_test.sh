@@ -7,29 +7,6 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 views=4
-services=(assembler detector solver fuser)
-
-write_script() {
-  local view
-  for view in $(seq "$views"); do
-    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
-  done
-  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
-}
-
-start_session() {  # NAME SPEED: processes of its own
-  local process
-  for process in "${services[@]}"; do start "$process" "$bin/rgbdt-$process"; done
-  start simulator "$bin/rgbdt-simulator" --speed "$2" --rig "$scratch/rig.textproto"
-  helper ready "${services[@]}" simulator || fail "not every process came up"
-  start "$1" "$bin/rgbdt-session" "$scratch/session.textproto" --rig "$scratch/rig.textproto" \
-    --out "$scratch/$1"
-}
-
-end_session() {  # NAME
-  wait_for "$1" || fail "the session ended with exit code $?"
-  stop TERM "${services[@]}" simulator
-}
 
 until_told() {  # NAME WORDS: as the session's progress has it
   until grep -qs "$2" "$scratch/$1.log"; do
@@ -45,15 +22,15 @@ kill_in_sweep_of() {  # VIEW PROCESS: and starts it anew, before the sweep has e
   until_told disturbed "view $1: rgbdt-$2 was started anew; the sweep is taken again"
 }
 
-write_script >"$scratch/session.textproto"
+session_script "$views" >"$scratch/session.textproto"
 echo "== undisturbed"
-start_session undisturbed 6
+begin_session undisturbed 6
 end_session undisturbed
 if grep 'the sweep is taken again' "$scratch/undisturbed.log"; then fail "for no reason"; fi
 
 # Slow enough that a process that is started anew has the rig long before the sweep ends.
 echo "== disturbed"
-start_session disturbed 2
+begin_session disturbed 2
 kill_in_sweep_of 0002 assembler
 kill_in_sweep_of 0003 detector
 end_session disturbed

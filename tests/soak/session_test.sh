@@ -13,19 +13,10 @@ company=$2
 views=4
 speed=4
 garbage_hz=1000
-services=(assembler detector solver fuser)
 case $company in
   garbage | busy) ;;
   *) fail "which company? garbage or busy" ;;
 esac
-
-write_script() {
-  local view
-  for view in $(seq "$views"); do
-    echo 'step { next_pose {} }' 'step { sweep {} }' 'step { capture {} }'
-  done
-  echo 'step { solve {} }' 'step { evaluate {} }' 'step { save {} }'
-}
 
 begin_company() {
   local i
@@ -74,7 +65,7 @@ run_session() {  # NAME
   [ "$lost" = 0 ] || fail "$lost views are missing"
 }
 
-write_script >"$scratch/session.textproto"
+session_script "$views" >"$scratch/session.textproto"
 echo "== alone"
 run_session alone
 echo "== $company"
