@@ -337,12 +337,16 @@ bool RightHanded(const Target& target, const Pixels& corners) {
 
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
                                           const std::vector<Eigen::Vector2d>& corners,
-                                          double most_off) {
+                                          double most_off, const Eigen::Vector3d& bow_m) {
   if (corners.size() != target.InnerCorners().size()) return std::nullopt;
-  const Seen seen = SeenOf(target, corners);
+  Seen seen = SeenOf(target, corners);
   if (seen.corners.size() < 4 || !RightHanded(target, corners)) return std::nullopt;
+  const std::vector<Rigid3> by_plane = FirstPoses(camera, seen.model, seen.corners);
+  for (Eigen::Vector3d& point : seen.model) {
+    point.z() = target.BowFactors(point.head<2>()).dot(bow_m);
+  }
   std::vector<Fit> fits;
-  for (const Rigid3& first : FirstPoses(camera, seen.model, seen.corners)) {
+  for (const Rigid3& first : by_plane) {
     const auto fit = Refine(camera, seen.model, seen.corners, first);
     if (fit) fits.push_back(*fit);
   }

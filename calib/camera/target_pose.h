@@ -36,16 +36,20 @@ std::vector<Rigid3> PlanarPoses(const std::vector<Eigen::Vector3d>& model,
 /// as on a board whose printed side faces the camera. Corners may be NaN where they were not seen.
 bool RightHanded(const Target& target, const std::vector<Eigen::Vector2d>& corners);
 
+/// Of the corners that were seen: so large a share may lie off the rest.
+inline constexpr double kMostCornersOff = 0.2;
+
 /// Least squares of the reprojection error in pixels of the distorted image, through the whole lens
 /// model, from both of the planar pose's solutions (Collins and Bartoli 2014, IPPE); the better one
 /// is kept. Robust: Cauchy weights with the residuals' own scale, then corners beyond 4 sigma are
 /// left out. `corners`: inner corners [px] in the target's order, NaN where one was not seen; the
 /// pose follows from the others. Nothing where no flat board fits: another number of corners, fewer
 /// than 4 seen, a mirrored order, corners where the lens model ends, all on one line, or more than
-/// a fifth of them off the rest.
+/// `most_off` of them off the rest. `bow_m`: how the board is bent (Target::BowFactors).
 std::optional<CornerPose> PoseFromCorners(const Camera& camera, const Target& target,
                                           const std::vector<Eigen::Vector2d>& corners,
-                                          double most_off = 0.2);
+                                          double most_off = kMostCornersOff,
+                                          const Eigen::Vector3d& bow_m = {0, 0, 0});
 
 /// Why corners that were found are no flat board's, and what to look at: the lens, of which is said
 /// what cannot be right.

@@ -39,9 +39,13 @@ double BoardPriors::Sigma(int unknown) const {
   return outline_sigma_m;
 }
 
+Eigen::Vector3d BowOf(const std::array<double, kSharedUnknowns>& shared) {
+  return {shared[kBowX], shared[kTwist], shared[kBowY]};
+}
+
 double BowAt(const Target& target, const std::array<double, kSharedUnknowns>& shared,
              const Eigen::Vector2d& at) {
-  return target.BowFactors(at).dot(Eigen::Vector3d(shared[kBowX], shared[kTwist], shared[kBowY]));
+  return target.BowFactors(at).dot(BowOf(shared));
 }
 
 Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kSharedUnknowns>& shared,

@@ -104,8 +104,10 @@ struct RangeTerms {
 /// are enlarged by this factor.
 inline constexpr double kCornerSigmaInflation = 1.4;
 
-/// How far behind its mean plane a board lies at (x, y) of the target (Target::BowFactors), by
-/// three of the shared unknowns, and its slope along the target's x and y.
+/// The three of the shared unknowns that are the board's shape (Target::BowFactors) [m].
+Eigen::Vector3d BowOf(const std::array<double, kSharedUnknowns>& shared);
+/// How far behind its mean plane a board lies at (x, y) of the target, by these, and its slope
+/// along the target's x and y.
 double BowAt(const Target& target, const std::array<double, kSharedUnknowns>& shared,
              const Eigen::Vector2d& at);
 Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kSharedUnknowns>& shared,

@@ -147,13 +147,15 @@ CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& 
   return views;
 }
 
-CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target) {
+CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target,
+                       const Eigen::Vector3d& bow_m) {
   CameraSpec spec = *camera.spec;
   spec.lens = lens;
   const Camera by_lens(spec);
   for (CameraView& view : camera.all) {
     if (!view.usable() || !view.image->pose) continue;
-    const auto found = PoseFromCorners(by_lens, target, view.image->corners);
+    const auto found =
+        PoseFromCorners(by_lens, target, view.image->corners, kMostCornersOff, bow_m);
     if (!found) continue;
     auto edges = std::make_shared<ImageEdges>(*view.image);
     const bool half_turn_known = edges->pose->half_turn_known;

@@ -56,7 +56,9 @@ struct CameraViews {
 CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections);
 
 /// The same views with the target's pose in each image, and how exact its corners are, by another
-/// lens than the one that they were detected with.
-CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target);
+/// lens than the one that they were detected with, and on a board of this shape
+/// (Target::BowFactors).
+CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target,
+                       const Eigen::Vector3d& bow_m = {0, 0, 0});
 
 }  // namespace rgbdt

@@ -34,8 +34,8 @@ std::optional<int> SideBetween(const Target& target, const Eigen::Vector2d& in,
 
 class ViewCrossings {
  public:
-  ViewCrossings(const Target& target, double beams_meet_m, const SampledView& view)
-      : target_(target), beams_meet_m_(beams_meet_m), view_(view) {
+  ViewCrossings(const TrueBoard& board, double beams_meet_m, const SampledView& view)
+      : board_(board), beams_meet_m_(beams_meet_m), view_(view) {
     const BeamWindow& beams = view.beams;
     for (int row = 0; row < beams.rows; ++row) {
       AddLine(beams.At(row, 0), 1, beams.columns, true);
@@ -66,7 +66,7 @@ class ViewCrossings {
   void Add(std::size_t in, std::size_t out, bool along_row) {
     const Eigen::Vector2d a = Place(in);
     const Eigen::Vector2d b = Place(out);
-    const auto side = SideBetween(target_, a, b);
+    const auto side = SideBetween(board_.target, a, b);
     if (!side) return;
     const auto columns = static_cast<std::size_t>(view_.beams.columns);
     Leave leave;
@@ -79,7 +79,8 @@ class ViewCrossings {
   }
 
   Eigen::Vector2d Place(std::size_t beam) const {
-    return MeetPlane(view_.lidar_from_target, view_.beams.directions[beam], beams_meet_m_).place;
+    return MeetBoard(board_, view_.lidar_from_target, view_.beams.directions[beam], beams_meet_m_)
+        .place;
   }
 
   void Count() {
@@ -95,7 +96,7 @@ class ViewCrossings {
     }
   }
 
-  const Target& target_;
+  const TrueBoard& board_;
   double beams_meet_m_;
   const SampledView& view_;
   std::vector<Leave> leaves_;
@@ -103,8 +104,8 @@ class ViewCrossings {
 
 }  // namespace
 
-std::vector<Leave> LeavesOf(const Target& target, double beams_meet_m, const SampledView& view) {
-  return ViewCrossings(target, beams_meet_m, view).leaves();
+std::vector<Leave> LeavesOf(const TrueBoard& board, double beams_meet_m, const SampledView& view) {
+  return ViewCrossings(board, beams_meet_m, view).leaves();
 }
 
 }  // namespace rgbdt::study

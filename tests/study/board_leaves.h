@@ -20,6 +20,6 @@ struct Leave {
 };
 
 /// All that a view tells of the board's sides, but near its corners, where a side may be either.
-std::vector<Leave> LeavesOf(const Target& target, double beams_meet_m, const SampledView& view);
+std::vector<Leave> LeavesOf(const TrueBoard& board, double beams_meet_m, const SampledView& view);
 
 }  // namespace rgbdt::study

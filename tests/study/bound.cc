@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 // after what all views share.
 constexpr Index kClasses = 3, kThickness = kClasses, kRangeOffset = kThickness + 1;
 constexpr Index kDark = kRangeOffset + 1, kBeamsMeet = kDark + 1;
-constexpr Index kPrint = kBeamsMeet + 1, kRings = kPrint + 2;
+constexpr Index kPrint = kBeamsMeet + 1, kBow = kPrint + 2, kRings = kBow + 3;
 constexpr double kExactM = 1e-9;        // sigma of what is known
 constexpr Index kSides = 6, kOwn = 10;  // of a view: pose, then sides
 
@@ -41,9 +41,13 @@ MatrixXd ByDelta(const Rigid3& pose, const std::function<VectorXd(const Rigid3&)
   return jacobian;
 }
 
-VectorXd ProjectedCorners(const Camera& camera, const Target& target,
+Index CornerNumbers(const TrueBoard& board) {
+  return 2 * Index{board.target.corners_x()} * board.target.corners_y();
+}
+
+VectorXd ProjectedCorners(const Camera& camera, const TrueBoard& board,
                           const Rigid3& camera_from_target) {
-  const std::vector<Eigen::Vector3d> corners = target.InnerCorners();
+  const std::vector<Eigen::Vector3d> corners = board.InnerCorners();
   VectorXd pixels(2 * static_cast<Index>(corners.size()));
   for (std::size_t i = 0; i < corners.size(); ++i) {
     pixels.segment<2>(2 * static_cast<Index>(i)) =
@@ -53,14 +57,14 @@ VectorXd ProjectedCorners(const Camera& camera, const Target& target,
 }
 
 /// Derivatives of the corners' pixels by the lens's numbers.
-MatrixXd ByLens(const CameraSpec& spec, const Target& target, const Rigid3& camera_from_target) {
-  MatrixXd by(2 * Index{target.corners_x()} * target.corners_y(), kLensNumbers);
+MatrixXd ByLens(const CameraSpec& spec, const TrueBoard& board, const Rigid3& camera_from_target) {
+  MatrixXd by(CornerNumbers(board), kLensNumbers);
   const auto at = [&](Index number, double step) {
     CameraSpec changed = spec;
     LensNumbers numbers = NumbersOf(spec.lens);
     numbers[number] += step;
     changed.lens = WithNumbers(spec.lens, numbers);
-    return ProjectedCorners(Camera(changed), target, camera_from_target);
+    return ProjectedCorners(Camera(changed), board, camera_from_target);
   };
   for (Index i = 0; i < kLensNumbers; ++i) {
     const double step = i < 4 ? 1e-3 : 1e-6;
@@ -69,14 +73,16 @@ MatrixXd ByLens(const CameraSpec& spec, const Target& target, const Rigid3& came
   return by;
 }
 
-/// The same by the pattern's width or height.
-VectorXd ByPrint(const Camera& camera, Target target, const Rigid3& camera_from_target,
-                 Index axis) {
+/// Derivatives of what depends on the board by one of its numbers.
+VectorXd ByNumber(const TrueBoard& board, const std::function<double*(TrueBoard*)>& number,
+                  const std::function<VectorXd(const TrueBoard&)>& function) {
   constexpr double kStep = 1e-6;
-  target.print_scale[axis] += kStep;
-  const VectorXd more = ProjectedCorners(camera, target, camera_from_target);
-  target.print_scale[axis] -= 2 * kStep;
-  return (more - ProjectedCorners(camera, target, camera_from_target)) / (2 * kStep);
+  const auto at = [&](double step) {
+    TrueBoard changed = board;
+    *number(&changed) += step;
+    return function(changed);
+  };
+  return (at(kStep) - at(-kStep)) / (2 * kStep);
 }
 
 /// Of the length of a vector of zero mean: from so many draws.
@@ -108,7 +114,9 @@ class Bound {
     AddPrior(kDark, 1, std::max(kExactM, model.dark_range_sigma_m), &information_);
     AddPrior(kBeamsMeet, 1, std::max(kExactM, model.beams_meet_sigma_m), &information_);
     AddPrior(kRings, rings_, std::max(kExactM, model.ring_offset_sigma_m), &information_);
-    AddPrior(kPrint, 2, std::max(kExactM, session.rig.target.print_sigma), &information_);
+    const double print_sigma = session.rig.target.print_sigma;
+    AddPrior(kPrint, 2, std::max(kExactM, print_sigma), &information_);
+    AddPrior(kBow, 3, print_sigma > 0 ? kBowSigmaM : kExactM, &information_);
     for (std::size_t i = 0; i < session.rig.cameras.size(); ++i) {
       const LensUncertainty lens = session.rig.cameras[i].LensUncertaintyOrUsual();
       for (Index k = 0; k < kLensNumbers; ++k) {
@@ -167,41 +175,56 @@ class Bound {
   void AddCorners(const SampledView& view, std::size_t index, MatrixXd* information) const {
     const CameraSpec& spec = session_.true_cameras[index];
     const Camera camera(spec);
-    const Target& target = session_.true_target;
+    const TrueBoard& board = session_.true_board;
     const Rigid3& lidar_from_target = view.lidar_from_target;
     const Rigid3& camera_from_lidar = session_.truth.camera_from_lidar.at(spec.name);
-    MatrixXd j = MatrixXd::Zero(2 * Index{target.corners_x()} * target.corners_y(), shared_ + kOwn);
+    MatrixXd j = MatrixXd::Zero(CornerNumbers(board), shared_ + kOwn);
     j.middleCols<6>(CameraAt(index)) = ByDelta(camera_from_lidar, [&](const Rigid3& pose) {
-      return ProjectedCorners(camera, target, pose * lidar_from_target);
+      return ProjectedCorners(camera, board, pose * lidar_from_target);
     });
     j.middleCols<6>(shared_) = ByDelta(lidar_from_target, [&](const Rigid3& pose) {
-      return ProjectedCorners(camera, target, camera_from_lidar * pose);
+      return ProjectedCorners(camera, board, camera_from_lidar * pose);
     });
     j.middleCols<kLensNumbers>(CameraAt(index) + 6) =
-        ByLens(spec, target, camera_from_lidar * lidar_from_target);
+        ByLens(spec, board, camera_from_lidar * lidar_from_target);
+    const auto of_board = [&](const TrueBoard& of) {
+      return ProjectedCorners(camera, of, camera_from_lidar * lidar_from_target);
+    };
     for (Index axis = 0; axis < 2; ++axis) {
-      j.col(kPrint + axis) = ByPrint(camera, target, camera_from_lidar * lidar_from_target, axis);
+      j.col(kPrint + axis) = ByNumber(
+          board, [=](TrueBoard* of) { return &of->target.print_scale[axis]; }, of_board);
     }
-    const auto corners = TrueCorners(spec, target, camera_from_lidar * lidar_from_target);
+    AddBow(of_board, &j);
+    const auto corners = TrueCorners(spec, board, camera_from_lidar * lidar_from_target);
     *information +=
         j.transpose() * CornerCovariance(corners.value(), CornerSigma(spec.kind)).ldlt().solve(j);
   }
 
   PlanePlace Meet(const SampledView& view, std::size_t beam) const {
-    return MeetPlane(view.lidar_from_target, view.beams.directions[beam],
+    return MeetBoard(session_.true_board, view.lidar_from_target, view.beams.directions[beam],
                      session_.model.beams_meet_m);
   }
 
-  // What a view's beams have, by the board's pose and by where beams meet.
-  using OfBeams = std::function<VectorXd(const Rigid3& pose, double beams_meet_m)>;
-  void AddPoseAndMeet(const SampledView& view, const OfBeams& of, MatrixXd* j) const {
+  void AddBow(const std::function<VectorXd(const TrueBoard&)>& of_board, MatrixXd* j) const {
+    for (Index k = 0; k < 3; ++k) {
+      j->col(kBow + k) = ByNumber(
+          session_.true_board, [=](TrueBoard* of) { return &of->bow_m[k]; }, of_board);
+    }
+  }
+
+  // What a view's beams have, by the board's shape and pose and by where beams meet.
+  using OfBeams =
+      std::function<VectorXd(const TrueBoard& board, const Rigid3& pose, double beams_meet_m)>;
+  void AddBoardAndMeet(const SampledView& view, const OfBeams& of, MatrixXd* j) const {
     constexpr double kStepM = 1e-5;
     const double meet = session_.model.beams_meet_m;
+    const TrueBoard& board = session_.true_board;
+    const Rigid3& at = view.lidar_from_target;
     j->middleCols<6>(shared_) =
-        ByDelta(view.lidar_from_target, [&](const Rigid3& pose) { return of(pose, meet); });
+        ByDelta(at, [&](const Rigid3& pose) { return of(board, pose, meet); });
     j->col(kBeamsMeet) =
-        (of(view.lidar_from_target, meet + kStepM) - of(view.lidar_from_target, meet - kStepM)) /
-        (2 * kStepM);
+        (of(board, at, meet + kStepM) - of(board, at, meet - kStepM)) / (2 * kStepM);
+    AddBow([&](const TrueBoard& bent) { return of(bent, at, meet); }, j);
   }
 
   // Beams on the board whose ranges are trusted.
@@ -226,37 +249,38 @@ class Bound {
     j.col(kRangeOffset).setConstant(-1);
     for (std::size_t i = 0; i < inner.size(); ++i) {
       const auto row = static_cast<Index>(i);
-      j(row, kDark) = IsBlack(session_.true_target, Meet(view, inner[i]).place) ? 1 : 0;
+      j(row, kDark) = IsBlack(session_.true_board.target, Meet(view, inner[i]).place) ? 1 : 0;
       if (rings_ > 0) j(row, kRings + view.beams.ring[inner[i]]) = -1;
     }
-    const auto ranges = [&](const Rigid3& pose, double beams_meet_m) {
+    const auto ranges = [&](const TrueBoard& board, const Rigid3& pose, double beams_meet_m) {
       VectorXd of(static_cast<Index>(inner.size()));
       for (std::size_t i = 0; i < inner.size(); ++i) {
         of[static_cast<Index>(i)] =
-            MeetPlane(pose, view.beams.directions[inner[i]], beams_meet_m).range_m;
+            MeetBoard(board, pose, view.beams.directions[inner[i]], beams_meet_m).range_m;
       }
       return of;
     };
-    AddPoseAndMeet(view, ranges, &j);
+    AddBoardAndMeet(view, ranges, &j);
     const double sigma = session_.model.range_sigma_m;
     *information += j.transpose() * j / (sigma * sigma);
   }
 
   void AddCrossings(const SampledView& view, MatrixXd* information) const {
     const std::vector<Leave> leaves =
-        LeavesOf(session_.rig.target, session_.model.beams_meet_m, view);
+        LeavesOf(session_.true_board, session_.model.beams_meet_m, view);
     const auto count = static_cast<Index>(leaves.size());
     MatrixXd j = MatrixXd::Zero(count, shared_ + kOwn);
-    const auto places = [&](const Rigid3& pose, double beams_meet_m) {
+    const auto places = [&](const TrueBoard& board, const Rigid3& pose, double beams_meet_m) {
       VectorXd of(count);
       for (Index i = 0; i < count; ++i) {
         const Leave& leave = leaves[static_cast<std::size_t>(i)];
-        of[i] = SideNormal(leave.side)
-                    .dot(MeetPlane(pose, view.beams.directions[leave.last], beams_meet_m).place);
+        of[i] =
+            SideNormal(leave.side)
+                .dot(MeetBoard(board, pose, view.beams.directions[leave.last], beams_meet_m).place);
       }
       return of;
     };
-    AddPoseAndMeet(view, places, &j);
+    AddBoardAndMeet(view, places, &j);
     for (Index i = 0; i < count; ++i) {
       const Leave& leave = leaves[static_cast<std::size_t>(i)];
       const PlanePlace beam = Meet(view, leave.last);

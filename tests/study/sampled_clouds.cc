@@ -129,9 +129,9 @@ Cloud EmptyCloud(const BeamWindow& beams) {
 
 class CloudSampler {
  public:
-  CloudSampler(const Target& target, const Rigid3& lidar_from_target, const BeamModel& model,
+  CloudSampler(const TrueBoard& board, const Rigid3& lidar_from_target, const BeamModel& model,
                const ClassShifts& shifts, const Noise& noise)
-      : target_(target),
+      : board_(board),
         lidar_from_target_(lidar_from_target),
         model_(model),
         noise_(noise),
@@ -152,11 +152,11 @@ class CloudSampler {
   };
 
   Return Shoot(const Eigen::Vector3d& direction, int ring) {
-    const PlanePlace beam = MeetPlane(lidar_from_target_, direction, model_.beams_meet_m);
+    const PlanePlace beam = MeetBoard(board_, lidar_from_target_, direction, model_.beams_meet_m);
     Return back;
     back.range_m = Range(beam, ring, &back.on);
     if (std::isnan(back.range_m)) return back;
-    const bool black = IsBlack(target_, beam.place);
+    const bool black = IsBlack(board_.target, beam.place);
     const double grey = back.on ? (black ? kBlack : kWhite) : kGrey;
     if (back.on && black) back.range_m += model_.dark_range_m;
     back.intensity = std::clamp(grey + kIntensitySigma * noise_.Normal(kShades + next_), 0.0, 1.0);
@@ -200,12 +200,12 @@ class CloudSampler {
 
   // How far a beam lies beyond a side that seems displaced.
   double Beyond(const PlanePlace& beam, int side, double blur) const {
-    return SideNormal(side).dot(beam.place) - SideDistance(target_, side) -
+    return SideNormal(side).dot(beam.place) - SideDistance(board_.target, side) -
            PerRadian(beam, side) * (shift_[static_cast<std::size_t>(side)] + blur) -
            PerThickness(beam, side) * model_.thickness_m;
   }
 
-  const Target& target_;
+  const TrueBoard& board_;
   const Rigid3& lidar_from_target_;
   const BeamModel& model_;
   const Noise& noise_;
@@ -216,8 +216,8 @@ class CloudSampler {
 
 }  // namespace
 
-PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction,
-                     double beams_meet_m) {
+PlanePlace MeetBoard(const TrueBoard& board, const Rigid3& lidar_from_target,
+                     const Eigen::Vector3d& direction, double beams_meet_m) {
   const Eigen::Quaterniond target_from_lidar = lidar_from_target.rotation.conjugate();
   const double height = -beams_meet_m * direction.z() / direction.head<2>().norm();
   const Eigen::Vector3d origin =
@@ -225,8 +225,12 @@ PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& dir
   PlanePlace beam;
   beam.direction = target_from_lidar * direction;
   beam.ahead = beam.direction.z() > 0.02;
-  beam.range_m = -origin.z() / beam.direction.z();
-  beam.place = (origin + beam.range_m * beam.direction).head<2>();
+  // A millimetre of shape moves the place by less than its own slope of that.
+  for (int step = 0; step < 3; ++step) {
+    const double behind = step == 0 ? 0 : board.Behind(beam.place);
+    beam.range_m = (behind - origin.z()) / beam.direction.z();
+    beam.place = (origin + beam.range_m * beam.direction).head<2>();
+  }
   return beam;
 }
 
@@ -265,12 +269,12 @@ ClassShifts DrawClassShifts(const BeamModel& model, const Noise& noise) {
   return shifts;
 }
 
-SampledCloud SampleCloud(const simulate::Options& lidar, const Target& target,
+SampledCloud SampleCloud(const simulate::Options& lidar, const TrueBoard& board,
                          const Rigid3& lidar_from_target, const BeamModel& model,
                          const ClassShifts& shifts, const Noise& noise) {
   SampledCloud sampled;
-  sampled.beams = WindowAbout(Grid(lidar), target, lidar_from_target);
-  CloudSampler sampler(target, lidar_from_target, model, shifts, noise);
+  sampled.beams = WindowAbout(Grid(lidar), board.target, lidar_from_target);
+  CloudSampler sampler(board, lidar_from_target, model, shifts, noise);
   sampled.behind = sampler.behind();
   sampled.cloud = EmptyCloud(sampled.beams);
   sampled.beams.on.resize(sampled.beams.directions.size());

@@ -10,6 +10,7 @@
 #include "calib/model/view_detection.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/options.h"
+#include "tests/study/true_board.h"
 
 namespace rgbdt::study {
 
@@ -49,7 +50,7 @@ struct BeamWindow {
   }
 };
 
-/// Where a beam meets the board's plane; target frame.
+/// Where a beam meets the board, or beyond it its surface drawn out; target frame.
 struct PlanePlace {
   Eigen::Vector2d place{0, 0};
   double range_m = 0;
@@ -57,8 +58,8 @@ struct PlanePlace {
   bool ahead = false;                  ///< false: it does not meet the plane's front
 };
 /// `beams_meet_m`: of the LIDAR (BeamModel); the beam starts at its height on the axis.
-PlanePlace MeetPlane(const Rigid3& lidar_from_target, const Eigen::Vector3d& direction,
-                     double beams_meet_m);
+PlanePlace MeetBoard(const TrueBoard& board, const Rigid3& lidar_from_target,
+                     const Eigen::Vector3d& direction, double beams_meet_m);
 
 /// Whether a place on the board [m] is black as it is printed: every other square, and the border.
 bool IsBlack(const Target& target, const Eigen::Vector2d& place);
@@ -84,9 +85,8 @@ struct SampledCloud {
 };
 
 /// The beams of `lidar` about the board, each on the board or beyond it by where it meets the
-/// board's plane, the sides displaced by what `model`, `shifts` and `noise` draw. `target`: as it
-/// was printed.
-SampledCloud SampleCloud(const simulate::Options& lidar, const Target& target,
+/// board, the sides displaced by what `model`, `shifts` and `noise` draw.
+SampledCloud SampleCloud(const simulate::Options& lidar, const TrueBoard& board,
                          const Rigid3& lidar_from_target, const BeamModel& model,
                          const ClassShifts& shifts, const simulate::Noise& noise);
 

@@ -59,15 +59,20 @@ constexpr double kSideSigmaPx = 0.1;  // of a fitted side's end, across it
 constexpr int kBandHalf = 1;          // edges of rendered images are some 4 px wide, too
 
 // Some two points a pixel; from side 0's first corner on.
-std::array<Chain, 4> OutlineChains(const Camera& camera, const Target& target,
+std::array<Chain, 4> OutlineChains(const Camera& camera, const TrueBoard& board,
                                    const Rigid3& camera_from_target) {
-  const auto corners = target.OutlineCorners();
+  const auto corners = board.target.OutlineCorners();
   std::array<Chain, 4> chains;
   for (std::size_t side = 0; side < 4; ++side) {
-    const Eigen::Vector3d from = camera_from_target * corners[side];
-    const Eigen::Vector3d to = camera_from_target * corners[(side + 1) % 4];
-    const double length = (*camera.Project(to) - *camera.Project(from)).norm();
-    chains[side] = ProjectSegment(camera, from, to, std::max(8, static_cast<int>(2 * length)));
+    const Eigen::Vector3d& from = corners[side];
+    const Eigen::Vector3d& to = corners[(side + 1) % 4];
+    const auto project = [&](const Eigen::Vector3d& flat) {
+      return *camera.Project(camera_from_target * board.Bent(flat));
+    };
+    const int steps = std::max(8, static_cast<int>(2 * (project(to) - project(from)).norm()));
+    for (int i = 0; i <= steps; ++i) {
+      chains[side].push_back(project(from + static_cast<double>(i) / steps * (to - from)));
+    }
   }
   return chains;
 }
@@ -108,10 +113,10 @@ ImageSide FittedSide(const Chain& chain, double first_px, double last_px) {
   return side;
 }
 
-void AddOutline(const CameraSpec& spec, const Target& target, const Rigid3& camera_from_target,
+void AddOutline(const CameraSpec& spec, const TrueBoard& board, const Rigid3& camera_from_target,
                 const simulate::Noise& noise, ImageEdges* edges) {
   const Camera camera(spec);
-  const auto chains = OutlineChains(camera, target, camera_from_target);
+  const auto chains = OutlineChains(camera, board, camera_from_target);
   edges->edge_pixels = BandPixels(chains);
   for (std::size_t side = 0; side < 4; ++side) {
     edges->outline_corners[side] = chains[side].front();
@@ -144,15 +149,15 @@ CameraSpec SpecOf(const simulate::CameraOptions& camera) {
 }
 
 std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& spec,
-                                                        const Target& target,
+                                                        const TrueBoard& board,
                                                         const Rigid3& camera_from_target) {
   const Camera camera(spec);
-  for (const Eigen::Vector3d& corner : target.OutlineCorners()) {
-    const auto pixel = camera.Project(camera_from_target * corner);
+  for (const Eigen::Vector3d& corner : board.target.OutlineCorners()) {
+    const auto pixel = camera.Project(camera_from_target * board.Bent(corner));
     if (!pixel || !camera.Contains(*pixel)) return std::nullopt;
   }
   std::vector<Eigen::Vector2d> corners;
-  for (const Eigen::Vector3d& corner : target.InnerCorners()) {
+  for (const Eigen::Vector3d& corner : board.InnerCorners()) {
     const auto pixel = camera.Project(camera_from_target * corner);
     if (!pixel) return std::nullopt;
     corners.push_back(*pixel);
@@ -183,9 +188,9 @@ std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& 
 }
 
 std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given,
-                                       const Target& target, const Rigid3& camera_from_target,
+                                       const TrueBoard& board, const Rigid3& camera_from_target,
                                        const simulate::Noise& noise) {
-  const auto truth = TrueCorners(spec, target, camera_from_target);
+  const auto truth = TrueCorners(spec, board, camera_from_target);
   if (!truth) return std::nullopt;
   constexpr std::uint64_t kCorners = 16;  // numbers before are the sides'
   const bool color = spec.kind == CameraKind::kColor;
@@ -199,7 +204,7 @@ std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given
   if (turned) std::reverse(edges.corners.begin(), edges.corners.end());
   CameraSpec with_given = spec;
   with_given.lens = given;
-  Target as_squares_say = target;
+  Target as_squares_say = board.target;
   as_squares_say.print_scale = {1, 1};
   const auto pose = PoseFromCorners(Camera(with_given), as_squares_say, edges.corners);
   if (!pose) return std::nullopt;
@@ -207,7 +212,7 @@ std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given
   edges.pose->half_turn_known = color;
   edges.corner_sigma_px = pose->corner_sigma_px;
   const Rigid3 half_turn = RotationAbout(Eigen::Vector3d::UnitZ(), turned ? kPi : 0);
-  AddOutline(spec, target, camera_from_target * half_turn, noise, &edges);
+  AddOutline(spec, board, camera_from_target * half_turn, noise, &edges);
   return edges;
 }
 

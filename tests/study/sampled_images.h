@@ -8,6 +8,7 @@
 #include "calib/model/view_detection.h"
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/options.h"
+#include "tests/study/true_board.h"
 
 namespace rgbdt::study {
 
@@ -21,7 +22,7 @@ CameraSpec SpecOf(const simulate::CameraOptions& camera);
 
 /// The true inner corners [px]; nothing where one of the board's is outside the image.
 std::optional<std::vector<Eigen::Vector2d>> TrueCorners(const CameraSpec& spec,
-                                                        const Target& target,
+                                                        const TrueBoard& board,
                                                         const Rigid3& camera_from_target);
 
 /// Of all corners' x and y, one after the other [px^2]: each has a noise of its own, and an affine
@@ -33,12 +34,12 @@ std::vector<Eigen::Vector2d> SampledCorners(const std::vector<Eigen::Vector2d>& 
                                             double sigma_px, const simulate::Noise& noise);
 
 /// All that a detector would make of the board in one image, which thinks that the lens is `given`
-/// and the pattern as large as its squares say, its corners with the noise of SampledCorners: pose,
-/// outline, edge pixels along it, and in colour the sides, each end off by some 0.1 px. What a
-/// thermal image does not tell, the half turn and the sides, stays unknown. Nothing where the board
-/// is not wholly in the image.
+/// and the board flat, its pattern as large as its squares say, its corners with the noise of
+/// SampledCorners: pose, outline, edge pixels along it, and in colour the sides, each end off by
+/// some 0.1 px. What a thermal image does not tell, the half turn and the sides, stays unknown.
+/// Nothing where the board is not wholly in the image.
 std::optional<ImageEdges> SampledEdges(const CameraSpec& spec, const Lens& given,
-                                       const Target& target, const Rigid3& camera_from_target,
+                                       const TrueBoard& board, const Rigid3& camera_from_target,
                                        const simulate::Noise& noise);
 
 /// How far detected corners are off, up to half a turn: root mean square along x or y [px].

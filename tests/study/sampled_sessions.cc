@@ -100,10 +100,14 @@ class SessionSampler {
     for (std::size_t i = 0; i < options_.further_lidars.size(); ++i) AddFurther(i);
     session_.true_cameras = session_.rig.cameras;
     session_.rig.target.print_sigma = sampled.print_sigma;
-    session_.true_target = session_.rig.target;
+    session_.true_board = session_.rig.target;
     const Noise print(seed, 0, "print");
-    session_.true_target.print_scale +=
+    session_.true_board.target.print_scale +=
         sampled.print_sigma * Eigen::Vector2d(print.Normal(0), print.Normal(1));
+    if (sampled.print_sigma > 0) {
+      session_.true_board.bow_m =
+          kBowSigmaM * Eigen::Vector3d(print.Normal(2), print.Normal(3), print.Normal(4));
+    }
     if (sampled.lenses_off) {
       for (CameraSpec& camera : session_.rig.cameras) camera = WithLensOff(camera, seed);
     }
@@ -129,7 +133,7 @@ class SessionSampler {
   CloudDetection LookAtCloud(const FurtherLidar& lidar, const LidarSpec& spec,
                              const Rigid3& reference_from_target, int pose) const {
     const SampledCloud cloud =
-        SampleCloud(lidar.options, session_.true_target,
+        SampleCloud(lidar.options, session_.true_board,
                     lidar.reference_from_lidar.Inverse() * reference_from_target, lidar.model,
                     lidar.shifts, Noise(lidar.options.seed, pose + 1, "sampled cloud"));
     BoardInCloudOptions detector;
@@ -149,7 +153,7 @@ class SessionSampler {
     view.heldout = IsHeldOut(index, sampled_.views, sampled_.heldout);
     view.lidar_from_target = BoardPose(options_, empty_, scanner_, renderers_, pose);
     SampledCloud cloud =
-        SampleCloud(options_, session_.true_target, view.lidar_from_target, session_.model, shifts_,
+        SampleCloud(options_, session_.true_board, view.lidar_from_target, session_.model, shifts_,
                     Noise(options_.seed, pose + 1, "sampled cloud"));
     view.beams = std::move(cloud.beams);
     view.behind = cloud.behind;
@@ -184,7 +188,7 @@ class SessionSampler {
     detection.utime = kJune2015 + pose;
     const Noise noise(options_.seed, pose + 1, "sampled " + camera.name);
     detection.edges = SampledEdges(
-        camera, given, session_.true_target,
+        camera, given, session_.true_board,
         session_.truth.camera_from_lidar.at(camera.name) * view.lidar_from_target, noise);
     if (!detection.edges) detection.why_not = "no pose from the corners";
     return detection;

@@ -20,8 +20,8 @@ struct SampledOptions {
   double range_offset_m = 0;
   /// The rig's lenses are off by what it says of them (LensOff); false: exact, and it says so.
   bool lenses_off = false;
-  /// The printed pattern's width and height are each off by this, relative (1 sigma), and the rig
-  /// says so; 0: exact.
+  /// The printed pattern's width and height are each off by this, relative (1 sigma), and the board
+  /// is not flat (kBowSigmaM); the rig says so. 0: as it was drawn.
   double print_sigma = 0;
   /// The LIDAR is off by what real ones are, see DrawBeamPhysics.
   bool physics = false;
@@ -53,7 +53,7 @@ struct SampledView {
 struct SampledSession {
   Rig rig;
   std::vector<CameraSpec> true_cameras;  ///< the rig's with their true lenses
-  Target true_target;                    ///< the rig's as it was printed
+  TrueBoard true_board;                  ///< the rig's as it is
   BeamModel model;
   Truth truth;
   std::vector<SampledView> views;

@@ -120,8 +120,8 @@ class JointSolver {
     state_ = result_.solution.state;
   }
 
-  // With the lenses and the print that a first solve finds: where these are wrong, corners seem
-  // worse than they are.
+  // With the lenses, the print and the board's shape that a first solve finds: where these are
+  // wrong, corners seem worse than they are.
   void PoseImagesAgain() {
     const auto& priors = Problem().lens_priors;
     const bool printed = Problem().target.print_sigma == 0;
@@ -129,7 +129,7 @@ class JointSolver {
     for (std::size_t c = 0; c < Joint().cameras.size(); ++c) {
       if (priors[c].isZero(0) && printed) continue;
       CameraViews& views = Joint().cameras[c].views;
-      views = PosedAgain(std::move(views), state_.lenses[c], target);
+      views = PosedAgain(std::move(views), state_.lenses[c], target, BowOf(state_.shared));
     }
     for (BoardView& view : Problem().views) {
       for (BoardImage& image : view.images) {
