@@ -3,7 +3,6 @@
 
 #include "calib/camera/pixels.h"
 #include "calib/files/schema/report_file.h"
-#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "services/nodes/internal/session_steps.h"
 #include "services/nodes/session_node.h"
@@ -108,7 +107,7 @@ void SessionNode::OnStartedAnew(const std::string& process) {
     case SessionStep::Kind::kCapture: {
       const bool swept = collector_.sweeps().Ended(sweep_utime_);
       if (process == "detector") answered_ |= IsDetected();  // its event alone is missing
-      if ((process == "detector" && !answered_) || (has_images && !view_saved_) ||
+      if ((process == "detector" && !answered_) || (has_images && !has_view_) ||
           (has_lines && !swept)) {
         TakeAgain(why, &restarts_, kMaxRestarts);
       }
@@ -146,7 +145,12 @@ void SessionNode::OnRequest(const SessionRequest& request) {
   if (!by_request_) throw InputError("a script leads this session; what is asked for is not done");
   if (Listens()) throw InputError("the session has not begun: it listens for another one");
   if (!started_) throw InputError("the session waits for: " + WhoIsNotReady());
-  if (!idle()) throw InputError("the session is busy; ask again when it is done");
+  if (!idle()) {
+    WriteToDisk();
+    const std::string trouble = unwritten_.Trouble();
+    throw InputError("the session is busy; ask again when it is done" +
+                     (trouble.empty() ? "" : "; " + trouble));
+  }
   failure_.clear();
   switch (request.request) {
     case SessionRequestKind::kNextPose:
@@ -173,19 +177,6 @@ void SessionNode::Append(SessionStep::Kind kind, bool heldout) {
   step.heldout = heldout;
   if (kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
   script_.steps.push_back(std::move(step));
-}
-
-// Corners for a view that is on disk: it is written once more, with them.
-void SessionNode::OnPicks(const CornerSelection& picks) {
-  const auto found = images_.find({picks.camera, picks.image_utime});
-  if (found == images_.end()) return;
-  View view = ReadView({directory_, rig_, {found->second}}, found->second);
-  auto& all = view.picks;
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](const CornerSelection& p) { return p.camera == picks.camera; }),
-            all.end());
-  all.push_back(picks);
-  WriteView(directory_, view);
 }
 
 void SessionNode::OnEvent(const SessionEvent& event) {
@@ -253,26 +244,6 @@ bool SessionNode::IsDetected() const {
   return detection != nullptr && IsCaptured(*detection);
 }
 
-// Once the view is on disk, its detection is, too.
-void SessionNode::SaveDetection(const std::string& view) {
-  const ViewDetection* detection = solver_views_.Find(view);
-  if (saved_.count(view) == 0 || detection == nullptr || !IsCaptured(*detection)) return;
-  try {
-    WriteDetection(directory_, *detection);
-  } catch (const std::exception& e) {
-    Fail(e.what());
-  }
-}
-
-void SessionNode::SaveLeftOut(const LeftOutViews& left_out) {
-  solver_views_.Set(left_out);
-  try {
-    WriteLeftOut(directory_, left_out);
-  } catch (const std::exception& e) {
-    Warn(e.what());
-  }
-}
-
 // By this session: another one's views are called the same.
 bool SessionNode::IsCaptured(const ViewDetection& detection) const {
   return std::any_of(captures_.begin(), captures_.end(), [&](const auto& capture) {
@@ -314,7 +285,7 @@ std::string SessionNode::WhoIsNotReady() const {
 
 std::string SessionNode::WhatIsMissing() const {
   const std::string wanted = AnsweredBy(step().kind);
-  if (answered_ && view_saved_) return "this process still lacks the view's DETECTION";
+  if (answered_ && has_view_) return "this process still lacks the view's DETECTION";
   if (answered_) return "this process still lacks " + collector_.Missing(rig_);
   const auto found = statuses_.find(wanted);
   if (step().kind == SessionStep::Kind::kNextPose) {

@@ -36,7 +36,7 @@ void SessionNode::OnCutOff(const std::string& process, Utime silence) {
   if (HasPart(process) && kind == SessionStep::Kind::kSweep) spoiled_ = why;
   const bool solves = kind == SessionStep::Kind::kSolve || kind == SessionStep::Kind::kEvaluate;
   if (process == "solver" && solves) RestoreSolver(why);
-  if (HasPart(process) && kind == SessionStep::Kind::kCapture && !(view_saved_ && IsDetected())) {
+  if (HasPart(process) && kind == SessionStep::Kind::kCapture && !(has_view_ && IsDetected())) {
     TakeAgain(why, &restarts_, kMaxRestarts);
   }
 }

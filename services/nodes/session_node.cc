@@ -62,33 +62,13 @@ Messages SessionNode::Handle(const Message& message) {
   return {};
 }
 
-void SessionNode::SaveView() {
-  if (finished_ || !collector_.active()) return;
-  const bool is_newest = collector_.capture().command == command_;
-  const auto view = collector_.Take(rig_);
-  if (!view) return;
-  const std::string torn = collector_.sweeps().WhyTorn(view->cloud.sweep_utime);
-  if (!torn.empty()) {
-    if (waiting_ && is_newest) TakeTornAgain(torn);
-    return;
-  }
-  try {
-    WriteView(directory_, *view);
-    view_saved_ = true;
-    saved_.insert(view->name);
-    for (const Image& image : view->images) images_[{image.camera, image.utime}] = view->name;
-    SaveDetection(view->name);
-  } catch (const std::exception& e) {
-    Fail(e.what());
-  }
-}
-
 Messages SessionNode::Advance(Utime now) {
   now_ = now;
   if (!began_) began_ = now;
   if (Listens() || (finished_ && !started_)) return std::exchange(events_, {});
   Messages out, next;
   if (rig_repeat_.IsDue(now)) out.push_back(RigText{0, rig_.hash, rig_.text});
+  if (unwritten_.IsDue(now)) WriteToDisk();
   try {
     AskWhetherBoardStands();
     next = GoOn();
@@ -108,7 +88,7 @@ Messages SessionNode::GoOn() {
   if (!waiting_) return Begin();
   if (!StepDone()) {
     if (!waiting_ || finished_) return {};  // it failed
-    const bool waits = step().kind == SessionStep::Kind::kWait;
+    const bool waits = step().kind == SessionStep::Kind::kWait || !unwritten_.empty();
     if (const std::string why = waits ? "" : timeout_.WhyOver(now_); !why.empty()) {
       const std::string clocks = ClockTrouble();
       Fail(why + "; " + WhatIsMissing() + (clocks.empty() ? "" : "; " + clocks));
@@ -196,6 +176,11 @@ bool SessionNode::IsHeldUp() {
   if (step().kind == SessionStep::Kind::kSweep && who.empty()) {
     if (HasDevices()) who = ClockTrouble();
     if (cut_off_ && now_ - *cut_off_ < kHeardAgain) who = "all that were cut off";
+    if (who.empty()) who = NoRoom();
+    if (by_request_ && !no_room_.empty()) {
+      Fail("no view is taken: " + no_room_);
+      return true;
+    }
   }
   if (who.empty()) {
     held_up_since_.reset();
@@ -266,7 +251,8 @@ void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
   }
   solver_views_.Drop(view_);
   std::error_code ignored;
-  if (saved_.erase(view_) != 0) std::filesystem::remove_all(directory_ / "views" / view_, ignored);
+  unwritten_.Drop(view_);
+  if (taken_.erase(view_) != 0) std::filesystem::remove_all(directory_ / "views" / view_, ignored);
   ++*tries;
   index_ = sweep;
   waiting_ = false;
@@ -274,7 +260,7 @@ void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
 }
 
 Messages SessionNode::BeginCapture() {
-  view_saved_ = false;
+  has_view_ = false;
   if (!spoiled_.empty()) {
     TakeAgain(spoiled_, &restarts_, kMaxRestarts);
     return {};
@@ -310,7 +296,7 @@ bool SessionNode::StepDone() {
     case SessionStep::Kind::kSave:
       return true;
     case SessionStep::Kind::kCapture:
-      return answered_ && view_saved_ && IsDetected();
+      return answered_ && has_view_ && IsDetected() && unwritten_.empty();
     case SessionStep::Kind::kSolve:
     case SessionStep::Kind::kEvaluate:
       return answered_ && SolverTookAll();
@@ -326,6 +312,11 @@ void SessionNode::SetEarlierResultsAside() {
 }
 
 void SessionNode::Save() {
+  WriteToDisk();
+  if (!unwritten_.empty()) {
+    Fail(unwritten_.Trouble());
+    return;
+  }
   if (!report_) {
     Fail("nothing to save: no report came from the solver; put solve before save in the script");
     return;
@@ -354,11 +345,14 @@ void SessionNode::Save() {
 
 void SessionNode::Fail(const std::string& why) {
   const bool leads = by_request_ && started_;
+  if (!leads) WriteToDisk();  // the last chance
   const std::string which = leads ? ""
                                   : "step " + std::to_string(index_ + 1) + " of " +
                                         std::to_string(script_.steps.size()) + ", ";
-  failure_ = which + (index_ < script_.steps.size() && started_ ? NameOf(step().kind) : "start") +
-             (view_.empty() ? "" : ", view " + view_) + ": " + why;
+  const bool in_step = index_ < script_.steps.size() && started_;
+  const bool of_next = in_step && !waiting_ && view_taken_;  // which has no name yet
+  failure_ = which + (in_step ? NameOf(step().kind) : "start") +
+             (view_.empty() || of_next ? "" : ", view " + view_) + ": " + why;
   PublishEvent(EventKind::kFailed, failure_, 1);
   finished_ = !leads;
   retakes_ = restarts_ = 0;
@@ -426,6 +420,9 @@ Status SessionNode::GetStatus() const {
                 : idle()    ? "waits for a person to ask for something (SESSION_REQUEST)"
                             : "step " + std::to_string(index_ + 1) + " of " +
                                std::to_string(script_.steps.size());
+  if (const std::string trouble = unwritten_.Trouble(); !trouble.empty()) {
+    status.text += "; " + trouble;
+  }
   // First, as another session tells no more than this text's beginning.
   if (!identity_.place.empty()) status.text = "writes " + identity_.place + "; " + status.text;
   return status;

@@ -13,6 +13,7 @@
 #include "services/nodes/other_sessions.h"
 #include "services/nodes/solver_views.h"
 #include "services/nodes/step_timeout.h"
+#include "services/nodes/unwritten_views.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
@@ -36,12 +37,16 @@ struct SessionProgress {
 /// on disk, solve and evaluate with the solver's. save writes the report, and the calibration of
 /// the cameras that were solved; results of an earlier run in the directory are kept aside
 /// (SetResultsAside), once the session begins. A failed event, neither an answer nor new
-/// progress in the step's time (StepTimeout), a camera that could not be solved, or a file that
-/// cannot be written ends the session with the reason; one that a person leads publishes the reason
+/// progress in the step's time (StepTimeout), a camera that could not be solved, or results that
+/// cannot be written end the session with the reason; one that a person leads publishes the reason
 /// and goes on. Each capture that a person asks for is followed by solve and evaluate, so that
 /// there always is a report. Corners that a person picks in an image of a view that is on disk are
 /// written to it, and once the detector has detected it again, a session that a person leads solves
 /// again.
+///
+/// A view that cannot be written stays in memory until it can (UnwrittenViews); its capture waits
+/// for that, however long. No sweep begins where one more view could not be written: a script waits
+/// for room, a person is refused with the reason.
 ///
 /// Two sessions on one bus would erase each other's views. For as long as its identity says it
 /// listens and sends nothing but its STATUS; hears it another one, it ends with the reason, and
@@ -144,6 +149,8 @@ class SessionNode : public Node {
   void SaveView();
   void SaveDetection(const std::string& view);
   void SaveLeftOut(const LeftOutViews& left_out);
+  void WriteToDisk();
+  std::string NoRoom();
   void TakeAgain(const std::string& why, int* tries, int most);
   void TakeTornAgain(const std::string& why) { TakeAgain(why, &retakes_, kMaxRetakes); }
   void Tell(const std::string& text);
@@ -192,16 +199,19 @@ class SessionNode : public Node {
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, SessionCommand> captures_;              // by their numbers
-  std::set<std::string> saved_;                                  // views on disk, of this start
-  Messages events_;                                              // not yet published
+  std::set<std::string> taken_;  // views of this start, on disk or not yet
+  Messages events_;              // not yet published
   SolverViews solver_views_;
   Messages again_;  // for the solver, not yet published
   Utime sweep_utime_ = 0;
   ViewCollector collector_;
-  bool view_saved_ = false;
-  int retakes_ = 0;      // of the capture at hand: torn sweeps
-  int restarts_ = 0;     // likewise: processes started anew
-  std::string spoiled_;  // why the newest sweep is lost to who needs it; empty: it is not
+  UnwrittenViews unwritten_{directory_, rig_};
+  Periodic room_asked_{kMicrosecondsPerSecond};  // while the script waits for it
+  std::string no_room_;
+  bool has_view_ = false;  // of the capture at hand, on disk or not yet
+  int retakes_ = 0;        // of the capture at hand: torn sweeps
+  int restarts_ = 0;       // likewise: processes started anew
+  std::string spoiled_;    // why the newest sweep is lost to who needs it; empty: it is not
   std::optional<Utime> held_up_since_;  // until everybody is ready
   EarlierViews earlier_;
   ResumePoint resume_;
