@@ -220,7 +220,7 @@ bool SessionNode::SolverTookAll() {
   const std::string missing = solver_views_.MissingIn(report_);
   if (missing.empty()) return true;
   const std::string why = "rgbdt-solver's report lacks view " + missing;
-  if (!RestoreSolver(why)) Fail(why + "; " + kAllIsOnDisk);
+  if (!RestoreSolver(why)) Fail(why);
   return false;
 }
 

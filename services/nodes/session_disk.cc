@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "calib/files/session/session_dir.h"
+#include "calib/solve/options.h"
 #include "services/nodes/session_node.h"
 
 namespace rgbdt {
@@ -62,6 +63,14 @@ void SessionNode::WriteToDisk() {
   if (unwritten_.failed() == failed) return;
   Tell(failed ? "what was kept in memory is on disk" : unwritten_.Trouble());
   if (failed) timeout_.AskedAgain(now_);  // nobody else was waited for
+}
+
+// What a failure does not cost; empty: too little for a calibration.
+std::string SessionNode::WhatIsOnDisk() const {
+  const std::size_t views = earlier_.detected.size() + taken_.size() - unwritten_.views();
+  if (!started_ || views < static_cast<std::size_t>(CalibrateOptions{}.min_views)) return {};
+  return "; rgbdt calibrate " + directory_.string() + " takes the " + std::to_string(views) +
+         " views that are on disk";
 }
 
 // Why no view is to be taken now; empty: there is room. A script that waits asks once a second.

@@ -148,7 +148,8 @@ Messages SessionNode::GoOnWithEarlierViews() {
   if (by_request_ && !earlier_.undetected.empty()) {
     std::string names;
     for (const std::string& name : earlier_.undetected) names += (names.empty() ? "" : ", ") + name;
-    Tell("view " + names + " was not detected and does not count here; " + kAllIsOnDisk);
+    Tell("view " + names + " was not detected and does not count here; rgbdt calibrate " +
+         directory_.string() + " takes all views that are there");
   }
   if (by_request_ && !earlier_.detected.empty()) {
     Append(SessionStep::Kind::kSolve);
@@ -323,8 +324,7 @@ void SessionNode::Save() {
   }
   const std::string missing = solver_views_.MissingIn(report_);
   if (!missing.empty()) {
-    Fail("the newest report lacks view " + missing + "; put solve after the last capture; " +
-         kAllIsOnDisk);
+    Fail("the newest report lacks view " + missing + "; put solve after the last capture");
     return;
   }
   const Calibration calibration = JudgedCalibration(*report_, rig_);
@@ -352,7 +352,7 @@ void SessionNode::Fail(const std::string& why) {
   const bool in_step = index_ < script_.steps.size() && started_;
   const bool of_next = in_step && !waiting_ && view_taken_;  // which has no name yet
   failure_ = which + (in_step ? NameOf(step().kind) : "start") +
-             (view_.empty() || of_next ? "" : ", view " + view_) + ": " + why;
+             (view_.empty() || of_next ? "" : ", view " + view_) + ": " + why + WhatIsOnDisk();
   PublishEvent(EventKind::kFailed, failure_, 1);
   finished_ = !leads;
   retakes_ = restarts_ = 0;

@@ -7,7 +7,6 @@
 namespace rgbdt {
 
 inline constexpr double kPatience = 1e9;  ///< s, with a person who carries the board
-inline constexpr const char* kAllIsOnDisk = "rgbdt calibrate DIR takes all views that are on disk";
 
 /// Whose done ends a step; empty: anybody's.
 std::string AnsweredBy(SessionStep::Kind kind);
