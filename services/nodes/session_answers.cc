@@ -283,6 +283,19 @@ std::string SessionNode::WhoIsNotReady() const {
   return who;
 }
 
+// One that is gone need not be the one that is waited for.
+std::string SessionNode::WhoIsSilent() const {
+  std::string who;
+  for (const std::string& process : Needed()) {
+    const auto heard = heard_.find(process);
+    const Utime silence = heard == heard_.end() ? 0 : now_ - heard->second;
+    if (heard != heard_.end() && silence <= kCutOff) continue;
+    who += (who.empty() ? "; silent, as they are gone or at work: rgbdt-" : ", rgbdt-") + process;
+    if (silence > 0) who += " for " + std::to_string(silence / kMicrosecondsPerSecond) + " s";
+  }
+  return who;
+}
+
 std::string SessionNode::WhatIsMissing() const {
   const std::string wanted = AnsweredBy(step().kind);
   if (answered_ && has_view_) return "this process still lacks the view's DETECTION";

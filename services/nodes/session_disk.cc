@@ -77,7 +77,8 @@ std::string SessionNode::WhatIsOnDisk() const {
 std::string SessionNode::NoRoom() {
   if (by_request_) WriteToDisk();
   if (by_request_ || no_room_.empty() || room_asked_.IsDue(now_)) {
-    no_room_ = unwritten_.WhyNoRoom(ViewName(view_number_ + 1));
+    const bool named = !view_.empty() && !view_taken_;  // by its pose
+    no_room_ = unwritten_.WhyNoRoom(named ? view_ : ViewName(view_number_ + 1));
   }
   return no_room_;
 }

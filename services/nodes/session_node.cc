@@ -91,7 +91,7 @@ Messages SessionNode::GoOn() {
     const bool waits = step().kind == SessionStep::Kind::kWait || !unwritten_.empty();
     if (const std::string why = waits ? "" : timeout_.WhyOver(now_); !why.empty()) {
       const std::string clocks = ClockTrouble();
-      Fail(why + "; " + WhatIsMissing() + (clocks.empty() ? "" : "; " + clocks));
+      Fail(why + "; " + WhatIsMissing() + WhoIsSilent() + (clocks.empty() ? "" : "; " + clocks));
     }
     return RepeatCommand();
   }
@@ -177,9 +177,13 @@ bool SessionNode::IsHeldUp() {
   if (step().kind == SessionStep::Kind::kSweep && who.empty()) {
     if (HasDevices()) who = ClockTrouble();
     if (cut_off_ && now_ - *cut_off_ < kHeardAgain) who = "all that were cut off";
-    if (who.empty()) who = NoRoom();
-    if (by_request_ && !no_room_.empty()) {
-      Fail("no view is taken: " + no_room_);
+  }
+  if (step().kind == SessionStep::Kind::kSweep && who.empty()) {
+    who = NoRoom();
+    if (by_request_ && !who.empty()) {
+      const bool taken = view_taken_;
+      Fail("no view is taken: " + who);
+      view_taken_ = taken;  // the board stands as before
       return true;
     }
   }

@@ -167,6 +167,7 @@ class SessionNode : public Node {
   std::vector<std::string> Needed() const;
   std::string WhoIsNotReady() const;
   std::string WhatIsMissing() const;
+  std::string WhoIsSilent() const;
   std::string WhatIsOnDisk() const;
 
   SessionScript script_;

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
@@ -21,6 +24,24 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+// A disk on which no view can be written for a while: a file is where their folder is to be.
+class FullDisk {
+ public:
+  explicit FullDisk(const std::filesystem::path& session) : session_(session) {}
+  void Fill() {
+    std::filesystem::create_directories(session_ / "views");
+    std::filesystem::rename(session_ / "views", session_ / "away");
+    test::WriteQuickly(session_ / "views", "");
+  }
+  void MakeRoom() {
+    std::filesystem::remove(session_ / "views");
+    std::filesystem::rename(session_ / "away", session_ / "views");
+  }
+
+ private:
+  std::filesystem::path session_;
+};
+
 class SessionByRequestTest : public ::testing::Test {
  protected:
   SessionByRequestTest() : node_(TinyRig(), dir_ / "session", {}) {}
@@ -37,9 +58,15 @@ class SessionByRequestTest : public ::testing::Test {
       const Messages said = test::AdvanceTo(time_s_ += 1, &node_);
       for (const SessionEvent& event : Only<SessionEvent>(said)) events_.push_back(event);
       for (const SessionCommand& command : Only<SessionCommand>(said)) {
+        if (before_answer_) before_answer_(command);
         test::HandleAll(&node_, world_.Answer(command));
       }
     }
+  }
+  std::size_t HowOftenTold(const std::string& text) const {
+    return static_cast<std::size_t>(std::count_if(
+        events_.begin(), events_.end(),
+        [&](const SessionEvent& event) { return event.text.find(text) != std::string::npos; }));
   }
   void Ask(SessionRequestKind kind, bool heldout = false) {
     SessionRequest request;
@@ -56,6 +83,8 @@ class SessionByRequestTest : public ::testing::Test {
   test::TempDir dir_;
   test::World world_;
   SessionNode node_;
+  FullDisk disk_{dir_ / "session"};
+  std::function<void(const SessionCommand&)> before_answer_;
   double time_s_ = 0;
   std::vector<SessionEvent> events_;
 };
@@ -143,6 +172,71 @@ TEST_F(SessionByRequestTest, AFinishThatCannotBeWrittenIsSaidAndMayBeRepeated) {
   EXPECT_TRUE(node_.finished());
   EXPECT_EQ(node_.failure(), "");
   EXPECT_EQ(ReadCalibration(dir_ / "session/calibration.textproto").rig_hash, TinyRig().hash);
+}
+
+TEST_F(SessionByRequestTest, AViewThatCannotBeWrittenIsKeptInMemoryUntilItCan) {
+  EverybodyReady();
+  before_answer_ = [&](const SessionCommand& command) {
+    if (command.verb == SessionVerb::kCapture) disk_.Fill();
+  };
+  Ask(SessionRequestKind::kCapture);
+  for (int minute = 0; minute < 15; ++minute) Run();  // longer than a step may take
+  EXPECT_EQ(Counter(node_.GetStatus(), "busy"), 1);
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("view 0001 is kept in memory: cannot"));
+  EXPECT_EQ(HowOftenTold("view 0001 is kept in memory"), 1U);
+  EXPECT_THAT(ErrorOf([&] { Ask(SessionRequestKind::kFinish); }),
+              AllOf(HasSubstr("busy"), HasSubstr("view 0001 is kept in memory")));
+  const std::size_t asked = world_.commands.size();
+  disk_.MakeRoom();
+  Run();
+  EXPECT_EQ(Counter(node_.GetStatus(), "busy"), 0);
+  EXPECT_EQ(HowOftenTold("what was kept in memory is on disk"), 1U);
+  EXPECT_EQ(node_.failure(), "");
+  EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001"));
+  EXPECT_TRUE(std::filesystem::exists(dir_ / "session/views/0001/detection.lcm"));
+  const std::vector<SessionVerb> all = Verbs();
+  EXPECT_THAT(std::vector<SessionVerb>(all.begin() + static_cast<std::ptrdiff_t>(asked), all.end()),
+              ElementsAre(SessionVerb::kSolve, SessionVerb::kEvaluate));
+}
+
+TEST_F(SessionByRequestTest, WhereNoViewCanBeWrittenACaptureIsRefusedBeforeItsSweep) {
+  EverybodyReady();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  disk_.Fill();
+  const std::size_t asked = world_.commands.size();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  EXPECT_EQ(world_.commands.size(), asked);
+  EXPECT_EQ(events_.back().kind, EventKind::kFailed);
+  EXPECT_THAT(events_.back().text,
+              AllOf(HasSubstr("sweep: no view is taken: cannot write"), HasSubstr("make room")));
+  disk_.MakeRoom();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  EXPECT_EQ(node_.failure(), "");
+  EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001", "0002"));
+}
+
+// The view is not on disk yet; so are the picks.
+TEST_F(SessionByRequestTest, CornersPickedInAViewThatIsKeptInMemoryAreWrittenWithIt) {
+  EverybodyReady();
+  CornerSelection picks;
+  picks.camera = "rgb";
+  picks.corners = {{{1, 1}, {9, 1}, {9, 9}, {1, 9}}};
+  before_answer_ = [&](const SessionCommand& command) {
+    if (command.verb != SessionVerb::kCapture) return;
+    disk_.Fill();
+    picks.image_utime = world_.now + kMicrosecondsPerSecond;  // as World stamps it
+  };
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  node_.Handle(picks);
+  disk_.MakeRoom();
+  Run();
+  const View view = ReadView(OpenSession(dir_ / "session"), "0001");
+  ASSERT_EQ(view.picks.size(), 1U);
+  EXPECT_EQ(view.picks[0].corners, picks.corners);
 }
 
 TEST_F(SessionByRequestTest, AFailureIsSaidAndThePersonGoesOn) {
@@ -253,6 +347,70 @@ TEST_F(SessionByRequestTest, CornersPickedDuringAnotherCaptureAreNotLost) {
                                        all.end());
   EXPECT_THAT(verbs, ElementsAre(SessionVerb::kCapture, SessionVerb::kSolve, SessionVerb::kEvaluate,
                                  SessionVerb::kSolve, SessionVerb::kEvaluate));
+}
+
+// The disk is full once before a sweep and once before a view is written.
+TEST(SessionByScriptTest, ItWaitsForRoomOnTheDiskAndGoesOn) {
+  for (const SessionVerb full_at : {SessionVerb::kNextPose, SessionVerb::kCapture}) {
+    const test::TempDir dir;
+    test::World world;
+    FullDisk disk(dir / "session");
+    using Kind = SessionStep::Kind;
+    SessionNode node(test::Script({Kind::kNextPose, Kind::kSweep, Kind::kCapture, Kind::kSolve,
+                                   Kind::kEvaluate, Kind::kSave}),
+                     TinyRig(), dir / "session", {});
+    for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+      node.Handle(test::Ready(process));
+    }
+    double full_since = -1;
+    const double full_for = full_at == SessionVerb::kCapture ? 300 : 8;  // of a sweep's 10 s
+    std::string told;
+    for (double t = 0; t < 400 && !node.finished(); t += 0.5) {
+      if (full_since >= 0 && t == full_since + full_for) {
+        told = node.GetStatus().text;
+        disk.MakeRoom();
+      }
+      for (const SessionCommand& command : Only<SessionCommand>(test::AdvanceTo(t, &node))) {
+        if (command.verb == full_at && full_since < 0) {
+          full_since = t;
+          disk.Fill();
+        }
+        test::HandleAll(&node, world.Answer(command));
+      }
+    }
+    EXPECT_TRUE(node.finished());
+    EXPECT_EQ(node.failure(), "");
+    EXPECT_EQ(world.commands.size(), 6U) << "nothing is asked for twice";
+    EXPECT_THAT(OpenSession(dir / "session").views, ElementsAre("0001"));
+    EXPECT_TRUE(std::filesystem::exists(dir / "session/calibration.textproto"));
+    EXPECT_EQ(told.find("is kept in memory") != std::string::npos,
+              full_at == SessionVerb::kCapture);
+  }
+}
+
+TEST(SessionByScriptTest, AFailureSaysWhatIsOnDisk) {
+  const test::TempDir dir;
+  test::World world;
+  using Kind = SessionStep::Kind;
+  SessionScript script = test::Script({});
+  for (int view = 0; view < 4; ++view) {
+    for (const Kind kind : {Kind::kNextPose, Kind::kSweep, Kind::kCapture}) {
+      script.steps.push_back(test::Step(kind));
+    }
+  }
+  SessionNode node(script, TinyRig(), dir / "session", {});
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(test::Ready(process));
+  }
+  for (double t = 0; t < 60 && !node.finished(); t += 0.5) {
+    for (const SessionCommand& command : Only<SessionCommand>(test::AdvanceTo(t, &node))) {
+      if (command.view == "0004") world.silent_at = SessionVerb::kSweep;
+      test::HandleAll(&node, world.Answer(command));
+    }
+  }
+  EXPECT_THAT(node.failure(), AllOf(HasSubstr("no answer in 10 s"),
+                                    HasSubstr("rgbdt calibrate " + (dir / "session").string() +
+                                              " takes the 3 views that are on disk")));
 }
 
 TEST(SessionByScriptTest, APersonMaySayThatTheBoardStandsAndNothingElse) {

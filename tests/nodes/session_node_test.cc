@@ -29,6 +29,7 @@ using test::TinyRig;
 using test::World;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Kind = SessionStep::Kind;
 
 const std::vector<Kind> kOneView = {Kind::kNextPose, Kind::kSweep,    Kind::kCapture,
@@ -277,9 +278,11 @@ TEST_F(SessionNodeTest, ATimeOutNamesWhoIsNotThereAnyMore) {
   Start(Script(kOneView));
   EverybodyReady();
   Run();
-  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("no answer in 10 s"),
-                                      HasSubstr("rgbdt-detector has not been heard for 1"),
-                                      HasSubstr("is it running, or at work? It said: fine")));
+  EXPECT_THAT(
+      node_->failure(),
+      AllOf(HasSubstr("no answer in 10 s"), HasSubstr("rgbdt-detector has not been heard for 1"),
+            HasSubstr("is it running, or at work? It said: fine"), HasSubstr("silent"),
+            HasSubstr("rgbdt-solver for 1"), HasSubstr("rgbdt-assembler for 1")));
 }
 
 TEST_F(SessionNodeTest, ASilentRigIsNamed) {
@@ -426,7 +429,8 @@ TEST_F(SessionNodeTest, AReportWithoutACapturedViewIsNotSaved) {
   EverybodyReady();
   Run();
   EXPECT_THAT(node_->failure(), AllOf(HasSubstr("solve"), HasSubstr("lacks view 0001"),
-                                      HasSubstr("rgbdt calibrate DIR")));
+                                      Not(HasSubstr("rgbdt calibrate"))))
+      << "one view is too few";
   EXPECT_FALSE(std::filesystem::exists(dir_ / "session/calibration.textproto"));
   const auto asked = std::count_if(
       world_.commands.begin(), world_.commands.end(),
@@ -443,14 +447,15 @@ TEST_F(SessionNodeTest, AViewAfterTheLastSolveIsNotLeftOutUnsaid) {
                                       HasSubstr("put solve after the last capture")));
 }
 
-TEST_F(SessionNodeTest, AViewThatCannotBeWrittenEndsTheSession) {
+TEST_F(SessionNodeTest, AScriptDoesNotWaitForRoomForever) {
   Start(Script(kOneView));
   EverybodyReady();
   test::WriteQuickly(dir_ / "file", "");
   std::filesystem::create_directories(dir_ / "session");
   std::filesystem::create_symlink(dir_ / "file", dir_ / "session/views");
   Run();
-  EXPECT_THAT(node_->failure(), HasSubstr((dir_ / "session/views").string()));
+  EXPECT_THAT(node_->failure(), AllOf(HasSubstr("sweep"), HasSubstr("not ready after 10 s"),
+                                      HasSubstr((dir_ / "session/views").string())));
 }
 
 TEST_F(SessionNodeTest, ADirectoryThatCannotBeWrittenEndsTheSession) {
