@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -16,9 +17,9 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kRepeat = 5 * kMicrosecondsPerSecond;
-constexpr std::size_t kMaxEntries =
-    1000;  // problems carry values: forget them all rather than grow
+constexpr Utime kPause = kMicrosecondsPerSecond;  // between two lines of one source
+constexpr Utime kRepeat = 5 * kPause;             // of the same line
+constexpr std::size_t kMaxSources = 50;           // strangers make up channels
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -38,6 +39,14 @@ void KeepMemoryForTheNextMessage() {
   constexpr int kKeptBytes = 64 * 1024 * 1024;
   mallopt(M_MMAP_THRESHOLD, kKeptBytes / 2);
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+}
+
+std::string SourceOf(const std::string& problem) {
+  std::string source = problem.substr(0, problem.find(':'));
+  source.erase(
+      std::remove_if(source.begin(), source.end(), [](char c) { return c >= '0' && c <= '9'; }),
+      source.end());
+  return source;
 }
 
 void LogGoodbye(const Status& status) {
@@ -63,6 +72,7 @@ void Loop(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
       [&](const std::string& problem) { problems.Add(problem, SteadyUtime()); });
   while (stop_requested == 0 && !bus.ended()) {
     runner.Advance(SteadyUtime());
+    problems.Advance(SteadyUtime());
     if (node.finished()) break;
     bus.Run(static_cast<int>(node.LongestWait() / 1000));
   }
@@ -86,16 +96,36 @@ int RunOnLcm(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
 }
 
 void ProblemLog::Add(const std::string& problem, Utime now) {
-  if (entries_.size() >= kMaxEntries && entries_.count(problem) == 0) entries_.clear();
-  const auto [entry, is_new] = entries_.try_emplace(problem, Entry{now, 0});
-  Entry& e = entry->second;
-  if (!is_new && now - e.written < kRepeat) {
-    ++e.since;
+  std::string key = SourceOf(problem);
+  if (sources_.size() >= kMaxSources && sources_.count(key) == 0) key.clear();
+  Source& source = sources_[key];
+  const bool first = source.written.empty();
+  if (first || now - source.written_at >= (problem == source.written ? kRepeat : kPause)) {
+    WriteOf(&source, problem, source.count, now);
     return;
   }
-  write_(e.since == 0 ? problem
-                      : problem + " (and " + std::to_string(e.since) + " times more since)");
-  e = {now, 0};
+  source.left_out = problem;
+  ++source.count;
+}
+
+void ProblemLog::Advance(Utime now) {
+  for (auto at = sources_.begin(); at != sources_.end();) {
+    Source& source = at->second;
+    const bool over = now - source.written_at >= kRepeat;
+    if (over && source.count == 0) {
+      at = sources_.erase(at);
+      continue;
+    }
+    if (over) WriteOf(&source, source.left_out, source.count - 1, now);
+    ++at;
+  }
+}
+
+void ProblemLog::WriteOf(Source* source, const std::string& problem, std::int64_t more, Utime now) {
+  write_(more == 0 ? problem : problem + " (and " + std::to_string(more) + " more since)");
+  source->written = problem;
+  source->written_at = now;
+  source->count = 0;
 }
 
 }  // namespace rgbdt

@@ -17,27 +17,35 @@ struct BusFlags {
 
 /// The main loop of a process: the node on LCM until it is finished, SIGINT, SIGTERM or a log's
 /// end. The node's time is the machine's steady clock; its status goes out at 1 Hz. Logs how large
-/// the receive buffer ought to be, and each problem, the same one at most every five seconds.
+/// the receive buffer ought to be, and problems (ProblemLog).
 /// Returns the exit code: 0, or 1 with one line on stderr where the bus cannot be opened.
 /// With a key it signs what it sends and ignores what is not signed (signed_bus.h).
 /// `overhear` gets every message that is on the bus, as bytes, signed or not.
 int RunOnLcm(Node& node, const BusFlags& flags, const Bus::Handler& overhear = {});
 
-/// Logs a problem, unless it logged the same within five seconds; then it counts. Time [us] comes
-/// from the caller.
+/// Logs problems in few lines, whatever flood they come in: one a second of each source, and the
+/// same one every five seconds; what is left out is counted, and told with the next line or five
+/// seconds later. A source is what stands before a problem's first colon (a channel), but for
+/// digits; of very many sources those that come last count as one. Time [us] comes from the caller.
 class ProblemLog {
  public:
   using Write = std::function<void(const std::string& line)>;
   explicit ProblemLog(Write write) : write_(std::move(write)) {}
   void Add(const std::string& problem, Utime now);
+  /// Tells what was left out a while ago.
+  void Advance(Utime now);
 
  private:
-  struct Entry {
-    Utime written;
-    std::int64_t since;  // not written
+  struct Source {
+    std::string written;  // empty: nothing yet
+    Utime written_at = 0;
+    std::string left_out;  // the newest
+    std::int64_t count = 0;
   };
+  void WriteOf(Source* source, const std::string& problem, std::int64_t more, Utime now);
+
   Write write_;
-  std::map<std::string, Entry> entries_;
+  std::map<std::string, Source> sources_;
 };
 
 }  // namespace rgbdt

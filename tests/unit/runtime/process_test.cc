@@ -40,9 +40,50 @@ TEST(ProblemLog, TheSameAtMostEveryFiveSeconds) {
   std::vector<std::string> lines;
   ProblemLog log([&](const std::string& line) { lines.push_back(line); });
   for (int i = 0; i <= 50; ++i) log.Add("CLOUD: bad", 100'000 * i);
-  log.Add("CLOUD: worse", 5'000'000);
-  EXPECT_EQ(lines, (std::vector<std::string>{"CLOUD: bad", "CLOUD: bad (and 49 times more since)",
+  log.Add("CLOUD: worse", 6'000'000);
+  EXPECT_EQ(lines, (std::vector<std::string>{"CLOUD: bad", "CLOUD: bad (and 49 more since)",
                                              "CLOUD: worse"}));
+}
+
+// A thousand a second for a minute, no two alike, on two channels and on made-up ones.
+TEST(ProblemLog, AVariedFloodIsALineAChannelAndSecondAndNoneIsUncounted) {
+  std::vector<std::string> lines;
+  ProblemLog log([&](const std::string& line) { lines.push_back(line); });
+  constexpr int kFlood = 60'000;
+  for (int i = 0; i < kFlood; ++i) {
+    const Utime now = 1000 * i;
+    log.Advance(now);
+    log.Add("CLOUD: num_points is " + std::to_string(i), now);
+    log.Add("RGB" + std::to_string(i) + "_IMAGE: width is " + std::to_string(-i), now);
+  }
+  EXPECT_EQ(lines.size(), 120U);
+  log.Advance(1000 * (kFlood + 5000));
+  EXPECT_EQ(lines.size(), 122U);
+  std::int64_t told = 0;
+  for (const std::string& line : lines) {
+    const std::size_t more = line.find("(and ");
+    told += 1 + (more == std::string::npos ? 0 : std::stoll(line.substr(more + 5)));
+  }
+  EXPECT_EQ(told, 2 * kFlood);
+  EXPECT_EQ(lines[120], "CLOUD: num_points is 59999 (and 998 more since)");
+  log.Advance(1000 * (kFlood + 20'000));
+  EXPECT_EQ(lines.size(), 122U) << "it is told once";
+}
+
+TEST(ProblemLog, ManyMadeUpSourcesAreBoundedTogetherAndForgotten) {
+  std::vector<std::string> lines;
+  ProblemLog log([&](const std::string& line) { lines.push_back(line); });
+  std::string name = "a";
+  for (int i = 0; i < 1000; ++i) {
+    log.Add(name + "_IMAGE: bad", 1000 * i);
+    name += static_cast<char>('a' + i % 26);
+  }
+  EXPECT_LE(lines.size(), 52U);
+  log.Advance(20'000'000);
+  log.Advance(40'000'000);
+  lines.clear();
+  for (const char* source : {"CLOUD: bad", "IMU: bad", "POSE: bad"}) log.Add(source, 40'000'001);
+  EXPECT_EQ(lines, (std::vector<std::string>{"CLOUD: bad", "IMU: bad", "POSE: bad"}));
 }
 
 // LCM's memory queue needs no network: the whole loop of a process in a test.
