@@ -71,36 +71,34 @@ std::vector<std::string> LidarNode::Subscriptions() const {
 Messages LidarNode::Handle(const Message& message) {
   const auto* command = std::get_if<SessionCommand>(&message);
   if (command == nullptr || !source_->sweeps()) return {};
-  if (command->verb == SessionVerb::kReset) pending_.clear();
-  if (command->verb != SessionVerb::kSweep) return {};
-  // What a live sensor fired before now may still lie in the kernel's buffer.
-  const Utime begun = source_->report().sweep_begun();
-  pending_.push_back({command->command, source_->live() ? std::max(begun, HostUtime()) : begun});
+  if (command->verb == SessionVerb::kReset) pending_.Clear();
+  if (command->verb == SessionVerb::kSweep) {
+    pending_.Add(command->command, source_->report().sweep_begun(), Now());
+  }
   return {};
+}
+
+std::optional<PendingSweeps::Clocks> LidarNode::Now() const {
+  if (!source_->live()) return std::nullopt;
+  return PendingSweeps::Clocks{HostUtime(), SteadyUtime()};
 }
 
 void LidarNode::AnswerWith(const CloudChunk& chunk, Messages* messages) {
   const Utime sweep = chunk.cloud.sweep_utime;
-  for (auto at = pending_.begin(); at != pending_.end();) {
-    if (sweep <= at->after) {
-      ++at;
-      continue;
-    }
-    SessionEvent event = EventOf(at->command, EventKind::kDone, "sweep complete");
+  for (const std::int64_t command : pending_.TakeAnswered(sweep, Now())) {
+    SessionEvent event = EventOf(command, EventKind::kDone, "sweep complete");
     event.utime = chunk.cloud.utime.empty() ? sweep : std::max(sweep, chunk.cloud.utime.back());
     event.sweep_utime = sweep;
     event.fraction = 1;
     messages->push_back(event);
-    at = pending_.erase(at);
   }
 }
 
 void LidarNode::FailPending(Messages* messages) {
-  for (const Pending& pending : pending_) {
-    messages->push_back(EventOf(pending.command, EventKind::kFailed,
-                                "the recording has ended: no sweep begins any more"));
+  for (const std::int64_t command : pending_.TakeAll()) {
+    messages->push_back(
+        EventOf(command, EventKind::kFailed, "the recording has ended: no sweep begins any more"));
   }
-  pending_.clear();
 }
 
 Messages LidarNode::Advance(Utime /*now*/) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib/model/rig.h"
 #include "services/drivers/device_report.h"
+#include "services/drivers/lidar/internal/pending_sweeps.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {
@@ -39,15 +41,12 @@ class LidarNode : public DeviceNode {
   };
 
  private:
-  struct Pending {
-    std::int64_t command = 0;
-    Utime after = 0;  // a sweep later than this
-  };
+  std::optional<PendingSweeps::Clocks> Now() const;
   void AnswerWith(const CloudChunk& chunk, Messages* messages);
   void FailPending(Messages* messages);
 
   std::unique_ptr<Source> source_;
-  std::vector<Pending> pending_;
+  PendingSweeps pending_;
   std::unique_ptr<DeviceThread> thread_;  // last: it uses the source
 };
 
