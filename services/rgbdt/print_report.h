@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/present/report/comparison_text.h"
@@ -35,8 +36,10 @@ inline void RequireReadable(const Session& session, const std::vector<std::strin
 }
 
 /// Before a run begins that writes its results into `out`: those of an earlier one are set aside,
-/// and stderr tells it. However the run ends, what is there then is its own.
+/// and stderr tells it. However the run ends, what is there then is its own. Throws InputError
+/// where nothing can be written there.
 inline void SetAside(const std::filesystem::path& out) {
+  CheckWritable(out / "report.json");
   const std::string kept = SetResultsAside(out);
   if (!kept.empty()) std::fprintf(stderr, "%s\n", kept.c_str());
 }

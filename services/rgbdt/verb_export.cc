@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/points/las_files.h"
 #include "calib/files/points/map_files.h"
@@ -77,6 +78,7 @@ int RunMcap(const ExportFlags& flags) {
   if (std::filesystem::equivalent(flags.dir, out, error)) {
     throw InputError(out.string() + ": is the log itself; say another --out");
   }
+  CheckWritable(out);
   PrintExported(flags, out,
                 ExportLog(flags.dir, out, {frames.lidar, frames.cameras}, Tenths("exporting")));
   return EndsWith(true);
@@ -100,6 +102,7 @@ int RunLas(const ExportFlags& flags) {
   const std::filesystem::path out =
       PathOr(flags.out, std::filesystem::path(in).replace_extension(".las"));
   RequireLas(out);
+  CheckWritable(out);
   const std::string bytes = ReadWholeFile(in, kMostPointsBytes);
   std::size_t points = 0;
   if (IsMapPly(bytes)) {
@@ -120,11 +123,12 @@ int RunExport(const ExportFlags& flags) {
   if (flags.mcap) return RunMcap(flags);
   if (flags.las) return RunLas(flags);
   const std::filesystem::path dir = flags.dir;
+  const std::filesystem::path out = PathOr(flags.out, dir / "export");
+  if (std::filesystem::exists(dir)) CheckWritable(out / "calibration");
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);
   const Calibration calibration = ReadCalibration(files.calibration);
   PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse(), Further::kUsed));
-  const std::filesystem::path out = PathOr(flags.out, dir / "export");
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {
     std::printf("wrote %s: %s\n", file.path.c_str(), file.purpose.c_str());
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/files/check_writable.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/schema/calibration_file.h"
@@ -65,6 +66,7 @@ void DrawPictures(const RgbdtCloud& fused, const std::string& title,
 int RunFuse(const FuseFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
+  CheckWritable(out / "fused.ply");
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
   const Calibration calibration = ReadCalibration(files.calibration);
   PrintWarnings(RequireSound(calibration, session.rig, files.Names(), files.HowToUse()));

@@ -7,6 +7,7 @@
 #include "calib/camera/intrinsics.h"
 #include "calib/camera/lens_choice.h"
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/methods/session_corners.h"
 #include "calib/model/errors.h"
@@ -60,9 +61,8 @@ bool IsSkipped(const IntrinsicsFlags& flags, const CameraCorners& corners) {
   return true;
 }
 
-void WriteIntrinsics(const IntrinsicsFlags& flags, const Session& session, const Rig& rig,
+void WriteIntrinsics(const fs::path& out, const Session& session, const Rig& rig,
                      const std::vector<CameraIntrinsics>& solved) {
-  const fs::path out = PathOr(flags.out, session.root / "rig.intrinsics.textproto");
   const fs::path page = out.parent_path() / "intrinsics.html";
   WriteFileAtomically(page, IntrinsicsHtml(solved));
   std::printf("wrote %s", page.c_str());
@@ -84,6 +84,8 @@ void WriteIntrinsics(const IntrinsicsFlags& flags, const Session& session, const
 
 int RunIntrinsics(const IntrinsicsFlags& flags) {
   const Session session = OpenSession(flags.dir, LensNeed::kMayBeUnknown);
+  const fs::path out = PathOr(flags.out, session.root / "rig.intrinsics.textproto");
+  CheckWritable(out);
   const SessionCorners corners =
       FindSessionCorners(session, CamerasFor(flags, session.rig), PrintProgress);
   RequireReadable(session, corners.unreadable);
@@ -110,7 +112,7 @@ int RunIntrinsics(const IntrinsicsFlags& flags) {
   }
   PrintUnreadable(corners.unreadable);
   if (solved.empty()) throw InputError(flags.dir + " holds no image of any camera of its rig");
-  WriteIntrinsics(flags, session, rig, solved);
+  WriteIntrinsics(out, session, rig, solved);
   return EndsWith(good);
 }
 

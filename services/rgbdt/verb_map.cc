@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
@@ -185,6 +186,7 @@ int RunDrive(const MapFlags& flags) {
 
 int RunMap(const MapFlags& flags) {
   flags.options.Check();
+  CheckWritable(flags.out);
   if (flags.drive || flags.close_loops) return RunDrive(flags);
   MapperNode node(flags.options);
   const LogRead read = ReadLog(flags.log, &node);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/files/check_writable.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/methods/refine.h"
 #include "calib/model/errors.h"
@@ -82,6 +83,7 @@ Session SessionOf(const RefineFlags& flags) {
                      " is there already, of an earlier run: refine that folder, remove it, or "
                      "choose another --out");
   }
+  CheckWritable(drive);
   CutOptions options;
   options.every = FromSeconds(flags.every_s);
   int percent = -1;
@@ -109,6 +111,7 @@ int RunRefine(RefineFlags flags) {
   const bool is_log = std::filesystem::is_regular_file(flags.dir);
   const std::filesystem::path out =
       PathOr(flags.out, is_log ? session.root.parent_path() : session.root / "refined");
+  CheckWritable(out / "report.json");
   const Calibration start = StartOf(flags, session);
   const ReadViews read = ReadAll(session);
   RequireReadable(session, read.unreadable);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/map_files.h"
 #include "calib/model/text.h"
@@ -56,9 +57,10 @@ int RunTerrain(TerrainFlags flags) {
   flags.options.max_slope_rad = flags.max_slope_deg * kDegree;
   flags.options.site_max_slope_rad = flags.site_max_slope_deg * kDegree;
   flags.options.Check();
+  const std::filesystem::path out = flags.out;
+  CheckWritable(out / "terrain.json");
   const MapCloud cloud = ReadMapOrCloud(flags.input);
   const Terrain terrain = FindTerrain(cloud, flags.options);
-  const std::filesystem::path out = flags.out;
   WriteFileAtomically(out / "terrain.json",
                       TerrainJson(terrain, flags.options, cloud.frame, flags.input));
   WritePng(out / "terrain.png", TerrainPicture(terrain, flags.options, cloud.frame));

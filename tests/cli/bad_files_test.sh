@@ -171,4 +171,29 @@ says=("broken.textproto")
 refuses "a calibration that is none" "$bin/rgbdt" evaluate "$good" \
   --calibration "$scratch/broken.textproto" --out "$scratch/kept"
 
+# Before any work: of these inputs none would get through it.
+session
+rm "$bad"/views/*/*.png
+: >"$scratch/file"
+below=$scratch/file/below
+head -c 100000 /dev/urandom >"$scratch/noise.ply"
+cannot() {  # WHAT COMMAND...: where --out leads below a file
+  says=("cannot write $below" "Not a directory")
+  refuses "--out that cannot be written ($1)" "${@:2}"
+  [ "$(wc -l <"$scratch/output")" -eq 1 ] || complain "$1: not one line"
+}
+for verb in calibrate intrinsics; do cannot "$verb" "$bin/rgbdt" "$verb" "$bad" --out "$below"; done
+for verb in fuse export refine; do
+  cannot "$verb" "$bin/rgbdt" "$verb" "$bad" --out "$below" \
+    --calibration "$scratch/kept/calibration.textproto"
+done
+for verb in map "export --mcap"; do
+  # shellcheck disable=SC2086 # a verb and its flag
+  cannot "$verb" "$bin/rgbdt" $verb "$scratch/noise.lcmlog" --out "$below"
+done
+cannot terrain "$bin/rgbdt" terrain "$scratch/noise.ply" --out "$below"
+cannot "export --las" "$bin/rgbdt" export --las "$scratch/noise.ply" --out "$below.las"
+says=("cannot write $scratch/kept" "Is a directory")
+refuses "--out that is a folder" "$bin/rgbdt" map "$scratch/noise.lcmlog" --out "$scratch/kept"
+
 verdict
