@@ -71,6 +71,14 @@ Utime SweepCollector::NewestEnded() const {
   return 0;
 }
 
+std::vector<Utime> SweepCollector::Newest(std::size_t most) const {
+  std::vector<Utime> newest;
+  for (auto sweep = sweeps_.rbegin(); sweep != sweeps_.rend() && newest.size() < most; ++sweep) {
+    newest.insert(newest.begin(), sweep->first);
+  }
+  return newest;
+}
+
 std::optional<Cloud> SweepCollector::Complete(Utime sweep_utime) const {
   if (!Ended(sweep_utime)) return std::nullopt;
   Cloud cloud = JoinChunks(sweeps_.at(sweep_utime).chunks);

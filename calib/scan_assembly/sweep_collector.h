@@ -32,6 +32,8 @@ class SweepCollector {
   bool Ended(Utime sweep_utime) const;
   /// Name of the newest sweep that is complete; 0: none is.
   Utime NewestEnded() const;
+  /// Names of the newest sweeps that have begun, at most so many, in order.
+  std::vector<Utime> Newest(std::size_t most) const;
   void Clear() { sweeps_.clear(); }
 
  private:

@@ -3,6 +3,31 @@
 #include <algorithm>
 
 namespace rgbdt {
+namespace {
+
+using Seconds = std::map<Utime, Image>;
+
+std::size_t BytesOf(const Image& image) { return image.pixels.total() * image.pixels.elemSize(); }
+
+// Those from `from` to `to`, of one sweep, until they are few enough: the first two stay (it may
+// have begun between them), and those of every second, fourth, ... second, so that the sweep's
+// middle has one near.
+void Thin(Seconds::iterator from, Seconds::iterator to, Seconds* seconds) {
+  auto count = static_cast<std::size_t>(std::distance(from, to));
+  if (count < ViewCollector::kLeastOfSweep) return;
+  const std::size_t most =
+      std::clamp(ViewCollector::kMostBytes / std::max<std::size_t>(1, BytesOf(from->second)),
+                 ViewCollector::kLeastOfSweep, ViewCollector::kMostOfSweep);
+  for (Utime stride = 2; count > most; stride *= 2) {
+    for (auto at = std::next(from, 2); at != to;) {
+      const bool stays = at->first % stride == 0;
+      count -= stays ? 0 : 1;
+      at = stays ? std::next(at) : seconds->erase(at);
+    }
+  }
+}
+
+}  // namespace
 
 void ViewCollector::Add(const Image& image) {
   if (image.shutter_correcting) return;
@@ -25,6 +50,7 @@ void ViewCollector::Add(const Image& image) {
 
 // The first image of each second, whatever order they came in.
 void ViewCollector::KeepForSweep(const Image& image) {
+  if (during_ == During::kForget) return;
   std::map<Utime, Image>& seconds = seconds_[image.camera];
   const Utime second = image.utime / kMicrosecondsPerSecond;
   if (!seconds.empty() && second < seconds.rbegin()->first - kClockReset / kMicrosecondsPerSecond &&
@@ -37,7 +63,33 @@ void ViewCollector::KeepForSweep(const Image& image) {
   } else if (image.utime < found->second.utime) {
     found->second = image;
   }
-  while (seconds.size() > seconds_kept_) seconds.erase(seconds.begin());
+  ForgetSeconds(&seconds);
+}
+
+// A capture names the newest sweep that has ended; the next one may have begun.
+void ViewCollector::ForgetSeconds(std::map<Utime, Image>* seconds) const {
+  const Utime tail = seconds->rbegin()->first - kTail;
+  std::vector<Utime> begins = sweeps_.Newest(kSweepsKept);
+  if (capture_) begins.push_back(capture_->sweep_utime);
+  for (Utime& begin : begins) begin /= kMicrosecondsPerSecond;
+  begins.push_back(tail + 1);
+  std::sort(begins.begin(), begins.end());
+  seconds->erase(seconds->begin(), seconds->lower_bound(begins.front()));
+  for (std::size_t i = 0; i + 1 < begins.size() && begins[i] <= tail; ++i) {
+    const Utime end = std::min(begins[i + 1], tail + 1);
+    Thin(seconds->lower_bound(begins[i]), seconds->lower_bound(end), seconds);
+  }
+}
+
+std::size_t ViewCollector::ImageBytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [camera, kept] : images_) {
+    for (const Image& image : kept) bytes += BytesOf(image);
+  }
+  for (const auto& [camera, seconds] : seconds_) {
+    for (const auto& [second, image] : seconds) bytes += BytesOf(image);
+  }
+  return bytes;
 }
 
 // At most two: the first since the sweep's start, and the nearest to its middle.

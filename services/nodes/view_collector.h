@@ -22,6 +22,10 @@ namespace rgbdt {
 /// come early; an image older than those by more than kClockReset means that the clock was set
 /// back, and they go. A thermal camera's images from while its shutter corrects are left out.
 ///
+/// Of the images from during a sweep the first of each second is kept, as far as a view may still
+/// need them: of the newest kSweepsKept sweeps that have begun, and of the newest kTail seconds. Of
+/// a sweep that is too long for kMostBytes every second, fourth, ... of them stays.
+///
 /// Detector, session and viewer have one each and get the same view, since it depends on the
 /// messages' times alone (services/README.md, "A view").
 class ViewCollector {
@@ -29,10 +33,14 @@ class ViewCollector {
   static constexpr Utime kImageWait = 5 * kMicrosecondsPerSecond;
   static constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
   static constexpr std::size_t kKept = 3;
-  static constexpr std::size_t kSecondsKept = 60;  ///< of the first image of each second
+  static constexpr std::size_t kSweepsKept = 2;
+  static constexpr Utime kTail = 10;                                 ///< [s]
+  static constexpr std::size_t kLeastOfSweep = 4, kMostOfSweep = 8;  ///< images
+  static constexpr std::size_t kMostBytes = 24'000'000;              ///< a sweep and camera
 
-  /// `seconds_kept`: 0 where nobody asks whether the board stood still.
-  explicit ViewCollector(std::size_t seconds_kept = kSecondsKept) : seconds_kept_(seconds_kept) {}
+  enum class During { kKeep, kForget };
+  /// kForget: nobody asks whether the board stood still.
+  explicit ViewCollector(During during = During::kKeep) : during_(during) {}
 
   void Add(CloudChunk chunk) { sweeps_.Add(std::move(chunk)); }
   void Add(const Image& image);
@@ -52,6 +60,8 @@ class ViewCollector {
   /// A camera's newest image; null: none came yet.
   const Image* Newest(const std::string& camera) const;
   const SweepCollector& sweeps() const { return sweeps_; }
+  /// Of all images that are kept.
+  std::size_t ImageBytes() const;
   bool active() const { return capture_.has_value(); }
   const SessionCommand& capture() const { return *capture_; }
   /// What is missing, in words; empty when nothing is.
@@ -60,10 +70,11 @@ class ViewCollector {
  private:
   std::vector<Image> DuringSweep(const Image& at_capture) const;
   void KeepForSweep(const Image& image);
+  void ForgetSeconds(std::map<Utime, Image>* seconds) const;
   const CornerSelection* PicksOf(const std::string& camera, Utime image_utime) const;
   bool PersonPicks(const std::string& camera) const;
 
-  std::size_t seconds_kept_;
+  During during_;
   std::optional<SessionCommand> capture_;
   SweepCollector sweeps_;
   std::map<std::string, std::deque<Image>> images_;

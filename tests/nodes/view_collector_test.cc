@@ -173,6 +173,44 @@ TEST_F(ViewCollectorTest, ImagesFromTheSweepsStartAndMiddleComeAfterTheViewsOwn)
   EXPECT_EQ(taken[0], taken[1]);
 }
 
+// For minutes nobody asks for a view, sweeps take minutes, and images are large.
+TEST_F(ViewCollectorTest, WhatIsKeptOfLongSweepsIsBoundedAndServesTheirStartAndMiddle) {
+  const cv::Mat pixels(1456, 1936, CV_8UC1, cv::Scalar(0));  // one for all
+  const std::size_t bytes = pixels.total();
+  const std::size_t most = ViewCollector::kSweepsKept * ViewCollector::kMostBytes +
+                           (ViewCollector::kTail + ViewCollector::kKept) * bytes;
+  constexpr Utime kLong = 200 * kSecond;
+  Utime begin = kSweep;
+  for (int sweep = 0; sweep < 4; ++sweep, begin += kLong) {
+    collector_.Add(LinesOf(begin, 0));
+    for (Utime now = begin; now < begin + kLong; now += kSecond / 2) {
+      Image image = MakeImage("thermal", now);
+      image.pixels = pixels;
+      collector_.Add(image);
+      ASSERT_LE(collector_.ImageBytes(), most);
+    }
+    collector_.Add(End(begin, 1));
+  }
+  EXPECT_GT(collector_.ImageBytes(), most / 2);
+  begin -= kLong;
+  collector_.Begin(Capture(begin + kLong, begin));
+  AddImages(begin + kLong);
+  const auto view = collector_.Take(rig_);
+  ASSERT_TRUE(view);
+  ASSERT_EQ(view->images.size(), 4U);
+  EXPECT_LE(view->images[2].utime - begin, kSecond);
+  EXPECT_NEAR(ToSeconds(view->images[3].utime - begin), 100, 32);
+}
+
+TEST_F(ViewCollectorTest, WithoutSweepsTheNewestSecondsAloneAreKept) {
+  for (int i = 0; i < 100; ++i) {
+    Image image = MakeImage("rgb", kSweep + i * kSecond);
+    image.pixels = cv::Mat(10, 10, CV_8UC1, cv::Scalar(0));
+    collector_.Add(image);
+  }
+  EXPECT_EQ(collector_.ImageBytes(), 100U * (ViewCollector::kTail + ViewCollector::kKept));
+}
+
 TEST_F(ViewCollectorTest, ItStaysTheFirstHoweverManyCome) {
   AddSweep();
   collector_.Begin(Capture());

@@ -93,7 +93,7 @@ class LiveNode : public Node {
   double posted_s_ = -1;
   Calibration with_all_views_;  // before the first view was left out
   SessionWatch watch_;
-  ViewCollector collector_{0};
+  ViewCollector collector_{ViewCollector::During::kForget};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
   struct Seen {
     TargetStatus status;
