@@ -5,13 +5,13 @@
 
 import { open, readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
+import { decoderMaker, describe } from "./foxglove_decoder.mjs";
 
 const [file, modules] = process.argv.slice(2);
 const require = createRequire(`${modules}/`);
+const typeOf = decoderMaker(modules);
 const { McapIndexedReader, McapStreamReader } = require("@mcap/core");
 const { decompress } = require("fzstd");
-const protobuf = require("protobufjs");
-const { FileDescriptorSet } = require("protobufjs/ext/descriptor");
 
 const zstd = (packed, size) => {
   const bytes = decompress(packed);
@@ -22,9 +22,7 @@ const decompressHandlers = { zstd };
 
 function decoderOf(schema) {
   if (schema.encoding !== "protobuf") throw new Error(`${schema.name}: ${schema.encoding}`);
-  const root = protobuf.Root.fromDescriptor(FileDescriptorSet.decode(schema.data));
-  root.resolveAll();
-  return root.lookupType(schema.name);
+  return typeOf(schema.data, schema.name);
 }
 
 const handle = await open(file);
@@ -72,39 +70,8 @@ if (!stream.done()) throw new Error("the file does not end");
 const { messageCount } = reader.statistics;
 if (messageCount !== BigInt(streamed)) throw new Error(`${streamed} messages of ${messageCount}`);
 
-const number = (x) => Number(x).toPrecision(6);
-const vector = (v) => [v.x, v.y, v.z].map(number).join(" ");
-
-// Of a cloud's point: its values by name.
-function pointAt(cloud, index) {
-  const view = new DataView(cloud.data.buffer, cloud.data.byteOffset + index * cloud.point_stride);
-  const readers = [null, "Uint8", "Int8", "Uint16", "Int16", "Uint32", "Int32", "Float32", "Float64"];
-  return cloud.fields.map((f) => `${f.name}=${number(view[`get${readers[f.type]}`](f.offset, true))}`);
-}
-
-function describe({ schema, last }) {
-  switch (schema) {
-    case "foxglove.PointCloud":
-      return `${last.frame_id} ${last.data.length / last.point_stride} points; ${pointAt(last, 0).join(" ")}`;
-    case "foxglove.RawImage":
-      return `${last.frame_id} ${last.width}x${last.height} ${last.encoding} ${last.data.length} bytes`;
-    case "foxglove.CompressedImage":
-      return `${last.frame_id} ${last.format} ${last.data.length} bytes`;
-    case "foxglove.CameraCalibration":
-      return `${last.frame_id} ${last.distortion_model} fx ${number(last.K[0])} D ${last.D.length}`;
-    case "foxglove.FrameTransforms":
-      return last.transforms
-        .map((t) => `${t.parent_frame_id} > ${t.child_frame_id}: ${vector(t.translation)}`)
-        .join(", ");
-    case "foxglove.PoseInFrame":
-      return `${last.frame_id}: ${vector(last.pose.position)}`;
-    default:
-      return last.message ?? "";
-  }
-}
-
 for (const [name, topic] of [...topics].sort()) {
-  console.log(`${name}  ${topic.schema}  ${topic.messages} ${topic.decoded}  ${describe(topic)}`);
+  console.log(`${name}  ${topic.schema}  ${topic.messages} ${topic.decoded}  ${describe(topic.schema, topic.last)}`);
 }
 console.log(`decoded ${decoded} of ${messageCount}`);
 if (BigInt(decoded) !== messageCount) process.exit(1);

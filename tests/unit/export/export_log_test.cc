@@ -86,7 +86,7 @@ class ExportingLog : public testing::Test {
   void Add(const M& message) {
     log_.Write(ChannelOf(message), Encode(message), 42);  // what lcm-logger's clock said
   }
-  ExportedLog Export(const ExportFrames& frames = {}) {
+  ExportedLog Export(const FoxgloveFrames& frames = {}) {
     log_.Close();
     return ExportLog(dir_ / "log", dir_ / "out.mcap", frames);
   }
@@ -274,8 +274,9 @@ TEST_F(ExportingLog, WithoutAnythingToExportTheOldFileStays) {
 TEST_F(ExportingLog, FramesHaveNamesOfTheirOwn) {
   Add(Chunk(kStart, 0, 1));
   log_.Close();
-  for (const ExportFrames& frames : {ExportFrames{"a b", {}}, ExportFrames{"x", {{"rgb", "x"}}},
-                                     ExportFrames{"", {{"rgb", ""}}}}) {
+  for (const FoxgloveFrames& frames :
+       {FoxgloveFrames{"a b", {}}, FoxgloveFrames{"x", {{"rgb", "x"}}},
+        FoxgloveFrames{"", {{"rgb", ""}}}}) {
     EXPECT_THROW(ExportLog(dir_ / "log", dir_ / "out.mcap", frames), InputError);
   }
 }

@@ -1,4 +1,4 @@
-#include "services/export/foxglove_messages.h"
+#include "services/foxglove/stream/foxglove_messages.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -200,13 +200,13 @@ foxglove::RawImage ToFoxglove(const Image& image, const std::string& frame) {
   return out;
 }
 
-foxglove::CompressedImage ToFoxglove(const Bytes& file, Utime utime, const std::string& frame) {
+foxglove::CompressedImage ToFoxglove(const ImageFile& file, const std::string& frame) {
   constexpr std::uint8_t kPngBegin = 0x89;
   foxglove::CompressedImage out;
-  *out.mutable_timestamp() = ToTimestamp(utime);
+  *out.mutable_timestamp() = ToTimestamp(file.utime);
   out.set_frame_id(frame);
-  out.set_format(!file.empty() && file[0] == kPngBegin ? "png" : "jpeg");
-  out.set_data(file.data(), file.size());
+  out.set_format(!file.bytes.empty() && file.bytes[0] == kPngBegin ? "png" : "jpeg");
+  out.set_data(file.bytes.data(), file.bytes.size());
   return out;
 }
 

@@ -32,7 +32,11 @@ foxglove::PointCloud ToFoxglove(const RgbdtCloud& cloud, const std::string& fram
 foxglove::RawImage ToFoxglove(const Image& image, const std::string& frame);
 
 /// A JPEG or PNG as it was sent.
-foxglove::CompressedImage ToFoxglove(const Bytes& file, Utime utime, const std::string& frame);
+struct ImageFile {
+  Bytes bytes;
+  Utime utime = 0;
+};
+foxglove::CompressedImage ToFoxglove(const ImageFile& file, const std::string& frame);
 
 /// A camera's lens, by the models that it may have: plumb_bob, rational_polynomial, kannala_brandt.
 foxglove::CameraCalibration ToFoxglove(const CameraSpec& camera, Utime utime,

@@ -1,5 +1,5 @@
 // What is exported, read back by the way that rgbdt import reads anybody's.
-#include "services/export/foxglove_messages.h"
+#include "services/foxglove/stream/foxglove_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
