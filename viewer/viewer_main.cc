@@ -24,6 +24,7 @@
 #include "services/runtime/process.h"
 #include "viewer/finished/finished_node.h"
 #include "viewer/live/bus_monitor.h"
+#include "viewer/live/foxglove_feed.h"
 #include "viewer/live/live_node.h"
 #include "viewer/server/listening_socket.h"
 #include "viewer/server/server.h"
@@ -44,6 +45,7 @@ struct Flags {
   bool anyway = false;
   std::string certificate, key;  // of TLS
   bool clear = false;
+  std::vector<std::string> foxglove_origins;
 };
 
 // "127.0.0.1:8080", "[::1]:8080", "8080"
@@ -110,6 +112,7 @@ ServerOptions OptionsFrom(const Flags& flags) {
                                          : rgbdt::viewer::IsLoopback(options.address);
   if (!local) options.token = NewToken();
   options.tls = IdentityFrom(flags, options.address, local);
+  options.foxglove_origins = flags.foxglove_origins;
   options.page = rgbdt::ViewerPage();
   options.hello = {{"type", "hello"}, {"version", rgbdt::Version()}};
   return options;
@@ -207,13 +210,18 @@ int ShowBus(const Flags& flags) {
   rgbdt::viewer::LiveNode node(flags.anyway ? rgbdt::Use::kAnyway : rgbdt::Use::kIfSound);
   Server server(options, [&](const nlohmann::json& message) { return node.OnBrowser(message); });
   node.PostTo(&server);
+  rgbdt::viewer::FoxgloveFeed foxglove(&server);
+  node.AlsoTo([&](const rgbdt::Message& message) { foxglove.Take(message, rgbdt::HostUtime()); });
   PrintAddresses(server, options);
+  std::printf("for Foxglove: %s\n", server.FoxgloveUrl().c_str());
+  std::fflush(stdout);
   rgbdt::viewer::BusMonitor monitor;
   node.PostBus([&](double now_s) { return DescribeBus(monitor, now_s, server); });
   return rgbdt::RunOnLcm(
       node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
         monitor.Add(channel, data, size, rgbdt::ToSeconds(rgbdt::SteadyUtime()),
                     rgbdt::HostUtime());
+        foxglove.Overhear(channel, data, size);
       });
 }
 
@@ -271,6 +279,9 @@ void CheckFlags(const Flags& flags, bool run) {
   if (!flags.session.empty() && !flags.bus.url.empty()) {
     throw rgbdt::UsageError("--session shows files, --lcm-url a bus; give one of them");
   }
+  if (!flags.session.empty() && !flags.foxglove_origins.empty()) {
+    throw rgbdt::UsageError("--foxglove-origin is of a bus, and --session shows files");
+  }
   if (flags.clear && !flags.certificate.empty()) {
     throw rgbdt::UsageError("--tls and --no-tls; give one of them");
   }
@@ -299,6 +310,9 @@ int main(int argc, char** argv) {
       "whose fingerprint is printed, to be compared with what the browser shows");
   line.Flag("--no-tls", &flags.clear,
             "beyond loopback, too, in clear: who listens on the network sees page and token");
+  line.Option("--foxglove-origin", &flags.foxglove_origins,
+              "a page of another site that may look by Foxglove's protocol, as its browser names\n"
+              "it: https://app.foxglove.dev; may be given again. Programs may without");
   line.Bus(&flags.bus.url, &flags.bus.key);
   line.Option("--session", &flags.session, "a session directory, in place of the bus");
   line.Flag("--anyway", &flags.anyway, "show a calibration although it was made with another rig");

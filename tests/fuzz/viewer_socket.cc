@@ -1,5 +1,6 @@
 // What comes over a connection to the viewer's server: raw where the first byte is even, else
-// behind a handshake that makes a WebSocket of it. Whoever sends hears an end, whatever it was.
+// behind a handshake that makes a WebSocket of it, the page's or (3, 7, ...) a Foxglove client's.
+// Whoever sends hears an end, whatever it was.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -23,6 +24,16 @@ viewer::Post MakePost(const std::string& topic, const std::string& watch) {
   return post;
 }
 
+viewer::ChannelMessage MakeMessage(const std::string& topic, const std::string& holds_for) {
+  viewer::ChannelMessage message;
+  message.topic = topic;
+  message.schema_name = "test.Bytes";
+  message.schema = std::make_shared<const std::string>("schema");
+  message.holds_for = holds_for;
+  message.make = [] { return std::string(40, '\0'); };
+  return message;
+}
+
 viewer::ServerOptions Options() {
   viewer::ServerOptions options;
   options.port = 0;
@@ -37,9 +48,11 @@ int PortOf(const viewer::Server& server) {
   return std::stoi(url.substr(url.rfind(':') + 1));
 }
 
-std::string Handshake(int port) {
+std::string Handshake(int port, bool foxglove) {
   const std::string host = "127.0.0.1:" + std::to_string(port);
-  return "GET /ws HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
+  return std::string(foxglove ? "GET /" : "GET /ws") + " HTTP/1.1\r\nHost: " + host +
+         (foxglove ? "\r\nSec-WebSocket-Protocol: foxglove.websocket.v1"
+                   : "\r\nOrigin: http://" + host) +
          "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n";
 }
@@ -95,8 +108,8 @@ std::string Receive(int connection) {
 }
 
 // Nothing is to be sent before its answer.
-void ShakeHands(int connection, int port) {
-  Send(connection, Handshake(port));
+void ShakeHands(int connection, int port, bool foxglove) {
+  Send(connection, Handshake(port, foxglove));
   std::string answer;
   while (answer.find("\r\n\r\n") == std::string::npos) {
     const std::string more = Receive(connection);
@@ -117,11 +130,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   });
   static const int port = PortOf(server);
   fuzz::Input input(data, size);
-  const bool handshake = input.Byte() % 2 == 1;
+  const std::uint8_t kind = input.Byte();
+  const bool handshake = kind % 2 == 1;
   const std::string bytes = input.Rest();
   server.Send(MakePost("sweep/0", "cloud"));
+  server.Publish(MakeMessage("/tf_static", "rgb"));
+  server.Publish(MakeMessage("/status", ""));
   const Descriptor connection = Connect(port);
-  if (handshake) ShakeHands(connection.get(), port);
+  if (handshake) ShakeHands(connection.get(), port, kind % 4 == 3);
   Send(connection.get(), bytes);
   shutdown(connection.get(), SHUT_WR);
   while (!Receive(connection.get()).empty()) {

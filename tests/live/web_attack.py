@@ -4,13 +4,14 @@
 Usage: web_attack.py PORT PULSE_PID PULSE_CSV TURNS
 
 While they are on: 1,000 connections that say nothing or a byte now and then, each opened anew when
-the viewer closes it; WebSockets of another site's page, with a wrong token, with a frame that is too
-large, with fragments without end; and eight browsers that ask for everything and read nothing. Each
-must be answered as it deserves, and the page must be there for others. The bus' latency comes from
-`bus_pulse`, PULSE_PID, which is ended for its CSV. Prints figures as JSON: the ratio of p99 with
-them to p99 without is the middle one of all turns'. From 7 turns on it is judged, too: exit code 1
-where it is above 1.2 in more turns than chance makes once in a hundred (sign test): what else the
-machine does makes single turns differ by far, either way.
+the viewer closes it; WebSockets of another site's page, with a wrong token, with a frame that is
+too large, with fragments without end; and eight browsers and eight clients of Foxglove's protocol
+that ask for everything and read nothing. Each must be answered as it deserves, and the page must be
+there for others. The bus' latency comes from `bus_pulse`, PULSE_PID, which is ended for its CSV.
+Prints figures as JSON: the ratio of p99 with them to p99 without is the middle one of all turns'.
+From 7 turns on it is judged, too: exit code 1 where it is above 1.2 in more turns than chance makes
+once in a hundred (sign test): what else the machine does makes single turns differ by far, either
+way.
 """
 import asyncio
 import base64
@@ -18,6 +19,7 @@ import bisect
 import json
 import math
 import os
+import random
 import signal
 import statistics
 import struct
@@ -63,13 +65,13 @@ async def connect():
     return await asyncio.open_connection("127.0.0.1", PORT, limit=1 << 24)
 
 
-async def upgrade(origin):
-    """The answer's status, and the WebSocket."""
+async def upgrade(origin, path="/ws"):
+    """The answer's status, and the WebSocket: the page's, or at "/" Foxglove's."""
     reader, writer = await connect()
     key = base64.b64encode(os.urandom(16)).decode()
-    writer.write((f"GET /ws HTTP/1.1\r\nHost: {HOST}\r\nOrigin: {origin}\r\nUpgrade: websocket\r\n"
-                  f"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}"
-                  "\r\n\r\n").encode())
+    writer.write((f"GET {path} HTTP/1.1\r\nHost: {HOST}\r\nOrigin: {origin}\r\nUpgrade: websocket\r\n"
+                  f"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n"
+                  "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n").encode())
     head = await reader.readuntil(b"\r\n\r\n")
     return int(head.split()[1]), reader, writer
 
@@ -111,7 +113,7 @@ async def silent(number):
 async def foreign():
     while True:
         try:
-            status, _, writer = await upgrade("http://evil.example")
+            status, _, writer = await upgrade("http://evil.example", random.choice(["/ws", "/"]))
             expect(status == 403, f"another site's page got {status}")
             count["foreign_origins"] += 1
             writer.close()
@@ -160,6 +162,18 @@ async def reads_nothing():
         await asyncio.sleep(0.2)
 
 
+async def subscribes_and_reads_nothing():
+    _, reader, writer = await upgrade(f"http://{HOST}", "/")
+    reader._transport.pause_reading()
+    ids = range(1, 40)  # of channels that there may be
+    every = [{"id": number, "channelId": number} for number in ids]
+    while True:
+        writer.write(text({"op": "subscribe", "subscriptions": every}))
+        writer.write(text({"op": "unsubscribe", "subscriptionIds": [*ids]}))
+        writer.write(text({"op": "subscribe", "subscriptions": every}))
+        await asyncio.sleep(0.5)
+
+
 async def page():
     """Somebody who wants to see the page."""
     while True:
@@ -180,7 +194,8 @@ async def page():
 
 async def attack(seconds):
     hostile = [silent(number) for number in range(SILENT)] + [foreign(), too_large(), fragments()]
-    hostile += [reads_nothing() for _ in range(NOT_READING)] + [page()]
+    hostile += [reads_nothing() for _ in range(NOT_READING)]
+    hostile += [subscribes_and_reads_nothing() for _ in range(NOT_READING)] + [page()]
     tasks = [asyncio.create_task(one) for one in hostile]
     await asyncio.sleep(seconds)
     for task in tasks:

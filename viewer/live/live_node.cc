@@ -43,9 +43,10 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",           "CLOUD",  ".*_IMAGE",      "CORNER_SELECTION", "DETECTION",
-          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",   "RGBDT_SWEEP",      "SESSION_COMMAND",
-          "TARGET_STATUS", "STATUS", "SESSION_EVENT", "LEFT_OUT_VIEWS",   "MOUNT_CHECK"};
+  return {"RIG",           "CLOUD",           ".*_IMAGE",      "CORNER_SELECTION",
+          "DETECTION",     "CALIBRATION",     "REPORT",        "RGBDT_CLOUD",
+          "RGBDT_SWEEP",   "SESSION_COMMAND", "TARGET_STATUS", "STATUS",
+          "SESSION_EVENT", "LEFT_OUT_VIEWS",  "MOUNT_CHECK",   "POSE"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
@@ -58,6 +59,11 @@ Messages LiveNode::Handle(const Message& message) {
     CompleteView();
   } catch (const std::exception& e) {
     Warn(std::string("a view cannot be shown: ") + e.what());
+  }
+  try {
+    if (other_) other_(message);
+  } catch (const std::exception& e) {
+    Warn(std::string("not for Foxglove: ") + e.what());
   }
   return {};
 }

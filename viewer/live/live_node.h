@@ -25,12 +25,12 @@ namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, MOUNT_CHECK, STATUS, LEFT_OUT_VIEWS
-/// -> SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another rig is refused.
-/// Nothing large is encoded here: a post makes its bytes when a browser is about to get it. Of each
-/// view its images are kept as JPEG, and some points of its cloud. Advance publishes what browsers
-/// asked for, and posts the session's state where it has changed, at most ten times a second. All
-/// but OnBrowser belong to the bus' thread, that to the server's.
+/// RGBDT_SWEEP, POSE, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, MOUNT_CHECK, STATUS,
+/// LEFT_OUT_VIEWS -> SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another
+/// rig is refused. Nothing large is encoded here: a post makes its bytes when a browser is about to
+/// get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
+/// publishes what browsers asked for, and posts the session's state where it has changed, at most
+/// ten times a second. All but OnBrowser belong to the bus' thread, that to the server's.
 class LiveNode : public Node {
  public:
   /// `use`: whether a calibration of another rig than RIG's is shown all the same.
@@ -38,6 +38,10 @@ class LiveNode : public Node {
 
   /// Where posts go from now on; it outlives the node. Before the first message.
   void PostTo(Outbox* outbox) { outbox_ = outbox; }
+
+  /// Who else gets each message that is taken, behind it, and POSE. What it throws is a warning.
+  /// Before the first message.
+  void AlsoTo(std::function<void(const Message& message)> other) { other_ = std::move(other); }
 
   std::string name() const override { return "viewer"; }
   std::vector<std::string> Subscriptions() const override;
@@ -81,6 +85,7 @@ class LiveNode : public Node {
   std::vector<Post> PostsOf(const KeptView& view) const;
 
   Outbox* outbox_ = nullptr;
+  std::function<void(const Message& message)> other_;
   DescribeBus describe_bus_;
   Periodic bus_{kMicrosecondsPerSecond};
   mutable std::mutex mutex_;  // guards all below

@@ -54,6 +54,17 @@ bool IsTokenCharacter(char c) {
          c == '_';
 }
 
+// "https://app.foxglove.dev", "http://localhost:8081", "file://"
+bool IsOrigin(const std::string& origin) {
+  const std::size_t scheme = origin.find("://");
+  const auto is_plain = [](char c) { return c > ' ' && c < 0x7f && c != '/' && c != '*'; };
+  return origin.size() <= kMaxMessageString && scheme != 0 && scheme != std::string::npos &&
+         std::all_of(origin.begin(), origin.begin() + static_cast<std::ptrdiff_t>(scheme),
+                     is_plain) &&
+         std::all_of(origin.begin() + static_cast<std::ptrdiff_t>(scheme) + 3, origin.end(),
+                     is_plain);
+}
+
 }  // namespace
 
 void ServerOptions::Check() const {
@@ -67,6 +78,12 @@ void ServerOptions::Check() const {
     FailOption("token", std::to_string(token.size()) + " characters",
                "200 at most of letters, digits, - and _");
   }
+  for (const std::string& origin : foxglove_origins) {
+    if (!IsOrigin(origin)) {
+      FailOption("foxglove_origins", "\"" + origin + "\"",
+                 "SCHEME://HOST as a browser sends it, e.g. https://app.foxglove.dev");
+    }
+  }
   if (!hello.is_null() && !hello.is_object()) {
     FailOption("hello", hello.type_name(), "a JSON object");
   }
@@ -77,6 +94,9 @@ struct Server::Impl {
   Impl(ServerOptions checked, OnMessage on_message);
   ~Impl();
   void Run();
+  void WakeForChannels() {
+    net::post(io, [this] { hub.channels.Dispatch(); });
+  }
   void Accept();
   void OnAccept(const beast::error_code& error, tcp::socket socket);
 
@@ -156,6 +176,22 @@ void Server::Send(Post post) {
 }
 
 void Server::Forget(const std::string& topic_prefix) { impl_->hub.posts.Forget(topic_prefix); }
+
+void Server::Publish(ChannelMessage message) {
+  if (impl_->hub.channels.Publish(std::move(message))) impl_->WakeForChannels();
+}
+
+void Server::EndChannels() {
+  if (impl_->hub.channels.End()) impl_->WakeForChannels();
+}
+
+bool Server::AnybodyListens() const { return impl_->hub.channels.AnybodyListens(); }
+
+std::string Server::FoxgloveUrl() const {
+  const std::string& token = impl_->options.token;
+  const std::string& url = impl_->hub.site.url;  // "http" becomes "ws"
+  return "ws" + url.substr(4) + (token.empty() ? "" : "/?token=" + token);
+}
 
 std::string Server::Url() const {
   const std::string& token = impl_->options.token;

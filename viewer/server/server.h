@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/server/channel_outbox.h"
 #include "viewer/server/outbox.h"
 #include "viewer/server/tls.h"
 
@@ -20,6 +21,8 @@ struct ServerOptions {
   int socket = -1;
   /// Commands are taken from browsers that know it; empty: from all that may connect.
   std::string token;
+  /// Pages of other sites that may connect as Foxglove does: "https://app.foxglove.dev".
+  std::vector<std::string> foxglove_origins;
   /// By TLS, and by it alone; empty: in clear.
   std::optional<TlsIdentity> tls;
   std::string page;      ///< HTML of the page
@@ -44,11 +47,13 @@ struct ScreenTimes {
 };
 
 /// HTTP and WebSocket for any number of browsers, in a thread of its own that gives way to others.
-/// GET / is the page, GET /ws the WebSocket. A request whose Host is not this server's, or whose
-/// Origin is another one's, is refused. What a browser says is checked: a malformed frame closes
-/// that browser's connection only. A browser that reads slowly gets less, newest first, and holds
-/// up nobody.
-class Server : public Outbox {
+/// GET / is the page, GET /ws its WebSocket, and a WebSocket at / one for clients that speak
+/// Foxglove's protocol, which look and command nothing. A request whose Host is not this server's,
+/// or whose Origin is another one's, is refused; of Foxglove's clients one of another Origin may
+/// connect that is named in the options or has the token behind "/?token=", and one without an
+/// Origin. What a browser says is checked: a malformed frame closes that browser's connection only.
+/// A browser that reads slowly gets less, newest first, and holds up nobody.
+class Server : public Outbox, public ChannelOutbox {
  public:
   /// What a browser asked for, already checked in type and form: "request", "pick", "leave_out",
   /// "view", "watch". Called on the server's thread; answers with frames for that browser alone. An
@@ -62,11 +67,18 @@ class Server : public Outbox {
   void Send(Post post) override;
   void Forget(const std::string& topic_prefix) override;
 
+  void Publish(ChannelMessage message) override;
+  void EndChannels() override;
+  bool AnybodyListens() const override;
+
   /// "http://127.0.0.1:8080", by TLS "https://..."; with the token, where there is one, behind
   /// "/#token=".
   std::string Url() const;
 
-  std::vector<BrowserState> Browsers() const;
+  /// For Foxglove: "ws://127.0.0.1:8080", by TLS "wss://..."; the token behind "/?token=".
+  std::string FoxgloveUrl() const;
+
+  std::vector<BrowserState> Browsers() const;  ///< Foxglove's clients, too
   std::optional<ScreenTimes> Screen() const;
 
  private:

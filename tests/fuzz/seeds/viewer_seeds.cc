@@ -20,6 +20,13 @@ const std::vector<std::string>& ViewerMessages() {
   return messages;
 }
 
+const std::vector<std::string>& FoxgloveMessages() {
+  static const std::vector<std::string> messages = {
+      R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})",
+      R"({"op":"unsubscribe","subscriptionIds":[0,1]})", R"({"op":"getParameters"})"};
+  return messages;
+}
+
 // A client's frame (RFC 6455, 5.2), masked by zeros, so that what it says can be read.
 std::string Frame(int opcode, const std::string& text, bool last = true) {
   std::string bytes{static_cast<char>((last ? 0x80 : 0) | opcode)};
@@ -45,6 +52,15 @@ void AddViewerMessages(Inputs* seeds) {
   (*seeds)["untyped"] = R"({"id":1})";
 }
 
+void AddFoxgloveMessages(Inputs* seeds) {
+  for (std::size_t i = 0; i < FoxgloveMessages().size(); ++i) {
+    (*seeds)["message" + std::to_string(i)] = FoxgloveMessages()[i];
+  }
+  (*seeds)["large"] = R"({"op":"unsubscribe","subscriptionIds":[4294967296]})";
+  (*seeds)["half"] = R"({"op":"subscribe","subscriptions":[{"id":0}]})";
+  (*seeds)["array"] = "[1]";
+}
+
 void AddRequests(Inputs* seeds) {
   const std::string host = "Host: localhost:8080\r\n", end = "\r\n";
   const std::string upgrade =
@@ -68,6 +84,11 @@ void AddRequests(Inputs* seeds) {
   requests["socket"] = socket + host + origin + upgrade + end;
   requests["no_upgrade"] = socket + host + origin + end;
   requests["other_origin"] = socket + host + "Origin: http://evil.example\r\n" + upgrade + end;
+  const std::string foxglove = "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n";
+  requests["foxglove"] = get + host + upgrade + foxglove + end;
+  requests["foxglove_page"] = get + host + "Origin: file://\r\n" + upgrade + foxglove + end;
+  requests["foxglove_token"] =
+      "GET /?token=secret HTTP/1.1\r\n" + host + "Origin: file://\r\n" + upgrade + foxglove + end;
   requests["rubbish"] = "\x16\x03\x01\x02";
   for (const auto& [name, request] : requests) {
     (*seeds)[name] = std::string(1, '\0') + request;
@@ -92,6 +113,13 @@ void AddSockets(Inputs* seeds) {
   (*seeds)["not_utf8"] = hello + Frame(1, "\xff\xfe");
   (*seeds)["reserved"] = hello + Frame(0x73, "x");
   (*seeds)["huge"] = hello + std::string("\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xff\0\0\0\0", 14);
+  const std::string subscribed = '\3' + Frame(1, FoxgloveMessages()[0]);
+  (*seeds)["foxglove"] = subscribed;
+  (*seeds)["foxglove_ends"] = subscribed + Frame(1, FoxgloveMessages()[1]);
+  (*seeds)["foxglove_twice"] = subscribed + Frame(1, FoxgloveMessages()[0]);
+  (*seeds)["foxglove_more"] = '\3' + Frame(1, FoxgloveMessages()[2]);
+  (*seeds)["foxglove_binary"] = subscribed + Frame(2, std::string("\x01\x01\0\0\0abc", 8));
+  (*seeds)["foxglove_not_json"] = subscribed + Frame(1, "{");
   (*seeds)["http"] = std::string(1, '\0') + "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
   (*seeds)["bad_http"] = std::string(1, '\0') + "\x16\x03\x01\x02\r\n\r\n";
 }
@@ -100,6 +128,7 @@ void AddSockets(Inputs* seeds) {
 
 void AddViewerSeeds(Seeds* seeds) {
   AddViewerMessages(&(*seeds)["viewer_message"]);
+  AddFoxgloveMessages(&(*seeds)["viewer_foxglove"]);
   AddRequests(&(*seeds)["viewer_http"]);
   AddSockets(&(*seeds)["viewer_socket"]);
 }

@@ -109,7 +109,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"viewer/live",
        {"calib/camera", "calib/files/schema", "calib/present/layout", "calib/present/frames",
         "services/messages", "services/bus", "services/runtime", "services/nodes",
-        "viewer/server"}},
+        "services/foxglove", "services/foxglove/stream", "viewer/server"}},
       {"viewer/finished",
        {"calib/methods", "calib/files/session", "calib/present/frames", "calib/present/session",
         "viewer/server"}},

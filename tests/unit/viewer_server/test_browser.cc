@@ -84,15 +84,19 @@ void HeldConnection::Await(const std::string& bytes) {
   net::read_until(socket_, net::dynamic_buffer(came), bytes);
 }
 
-TestBrowser::TestBrowser(int port, const std::string& origin) : socket_(io_) {
+TestBrowser::TestBrowser(int port, const Handshake& handshake) : socket_(io_) {
   const std::string host = "127.0.0.1:" + std::to_string(port);
-  const std::string from = origin.empty() ? "http://" + host : origin;
+  const std::string from = handshake.origin.empty() ? "http://" + host : handshake.origin;
   beast::get_lowest_layer(socket_).socket().connect(Loopback(port));
-  socket_.set_option(
-      beast::websocket::stream_base::decorator([from](beast::websocket::request_type& request) {
-        request.set(beast::http::field::origin, from);
+  socket_.set_option(beast::websocket::stream_base::decorator(
+      [from, offered = handshake.subprotocol](beast::websocket::request_type& request) {
+        if (from != "none") request.set(beast::http::field::origin, from);
+        if (!offered.empty()) request.set(beast::http::field::sec_websocket_protocol, offered);
       }));
-  Check(Await([&](const Done& done) { socket_.async_handshake(host, "/ws", done); }));
+  beast::websocket::response_type response;
+  Check(Await(
+      [&](const Done& done) { socket_.async_handshake(response, host, handshake.target, done); }));
+  subprotocol_ = std::string(response[beast::http::field::sec_websocket_protocol]);
 }
 
 error_code TestBrowser::Await(const std::function<void(Done done)>& start) {
@@ -126,17 +130,19 @@ void TestBrowser::SayRaw(const std::string& bytes) {
   net::write(beast::get_lowest_layer(socket_).socket(), net::buffer(bytes));
 }
 
-GotFrame TestBrowser::Next() {
+GotMessage TestBrowser::NextMessage() {
   beast::flat_buffer buffer;
   Check(Await([&](const Done& done) {
     socket_.async_read(buffer, [done](const error_code& error, std::size_t) { done(error); });
   }));
-  return Decoded(beast::buffers_to_string(buffer.data()));
+  return {socket_.got_text(), beast::buffers_to_string(buffer.data())};
 }
+
+GotFrame TestBrowser::Next() { return Decoded(NextMessage().bytes); }
 
 int TestBrowser::CloseCode() {
   try {
-    while (true) Next();
+    while (true) NextMessage();
   } catch (const boost::system::system_error&) {
     return socket_.reason().code;
   }

@@ -48,11 +48,27 @@ struct GotFrame {
   std::string type() const { return header.value("type", ""); }
 };
 
+/// A message of a WebSocket as it came.
+struct GotMessage {
+  bool is_text = false;
+  std::string bytes;
+  nlohmann::json Json() const { return nlohmann::json::parse(bytes); }
+};
+
+/// What a client's first request says.
+struct Handshake {
+  std::string origin = {};  ///< empty: the server's own page; "none": it says none
+  std::string target = "/ws";
+  std::string subprotocol = {};  ///< offered
+};
+
 /// A browser's end of the WebSocket. What takes longer than 30 s throws.
 class TestBrowser {
  public:
   /// Connects. Throws boost::system::system_error where it is refused.
-  explicit TestBrowser(int port, const std::string& origin = "");
+  TestBrowser(int port, const Handshake& handshake);
+  explicit TestBrowser(int port, const std::string& origin = "")
+      : TestBrowser(port, Handshake{origin}) {}
   explicit TestBrowser(const Server& server) : TestBrowser(PortOf(server)) {}
 
   void Say(const nlohmann::json& message) { SayText(message.dump()); }
@@ -64,6 +80,10 @@ class TestBrowser {
   void Watch(bool cloud, const std::vector<std::string>& cameras, std::int64_t points = 10'000'000);
   void Ack(std::uint32_t id) { Say({{"type", "ack"}, {"id", id}}); }
 
+  /// The next message, whatever it is. Throws where the connection was closed instead.
+  GotMessage NextMessage();
+  /// The subprotocol that the server chose.
+  const std::string& subprotocol() const { return subprotocol_; }
   /// The next frame. Throws where the connection was closed instead.
   GotFrame Next();
   /// Reads up to the close, and gives its code.
@@ -77,6 +97,7 @@ class TestBrowser {
 
   boost::asio::io_context io_;
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  std::string subprotocol_;
 };
 
 /// A post whose frame is {"type": "test", "name": `name`}.

@@ -1,6 +1,9 @@
 #include "viewer/server/internal/http_answer.h"
 
+#include <algorithm>
 #include <boost/beast/websocket/rfc6455.hpp>
+
+#include "viewer/server/internal/foxglove_protocol.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -57,20 +60,70 @@ std::optional<HttpResponse> AnswerToUpgrade(const HttpRequest& request, const st
   return std::nullopt;
 }
 
+// "abc" of "/?x=1&token=abc"
+std::string TokenOf(const HttpRequest& request) {
+  const std::string target(request.target());
+  const std::string name = "token=";
+  std::size_t at = target.find('?');
+  while (at != std::string::npos) {
+    const std::size_t begin = at + 1, end = target.find('&', begin);
+    if (target.compare(begin, name.size(), name) == 0) {
+      return target.substr(begin + name.size(), end - begin - name.size());
+    }
+    at = end;
+  }
+  return "";
+}
+
+// A browser names the page that asks, always: who names none is a program, which could name any.
+bool MayStream(const HttpRequest& request, const std::string& host, const Site& site) {
+  if (request.count(http::field::origin) == 0) return true;
+  if (!site.token.empty() && SameToken(TokenOf(request), site.token)) return true;
+  const std::string origin = Only(request, http::field::origin);
+  if (OriginIsHost(origin, host, site.hosts.tls)) return true;
+  const auto& others = site.foxglove_origins;
+  return std::find(others.begin(), others.end(), origin) != others.end();
+}
+
+std::optional<HttpResponse> AnswerToFoxglove(const HttpRequest& request, const std::string& host,
+                                             const Site& site) {
+  if (FoxgloveSubprotocolOf(request).empty()) {
+    return PlainAnswer(http::status::bad_request,
+                       "This WebSocket speaks foxglove.websocket.v1 and foxglove.sdk.v1.");
+  }
+  if (!MayStream(request, host, site)) {
+    return PlainAnswer(http::status::forbidden,
+                       "A page of another site may connect where rgbdt-viewer was started with "
+                       "--foxglove-origin ORIGIN, or with the token in the address.");
+  }
+  return std::nullopt;
+}
+
 std::optional<HttpResponse> GetAnswer(const HttpRequest& request, const Site& site) {
   const std::string host = Only(request, http::field::host);
   if (!site.hosts.Allows(host)) {
     return PlainAnswer(http::status::forbidden,
                        "This server is not known under that name. Open " + site.url + " instead.");
   }
-  const std::string target(request.target());
-  const std::string path = target.substr(0, target.find('?'));
-  if (path == "/ws") return AnswerToUpgrade(request, host, site.hosts.tls);
+  const std::string path = PathOf(request);
+  if (path == kPagesSocket) return AnswerToUpgrade(request, host, site.hosts.tls);
+  if (path == "/" && beast::websocket::is_upgrade(request)) {
+    return AnswerToFoxglove(request, host, site);
+  }
   if (path == "/" || path == "/index.html") return PageAnswer(site, host);
   return PlainAnswer(http::status::not_found, "There is only the page at " + site.url + ".");
 }
 
 }  // namespace
+
+std::string PathOf(const HttpRequest& request) {
+  const std::string target(request.target());
+  return target.substr(0, target.find('?'));
+}
+
+std::string FoxgloveSubprotocolOf(const HttpRequest& request) {
+  return FoxgloveSubprotocol(Only(request, http::field::sec_websocket_protocol));
+}
 
 HttpResponse PlainAnswer(http::status status, const std::string& sentence) {
   return Answer(status, "text/plain; charset=utf-8", sentence + "\n");

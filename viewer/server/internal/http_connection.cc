@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "viewer/server/internal/browser.h"
+#include "viewer/server/internal/foxglove_client.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -75,7 +76,12 @@ void HttpConnection::OnRequest(const beast::error_code& error) {
     return Answer(
         PlainAnswer(http::status::bad_request, "Nothing is to be sent before the answer."));
   }
-  std::make_shared<Browser>(std::move(stream_), hub_)->Start(parser_.release());
+  const HttpRequest request = parser_.release();
+  if (PathOf(request) == kPagesSocket) {
+    return std::make_shared<Browser>(std::move(stream_), hub_)->Start(request);
+  }
+  std::make_shared<FoxgloveClient>(std::move(stream_), hub_)
+      ->Start(request, FoxgloveSubprotocolOf(request));
 }
 
 void HttpConnection::Answer(HttpResponse response) {

@@ -23,8 +23,10 @@ Post ErrorNotice(const std::string& text) {
 }
 
 Hub::Hub(const ServerOptions& options, Server::OnMessage on_message)
-    : hello_(options.hello), token_(options.token), on_message_(std::move(on_message)) {
+    : hello_(options.hello), on_message_(std::move(on_message)) {
   site.page = options.page;
+  site.token = options.token;
+  site.foxglove_origins = options.foxglove_origins;
 }
 
 void Hub::Leave(Browser* browser) {
@@ -53,13 +55,7 @@ std::string Hub::HelloFrame(bool may_command) const {
 }
 
 bool Hub::MayCommand(const std::string& token) const {
-  if (token_.empty()) return true;
-  auto differ = static_cast<unsigned>(token.size() != token_.size());
-  for (std::size_t i = 0; i < token_.size(); ++i) {
-    const char given = i < token.size() ? token[i] : '\0';
-    differ |= static_cast<unsigned char>(given) ^ static_cast<unsigned char>(token_[i]);
-  }
-  return differ == 0;
+  return site.token.empty() || SameToken(token, site.token);
 }
 
 std::vector<Post> Hub::Ask(const nlohmann::json& message) const {

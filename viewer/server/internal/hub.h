@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/server/internal/channels.h"
 #include "viewer/server/internal/http_answer.h"
 #include "viewer/server/internal/limits.h"
 #include "viewer/server/internal/post_store.h"
@@ -17,8 +18,8 @@ namespace rgbdt::viewer {
 class Browser;
 class HttpConnection;
 
-/// What the server's connections share. Its posts, roster and screen times are there for other
-/// threads, too; all else is the server's thread's.
+/// What the server's connections share. Its posts, channels, roster and screen times are there for
+/// other threads, too; all else is the server's thread's.
 class Hub {
  public:
   Hub(const ServerOptions& options, Server::OnMessage on_message);
@@ -30,17 +31,17 @@ class Hub {
 
   void Join(Browser* browser) { browsers_.push_back(browser); }
   void Leave(Browser* browser);
-  bool full() const { return browsers_.size() >= kMaxBrowsers; }
+  bool full() const { return browsers_.size() + channels.listeners() >= kMaxBrowsers; }
 
   /// A Hello's bytes.
   std::string HelloFrame(bool may_command) const;
-  /// Takes the same time wherever they differ.
   bool MayCommand(const std::string& token) const;
   /// What is to be said to the browser.
   std::vector<Post> Ask(const nlohmann::json& message) const;
 
   Site site;
   PostStore posts;
+  Channels channels;
   Roster roster;
   ScreenRing screen;
   net::ssl::context* tls = nullptr;             ///< none: in clear
@@ -51,7 +52,6 @@ class Hub {
   void Offer(const std::vector<SharedPost>& posts);
 
   nlohmann::json hello_;
-  std::string token_;
   Server::OnMessage on_message_;
   std::vector<Browser*> browsers_;
 };

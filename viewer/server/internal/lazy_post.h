@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "viewer/server/internal/lazy_bytes.h"
 #include "viewer/server/internal/steady_seconds.h"
 #include "viewer/server/outbox.h"
 
@@ -11,19 +13,19 @@ namespace rgbdt::viewer {
 /// A post whose frame is made when it is first asked for, once for all browsers.
 class LazyPost {
  public:
-  explicit LazyPost(Post post) : post_(std::move(post)), sent_s_(SteadySeconds()) {}
+  explicit LazyPost(Post post)
+      : post_(std::move(post)), frame_(std::move(post_.make)), sent_s_(SteadySeconds()) {}
 
-  const Post& post() const { return post_; }
-  double sent_s() const { return sent_s_; }  ///< of the steady clock [s]
+  const Post& post() const { return post_; }  ///< without `make`
+  double sent_s() const { return sent_s_; }   ///< of the steady clock [s]
 
   /// The frame; null where it could not be made. Only on the server's thread.
   std::shared_ptr<const std::string> Frame();
 
  private:
   Post post_;
+  LazyBytes frame_;
   double sent_s_;
-  bool asked_ = false;
-  std::shared_ptr<const std::string> frame_;
 };
 
 using SharedPost = std::shared_ptr<LazyPost>;

@@ -88,14 +88,6 @@ const std::vector<Field>* FieldsOf(const std::string& type) {
 
 [[noreturn]] void Refuse(const std::string& why) { throw MalformedMessage(true, why); }
 
-json Parse(const std::string& text) {
-  try {
-    return json::parse(text);
-  } catch (const json::exception&) {  // its words would quote the message
-    throw MalformedMessage(false, "no JSON");
-  }
-}
-
 const std::string& TypeOf(const json& message) {
   if (!message.is_object()) Refuse("no JSON object");
   const auto type = message.find("type");
@@ -105,9 +97,17 @@ const std::string& TypeOf(const json& message) {
 
 }  // namespace
 
-json ParseMessage(const std::string& text) {
+json ParseJson(const std::string& text) {
   if (text.size() > kMaxMessageText) Refuse("message too large");
-  json message = Parse(text);
+  try {
+    return json::parse(text);
+  } catch (const json::exception&) {  // its words would quote the message
+    throw MalformedMessage(false, "no JSON");
+  }
+}
+
+json ParseMessage(const std::string& text) {
+  json message = ParseJson(text);
   const std::vector<Field>* fields = FieldsOf(TypeOf(message));
   if (fields == nullptr) Refuse("unknown type");
   for (const Field& field : *fields) {

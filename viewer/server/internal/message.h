@@ -18,6 +18,9 @@ class MalformedMessage : public InputError {
   bool is_json_;
 };
 
+/// A text of at most kMaxMessageText as JSON. Throws MalformedMessage.
+nlohmann::json ParseJson(const std::string& text);
+
 /// A message of ToBridge (protocol.ts): exactly its fields, each of its type and within its range.
 /// Throws MalformedMessage.
 nlohmann::json ParseMessage(const std::string& text);

@@ -96,4 +96,13 @@ bool OriginIsHost(const std::string& origin, const std::string& host, bool tls) 
   return from && from == Split(host, tls);
 }
 
+bool SameToken(const std::string& given, const std::string& token) {
+  auto differ = static_cast<unsigned>(given.size() != token.size());
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    const char digit = i < given.size() ? given[i] : '\0';
+    differ |= static_cast<unsigned char>(digit) ^ static_cast<unsigned char>(token[i]);
+  }
+  return differ == 0;
+}
+
 }  // namespace rgbdt::viewer

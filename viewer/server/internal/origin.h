@@ -23,6 +23,9 @@ HostRule RuleFor(const std::string& bound_address, int port, bool tls = false);
 /// The Origin is "http://", by TLS "https://", and that host.
 bool OriginIsHost(const std::string& origin, const std::string& host, bool tls = false);
 
+/// Takes the same time wherever they differ.
+bool SameToken(const std::string& given, const std::string& token);
+
 /// Names of this machine, lower case: "rig.lab", "rig", "rig.local".
 std::vector<std::string> MachineNames();
 
