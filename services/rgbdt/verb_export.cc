@@ -142,8 +142,9 @@ void AddExport(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "export",
       "Writes a calibration for other tools: static transforms of ROS as command lines, launch\n"
-      "file and URDF, OpenCV YAML, Kalibr's camchain. Each file states its direction. A\n"
-      "calibration that is not to be used, or was made with another rig, is refused.\n"
+      "file and URDF, Autoware's sensor_kit_calibration.yaml, OpenCV YAML, Kalibr's camchain, a\n"
+      "function of MATLAB. Each file states its direction. A calibration that is not to be used,\n"
+      "or was made with another rig, is refused.\n"
       "With --mcap, a log of lcm-logger as an MCAP that Foxglove, Rerun and PlotJuggler open: "
       "sweeps,\n"
       "fused clouds, images, lenses, transforms, poses and what the processes said.\n"

@@ -103,6 +103,40 @@ for line, camera in zip([l for l in lines if l.startswith("rosrun ")], truth, st
     expect((parent, child) == ("velodyne", FRAMES[camera]), "ROS 1: other frames")
     compare("command line of ROS 1", camera, *inverse(by_quaternion(qw, qx, qy, qz), [x, y, z]))
 
+# MATLAB: matrices row by row, points behind them, pixels counted from 1.
+function = read("export/matlab_calibration.m").replace("...\n", "")
+expect(function.startswith("function cameras = matlab_calibration()\n"), "MATLAB: no such function")
+for i, (camera, centre) in enumerate({"rgb": [960.5, 604.5], "thermal": [160.5, 128.5]}.items()):
+    fields = dict(re.findall(rf"^cameras\({i + 1}\)\.(\w+) = (.*?);(?:  %.*)?$", function, re.M))
+    expect(fields["name"] == f"'{camera}'", "MATLAB: another camera")
+    rows = [numbers(row) for row in fields["camera_from_lidar"].strip("[] ").split(";")]
+    expect(len(rows) == 4 and rows[3] == [0, 0, 0, 1], "MATLAB: no matrix of a pose")
+    compare("MATLAB", camera, [row[:3] for row in rows[:3]], [row[3] for row in rows[:3]])
+    expect(numbers(fields["principal_point"]) == centre, f"MATLAB: {fields['principal_point']}")
+expect(numbers(fields["image_size"]) == [256, 320], "MATLAB: rows and columns")
+expect(numbers(fields["fisheye"]) == [0.01, 0, 0, 0] and "radial" not in fields, "MATLAB: the lens")
+
+# Autoware: fixed axes as the URDF's, of a camera_link: its x is the optical frame's z, its y and z
+# the other's -x and -y. Two levels, numbers below them, so no YAML reader is needed.
+kit = {}
+for line in read("export/sensor_kit_calibration.yaml").splitlines():
+    if line.strip().startswith("#"):
+        continue
+    key, _, value = line.partition(":")
+    depth = len(key) - len(key.lstrip())
+    if depth == 0:
+        expect(key == "velodyne", f"Autoware: the parent is {key}")
+    elif depth == 2:
+        kit[key.strip()] = entry = {}
+    else:
+        entry[key.strip()] = float(value)
+expect(list(kit) == ["camera_frame", "flir/optical_link"], f"Autoware: {list(kit)}")
+for entry, camera in zip(kit.values(), truth, strict=True):
+    expect(list(entry) == ["x", "y", "z", "roll", "pitch", "yaw"], f"Autoware: {list(entry)}")
+    rotation = product(turned(2, entry["yaw"]), product(turned(1, entry["pitch"]), turned(0, entry["roll"])))
+    optical = product(rotation, [[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
+    compare("Autoware", camera, *inverse(optical, [entry["x"], entry["y"], entry["z"]]))
+
 if yaml is None:
     print("no PyYAML: the YAML files are left to the unit tests")
     sys.exit(0)
@@ -119,3 +153,5 @@ for i, camera in enumerate(truth):
 step = chain["cam1"]["T_cn_cnm1"]
 compare("camchain's step", "thermal", product([row[:3] for row in step[:3]], r0),
         [sum(step[i][k] * t0[k] for k in range(3)) + step[i][3] for i in range(3)])
+expect(yaml.safe_load(read("export/sensor_kit_calibration.yaml")) == {"velodyne": kit},
+       "Autoware: YAML reads other numbers")

@@ -41,9 +41,9 @@ says=("thermal" "not converged: stopped -- at 50 steps" "--anyway")
 refuses "a camera that did not converge" "$bin/rgbdt" export "$session" --out "$scratch/kept"
 accepts "exporting" "$bin/rgbdt" export "$session" --lidar-frame velodyne --anyway \
   --camera-frame rgb=camera_optical_frame --camera-frame thermal=flir/optical
-[ "$(grep -c '^wrote .*: ' "$scratch/output")" = 5 ] || complain "exporting: not a line a file"
+[ "$(grep -c '^wrote .*: ' "$scratch/output")" = 7 ] || complain "exporting: not a line a file"
 [ "$(grep -c '^rgbdt: used anyway: ' "$scratch/output")" = 1 ] || complain "exporting: no warning"
-[ "$(wc -l <"$scratch/output")" = 6 ] || complain "exporting: more than a line a file"
+[ "$(wc -l <"$scratch/output")" = 8 ] || complain "exporting: more than a line a file"
 sed -i '/^wrote/!d' "$scratch/output"
 while read -r _ file _; do
   [ -s "${file%:}" ] || complain "exporting: ${file%:} is not there"
@@ -52,6 +52,8 @@ python3 "$here/check_exports.py" "$session" >"$scratch/output" 2>&1 || complain 
 
 sed -i 's/NOT_CONVERGED/CONVERGED/' "$session/calibration.textproto"
 accepts "exporting with its own names" "$bin/rgbdt" export "$session" --out "$scratch/plain"
+grep -qx '  thermal/camera_link:' "$scratch/plain/sensor_kit_calibration.yaml" ||
+  complain "a camera_link of no given name"
 grep -q -- '--frame-id vlp16 --child-frame-id rgb_optical_frame' "$scratch"/plain/*.launch.yaml ||
   complain "names that were not given"
 

@@ -11,24 +11,12 @@ namespace rgbdt {
 namespace {
 
 using exports::Exported;
+using exports::HasTerms;
 using exports::kFrames;
 using exports::Match;
+using exports::MatrixOf;
 using exports::StatusWarning;
-
-Eigen::Matrix4d Matrix(const Rigid3& pose) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  matrix.topLeftCorner<3, 3>() = text::Normalised(pose.rotation).toRotationMatrix();
-  matrix.topRightCorner<3, 1>() = pose.translation;
-  return matrix;
-}
-
-// The higher of OpenCV's pinhole coefficients, which not every tool has.
-bool HasTerms(const Lens& lens, std::size_t from) {
-  for (std::size_t i = from; i < lens.distortion.size(); ++i) {
-    if (lens.distortion[i] != 0) return true;
-  }
-  return false;
-}
+using exports::YamlList;
 
 int DistortionCount(const Lens& lens) {
   if (lens.model == Lens::Model::kFisheye) return 4;
@@ -46,7 +34,7 @@ void WriteOpenCvCamera(const Exported& camera, cv::FileStorage* file) {
       (cv::Mat_<double>(3, 3) << lens.fx, 0, lens.cx, 0, lens.fy, lens.cy, 0, 0, 1);
   const cv::Mat distortion =
       cv::Mat(1, DistortionCount(lens), CV_64F, const_cast<double*>(lens.distortion.data()));
-  const Eigen::Matrix4d pose = Matrix(camera.calibration.camera_from_lidar);
+  const Eigen::Matrix4d pose = MatrixOf(camera.calibration.camera_from_lidar);
   cv::Mat camera_from_lidar(4, 4, CV_64F);
   for (int i = 0; i < 16; ++i) camera_from_lidar.at<double>(i / 4, i % 4) = pose(i / 4, i % 4);
 
@@ -61,22 +49,8 @@ void WriteOpenCvCamera(const Exported& camera, cv::FileStorage* file) {
   *file << "}";
 }
 
-// A YAML list. By YAML 1.1, which Python reads, "1e-05" is a word and "1.0e-05" a number.
-std::string YamlList(const double* values, int count) {
-  std::string text;
-  for (int i = 0; i < count; ++i) {
-    std::string number = Exact(values[i]);
-    const std::size_t exponent = number.find('e');
-    if (exponent != std::string::npos && number.find('.') == std::string::npos) {
-      number.insert(exponent, ".0");
-    }
-    text += (i > 0 ? ", " : "") + number;
-  }
-  return "[" + text + "]";
-}
-
 std::string KalibrMatrix(const std::string& name, const Rigid3& pose) {
-  const Eigen::Matrix4d matrix = Matrix(pose);
+  const Eigen::Matrix4d matrix = MatrixOf(pose);
   std::string text = "  " + name + ":\n";
   for (int row = 0; row < 4; ++row) {
     const Eigen::RowVector4d numbers = matrix.row(row);
@@ -156,13 +130,20 @@ std::vector<ExportedFile> ExportAll(const std::filesystem::path& dir, const Rig&
                             "for cv::FileStorage: lenses and camera_from_lidar"};
   const ExportedFile kalibr{dir / "kalibr_camchain.yaml",
                             "for Kalibr's tools: lenses, camera to camera, camera_from_lidar"};
+  const ExportedFile autoware{
+      dir / "sensor_kit_calibration.yaml",
+      "for Autoware: each camera_link's pose in the LIDAR frame, x y z roll pitch yaw"};
+  const ExportedFile matlab{dir / "matlab_calibration.m",
+                            "for MATLAB: lenses and camera_from_lidar, as rigidtform3d takes it"};
   // ROS first: what is wrong with the frames' names is found before anything is written.
   ExportRosStaticTransform(lines.path, rig, calibration, frames);
   ExportRosLaunch(launch.path, rig, calibration, frames);
   ExportUrdf(urdf.path, rig, calibration, frames);
+  ExportAutoware(autoware.path, rig, calibration, frames);
   ExportOpenCv(opencv.path, rig, calibration);
   ExportKalibr(kalibr.path, rig, calibration);
-  return {lines, launch, urdf, opencv, kalibr};
+  ExportMatlab(matlab.path, rig, calibration);
+  return {lines, launch, urdf, autoware, opencv, kalibr, matlab};
 }
 
 }  // namespace rgbdt

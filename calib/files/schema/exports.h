@@ -29,6 +29,11 @@ void ExportOpenCv(const std::filesystem::path& path, const Rig& rig,
 void ExportKalibr(const std::filesystem::path& path, const Rig& rig,
                   const Calibration& calibration);
 
+/// A function of MATLAB, named as the file is: per camera camera_from_lidar 4x4, as rigidtform3d
+/// takes it (points are columns, the matrix in front; metres), and the lens, pixels counted from 1.
+void ExportMatlab(const std::filesystem::path& path, const Rig& rig,
+                  const Calibration& calibration);
+
 // ROS: the parent is the LIDAR, the child the camera's optical frame. What ROS calls their
 // transform is the child's pose in the parent, lidar_from_camera.
 
@@ -45,6 +50,13 @@ void ExportRosLaunch(const std::filesystem::path& path, const Rig& rig,
 /// frames called as the rig calls them.
 void ExportUrdf(const std::filesystem::path& path, const Rig& rig, const Calibration& calibration,
                 const FrameNames& frames = {});
+
+/// Autoware's sensor_kit_calibration.yaml: under the LIDAR's frame x y z [m] roll pitch yaw [rad]
+/// of each camera_link, whose axes are x forward, y left, z up, and of LIDARs beside the reference.
+/// It is named as the camera's optical frame is, without "_optical"; unless that is given
+/// `<camera>/camera_link`.
+void ExportAutoware(const std::filesystem::path& path, const Rig& rig,
+                    const Calibration& calibration, const FrameNames& frames = {});
 
 struct ExportedFile {
   std::filesystem::path path;

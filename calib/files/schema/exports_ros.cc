@@ -17,6 +17,7 @@ using exports::HashComment;
 using exports::kFrames;
 using exports::List;
 using exports::StatusWarning;
+using exports::YamlNumber;
 
 constexpr char kDirection[] =
     "ROS takes the pose of the child in the parent: what follows is the camera's pose in the\n"
@@ -33,6 +34,7 @@ struct Joint {
   Eigen::Vector3d xyz;      // of parent_from_child [m]
   Eigen::Quaterniond xyzw;  // its rotation
   std::string warning;      // empty: none
+  bool is_camera = false;
 };
 
 bool IsFrameLetter(char c) {
@@ -112,7 +114,7 @@ std::vector<Joint> JointsOf(const Rig& rig, const Calibration& calibration,
     take(child);
     joints.push_back({camera.spec.name, camera.spec.name + "_optical_joint", lidar, child,
                       lidar_from_camera.translation, text::Normalised(lidar_from_camera.rotation),
-                      StatusWarning(camera)});
+                      StatusWarning(camera), true});
   }
   for (const LidarCalibration& further : calibration.lidars) {
     joints.push_back(JointOf(further, lidar));
@@ -177,6 +179,32 @@ std::string UrdfJoint(const Joint& joint) {
          List(rpy.data(), 3) + "\"/>\n  </joint>\n";
 }
 
+// Autoware's own description turns a camera_link (x forward, y left, z up) into its optical frame
+// by rpy -90, 0, -90 degrees: exactly these axes.
+Rigid3 OpticalFromLink() {
+  Eigen::Matrix3d rotation;
+  rotation << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return {Eigen::Quaterniond(rotation), Eigen::Vector3d::Zero()};
+}
+
+std::string LinkName(const std::string& camera, const FrameNames& frames) {
+  if (frames.cameras.count(camera) == 0) return camera + "/camera_link";
+  const std::string optical = "_optical", frame = CameraFrame(camera, frames);
+  const std::size_t at = frame.find(optical);
+  if (at == std::string::npos || at == 0) return frame + "_link";
+  return std::string(frame).erase(at, optical.size());
+}
+
+std::string AutowareEntry(const std::string& name, const Rigid3& parent_from_link,
+                          const std::string& warning) {
+  const Eigen::Vector3d& t = parent_from_link.translation;
+  const Eigen::Vector3d rpy = RollPitchYaw(text::Normalised(parent_from_link.rotation));
+  return (warning.empty() ? "" : "  # " + warning + "\n") + "  " + name +
+         ":\n    x: " + YamlNumber(t.x()) + "\n    y: " + YamlNumber(t.y()) +
+         "\n    z: " + YamlNumber(t.z()) + "\n    roll: " + YamlNumber(rpy.x()) +
+         "\n    pitch: " + YamlNumber(rpy.y()) + "\n    yaw: " + YamlNumber(rpy.z()) + "\n";
+}
+
 }  // namespace
 
 void ExportRosStaticTransform(const std::filesystem::path& path, const Rig& rig,
@@ -206,6 +234,36 @@ void ExportUrdf(const std::filesystem::path& path, const Rig& rig, const Calibra
       "\"/>\n";
   for (const Joint& joint : joints) text += UrdfJoint(joint);
   WriteFileAtomically(path, text + "</robot>\n");
+}
+
+void ExportAutoware(const std::filesystem::path& path, const Rig& rig,
+                    const Calibration& calibration, const FrameNames& frames) {
+  std::set<std::string> names{LidarFrame(rig, frames)};
+  std::string entries;
+  for (const Joint& joint : JointsOf(rig, calibration, frames)) {
+    Rigid3 parent_from_link{joint.xyzw, joint.xyz};
+    std::string name = joint.child;
+    if (joint.is_camera) {
+      parent_from_link = parent_from_link * OpticalFromLink();
+      name = LinkName(joint.sensor, frames);
+    }
+    if (!names.insert(name).second) {
+      throw InputError("the frame \"" + name +
+                       "\" twice: Autoware's camera_link is called as the optical frame without "
+                       "\"_optical\"; name the cameras' frames otherwise");
+    }
+    entries += AutowareEntry(name, parent_from_link, joint.warning);
+  }
+  std::string text = HashComment(
+      "Autoware's sensor_kit_calibration.yaml, in metres and radians: the pose of the child in "
+      "the\n"
+      "parent, point_in_lidar = Rz(yaw) * Ry(pitch) * Rx(roll) * point_in_child + (x, y, z), the\n"
+      "inverse of calibration.textproto. The parent is the LIDAR's frame: x forward, y left, z "
+      "up.\n"
+      "A camera's child is its camera_link, x forward, y left, z up: Autoware's own description\n"
+      "makes the optical frame of it.");
+  if (!calibration.lidars.empty()) text += HashComment(kFurtherDirection);
+  WriteFileAtomically(path, text + LidarFrame(rig, frames) + ":\n" + entries);
 }
 
 }  // namespace rgbdt

@@ -20,6 +20,35 @@ std::string List(const double* values, int count) {
   return text;
 }
 
+std::string YamlNumber(double value) {
+  std::string number = Exact(value);
+  const std::size_t exponent = number.find('e');
+  if (exponent != std::string::npos && number.find('.') == std::string::npos) {
+    number.insert(exponent, ".0");
+  }
+  return number;
+}
+
+std::string YamlList(const double* values, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i > 0 ? ", " : "") + YamlNumber(values[i]);
+  return "[" + text + "]";
+}
+
+Eigen::Matrix4d MatrixOf(const Rigid3& pose) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = text::Normalised(pose.rotation).toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = pose.translation;
+  return matrix;
+}
+
+bool HasTerms(const Lens& lens, std::size_t from) {
+  for (std::size_t i = from; i < lens.distortion.size(); ++i) {
+    if (lens.distortion[i] != 0) return true;
+  }
+  return false;
+}
+
 std::string StatusWarning(const Exported& camera) {
   if (camera.calibration.converged()) return {};
   std::string status = camera.calibration.StatusText();

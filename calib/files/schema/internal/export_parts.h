@@ -24,6 +24,17 @@ std::vector<Exported> Match(const Rig& rig, const Calibration& calibration);
 /// Numbers that read back as the same bits, spaces between them.
 std::string List(const double* values, int count);
 
+/// A list in brackets for YAML. By YAML 1.1, which Python reads, "1e-05" is a word and "1.0e-05" a
+/// number.
+std::string YamlList(const double* values, int count);
+std::string YamlNumber(double value);
+
+/// The pose as 4x4.
+Eigen::Matrix4d MatrixOf(const Rigid3& pose);
+
+/// Whether a pinhole's coefficients from this one on are used: not every tool has the higher ones.
+bool HasTerms(const Lens& lens, std::size_t from);
+
 /// What a reader must know of a camera that did not converge, in one line; empty: it did.
 std::string StatusWarning(const Exported& camera);
 

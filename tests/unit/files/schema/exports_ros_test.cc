@@ -38,6 +38,11 @@ class RosExports : public ::testing::Test {
     return ReadWholeFile(dir_ / "rig.urdf");
   }
 
+  std::string Autoware(const FrameNames& frames = {}) const {
+    ExportAutoware(dir_ / "kit.yaml", rig_, calibration_, frames);
+    return ReadWholeFile(dir_ / "kit.yaml");
+  }
+
   test::TempDir dir_;
   Rig rig_;
   Calibration calibration_;
@@ -174,6 +179,45 @@ TEST_F(RosExports, FramesAreCalledAsTheUserSays) {
   EXPECT_THAT(urdf, HasSubstr("<link name=\"robot1/velodyne\"/>"));
   EXPECT_THAT(urdf, HasSubstr("<link name=\"flir_optical\"/>"));
   EXPECT_THAT(urdf, HasSubstr("<child link=\"flir_optical\"/>"));
+}
+
+// Its camera_link looks along x; Autoware turns it by rpy -90, 0, -90 degrees to the optical frame.
+TEST_F(RosExports, AutowaresKitHoldsTheCameraLinksPose) {
+  const std::string text = Autoware({"kit", {{"thermal", "flir/camera_optical_link"}}});
+  EXPECT_THAT(text, HasSubstr("\nkit:\n  rgb/camera_link:\n    x: "));
+  EXPECT_THAT(text, HasSubstr("\n  flir/camera_link:\n    x: "));
+  std::string rest = text;
+  for (std::size_t i = 0; i < 2; ++i) {
+    rest = Behind(rest, "/camera_link:\n");
+    std::map<std::string, double> values;
+    std::istringstream words(rest);
+    for (int line = 0; line < 6; ++line) {
+      std::string name;
+      words >> name >> values[name];
+    }
+    const auto turn = [](double roll, double pitch, double yaw) {
+      return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+             Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+             Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+    };
+    const Rigid3 lidar_from_link{turn(values["roll:"], values["pitch:"], values["yaw:"]),
+                                 {values["x:"], values["y:"], values["z:"]}};
+    const Rigid3 link_from_optical{turn(-kPi / 2, 0, -kPi / 2), {0, 0, 0}};
+    EXPECT_THAT((lidar_from_link * link_from_optical).Inverse(), Rigid3Near(Pose(i), 1e-9, 1e-9));
+  }
+}
+
+TEST_F(RosExports, AutowaresNamesAreToldApart) {
+  EXPECT_THAT(test::ErrorOf([&] {
+                Autoware({"", {{"rgb", "cam_optical_a"}, {"thermal", "cam_a_optical"}}});
+              }),
+              HasSubstr("\"cam_a\" twice"));
+  EXPECT_THAT(test::ErrorOf([&] {
+                Autoware({"cam", {{"rgb", "cam_optical"}}});
+              }),
+              HasSubstr("\"cam\" twice"));
+  EXPECT_THAT(Autoware({"", {{"rgb", "_optical"}, {"thermal", "eye"}}}),
+              testing::AllOf(HasSubstr("  _optical_link:\n"), HasSubstr("  eye_link:\n")));
 }
 
 TEST_F(RosExports, WhatIsNoNameOfAFrameIsRefusedBeforeAnythingIsWritten) {

@@ -113,6 +113,22 @@ TEST_F(Exports, ACalibrationThatDidNotConvergeIsMarked) {
   }
 }
 
+TEST_F(Exports, MatlabsFunctionSaysWhatALensLacksThere) {
+  ExportMatlab(dir_ / "rig_of_ours.m", rig_, calibration_);
+  const std::string text = ReadWholeFile(dir_ / "rig_of_ours.m");
+  EXPECT_EQ(text.find("function cameras = rig_of_ours()\n% cameras = rig_of_ours() gives "), 0u);
+  EXPECT_THAT(text, HasSubstr("% point_in_camera = camera_from_lidar * point_in_lidar"));
+  EXPECT_THAT(text, HasSubstr("cameras(1).image_size = [32 48];"));
+  EXPECT_THAT(text, HasSubstr("cameras(1).radial = [-0.1 0.02 0.003];"));
+  EXPECT_THAT(text, HasSubstr("cameras(1).tangential = [1e-04 -2e-04];"));
+  EXPECT_THAT(text, HasSubstr("cameras(2).fisheye = ["));
+  EXPECT_THAT(text, Not(HasSubstr("cut off")));
+  rig_.cameras[0].lens.distortion[5] = 0.5;
+  ExportMatlab(dir_ / "x.m", rig_, calibration_);
+  EXPECT_THAT(ReadWholeFile(dir_ / "x.m"),
+              HasSubstr("% All of OpenCV's k1 k2 p1 p2 k3 k4 k5 k6: "));
+}
+
 TEST_F(Exports, AllFilesAreTheSameEveryTimeAndBadInputIsAnError) {
   std::vector<std::string> first;
   for (const ExportedFile& file : ExportAll(dir_.path(), rig_, calibration_)) {
@@ -123,7 +139,7 @@ TEST_F(Exports, AllFilesAreTheSameEveryTimeAndBadInputIsAnError) {
   for (const ExportedFile& file : ExportAll(dir_.path(), rig_, calibration_)) {
     EXPECT_EQ(ReadWholeFile(file.path), first[i++]);
   }
-  EXPECT_EQ(i, 5u);
+  EXPECT_EQ(i, 7u);
   calibration_.cameras[0].camera = "nobody";
   EXPECT_THAT(test::ErrorOf([&] { ExportAll(dir_.path(), rig_, calibration_); }),
               HasSubstr("nobody"));
