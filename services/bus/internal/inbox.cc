@@ -13,7 +13,8 @@ constexpr std::size_t kMaxChannels = 1000;
 
 }  // namespace
 
-Inbox::Inbox() : waits_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+Inbox::Inbox(std::size_t max_bytes)
+    : waits_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)), max_bytes_(max_bytes) {
   if (!waits_) throw InputError("no descriptor for the bus: too many files are open");
 }
 
@@ -36,12 +37,14 @@ bool Inbox::IsWanted(const std::string& channel) {
 
 void Inbox::Add(WholeMessage message) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (message.bytes.size() > max_bytes_ - bytes_) return;
   Waiting waiting;
   for (Subscriber* subscriber : Hearing(message.channel)) {
     if (subscriber->waiting < subscriber->capacity) waiting.to.push_back(subscriber);
   }
   if (waiting.to.empty()) return;
   for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
+  bytes_ += message.bytes.size();
   waiting.message = std::move(message);
   waiting.arrived = HostUtime();
   waiting_.push_back(std::move(waiting));
@@ -78,6 +81,7 @@ void Inbox::DeliverOne() {
     if (waiting_.empty()) return;
     next = std::move(waiting_.front());
     waiting_.pop_front();
+    bytes_ -= next.message.bytes.size();
     for (Subscriber* subscriber : next.to) --subscriber->waiting;
     eventfd_t count = 0;
     if (waiting_.empty()) eventfd_read(waits_.get(), &count);

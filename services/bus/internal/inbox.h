@@ -15,10 +15,15 @@
 namespace rgbdt {
 
 /// Messages on their way from the thread that receives them to the one that handles them, in the
-/// order in which they came. A subscriber whose queue is full misses the newest.
+/// order in which they came. A subscriber whose queue is full misses the newest; where so many
+/// bytes wait that another message would make them more than `max_bytes`, nobody gets that one.
+/// Either leaves a gap in its sender's numbers.
 class Inbox {
  public:
-  Inbox();  ///< throws InputError where the kernel gives no descriptor
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+
+  /// Throws InputError where the kernel gives no descriptor.
+  explicit Inbox(std::size_t max_bytes = kMaxBytes);
 
   // Of any thread.
   bool IsWanted(const std::string& channel);
@@ -53,6 +58,7 @@ class Inbox {
   std::deque<Subscriber> subscribers_;  // their addresses stay
   std::map<std::string, std::vector<Subscriber*>> hearing_;
   std::deque<Waiting> waiting_;
+  std::size_t max_bytes_, bytes_ = 0;  // of those that wait
   Malformed malformed_;
   Utime arrived_ = 0;  // of the thread that handles
 };
