@@ -17,15 +17,20 @@ void OrderedStream::Reach(std::uint32_t next, Utime now) {
   if (ahead > kMaxAhead) {
     given_up_ += ahead - static_cast<std::uint32_t>(slots_.size());
     for (Slot& slot : slots_) GiveUp(&slot);
-    given_up_ += static_cast<std::int64_t>(Take().size());
+    Advance();
     next_ = next;
     return;
   }
   while (slots_.size() < ahead) {
     slots_.emplace_back();
-    slots_.back().ask_at = now + kGrace;
     ++unsettled_;
+    AskAt(now + kGrace, &slots_.back());
   }
+}
+
+void OrderedStream::AskAt(Utime when, Slot* slot) {
+  slot->ask_at = when;
+  earliest_ask_ = std::min(earliest_ask_, when);
 }
 
 bool OrderedStream::Add(const Datagram& datagram, Utime now, const char** why) {
@@ -33,8 +38,14 @@ bool OrderedStream::Add(const Datagram& datagram, Utime now, const char** why) {
   Reach(datagram.seq + 1, now);
   Slot* slot = At(datagram.seq);
   if (slot == nullptr || slot->settled) return false;
-  slot->ask_at = now + kGrace;
-  if (datagram.is_fragment) return AddFragment(datagram, slot, why);
+  AskAt(now + kGrace, slot);
+  const bool taken =
+      datagram.is_fragment ? AddFragment(datagram, slot, why) : AddWhole(datagram, slot);
+  Advance();
+  return taken;
+}
+
+bool OrderedStream::AddWhole(const Datagram& datagram, Slot* slot) {
   WholeMessage message{std::string(datagram.channel), {}};
   if (is_wanted_(message.channel)) {
     message.bytes.assign(datagram.data, datagram.data + datagram.size);
@@ -79,7 +90,7 @@ void OrderedStream::Finish(WholeMessage message, Slot* slot) {
 void OrderedStream::Settle(Slot* slot) {
   if (slot->settled) return;
   slot->settled = true;
-  --unsettled_;
+  if (--unsettled_ == 0) earliest_ask_ = kNever;
   if (slot->partial) bytes_held_ -= slot->partial->memory();
   slot->partial.reset();
 }
@@ -90,10 +101,23 @@ void OrderedStream::GiveUp(Slot* slot) {
   Settle(slot);
 }
 
+// What holds up nothing any more is ready to be taken, and no longer held.
+void OrderedStream::Advance() {
+  while (!slots_.empty() && slots_.front().settled) {
+    if (slots_.front().whole) {
+      bytes_held_ -= slots_.front().whole->bytes.size();
+      ready_.push_back(std::move(*slots_.front().whole));
+    }
+    slots_.pop_front();
+    ++next_;
+  }
+}
+
 void OrderedStream::OnBeat(std::uint32_t oldest, std::uint32_t next, Utime now) {
   if (!IsAt(next, oldest)) return;
   Reach(oldest, now);
   for (std::size_t i = 0; IsAt(oldest, next_) && i < oldest - next_; ++i) GiveUp(&slots_[i]);
+  Advance();
   Reach(next, now);
 }
 
@@ -116,51 +140,46 @@ std::vector<std::uint16_t> OrderedStream::Missing(const PartialMessage& message,
 
 std::vector<MissingParts> OrderedStream::Ask(Utime now) {
   std::vector<MissingParts> parts;
-  if (unsettled_ == 0) return parts;
+  if (unsettled_ == 0 || earliest_ask_ > now) return parts;
+  earliest_ask_ = kNever;
   std::size_t asked = 0;
-  for (std::size_t i = 0; i < slots_.size() && asked < kFragmentsAsked; ++i) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
-    if (slot.settled || slot.ask_at > now) continue;
-    if (slot.asked == kMaxAsked) {
-      GiveUp(&slot);
-      continue;
+    if (slot.settled) continue;
+    if (slot.ask_at <= now && asked < kFragmentsAsked) {
+      if (slot.asked == kMaxAsked) {
+        GiveUp(&slot);
+        continue;
+      }
+      slot.ask_at = now + std::min(kLongestPause, kFirstPause << slot.asked++);
+      parts.push_back(
+          PartsOf(slot, next_ + static_cast<std::uint32_t>(i), kFragmentsAsked - asked));
+      asked += 1 + parts.back().fragments.size();
     }
-    slot.ask_at = now + std::min(kLongestPause, kFirstPause << slot.asked++);
-    MissingParts part;
-    part.seq = next_ + static_cast<std::uint32_t>(i);
-    if (slot.partial) part.fragments = Missing(*slot.partial, kFragmentsAsked - asked);
-    asked += 1 + part.fragments.size();
-    parts.push_back(std::move(part));
+    earliest_ask_ = std::min(earliest_ask_, slot.ask_at);
   }
+  Advance();
   return parts;
 }
 
-std::optional<Utime> OrderedStream::NextAsk() const {
-  std::optional<Utime> next;
-  if (unsettled_ == 0) return next;
-  for (const Slot& slot : slots_) {
-    if (!slot.settled && (!next || slot.ask_at < *next)) next = slot.ask_at;
-  }
-  return next;
+MissingParts OrderedStream::PartsOf(const Slot& slot, std::uint32_t seq, std::size_t most) {
+  MissingParts part;
+  part.seq = seq;
+  if (slot.partial) part.fragments = Missing(*slot.partial, most);
+  return part;
 }
 
-std::vector<WholeMessage> OrderedStream::Take() {
-  std::vector<WholeMessage> messages;
-  while (!slots_.empty() && slots_.front().settled) {
-    if (slots_.front().whole) {
-      bytes_held_ -= slots_.front().whole->bytes.size();
-      messages.push_back(std::move(*slots_.front().whole));
-    }
-    slots_.pop_front();
-    ++next_;
-  }
-  return messages;
+std::optional<Utime> OrderedStream::NextAsk() const {
+  if (unsettled_ == 0) return std::nullopt;
+  return earliest_ask_;
 }
+
+std::vector<WholeMessage> OrderedStream::Take() { return std::exchange(ready_, {}); }
 
 void OrderedStream::GiveUpOldest() {
-  const auto oldest =
-      std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return !slot.settled; });
-  if (oldest != slots_.end()) GiveUp(&*oldest);
+  if (slots_.empty()) return;
+  GiveUp(&slots_.front());
+  Advance();
 }
 
 }  // namespace rgbdt

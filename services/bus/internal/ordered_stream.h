@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,7 +47,7 @@ class OrderedStream {
 
   /// What to ask for now.
   std::vector<MissingParts> Ask(Utime now);
-  /// When there is something to ask; nothing: all is whole.
+  /// When there is something to ask, or a little before; nothing: all is whole.
   std::optional<Utime> NextAsk() const;
 
   /// The messages that are next, each whole, as far as they are.
@@ -54,7 +55,8 @@ class OrderedStream {
   /// Gives up the oldest message that is not whole, for its memory.
   void GiveUpOldest();
 
-  std::size_t bytes_held() const { return bytes_held_; }
+  /// Of all but what Take gives now; a number of which nothing came takes memory, too.
+  std::size_t bytes_held() const { return bytes_held_ + slots_.size() * sizeof(Slot); }
   std::int64_t given_up() const { return given_up_; }  ///< messages
 
  private:
@@ -66,21 +68,30 @@ class OrderedStream {
     int asked = 0;
   };
 
+  static constexpr Utime kNever = std::numeric_limits<Utime>::max();
+
   // Numbers wrap.
   static bool IsAt(std::uint32_t seq, std::uint32_t begin) { return seq - begin < 0x80000000U; }
   Slot* At(std::uint32_t seq);
   void Reach(std::uint32_t next, Utime now);
+  void AskAt(Utime when, Slot* slot);
+  static MissingParts PartsOf(const Slot& slot, std::uint32_t seq, std::size_t most);
   static std::vector<std::uint16_t> Missing(const PartialMessage& message, std::size_t most);
+  bool AddWhole(const Datagram& datagram, Slot* slot);
   bool AddFragment(const Datagram& fragment, Slot* slot, const char** why);
   void Settle(Slot* slot);
   void GiveUp(Slot* slot);
   void Finish(WholeMessage message, Slot* slot);
+  void Advance();
 
   std::uint32_t first_;
   std::uint32_t next_;  // of slots_' first
   IsWanted is_wanted_;
-  std::deque<Slot> slots_;
-  std::size_t unsettled_ = 0, bytes_held_ = 0;
+  std::deque<Slot> slots_;           // the first is not settled
+  std::vector<WholeMessage> ready_;  // before them
+  std::size_t unsettled_ = 0;
+  Utime earliest_ask_ = kNever;  // of none that is not settled earlier: most calls look at no slot
+  std::size_t bytes_held_ = 0;   // of messages in slots_
   std::int64_t given_up_ = 0;
 };
 

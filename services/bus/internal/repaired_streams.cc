@@ -81,6 +81,7 @@ void RepairedStreams::OnBeat(const Sender& sender, const Beat& beat, Utime now, 
       0, static_cast<std::int64_t>(beat.datagrams - stream.sent_before - stream.came));
   AddOffset(sender, beat, now, wall);
   ForgetSilent(now);
+  KeepBounded();
 }
 
 void RepairedStreams::AddOffset(const Sender& sender, const Beat& beat, Utime now, Utime wall) {
@@ -126,13 +127,14 @@ std::size_t RepairedStreams::bytes_held() const {
 }
 
 void RepairedStreams::KeepBounded() {
-  while (bytes_held() > kMaxBytesHeld) {
-    const auto most =
+  for (std::size_t held = bytes_held(); held > kMaxBytesHeld;) {
+    OrderedStream& most =
         std::max_element(streams_.begin(), streams_.end(), [](const auto& a, const auto& b) {
           return a.second.messages.bytes_held() < b.second.messages.bytes_held();
-        });
-    if (!most->second.messages.NextAsk()) return;  // all are whole and wait to be taken
-    most->second.messages.GiveUpOldest();
+        })->second.messages;
+    held -= most.bytes_held();
+    most.GiveUpOldest();
+    held += most.bytes_held();
   }
 }
 

@@ -20,7 +20,8 @@ namespace rgbdt {
 /// and when it came, less the smallest path of kClockWindow.
 ///
 /// Bounded: 64 senders; 4096 beats of a machine; 64 MiB of messages that are not whole or wait for
-/// such a one, of which the oldest of the sender that holds most is given up. A sender silent for
+/// such a one, and of numbers of which nothing came; there the oldest of the sender that holds most
+/// is given up. A sender silent for
 /// kForgotten is forgotten. Times are of any steady clock [us], but `wall`: the machine's [us,
 /// UTC].
 class RepairedStreams {

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "services/bus/internal/repair_message.h"
 #include "services/messages/codec.h"
 #include "tests/datagrams.h"
 #include "tests/fuzz/seeds/seeds.h"
@@ -80,6 +81,38 @@ std::string DatagramSeed(const Bytes& bytes) {
   return (text[3] == '3' ? '\x41' : '\x01') + Piece(text.substr(4));
 }
 
+// On RGBDT_REPAIR, of one of 63 senders.
+std::string RepairSeed(int sender, const Bytes& message) {
+  const std::string channel(kRepairChannel, sizeof kRepairChannel);
+  return static_cast<char>(sender) +
+         Piece(AsText(test::ShortDatagram(0, channel, message)).substr(4));
+}
+
+void AddRepairs(std::map<std::string, std::string>* seeds) {
+  const std::string name("CLOUD\0", 6);
+  const auto beat = [](std::uint64_t id, std::uint32_t oldest, std::uint32_t next) {
+    return RepairSeed(static_cast<int>(id), Encode(Beat{id, oldest, next, next, 1, "host"}));
+  };
+  const auto repair = [](Bytes datagram) {
+    datagram.insert(datagram.begin(), kRepairMark);
+    return RepairSeed(1, datagram);
+  };
+  const auto fragment = [&](std::uint32_t at) {
+    return test::Fragment{2, 30, 10 * at, at, 3, at == 0 ? name : "", Bytes(10, 'a')}.Datagram();
+  };
+  (*seeds)["repaired"] = beat(1, 0, 0) + DatagramSeed(test::ShortDatagram(1, name, {1})) +
+                         DatagramSeed(fragment(0)) + DatagramSeed(fragment(2)) + beat(1, 0, 3) +
+                         RepairSeed(2, Encode(RepairRequest{1, {{0, {}}, {2, {1}}}})) +
+                         repair(test::ShortDatagram(0, name, {0})) + repair(fragment(1));
+  (*seeds)["forgotten"] = beat(1, 0, 0) + beat(1, 0, 5) + beat(1, 3, 5) + beat(1, 9000, 9000);
+  std::string far;
+  for (std::uint64_t id = 1; id <= 8; ++id) far += beat(id, 0, 0) + beat(id, 0, 4096);
+  for (std::uint32_t seq = 0; seq < 22; ++seq) {
+    far += DatagramSeed(test::Fragment{seq, 3'000'000, 0, 0, 2, name, {1}}.Datagram());
+  }
+  (*seeds)["far_ahead"] = far;
+}
+
 void AddDatagrams(std::map<std::string, std::string>* seeds) {
   std::size_t number = 0;
   for (const test::Attack& attack : test::Attacks("CLOUD")) {
@@ -95,6 +128,7 @@ void AddDatagrams(std::map<std::string, std::string>* seeds) {
   (*seeds)["short"] = DatagramSeed(test::ShortDatagram(1, name, Bytes(20, 1)));
   (*seeds)["whole"] = fragment(0, 0) + fragment(10, 1) + fragment(20, 2);
   (*seeds)["turned"] = fragment(0, 0) + fragment(20, 2) + fragment(20, 2) + fragment(10, 1);
+  AddRepairs(seeds);
 }
 
 void AddLogs(std::map<std::string, std::string>* seeds) {

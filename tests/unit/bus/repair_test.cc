@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <limits>
 #include <random>
@@ -225,6 +226,83 @@ TEST(Repair, MemoryIsBounded) {
     EXPECT_TRUE(streams.Add({1, 1}, *ParseDatagram(bytes.data(), bytes.size(), &why), 0, &why));
   }
   EXPECT_GE(streams.report().messages_given_up, 1000 - 23);
+}
+
+// A beat of 60 bytes that speaks of 4096 messages.
+void BeatFarAhead(std::uint32_t sender, RepairedStreams* streams) {
+  for (const std::uint32_t next : {0U, OrderedStream::kMaxAhead}) {
+    streams->OnBeat({sender, 1}, {sender, 0, next, 0, 0, "x"}, 0, 0);
+  }
+}
+
+TEST(Repair, MessagesOfWhichNothingCameTakeMemoryThatIsBounded) {
+  RepairedStreams streams([](const std::string&) { return true; });
+  streams.OnBeat({1, 1}, {1, 0, 0, 0, 0, "x"}, 0, 0);
+  const char* why = nullptr;
+  for (std::uint32_t seq = 0; seq < 22; ++seq) {
+    const Bytes bytes = DatagramOf(SentMessage(seq, "A", Bytes(2'900'000, 1)), 0);
+    EXPECT_TRUE(streams.Add({1, 1}, *ParseDatagram(bytes.data(), bytes.size(), &why), 0, &why));
+  }
+  EXPECT_EQ(streams.report().messages_given_up, 0);
+  const std::size_t before = streams.bytes_held();
+  BeatFarAhead(2, &streams);
+  EXPECT_GE(streams.bytes_held() - before, 4096 * sizeof(Utime));
+  for (std::uint32_t sender = 3; sender <= RepairedStreams::kMaxSenders; ++sender) {
+    BeatFarAhead(sender, &streams);
+    EXPECT_LE(streams.bytes_held(), RepairedStreams::kMaxBytesHeld) << sender;
+  }
+  EXPECT_GE(streams.report().messages_given_up, 10);
+}
+
+// The thread that receives does so for each hundred datagrams.
+TEST(Repair, ToLookWhetherSomethingIsDueCostsLittleHoweverMuchIsMissing) {
+  RepairedStreams streams([](const std::string&) { return true; });
+  for (std::uint32_t sender = 1; sender <= RepairedStreams::kMaxSenders; ++sender) {
+    BeatFarAhead(sender, &streams);
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20'000; ++i) {
+    EXPECT_THAT(streams.Ask(OrderedStream::kGrace - 1), IsEmpty());
+    EXPECT_EQ(streams.NextAsk(), OrderedStream::kGrace);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_THAT(streams.Ask(OrderedStream::kGrace), ::testing::Not(IsEmpty()));
+}
+
+// Whoever calls Ask at NextAsk only misses nothing.
+TEST(Repair, WhatIsMissingIsAskedForInTimeAndGivenUp) {
+  OrderedStream stream(0, [](const std::string&) { return true; });
+  stream.OnBeat(0, 3, 0);
+  const char* why = nullptr;
+  const Bytes bytes = DatagramOf(SentMessage(1, "A", Bytes(10, 1)), 0);
+  EXPECT_TRUE(stream.Add(*ParseDatagram(bytes.data(), bytes.size(), &why), 2'000, &why));
+  std::size_t asked = 0;
+  Utime now = 0;
+  while (const std::optional<Utime> next = stream.NextAsk()) {
+    ASSERT_GT(*next, now);
+    now = *next;
+    for (const MissingParts& part : stream.Ask(now)) asked += part.seq != 1 ? 1 : 100;
+  }
+  EXPECT_EQ(asked, 2U * OrderedStream::kMaxAsked);
+  EXPECT_EQ(stream.given_up(), 2);
+  EXPECT_NEAR(static_cast<double>(now), 2.4e6, 0.2e6);
+  EXPECT_EQ(stream.Take().size(), 1U);
+  EXPECT_EQ(stream.bytes_held(), 0U);
+}
+
+TEST(Repair, WhatWaitsBehindAGapIsNotGivenUpWithIt) {
+  RepairedStreams streams([](const std::string&) { return true; });
+  streams.OnBeat({1, 1}, {7, 0, 0, 0, 0, "x"}, 0, 0);
+  const char* why = nullptr;
+  for (std::uint32_t seq = 1; seq < 25; ++seq) {  // more than 64 MiB wait for message 0
+    const SentMessage message(seq, "A", Bytes(2'900'000, 1));
+    for (std::size_t i = 0; i < message.datagrams() - (seq == 23 ? 1 : 0); ++i) {
+      const Bytes bytes = DatagramOf(message, i);
+      streams.Add({1, 1}, *ParseDatagram(bytes.data(), bytes.size(), &why), 0, &why);
+    }
+  }
+  EXPECT_EQ(streams.report().messages_given_up, 1);
+  EXPECT_EQ(streams.Take().size(), 22U);
 }
 
 TEST(Repair, WhatIsNotWholeMakesNoMessage) {
