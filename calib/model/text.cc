@@ -5,6 +5,8 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "calib/model/printable.h"
+
 namespace rgbdt {
 namespace {
 
@@ -16,27 +18,6 @@ std::string TakeNumber(const std::string& text, std::size_t* at) {
   const std::size_t begin = *at;
   while (*at < text.size() && IsDigit(text[*at])) ++*at;
   return text.substr(begin, *at - begin);
-}
-
-// Length of the well-formed UTF-8 character at `at`, or 0.
-std::size_t Utf8Length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xC2 && first <= 0xDF   ? 2
-                             : first >= 0xE0 && first <= 0xEF ? 3
-                             : first >= 0xF0 && first <= 0xF4 ? 4
-                                                              : 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0) != 0x80) return 0;
-  }
-  const unsigned second = byte(at + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool surrogate = first == 0xED && second > 0x9F;
-  const bool too_large = first == 0xF4 && second > 0x8F;
-  return overlong || surrogate || too_large ? 0 : length;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -11,32 +12,12 @@ namespace {
 
 std::string Quoted(const std::string& text) { return "\"" + Printable(text, 40) + "\""; }
 
-// Length of the UTF-8 sequence that starts at `at`; 0: none does.
-std::size_t Utf8Length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return 1;
-  const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
-  if (length == 0 || first > 0xf4) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xc0) != 0x80) return 0;
-  }
-  const unsigned second = byte(at + 1);
-  const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
-  const bool surrogate_or_beyond =
-      (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
-  return overlong || surrogate_or_beyond ? 0 : length;
-}
-
 void CheckUtf8(std::string_view field, const std::string& text, bool newlines) {
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t length = Utf8Length(text, i);
     const char c = text[i];
-    const bool control = (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) &&
-                         !(newlines && (c == '\n' || c == '\t' || c == '\r'));
-    if (length == 0 || control) {
+    const bool kept = newlines && (c == '\n' || c == '\t' || c == '\r');
+    if (length == 0 || (!kept && IsControl(text, i, length))) {
       Fail(field, Quoted(text),
            "UTF-8 without control characters (byte " + std::to_string(i) + ")");
     }

@@ -15,7 +15,8 @@ limited() { bash -c 'ulimit -v 4000000 -t 60; exec "$@"' limited "$@"; }
 export -f limited
 bounded=(bash -c 'limited "$@"' bounded)
 
-# One line for a person: no line break in it, nothing that moves a terminal's cursor.
+# One line for a person: no line break in it, nothing that moves a terminal's cursor or turns text
+# about.
 one_line() { # WHAT
   [ "$(wc -l <"$scratch/output")" -eq 1 ] || complain "$1: not one line"
   harmless "$1"
@@ -23,6 +24,9 @@ one_line() { # WHAT
 harmless() { # WHAT
   if LC_ALL=C grep -q '[[:cntrl:]]' <(tr -d '\n\t' <"$scratch/output"); then
     complain "$1: control characters"
+  fi
+  if grep -qP '[\x{80}-\x{9f}\x{2028}-\x{202e}\x{2066}-\x{2069}]' "$scratch/output"; then
+    complain "$1: control characters beyond ASCII"
   fi
   iconv -f utf-8 -t utf-8 "$scratch/output" >"$scratch/utf8" 2>&1 || complain "$1: no UTF-8"
 }
@@ -140,7 +144,8 @@ done
 python3 -c 'import json, sys; json.load(open(sys.argv[1], encoding="utf-8"))' "$bad/report.json" \
   >"$scratch/output" 2>&1 || complain "report.json is no JSON"
 ! grep -qF "<b>\$(touch" "$bad/report.html" || complain "a name is HTML in report.html"
-for name in $'two\nlines' $'\e[2J' $'not \xff UTF-8'; do
+for name in $'two\nlines' $'\e[2J' $'\u009b2J' $'rub\x7fout' $'line\u2028two' $'\u202egnp.exe' \
+  $'not \xff UTF-8'; do
   session
   mv "$bad/views/0002" "$bad/views/$name"
   for verb in calibrate evaluate fuse intrinsics; do
@@ -149,11 +154,13 @@ for name in $'two\nlines' $'\e[2J' $'not \xff UTF-8'; do
     one_line "a name of no text ($verb)"
   done
 done
-session
-sed -i 's|file: "rgb.png"|file: "rgb\\n\\033[2J.png"|' "$bad/views/0002/view.textproto"
-says=("0002")
-refuses "a file of no text" "${bounded[@]}" "$bin/rgbdt" calibrate "$bad" --out "$scratch/out"
-harmless "a file of no text"
+for name in '\\n\\033[2J' '\\302\\233' '\\342\\200\\256'; do # the last two: U+009B, U+202E
+  session
+  sed -i "s|file: \"rgb.png\"|file: \"rgb$name.png\"|" "$bad/views/0002/view.textproto"
+  says=("0002")
+  refuses "a file of no text" "${bounded[@]}" "$bin/rgbdt" calibrate "$bad" --out "$scratch/out"
+  harmless "a file of no text"
+done
 
 # What is written goes into the directory, whatever lies there under its name.
 session

@@ -9,7 +9,7 @@
 #include "calib/files/import/lens_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
-#include "calib/model/text.h"
+#include "calib/model/printable.h"
 
 namespace rgbdt {
 namespace {
@@ -209,7 +209,7 @@ std::string ViewName(const std::string& file, std::set<std::string>* taken) {
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }
-  name = FreeName(ValidUtf8(name), *taken);
+  name = FreeName(PrintableText(name), *taken);
   taken->insert(name);
   return name;
 }

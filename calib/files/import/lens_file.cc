@@ -8,6 +8,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/import/internal/yaml_tree.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -248,13 +249,6 @@ void CheckWhole(const Node& part) {
   }
 }
 
-// Names and texts of YAML may have several lines; an error has one.
-std::string WithoutControls(std::string text) {
-  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-  std::replace_if(text.begin(), text.end(), is_control, '?');
-  return text;
-}
-
 FileLens Parse(const std::string& text, const LensWanted& wanted) {
   const std::string file = wanted.file.string();
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
@@ -269,7 +263,7 @@ FileLens Parse(const std::string& text, const LensWanted& wanted) {
   const auto& [name, part] = Choose(parts, wanted);
   FileLens out;
   out.parts = static_cast<int>(parts.size());
-  out.where = name.empty() ? file : file + ":" + WithoutControls(name);
+  out.where = name.empty() ? file : file + ":" + PrintableText(name);
   ReadFocalAndCentre(part, &out.lens);
   ReadSize(part, &out);
   CheckWhole(part);
@@ -290,7 +284,8 @@ FileLens ParseLensFile(const std::string& text, const LensWanted& wanted) {
   try {
     return Parse(text, wanted);
   } catch (const InputError& error) {
-    throw InputError(WithoutControls(error.what()));
+    // Names and texts of YAML may have several lines; an error has one.
+    throw InputError(PrintableText(error.what()));
   }
 }
 

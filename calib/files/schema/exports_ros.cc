@@ -7,6 +7,7 @@
 #include "calib/files/schema/internal/export_parts.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -53,9 +54,7 @@ std::string Checked(const std::string& name) {
   bool good = !name.empty() && name.front() != '-' && name.front() != '/' && name.back() != '/';
   for (const char c : name) good = good && (IsFrameLetter(c) || c == '.' || c == '/');
   if (good) return name;
-  std::string shown = name;
-  for (char& c : shown) c = static_cast<unsigned char>(c) < ' ' ? '?' : c;
-  throw InputError("\"" + shown +
+  throw InputError("\"" + PrintableText(name) +
                    "\" is no name of a frame; expected letters, digits, _ - . and / in the middle");
 }
 
@@ -74,7 +73,7 @@ std::string WarningOf(const LidarCalibration& lidar) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }
-  return text;
+  return PrintableText(text);
 }
 
 Joint JointOf(const LidarCalibration& lidar, const std::string& reference) {

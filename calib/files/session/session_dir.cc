@@ -6,8 +6,8 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
-#include "calib/files/session/internal/printable_name.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 // Reports and pages take nothing else, and a terminal would do what it says.
 void RequireName(const fs::path& folder, const std::string& view) {
   if (IsPrintable(view)) return;
-  throw InputError("the view \"" + PrintableName(view) + "\" in " + folder.string() +
+  throw InputError("the view \"" + PrintableText(view) + "\" in " + folder.string() +
                    " has a line break or another control character in its name, or bytes that are "
                    "no UTF-8; rename its folder");
 }

@@ -7,9 +7,9 @@
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/session.pb.h"
 #include "calib/files/schema/text_proto.h"
-#include "calib/files/session/internal/printable_name.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -56,7 +56,7 @@ std::size_t IndexOf(const Session& session, const std::string& view) {
 fs::path FileOf(const fs::path& folder, const std::string& file, const Place& place,
                 const std::string& field) {
   if (!IsPrintable(file)) {
-    place.Fail(field, "is \"" + PrintableName(file) +
+    place.Fail(field, "is \"" + PrintableText(file) +
                           "\", which has a line break or another control character, or bytes that "
                           "are no UTF-8; rename the file");
   }

@@ -9,6 +9,7 @@
 #include "calib/files/schema/text_proto.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -19,11 +20,11 @@ namespace fs = std::filesystem;
 // Names come from messages too: none may lead out of the session directory.
 void CheckName(const std::string& name, const std::string& what) {
   const bool good = !name.empty() && name.size() <= 100 && name.front() != '.' &&
-                    std::all_of(name.begin(), name.end(), [](char c) {
+                    IsPrintable(name) && std::all_of(name.begin(), name.end(), [](char c) {
                       return c != '/' && static_cast<unsigned char>(c) > ' ';
                     });
   if (!good) {
-    throw InputError(what + " \"" + name +
+    throw InputError(what + " \"" + PrintableText(name) +
                      "\" cannot be a file's name; expected letters, digits, _ and -");
   }
 }
@@ -78,11 +79,13 @@ void FromPicks(const View& view, const CornerSelection& picks, proto::View* out)
                    ", but the view has no such image");
 }
 
-// Of a link its own path: what it points at may be called otherwise. Protobuf takes UTF-8 only.
+// Of a link its own path: what it points at may be called otherwise. Protobuf and pages take UTF-8
+// only.
 std::string WholePath(const fs::path& path) {
   std::string whole = (fs::weakly_canonical(path.parent_path()) / path.filename()).string();
-  if (ValidUtf8(whole) != whole) {
-    throw InputError(ValidUtf8(whole) + ": its name is not UTF-8; rename it");
+  if (!IsPrintable(whole)) {
+    throw InputError(PrintableText(whole) +
+                     ": its name has a control character or is not UTF-8; rename it");
   }
   return whole;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -15,9 +16,9 @@ std::string Number(double value, int decimals) {
 
 std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : PrintableText(text)) {
     if (c == '"' || c == '\\') quoted += '\\';
-    quoted += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+    quoted += c;
   }
   return quoted + "\"";
 }

@@ -1,5 +1,6 @@
 #include "calib/present/report/html.h"
 
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt::html {
@@ -60,7 +61,7 @@ std::string CellHtml(const Cell& cell) {
 
 std::string Escape(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : PrintableText(text, "\n\t")) {
     switch (c) {
       case '&':
         out += "&amp;";
@@ -78,8 +79,7 @@ std::string Escape(const std::string& text) {
         out += "&#39;";
         break;
       default:
-        // Control characters are no HTML at all.
-        out += static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t' ? '?' : c;
+        out += c;
     }
   }
   return out;

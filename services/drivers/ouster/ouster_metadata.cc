@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib/model/errors.h"
-#include "calib/model/text.h"
+#include "calib/model/printable.h"
 
 namespace rgbdt::ouster {
 namespace {
@@ -16,14 +16,6 @@ using nlohmann::json;
 constexpr double kDegree = M_PI / 180;
 constexpr double kMillimetre = 1e-3;
 constexpr int kMostRows = 256, kMostColumns = 8192;
-
-// For a line that a person reads.
-std::string InOneLine(const std::string& text) {
-  std::string line = ValidUtf8(text);
-  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-  std::replace_if(line.begin(), line.end(), is_control, '?');
-  return line;
-}
 
 // Parts of one object as a reader that says where what is missing.
 class Reader {
@@ -55,7 +47,7 @@ class Reader {
   std::string Text(const std::string& part, const std::string& key,
                    const std::string& otherwise) const {
     const json* value = FindOrNot(part, key);
-    return value != nullptr && value->is_string() ? InOneLine(value->get<std::string>())
+    return value != nullptr && value->is_string() ? PrintableText(value->get<std::string>())
                                                   : otherwise;
   }
   std::vector<double> Numbers(const std::string& part, const std::string& key,
@@ -70,7 +62,7 @@ class Reader {
   }
   [[noreturn]] void Fail(const std::string& what) const {
     throw InputError(
-        where_ + ": " + InOneLine(what.substr(0, 200)) +
+        where_ + ": " + PrintableText(what.substr(0, 200)) +
         "; expected the metadata of an Ouster sensor (JSON), of firmware 2.0 or newer");
   }
 

@@ -284,6 +284,12 @@ TEST_F(SqliteBag, RowsInTheirOrder) {
   EXPECT_EQ(seen.topics.at(0).type, "a/A");
 }
 
+TEST_F(SqliteBag, ATopicsNameMovesNoCursorAndTurnsNothingAbout) {
+  const Seen seen = ReadAll(Make(kTables + "UPDATE topics SET name = '/\u0432\x7f\u009b2J\u202e';"
+                                           "INSERT INTO messages VALUES(7, 3, 9000, 'one');"));
+  EXPECT_THAT(seen.messages, ElementsAre("/\u0432??2J? 9 one"));
+}
+
 TEST_F(SqliteBag, CutOffAnywhereNeverBreaks) {
   const std::filesystem::path path =
       Make(kTables + "INSERT INTO messages VALUES(1, 3, 0, zeroblob(20000)), (2, 3, 0, 'x');");

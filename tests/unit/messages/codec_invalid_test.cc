@@ -11,6 +11,7 @@
 namespace rgbdt {
 namespace {
 
+using ::testing::AllOf;
 using testing::ErrorAfter;
 using testing::ErrorOf;
 using ::testing::HasSubstr;
@@ -222,7 +223,10 @@ TEST_F(Invalid, Session) {
   EXPECT_THAT(event([](auto& w) { w.kind = 4; }), HasSubstr("kind is 4"));
   EXPECT_THAT(event([](auto& w) { w.fraction = NAN; }), HasSubstr("fraction is nan"));
   EXPECT_THAT(event([](auto& w) { w.source = ""; }), HasSubstr("source is"));
-  EXPECT_THAT(event([](auto& w) { w.text = "\x1b[2J"; }), HasSubstr("text is"));
+  for (const char* control : {"\x1b[2J", "\x7f", "\u009b2J", "\u2028", "\u202e", "\u2066"}) {
+    EXPECT_THAT(event([&](auto& w) { w.text = std::string("\u0432") + control; }),
+                AllOf(HasSubstr("text is"), HasSubstr("(byte 2)")));
+  }
   EXPECT_THAT(event([](auto& w) { w.text.assign(70000, 'x'); }), HasSubstr("length of text"));
   const auto request = [&](auto change) {
     return ErrorAfter<session_request_t>(random_.Request(), change);

@@ -1,6 +1,7 @@
 #include "calib/files/schema/internal/export_parts.h"
 
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt::exports {
@@ -55,7 +56,7 @@ std::string StatusWarning(const Exported& camera) {
   for (char& c : status) {
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
   }
-  return "WARNING: " + camera.spec.name + " did not converge: " + status;
+  return "WARNING: " + camera.spec.name + " did not converge: " + PrintableText(status);
 }
 
 std::string HashComment(const std::string& text) {

@@ -5,6 +5,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
+#include "calib/model/printable.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -91,6 +92,20 @@ TEST_F(StrangersSession, NamesMayBeOfAnyScript) {
   const Session session = OpenSession(dir());
   EXPECT_THAT(session.views, ::testing::ElementsAre(name));
   EXPECT_EQ(ReadView(session, name).name, name);
+}
+
+TEST_F(StrangersSession, NamesThatMoveACursorOrTurnTextAboutAreNoNames) {
+  View view = test::MakeView();
+  for (const std::string bad : {"\x1b[2J", "\x7f", "\u009b2J", "\u2028", "\u202egnp", "\xff"}) {
+    fs::rename(dir() / "views/0001", dir() / "views" / bad);
+    const std::string error = test::ErrorOf([&] { OpenSession(dir()); });
+    EXPECT_THAT(error, HasSubstr("rename its folder"));
+    EXPECT_TRUE(IsPrintable(error)) << error;
+    fs::rename(dir() / "views" / bad, dir() / "views/0001");
+    view.name = bad;
+    EXPECT_THAT(test::ErrorOf([&] { WriteView(dir(), view); }),
+                HasSubstr("cannot be a file's name"));
+  }
 }
 
 TEST_F(StrangersSession, ManyViewsAreListedButNotTold) {

@@ -73,6 +73,11 @@ TEST(ReportHtml, NothingFromTheReportIsMarkup) {
   EXPECT_THAT(page, HasSubstr("&lt;b onload=&quot;x&quot;&gt;&amp;&#39;&lt;/b&gt;"));
 }
 
+TEST(ReportHtml, NothingInATextTurnsThePageAbout) {
+  EXPECT_EQ(html::Escape("a\nb\tc \u0432\u200f \x1b\x7f\u0085\u2028\u202e\u2067"),
+            "a\nb\tc \u0432\u200f ??????");
+}
+
 TEST(ReportHtml, TheVerdictFollowsTheFigures) {
   const auto page = [](auto change) {
     Report report = test::MakeReport();
