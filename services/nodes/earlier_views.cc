@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/own_folder.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
@@ -174,7 +175,8 @@ ResumePoint FindResumePoint(const SessionScript& script, const EarlierViews& vie
 }
 
 void WriteDetection(const fs::path& directory, const ViewDetection& detection) {
-  WriteMessage(directory / "views" / detection.view / kDetectionFile, detection);
+  WriteMessage(OwnFolder(OwnFolder(directory, "views"), detection.view) / kDetectionFile,
+               detection);
 }
 
 void WriteLeftOut(const fs::path& directory, const LeftOutViews& left_out) {

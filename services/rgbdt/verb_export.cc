@@ -3,6 +3,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/check_writable.h"
+#include "calib/files/own_folder.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/points/las_files.h"
 #include "calib/files/points/map_files.h"
@@ -123,7 +124,8 @@ int RunExport(const ExportFlags& flags) {
   if (flags.mcap) return RunMcap(flags);
   if (flags.las) return RunLas(flags);
   const std::filesystem::path dir = flags.dir;
-  const std::filesystem::path out = PathOr(flags.out, dir / "export");
+  const std::filesystem::path out =
+      flags.out.empty() ? OwnFolder(dir, "export") : std::filesystem::path(flags.out);
   if (std::filesystem::exists(dir)) CheckWritable(out / "calibration");
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);

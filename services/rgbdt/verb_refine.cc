@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/files/check_writable.h"
+#include "calib/files/own_folder.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/methods/refine.h"
 #include "calib/model/errors.h"
@@ -109,8 +110,9 @@ int RunRefine(RefineFlags flags) {
   flags.options.Check();
   const Session session = SessionOf(flags);
   const bool is_log = std::filesystem::is_regular_file(flags.dir);
-  const std::filesystem::path out =
-      PathOr(flags.out, is_log ? session.root.parent_path() : session.root / "refined");
+  const std::filesystem::path out = !flags.out.empty() ? std::filesystem::path(flags.out)
+                                    : is_log           ? session.root.parent_path()
+                                                       : OwnFolder(session.root, "refined");
   CheckWritable(out / "report.json");
   const Calibration start = StartOf(flags, session);
   const ReadViews read = ReadAll(session);

@@ -169,7 +169,10 @@ for name in calibration.textproto report.json report.html fused.ply fused.pcd fu
   calibration.previous.textproto launch.py; do
   ln -s "$scratch/outside/precious" "$bad/$name"
 done
-for verb in calibrate evaluate fuse export intrinsics; do
+for name in export refined; do
+  ln -s "$scratch/outside" "$bad/$name"
+done
+for verb in calibrate evaluate fuse export intrinsics refine; do
   "${bounded[@]}" "$bin/rgbdt" "$verb" "$bad" >"$scratch/output" 2>&1 </dev/null || true
   [ "$(cat "$scratch/outside/precious")" = precious ] || complain "$verb wrote through a link"
   [ "$(ls "$scratch/outside")" = precious ] || complain "$verb wrote outside"

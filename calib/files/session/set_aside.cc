@@ -1,6 +1,7 @@
 #include <array>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/own_folder.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 
@@ -55,7 +56,7 @@ std::string SetResultsAside(const fs::path& dir) {
 }
 
 std::string SetViewAside(const fs::path& dir, const std::string& view) {
-  const fs::path views = dir / "views";
+  const fs::path views = OwnFolder(dir, "views");
   std::string name = "." + view + ".unfinished";
   for (int i = 2; fs::exists(views / name); ++i) {
     name = "." + view + ".unfinished-" + std::to_string(i);

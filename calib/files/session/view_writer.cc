@@ -3,6 +3,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
+#include "calib/files/own_folder.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/schema/proto_convert.h"
 #include "calib/files/schema/session.pb.h"
@@ -110,12 +111,12 @@ void WriteView(const fs::path& session_dir, const ViewFiles& view) {
     out->set_file(WholePath(image.file));
     out->set_utime(image.utime);
   }
-  WriteViewFile(session_dir / "views" / view.name, message);
+  WriteViewFile(OwnFolder(OwnFolder(session_dir, "views"), view.name), message);
 }
 
 void WriteView(const fs::path& session_dir, const View& view) {
   CheckName(view.name, "the view's name");
-  const fs::path folder = session_dir / "views" / view.name;
+  const fs::path folder = OwnFolder(OwnFolder(session_dir, "views"), view.name);
   proto::View message;
   message.set_cloud("cloud.pcd");
   message.set_sweep_utime(view.cloud.sweep_utime);

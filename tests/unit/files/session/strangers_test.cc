@@ -86,6 +86,32 @@ TEST_F(StrangersSession, LinksThatLeadOutAreNotWrittenThrough) {
   EXPECT_EQ(ReadWholeFile(outside), "precious");
 }
 
+TEST_F(StrangersSession, FoldersThatAreLinksAreNotWrittenTo) {
+  const fs::path outside = folder_ / "outside";
+  View view = test::MakeView();
+  view.name = "0001";
+  const ViewFiles named{"0001", ViewFile("cloud.pcd"), 0, {}};
+  for (const fs::path& link : {dir() / "views/0001", dir() / "views"}) {
+    fs::rename(link, outside);
+    fs::create_directory_symlink(outside, link);
+    const fs::path cloud = outside / (link.filename() == "views" ? "0001/cloud.pcd" : "cloud.pcd");
+    test::WriteQuickly(cloud, "precious");
+    EXPECT_THAT(test::ErrorOf([&] { WriteView(dir(), view); }),
+                AllOf(HasSubstr(link.string()), HasSubstr("symbolic link")));
+    EXPECT_THAT(test::ErrorOf([&] { WriteView(dir(), named); }), HasSubstr("symbolic link"));
+    if (link.filename() == "views") {
+      EXPECT_THAT(test::ErrorOf([&] { SetViewAside(dir(), "0001"); }), HasSubstr("symbolic link"));
+    }
+    EXPECT_EQ(ReadWholeFile(cloud), "precious");
+    fs::remove(link);
+    fs::create_directory_symlink(folder_ / "nowhere", link);  // would be made
+    EXPECT_THAT(test::ErrorOf([&] { WriteView(dir(), view); }), HasSubstr("symbolic link"));
+    EXPECT_FALSE(fs::exists(folder_ / "nowhere"));
+    fs::remove(link);
+    fs::rename(outside, link);
+  }
+}
+
 TEST_F(StrangersSession, NamesMayBeOfAnyScript) {
   const std::string name = "\xd0\xb2\xd0\xb8\xd0\xb4 \xe8\xa6\x96\xe9\x87\x8e \xf0\x9f\x8c\xa1";
   fs::rename(dir() / "views/0001", dir() / "views" / name);
