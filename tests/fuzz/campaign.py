@@ -28,12 +28,17 @@ calib/files/points/internal/fused_comments.cc calib/files/points/internal/pcd_ta
 calib/files/points/internal/ply_table.cc calib/files/points/internal/point_columns.cc
 calib/files/points/internal/record_table.cc
 calib/files/schema/calibration_file.cc calib/files/schema/proto_convert.cc
-calib/files/schema/report_file.cc calib/files/schema/session_script.cc
+calib/files/schema/report_file.cc calib/files/schema/rig_file.cc
+calib/files/schema/session_script.cc
 calib/files/schema/text_proto.cc calib/files/schema/internal/device_convert.cc
-calib/files/schema/internal/lens_convert.cc calib/files/schema/internal/target_convert.cc
+calib/files/schema/internal/lens_convert.cc calib/files/schema/internal/lidar_convert.cc
+calib/files/schema/internal/target_convert.cc
 calib/files/session/truth_file.cc calib/files/session/view_reader.cc
 services/bags/ services/bags/internal/
-services/bus/log_reader.cc services/bus/internal/datagram.cc services/bus/internal/reassembly.cc
+services/bus/log_reader.cc services/bus/internal/datagram.cc
+services/bus/internal/ordered_stream.cc services/bus/internal/partial_message.cc
+services/bus/internal/reassembly.cc services/bus/internal/repair_message.cc
+services/bus/internal/repaired_streams.cc services/bus/internal/sent_messages.cc
 services/drivers/camera/gvcp_message.cc services/drivers/camera/internal/frame_format.cc
 services/drivers/dynamixel/dynamixel_protocol.cc
 services/drivers/hesai/hesai_packets.cc services/drivers/hesai/hesai_sweeps.cc
@@ -52,7 +57,8 @@ services/messages/codec_image.cc services/messages/codec_rgbdt_cloud.cc
 services/messages/codec_scan.cc services/messages/codec_session.cc
 services/messages/codec_target.cc services/messages/internal/codec_board.cc
 services/messages/internal/image_file.cc services/messages/internal/layout.cc
-services/packets/packet_sweeps.cc services/packets/recording.cc
+services/messages/signature.cc
+services/packets/bag_packets.cc services/packets/packet_sweeps.cc services/packets/recording.cc
 viewer/server/internal/browser.cc viewer/server/internal/foxglove_client.cc
 viewer/server/internal/foxglove_protocol.cc viewer/server/internal/http_answer.cc
 viewer/server/internal/http_connection.cc viewer/server/internal/message.cc

@@ -1,5 +1,6 @@
 // What a receiver of the bus makes of datagrams: of several senders, short, fragments, or rubbish.
-// Each is a byte (sender; whether the magic is put right, and to which) and a piece.
+// Each is a byte (sender; whether the magic is put right, and to which) and a piece; or a byte that
+// lets time go by.
 #include "services/bus/internal/datagram.h"
 #include "services/bus/internal/reassembly.h"
 #include "services/bus/internal/repaired_streams.h"
@@ -10,12 +11,22 @@
 namespace rgbdt {
 namespace {
 
-constexpr unsigned kRaw = 0x80, kFragment = 0x40;
+constexpr unsigned kRaw = 0x80, kFragment = 0x40, kSender = 0x3f;
+constexpr unsigned kLater = 0x3f;  // in place of a sender
 
 std::string TakeDatagram(unsigned kind, fuzz::Input* input) {
   std::string bytes = input->Piece();
   if ((kind & kRaw) == 0) bytes.insert(0, (kind & kFragment) != 0 ? "LC03" : "LC02");
   return bytes;
+}
+
+// What was taken of it is the same message again.
+template <typename T>
+void CrossAgain(const T& message) {
+  const Bytes bytes = Encode(message);
+  const RepairMessage again = DecodeRepairMessage(bytes.data(), bytes.size());
+  fuzz::Require(std::holds_alternative<T>(again) && Encode(std::get<T>(again)) == bytes,
+                "a message of repairs that crosses again");
 }
 
 // As the receiver of a bus between machines does.
@@ -26,8 +37,12 @@ void TakeRepaired(const Reassembly::Sender& sender, const Datagram& datagram, Ut
     streams->Add(sender, datagram, now, &why);
   } else {
     const RepairMessage message = DecodeRepairMessage(datagram.data, datagram.size);
-    if (const auto* beat = std::get_if<Beat>(&message)) streams->OnBeat(sender, *beat, now, now);
+    if (const auto* beat = std::get_if<Beat>(&message)) {
+      CrossAgain(*beat);
+      streams->OnBeat(sender, *beat, now, now);
+    }
     if (const auto* request = std::get_if<RepairRequest>(&message)) {
+      CrossAgain(*request);
       streams->OnRequest(*request, now);
       SentMessages sent;
       sent.Add("A", Bytes(5000, 1), now);
@@ -59,13 +74,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Input input(data, size);
   while (!input.empty()) {
     const unsigned kind = input.Byte();
+    if ((kind & kSender) == kLater) {
+      now += RepairedStreams::kForgotten;
+      continue;
+    }
     const std::string bytes = TakeDatagram(kind, &input);
     const char* why = nullptr;
     const auto datagram = ParseDatagram(fuzz::Data(bytes), bytes.size(), &why);
     fuzz::Require(datagram.has_value() || why != nullptr, "a reason for what is refused");
     if (!datagram) continue;
     why = nullptr;
-    const Reassembly::Sender sender(kind & 0x3f, 7667);
+    const Reassembly::Sender sender(kind & kSender, 7667);
     TakeRepaired(sender, *datagram, now += 10'000, &streams);
     const auto whole = reassembly.Add(sender, *datagram, &why);
     if (whole && datagram->is_fragment) {
@@ -75,5 +94,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         reassembly.bytes_held() <= std::size_t{64} << 20 && reassembly.senders_held() <= 256,
         "no more held than is promised");
   }
+  const LinkReport report = streams.report();
+  fuzz::Require(report.datagrams_lost >= 0 && report.messages_given_up >= 0 &&
+                    report.datagrams_repaired >= 0 && report.worst.find('\n') == std::string::npos,
+                "counts, and who lost most in one line");
   return 0;
 }

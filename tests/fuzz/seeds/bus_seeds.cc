@@ -2,6 +2,7 @@
 
 #include "services/bus/internal/repair_message.h"
 #include "services/messages/codec.h"
+#include "services/messages/signature.h"
 #include "tests/datagrams.h"
 #include "tests/fuzz/seeds/seeds.h"
 #include "tests/log_writer.h"
@@ -67,6 +68,9 @@ void AddMessages(std::map<std::string, std::string>* seeds) {
   }
   for (std::size_t i = 0; i < messages.size(); ++i) {
     if (!std::holds_alternative<ViewDetection>(messages[i])) continue;
+    Bytes whole = Encode(messages[i]);
+    AppendSignature({1, 2, 3, {4, 5}}, &whole);
+    (*seeds)["signed"] = static_cast<char>(i) + AsText(whole).substr(8);
     (*seeds)["detection_whole"] = MessageSeed(i, WholeDetection(&random));
   }
   RgbdtCloud sweep = random.Fused();
@@ -81,7 +85,7 @@ std::string DatagramSeed(const Bytes& bytes) {
   return (text[3] == '3' ? '\x41' : '\x01') + Piece(text.substr(4));
 }
 
-// On RGBDT_REPAIR, of one of 63 senders.
+// On RGBDT_REPAIR, of one of 62 senders.
 std::string RepairSeed(int sender, const Bytes& message) {
   const std::string channel(kRepairChannel, sizeof kRepairChannel);
   return static_cast<char>(sender) +
@@ -104,9 +108,12 @@ void AddRepairs(std::map<std::string, std::string>* seeds) {
                          DatagramSeed(fragment(0)) + DatagramSeed(fragment(2)) + beat(1, 0, 3) +
                          RepairSeed(2, Encode(RepairRequest{1, {{0, {}}, {2, {1}}}})) +
                          repair(test::ShortDatagram(0, name, {0})) + repair(fragment(1));
-  (*seeds)["forgotten"] = beat(1, 0, 0) + beat(1, 0, 5) + beat(1, 3, 5) + beat(1, 9000, 9000);
+  const auto another = RepairSeed(1, Encode(Beat{2, 0, 0, 0, 1, "on the same port"}));
+  (*seeds)["given_up"] =
+      beat(1, 0, 0) + beat(1, 0, 5) + beat(1, 3, 5) + beat(1, 9000, 9000) + another;
+  (*seeds)["forgotten"] = beat(1, 0, 0) + beat(1, 0, 5) + '\x3f' + beat(2, 0, 0);
   std::string far;
-  for (std::uint64_t id = 1; id <= 8; ++id) far += beat(id, 0, 0) + beat(id, 0, 4096);
+  for (std::uint64_t id = 1; id <= 3; ++id) far += beat(id, 0, 0) + beat(id, 0, 4096);
   for (std::uint32_t seq = 0; seq < 22; ++seq) {
     far += DatagramSeed(test::Fragment{seq, 3'000'000, 0, 0, 2, name, {1}}.Datagram());
   }

@@ -2,6 +2,7 @@
 #include "tests/hardware/velodyne_encoder.h"
 #include "tests/unit/packets/hesai_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
+#include "tests/unit/packets/packet_message.h"
 
 namespace rgbdt::fuzz {
 namespace {
@@ -141,12 +142,49 @@ void AddRecordings(Inputs* seeds) {
   (*seeds)["unknown"] = "\x03" + Piece(hesai.Angles()) + Recorded({packets[0]});
 }
 
+// As bag_packets.cc takes them: whose metadata, of which type, and packets.
+std::string InBag(int kind, int type, const std::string& metadata, const Payloads& packets) {
+  std::string bytes = {static_cast<char>(kind), static_cast<char>(type)};
+  if (kind % 4 == 3) bytes += Piece(metadata);
+  for (const auto& packet : packets) bytes += Piece({packet.begin(), packet.end()});
+  return bytes;
+}
+
+void AddBagPackets(Inputs* seeds) {
+  constexpr int kRos2 = 0x10, kWholeMessages = 0x20;
+  constexpr int kVelodyne = 0, kPandar = 1, kNebula = 2, kUdpFrame = 3, kOuster = 4;
+  VelodyneEncoder velodyne = MadeUpVelodyne(VelodyneEncoder::Model::kVlp16);
+  velodyne.block_turn = 2900;
+  Payloads packets;
+  for (int i = 0; i < 40; ++i) packets.push_back(velodyne.Packet(i));
+  (*seeds)["velodyne"] = InBag(0, kVelodyne, "", packets);
+  packets.resize(8);
+  (*seeds)["velodyne_ros2"] = InBag(kRos2, kVelodyne, "", packets);
+  (*seeds)["nebula"] = InBag(kRos2, kNebula, "", packets);
+  std::vector<test::Sent> sent;
+  for (const auto& packet : packets) sent.push_back({1'700'000'000'000'000, packet});
+  const std::string message = test::PacketMessage("velodyne_msgs/VelodyneScan", BagEncoding::kRos1,
+                                                  sent.data(), sent.data() + sent.size(), false);
+  (*seeds)["message"] =
+      InBag(kWholeMessages, kVelodyne, "", {{message.begin(), message.end()}, {1, 2, 3}, {}});
+  (*seeds)["ouster"] = InBag(1, kOuster, "", OusterTurns(OusterEncoder(), 3));
+  (*seeds)["ouster_own"] =
+      InBag(kRos2 | 3, kOuster, SmallOuster().Metadata(), OusterTurns(SmallOuster(), 9));
+  (*seeds)["hesai"] = InBag(2, kPandar, "", HesaiTurns(HesaiEncoder()));
+  HesaiEncoder hesai;
+  hesai.channels = 32;
+  (*seeds)["hesai_own"] = InBag(3, kUdpFrame, hesai.Angles(), HesaiTurns(hesai));
+  (*seeds)["whose"] = InBag(0, kNebula, "", {{1, 2, 3}, packets[0], {4}});
+  (*seeds)["none"] = InBag(1, kOuster, "", {});
+}
+
 }  // namespace
 
 void AddPacketSeeds(Seeds* seeds) {
   AddOuster(&(*seeds)["ouster"]);
   AddHesai(&(*seeds)["hesai"]);
   AddRecordings(&(*seeds)["recording"]);
+  AddBagPackets(&(*seeds)["bag_packets"]);
 }
 
 }  // namespace rgbdt::fuzz
