@@ -1,12 +1,15 @@
 // The main of a target that was not built with libFuzzer: runs each input of the folders and files
-// named, and variants of it that are the same in every run.
+// named, and then, until --seconds are over, variants of them. The first variant of each, then the
+// second of each, ...: in every run the same in the same order, as far as it comes.
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr unsigned kMost_s = 60;               // that a run may take
-constexpr int kVariants = 60;                  // of each input
 constexpr std::size_t kMostVaried = 16 << 20;  // bytes of an input's variants in all
 
 std::string running_name, running_bytes;  // for OnCrash
@@ -90,39 +92,72 @@ std::vector<fs::path> InputsOf(int count, char** names) {
   return inputs;
 }
 
+std::string BytesOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// Runs inputs and keeps count.
+class Replay {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  void Add(const std::string& name, std::string bytes) {
+    const auto begin = Clock::now();
+    Run(name, std::move(bytes));
+    const double took_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    ++runs_;
+    if (took_s > slowest_s_) {
+      slowest_s_ = took_s;
+      slowest_ = running_name;
+    }
+  }
+
+  // One of each input; false: there is none any more, or the time is over.
+  bool AddVariants(const std::vector<fs::path>& inputs, std::uint32_t number,
+                   Clock::time_point end) {
+    bool any = false;
+    for (const fs::path& path : inputs) {
+      if (Clock::now() >= end) return false;
+      if (fs::file_size(path) * number > kMostVaried) continue;
+      const std::string bytes = BytesOf(path);
+      if (bytes.empty()) continue;
+      std::mt19937 random(number);
+      Add(path.string() + ", variant " + std::to_string(number), Varied(bytes, &random));
+      any = true;
+    }
+    return any;
+  }
+
+  void Print(std::size_t inputs) const {
+    std::printf("%zu inputs, %zu runs; the slowest took %.3f s: %s\n", inputs, runs_, slowest_s_,
+                slowest_.c_str());
+  }
+
+ private:
+  std::size_t runs_ = 0;
+  double slowest_s_ = 0;
+  std::string slowest_;
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  using Clock = std::chrono::steady_clock;
+  const Replay::Clock::time_point begin = Replay::Clock::now();
   for (const int number : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGALRM}) {
     std::signal(number, OnCrash);
   }
-  const std::vector<fs::path> inputs = InputsOf(argc - 1, argv + 1);
-  double slowest_s = 0;
-  std::string slowest;
-  std::size_t runs = 0;
-  for (const fs::path& path : inputs) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(file)),
-                            std::istreambuf_iterator<char>());
-    std::mt19937 random(1);
-    const std::size_t most = bytes.empty() ? 0 : kMostVaried / bytes.size();
-    const int variants = static_cast<int>(std::min<std::size_t>(kVariants, most));
-    for (int i = 0; i <= variants; ++i) {
-      const auto begin = Clock::now();
-      Run(path.string() + (i == 0 ? "" : ", variant " + std::to_string(i)),
-          i == 0 ? bytes : Varied(bytes, &random));
-      const double took_s = std::chrono::duration<double>(Clock::now() - begin).count();
-      ++runs;
-      if (took_s > slowest_s) {
-        slowest_s = took_s;
-        slowest = running_name;
-      }
-    }
+  const bool timed = argc >= 3 && std::strcmp(argv[1], "--seconds") == 0;
+  const std::chrono::seconds budget(timed ? std::atoi(argv[2]) : 0);
+  const int named = timed ? 3 : 1;
+  const std::vector<fs::path> inputs = InputsOf(argc - named, argv + named);
+  if (inputs.empty()) {
+    std::fprintf(stderr, "usage: %s [--seconds N] FOLDER|FILE...; no input there\n", argv[0]);
+    return 1;
   }
-  std::printf("%zu inputs, %zu runs; the slowest took %.3f s: %s\n", inputs.size(), runs, slowest_s,
-              slowest.c_str());
-  if (!inputs.empty()) return 0;
-  std::fprintf(stderr, "usage: %s FOLDER|FILE...; no input there\n", argv[0]);
-  return 1;
+  Replay replay;
+  for (const fs::path& path : inputs) replay.Add(path.string(), BytesOf(path));
+  for (std::uint32_t number = 1; replay.AddVariants(inputs, number, begin + budget);) ++number;
+  replay.Print(inputs.size());
+  return 0;
 }
