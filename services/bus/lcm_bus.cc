@@ -22,8 +22,8 @@ constexpr auto kMaxDelivery = std::chrono::milliseconds(100);
 
 // LCM's queues count messages, not bytes, and a full one drops the newest. While a node computes,
 // these wait: 64 images are 16 s of the demo's two cameras and 192 MB at worst; 4096 of anything
-// else are 40 s of scan lines (13 MB), and more clouds than a sensor sends in minutes. All that wait
-// have 256 MiB at most (Inbox), however large each is.
+// else are 40 s of scan lines (13 MB), and more clouds than a sensor sends in minutes. All that
+// wait have 256 MiB at most (Inbox), however large each is.
 constexpr int kImageQueue = 64;
 // Who hears everything has a few seconds of all of it, images among them.
 constexpr int kQueue = 4096;

@@ -306,9 +306,10 @@ ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& 
   }
   edges.edge_pixels = EdgePixelsIn(sides, gradient);
   if (edges.edge_pixels.empty()) {
-    return {std::nullopt,
-            "no edge of the board stands out in the image where its squares put it: more contrast is "
-            "needed, or square_m, width_m and height_m in the rig file do not go together"};
+    return {
+        std::nullopt,
+        "no edge of the board stands out in the image where its squares put it: more contrast is "
+        "needed, or square_m, width_m and height_m in the rig file do not go together"};
   }
   if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
   if (located.plain) {
