@@ -37,14 +37,15 @@ bool Inbox::IsWanted(const std::string& channel) {
 
 void Inbox::Add(WholeMessage message) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (message.bytes.size() > max_bytes_ - bytes_) return;
+  const std::size_t size = message.bytes.size();
+  if (size + bytes_ + (size > kSmall ? kForSmall : 0) > max_bytes_) return;
   Waiting waiting;
   for (Subscriber* subscriber : Hearing(message.channel)) {
     if (subscriber->waiting < subscriber->capacity) waiting.to.push_back(subscriber);
   }
   if (waiting.to.empty()) return;
   for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
-  bytes_ += message.bytes.size();
+  bytes_ += size;
   waiting.message = std::move(message);
   waiting.arrived = HostUtime();
   waiting_.push_back(std::move(waiting));

@@ -16,11 +16,13 @@ namespace rgbdt {
 
 /// Messages on their way from the thread that receives them to the one that handles them, in the
 /// order in which they came. A subscriber whose queue is full misses the newest; where so many
-/// bytes wait that another message would make them more than `max_bytes`, nobody gets that one.
-/// Either leaves a gap in its sender's numbers.
+/// bytes wait that another message would make them more than `max_bytes`, nobody gets that one; the
+/// last kForSmall of them are for messages of at most kSmall, so that images and clouds leave room
+/// for commands. Either leaves a gap in its sender's numbers.
 class Inbox {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+  static constexpr std::size_t kForSmall = std::size_t{16} << 20, kSmall = std::size_t{64} << 10;
 
   /// Throws InputError where the kernel gives no descriptor.
   explicit Inbox(std::size_t max_bytes = kMaxBytes);

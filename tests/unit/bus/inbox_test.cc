@@ -50,8 +50,11 @@ TEST(Inbox, AFloodTakesNoMoreThanIsPromised) {
   std::vector<std::size_t> sizes;
   inbox.Subscribe("A", 4096, Collect(&sizes));
   for (int i = 0; i < 200; ++i) inbox.Add({"A", Bytes(kMaxMessageBytes)});
+  inbox.Add({"A", Bytes(100)});
   for (int i = 0; i < 200; ++i) inbox.DeliverOne();
-  EXPECT_EQ(sizes.size(), Inbox::kMaxBytes / kMaxMessageBytes);
+  const std::size_t large = (Inbox::kMaxBytes - Inbox::kForSmall) / kMaxMessageBytes;
+  ASSERT_EQ(sizes.size(), large + 1);
+  EXPECT_EQ(sizes.back(), 100U);  // for which there still was room
 }
 
 }  // namespace
