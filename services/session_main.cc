@@ -13,9 +13,9 @@
 #include "services/bus/multicast.h"
 #include "services/command_line/command_line.h"
 #include "services/nodes/session_node.h"
+#include "services/rgbdt/verdict_ends.h"
 #include "services/runtime/process.h"
 #include "services/session_terminal.h"
-#include "services/verdict_ends.h"
 
 namespace {
 

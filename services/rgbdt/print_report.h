@@ -15,7 +15,7 @@
 #include "calib/present/report/verdict.h"
 #include "calib/present/report/words.h"
 #include "services/command_line/command_line.h"
-#include "services/verdict_ends.h"
+#include "services/rgbdt/verdict_ends.h"
 
 namespace rgbdt {
 

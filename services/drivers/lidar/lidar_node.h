@@ -7,7 +7,7 @@
 
 #include "calib/model/rig.h"
 #include "services/drivers/device_report.h"
-#include "services/drivers/lidar/internal/pending_sweeps.h"
+#include "services/drivers/lidar/pending_sweeps.h"
 #include "services/runtime/device_thread.h"
 
 namespace rgbdt {

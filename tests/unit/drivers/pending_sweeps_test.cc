@@ -1,4 +1,4 @@
-#include "services/drivers/lidar/internal/pending_sweeps.h"
+#include "services/drivers/lidar/pending_sweeps.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
