@@ -33,6 +33,7 @@ names "inner corners" 1 "rgb: Do not use it" "count squares, not inner corners"
 names "fx and cx exchanged" 0 "rgb: Usable. Likeliest cause: fx and cx of rgb are exchanged"
 names "focal length 10% too long" 0 \
   "rgb: Usable. Likeliest cause: the focal length of rgb in the rig file is" "% too long"
-names "squares 5% too large" 4 "Likeliest cause: the squares are" "smaller than given"
+names "squares 5% too large" 1 "rgb: Do not use it" "square_m, width_m and height_m" \
+  "thermal: Do not use it. Likeliest cause: the squares are" "smaller than given"
 
 verdict
