@@ -42,12 +42,14 @@ misuses() {
   grep -qF -e '; see ' "$scratch/output" || complain "$1: no way to --help"
 }
 
-accepts() {
-  local what=$1 code=0
-  shift
+# ends_with CODE "what" COMMAND...
+ends_with() {
+  local expected=$1 what=$2 code=0
+  shift 2
   timeout "${patience:-120}" "$@" >"$scratch/output" 2>&1 </dev/null || code=$?
-  [ "$code" -eq 0 ] || complain "$what: exit code $code"
+  [ "$code" -eq "$expected" ] || complain "$what: exit code $code, not $expected"
 }
+accepts() { ends_with 0 "$@"; }
 
 fingerprint() {
   { [ ! -d "$scratch/kept" ] || find "$scratch/kept" -type f -exec md5sum {} +; } | sort | md5sum

@@ -56,7 +56,7 @@ grep -Eq 'rgb: projection uncertainty|data-topic="image/sigma/rgb"' "$scratch/re
 # One camera moved: what was said of it, and of both together, is said of another pose.
 awk '/translation_m:/ && !moved { sub(/: .*/, ": [0.01, 0.2, 0.03]"); moved = 1 } { print }' \
   "$scratch/s/calibration.textproto" >"$scratch/moved.textproto"
-accepts "a moved camera" "$bin/rgbdt" evaluate "$scratch/s" --out "$scratch" \
+ends_with 4 "a moved camera" "$bin/rgbdt" evaluate "$scratch/s" --out "$scratch" \
   --calibration "$scratch/moved.textproto"
 tells "a moved camera" "$scratch/report.json" "$thermal"
 

@@ -21,7 +21,8 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 /// Judges by what the report itself holds, and gives the rule with the figure.
 ///
 ///  - do not use: no pose, or one short of the optimum, or that the views do not determine;
-///    sessions that contradict each other; something was given wrong (Cause) that moves the pose by
+///    sessions that contradict each other; views that scatter ten times as much as they state;
+///    held-out views that lie elsewhere; something was given wrong (Cause) that moves the pose by
 ///    more than 4 of its sigmas.
 ///  - doubtful: something was given wrong that moves the pose by more than 1 sigma, or nobody knows
 ///    how far; more than a quarter of the views were rejected; views scatter far more than they
