@@ -20,6 +20,7 @@ namespace {
 constexpr Utime kPause = kMicrosecondsPerSecond;  // between two lines of one source
 constexpr Utime kRepeat = 5 * kPause;             // of the same line
 constexpr std::size_t kMaxSources = 50;           // strangers make up channels
+constexpr std::size_t kMaxKinds = 8;              // and texts
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -41,12 +42,16 @@ void KeepMemoryForTheNextMessage() {
   mallopt(M_TRIM_THRESHOLD, kKeptBytes);
 }
 
+std::string WithoutNumbers(std::string text) {
+  const auto is_of_number = [](char c) {
+    return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
+  };
+  text.erase(std::remove_if(text.begin(), text.end(), is_of_number), text.end());
+  return text;
+}
+
 std::string SourceOf(const std::string& problem) {
-  std::string source = problem.substr(0, problem.find(':'));
-  source.erase(
-      std::remove_if(source.begin(), source.end(), [](char c) { return c >= '0' && c <= '9'; }),
-      source.end());
-  return source;
+  return WithoutNumbers(problem.substr(0, problem.find(':')));
 }
 
 void LogGoodbye(const Status& status) {
@@ -100,6 +105,14 @@ void ProblemLog::Add(const std::string& problem, Utime now) {
   if (sources_.size() >= kMaxSources && sources_.count(key) == 0) key.clear();
   Source& source = sources_[key];
   const bool first = source.written.empty();
+  const std::string kind = WithoutNumbers(problem);
+  const auto& kinds = source.kinds;
+  const bool is_shared = key.empty();
+  if (!is_shared && kinds.size() < kMaxKinds &&
+      std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) {
+    source.kinds.push_back(kind);
+    if (!first) return write_(problem);  // something else: a cable that is out, and back
+  }
   if (first || now - source.written_at >= (problem == source.written ? kRepeat : kPause)) {
     WriteOf(&source, problem, source.count, now);
     return;

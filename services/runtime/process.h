@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "services/bus/bus.h"
 #include "services/runtime/node.h"
@@ -24,9 +25,10 @@ struct BusFlags {
 int RunOnLcm(Node& node, const BusFlags& flags, const Bus::Handler& overhear = {});
 
 /// Logs problems in few lines, whatever flood they come in: one a second of each source, and the
-/// same one every five seconds; what is left out is counted, and told with the next line or five
-/// seconds later. A source is what stands before a problem's first colon (a channel), but for
-/// digits; of very many sources those that come last count as one. Time [us] comes from the caller.
+/// same one every five seconds, but at once what is of another kind, up to eight kinds of a source;
+/// what is left out is counted, and told with the next line or five seconds later. A source is what
+/// stands before a problem's first colon (a channel), but for digits; of very many sources those
+/// that come last count as one. Time [us] comes from the caller.
 class ProblemLog {
  public:
   using Write = std::function<void(const std::string& line)>;
@@ -41,6 +43,7 @@ class ProblemLog {
     Utime written_at = 0;
     std::string left_out;  // the newest
     std::int64_t count = 0;
+    std::vector<std::string> kinds;  // of texts written so far: without their numbers
   };
   void WriteOf(Source* source, const std::string& problem, std::int64_t more, Utime now);
 

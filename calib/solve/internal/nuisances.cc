@@ -155,17 +155,17 @@ std::optional<Cause> FarthestBeyondPriors(const JointResult& result) {
     const Estimate estimate = EstimateOf(result, line.unknown);
     const double prior = priors.Sigma(line.unknown);
     if (!LineOf(line, estimate, priors)) continue;
-    // As far as an estimate that is pulled to its mean can be off it by chance.
-    const double told = prior * prior - estimate.sigma * estimate.sigma;
+    // Rather too little: what a model has wrong goes where the data tell least.
+    const double variance = prior * prior + estimate.sigma * estimate.sigma;
     const double off = estimate.value - means[static_cast<std::size_t>(line.unknown)];
-    if (farthest && off * off / told <= farthest->chi2) continue;
+    if (farthest && off * off / variance <= farthest->chi2) continue;
     farthest = Cause{
         "beams or board",
         Format("%s: %.1f +- %.1f %s, where %.1f +- %.1f is usual. Check that the board is flat "
                "and as large as the rig file says, and the LIDAR's beam against its data sheet",
                line.name, 1000 * estimate.value, 1000 * estimate.sigma, line.unit,
                1000 * means[static_cast<std::size_t>(line.unknown)], 1000 * prior),
-        off * off / told};
+        off * off / variance};
   }
   return farthest;
 }

@@ -70,6 +70,20 @@ TEST(ProblemLog, AVariedFloodIsALineAChannelAndSecondAndNoneIsUncounted) {
   EXPECT_EQ(lines.size(), 122U) << "it is told once";
 }
 
+TEST(ProblemLog, SomethingElseOfASourceIsToldAtOnceAndThatIsBoundedToo) {
+  std::vector<std::string> lines;
+  ProblemLog log([&](const std::string& line) { lines.push_back(line); });
+  log.Add("rgb: no frame for 3.0 s", 0);
+  log.Add("rgb: no camera at 10.0.0.1", 1000);
+  log.Add("rgb: no camera at 10.0.0.2", 1500);
+  log.Add("rgb: back after 5 s", 2000);
+  EXPECT_EQ(lines, (std::vector<std::string>{"rgb: no frame for 3.0 s",
+                                             "rgb: no camera at 10.0.0.1", "rgb: back after 5 s"}));
+  std::string text = "rgb: ";
+  for (int i = 0; i < 100; ++i) log.Add(text += static_cast<char>('a' + i % 26), 3000 + i);
+  EXPECT_EQ(lines.size(), 8U);
+}
+
 TEST(ProblemLog, ManyMadeUpSourcesAreBoundedTogetherAndForgotten) {
   std::vector<std::string> lines;
   ProblemLog log([&](const std::string& line) { lines.push_back(line); });

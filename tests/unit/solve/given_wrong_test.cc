@@ -147,6 +147,31 @@ TEST(GivenWrong, ACloudOfAnotherScaleIsNamed) {
 }
 
 // Its lens is stated with an uncertainty: the one that is found is used.
+TEST(FarthestBeyondPriors, ABeamThatIsWiderThanAnyIsNamed) {
+  SolveWorldOptions options = Views(10);
+  options.shared[kFarShift] = 0.012;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  const Cause* const found = Find(report.cameras[0], "beams or board");
+  ASSERT_NE(found, nullptr);
+  EXPECT_GT(found->Sigmas(), kGivenWrongSigmas);
+  EXPECT_THAT(found->words, AllOf(HasSubstr("beam edge, far background"), HasSubstr("data sheet")));
+}
+
+// Stated as exact, which it cannot be: the images alone say so, and what it should be.
+TEST(OpenExactLenses, ALensThatImagesRefuteIsFound) {
+  SolveWorld world(Drawn(4));
+  Lens& lens = world.rig.cameras[0].lens;
+  lens.fx *= 1.05;
+  lens.fy *= 1.05;
+  ASSERT_TRUE(world.rig.cameras[0].LensUncertaintyOrUsual().exact());
+  const Report report = Believed(world);
+  EXPECT_LT(Chi2(world, report, 0), kMostChi2);
+  const Cause& cause = report.cameras[0].causes.at(0);
+  EXPECT_EQ(cause.name, "focal length");
+  EXPECT_GT(cause.Sigmas(), kGivenWrongSigmas);
+}
+
 TEST(GivenWrong, ALensThatWasRefutedIsNamedAndMovesNothingMore) {
   SolveWorld world(Drawn(7));
   for (CameraSpec& camera : world.rig.cameras) {
