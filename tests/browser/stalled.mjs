@@ -4,9 +4,9 @@ import { lossesOf, numberOf, openBrowser, openTab, require, run, shot, until } f
 
 const [viewerPid, mostGrowthKb] = process.argv.slice(2);
 const kStallMs = 10_000; // at least
-// The bridge holds the newest sweeps for a capture that may come: some 60 of these, at 5 Hz 12 s,
+// The bridge holds the newest sweeps for a capture that may come: some 60 of these, at 2 Hz 30 s,
 // then no more. By the sweeps' own stamps, as a page on a busy machine is sent only some of them.
-const kWarmUtime = 20_000_000;
+const kWarmUtime = 35_000_000;
 const kLeast = 3; // sweeps and images that show that the other goes on, however slow the machine
 
 const rssKb = () => numberOf(/VmRSS:\s*(\d+)/.exec(readFileSync(`/proc/${viewerPid}/status`, "utf8"))[1]);

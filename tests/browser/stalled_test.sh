@@ -6,10 +6,10 @@ set -euo pipefail
 # shellcheck source=tests/browser/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
-most_growth_kb=50000
+most_growth_kb=15000
 
 start fuser "$bin/rgbdt-fuser"
-start stream "$bin/browser_helper" stream 5 100000 10 5
+start stream "$bin/browser_helper" stream 2 100000 10 5
 helper ready fuser || fail "rgbdt-fuser did not come up"
 start_viewer
 
