@@ -6,6 +6,7 @@
 #include "calib/camera/pixels.h"
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/detect/cloud/range_grid.h"
+#include "calib/detect/cloud/turn_rate.h"
 #include "calib/detect/image/image_edges.h"
 #include "calib/detect/image/stillness.h"
 #include "calib/methods/bearing_angle/board_corners.h"
@@ -164,6 +165,9 @@ CloudDetection DetectCloud(const Rig& rig, const Cloud& cloud,
   }
   if (method == kLineScanMethod) TakeLines(rig, cloud, &detection);
   if (method == kBearingAngleMethod) TakeCorners(rig, cloud, &detection);
+  if (rig.lidar.turned_scanner) {
+    for (CloudEdges& board : detection.candidates) board.turn_rad_s = TurnRate(cloud, board.centre);
+  }
   detection.detect_s = watch.Seconds();
   return detection;
 }

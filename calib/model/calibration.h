@@ -154,7 +154,7 @@ struct RejectedView {
 /// An unknown of the solve besides the poses.
 struct Nuisance {
   std::string name;  ///< e.g. "beam edge, no return"
-  std::string unit;  ///< "mrad", "mm" or "px"
+  std::string unit;  ///< "mrad", "mm", "px" or "ms"
   Estimate estimate;
 };
 
@@ -238,6 +238,8 @@ struct CameraReport {
   std::vector<RejectedView> rejected;
   /// Why the views cannot all be of one pose, in words; empty: they can, as far as is known.
   std::string contradiction;
+  /// What would bend the result and these views cannot tell, in words; empty: nothing known.
+  std::string cannot_tell;
   /// What may have been given wrong, the likeliest first: from kGivenWrongSigmas on it is taken to
   /// be, below that it is named where something else says that all is not well.
   std::vector<Cause> causes;

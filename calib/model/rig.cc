@@ -155,6 +155,9 @@ void CheckLidar(const LidarSpec& lidar, const std::string& field) {
             std::to_string(ticks), "a number other than zero (negative: turns the other way)");
     Require(std::isfinite(lidar.turned_scanner->zero_ticks), field + ".turned_scanner.zero_ticks",
             std::to_string(lidar.turned_scanner->zero_ticks), "a finite number");
+    Require(std::abs(lidar.turned_scanner->encoder_delay_s) <= 1,
+            field + ".turned_scanner.encoder_delay_s",
+            std::to_string(lidar.turned_scanner->encoder_delay_s), "-1 to 1 s");
     CheckPose(lidar.turned_scanner->motor_from_scanner,
               field + ".turned_scanner.motor_from_scanner");
   }

@@ -60,6 +60,7 @@ struct TurnedScanner {
   double ticks_per_rad = 0;
   double zero_ticks = 0;                 ///< reading at which the motor's angle is zero
   std::optional<DynamixelDevice> motor;  ///< for rgbdt-motor
+  double encoder_delay_s = 0;            ///< a reading's time is so much after the motor was there
 };
 
 struct LidarSpec {

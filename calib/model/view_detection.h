@@ -126,6 +126,9 @@ struct CloudEdges {
   /// line-scan: one group a line, where its points were measured.
   std::vector<PointGroup> groups;
   double group_sigma_m = 0;  ///< as scatter_sigma_m, about the group's mean
+  /// How fast a turned scanner's motor turned about the LIDAR's z while it scanned the board
+  /// [rad/s]; 0: nothing turned, or the cloud does not tell.
+  double turn_rad_s = 0;
 };
 
 /// What detection makes of one camera's image in a view.

@@ -20,7 +20,8 @@ void Assembler::SetScanner(const TurnedScanner& scanner) {
   Forget();
 }
 
-Assembler::Chunks Assembler::Add(const EncoderReading& reading) {
+Assembler::Chunks Assembler::Add(const EncoderReading& as_stamped) {
+  const EncoderReading reading = OnTime(scanner_, as_stamped);
   if (reading.utime < track_.newest() - kClockReset) Forget();
   if (!track_.Add(reading)) {
     throw InputError("encoder reading of " + std::to_string(reading.utime) +

@@ -49,7 +49,7 @@ class Assembler {
   /// Another geometry, which forgets the sweep at hand.
   void SetScanner(const TurnedScanner& scanner);
 
-  std::vector<CloudChunk> Add(const EncoderReading& reading);
+  std::vector<CloudChunk> Add(const EncoderReading& as_stamped);
   std::vector<CloudChunk> Add(const LineScan& line);
 
   const Counts& counts() const { return counts_; }

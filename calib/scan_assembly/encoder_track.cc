@@ -5,6 +5,11 @@
 
 namespace rgbdt {
 
+EncoderReading OnTime(const TurnedScanner& scanner, EncoderReading reading) {
+  reading.utime -= FromSeconds(scanner.encoder_delay_s);
+  return reading;
+}
+
 bool EncoderTrack::Add(const EncoderReading& reading) {
   if (!readings_.empty() && reading.utime <= readings_.back().utime) return false;
   readings_.push_back(reading);

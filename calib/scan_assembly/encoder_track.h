@@ -9,6 +9,10 @@
 
 namespace rgbdt {
 
+/// A reading at the time when the motor was there (TurnedScanner::encoder_delay_s). The sweep keeps
+/// its name.
+EncoderReading OnTime(const TurnedScanner& scanner, EncoderReading reading);
+
 /// Motor angle over time from encoder readings, interpolated linearly.
 class EncoderTrack {
  public:

@@ -33,6 +33,7 @@ struct ScannerOptions : BeamOptions {
   Eigen::Vector3d lever_arm_m{0.02, 0.0, 0.05};  ///< scanner's origin in the motor's frame
   /// Rotation vector of motor_from_scanner [rad].
   Eigen::Vector3d tilt_rad{0.3 * kDegree, -0.4 * kDegree, 0.2 * kDegree};
+  double encoder_delay_s = 0;  ///< a reading's time is so much after the motor was there
   /// The rig file's motor_from_scanner is the truth, turned by this rotation vector about the
   /// motor's axes [rad], its lever arm off by this.
   Eigen::Vector3d guess_lever_m{0, 0, 0}, guess_tilt_rad{0, 0, 0};

@@ -111,6 +111,7 @@ void Simulator::ShowView(int index, const std::string& view_name) {
   if (index < 0) {
     throw InputError("simulator: view index is " + std::to_string(index) + "; expected 0 or more");
   }
+  impl_->scanner.SweepBack(index % 2 == 1);
   const NaturalOptions& natural = impl_->options.natural;
   if (natural.on) {
     impl_->DriveTo(index);
@@ -158,7 +159,8 @@ EncoderReading Simulator::Encoder(Utime utime, Utime sweep_utime) const {
   EncoderReading reading;
   reading.utime = utime;
   reading.sweep_utime = sweep_utime;
-  const double seconds = sweep_utime == 0 ? 0 : ToSeconds(utime - sweep_utime);
+  const double late = impl_->options.scanner.encoder_delay_s;
+  const double seconds = sweep_utime == 0 ? 0 : ToSeconds(utime - sweep_utime) - late;
   reading.ticks = impl_->scanner.Ticks(impl_->scanner.MotorAngle(seconds));
   return reading;
 }

@@ -29,7 +29,8 @@ class Simulator {
   const Truth& truth() const;
 
   /// Puts the board at view `index` (0, 1, ...; the pose is a function of seed and index) and
-  /// renders what the cameras see, once. In natural scenes the rig drives there, too.
+  /// renders what the cameras see, once. Sweeps of odd views turn the other way. In natural scenes
+  /// the rig drives there, too.
   void ShowView(int index, const std::string& view_name);
 
   /// A sweep: `sweep_lines()` lines, line i begins at sweep_utime + i * line_period().

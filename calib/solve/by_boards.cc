@@ -14,6 +14,7 @@
 #include "calib/solve/internal/cross_check.h"
 #include "calib/solve/internal/disagreement.h"
 #include "calib/solve/internal/edges_planes.h"
+#include "calib/solve/internal/encoder_delay.h"
 #include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
@@ -105,6 +106,7 @@ struct SolvedGroup {
   std::vector<MountChange> changes;  // indices into `cameras`
   std::optional<NextView> next_view;
   std::vector<LidarReport> lidars;
+  std::optional<EncoderDelay> encoder_delay;
 };
 
 // Whether something is surely given wrong: that bends all else, too.
@@ -181,6 +183,7 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   }
   result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;
+  solved.encoder_delay = result.encoder_delay;
   solved.lidars = ReportsOfLidars(result, options.min_views);
   solved.changes = ChangesOf(result);
   const EdgeModel edges = EdgesOf(result);
@@ -223,6 +226,11 @@ std::optional<NextView> Worse(std::optional<NextView> a, std::optional<NextView>
   return b && (!a || b->sigma_before_px > a->sigma_before_px) ? std::move(b) : std::move(a);
 }
 
+// By which of the groups that are solved apart it is better known.
+std::optional<EncoderDelay> SurerOf(std::optional<EncoderDelay> a, std::optional<EncoderDelay> b) {
+  return b && (!a || b->seconds.sigma < a->seconds.sigma) ? std::move(b) : std::move(a);
+}
+
 // The first guesses; where views do not agree on one, what makes them.
 std::vector<GuessedCamera> GuessOrSayWhyNot(const Target& target, const CalibrateOptions& options,
                                             std::vector<CameraViews>* cameras) {
@@ -247,13 +255,16 @@ CalibratedCameras CalibrateByBoards(const Target& target, const CalibrateOptions
   return CalibrateWithLidars(target, options, std::move(cameras), {});
 }
 
-CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptions& options,
-                                      std::vector<CameraViews> cameras,
-                                      std::vector<LidarViews> lidars) {
+namespace {
+
+CalibratedCameras CalibrateAsTheyAre(const Target& target, const CalibrateOptions& options,
+                                     std::vector<CameraViews> cameras,
+                                     std::vector<LidarViews> lidars) {
   CalibratedCameras out;
   CalibrateOptions pairing = options;
   pairing.first_guess.accept = kVotingGate;  // what contradicts the rest is found by the solve
   std::vector<GuessedCamera> guessed = GuessOrSayWhyNot(target, pairing, &cameras);
+  out.rough_encoder_delay = RoughEncoderDelay(guessed);
   for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
     std::vector<GuessedCamera> together;
     std::vector<CameraViews> detected;
@@ -270,11 +281,26 @@ CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptio
       out.changes.push_back({group[change.from], group[change.to], std::move(change.moved)});
     }
     out.next_view = Worse(std::move(out.next_view), std::move(solved.next_view));
+    out.encoder_delay = SurerOf(std::move(out.encoder_delay), std::move(solved.encoder_delay));
   }
   for (LidarViews& left : lidars) out.lidars.push_back(WithoutCamera(std::move(left.report)));
   if (options.diagnostics) out.closure = CloseLoops(guessed);
   out.cameras = WithoutGuesses(std::move(guessed));
   return out;
+}
+
+}  // namespace
+
+CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptions& options,
+                                      std::vector<CameraViews> cameras,
+                                      std::vector<LidarViews> lidars) {
+  return CalibrateWithoutEncoderDelay([&](double delay_s) {
+    std::vector<CameraViews> turned;
+    for (const CameraViews& camera : cameras) {
+      turned.push_back(WithoutEncoderDelay(camera, delay_s));
+    }
+    return CalibrateAsTheyAre(target, options, std::move(turned), lidars);
+  });
 }
 
 }  // namespace rgbdt

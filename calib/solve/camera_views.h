@@ -40,6 +40,8 @@ struct CameraViews {
   std::vector<CameraView> all;
   /// Images of `all` that are not the detection's any more (PosedAgain).
   std::vector<std::shared_ptr<const ImageEdges>> posed_again;
+  /// Candidates of `all` that are not the detection's any more (WithoutEncoderDelay).
+  std::vector<std::shared_ptr<const CloudEdges>> turned_clouds;
   CameraReport report;
 
   std::vector<const CameraView*> Usable() const;

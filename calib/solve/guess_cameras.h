@@ -19,6 +19,25 @@ struct MountChange {
   PoseComparison moved;          ///< by the covariance that the two have together
 };
 
+/// How late a turned scanner's encoder may be stamped where nothing tells (1 sigma): motors and
+/// scanners are stamped as they are heard, and a serial adapter of USB holds bytes for up to 16 ms.
+inline constexpr double kEncoderDelaySigmaS = 0.005;
+
+/// How late a turned scanner's encoder is stamped, as views have it.
+struct EncoderDelay {
+  Estimate seconds;                    ///< the variance factor counted in
+  double stated_sigma_s = 0;           ///< without it
+  double turn_rad_s = 0;               ///< how fast the motor turned, mean over the views
+  std::size_t views_of_fewer_way = 0;  ///< in which it turned the way that is the rarer
+  /// How far all shared unknowns of the solve (SharedPlaces) move by 1 sigma of what is known of it
+  /// after all.
+  Eigen::VectorXd pose_move;
+
+  /// Whether the views tell more of it than is known of any encoder. By what they state, as a delay
+  /// that is there makes them scatter.
+  bool IsTold() const { return stated_sigma_s < kEncoderDelaySigmaS; }
+};
+
 /// What a method makes of the cameras' views: each one's report, and what they say together.
 struct CalibratedCameras {
   std::vector<CameraViews> cameras;
@@ -26,6 +45,10 @@ struct CalibratedCameras {
   std::vector<MountChange> changes;   ///< of cameras of one name, each against the first of them
   std::vector<Closure> closure;
   std::optional<NextView> next_view;
+  /// How late a turned scanner's encoder is stamped; the rough one is by each view alone. Absent:
+  /// no motor turned, or not told.
+  std::optional<EncoderDelay> encoder_delay{};
+  std::optional<Estimate> rough_encoder_delay{};  ///< [s]
 };
 
 /// A camera and where the first guess puts it. With a pose, its usable views know their board;

@@ -41,7 +41,7 @@ ScannerSweeps FromSession(const std::string& dir) {
 /// What a log says of the scanner.
 struct ScannerLog {
   std::optional<Rig> rig;
-  EncoderTrack track;
+  std::vector<EncoderReading> readings;
   std::vector<LineScan> lines;
   std::int64_t dropped = 0;
   std::string last_problem;
@@ -50,7 +50,7 @@ struct ScannerLog {
     if (const auto* text = std::get_if<RigText>(&message)) {
       if (!rig) rig = ParseRig(text->text, "RIG", LensNeed::kMayBeUnknown);
     } else if (const auto* reading = std::get_if<EncoderReading>(&message)) {
-      track.Add(*reading);
+      readings.push_back(*reading);
     } else if (const auto* line = std::get_if<LineScan>(&message)) {
       lines.push_back(*line);
     }
@@ -77,10 +77,12 @@ ScannerSweeps FromLog(const std::string& path) {
   const ScannerLog log = ReadLog(path);
   if (!log.rig) throw InputError(path + ": no RIG in this log; record that channel, too");
   const TurnedScanner& scanner = ScannerOf(*log.rig, path);
+  EncoderTrack track;
+  for (const EncoderReading& reading : log.readings) track.Add(OnTime(scanner, reading));
   std::map<Utime, TurnedBeams> sweeps;
   for (const LineScan& line : log.lines) {
-    const Utime sweep = log.track.SweepAt(line.utime);
-    const auto angles = BeamAngles(scanner, log.track, line, Assembler::kMaxGap);
+    const Utime sweep = track.SweepAt(line.utime);
+    const auto angles = BeamAngles(scanner, track, line, Assembler::kMaxGap);
     if (sweep != 0 && angles) AppendLine(line, *angles, &sweeps[sweep]);
   }
   ScannerSweeps read;

@@ -34,6 +34,7 @@ const CameraReport* FindSame(const Report& report, const CameraCalibration& cali
 void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->first_guess = before.first_guess;
   camera->contradiction = before.contradiction;
+  camera->cannot_tell = before.cannot_tell;
   camera->view_scatter = before.view_scatter;
   camera->variance_factor = before.variance_factor;
   camera->other_starts = before.other_starts;

@@ -8,11 +8,12 @@ here=$(dirname "${BASH_SOURCE[0]}")
 
 accepts "a session" "$bin/rgbdt" simulate "$scratch/right" --views 8 --lidar 32
 
+session=right
 # names MISTAKE EXIT_CODE WORDS...: all in the lines that `rgbdt calibrate` prints of this mistake.
 names() {
   local what=$1 expected=$2 word
   shift 2
-  /usr/bin/python3 -B "$here/spoil.py" "$scratch/right" "$scratch/$what" "$what"
+  /usr/bin/python3 -B "$here/spoil.py" "$scratch/$session" "$scratch/$what" "$what"
   ends_with "$expected" "$what" "$bin/rgbdt" calibrate "$scratch/$what"
   for word in "$@"; do
     grep -qF -- "$word" "$scratch/output" || complain "$what: no word of '$word'"
@@ -34,5 +35,12 @@ names "focal length 10% too long" 0 \
   "rgb: Usable. Likeliest cause: the focal length of rgb in the rig file is" "% too long"
 names "squares 5% too large" 1 "rgb: Do not use it" "square_m, width_m and height_m" \
   "thermal: Do not use it. Likeliest cause: the squares are" "smaller than given"
+
+accepts "a session of a turned scanner" "$bin/rgbdt" simulate "$scratch/turned" --views 8
+session=turned
+names "encoder 200 ms late" 1 "rgb: Do not use it. Likeliest cause: the motor's encoder is stamped" \
+  " ms late" "put encoder_delay_s: 0.2" "thermal: Do not use it. Likeliest cause: the motor's encoder"
+names "encoder 20 ms late" 1 "put encoder_delay_s: 0.02"
+names "sweeps one way" 0 "rgb: Usable" "All sweeps turned the same way"
 
 verdict

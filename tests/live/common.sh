@@ -53,6 +53,8 @@ kill_process() {  # NAME
   wait_for "$1" || true
 }
 
+now_ms() { date +%s%3N; }
+
 helper() { "$bin/live_helper" "$@"; }
 
 session_script() {  # VIEWS [HELD_OUT]: of so many views, one of which is kept from the solver

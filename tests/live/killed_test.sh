@@ -63,7 +63,6 @@ restart() {  # PROCESS: what it had said is kept
   start_process "$1"
 }
 
-now_ms() { date +%s%3N; }
 
 taken() { find "$folder/views" -name detection.lcm 2>/dev/null | wc -l || true; }
 

@@ -43,7 +43,6 @@ last_count() {  # PROCESS COUNTER: in its last words
   sed -n "s/.*: stopped;.*, $2 \([0-9][0-9]*\).*/\1/p" "$scratch/$1.log" | tail -n 1
 }
 
-now_ms() { date +%s%3N; }
 
 run_session() {  # NAME
   local name began view lost=0

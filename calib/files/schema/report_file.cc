@@ -168,6 +168,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
     text::FromRangeErrors(*calibration.range_errors, out->mutable_range_errors());
   }
   out->set_contradiction(ValidUtf8(camera.contradiction));
+  out->set_cannot_tell(ValidUtf8(camera.cannot_tell));
   for (const Cause& cause : camera.causes) FromCause(cause, out->add_causes());
   if (camera.verdict) FromVerdict(*camera.verdict, out->mutable_verdict());
   if (camera.view_scatter) {
@@ -214,6 +215,7 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
         ViewScatter{message.view_scatter().factor(), message.view_scatter().freedom()};
   }
   camera.contradiction = message.contradiction();
+  camera.cannot_tell = message.cannot_tell();
   for (const proto::Cause& cause : message.causes()) camera.causes.push_back(ToCause(cause));
   if (message.has_verdict()) camera.verdict = ToVerdict(message.verdict());
   if (message.has_variance_factor()) camera.variance_factor = message.variance_factor();

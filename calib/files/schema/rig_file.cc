@@ -133,7 +133,8 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
         TurnedScanner{text::ToRigid3(scanner.motor_from_scanner(), at.In("motor_from_scanner")),
                       scanner.ticks_per_degree() * kDegreesPerRadian,
                       scanner.zero_ticks(),
-                      {}};
+                      {},
+                      scanner.encoder_delay_s()};
     if (scanner.has_dynamixel()) {
       spec.turned_scanner->motor = text::ToDevice(scanner.dynamixel(), at.In("dynamixel"));
     }
@@ -192,6 +193,7 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   text::FromRigid3(spec.turned_scanner->motor_from_scanner, scanner->mutable_motor_from_scanner());
   scanner->set_ticks_per_degree(TicksPerDegree(spec.turned_scanner->ticks_per_rad));
   scanner->set_zero_ticks(spec.turned_scanner->zero_ticks);
+  scanner->set_encoder_delay_s(spec.turned_scanner->encoder_delay_s);
   if (spec.turned_scanner->motor) {
     text::FromDevice(*spec.turned_scanner->motor, scanner->mutable_dynamixel());
   }

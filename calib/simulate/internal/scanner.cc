@@ -31,8 +31,8 @@ int Scanner::sweep_lines() const {
 Utime Scanner::line_period() const { return FromSeconds(options_.beams * options_.beam_period_s); }
 
 double Scanner::MotorAngle(double seconds) const {
-  return options_.sweep_start_rad +
-         std::clamp(seconds * options_.motor_speed_rad_s, 0.0, options_.sweep_rad);
+  const double turned = std::clamp(seconds * options_.motor_speed_rad_s, 0.0, options_.sweep_rad);
+  return options_.sweep_start_rad + (back_ ? options_.sweep_rad - turned : turned);
 }
 
 std::int64_t Scanner::Ticks(double motor_angle) const {

@@ -21,6 +21,8 @@ class Scanner {
   const TurnedScanner& geometry() const { return geometry_; }
   int sweep_lines() const;
   Utime line_period() const;
+  /// Whether sweeps go from their end to their start from now on.
+  void SweepBack(bool back) { back_ = back; }
   /// Motor's angle [rad] this long after the sweep's start; stands before it and after its end.
   double MotorAngle(double seconds) const;
   std::int64_t Ticks(double motor_angle) const;
@@ -44,6 +46,7 @@ class Scanner {
   TurnedScanner geometry_;
   std::vector<Eigen::Vector3d> sub_rays_;  ///< of beam after beam, motor's frame, unit
   int sub_ray_count_ = 0;                  ///< per beam
+  bool back_ = false;
 };
 
 }  // namespace rgbdt::simulate

@@ -7,6 +7,7 @@
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
+#include "calib/solve/internal/encoder_delay.h"
 #include "calib/solve/internal/evidence.h"
 #include "calib/solve/internal/further_lidars.h"
 #include "calib/solve/internal/held_offsets.h"
@@ -329,6 +330,7 @@ JointResult SolveJointly(JointProblem joint) {
   }
   if (contradicted) result = SolveWithOffset(std::move(wider));
   result.lenses_off = AgainstGiven(result, given, std::move(off));
+  result.encoder_delay = EncoderDelayOf(result);
   return result;
 }
 
@@ -362,9 +364,17 @@ JointResult WithoutLidars(JointResult result) {
 }
 
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
-  const PoseAndLensCovariance covariance =
-      result.variance_factor *
-      result.solution.PoseAndLens(SharedPlaces(result.joint.problem), index);
+  const SharedPlaces places(result.joint.problem);
+  PoseAndLensCovariance covariance =
+      result.variance_factor * result.solution.PoseAndLens(places, index);
+  if (result.encoder_delay) {
+    Eigen::Matrix<double, kPoseAndLens, 1> move;
+    Index i = 0;
+    for (const Index at : places.PoseAndLens(index)) {
+      move[i++] = result.encoder_delay->pose_move[at];
+    }
+    covariance += move * move.transpose();
+  }
   return 0.5 * (covariance + covariance.transpose());
 }
 

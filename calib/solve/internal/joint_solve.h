@@ -30,6 +30,7 @@ struct JointResult {
   /// By camera: the lens found against the given one; chi-square as it was before its prior was
   /// widened.
   std::vector<LensOff> lenses_off;
+  std::optional<EncoderDelay> encoder_delay{};  ///< absent: no motor turned (encoder_delay.h)
 };
 
 /// Solves; leaves out what contradicts the rest, worst first, at most a third of a camera's views,
@@ -53,7 +54,7 @@ Halves LidarApart(const BoardSolution& a, const BoardSolution& b, const JointRes
 /// The result as it is without further LIDARs.
 [[nodiscard]] JointResult WithoutLidars(JointResult result);
 
-/// Of camera `index`, the variance factor counted in.
+/// Of camera `index`, the variance factor counted in, and what is not known of the encoder's delay.
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index);
 
 }  // namespace rgbdt

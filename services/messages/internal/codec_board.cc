@@ -115,6 +115,7 @@ void Fields(const Copy& copy, WireOf<Copy, cloud_board_t>& wire,
   copy(wire.scatter_sigma_m, cloud.scatter_sigma_m);
   copy.List("num_groups", wire.num_groups, wire.group, cloud.groups);
   copy(wire.group_sigma_m, cloud.group_sigma_m);
+  copy(wire.turn_rad_s, cloud.turn_rad_s);
 }
 
 cloud_board_t ToWire(const CloudEdges& cloud) { return FieldsToWire<cloud_board_t>(cloud); }
@@ -136,6 +137,7 @@ void Check(const cloud_board_t& wire) {
   CheckNotNegative("scatter_sigma_m", wire.scatter_sigma_m);
   CheckParts("group", wire.group);
   CheckNotNegative("group_sigma_m", wire.group_sigma_m);
+  CheckFinite("turn_rad_s", wire.turn_rad_s);
 }
 
 CloudEdges FromWire(const cloud_board_t& wire) { return FieldsFromWire<CloudEdges>(wire); }

@@ -233,6 +233,7 @@ class RandomMessages {
     cloud.scatter_sigma_m = Number(0, 0.1);
     for (int i = Int(0, 9); i > 0; --i) cloud.groups.push_back(Group());
     cloud.group_sigma_m = Number(0, 0.1);
+    cloud.turn_rad_s = Number(-1, 1);
     return cloud;
   }
 

@@ -69,7 +69,12 @@ void SolveWorld::AddView(const Rigid3& board) {
   detection.view = (n < 9 ? "000" : "00") + std::to_string(n + 1);
   detection.heldout =
       options_.heldout_every > 0 && n % static_cast<std::size_t>(options_.heldout_every) == 1;
-  detection.cloud.candidates = {SeeCloud(board, side_shift.back(), n % 2 == 1)};
+  const auto motor = options_.motor.value_or(SolveWorldOptions::Motor{});
+  const double turn = (motor.both_ways && n % 2 == 1 ? -1 : 1) * motor.turn_rad_s;
+  // At the angle that is read the motor was before: the cloud is turned back by what came since.
+  const Rigid3 late = RotationAbout(Eigen::Vector3d::UnitZ(), -turn * motor.encoder_delay_s);
+  detection.cloud.candidates = {SeeCloud(late * board, side_shift.back(), n % 2 == 1)};
+  detection.cloud.candidates[0].turn_rad_s = turn;
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     detection.images.push_back({rig.cameras[c].name, static_cast<Utime>(1000 + n),
                                 SeeImage(c, camera_from_lidar[c] * board), "", 0});

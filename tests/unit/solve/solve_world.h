@@ -31,6 +31,13 @@ struct SolveWorldOptions {
     double beams_meet_m = 0;
   };
   std::optional<Rings> rings;
+  /// The LIDAR is a turned scanner.
+  struct Motor {
+    double turn_rad_s = 0;
+    bool both_ways = false;      ///< every other view the other way
+    double encoder_delay_s = 0;  ///< by which its encoder is stamped late
+  };
+  std::optional<Motor> motor;
   bool plain = false;  ///< a square without a pattern, told from each of its corners in turn
   std::array<double, kSharedUnknowns> shared = BoardPriors().Means();  ///< if not drawn
 };

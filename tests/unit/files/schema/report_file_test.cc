@@ -51,11 +51,13 @@ TEST(ReportFile, GivesBackHowSureItIs) {
   report.cameras[0].variance_factor = 2.25;
   report.cameras[0].view_scatter = ViewScatter{1.5, 20};
   report.cameras[0].contradiction = "friday puts this camera elsewhere";
+  report.cameras[0].cannot_tell = "all sweeps turned the same way";
   const Report back = ReportFromJson(ReportToJson(report));
   const CameraReport& a = report.cameras[0];
   const CameraReport& b = back.cameras[0];
   EXPECT_EQ(b.variance_factor, a.variance_factor);
   EXPECT_EQ(b.contradiction, a.contradiction);
+  EXPECT_EQ(b.cannot_tell, a.cannot_tell);
   ASSERT_EQ(b.view_scatter.has_value(), a.view_scatter.has_value());
   if (a.view_scatter) {
     EXPECT_EQ(b.view_scatter->factor, a.view_scatter->factor);

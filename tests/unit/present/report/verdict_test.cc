@@ -172,6 +172,15 @@ TEST(Verdict, ViewsThatScatterFarMoreThanStatedAreAnAlarm) {
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("scatter 3.0 times as much"));
 }
 
+TEST(Verdict, WhatViewsCannotTellIsSaidAndNoMoreThanUsable) {
+  CameraReport camera = Good();
+  ASSERT_EQ(Judge(camera).grade, Grade::kGood);
+  camera.cannot_tell = "All sweeps turned the same way.";
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kUsable);
+  EXPECT_THAT(verdict.reasons, testing::Contains(camera.cannot_tell));
+}
+
 TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
   CameraReport camera = Good();
   const auto grade = [&](double chi2, std::optional<double> moves_sigma) {

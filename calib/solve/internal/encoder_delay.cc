@@ -1,0 +1,264 @@
+#include "calib/solve/internal/encoder_delay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "calib/model/linear_algebra.h"
+#include "calib/model/statistics.h"
+#include "calib/model/text.h"
+
+namespace rgbdt {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr double kDegrees = 180 / M_PI;
+constexpr double kStandsStill = 1e-4;  // [rad/s] and less: no motor
+constexpr double kLooksLate = 2;       // sigmas, from which on it is tried
+constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
+constexpr double kSettled = 0.5;       // sigmas that may be left
+constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
+constexpr std::size_t kLeastEachWay = 2;
+constexpr int kMostTries = 4;
+
+// Of those that turn one way and those that turn the other, how many the fewer are.
+std::size_t FewerWay(const std::vector<BoardView>& views) {
+  const auto forward = static_cast<std::size_t>(std::count_if(
+      views.begin(), views.end(), [](const BoardView& view) { return view.cloud.turn_rad_s > 0; }));
+  return std::min(forward, views.size() - forward);
+}
+
+double MeanRate(const std::vector<BoardView>& views) {
+  double sum = 0;
+  for (const BoardView& view : views) sum += std::abs(view.cloud.turn_rad_s);
+  return views.empty() ? 0 : sum / static_cast<double>(views.size());
+}
+
+// All cameras' poses as they change when a view's cloud turns about the LIDAR's z.
+Eigen::VectorXd Direction(const BoardState& state, Index size, double turn) {
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(size);
+  for (std::size_t c = 0; c < state.camera_from_lidar.size(); ++c) {
+    w.segment<6>(SharedPlaces::Pose(c)) = turn * Adjoint(state.camera_from_lidar[c]).col(2);
+  }
+  return w;
+}
+
+CloudEdges Turned(const CloudEdges& cloud, double angle) {
+  const Rigid3 by = RotationAbout(Eigen::Vector3d::UnitZ(), angle);
+  const Eigen::Matrix3d r = by.rotation.toRotationMatrix();
+  Eigen::Matrix4d about_centre = Eigen::Matrix4d::Identity();
+  about_centre.topLeftCorner<3, 3>() = r;
+  const auto turn_scatter = [&](Eigen::Matrix4d* scatter) {
+    *scatter = about_centre * *scatter * about_centre.transpose();
+  };
+  CloudEdges out = cloud;
+  for (Eigen::Vector3d& point : out.boundary) point = by * point;
+  for (Eigen::Vector3d& corner : out.corners) corner = by * corner;
+  for (Crossing& crossing : out.crossings) crossing.point = by * crossing.point;
+  out.centre = by * out.centre;
+  out.normal = r * out.normal;
+  if (out.pose) {
+    out.pose->sensor_from_target = by * out.pose->sensor_from_target;
+    const Matrix6d adjoint = Adjoint(by);
+    out.pose->covariance = adjoint * out.pose->covariance * adjoint.transpose();
+  }
+  turn_scatter(&out.scatter);
+  turn_scatter(&out.raw_scatter);
+  for (PointGroup& group : out.groups) turn_scatter(&group.scatter);
+  return out;
+}
+
+// How a view's cloud turned, and the turn about the LIDAR's z by which the view alone has the
+// camera beside the guess.
+struct Beside {
+  double turn_rad_s = 0;
+  double turned_rad = 0;
+};
+
+// Of the candidate that fits the guess best. Also of views that are too far beside it to be used.
+std::optional<Beside> BesideGuess(const CameraView& view, const Rigid3& camera_from_lidar) {
+  if (view.image == nullptr || !view.image->pose) return std::nullopt;
+  const Rigid3 seen = camera_from_lidar.Inverse() * view.image->pose->sensor_from_target;
+  std::optional<Beside> best;
+  double least = kMostTurned;
+  for (const CloudEdges* candidate : view.candidates) {
+    if (!candidate->pose || std::abs(candidate->turn_rad_s) < kStandsStill) continue;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Rigid3 meant = candidate->pose->sensor_from_target * QuarterTurns(quarter);
+      const Rigid3 beside = seen * meant.Inverse();
+      const double turned = RotationDistance(beside, {});
+      if (turned > least) continue;
+      least = turned;
+      best = {candidate->turn_rad_s, Log(beside)[2]};
+    }
+  }
+  return best;
+}
+
+// Median, and by how much it is uncertain.
+Estimate RobustMean(std::vector<double> values) {
+  const double middle = Median(values);
+  const auto count = static_cast<double>(values.size());
+  for (double& value : values) value = std::abs(value - middle);
+  return {middle, 1.4826 * 1.2533 * Median(std::move(values)) / std::sqrt(count)};
+}
+
+std::string CannotTell(const EncoderDelay& delay) {
+  return Format(
+      "All sweeps turned the same way: an encoder that is stamped 10 ms late turns the result by "
+      "%.2f deg, and nothing here shows it (1 sigma counts %.0f ms). Take half of the views with "
+      "the motor turning the other way.",
+      0.01 * kDegrees * delay.turn_rad_s, 1000 * kEncoderDelaySigmaS);
+}
+
+// The result that `delay` was found in has all of it taken off.
+Cause CauseOf(const EncoderDelay& delay, const CameraCalibration& camera) {
+  const double seconds = delay.seconds.value;
+  const double turn = seconds * delay.turn_rad_s;
+  const char* which = seconds > 0 ? "late" : "early";
+  Cause cause{
+      "encoder's delay",
+      Format("the motor's encoder is stamped %.1f +- %.1f ms %s: clouds of sweeps that turn "
+             "one way lie %.2f deg beside those of the other way. This result has it taken "
+             "off, clouds as the rig file has them assembled do not: put encoder_delay_s: "
+             "%.4f into its turned_scanner, and take the session again",
+             1000 * std::abs(seconds), 1000 * delay.seconds.sigma, which,
+             2 * kDegrees * std::abs(turn), seconds),
+      std::pow(seconds / delay.seconds.sigma, 2), 1, std::nullopt};
+  if (camera.covariance) {
+    const Vector6d move = turn * Adjoint(camera.camera_from_lidar).col(2);
+    cause.moves_sigma = std::sqrt(move.dot(SolveSymmetric(*camera.covariance, move)));
+  }
+  return cause;
+}
+
+// One view alone may be off for a reason of its own.
+bool LooksLate(const EncoderDelay& delay) {
+  if (!delay.IsTold() || delay.views_of_fewer_way < kLeastEachWay) return false;
+  const double size = std::abs(delay.seconds.value);
+  return size > kLooksLate * delay.seconds.sigma || size > kGivenWrongSigmas * delay.stated_sigma_s;
+}
+
+CalibratedCameras Told(CalibratedCameras calibrated, double taken_off_s) {
+  if (!calibrated.encoder_delay) return calibrated;
+  EncoderDelay delay = *calibrated.encoder_delay;
+  delay.seconds.value += taken_off_s;
+  for (CameraViews& camera : calibrated.cameras) {
+    CameraReport& report = camera.report;
+    if (!report.calibration.solved()) continue;
+    if (!delay.IsTold()) {
+      report.cannot_tell = CannotTell(delay);
+      continue;
+    }
+    report.nuisance.push_back(
+        {"encoder's delay", "ms", {1000 * delay.seconds.value, 1000 * delay.seconds.sigma}});
+    if (taken_off_s == 0) continue;
+    report.causes.insert(report.causes.begin(), CauseOf(delay, report.calibration));
+  }
+  return calibrated;
+}
+
+}  // namespace
+
+std::optional<EncoderDelay> EncoderDelayOf(const JointResult& result) {
+  const BoardProblem& problem = result.joint.problem;
+  const BoardSolution& solution = result.solution;
+  EncoderDelay delay;
+  delay.turn_rad_s = MeanRate(problem.views);
+  delay.views_of_fewer_way = FewerWay(problem.views);
+  if (delay.turn_rad_s < kStandsStill) return std::nullopt;
+  const ViewInformation priors = PriorInformation(problem, solution.state);
+  const Index size = solution.covariance.rows();
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);  // the views' information along W
+  Eigen::VectorXd gradient = priors.gradient;
+  double information = 0, score = 0;
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    const ViewInformation& view = solution.views[v];
+    gradient += view.gradient;
+    const Eigen::VectorXd w = Direction(solution.state, size, problem.views[v].cloud.turn_rad_s);
+    const Eigen::VectorXd of_view = view.information * w;
+    all += of_view;
+    information += w.dot(of_view);
+    score += w.dot(view.gradient);
+  }
+  const Eigen::VectorXd move = solution.covariance * all;
+  information -= all.dot(move);
+  score -= move.dot(gradient);
+  const double variance = information > 0 ? result.variance_factor / information : HUGE_VAL;
+  delay.seconds = {score / information, std::sqrt(variance)};
+  delay.stated_sigma_s = std::sqrt(variance / result.variance_factor);
+  const double known = 1 / (1 / variance + 1 / (kEncoderDelaySigmaS * kEncoderDelaySigmaS));
+  delay.pose_move = std::sqrt(known) * move;
+  return delay;
+}
+
+std::optional<Estimate> RoughEncoderDelay(const std::vector<GuessedCamera>& cameras) {
+  // One way, and the other.
+  std::array<std::vector<double>, 2> turned;
+  std::array<std::set<std::string>, 2> views;
+  std::array<double, 2> rate{};
+  for (const GuessedCamera& camera : cameras) {
+    if (!camera.guess.camera_from_lidar) continue;
+    for (const CameraView& view : camera.views.all) {
+      const auto beside = BesideGuess(view, *camera.guess.camera_from_lidar);
+      if (!beside) continue;
+      const std::size_t way = beside->turn_rad_s > 0 ? 0 : 1;
+      turned[way].push_back(beside->turned_rad);
+      views[way].insert(view.view);
+      rate[way] += beside->turn_rad_s;
+    }
+  }
+  if (std::min(views[0].size(), views[1].size()) < kLeastEachWay) return std::nullopt;
+  for (std::size_t way = 0; way < 2; ++way) rate[way] /= static_cast<double>(turned[way].size());
+  const Estimate one = RobustMean(std::move(turned[0])), other = RobustMean(std::move(turned[1]));
+  const double apart = rate[0] - rate[1];
+  return Estimate{(one.value - other.value) / apart, std::hypot(one.sigma, other.sigma) / apart};
+}
+
+CameraViews WithoutEncoderDelay(CameraViews camera, double delay_s) {
+  if (delay_s == 0) return camera;
+  for (CameraView& view : camera.all) {
+    for (const CloudEdges*& candidate : view.candidates) {
+      auto turned =
+          std::make_shared<CloudEdges>(Turned(*candidate, delay_s * candidate->turn_rad_s));
+      candidate = turned.get();
+      camera.turned_clouds.push_back(std::move(turned));
+    }
+    if (view.cloud) view.cloud = Turned(*view.cloud, delay_s * view.cloud->turn_rad_s);
+  }
+  return camera;
+}
+
+CalibratedCameras CalibrateWithoutEncoderDelay(
+    const std::function<CalibratedCameras(double delay_s)>& calibrate) {
+  CalibratedCameras as_they_are = calibrate(0);
+  const std::optional<Estimate> rough = as_they_are.rough_encoder_delay;
+  const auto& first = as_they_are.encoder_delay;
+  double next = 0;
+  if (rough && std::abs(rough->value) > kRoughlyLate * rough->sigma) {
+    next = rough->value;
+  } else if (first && LooksLate(*first)) {
+    next = first->seconds.value;
+  }
+  if (next == 0) return Told(std::move(as_they_are), 0);
+  double taken_off = 0;
+  CalibratedCameras found;
+  for (int i = 0; i < kMostTries; ++i) {
+    taken_off += next;
+    found = calibrate(taken_off);
+    const auto& left = found.encoder_delay;
+    if (!left || !left->IsTold()) return Told(std::move(as_they_are), 0);
+    next = left->seconds.value;
+    if (std::abs(next) < kSettled * left->seconds.sigma) break;
+  }
+  const Estimate& left = found.encoder_delay->seconds;
+  const bool sure = std::abs(taken_off + left.value) > kGivenWrongSigmas * left.sigma;
+  return sure ? Told(std::move(found), taken_off) : Told(std::move(as_they_are), 0);
+}
+
+}  // namespace rgbdt
