@@ -17,7 +17,7 @@ CLOUDS = {
 }
 # By how much the encoder of a turned scanner is stamped late [s], and how fast the motor turns
 # [rad/s]: the other way in every other view.
-LATE = {"encoder 200 ms late": 0.2, "encoder 20 ms late": 0.02, "sweeps one way": 0.0}
+LATE = {"encoder 200 ms late": 0.2, "sweeps one way": 0.0}
 TURN = np.radians(5)
 VECTORS = [("x", "y"), ("dir_x", "dir_y"), ("origin_x", "origin_y")]
 NUMBERS = r"\[([^]]*)\]"

@@ -158,6 +158,7 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
   JudgeStatus(camera, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
   JudgeResiduals(camera, &judgement);
+  if (!camera.cannot_tell.empty()) judgement.Usable(camera.cannot_tell);
   if (const auto* at = JudgedColouring(camera)) JudgeColouring(*at, &judgement);
   JudgeStarts(camera, &judgement);
   if (camera.used.size() < kFewViews) {
@@ -169,7 +170,6 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
         "How exact the result is cannot be told by this method; --method auto tells "
         "it.");
   }
-  if (!camera.cannot_tell.empty()) judgement.Usable(camera.cannot_tell);
   JudgeCauses(camera, &judgement);
   if (camera.truth_error) {
     judgement.AddReason("The truth is known here: the result is " +

@@ -110,25 +110,26 @@ Estimate RobustMean(std::vector<double> values) {
 
 std::string CannotTell(const EncoderDelay& delay) {
   return Format(
-      "All sweeps turned the same way: an encoder that is stamped 10 ms late turns the result by "
+      "%s sweeps turned the same way: an encoder that is stamped 10 ms late turns the result by "
       "%.2f deg, and nothing here shows it (1 sigma counts %.0f ms). Take half of the views with "
       "the motor turning the other way.",
-      0.01 * kDegrees * delay.turn_rad_s, 1000 * kEncoderDelaySigmaS);
+      delay.views_of_fewer_way == 0 ? "All" : "Nearly all", 0.01 * kDegrees * delay.turn_rad_s,
+      1000 * kEncoderDelaySigmaS);
 }
 
-// The result that `delay` was found in has all of it taken off.
+// Of the result, which has it taken off: how far clouds lie beside it that have not.
 Cause CauseOf(const EncoderDelay& delay, const CameraCalibration& camera) {
   const double seconds = delay.seconds.value;
   const double turn = seconds * delay.turn_rad_s;
   const char* which = seconds > 0 ? "late" : "early";
   Cause cause{
       "encoder's delay",
-      Format("the motor's encoder is stamped %.1f +- %.1f ms %s: clouds of sweeps that turn "
-             "one way lie %.2f deg beside those of the other way. This result has it taken "
-             "off, clouds as the rig file has them assembled do not: put encoder_delay_s: "
-             "%.4f into its turned_scanner, and take the session again",
-             1000 * std::abs(seconds), 1000 * delay.seconds.sigma, which,
-             2 * kDegrees * std::abs(turn), seconds),
+      Format(
+          "the motor's encoder is stamped %.1f +- %.1f ms %s: clouds of sweeps that turn one way "
+          "lie %.2f deg beside those of the other way. Put encoder_delay_s: %.4f into the rig "
+          "file's turned_scanner, and take the session again",
+          1000 * std::abs(seconds), 1000 * delay.seconds.sigma, which,
+          2 * kDegrees * std::abs(turn), seconds),
       std::pow(seconds / delay.seconds.sigma, 2), 1, std::nullopt};
   if (camera.covariance) {
     const Vector6d move = turn * Adjoint(camera.camera_from_lidar).col(2);

@@ -31,7 +31,7 @@ const Fingerprint kFingerprints[] = {
     Of<board_crossing_t>(0x5e8f49c77d39f5f6U),
     Of<calibration_t>(0x2b248f720462250dU),
     Of<camera_timing_t>(0x2a5d71714d4cc17bU),
-    Of<cloud_board_t>(0x27f78ca1ee6b2385U),
+    Of<cloud_board_t>(0x67f4e17f2914bb3dU),
     Of<cloud_t>(0x125e8ff78f44efb8U),
     Of<corner_selection_t>(0x02f689fdcac537a0U),
     Of<encoder_t>(0x7aad6668dd2e9ec1U),
@@ -55,7 +55,7 @@ const Fingerprint kFingerprints[] = {
     Of<status_t>(0xcc7326579c48e529U),
     Of<target_pose_t>(0x9d6616d77af99f13U),
     Of<target_status_t>(0x283a34272dbe5254U),
-    Of<view_detection_t>(0x49e687e468cb04eeU),
+    Of<view_detection_t>(0xc9e1319ede1e345eU),
 };
 
 TEST(Fingerprint, IsWhatItWas) {

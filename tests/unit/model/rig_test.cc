@@ -89,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
             [](Rig* r) { r->lidar.turned_scanner->ticks_per_rad = 0; }},
         Bad{"zero_ticks", "zero_ticks", "nan",
             [](Rig* r) { r->lidar.turned_scanner->zero_ticks = kNotANumber; }},
+        Bad{"encoder_delay", "encoder_delay_s", "200.0",
+            [](Rig* r) { r->lidar.turned_scanner->encoder_delay_s = 200; }},
         Bad{"motor_from_scanner", "motor_from_scanner", "not a pose",
             [](Rig* r) {
               r->lidar.turned_scanner->motor_from_scanner.translation.z() = kNotANumber;

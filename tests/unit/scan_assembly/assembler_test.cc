@@ -135,6 +135,23 @@ class AssemblerTest : public ::testing::Test {
   std::vector<std::string> problems_;
 };
 
+TEST(Assembler, AnEncodersDelayThatTheRigHasIsTakenOffBitForBit) {
+  for (const Utime late : {30 * kMs, -20 * kMs}) {
+    Inputs inputs = SweepInOrder();
+    for (Input& input : inputs) {
+      if (auto* reading = std::get_if<EncoderReading>(&input)) reading->utime += late;
+    }
+    TurnedScanner scanner = MakeScanner();
+    Assembler as_stamped(scanner);
+    scanner.encoder_delay_s = ToSeconds(late);
+    Assembler on_time(scanner);
+    Assembler right(MakeScanner());
+    const auto expected = BytesOfAll(AddAll(&right, SweepInOrder()));
+    EXPECT_EQ(BytesOfAll(AddAll(&on_time, inputs)), expected);
+    EXPECT_NE(BytesOfAll(AddAll(&as_stamped, inputs)), expected);
+  }
+}
+
 TEST_F(AssemblerTest, ASweepIsItsLinesAndAnEnd) {
   const auto chunks = Feed(SweepInOrder());
   ASSERT_EQ(chunks.size(), kLines + 1U);

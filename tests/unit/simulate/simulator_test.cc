@@ -108,6 +108,20 @@ TEST(Simulator, EncoderReadsWholeTicksOfTheSweep) {
   EXPECT_EQ(simulator.Encoder(kStart + 1, kStart).sweep_utime, kStart);
 }
 
+TEST(Simulator, EveryOtherViewIsSweptBack) {
+  Options options = SmallOptions();
+  options.scanner.encoder_delay_s = 0.2;
+  Simulator simulator(SmallOptions()), late(options);
+  const auto zero = std::llround(simulator.rig().lidar.turned_scanner->zero_ticks);
+  for (Simulator* each : {&simulator, &late}) each->ShowView(1, "0002");
+  EXPECT_EQ(simulator.Encoder(kStart, kStart).ticks, zero + 42000);
+  EXPECT_EQ(simulator.Encoder(kStart + 3000000, kStart).ticks, zero + 21000);
+  EXPECT_EQ(simulator.Encoder(kStart + 12000000, kStart).ticks, zero - 42000);
+  // What it reads, it was at 0.2 s ago.
+  EXPECT_EQ(late.Encoder(kStart + 3200000, kStart).ticks, zero + 21000);
+  EXPECT_TRUE(SameBits(late.Line(kStart, 150).range, simulator.Line(kStart, 150).range));
+}
+
 /// Every range on the board, put into the target's frame with the truth, lies in its plane.
 TEST(Simulator, CloudLiesOnTheBoard) {
   Simulator simulator(SmallOptions());

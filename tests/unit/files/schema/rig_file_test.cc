@@ -145,7 +145,8 @@ TEST(RigFile, GivesBackHowWellALensIsKnown) {
 }
 
 TEST(RigFile, GivesBackEveryFieldBitForBit) {
-  const Rig rig = test::MakeRig();
+  Rig rig = test::MakeRig();
+  rig.lidar.turned_scanner->encoder_delay_s = 0.0123;
   const Rig back = ParseRig(PrintRig(rig), "printed");
   EXPECT_EQ(back.name, rig.name);
   EXPECT_EQ(back.lidar.name, rig.lidar.name);
@@ -156,6 +157,7 @@ TEST(RigFile, GivesBackEveryFieldBitForBit) {
                    rig.lidar.turned_scanner->motor_from_scanner);
   EXPECT_EQ(back.lidar.turned_scanner->ticks_per_rad, rig.lidar.turned_scanner->ticks_per_rad);
   EXPECT_EQ(back.lidar.turned_scanner->zero_ticks, rig.lidar.turned_scanner->zero_ticks);
+  EXPECT_EQ(back.lidar.turned_scanner->encoder_delay_s, 0.0123);
   ASSERT_EQ(back.cameras.size(), rig.cameras.size());
   for (std::size_t i = 0; i < rig.cameras.size(); ++i) {
     const CameraSpec& a = rig.cameras[i];
