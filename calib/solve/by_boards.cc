@@ -295,10 +295,8 @@ CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptio
                                       std::vector<CameraViews> cameras,
                                       std::vector<LidarViews> lidars) {
   return CalibrateWithoutEncoderDelay([&](double delay_s) {
-    std::vector<CameraViews> turned;
-    for (const CameraViews& camera : cameras) {
-      turned.push_back(WithoutEncoderDelay(camera, delay_s));
-    }
+    std::vector<CameraViews> turned = cameras;
+    for (CameraViews& camera : turned) camera = WithoutEncoderDelay(std::move(camera), delay_s);
     return CalibrateAsTheyAre(target, options, std::move(turned), lidars);
   });
 }

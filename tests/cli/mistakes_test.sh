@@ -39,7 +39,7 @@ names "squares 5% too large" 1 "rgb: Do not use it" "square_m, width_m and heigh
 accepts "a session of a turned scanner" "$bin/rgbdt" simulate "$scratch/turned" --views 8
 session=turned
 names "encoder 200 ms late" 1 "rgb: Do not use it. Likeliest cause: the motor's encoder is stamped" \
-  " ms late" "Put encoder_delay_s: 0.2" "thermal: Do not use it. Likeliest cause: the motor's encoder"
+  " ms late" "Add 0.2" " to encoder_delay_s of the rig file" "thermal: Do not use it. Likeliest cause: the motor's encoder"
 names "sweeps one way" 0 "rgb: Usable" "All sweeps turned the same way"
 
 verdict

@@ -110,11 +110,12 @@ Estimate RobustMean(std::vector<double> values) {
 
 std::string CannotTell(const EncoderDelay& delay) {
   return Format(
-      "%s sweeps turned the same way: an encoder that is stamped 10 ms late turns the result by "
+      "%s: an encoder that is stamped 10 ms late turns the result by "
       "%.2f deg, and nothing here shows it (1 sigma counts %.0f ms). Take half of the views with "
       "the motor turning the other way.",
-      delay.views_of_fewer_way == 0 ? "All" : "Nearly all", 0.01 * kDegrees * delay.turn_rad_s,
-      1000 * kEncoderDelaySigmaS);
+      delay.views_of_fewer_way == 0 ? "All sweeps turned the same way"
+                                    : "Too few sweeps turned the other way",
+      0.01 * kDegrees * delay.turn_rad_s, 1000 * kEncoderDelaySigmaS);
 }
 
 // Of the result, which has it taken off: how far clouds lie beside it that have not.
@@ -126,8 +127,9 @@ Cause CauseOf(const EncoderDelay& delay, const CameraCalibration& camera) {
       "encoder's delay",
       Format(
           "the motor's encoder is stamped %.1f +- %.1f ms %s: clouds of sweeps that turn one way "
-          "lie %.2f deg beside those of the other way. Put encoder_delay_s: %.4f into the rig "
-          "file's turned_scanner, and take the session again",
+          "lie %.2f deg beside those of the other way. Add %.4f to encoder_delay_s of the rig "
+          "file's "
+          "turned_scanner (it is 0 where left out), and take the session again",
           1000 * std::abs(seconds), 1000 * delay.seconds.sigma, which,
           2 * kDegrees * std::abs(turn), seconds),
       std::pow(seconds / delay.seconds.sigma, 2), 1, std::nullopt};

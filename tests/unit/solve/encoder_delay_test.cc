@@ -52,7 +52,7 @@ TEST(EncoderDelay, IsFoundTakenOffAndNamedWhereSweepsTurnBothWays) {
       EXPECT_LT(DegreesOff(camera, world.camera_from_lidar[c]), 0.1) << delay_s;
       EXPECT_GT(camera.causes[0].Sigmas(), kGivenWrongSigmas);
       EXPECT_GT(camera.causes[0].moves_sigma.value_or(0), 4);
-      EXPECT_THAT(camera.causes[0].words, HasSubstr("Put encoder_delay_s: "));
+      EXPECT_THAT(camera.causes[0].words, HasSubstr(" to encoder_delay_s of "));
     }
   }
 }
