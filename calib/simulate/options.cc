@@ -27,6 +27,7 @@ void Check(const ScannerOptions& o) {
                  o.ticks_per_rad, "a number other than zero");
   kCheck.Require(std::isfinite(o.zero_ticks), "scanner.zero_ticks", o.zero_ticks,
                  "a finite number");
+  kCheck.Between(o.encoder_delay_s, -1, 1, "scanner.encoder_delay_s");
   kCheck.Require(o.lever_arm_m.norm() < 1, "length of scanner.lever_arm_m", o.lever_arm_m.norm(),
                  "less than 1");
   kCheck.Require(o.tilt_rad.norm() < 0.5, "length of scanner.tilt_rad", o.tilt_rad.norm(),

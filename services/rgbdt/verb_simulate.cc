@@ -29,11 +29,15 @@ struct SimulateFlags {
 
 // Of the turned scanner: how far it turns, and how wrong the rig file is about where it sits.
 void SetScanner(const SimulateFlags& flags, simulate::Options* options) {
-  if ((flags.full_turn || flags.scanner_error) && flags.rings != 0) {
+  const bool of_scanner =
+      flags.full_turn || flags.scanner_error || flags.options.scanner.encoder_delay_s != 0;
+  if (of_scanner && flags.rings != 0) {
     throw UsageError(
-        "--full-turn and --scanner-error are of the turned scanner; leave --lidar out");
+        "--full-turn, --scanner-error and --encoder-delay are of the turned scanner; leave --lidar "
+        "out");
   }
   if (flags.full_turn) options->scanner = simulate::FullTurnScanner();
+  options->scanner.encoder_delay_s = flags.options.scanner.encoder_delay_s;
   if (!flags.scanner_error) return;
   options->scanner.guess_lever_m = {0.005, -0.005, 0.005};
   options->scanner.guess_tilt_rad = Eigen::Vector3d(0.5, 0.5, -0.5) * simulate::kDegree;
@@ -160,6 +164,8 @@ void AddSimulate(CommandLine* program) {
   verb->Flag("--scanner-error", &flags->scanner_error,
              "the rig file's motor_from_scanner is wrong by 5 mm and 0.5 degrees on each axis, "
              "and the clouds are made with it");
+  verb->Option("--encoder-delay", &flags->options.scanner.encoder_delay_s,
+               "the motor's encoder is stamped so many seconds late");
   verb->Flag("--imperfect", &flags->imperfect,
              "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
              "ring, of dark surfaces), where beams meet, how wide they are");

@@ -8,12 +8,18 @@ here=$(dirname "${BASH_SOURCE[0]}")
 
 accepts "a session" "$bin/rgbdt" simulate "$scratch/right" --views 8 --lidar 32
 
-session=right
 # names MISTAKE EXIT_CODE WORDS...: all in the lines that `rgbdt calibrate` prints of this mistake.
 names() {
+  local what=$1 expected=$2
+  shift 2
+  /usr/bin/python3 -B "$here/spoil.py" "$scratch/right" "$scratch/$what" "$what"
+  says_of "$what" "$expected" "$@"
+}
+
+# says_of SESSION EXIT_CODE WORDS...
+says_of() {
   local what=$1 expected=$2 word
   shift 2
-  /usr/bin/python3 -B "$here/spoil.py" "$scratch/$session" "$scratch/$what" "$what"
   ends_with "$expected" "$what" "$bin/rgbdt" calibrate "$scratch/$what"
   for word in "$@"; do
     grep -qF -- "$word" "$scratch/output" || complain "$what: no word of '$word'"
@@ -36,10 +42,13 @@ names "focal length 10% too long" 0 \
 names "squares 5% too large" 1 "rgb: Do not use it" "square_m, width_m and height_m" \
   "thermal: Do not use it. Likeliest cause: the squares are" "smaller than given"
 
-accepts "a session of a turned scanner" "$bin/rgbdt" simulate "$scratch/turned" --views 8
-session=turned
-names "encoder 200 ms late" 1 "rgb: Do not use it. Likeliest cause: the motor's encoder is stamped" \
-  " ms late" "Add 0.2" " to encoder_delay_s of the rig file" "thermal: Do not use it. Likeliest cause: the motor's encoder"
-names "sweeps one way" 0 "rgb: Usable" "All sweeps turned the same way"
+# Its sweeps turn one way and the other in turn.
+accepts "a late encoder" "$bin/rgbdt" simulate "$scratch/late" --views 8 --encoder-delay 0.2
+mkdir -p "$scratch/one way/views"
+cp "$scratch/late/rig.textproto" "$scratch/one way"
+cp -r "$scratch"/late/views/000[1357] "$scratch/one way/views"
+says_of late 4 "rgb: Do not use it. Likeliest cause: the motor's encoder is stamped " " ms late" \
+  "Add 0.2" " to encoder_delay_s of the rig file" "thermal: Do not use it. Likeliest cause: the motor's"
+says_of "one way" 0 "rgb: Usable" "All sweeps turned the same way"
 
 verdict

@@ -15,25 +15,15 @@ CLOUDS = {
     "cloud in camera axes": lambda p: np.stack([-p[:, 1], -p[:, 2], p[:, 0]], 1),
     "cloud mirrored": lambda p: p * [1, -1, 1],
 }
-# By how much the encoder of a turned scanner is stamped late [s], and how fast the motor turns
-# [rad/s]: the other way in every other view.
-LATE = {"encoder 200 ms late": 0.2, "sweeps one way": 0.0}
-TURN = np.radians(5)
-VECTORS = [("x", "y"), ("dir_x", "dir_y"), ("origin_x", "origin_y")]
 NUMBERS = r"\[([^]]*)\]"
 
 
-def read_pcd(path):
-    """Its header, and its points."""
+def read_cloud(path):
     data = path.read_bytes()
     body = data.index(b"\n", data.index(b"DATA binary")) + 1
     head = dict(line.split(" ", 1) for line in data[:body].decode().splitlines() if line[0] != "#")
     kinds = [TYPES[t + s] for t, s in zip(head["TYPE"].split(), head["SIZE"].split())]
-    return data[:body], np.frombuffer(data[body:], list(zip(head["FIELDS"].split(), kinds)))
-
-
-def read_cloud(path):
-    points = read_pcd(path)[1]
+    points = np.frombuffer(data[body:], list(zip(head["FIELDS"].split(), kinds)))
     return points[np.isfinite(points["x"])]
 
 
@@ -47,17 +37,6 @@ def write_cloud(path, points, xyz):
     path.write_bytes(b"VERSION 0.7\nFIELDS x y z intensity ring\nSIZE 4 4 4 4 2\nTYPE F F F F U\n"
                      b"COUNT 1 1 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS %d\n"
                      b"DATA binary\n" % (len(points), len(points)) + out.tobytes())
-
-
-def write_turned(path, original, angle):
-    """All of a turned scanner's cloud, turned about the LIDAR's z."""
-    header, points = read_pcd(original)
-    points = points.copy()
-    for x, y in VECTORS:
-        along, across = points[x].astype(float), points[y].astype(float)
-        points[x] = np.cos(angle) * along - np.sin(angle) * across
-        points[y] = np.sin(angle) * along + np.cos(angle) * across
-    path.write_bytes(header + points.tobytes())
 
 
 def inverted(text):
@@ -112,19 +91,13 @@ def spoil(session, out, mistake):
     (out / "rig.textproto").write_text(RIGS.get(mistake, lambda text: text)(rig))
     apart = 1 if mistake == "clouds of the next view" else 0
     for i, name in enumerate(views):
-        if mistake == "sweeps one way" and i % 2:
-            continue
         own, cloud_of = session / "views" / name, session / "views" / views[(i + apart) % len(views)]
         view = out / "views" / name
         view.mkdir(parents=True)
         (view / "view.textproto").write_text((own / "view.textproto").read_text())
-        if mistake in LATE:
-            turn = -TURN if i % 2 else TURN
-            write_turned(view / "cloud.pcd", own / "cloud.pcd", -turn * LATE[mistake])
-        else:
-            points = read_cloud(cloud_of / "cloud.pcd")
-            xyz = np.stack([points[axis] for axis in "xyz"], 1).astype(float)
-            write_cloud(view / "cloud.pcd", points, CLOUDS.get(mistake, lambda p: p)(xyz))
+        points = read_cloud(cloud_of / "cloud.pcd")
+        xyz = np.stack([points[axis] for axis in "xyz"], 1).astype(float)
+        write_cloud(view / "cloud.pcd", points, CLOUDS.get(mistake, lambda p: p)(xyz))
         for image in own.glob("*.png"):
             picture = Image.open(image)
             if mistake == "images mirrored":
