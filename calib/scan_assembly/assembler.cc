@@ -69,7 +69,7 @@ Utime Assembler::SweepOf(const LineScan& line) const {
   const Utime sweep = track_.SweepAt(line.utime);
   if (sweep != 0) return sweep;
   const Utime next = track_.SweepAt(EndOf(line));
-  return next <= line.utime ? next : 0;
+  return StartOf(next) <= line.utime ? next : 0;
 }
 
 bool Assembler::IsReady(const LineScan& line) const {
@@ -93,9 +93,9 @@ std::int64_t Assembler::LinesLostBefore(const LineScan& first, Utime sweep_utime
                                         const std::optional<Place>& before) const {
   constexpr double kJitter = 0.1;  // of a line's time, in periods
   const double periods =
-      static_cast<double>(first.utime - sweep_utime) / LinePeriodAt(first, before);
+      static_cast<double>(first.utime - StartOf(sweep_utime)) / LinePeriodAt(first, before);
   const auto fit = static_cast<std::int64_t>(std::floor(periods + kJitter));
-  const bool counted = before && before->utime < sweep_utime && before->seq < first.seq;
+  const bool counted = before && before->utime < StartOf(sweep_utime) && before->seq < first.seq;
   return std::max<std::int64_t>(0, counted ? std::min(fit, first.seq - before->seq - 1) : fit);
 }
 

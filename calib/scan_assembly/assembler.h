@@ -74,6 +74,8 @@ class Assembler {
   void CheckLine(const LineScan& line) const;
   bool FitsSweep(const LineScan& line) const;
   Utime SweepOf(const LineScan& line) const;
+  /// When the sweep of this name began: names are as stamped.
+  Utime StartOf(Utime sweep) const { return sweep - FromSeconds(scanner_.encoder_delay_s); }
   bool IsReady(const LineScan& line) const;
   bool FollowsAllBefore(const LineScan& line) const;
   std::int64_t LinesLostBefore(const LineScan& first, Utime sweep_utime,

@@ -91,9 +91,13 @@ std::vector<MountChange> ChangesOf(const JointResult& result) {
     if (first == c) continue;
     const CameraViews& from = result.joint.cameras[first].views;
     const CameraViews& to = result.joint.cameras[c].views;
-    const Matrix6d together =
-        result.variance_factor *
-        result.solution.covariance.block<6, 6>(SharedPlaces::Pose(c), SharedPlaces::Pose(first));
+    const auto at = SharedPlaces::Pose(c), at_first = SharedPlaces::Pose(first);
+    Matrix6d together =
+        result.variance_factor * result.solution.covariance.block<6, 6>(at, at_first);
+    if (result.encoder_delay) {
+      const Eigen::VectorXd& move = result.encoder_delay->unknown_move;
+      together += move.segment<6>(at) * move.segment<6>(at_first).transpose();
+    }
     changes.push_back(
         {first, c, Compare(from.report.calibration, to.report.calibration, to.spec, together)});
   }

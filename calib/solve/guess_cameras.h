@@ -19,23 +19,23 @@ struct MountChange {
   PoseComparison moved;          ///< by the covariance that the two have together
 };
 
-/// How late a turned scanner's encoder may be stamped where nothing tells (1 sigma): motors and
-/// scanners are stamped as they are heard, and a serial adapter of USB holds bytes for up to 16 ms.
-inline constexpr double kEncoderDelaySigmaS = 0.005;
-
 /// How late a turned scanner's encoder is stamped, as views have it.
 struct EncoderDelay {
   Estimate seconds;                    ///< the variance factor counted in
   double stated_sigma_s = 0;           ///< without it
+  double known_sigma_s = 0;            ///< how late an encoder may be where nothing tells
   double turn_rad_s = 0;               ///< how fast the motor turned, mean over the views
+  bool all_clouds_tell = true;         ///< which way it turned
   std::size_t views_of_fewer_way = 0;  ///< in which it turned the way that is the rarer
-  /// How far all shared unknowns of the solve (SharedPlaces) move by 1 sigma of what is known of it
-  /// after all.
-  Eigen::VectorXd pose_move;
+  /// How far all shared unknowns of the solve (SharedPlaces) move by 1 sigma of what is not known
+  /// of it after all.
+  Eigen::VectorXd unknown_move;
 
-  /// Whether the views tell more of it than is known of any encoder. By what they state, as a delay
-  /// that is there makes them scatter.
-  bool IsTold() const { return stated_sigma_s < kEncoderDelaySigmaS; }
+  /// Whether the views can tell it at all. One view alone may be off for a reason of its own.
+  bool BothWays() const { return all_clouds_tell && views_of_fewer_way >= 2; }
+  /// Whether they tell more of it than is known of any encoder. By what they state, as a delay that
+  /// is there makes them scatter.
+  bool IsTold() const { return BothWays() && stated_sigma_s < known_sigma_s; }
 };
 
 /// What a method makes of the cameras' views: each one's report, and what they say together.

@@ -18,6 +18,12 @@ namespace {
 using Index = Eigen::Index;
 
 constexpr double kDegrees = 180 / M_PI;
+// How late an encoder may be stamped where nothing tells (1 sigma): motors and scanners are stamped
+// as they are heard, and a serial adapter of USB holds bytes for up to 16 ms. Motors that turn so
+// fast that this would be more than an angle are stamped better.
+constexpr double kUsualSigmaS = 0.005;
+constexpr double kMostCountedRad = 0.005;
+constexpr double kMostLateS = 1;       // as a rig file may have it
 constexpr double kStandsStill = 1e-4;  // [rad/s] and less: no motor
 constexpr double kLooksLate = 2;       // sigmas, from which on it is tried
 constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
@@ -26,25 +32,34 @@ constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
 constexpr std::size_t kLeastEachWay = 2;
 constexpr int kMostTries = 4;
 
-// Of those that turn one way and those that turn the other, how many the fewer are.
-std::size_t FewerWay(const std::vector<BoardView>& views) {
-  const auto forward = static_cast<std::size_t>(std::count_if(
-      views.begin(), views.end(), [](const BoardView& view) { return view.cloud.turn_rad_s > 0; }));
-  return std::min(forward, views.size() - forward);
+bool Turns(const BoardView& view) { return std::abs(view.cloud.turn_rad_s) > kStandsStill; }
+
+// How the motor turned; nothing where no cloud tells that it did.
+std::optional<EncoderDelay> RatesOf(const std::vector<BoardView>& views) {
+  std::size_t forward = 0, back = 0;
+  EncoderDelay delay;
+  for (const BoardView& view : views) {
+    if (!Turns(view)) continue;
+    ++(view.cloud.turn_rad_s > 0 ? forward : back);
+    delay.turn_rad_s += std::abs(view.cloud.turn_rad_s);
+  }
+  if (forward + back == 0) return std::nullopt;
+  delay.turn_rad_s /= static_cast<double>(forward + back);
+  delay.views_of_fewer_way = std::min(forward, back);
+  delay.all_clouds_tell = forward + back == views.size();
+  delay.known_sigma_s = std::min(kUsualSigmaS, kMostCountedRad / delay.turn_rad_s);
+  return delay;
 }
 
-double MeanRate(const std::vector<BoardView>& views) {
-  double sum = 0;
-  for (const BoardView& view : views) sum += std::abs(view.cloud.turn_rad_s);
-  return views.empty() ? 0 : sum / static_cast<double>(views.size());
-}
-
-// All cameras' poses as they change when a view's cloud turns about the LIDAR's z.
-Eigen::VectorXd Direction(const BoardState& state, Index size, double turn) {
-  Eigen::VectorXd w = Eigen::VectorXd::Zero(size);
+// All poses as they change when a view's cloud of the reference LIDAR turns about its z, by this
+// rate.
+Eigen::VectorXd Direction(const BoardProblem& problem, const BoardState& state, double turn) {
+  const SharedPlaces places(problem);
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(places.Count());
   for (std::size_t c = 0; c < state.camera_from_lidar.size(); ++c) {
     w.segment<6>(SharedPlaces::Pose(c)) = turn * Adjoint(state.camera_from_lidar[c]).col(2);
   }
+  for (std::size_t l = 0; l < problem.lidars.size(); ++l) w[places.LidarPose(l) + 2] = -turn;
   return w;
 }
 
@@ -109,13 +124,15 @@ Estimate RobustMean(std::vector<double> values) {
 }
 
 std::string CannotTell(const EncoderDelay& delay) {
+  const char* why = !delay.all_clouds_tell ? "Not all clouds tell which way the motor turned"
+                    : delay.views_of_fewer_way == 0 ? "All sweeps turned the same way"
+                    : !delay.BothWays()             ? "Too few sweeps turned the other way"
+                                                    : "Too little tells how late the encoder is";
   return Format(
-      "%s: an encoder that is stamped 10 ms late turns the result by "
-      "%.2f deg, and nothing here shows it (1 sigma counts %.0f ms). Take half of the views with "
-      "the motor turning the other way.",
-      delay.views_of_fewer_way == 0 ? "All sweeps turned the same way"
-                                    : "Too few sweeps turned the other way",
-      0.01 * kDegrees * delay.turn_rad_s, 1000 * kEncoderDelaySigmaS);
+      "%s: an encoder that is stamped 10 ms late turns the result by up to %.2f deg, and nothing "
+      "here shows it (1 sigma counts %.0f ms). Take views with the motor turning one way and the "
+      "other in turn.",
+      why, 0.01 * kDegrees * delay.turn_rad_s, 1000 * delay.known_sigma_s);
 }
 
 // Of the result, which has it taken off: how far clouds lie beside it that have not.
@@ -140,11 +157,31 @@ Cause CauseOf(const EncoderDelay& delay, const CameraCalibration& camera) {
   return cause;
 }
 
-// One view alone may be off for a reason of its own.
 bool LooksLate(const EncoderDelay& delay) {
-  if (!delay.IsTold() || delay.views_of_fewer_way < kLeastEachWay) return false;
   const double size = std::abs(delay.seconds.value);
-  return size > kLooksLate * delay.seconds.sigma || size > kGivenWrongSigmas * delay.stated_sigma_s;
+  return delay.BothWays() && (size > kLooksLate * delay.seconds.sigma ||
+                              size > kGivenWrongSigmas * delay.stated_sigma_s);
+}
+
+std::size_t ImagesUsed(const CalibratedCameras& calibrated) {
+  std::size_t used = 0;
+  for (const CameraViews& camera : calibrated.cameras) {
+    if (camera.report.calibration.solved()) used += camera.Used().size();
+  }
+  return used;
+}
+
+// Whether a delay is there beyond doubt, by what is left where `taken_off_s` of it is taken off,
+// and the result is no worse for it.
+bool IsSure(const CalibratedCameras& found, double taken_off_s,
+            const CalibratedCameras& as_they_are) {
+  const auto& left = found.encoder_delay;
+  if (!left || !left->BothWays()) return false;
+  const Estimate& seconds = left->seconds;
+  const double total = taken_off_s + seconds.value;
+  return std::abs(seconds.value) < kSettled * seconds.sigma &&
+         std::abs(total) > kGivenWrongSigmas * seconds.sigma && std::abs(total) <= kMostLateS &&
+         ImagesUsed(found) >= ImagesUsed(as_they_are);
 }
 
 CalibratedCameras Told(CalibratedCameras calibrated, double taken_off_s) {
@@ -154,7 +191,7 @@ CalibratedCameras Told(CalibratedCameras calibrated, double taken_off_s) {
   for (CameraViews& camera : calibrated.cameras) {
     CameraReport& report = camera.report;
     if (!report.calibration.solved()) continue;
-    if (!delay.IsTold()) {
+    if (taken_off_s == 0 && !delay.IsTold()) {
       report.cannot_tell = CannotTell(delay);
       continue;
     }
@@ -171,19 +208,20 @@ CalibratedCameras Told(CalibratedCameras calibrated, double taken_off_s) {
 std::optional<EncoderDelay> EncoderDelayOf(const JointResult& result) {
   const BoardProblem& problem = result.joint.problem;
   const BoardSolution& solution = result.solution;
-  EncoderDelay delay;
-  delay.turn_rad_s = MeanRate(problem.views);
-  delay.views_of_fewer_way = FewerWay(problem.views);
-  if (delay.turn_rad_s < kStandsStill) return std::nullopt;
-  const ViewInformation priors = PriorInformation(problem, solution.state);
-  const Index size = solution.covariance.rows();
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(size);  // the views' information along W
-  Eigen::VectorXd gradient = priors.gradient;
-  double information = 0, score = 0;
+  std::optional<EncoderDelay> delay = RatesOf(problem.views);
+  if (!delay) return std::nullopt;
+  Eigen::VectorXd gradient = PriorInformation(problem, solution.state).gradient;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(gradient.size());  // the views' information along W
+  double information = 0, score = 0, usual = 0;
+  for (const BoardView& view : problem.views) usual += view.cloud.turn_rad_s;
+  usual = std::copysign(delay->turn_rad_s, usual);
   for (std::size_t v = 0; v < problem.views.size(); ++v) {
     const ViewInformation& view = solution.views[v];
     gradient += view.gradient;
-    const Eigen::VectorXd w = Direction(solution.state, size, problem.views[v].cloud.turn_rad_s);
+    // Where a cloud does not tell, as most of the others: that moves the poses the most.
+    const bool turns = Turns(problem.views[v]);
+    const double turn = turns ? problem.views[v].cloud.turn_rad_s : usual;
+    const Eigen::VectorXd w = Direction(problem, solution.state, turn);
     const Eigen::VectorXd of_view = view.information * w;
     all += of_view;
     information += w.dot(of_view);
@@ -192,11 +230,14 @@ std::optional<EncoderDelay> EncoderDelayOf(const JointResult& result) {
   const Eigen::VectorXd move = solution.covariance * all;
   information -= all.dot(move);
   score -= move.dot(gradient);
-  const double variance = information > 0 ? result.variance_factor / information : HUGE_VAL;
-  delay.seconds = {score / information, std::sqrt(variance)};
-  delay.stated_sigma_s = std::sqrt(variance / result.variance_factor);
-  const double known = 1 / (1 / variance + 1 / (kEncoderDelaySigmaS * kEncoderDelaySigmaS));
-  delay.pose_move = std::sqrt(known) * move;
+  const bool any = information > 0;
+  const double variance = any ? result.variance_factor / information : HUGE_VAL;
+  delay->seconds = {any ? score / information : 0, std::sqrt(variance)};
+  delay->stated_sigma_s = std::sqrt(variance / result.variance_factor);
+  // With what is known beforehand; what is found is not taken off here.
+  const double known = 1 / (1 / variance + 1 / std::pow(delay->known_sigma_s, 2));
+  const double mean = known * delay->seconds.value / variance;
+  delay->unknown_move = std::sqrt(known + mean * mean) * move;
   return delay;
 }
 
@@ -254,13 +295,11 @@ CalibratedCameras CalibrateWithoutEncoderDelay(
   for (int i = 0; i < kMostTries; ++i) {
     taken_off += next;
     found = calibrate(taken_off);
-    const auto& left = found.encoder_delay;
-    if (!left || !left->IsTold()) return Told(std::move(as_they_are), 0);
-    next = left->seconds.value;
-    if (std::abs(next) < kSettled * left->seconds.sigma) break;
+    if (!found.encoder_delay) break;
+    next = found.encoder_delay->seconds.value;
+    if (std::abs(next) < kSettled * found.encoder_delay->seconds.sigma) break;
   }
-  const Estimate& left = found.encoder_delay->seconds;
-  const bool sure = std::abs(taken_off + left.value) > kGivenWrongSigmas * left.sigma;
+  const bool sure = IsSure(found, taken_off, as_they_are);
   return sure ? Told(std::move(found), taken_off) : Told(std::move(as_they_are), 0);
 }
 

@@ -371,7 +371,7 @@ PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index)
     Eigen::Matrix<double, kPoseAndLens, 1> move;
     Index i = 0;
     for (const Index at : places.PoseAndLens(index)) {
-      move[i++] = result.encoder_delay->pose_move[at];
+      move[i++] = result.encoder_delay->unknown_move[at];
     }
     covariance += move * move.transpose();
   }

@@ -96,6 +96,10 @@ LidarReport WithPose(const JointResult& result, std::size_t index,
   calibration.reference_from_lidar = result.solution.state.lidars[index].reference_from_lidar;
   Matrix6d covariance =
       result.lidar_factors[index] * result.solution.covariance.block<6, 6>(at, at);
+  if (result.encoder_delay) {
+    const Vector6d move = result.encoder_delay->unknown_move.segment<6>(at);
+    covariance += move * move.transpose();
+  }
   std::string why = WhyDegenerate(boards, PoseOf::kLidar);
   if (why.empty()) why = WhyLoose(covariance, PoseOf::kLidar);
   if (!why.empty()) {

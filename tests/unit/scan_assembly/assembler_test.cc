@@ -136,19 +136,28 @@ class AssemblerTest : public ::testing::Test {
 };
 
 TEST(Assembler, AnEncodersDelayThatTheRigHasIsTakenOffBitForBit) {
-  for (const Utime late : {30 * kMs, -20 * kMs}) {
+  for (const Utime late : {30 * kMs, 90 * kMs, -20 * kMs, -90 * kMs}) {
     Inputs inputs = SweepInOrder();
     for (Input& input : inputs) {
-      if (auto* reading = std::get_if<EncoderReading>(&input)) reading->utime += late;
+      auto* reading = std::get_if<EncoderReading>(&input);
+      if (reading == nullptr) continue;
+      reading->utime += late;
+      if (reading->sweep_utime != 0) reading->sweep_utime += late;  // a sweep's name is as stamped
     }
     TurnedScanner scanner = MakeScanner();
     Assembler as_stamped(scanner);
     scanner.encoder_delay_s = ToSeconds(late);
     Assembler on_time(scanner);
     Assembler right(MakeScanner());
+    const auto bytes_but_for_the_name = [&](Assembler* assembler) {
+      Chunks chunks = AddAll(assembler, inputs);
+      for (CloudChunk& chunk : chunks) chunk.cloud.sweep_utime -= late;
+      return BytesOfAll(chunks);
+    };
     const auto expected = BytesOfAll(AddAll(&right, SweepInOrder()));
-    EXPECT_EQ(BytesOfAll(AddAll(&on_time, inputs)), expected);
-    EXPECT_NE(BytesOfAll(AddAll(&as_stamped, inputs)), expected);
+    EXPECT_EQ(bytes_but_for_the_name(&on_time), expected);
+    EXPECT_EQ(on_time.counts().lines_lost, 0);
+    EXPECT_NE(bytes_but_for_the_name(&as_stamped), expected);
   }
 }
 

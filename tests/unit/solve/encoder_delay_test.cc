@@ -16,10 +16,10 @@ using testing::HasSubstr;
 
 constexpr double kTurn = 5 * kDegree;  // [rad/s]
 
-SolveWorld WorldWith(double delay_s, bool both_ways, std::uint32_t seed, int views = 10) {
+SolveWorld WorldWith(double delay_s, bool both_ways, std::uint32_t seed) {
   SolveWorldOptions options;
   options.seed = seed;
-  options.views = views;
+  options.views = 10;
   options.draw_nuisances = true;
   options.motor = SolveWorldOptions::Motor{kTurn, both_ways, delay_s};
   return SolveWorld(options);
@@ -122,6 +122,36 @@ TEST(EncoderDelay, OneSweepTheOtherWayIsRejectedAndTheRestCannotTell) {
   const Report report = SomeTheOtherWay({3});
   EXPECT_EQ(report.cameras[0].rejected.size(), 1U);
   EXPECT_THAT(report.cameras[0].cannot_tell, HasSubstr("All sweeps turned the same way"));
+}
+
+TEST(EncoderDelay, CloudsThatDoNotTellAreNotTakenForOnesOfTheOtherWay) {
+  SolveWorld world = WorldWith(0.2, false, 5);
+  for (const std::size_t view : {1, 4, 7}) {
+    world.detections[view].cloud.candidates[0].turn_rad_s = 0;
+  }
+  const CameraReport camera = Calibrate(world.rig, world.detections).cameras[0];
+  EXPECT_THAT(camera.cannot_tell, HasSubstr("Not all clouds tell which way the motor turned"));
+  EXPECT_EQ(DelayIn(camera), nullptr);
+  const Matrix6d& covariance = *camera.calibration.covariance;
+  const double of_rotation = covariance.diagonal().head<3>().sum();
+  EXPECT_GT(of_rotation, std::pow(0.005 * kTurn, 2));
+}
+
+// A slow motor: 10 ms are 0.01 deg, and less is known of it than of any encoder.
+TEST(EncoderDelay, IsFoundByASlowMotorWhereItIsLarge) {
+  SolveWorldOptions options;
+  options.seed = 3;
+  options.views = 10;
+  options.draw_nuisances = true;
+  options.motor = SolveWorldOptions::Motor{kTurn / 10, true, 0.4};
+  const SolveWorld world(options);
+  const CameraReport camera = Calibrate(world.rig, world.detections).cameras[0];
+  ASSERT_FALSE(camera.causes.empty());
+  EXPECT_EQ(camera.causes[0].name, "encoder's delay");
+  const Nuisance* delay = DelayIn(camera);
+  ASSERT_NE(delay, nullptr);
+  EXPECT_GT(delay->estimate.sigma, 5);
+  EXPECT_NEAR(delay->estimate.value, 400, 4 * delay->estimate.sigma);
 }
 
 TEST(EncoderDelay, PlaysNoPartWhereNothingTurns) {
