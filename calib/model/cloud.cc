@@ -3,8 +3,10 @@
 namespace rgbdt {
 
 Eigen::Vector3f DirectionOf(const Cloud& cloud, std::size_t i) {
-  const Eigen::Vector3f& stored = cloud.directions[i];
-  if (!cloud.IsHit(i) || stored.allFinite()) return stored;
+  if (!cloud.directions.empty()) {
+    const Eigen::Vector3f& stored = cloud.directions[i];
+    if (!cloud.IsHit(i) || stored.allFinite()) return stored;
+  }
   const Eigen::Vector3f origin = cloud.origins.empty()
                                      ? Eigen::Vector3f(0, 0, 0)
                                      : cloud.origins[i / static_cast<std::size_t>(cloud.beams)];

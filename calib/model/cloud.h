@@ -52,8 +52,7 @@ struct Cloud {
   bool IsHit(std::size_t i) const { return std::isfinite(points[i].x()); }
 };
 
-/// Unit direction of a beam of a cloud that has directions, of a hit, too, where only its point
-/// tells it; NaN: unknown.
+/// Unit direction of a beam, of a hit, too, where only its point tells it; NaN: unknown.
 Eigen::Vector3f DirectionOf(const Cloud& cloud, std::size_t i);
 
 /// How many lines of an organised sweep never came: of such a line not even directions are known.

@@ -21,6 +21,9 @@ struct MountChange {
 
 /// How late a turned scanner's encoder is stamped, as views have it.
 struct EncoderDelay {
+  /// Views: one alone may be off for a reason of its own.
+  static constexpr std::size_t kLeastEachWay = 2;
+
   Estimate seconds;                    ///< the variance factor counted in
   double stated_sigma_s = 0;           ///< without it
   double known_sigma_s = 0;            ///< how late an encoder may be where nothing tells
@@ -31,8 +34,8 @@ struct EncoderDelay {
   /// of it after all.
   Eigen::VectorXd unknown_move;
 
-  /// Whether the views can tell it at all. One view alone may be off for a reason of its own.
-  bool BothWays() const { return all_clouds_tell && views_of_fewer_way >= 2; }
+  /// Whether the views can tell it at all.
+  bool BothWays() const { return all_clouds_tell && views_of_fewer_way >= kLeastEachWay; }
   /// Whether they tell more of it than is known of any encoder. By what they state, as a delay that
   /// is there makes them scatter.
   bool IsTold() const { return BothWays() && stated_sigma_s < known_sigma_s; }

@@ -15,16 +15,8 @@ constexpr double kLeastHorizontal = 0.3;  // of a unit direction that has an azi
 constexpr double kAbout = 0.1;            // [rad] beside what is scanned: the lines that tell
 constexpr std::size_t kBeamStep = 8;
 
-Eigen::Vector3d Direction(const Cloud& cloud, std::size_t i) {
-  if (!cloud.directions.empty()) return DirectionOf(cloud, i).cast<double>();
-  const auto line = i / static_cast<std::size_t>(cloud.beams);
-  const Eigen::Vector3f origin =
-      cloud.origins.empty() ? Eigen::Vector3f(0, 0, 0) : cloud.origins[line];
-  return (cloud.points[i] - origin).normalized().cast<double>();
-}
-
 std::optional<double> Azimuth(const Cloud& cloud, std::size_t i) {
-  const Eigen::Vector3d direction = Direction(cloud, i);
+  const Eigen::Vector3d direction = DirectionOf(cloud, i).cast<double>();
   if (!(direction.head<2>().norm() > kLeastHorizontal)) return std::nullopt;
   return std::atan2(direction.y(), direction.x());
 }

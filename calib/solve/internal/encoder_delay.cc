@@ -29,7 +29,6 @@ constexpr double kLooksLate = 2;       // sigmas, from which on it is tried
 constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
 constexpr double kSettled = 0.5;       // sigmas that may be left
 constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
-constexpr std::size_t kLeastEachWay = 2;
 constexpr int kMostTries = 4;
 
 bool Turns(const BoardView& view) { return std::abs(view.cloud.turn_rad_s) > kStandsStill; }
@@ -145,8 +144,7 @@ Cause CauseOf(const EncoderDelay& delay, const CameraCalibration& camera) {
       Format(
           "the motor's encoder is stamped %.1f +- %.1f ms %s: clouds of sweeps that turn one way "
           "lie %.2f deg beside those of the other way. Add %.4f to encoder_delay_s of the rig "
-          "file's "
-          "turned_scanner (it is 0 where left out), and take the session again",
+          "file's turned_scanner (it is 0 where left out), and take the session again",
           1000 * std::abs(seconds), 1000 * delay.seconds.sigma, which,
           2 * kDegrees * std::abs(turn), seconds),
       std::pow(seconds / delay.seconds.sigma, 2), 1, std::nullopt};
@@ -257,7 +255,7 @@ std::optional<Estimate> RoughEncoderDelay(const std::vector<GuessedCamera>& came
       rate[way] += beside->turn_rad_s;
     }
   }
-  if (std::min(views[0].size(), views[1].size()) < kLeastEachWay) return std::nullopt;
+  if (std::min(views[0].size(), views[1].size()) < EncoderDelay::kLeastEachWay) return std::nullopt;
   for (std::size_t way = 0; way < 2; ++way) rate[way] /= static_cast<double>(turned[way].size());
   const Estimate one = RobustMean(std::move(turned[0])), other = RobustMean(std::move(turned[1]));
   const double apart = rate[0] - rate[1];

@@ -43,6 +43,9 @@ TEST(TurnRate, HasItsSignAndSize) {
   for (const double rate : {0.1, -0.1, 0.6, -0.02}) {
     const Cloud cloud = Sweep(200, [&](double t) { return rate * (t - 2); });
     EXPECT_NEAR(TurnRate(cloud, {3, 0, 0.5}), rate, 1e-3 * std::abs(rate));
+    Cloud of_hits = cloud;
+    of_hits.directions.clear();
+    EXPECT_NEAR(TurnRate(of_hits, {3, 0, 0.5}), rate, 1e-3 * std::abs(rate));
   }
 }
 
