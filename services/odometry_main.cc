@@ -4,13 +4,18 @@
 #include "services/runtime/process.h"
 
 int main(int argc, char** argv) {
-  rgbdt::CommandLine line("rgbdt-odometry",
-                          "Where a spinning LIDAR is, from its sweeps alone: CLOUD to POSE, one a "
-                          "sweep. Fuser, monitor\n"
-                          "and mapper then make maps of a drive with nothing else on the bus. What "
-                          "the surroundings do\n"
-                          "not tell, as a corridor the way along it, the status names.\n"
-                          "Example: rgbdt-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
+  rgbdt::CommandLine line(
+      "rgbdt-odometry",
+      "Where a LIDAR is, from its sweeps alone: CLOUD to POSE, one a sweep. "
+      "Fuser, monitor and\n"
+      "mapper then make maps of a drive with nothing else on the bus. A spinning "
+      "LIDAR may move\n"
+      "while it sweeps; the rig of a turned scanner stands for each sweep and "
+      "goes on by a metre\n"
+      "or two in between. What the surroundings do not tell, as a corridor the "
+      "way along it,\n"
+      "the status names.\n"
+      "Example: rgbdt-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
   rgbdt::BusFlags bus;
   rgbdt::OdometryOptions options;
   line.Bus(&bus.url, &bus.key);

@@ -12,6 +12,7 @@
 #include "calib/odometry/internal/moving_sweep.h"
 #include "calib/odometry/internal/plane_map.h"
 #include "calib/odometry/internal/registration.h"
+#include "calib/odometry/internal/stop_search.h"
 
 namespace rgbdt {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 using odometry::Motion;
 using odometry::PlaneMap;
 using odometry::Registration;
+using odometry::Stop;
 using odometry::SweepMotion;
 using odometry::TimedSweep;
 using odometry::Untold;
@@ -57,6 +59,8 @@ Motion Unknown(const Rigid3& world_from_lidar) {
   return motion;
 }
 
+const char* KindOf(bool standing) { return standing ? "turned scanner" : "spinning LIDAR"; }
+
 double ShareOf(std::size_t matched, std::size_t selected) {
   return static_cast<double>(matched) / static_cast<double>(std::max<std::size_t>(1, selected));
 }
@@ -90,6 +94,7 @@ struct Odometry::Impl {
 
   OdometryOptions options;
   PlaneMap map;
+  bool standing = false;            // the sweeps are a turned scanner's
   std::optional<TimedSweep> first;  // while the second has not come
   bool begun = false;               // the map holds something, or `first` does
   bool anew = false;                // there was a map before
@@ -103,9 +108,9 @@ struct Odometry::Impl {
 
   OdometryResult Add(const Cloud& cloud);
   double Since(const Cloud& cloud, const TimedSweep& sweep) const;
-  void Begin(TimedSweep sweep);
+  void Begin(const TimedSweep& sweep);
   void Lose(const TimedSweep& sweep, double seconds);
-  void Follow(TimedSweep sweep, double seconds, OdometryResult* result);
+  void Follow(const TimedSweep& sweep, double seconds, OdometryResult* result);
   Registration Second(const TimedSweep& sweep);
   Registration Next(const TimedSweep& sweep, const Motion& before, double seconds) const;
   std::string WhyNot(const TimedSweep& sweep, const Registration& found, const Motion& before,
@@ -115,15 +120,21 @@ struct Odometry::Impl {
 };
 
 // The map begins with this sweep, as far as its own motion is known: the second tells it.
-void Odometry::Impl::Begin(TimedSweep sweep) {
+void Odometry::Impl::Begin(const TimedSweep& sweep) {
   map.Clear();
   middle = sweep.middle;
+  standing = sweep.standing;
   motion = Unknown(motion.world_from_lidar);
   forgotten_at = motion.world_from_lidar.translation;
   lost = 0;
   usual_residual_m = usual_share = 0;
   begun = anew = true;
-  first = std::move(sweep);
+  first.reset();
+  if (!standing) {
+    first = sweep;
+    return;
+  }
+  Grow(sweep);
 }
 
 // The first sweep is straightened by the way to the second, which is found on the first: round by
@@ -228,11 +239,14 @@ void Odometry::Impl::Grow(const TimedSweep& sweep) {
 }
 
 void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) const {
+  result->first_utime = sweep.first;
   result->middle_utime = sweep.middle;
   result->utime = sweep.last;
+  result->standing = sweep.standing;
   result->world_from_middle = motion.world_from_lidar;
   result->velocity = motion.velocity;
-  const Motion at_end = odometry::Predict(motion, ToSeconds(sweep.last - sweep.middle), options);
+  const double onward = sweep.standing ? 0 : ToSeconds(sweep.last - sweep.middle);
+  const Motion at_end = odometry::Predict(motion, onward, options);
   result->world_from_lidar = at_end.world_from_lidar;
   result->covariance = at_end.covariance.topLeftCorner<6, 6>();
 }
@@ -245,18 +259,24 @@ double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) const 
     throw InputError("sweep " + std::to_string(cloud.sweep_utime) +
                      " is not newer than the one before, " + std::to_string(sweep_utime));
   }
-  return seconds <= kMostGap ? seconds : 0;
+  if (sweep.standing != standing) {
+    throw InputError("sweep " + std::to_string(cloud.sweep_utime) + " is a " +
+                     KindOf(sweep.standing) + "'s by how long it lasts, the ones before are a " +
+                     KindOf(standing) + "'s; expected those of one LIDAR");
+  }
+  return standing || seconds <= kMostGap ? seconds : 0;
 }
 
 // A sweep that tells nothing: on as before.
 void Odometry::Impl::Lose(const TimedSweep& sweep, double seconds) {
-  motion = odometry::Predict(motion, seconds, options);
+  motion =
+      standing ? odometry::AfterStop(motion, lost) : odometry::Predict(motion, seconds, options);
   middle = sweep.middle;
   if (++lost >= kMostLost) begun = false;
 }
 
 OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
-  TimedSweep sweep = odometry::TimeSweep(cloud, options);
+  const TimedSweep sweep = odometry::TimeSweep(cloud, options);
   const double seconds = Since(cloud, sweep);
   sweep_utime = cloud.sweep_utime;
   OdometryResult result;
@@ -270,23 +290,40 @@ OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
     Report(sweep, &result);
   } else if (seconds == 0) {
     result.restarted = anew;
-    result.reason = "the map begins with this sweep; the next one tells how it moved";
-    Begin(std::move(sweep));
-    Report(*first, &result);
+    result.converged = sweep.standing;  // its place is the map's
+    if (!sweep.standing) {
+      result.reason = "the map begins with this sweep; the next one tells how it moved";
+    }
+    Begin(sweep);
+    Report(sweep, &result);
   } else {
-    Follow(std::move(sweep), seconds, &result);
+    Follow(sweep, seconds, &result);
   }
   return result;
 }
 
-void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* result) {
-  const Motion before = odometry::Predict(motion, seconds, options);
-  const Registration found = first ? Second(sweep) : Next(sweep, before, seconds);
+void Odometry::Impl::Follow(const TimedSweep& sweep, double seconds, OdometryResult* result) {
+  const Motion before =
+      standing ? odometry::AfterStop(motion, lost) : odometry::Predict(motion, seconds, options);
+  const Stop stop = standing ? odometry::FindStop(sweep, map, before, lost, options) : Stop();
+  const Registration found = standing ? stop.best
+                             : first  ? Second(sweep)
+                                      : Next(sweep, before, seconds);
   result->matched = found.matched;
   result->residual_m = found.residual_m;
   result->iterations = found.iterations;
   result->reason = WhyNot(sweep, found, first ? found.motion : before, seconds);
+  if (result->reason.empty() && stop.other) {
+    const Rigid3 apart = found.motion.world_from_lidar.Inverse() * *stop.other;
+    result->reason = Text("the sweep fits two places about as well, %.1f m and %.0f degrees apart",
+                          apart.translation.norm(), RotationDistance(apart, {}) * 180 / M_PI);
+  }
   result->converged = result->reason.empty();
+  if (!result->converged && standing) {
+    result->reason +=
+        "; a turned scanner's rig is to stand while it sweeps, and to go on by a "
+        "metre or two";
+  }
   if (result->converged) {
     lost = 0;
     const double weight = usual_residual_m > 0 ? 1 / kUsualOver : 1;
@@ -298,8 +335,8 @@ void Odometry::Impl::Follow(TimedSweep sweep, double seconds, OdometryResult* re
     result->degenerate = odometry::DegenerateWords(found.degenerate);
     Grow(sweep);
   } else if (first) {  // neither is better than the other: the newer one leads on
-    Begin(std::move(sweep));
-    Report(*first, result);
+    Begin(sweep);
+    Report(sweep, result);
     return;
   } else {
     Lose(sweep, seconds);
@@ -314,7 +351,7 @@ Odometry::~Odometry() = default;
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
 
-void Odometry::CheckTimes(const Cloud& part) { odometry::CheckTimes(part); }
+void Odometry::CheckTimes(const Cloud& message) { odometry::CheckMessageTimes(message); }
 
 OdometryResult Odometry::Add(const Cloud& sweep) { return impl_->Add(sweep); }
 

@@ -39,6 +39,10 @@ struct OdometryResult {
   Matrix6d covariance = Matrix6d::Zero();
   bool converged = false;  ///< false: the pose is as the motion before goes on, see `reason`
   std::string reason;      ///< why not; of a restart, too
+  /// The sweep is a turned scanner's, which the rig stands for: from first_utime to utime at
+  /// world_from_lidar.
+  bool standing = false;
+  Utime first_utime = 0;   ///< of the sweep's first point
   bool restarted = false;  ///< the map was begun anew: the way since the last pose is a guess
   /// Directions that the sweep does not tell, in words; there the pose goes on as before.
   std::vector<std::string> degenerate;
@@ -49,13 +53,17 @@ struct OdometryResult {
   int iterations = 0;
 };
 
-/// Where a spinning LIDAR is, from its sweeps alone: each is registered, points to planes, to a map
-/// of the sweeps before, and moves while it is swept. Its README has the method and its sources.
-/// The same sweeps in the same order give the same poses, bit for bit. One core.
+/// Where a LIDAR is, from its sweeps alone: each is registered, points to planes, to a map of the
+/// sweeps before. A spinning LIDAR moves while it sweeps; the rig of a turned scanner, whose sweeps
+/// last longer than kMostSweep, stands, and goes on by up to some metres in between. Its README has
+/// the method and its sources. The same sweeps in the same order give the same poses, bit for bit.
+/// One core.
 class Odometry {
  public:
-  static constexpr double kMostSweep = 0.6;  ///< [s] a longer sweep is no spinning LIDAR's
-  static constexpr double kMostGap = 1.0;    ///< [s] between two sweeps; after more: begun anew
+  static constexpr double kMostSweep = 0.6;  ///< [s] a longer sweep is a turned scanner's
+  static constexpr double kMostStop = 120;   ///< [s] and a longer one nobody's
+  static constexpr double kMostGap = 1.0;    ///< [s] between a spinning LIDAR's sweeps; after more:
+                                             ///< begun anew
   static constexpr int kMostLost = 5;        ///< sweeps in a row that do not fit; then: begun anew
 
   explicit Odometry(const OdometryOptions& options = {});
@@ -63,13 +71,14 @@ class Odometry {
   Odometry(Odometry&&) noexcept;
   Odometry& operator=(Odometry&&) noexcept;
 
-  /// Throws InputError for a sweep, or a part of one, whose vectors differ in length or whose times
-  /// lie more than kMostSweep from the sweep's.
-  static void CheckTimes(const Cloud& part);
+  /// Throws InputError for the part of a sweep that one message brings, whose vectors differ in
+  /// length, whose times lie more than kMostStop from the sweep's, or apart from one another.
+  static void CheckTimes(const Cloud& message);
 
   /// Takes the next sweep; one without times counts as seen at one moment. A sweep with too few
   /// points, or that does not fit, is a result that is not converged. Throws InputError, and is as
-  /// if it had never come, for a sweep whose vectors differ in length, which lasts too long, or
+  /// if it had never come, for a sweep whose vectors differ in length, which lasts too long, which
+  /// is a turned scanner's where the ones before are a spinning LIDAR's or the other way round, or
   /// which is not newer than the one before (more than ten seconds older: the clock was set back,
   /// and the map is begun anew).
   OdometryResult Add(const Cloud& sweep);

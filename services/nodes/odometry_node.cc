@@ -43,8 +43,11 @@ Messages OdometryNode::Handle(const Message& message) {
       Warn("not told by what stands about: " + Joined(newest_.degenerate));
   }
   Messages poses;
-  // A single pose would be that of a rig that stands.
-  if (!before.converged && newest_.middle_utime < newest_.utime) {
+  if (newest_.standing) {
+    poses.emplace_back(
+        StampedPose{poses_++, newest_.first_utime, kSource, newest_.world_from_lidar});
+  } else if (!before.converged && newest_.middle_utime < newest_.utime) {
+    // A single pose would be that of a rig that stands.
     poses.emplace_back(
         StampedPose{poses_++, newest_.middle_utime, kSource, newest_.world_from_middle});
   }
@@ -63,8 +66,14 @@ Status OdometryNode::GetStatus() const {
     status.text = "not told by what stands about: " + Joined(newest_.degenerate);
   } else {
     char text[100];
-    std::snprintf(text, sizeof text, "%.1f m/s; points lie %.0f mm off the map's planes",
-                  newest_.velocity.tail<3>().norm(), 1e3 * newest_.residual_m);
+    const double off_mm = 1e3 * newest_.residual_m;
+    if (newest_.standing) {
+      std::snprintf(text, sizeof text, "stop %lld; points lie %.0f mm off the map's planes",
+                    static_cast<long long>(taken_), off_mm);
+    } else {
+      std::snprintf(text, sizeof text, "%.1f m/s; points lie %.0f mm off the map's planes",
+                    newest_.velocity.tail<3>().norm(), off_mm);
+    }
     status.text = text;
   }
   status.counters = {{"sweeps", taken_},

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/twins.h"
 #include "tests/study/drives.h"
@@ -85,6 +86,29 @@ TEST(OdometryNode, SaysWhereTheRigIsAfterEachSweep) {
   EXPECT_EQ(Counter(status, "sweeps"), 8);
   EXPECT_EQ(Counter(status, "poses"), 8);
   EXPECT_EQ(Counter(status, "without a place"), 1);
+}
+
+TEST(OdometryNode, SaysWhereATurnedScannersRigStoodForASweep) {
+  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
+  scanner.motor_speed_rad_s *= 8;
+  const study::Stops stops(5, scanner, 1);
+  OdometryNode node;
+  for (int i = 0; i < 2; ++i) {
+    const Cloud sweep = stops.Sweep(i);
+    std::vector<StampedPose> poses;
+    for (const CloudChunk& chunk : SplitSweep(sweep)) {
+      for (const auto& pose : Only<StampedPose>(node.Handle(chunk))) poses.push_back(pose);
+    }
+    ASSERT_EQ(poses.size(), 2U) << i;
+    EXPECT_LT(poses[0].utime, sweep.sweep_utime + 100'000);
+    EXPECT_GT(poses[1].utime, poses[0].utime + 2'000'000);
+    for (const StampedPose& pose : poses) {
+      const Rigid3 truth = stops.At(0).Inverse() * stops.At(i);
+      EXPECT_LT((pose.map_from_lidar.translation - truth.translation).norm(), 0.02);
+      EXPECT_LT(RotationDistance(pose.map_from_lidar, truth), 0.005);
+    }
+  }
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("stop 2"));
 }
 
 TEST(OdometryNode, SaysWhatIsNotTold) {

@@ -11,6 +11,7 @@
 #include "calib/simulate/internal/noise.h"
 #include "calib/simulate/internal/room.h"
 #include "calib/simulate/internal/street.h"
+#include "calib/simulate/internal/things.h"
 
 namespace rgbdt::study {
 namespace {
@@ -201,6 +202,53 @@ Way RoomWay(std::uint64_t seed, double speed) {
   };
 }
 
+Cloud MovingSweep(const simulate::World& world, const simulate::SpinningOptions& lidar,
+                  std::uint64_t seed, Utime utime,
+                  const std::function<Rigid3(Utime)>& world_from_lidar) {
+  const Utime revolution = FromSeconds(lidar.revolution_s);
+  Cloud cloud;
+  cloud.sweep_utime = utime;
+  cloud.lines = lidar.rings();
+  cloud.beams = lidar.columns();
+  const auto size = static_cast<std::size_t>(cloud.lines) * static_cast<std::size_t>(cloud.beams);
+  cloud.points.resize(size);
+  cloud.directions.resize(size);
+  cloud.intensity.resize(size);
+  cloud.utime.resize(size);
+  cloud.ring.resize(size);
+  const simulate::Noise noise(seed, cloud.sweep_utime, "moving lidar");
+  std::vector<std::vector<Vector3d>> beams;
+  for (const double elevation : lidar.elevations_rad) {
+    beams.push_back(simulate::SubRays(lidar, elevation));
+  }
+  const auto rays = static_cast<int>(beams.front().size());
+  ForEach(cloud.beams, 0, [&](int column) {
+    const Utime fired = utime + revolution * column / cloud.beams;
+    const Rigid3 pose = world_from_lidar(fired);
+    const double azimuth = lidar.first_azimuth_rad + column * 360 * kDegree / cloud.beams;
+    const Eigen::Quaterniond turn = RotationAbout(Vector3d::UnitZ(), azimuth).rotation;
+    std::vector<Vector3d> directions;
+    for (const std::vector<Vector3d>& beam : beams) {
+      for (const Vector3d& ray : beam) directions.push_back(pose.rotation * (turn * ray));
+    }
+    std::vector<simulate::BeamReturn> returns(beams.size());
+    simulate::CastBeams(world, lidar, pose.translation, directions, rays, returns.data());
+    for (std::size_t ring = 0; ring < beams.size(); ++ring) {
+      const std::size_t i =
+          ring * static_cast<std::size_t>(cloud.beams) + static_cast<std::size_t>(column);
+      const Vector3d direction = turn * beams[ring].front();
+      const double range =
+          returns[ring].range + lidar.range_sigma_m * noise.Normal(static_cast<std::uint64_t>(i));
+      cloud.directions[i] = direction.cast<float>();
+      cloud.points[i] = (range * direction).cast<float>();  // of a miss: NaN
+      cloud.intensity[i] = static_cast<float>(std::min(1.0, returns[ring].intensity));
+      cloud.utime[i] = fired;
+      cloud.ring[i] = static_cast<std::uint16_t>(ring);
+    }
+  });
+  return cloud;
+}
+
 Drive::Drive(DriveScene scene, std::uint64_t seed, const simulate::SpinningOptions& lidar, Way way)
     : scene_(scene), lidar_(lidar), way_(std::move(way)) {
   lidar_.Check();
@@ -260,49 +308,32 @@ void Drive::MakeWorld(double x_m) {
 }
 
 Cloud Drive::Sweep(int number) {
-  const Utime revolution = FromSeconds(lidar_.revolution_s);
-  Cloud cloud;
-  cloud.sweep_utime = kStart + number * revolution;
-  MakeWorld(At(cloud.sweep_utime).translation.x());
-  cloud.lines = lidar_.rings();
-  cloud.beams = lidar_.columns();
-  const auto size = static_cast<std::size_t>(cloud.lines) * static_cast<std::size_t>(cloud.beams);
-  cloud.points.resize(size);
-  cloud.directions.resize(size);
-  cloud.intensity.resize(size);
-  cloud.utime.resize(size);
-  cloud.ring.resize(size);
-  const simulate::Noise noise(options_.seed, cloud.sweep_utime, "moving lidar");
-  std::vector<std::vector<Vector3d>> beams;
-  for (const double elevation : lidar_.elevations_rad) {
-    beams.push_back(simulate::SubRays(lidar_, elevation));
-  }
-  const auto rays = static_cast<int>(beams.front().size());
-  ForEach(cloud.beams, 0, [&](int column) {
-    const Utime utime = cloud.sweep_utime + revolution * column / cloud.beams;
-    const Rigid3 pose = At(utime);
-    const double azimuth = lidar_.first_azimuth_rad + column * 360 * kDegree / cloud.beams;
-    const Eigen::Quaterniond turn = RotationAbout(Vector3d::UnitZ(), azimuth).rotation;
-    std::vector<Vector3d> directions;
-    for (const std::vector<Vector3d>& beam : beams) {
-      for (const Vector3d& ray : beam) directions.push_back(pose.rotation * (turn * ray));
-    }
-    std::vector<simulate::BeamReturn> returns(beams.size());
-    simulate::CastBeams(*world_, lidar_, pose.translation, directions, rays, returns.data());
-    for (std::size_t ring = 0; ring < beams.size(); ++ring) {
-      const std::size_t i =
-          ring * static_cast<std::size_t>(cloud.beams) + static_cast<std::size_t>(column);
-      const Vector3d direction = turn * beams[ring].front();
-      const double range =
-          returns[ring].range + lidar_.range_sigma_m * noise.Normal(static_cast<std::uint64_t>(i));
-      cloud.directions[i] = direction.cast<float>();
-      cloud.points[i] = (range * direction).cast<float>();  // of a miss: NaN
-      cloud.intensity[i] = static_cast<float>(std::min(1.0, returns[ring].intensity));
-      cloud.utime[i] = utime;
-      cloud.ring[i] = static_cast<std::uint16_t>(ring);
-    }
-  });
-  return cloud;
+  const Utime utime = kStart + number * FromSeconds(lidar_.revolution_s);
+  MakeWorld(At(utime).translation.x());
+  return MovingSweep(*world_, lidar_, options_.seed, utime, [this](Utime at) { return At(at); });
+}
+
+Stops::Stops(std::uint64_t seed, const simulate::ScannerOptions& scanner, double apart_m)
+    : scanner_(scanner, seed),
+      way_([way = RoomWay(seed, 1), apart_m](double number) { return way(apart_m * number); }) {
+  options_.seed = seed;
+  options_.scanner = scanner;
+  options_.natural.on = true;
+  options_.natural.people = 0;
+  options_.scene = simulate::Scene::kIndoor;
+}
+
+Rigid3 Stops::At(int number) const { return way_(number); }
+
+Cloud Stops::Sweep(int number) const {
+  constexpr double kBetween = 10;  // [s] from the end of a sweep to the next one
+  const double lasts = scanner_.sweep_lines() * ToSeconds(scanner_.line_period());
+  auto scene = std::make_shared<simulate::SceneModel>();
+  simulate::Thing room({294, 0});
+  room.AddAll(At(number).Inverse(), simulate::MakeRoom(options_, {294, 0}, &scene->lights));
+  scene->objects = room.parts();
+  const simulate::World world(std::move(scene), std::nullopt, options_);
+  return scanner_.Sweep(world, kStart + FromSeconds(number * (lasts + kBetween)), 0);
 }
 
 }  // namespace rgbdt::study

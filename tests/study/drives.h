@@ -8,6 +8,7 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/rigid3.h"
+#include "calib/simulate/internal/scanner.h"
 #include "calib/simulate/internal/world.h"
 #include "calib/simulate/options.h"
 
@@ -42,13 +43,18 @@ double ThereAndBackSeconds(double length_m, double speed_mps);
 Way BlockWay(std::uint64_t seed, double speed_mps);
 double BlockRound();  ///< [m]
 
-/// The sweeps of a spinning LIDAR that moves while it turns: each column of beams starts from where
-/// the LIDAR is at its time. Sweep and noise are functions of (seed, number).
+/// A sweep of a spinning LIDAR that moves while it turns: each column of beams starts from where
+/// the LIDAR is at its time. Ring x azimuth, each point with its time, as the LIDAR saw it then.
+Cloud MovingSweep(const simulate::World& world, const simulate::SpinningOptions& lidar,
+                  std::uint64_t seed, Utime utime,
+                  const std::function<Rigid3(Utime)>& world_from_lidar);
+
+/// The sweeps of a spinning LIDAR on its way. Sweep and noise are functions of (seed, number).
 class Drive {
  public:
   Drive(DriveScene scene, std::uint64_t seed, const simulate::SpinningOptions& lidar, Way way);
 
-  /// Sweep 0, 1, ...; ring x azimuth, each point with its time, as the LIDAR saw it then.
+  /// Sweep 0, 1, ...
   Cloud Sweep(int number);
   /// world_from_lidar at a time.
   Rigid3 At(Utime utime) const;
@@ -63,6 +69,22 @@ class Drive {
   Way way_;
   std::optional<simulate::World> world_;
   double world_x_ = 0;
+};
+
+/// Sweeps of a turned scanner on a rig that stands for each, in a furnished room, and goes on along
+/// RoomWay in between. Sweep and noise are functions of (seed, number).
+class Stops {
+ public:
+  Stops(std::uint64_t seed, const simulate::ScannerOptions& scanner, double apart_m);
+
+  Cloud Sweep(int number) const;
+  /// world_from_lidar
+  Rigid3 At(int number) const;
+
+ private:
+  simulate::Options options_;
+  simulate::Scanner scanner_;
+  Way way_;  // by metres
 };
 
 }  // namespace rgbdt::study

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt::odometry {
 namespace {
@@ -49,6 +50,13 @@ std::vector<TimedPoint> Select(const std::vector<TimedPoint>& points, std::uint6
   return selected;
 }
 
+// In floating point: differences of integers from outside may not be integers.
+double AfterSweep(const Cloud& part, Utime utime) {
+  return (static_cast<double>(utime) - static_cast<double>(part.sweep_utime)) / 1e6;
+}
+
+std::string SecondsText(double seconds) { return Format("%.3g s", seconds); }
+
 }  // namespace
 
 void CheckTimes(const Cloud& part) {
@@ -58,14 +66,28 @@ void CheckTimes(const Cloud& part) {
                      std::to_string(part.utime.size()) + " times; expected a time for each point");
   }
   for (const Utime utime : part.utime) {
-    // In floating point: differences of integers from outside may not be integers.
-    const double after = (static_cast<double>(utime) - static_cast<double>(part.sweep_utime)) / 1e6;
-    if (std::abs(after) <= Odometry::kMostSweep) continue;
+    if (std::abs(AfterSweep(part, utime)) <= Odometry::kMostStop) continue;
     throw InputError("a point of sweep " + std::to_string(part.sweep_utime) + " is of the time " +
                      std::to_string(utime) + "; expected one within " +
-                     std::to_string(Odometry::kMostSweep) +
-                     " s of the sweep: odometry is for spinning LIDARs");
+                     SecondsText(Odometry::kMostStop) + " of the sweep");
   }
+}
+
+void CheckMessageTimes(const Cloud& part) {
+  CheckTimes(part);
+  constexpr double kStretch = Odometry::kMostSweep / 2;  // two without a point: a gap
+  std::vector<bool> any(static_cast<std::size_t>(2 * Odometry::kMostStop / kStretch) + 2, false);
+  for (const Utime utime : part.utime) {
+    any[static_cast<std::size_t>((AfterSweep(part, utime) + Odometry::kMostStop) / kStretch)] =
+        true;
+  }
+  const auto first = std::find(any.begin(), any.end(), true);
+  const auto end = std::find(any.rbegin(), any.rend(), true).base();
+  const auto gap = std::search_n(first, end, 2, false);
+  if (gap == end) return;
+  throw InputError("the points of a message of sweep " + std::to_string(part.sweep_utime) +
+                   " lie apart in time by more than " + SecondsText(kStretch) +
+                   "; expected those that follow one another");
 }
 
 TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options) {
@@ -85,16 +107,20 @@ TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options) {
     }
     hits.push_back(i);
   }
-  sweep.seconds = ToSeconds(last - first);
-  if (!(sweep.seconds <= Odometry::kMostSweep)) {
-    throw InputError("the sweep lasts " + std::to_string(sweep.seconds) + " s; expected up to " +
-                     std::to_string(Odometry::kMostSweep) + " s: odometry is for spinning LIDARs");
+  const double lasts = ToSeconds(last - first);
+  if (!(lasts <= Odometry::kMostStop)) {
+    throw InputError("the sweep lasts " + SecondsText(lasts) + "; expected up to " +
+                     SecondsText(Odometry::kMostStop));
   }
+  sweep.standing = lasts > Odometry::kMostSweep;
+  sweep.seconds = sweep.standing ? 0 : lasts;
+  sweep.first = first;
   sweep.middle = first + (last - first) / 2;
   sweep.last = last;
   sweep.points.reserve(hits.size());
   for (const std::size_t i : hits) {
-    const Utime after = cloud.utime.empty() ? 0 : cloud.utime[i] - sweep.middle;
+    const bool moves = !sweep.standing && !cloud.utime.empty();
+    const Utime after = moves ? cloud.utime[i] - sweep.middle : 0;
     sweep.points.push_back(
         {cloud.points[i], static_cast<float>(ToSeconds(after)), ElevationOf(cloud.points[i])});
   }

@@ -20,14 +20,18 @@ struct TimedPoint {
 
 /// What of a sweep is of use.
 struct TimedSweep {
-  Utime middle = 0, last = 0;  ///< half-way between first and last point; last point
-  double seconds = 0;          ///< from first to last
+  Utime first = 0, middle = 0, last = 0;  ///< first point, half-way between it and the last one
+  /// It took longer than Odometry::kMostSweep: a turned scanner's, whose rig stands meanwhile.
+  bool standing = false;
+  double seconds = 0;  ///< from first to last point; 0: the rig stands
   std::vector<TimedPoint> points;
   std::vector<TimedPoint> selected;  ///< spread evenly over what was seen
 };
 
 /// Throws InputError for vectors that differ in length and for times that are not the sweep's.
 void CheckTimes(const Cloud& part);
+/// The same, and that the points of one message follow one another.
+void CheckMessageTimes(const Cloud& part);
 
 /// Throws InputError likewise, and for a sweep that lasts too long.
 TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options);

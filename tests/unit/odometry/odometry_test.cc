@@ -246,12 +246,77 @@ TEST(Odometry, WhatCannotBeTakenIsAsIfItHadNeverCome) {
     EXPECT_THAT([&] { one.Add(uneven); },
                 ::testing::ThrowsMessage<InputError>(HasSubstr("expected a time for each point")));
     EXPECT_THAT([&] { one.Add(slow); },
-                ::testing::ThrowsMessage<InputError>(HasSubstr("for spinning LIDARs")));
+                ::testing::ThrowsMessage<InputError>(HasSubstr(
+                    "a turned scanner's by how long it lasts, the ones before are a spinning")));
     EXPECT_THAT([&] { one.Add(stray); },
-                ::testing::ThrowsMessage<InputError>(HasSubstr("expected one within 0.6")));
+                ::testing::ThrowsMessage<InputError>(HasSubstr("expected one within 120 s")));
     EXPECT_THAT([&] { one.Add(sweeps[1]); },
                 ::testing::ThrowsMessage<InputError>(HasSubstr("is not newer than")));
   }
+}
+
+// A quarter of the lines and beams.
+simulate::ScannerOptions Scanner() {
+  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
+  scanner.motor_speed_rad_s *= 8;
+  scanner.beams /= 2;
+  scanner.angle_step_rad *= 2;
+  return scanner;
+}
+
+TEST(Odometry, ATurnedScannersRigStandsForEachSweepAndGoesOnInBetween) {
+  const study::Stops stops(5, Scanner(), 1.2);
+  Odometry odometry;
+  for (int i = 0; i < 6; ++i) {
+    const Cloud sweep = stops.Sweep(i);
+    const OdometryResult result = odometry.Add(sweep);
+    EXPECT_TRUE(result.converged) << i << ' ' << result.reason;
+    EXPECT_TRUE(result.standing);
+    EXPECT_EQ(result.restarted, false);
+    EXPECT_GT(ToSeconds(result.utime - result.first_utime), 2);
+    EXPECT_EQ(result.velocity, Vector6d::Zero());
+    const Vector6d off = Log((stops.At(0) * result.world_from_lidar).Inverse() * stops.At(i));
+    EXPECT_LT(off.tail<3>().norm(), 0.01) << i;
+    EXPECT_LT(off.head<3>().norm(), 0.2 * kDegree) << i;
+    EXPECT_LT(std::sqrt(result.covariance.diagonal().maxCoeff()), 0.01);
+  }
+}
+
+TEST(Odometry, ATurnedScannersSweepFromElsewhereIsSaidAndTheNextOneGoesOn) {
+  const study::Stops stops(5, Scanner(), 1.2), elsewhere(6, Scanner(), 1.2);
+  Odometry odometry;
+  odometry.Add(stops.Sweep(0));
+  odometry.Add(stops.Sweep(1));
+  const OdometryResult lost = odometry.Add(elsewhere.Sweep(2));
+  EXPECT_FALSE(lost.converged);
+  EXPECT_THAT(lost.reason, HasSubstr("is to stand while it sweeps"));
+  const OdometryResult back = odometry.Add(stops.Sweep(3));
+  EXPECT_TRUE(back.converged) << back.reason;
+  EXPECT_LT(
+      (stops.At(0) * back.world_from_lidar).translation.norm() - stops.At(3).translation.norm(),
+      0.01);
+}
+
+// What is seen, and the same turned by half a turn.
+Cloud Twice(Cloud sweep) {
+  const Eigen::Quaternionf turn(0, 0, 0, 1);
+  const std::size_t size = sweep.size();
+  sweep.lines *= 2;
+  for (std::size_t i = 0; i < size; ++i) {
+    sweep.points.push_back(turn * sweep.points[i]);
+    sweep.directions.push_back(turn * sweep.directions[i]);
+    sweep.utime.push_back(sweep.utime[i]);
+  }
+  return sweep;
+}
+
+TEST(Odometry, AStopThatFitsTwoPlacesIsNotTakenForOneOfThem) {
+  const study::Stops stops(5, Scanner(), 0);
+  Odometry odometry;
+  odometry.Add(Twice(stops.Sweep(0)));
+  const OdometryResult result = odometry.Add(Twice(stops.Sweep(1)));
+  EXPECT_FALSE(result.converged);
+  EXPECT_THAT(result.reason, HasSubstr("fits two places about as well, 0.0 m and 180 degrees"));
 }
 
 TEST(Odometry, OptionsNameTheFieldAndItsValue) {
