@@ -40,6 +40,26 @@ struct VelodyneDevice {
   std::string pcap;  ///< a file instead of the network; empty: none
 };
 
+/// An Ouster, Hesai or Livox over UDP, or a recording of its packets.
+struct PacketLidarDevice {
+  enum class Make { kOuster, kHesai, kLivox };
+  Make make = Make::kOuster;
+  std::string metadata;  ///< a file: an Ouster's JSON, a Hesai's angles (CSV); a Livox: none
+  int port = 0;
+  std::string pcap;  ///< a file instead of the network; empty: none
+};
+
+/// The name of its maker: "Ouster".
+inline const char* MakerOf(PacketLidarDevice::Make make) {
+  const char* const names[] = {"Ouster", "Hesai", "Livox"};
+  return names[static_cast<int>(make)];
+}
+/// The port that such a LIDAR sends to unless it is told otherwise.
+inline int DefaultPort(PacketLidarDevice::Make make) {
+  const int ports[] = {7502, 2368, 56301};
+  return ports[static_cast<int>(make)];
+}
+
 /// A folder of PCD files, one a sweep, in the order of their names.
 struct PcdFolderDevice {
   std::string folder;

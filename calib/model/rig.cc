@@ -286,6 +286,10 @@ LidarSpec SensorOf(const LidarSpec& lidar) {
     VelodyneDevice model;
     model.model = velodyne->model;
     sensor.device = model;
+  } else if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
+    PacketLidarDevice make;
+    make.make = packets->make;
+    sensor.device = make;
   }
   if (lidar.turned_scanner) {
     sensor.turned_scanner = lidar.turned_scanner;

@@ -70,7 +70,8 @@ struct LidarSpec {
   /// How well a constant that all ranges may be off by is known (1 sigma, about zero); 0: exactly.
   double range_offset_sigma_m = kUsualRangeOffsetSigmaM;
   /// For rgbdt-lidar; std::monostate: none.
-  std::variant<std::monostate, HokuyoDevice, VelodyneDevice, PcdFolderDevice> device;
+  std::variant<std::monostate, HokuyoDevice, VelodyneDevice, PacketLidarDevice, PcdFolderDevice>
+      device;
 };
 
 /// 1 sigma of each of bow_x, twist and bow_y (Target::BowFactors) where the print is not exact

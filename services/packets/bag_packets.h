@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "services/bags/bag_reader.h"
+#include "services/drivers/packets/packet_sweeps.h"
 #include "services/import/survey.h"
-#include "services/packets/packet_sweeps.h"
 
 namespace rgbdt {
 

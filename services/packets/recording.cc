@@ -7,8 +7,8 @@
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/drivers/packets/packet_sweeps.h"
 #include "services/drivers/pcap/pcap_reader.h"
-#include "services/packets/packet_sweeps.h"
 
 namespace rgbdt {
 namespace {

@@ -5,6 +5,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/doctor/checks.h"
+#include "services/drivers/packets/packet_source.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
@@ -36,6 +37,17 @@ Findings CheckMachine(const SystemRoots& roots, const std::string& url,
   return findings;
 }
 
+// Whether what says how to decode its packets can be read; and the port that they come to.
+Findings CheckPacketLidar(const SystemRoots& roots, const PacketLidarDevice& device) {
+  try {
+    const PacketSource reads(device);
+  } catch (const InputError& e) {
+    return {Problem(MakerOf(device.make), e.what())};
+  }
+  if (!device.pcap.empty()) return {};
+  return {CheckPort(GatherPort(roots, device.port, MakerOf(device.make), false))};
+}
+
 Findings CheckLidar(const SystemRoots& roots, const LidarSpec& lidar,
                     const std::vector<NetworkInterface>& interfaces) {
   Findings findings;
@@ -45,6 +57,8 @@ Findings CheckLidar(const SystemRoots& roots, const LidarSpec& lidar,
     if (velodyne->pcap.empty()) {
       findings.push_back(CheckPort(GatherPort(roots, velodyne->port, "Velodyne", false)));
     }
+  } else if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
+    Append(CheckPacketLidar(roots, *packets), &findings);
   }
   if (lidar.turned_scanner && lidar.turned_scanner->motor) {
     findings.push_back(CheckSerial(GatherSerial(roots, lidar.turned_scanner->motor->port)));

@@ -7,7 +7,7 @@
 namespace rgbdt {
 namespace {
 
-using Model = VelodyneEncoder::Model;
+using Encoded = VelodyneEncoder::Model;
 
 // Manuals' tables in the order of the lasers.
 constexpr double kVlp16[] = {-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15};
@@ -38,18 +38,18 @@ void Append(std::string* to, std::uint64_t value, int bytes, bool big = false) {
 }  // namespace
 
 int VelodyneEncoder::lasers() const {
-  return model == Model::kVlp16 ? 16 : model == Model::kHdl64e ? 64 : 32;
+  return model == Encoded::kVlp16 ? 16 : model == Encoded::kHdl64e ? 64 : 32;
 }
 
 double VelodyneEncoder::Elevation(int laser) const {
   switch (model) {
-    case Model::kVlp16:
+    case Encoded::kVlp16:
       return kVlp16[laser];
-    case Model::kVlp32c:
+    case Encoded::kVlp32c:
       return kVlp32c[laser];
-    case Model::kHdl32e:
+    case Encoded::kHdl32e:
       return kHdl32e[laser];
-    case Model::kHdl64e:
+    case Encoded::kHdl64e:
       break;
   }
   return -laser;  // the nominal angles are the driver's own; a scene here is by laser
@@ -58,40 +58,40 @@ double VelodyneEncoder::Elevation(int laser) const {
 double VelodyneEncoder::LaserTime_us(int laser) const {
   const int pair = laser / 2;
   switch (model) {
-    case Model::kVlp16:
+    case Encoded::kVlp16:
       return 2.304 * laser;
-    case Model::kVlp32c:
+    case Encoded::kVlp32c:
       return 2.304 * pair;
-    case Model::kHdl32e:
+    case Encoded::kHdl32e:
       return 1.152 * laser;
-    case Model::kHdl64e:
+    case Encoded::kHdl64e:
       break;
   }
   return 1.2 * (laser % 32);
 }
 
 double VelodyneEncoder::BlockTime_us() const {
-  return model == Model::kVlp16    ? 2 * 55.296
-         : model == Model::kVlp32c ? 55.296
-         : model == Model::kHdl32e ? 46.08
+  return model == Encoded::kVlp16    ? 2 * 55.296
+         : model == Encoded::kVlp32c ? 55.296
+         : model == Encoded::kHdl32e ? 46.08
                                    : 48;
 }
 
 double VelodyneEncoder::PacketDuration_us() const {
-  const int blocks = 12 / ((dual ? 2 : 1) * (model == Model::kHdl64e ? 2 : 1));
+  const int blocks = 12 / ((dual ? 2 : 1) * (model == Encoded::kHdl64e ? 2 : 1));
   return blocks * BlockTime_us();
 }
 
 double VelodyneEncoder::Azimuth(int laser, int column, double block_deg) const {
   const double time = LaserTime_us(laser) + 55.296 * column;
-  const double aside = model == Model::kVlp32c ? kAside32c[laser] : 0;
+  const double aside = model == Encoded::kVlp32c ? kAside32c[laser] : 0;
   return block_deg + block_turn / 100.0 * time / BlockTime_us() + aside;
 }
 
 std::vector<std::uint8_t> VelodyneEncoder::Packet(int number) const {
-  const int halves = model == Model::kHdl64e ? 2 : 1;
+  const int halves = model == Encoded::kHdl64e ? 2 : 1;
   const int per_turn = halves * (dual ? 2 : 1);
-  const double unit = model == Model::kVlp32c ? 0.004 : 0.002;
+  const double unit = model == Encoded::kVlp32c ? 0.004 : 0.002;
   std::vector<std::uint8_t> bytes;
   for (int block = 0; block < 12; ++block) {
     const int turn = number * (12 / per_turn) + block / per_turn;
@@ -101,8 +101,8 @@ std::vector<std::uint8_t> VelodyneEncoder::Packet(int number) const {
     Little(&bytes, lower ? 0xddffu : 0xeeffu, 2);
     Little(&bytes, static_cast<unsigned>(azimuth), 2);
     for (int i = 0; i < 32; ++i) {
-      const int laser = model == Model::kVlp16 ? i % 16 : i + (lower ? 32 : 0);
-      const double at = Azimuth(laser, model == Model::kVlp16 ? i / 16 : 0, azimuth / 100.0);
+      const int laser = model == Encoded::kVlp16 ? i % 16 : i + (lower ? 32 : 0);
+      const double at = Azimuth(laser, model == Encoded::kVlp16 ? i / 16 : 0, azimuth / 100.0);
       double metres = scene.distance(Elevation(laser), at);
       if (second && metres > 0) metres += 1;
       Little(&bytes, static_cast<unsigned>(std::lround(metres / unit)), 2);
@@ -114,15 +114,15 @@ std::vector<std::uint8_t> VelodyneEncoder::Packet(int number) const {
       static_cast<std::uint64_t>(std::llround(first_stamp_us + number * PacketDuration_us()));
   Little(&bytes, static_cast<std::uint32_t>(stamp % 3'600'000'000), 4);
   bytes.push_back(dual ? 0x39 : 0x37);
-  bytes.push_back(model == Model::kVlp16    ? 0x22
-                  : model == Model::kVlp32c ? 0x28
-                  : model == Model::kHdl32e ? 0x21
+  bytes.push_back(model == Encoded::kVlp16    ? 0x22
+                  : model == Encoded::kVlp32c ? 0x28
+                  : model == Encoded::kHdl32e ? 0x21
                                             : 0x05);
   return bytes;
 }
 
 int VelodyneEncoder::PacketsPerTurn() const {
-  const int halves = model == Model::kHdl64e ? 2 : 1;
+  const int halves = model == Encoded::kHdl64e ? 2 : 1;
   return 36000 / block_turn * halves * (dual ? 2 : 1) / 12;
 }
 
@@ -139,7 +139,7 @@ int MadeUpReflectivity(double elevation_deg, double azimuth_deg) {
 VelodyneEncoder MadeUpVelodyne(VelodyneEncoder::Model model) {
   VelodyneEncoder encoder;
   encoder.model = model;
-  encoder.block_turn = model == Model::kVlp16 ? 40 : 20;
+  encoder.block_turn = model == Encoded::kVlp16 ? 40 : 20;
   encoder.first_azimuth = 9000;
   encoder.first_stamp_us = 3'599'900'000;
   encoder.scene = {MadeUpDistance, MadeUpReflectivity};

@@ -11,7 +11,8 @@
 #include <map>
 #include <mutex>
 
-#include "services/drivers/velodyne/velodyne_source.h"
+#include "services/drivers/packets/packet_source.h"
+#include "services/drivers/velodyne/velodyne_packets.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/velodyne_encoder.h"
 #include "tests/numbers.h"
@@ -84,7 +85,7 @@ Cloud ByDriver(Model model, const std::string& file) {
   VelodyneDevice device;
   device.model = model;
   device.pcap = file;
-  VelodyneSource source(device);
+  PacketSource source(device);
   DeviceThread thread([&](DeviceThread& self) { source.Serve(self); });
   Collected collected;
   EXPECT_TRUE(Collect(

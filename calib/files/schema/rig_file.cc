@@ -108,6 +108,7 @@ CameraSpec ToCamera(const proto::Camera& camera, const Place& place, LensNeed le
 }
 
 LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
+  using Make = PacketLidarDevice::Make;
   LidarSpec spec;
   spec.name = lidar.name();
   if (spec.name.empty()) place.Fail("name", "is missing; expected a name such as \"lidar\"");
@@ -117,6 +118,12 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
     spec.device = text::ToDevice(lidar.hokuyo(), place.In("hokuyo"));
   } else if (lidar.has_velodyne()) {
     spec.device = text::ToDevice(lidar.velodyne(), place.In("velodyne"));
+  } else if (lidar.has_ouster()) {
+    spec.device = text::ToDevice(lidar.ouster(), Make::kOuster, place.In("ouster"));
+  } else if (lidar.has_hesai()) {
+    spec.device = text::ToDevice(lidar.hesai(), Make::kHesai, place.In("hesai"));
+  } else if (lidar.has_livox()) {
+    spec.device = text::ToDevice(lidar.livox(), Make::kLivox, place.In("livox"));
   } else if (lidar.has_pcd_folder()) {
     spec.device = text::ToDevice(lidar.pcd_folder(), place.In("pcd_folder"));
   }
@@ -199,15 +206,25 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
   }
 }
 
+bool SaysWhich(const proto::Lidar& lidar) {
+  return lidar.has_velodyne() || lidar.has_ouster() || lidar.has_hesai() || lidar.has_livox();
+}
+
 // Of devices only which LIDAR it is counts, and only where both say it; the motor does not.
 void KeepModels(proto::Lidar* a, proto::Lidar* b) {
-  const bool both = a->has_velodyne() && b->has_velodyne();
+  const bool both = SaysWhich(*a) && SaysWhich(*b);
   for (proto::Lidar* lidar : {a, b}) {
     if (!both) {
       lidar->clear_device();
-    } else {
+    } else if (lidar->has_velodyne()) {
       lidar->mutable_velodyne()->clear_port();
       lidar->mutable_velodyne()->clear_pcap();
+    } else if (lidar->has_ouster()) {
+      lidar->mutable_ouster()->Clear();
+    } else if (lidar->has_hesai()) {
+      lidar->mutable_hesai()->Clear();
+    } else if (lidar->has_livox()) {
+      lidar->mutable_livox()->Clear();
     }
     lidar->mutable_turned_scanner()->clear_dynamixel();
   }

@@ -86,10 +86,14 @@ std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) 
   return done;
 }
 
+Utime HesaiSweeps::begun() const {
+  return columns_.empty() ? 0 : static_cast<Utime>(std::llround(columns_.front().utime));
+}
+
 Cloud HesaiSweeps::Revolution() const {
   const std::size_t beams = columns_.size(), size = sensor_.channels * beams;
   Cloud cloud;
-  cloud.sweep_utime = std::llround(columns_.front().utime);
+  cloud.sweep_utime = begun();
   cloud.lines = static_cast<int>(sensor_.channels);
   cloud.beams = static_cast<int>(beams);
   cloud.points.assign(size, {kNan, kNan, kNan});

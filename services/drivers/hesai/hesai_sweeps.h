@@ -26,6 +26,8 @@ class HesaiSweeps {
   /// off one never comes.
   std::vector<Cloud> Add(const hesai::Packet& packet, Utime arrival);
 
+  /// Name of the revolution that has begun; 0: none.
+  Utime begun() const;
   const hesai::Sensor& sensor() const { return sensor_; }
   /// Columns that never came, by the azimuths of those about them; but for `left_out`.
   std::int64_t lost_columns() const { return lost_columns_; }

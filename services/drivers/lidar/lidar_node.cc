@@ -5,7 +5,7 @@
 #include "calib/model/errors.h"
 #include "services/drivers/hokuyo/scip_scanner.h"
 #include "services/drivers/lidar/internal/pcd_folder.h"
-#include "services/drivers/velodyne/velodyne_source.h"
+#include "services/drivers/packets/packet_source.h"
 #include "services/posix/clock.h"
 
 namespace rgbdt {
@@ -32,7 +32,10 @@ std::unique_ptr<LidarNode::Source> MakeSource(const LidarSpec& lidar) {
     return std::make_unique<SourceOf<ScipScanner>>(*hokuyo, false, true);
   }
   if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
-    return std::make_unique<SourceOf<VelodyneSource>>(*velodyne, true, velodyne->pcap.empty());
+    return std::make_unique<SourceOf<PacketSource>>(*velodyne, true, velodyne->pcap.empty());
+  }
+  if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
+    return std::make_unique<SourceOf<PacketSource>>(*packets, true, packets->pcap.empty());
   }
   if (const auto* folder = std::get_if<PcdFolderDevice>(&lidar.device)) {
     return std::make_unique<SourceOf<PcdFolder>>(*folder, true, false);
@@ -41,6 +44,9 @@ std::unique_ptr<LidarNode::Source> MakeSource(const LidarSpec& lidar) {
       "the rig's lidar names no device; add one of these to its lidar { ... }:\n"
       "  hokuyo { address: \"192.168.0.10\" }\n"
       "  velodyne { model: VLP16 }\n"
+      "  ouster { metadata: \"os1.json\" }\n"
+      "  hesai { metadata: \"angles.csv\" }\n"
+      "  livox { }\n"
       "  pcd_folder { folder: \"clouds\" }\n"
       "or publish LINE_SCAN or CLOUD from a program of your own (scripts/examples/README.md)");
 }

@@ -25,6 +25,8 @@ class LivoxSweeps {
   /// The cloud under way at the end, where it is a whole second's.
   std::optional<Cloud> Finish();
 
+  /// Name of the cloud that has begun; 0: none.
+  Utime begun() const { return any_ ? begun_ : 0; }
   std::int64_t lost_ms() const { return lost_us_ / 1000; }  ///< stretches of which nothing came
   std::int64_t dropped() const { return dropped_; }         ///< beams whose tag says noise
   std::int64_t left_out() const { return left_out_; }       ///< clouds

@@ -120,11 +120,15 @@ std::optional<Cloud> OusterSweeps::Finish() {
   return Take();
 }
 
+Utime OusterSweeps::begun() const {
+  const auto first = std::find(came_.begin(), came_.end(), true);
+  return first == came_.end() ? 0 : times_[static_cast<std::size_t>(first - came_.begin())];
+}
+
 // Columns that never came have the time of the last one before them.
 std::optional<Cloud> OusterSweeps::Take() {
-  const auto first = std::find(came_.begin(), came_.end(), true);
-  if (first == came_.end()) return std::nullopt;
-  cloud_.sweep_utime = times_[static_cast<std::size_t>(first - came_.begin())];
+  cloud_.sweep_utime = begun();
+  if (cloud_.sweep_utime == 0) return std::nullopt;
   lost_columns_ += std::count(came_.begin(), came_.end(), false);
   const auto columns = came_.size();
   for (std::size_t i = 0; i < cloud_.utime.size(); ++i) {

@@ -30,6 +30,8 @@ class OusterSweeps {
   /// At a recording's end: the last turn, where all of it came.
   std::optional<Cloud> Finish();
 
+  /// Name of the turn that has begun; 0: none.
+  Utime begun() const;
   const ouster::Metadata& metadata() const { return metadata_; }
   /// Of the turns that were given out: columns that never came, or that the sensor calls invalid.
   std::int64_t lost_columns() const { return lost_columns_; }

@@ -326,7 +326,7 @@ TEST(Layers, TheTestItselfCanFail) {
   EXPECT_EQ(WhyNot("calib/solve", "calib/camera/camera.h"), "");
   EXPECT_EQ(WhyNot("calib/solve", "calib/solve/internal/degenerate.h"), "");
   EXPECT_EQ(WhyNot("services/bus", "lcm/lcm-cpp.hpp"), "");
-  EXPECT_EQ(WhyNot("services/drivers/lidar", "services/drivers/velodyne/velodyne_source.h"), "");
+  EXPECT_EQ(WhyNot("services/drivers/lidar", "services/drivers/packets/packet_source.h"), "");
   EXPECT_NE(WhyNot("calib/simulate", "calib/camera/lens.h"), "");
   EXPECT_NE(WhyNot("calib/model", "calib/camera/lens.h"), "");
   EXPECT_NE(WhyNot("calib/solve", "calib/methods/detect_view.h"), "");

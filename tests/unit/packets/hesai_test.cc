@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "services/drivers/hesai/hesai_sweeps.h"
-#include "services/packets/packet_sweeps.h"
+#include "services/drivers/packets/packet_sweeps.h"
 #include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
@@ -119,7 +119,7 @@ TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
       ASSERT_FALSE(driven.done.empty());
       for (const Cloud& cloud : driven.done) EXPECT_EQ(cloud.beams, 360) << lost;
       EXPECT_EQ(driven.sweeps->Lost(),
-                "revolutions left out, as half a turn or more never came: 1");
+                "1 revolutions left out, as half a turn or more never came");
     }
   }
 }

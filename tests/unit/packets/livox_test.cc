@@ -4,7 +4,7 @@
 #include "calib/model/errors.h"
 #include "services/drivers/livox/livox_packets.h"
 #include "services/drivers/livox/livox_sweeps.h"
-#include "services/packets/packet_sweeps.h"
+#include "services/drivers/packets/packet_sweeps.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/packets/livox_encoder.h"
@@ -189,7 +189,7 @@ TEST(LivoxSweeps, WhatIsLostIsCounted) {
   EXPECT_EQ(little.sweeps->Lost(), "25 ms never came");
   const Received much = RunThrough(encoder, 4005, 100, 500);
   EXPECT_THAT(much.clouds, SizeIs(1));
-  EXPECT_THAT(much.sweeps->Lost(), HasSubstr("seconds left out, as a tenth or more never came: 1"));
+  EXPECT_THAT(much.sweeps->Lost(), HasSubstr("1 seconds left out, as a tenth or more never came"));
 }
 
 // Whoever sends it: a clock that stands still ends no second, and would fill the memory.

@@ -73,6 +73,19 @@ VelodyneDevice ToDevice(const proto::Velodyne& device, const Place& place) {
   return spec;
 }
 
+PacketLidarDevice ToDevice(const proto::PacketLidar& device, PacketLidarDevice::Make make,
+                           const Place& place) {
+  PacketLidarDevice spec;
+  spec.make = make;
+  spec.metadata = device.metadata();
+  if (make == PacketLidarDevice::Make::kLivox && !spec.metadata.empty()) {
+    place.Fail("metadata", "is given, but a Livox has none: its packets say all; leave it out");
+  }
+  spec.port = Port(device.port(), DefaultPort(make), place);
+  spec.pcap = device.pcap();
+  return spec;
+}
+
 PcdFolderDevice ToDevice(const proto::PcdFolder& device, const Place& place) {
   PcdFolderDevice spec;
   RequireText(device.folder(), place, "folder", "recordings/room");
@@ -134,6 +147,22 @@ void FromDevice(const DynamixelDevice& device, proto::Dynamixel* out) {
   out->set_speed_deg_s(device.speed_rad_s / kDegree);
 }
 
+namespace {
+
+proto::PacketLidar* PacketLidarIn(PacketLidarDevice::Make make, proto::Lidar* lidar) {
+  switch (make) {
+    case PacketLidarDevice::Make::kOuster:
+      return lidar->mutable_ouster();
+    case PacketLidarDevice::Make::kHesai:
+      return lidar->mutable_hesai();
+    case PacketLidarDevice::Make::kLivox:
+      return lidar->mutable_livox();
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 void FromLidarDevice(const LidarSpec& lidar, proto::Lidar* out) {
   if (const auto* hokuyo = std::get_if<HokuyoDevice>(&lidar.device)) {
     out->mutable_hokuyo()->set_address(ValidUtf8(hokuyo->address));
@@ -142,6 +171,11 @@ void FromLidarDevice(const LidarSpec& lidar, proto::Lidar* out) {
     out->mutable_velodyne()->set_model(static_cast<proto::Velodyne::Model>(velodyne->model));
     out->mutable_velodyne()->set_port(velodyne->port);
     out->mutable_velodyne()->set_pcap(ValidUtf8(velodyne->pcap));
+  } else if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
+    proto::PacketLidar* made = PacketLidarIn(packets->make, out);
+    made->set_metadata(ValidUtf8(packets->metadata));
+    made->set_port(packets->port);
+    made->set_pcap(ValidUtf8(packets->pcap));
   } else if (const auto* folder = std::get_if<PcdFolderDevice>(&lidar.device)) {
     out->mutable_pcd_folder()->set_folder(ValidUtf8(folder->folder));
     out->mutable_pcd_folder()->set_period_s(folder->period_s);

@@ -12,6 +12,8 @@ namespace rgbdt::text {
 CameraDevice ToDevice(const proto::CameraDevice& device, const Place& place);
 HokuyoDevice ToDevice(const proto::Hokuyo& device, const Place& place);
 VelodyneDevice ToDevice(const proto::Velodyne& device, const Place& place);
+PacketLidarDevice ToDevice(const proto::PacketLidar& device, PacketLidarDevice::Make make,
+                           const Place& place);
 PcdFolderDevice ToDevice(const proto::PcdFolder& device, const Place& place);
 DynamixelDevice ToDevice(const proto::Dynamixel& device, const Place& place);
 

@@ -52,6 +52,20 @@ TEST(RigDevices, EachLidarComesBack) {
   EXPECT_EQ(std::get<VelodyneDevice>(velodyne.lidar.device).model, VelodyneDevice::Model::kVlp32c);
   EXPECT_EQ(std::get<VelodyneDevice>(velodyne.lidar.device).port, 2369);
   EXPECT_EQ(std::get<VelodyneDevice>(velodyne.lidar.device).pcap, "drive.pcap");
+  const auto packets = [](const std::string& text) {
+    return std::get<PacketLidarDevice>(Again(text, "").lidar.device);
+  };
+  const PacketLidarDevice ouster = packets("ouster { metadata: \"os1.json\" pcap: \"a.pcap\" }");
+  EXPECT_EQ(ouster.make, PacketLidarDevice::Make::kOuster);
+  EXPECT_EQ(ouster.metadata, "os1.json");
+  EXPECT_EQ(ouster.port, 7502);
+  EXPECT_EQ(ouster.pcap, "a.pcap");
+  const PacketLidarDevice hesai = packets("hesai { metadata: \"angles.csv\" port: 2369 }");
+  EXPECT_EQ(hesai.make, PacketLidarDevice::Make::kHesai);
+  EXPECT_EQ(hesai.port, 2369);
+  const PacketLidarDevice livox = packets("livox { }");
+  EXPECT_EQ(livox.make, PacketLidarDevice::Make::kLivox);
+  EXPECT_EQ(livox.port, 56301);
   const Rig folder = Again("pcd_folder { folder: \"room\" period_s: 0.5 }", "");
   EXPECT_EQ(std::get<PcdFolderDevice>(folder.lidar.device).folder, "room");
   EXPECT_EQ(std::get<PcdFolderDevice>(folder.lidar.device).period_s, 0.5);

@@ -238,6 +238,13 @@ TEST(RigFile, AnotherModelOfLidarIsAnotherLidar) {
               ElementsAre("modified: lidar.velodyne.model: VLP16 -> VLP32C"));
   other.lidar.device = PcdFolderDevice{};  // of whichever LIDAR
   EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
+  const PacketLidarDevice ouster{PacketLidarDevice::Make::kOuster, "os1.json", 7502, ""};
+  other.lidar.device = ouster;
+  EXPECT_THAT(DifferencesOf(rig, other), Not(IsEmpty()));
+  rig.lidar.device = ouster;
+  other.lidar.device =
+      PacketLidarDevice{PacketLidarDevice::Make::kOuster, "elsewhere/os1.json", 7503, "a.pcap"};
+  EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
 }
 
 TEST(RigFile, KeepsTextAndHash) {

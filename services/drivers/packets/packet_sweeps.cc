@@ -1,4 +1,4 @@
-#include "services/packets/packet_sweeps.h"
+#include "services/drivers/packets/packet_sweeps.h"
 
 #include "calib/model/errors.h"
 #include "services/drivers/hesai/hesai_sweeps.h"
@@ -9,11 +9,14 @@
 namespace rgbdt {
 namespace {
 
+using Make = PacketLidarDevice::Make;
+
 class Ouster : public PacketSweeps {
  public:
   explicit Ouster(ouster::Metadata metadata) : sweeps_(std::move(metadata)) {}
 
   std::string name() const override { return sweeps_.metadata().model; }
+  std::optional<Make> make() const override { return Make::kOuster; }
   bool IsOurs(const Payload& payload) const override {
     return payload.size() == sweeps_.metadata().PacketBytes();
   }
@@ -25,9 +28,9 @@ class Ouster : public PacketSweeps {
     return sweeps;
   }
   std::optional<Cloud> Finish() override { return sweeps_.Finish(); }
-  std::string Lost() const override {
-    const std::int64_t lost = sweeps_.lost_columns();
-    return lost == 0 ? "" : std::to_string(lost) + " columns never came, or were not measured";
+  Utime begun() const override { return sweeps_.begun(); }
+  std::vector<Loss> Losses() const override {
+    return {{"lost columns", "columns never came, or were not measured", sweeps_.lost_columns()}};
   }
 
  private:
@@ -39,6 +42,7 @@ class Hesai : public PacketSweeps {
   explicit Hesai(hesai::Angles angles) : sweeps_(std::move(angles)) {}
 
   std::string name() const override { return sweeps_.sensor().name; }
+  std::optional<Make> make() const override { return Make::kHesai; }
   bool IsOurs(const Payload& payload) const override {
     return hesai::IsPacket(sweeps_.sensor(), payload.data(), payload.size());
   }
@@ -46,16 +50,11 @@ class Hesai : public PacketSweeps {
     return sweeps_.Add(hesai::Decode(sweeps_.sensor(), payload.data(), payload.size()), arrival);
   }
   std::optional<Cloud> Finish() override { return std::nullopt; }
-  std::string Lost() const override {
-    const std::int64_t lost = sweeps_.lost_columns(), left_out = sweeps_.left_out();
-    std::string text;
-    if (lost > 0) text = std::to_string(lost) + " columns never came";
-    if (left_out > 0) {
-      text +=
-          (text.empty() ? "" : "; ") +
-          ("revolutions left out, as half a turn or more never came: " + std::to_string(left_out));
-    }
-    return text;
+  Utime begun() const override { return sweeps_.begun(); }
+  std::vector<Loss> Losses() const override {
+    return {{"lost columns", "columns never came", sweeps_.lost_columns()},
+            {"sweeps left out", "revolutions left out, as half a turn or more never came",
+             sweeps_.left_out()}};
   }
 
  private:
@@ -75,10 +74,11 @@ class Velodyne : public PacketSweeps {
     return sweeps_.Add(velodyne::Decode(sensor_, payload.data(), payload.size()), arrival);
   }
   std::optional<Cloud> Finish() override { return std::nullopt; }
-  std::string Lost() const override {
-    const std::int64_t lost = sweeps_.lost_packets();
-    return lost == 0 ? "" : std::to_string(lost) + " packets never came";
+  Utime begun() const override { return sweeps_.begun(); }
+  std::vector<Loss> Losses() const override {
+    return {{"lost packets", "packets never came", sweeps_.lost_packets()}};
   }
+  std::int64_t clock_steps() const override { return sweeps_.clock_steps(); }
 
  private:
   const velodyne::Sensor& sensor_;
@@ -92,6 +92,7 @@ class Livox : public PacketSweeps {
   std::string name() const override {
     return protocol_ == livox::Protocol::kSdk1 ? "Livox Avia" : "Livox Mid-360";
   }
+  std::optional<Make> make() const override { return Make::kLivox; }
   bool IsOurs(const Payload& payload) const override {
     return livox::IsPacket(protocol_, payload.data(), payload.size());
   }
@@ -102,14 +103,11 @@ class Livox : public PacketSweeps {
     return sweeps;
   }
   std::optional<Cloud> Finish() override { return sweeps_.Finish(); }
-  std::string Lost() const override {
-    std::string text;
-    if (sweeps_.lost_ms() > 0) text = std::to_string(sweeps_.lost_ms()) + " ms never came";
-    if (sweeps_.left_out() > 0) {
-      text += (text.empty() ? "" : "; ") + ("seconds left out, as a tenth or more never came: " +
-                                            std::to_string(sweeps_.left_out()));
-    }
-    return text;
+  Utime begun() const override { return sweeps_.begun(); }
+  std::vector<Loss> Losses() const override {
+    return {
+        {"lost ms", "ms never came", sweeps_.lost_ms()},
+        {"sweeps left out", "seconds left out, as a tenth or more never came", sweeps_.left_out()}};
   }
 
  private:
@@ -117,22 +115,35 @@ class Livox : public PacketSweeps {
   LivoxSweeps sweeps_;
 };
 
-std::unique_ptr<PacketSweeps> VelodynePackets(const PacketSweeps::Payload& payload) {
+std::unique_ptr<PacketSweeps> VelodyneByItself(const PacketSweeps::Payload& payload) {
   using Model = VelodyneDevice::Model;
   if (payload.size() != velodyne::kDataBytes) return nullptr;
   switch (payload.back()) {  // the product
     case 0x21:
-      return std::make_unique<Velodyne>(Model::kHdl32e);
+      return VelodynePackets(Model::kHdl32e);
     case 0x22:
-      return std::make_unique<Velodyne>(Model::kVlp16);
+      return VelodynePackets(Model::kVlp16);
     case 0x28:
-      return std::make_unique<Velodyne>(Model::kVlp32c);
+      return VelodynePackets(Model::kVlp32c);
     default:
       return nullptr;
   }
 }
 
 }  // namespace
+
+std::string PacketSweeps::Lost() const {
+  std::string text;
+  for (const Loss& loss : Losses()) {
+    if (loss.count == 0) continue;
+    text += (text.empty() ? "" : "; ") + std::to_string(loss.count) + " " + loss.words;
+  }
+  return text;
+}
+
+std::unique_ptr<PacketSweeps> VelodynePackets(VelodyneDevice::Model model) {
+  return std::make_unique<Velodyne>(model);
+}
 
 std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata) {
   return std::make_unique<Ouster>(std::move(metadata));
@@ -154,14 +165,18 @@ std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const s
   }
 }
 
-std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload) {
-  if (auto velodyne = VelodynePackets(payload)) return velodyne;
+std::unique_ptr<PacketSweeps> LivoxPackets(const PacketSweeps::Payload& payload) {
   for (const livox::Protocol protocol : {livox::Protocol::kSdk1, livox::Protocol::kSdk2}) {
     if (livox::IsPacket(protocol, payload.data(), payload.size())) {
       return std::make_unique<Livox>(protocol);
     }
   }
   return nullptr;
+}
+
+std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload) {
+  if (auto velodyne = VelodyneByItself(payload)) return velodyne;
+  return LivoxPackets(payload);
 }
 
 }  // namespace rgbdt

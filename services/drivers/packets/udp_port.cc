@@ -1,3 +1,5 @@
+#include "services/drivers/packets/udp_port.h"
+
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -8,14 +10,14 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/drivers/velodyne/velodyne_source.h"
 #include "services/posix/clock.h"
+#include "services/runtime/device_thread.h"
 
 namespace rgbdt {
 namespace {
 
-constexpr int kBufferBytes = 8 * 1024 * 1024;  // some seconds of packets
-constexpr std::size_t kMaxDatagram = 2048;     // what is longer is no packet of a LIDAR
+constexpr int kBufferBytes = 8 * 1024 * 1024;  // a fifth of a second of the fastest, at least
+constexpr std::size_t kMaxDatagram = 65'536;   // an Ouster's have up to 25 kB
 
 // When the kernel had it: a busy process does not make it later.
 Utime ArrivalOf(msghdr* message) {
@@ -30,7 +32,7 @@ Utime ArrivalOf(msghdr* message) {
 
 }  // namespace
 
-UdpPort::UdpPort(int port) {
+UdpPort::UdpPort(int port) : bytes_(kMaxDatagram) {
   const std::string name = "UDP port " + std::to_string(port);
   socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (socket_ < 0) throw DeviceError(name + ": no socket to be had: " + std::strerror(errno));
@@ -60,9 +62,8 @@ UdpPort::~UdpPort() { close(socket_); }
 std::optional<UdpPort::Datagram> UdpPort::Receive(int timeout_ms) {
   pollfd waiting{socket_, POLLIN, 0};
   if (poll(&waiting, 1, timeout_ms) <= 0) return std::nullopt;
-  std::uint8_t bytes[kMaxDatagram];
   alignas(cmsghdr) char control[256];
-  iovec part{bytes, sizeof(bytes)};
+  iovec part{bytes_.data(), bytes_.size()};
   msghdr message{};
   message.msg_iov = &part;
   message.msg_iovlen = 1;
@@ -70,7 +71,7 @@ std::optional<UdpPort::Datagram> UdpPort::Receive(int timeout_ms) {
   message.msg_controllen = sizeof(control);
   const ssize_t size = recvmsg(socket_, &message, 0);
   if (size < 0) return std::nullopt;
-  return Datagram{ArrivalOf(&message), {bytes, bytes + size}};
+  return Datagram{ArrivalOf(&message), {bytes_.begin(), bytes_.begin() + size}};
 }
 
 }  // namespace rgbdt

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/model/cloud.h"
+#include "calib/model/devices.h"
 #include "services/drivers/hesai/hesai_packets.h"
 #include "services/drivers/ouster/ouster_metadata.h"
 
@@ -20,6 +21,8 @@ class PacketSweeps {
   virtual ~PacketSweeps() = default;
 
   virtual std::string name() const = 0;  ///< "OS-1-64"
+  /// Of a Velodyne none.
+  virtual std::optional<PacketLidarDevice::Make> make() const { return std::nullopt; }
   /// Whether a datagram is of this kind, by its size and what it begins with.
   virtual bool IsOurs(const Payload& payload) const = 0;
   /// The sweeps that it ended; it arrived at `arrival` [us, UTC]. Throws InputError for a packet
@@ -27,9 +30,23 @@ class PacketSweeps {
   virtual std::vector<Cloud> Add(const Payload& payload, Utime arrival) = 0;
   /// The one under way at the end, where all of it came.
   virtual std::optional<Cloud> Finish() = 0;
-  /// What never came, in words; empty: all came.
-  virtual std::string Lost() const = 0;
+  /// Name (sweep_utime) of the sweep that has begun; 0: none.
+  virtual Utime begun() const = 0;
+
+  struct Loss {
+    const char* counter;  ///< "lost columns"
+    const char* words;    ///< after the number: "columns never came"
+    std::int64_t count;
+  };
+  /// What never came.
+  virtual std::vector<Loss> Losses() const = 0;
+  /// The same in words; empty: all came.
+  std::string Lost() const;
+  /// How often somebody set the sensor's clock or the host's, where that is known.
+  virtual std::int64_t clock_steps() const { return 0; }
 };
+
+std::unique_ptr<PacketSweeps> VelodynePackets(VelodyneDevice::Model model);
 
 std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata);
 /// Of the model that has so many channels. Throws InputError where none has.
@@ -39,8 +56,9 @@ std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles);
 /// InputError, which begins with `where`, for neither.
 std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const std::string& where);
 
-/// Of the LIDAR that a packet tells of by itself: a Velodyne (VLP-16, VLP-32C, HDL-32E), a Livox
-/// (Mid-360, Avia); none: it is no such packet.
+/// Of the Livox (Mid-360, Avia) that a packet tells of by itself; none: it is no such packet.
+std::unique_ptr<PacketSweeps> LivoxPackets(const PacketSweeps::Payload& payload);
+/// The same, or a Velodyne (VLP-16, VLP-32C, HDL-32E).
 std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload);
 
 /// Those of PacketsByThemselves, and what to do about others, for a message.
