@@ -25,6 +25,16 @@ function decoderOf(schema) {
   return typeOf(schema.data, schema.name);
 }
 
+// Nothing where it is no message of the schema.
+function valueOf(type, data) {
+  try {
+    const value = type.decode(data);
+    return type.verify(value) === null ? value : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
 const handle = await open(file);
 const { size } = await handle.stat();
 const readable = {
@@ -53,8 +63,8 @@ for await (const message of reader.readMessages({ validateCrcs: true })) {
   }
   if (message.sequence !== topic.messages) throw new Error(`${channel.topic}: a number is missing`);
   ++topic.messages;
-  const value = topic.type.decode(message.data);
-  if (topic.type.verify(value) !== null) continue;
+  const value = valueOf(topic.type, message.data);
+  if (!value) continue;
   ++topic.decoded;
   ++decoded;
   topic.last = value;
@@ -71,7 +81,8 @@ const { messageCount } = reader.statistics;
 if (messageCount !== BigInt(streamed)) throw new Error(`${streamed} messages of ${messageCount}`);
 
 for (const [name, topic] of [...topics].sort()) {
-  console.log(`${name}  ${topic.schema}  ${topic.messages} ${topic.decoded}  ${describe(topic.schema, topic.last)}`);
+  const last = topic.last ? describe(topic.schema, topic.last) : "";
+  console.log(`${name}  ${topic.schema}  ${topic.messages} ${topic.decoded}  ${last}`);
 }
 console.log(`decoded ${decoded} of ${messageCount}`);
 if (BigInt(decoded) !== messageCount) process.exit(1);

@@ -4,12 +4,14 @@
 #include "calib/methods/refine.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/present/report/verdict.h"
+#include "tests/figures.h"
 #include "tests/real/acfr.h"
 
 namespace rgbdt {
 namespace {
 
-constexpr double kMaskedM = 1.0;  // about the board's middle: board, stand, who holds it
+constexpr double kMaskedM = 1.0;     // about the board's middle: board, stand, who holds it
+constexpr std::size_t kFrames = 10;  // to refine by, those left out to judge by included
 
 void MaskBoards(const ViewDetection& detection, Cloud* cloud) {
   for (const CloudEdges& board : detection.cloud.candidates) {
@@ -31,7 +33,9 @@ void ComesBack(const std::string& folder) {
   Calibration start = board.ToCalibration();
   ASSERT_EQ(start.cameras.size(), 1U);
   const Rigid3 right = start.cameras[0].camera_from_lidar;
-  for (std::size_t v = 0; v < views.size(); ++v) MaskBoards(detected->views[v], &views[v].cloud);
+  ASSERT_GE(views.size(), kFrames);
+  views.resize(kFrames);
+  for (std::size_t v = 0; v < kFrames; ++v) MaskBoards(detected->views[v], &views[v].cloud);
   Vector6d delta;
   delta << Eigen::Vector3d(0.6, -0.6, 0.53) * M_PI / 180, 0.03, -0.03, 0.027;
   start.cameras[0].camera_from_lidar = Exp(delta) * right;
@@ -40,7 +44,11 @@ void ComesBack(const std::string& folder) {
   const PoseError error = ErrorOf(found.camera_from_lidar, right);
   std::printf("%s: %s; %.2f deg, %.0f mm from the board's own\n", folder.c_str(),
               found.StatusText().c_str(), error.rotation_deg, error.translation_mm);
-  if (found.status == SolveStatus::kConverged && report.cameras[0].warnings.empty()) {
+  const bool told = found.status == SolveStatus::kConverged && report.cameras[0].warnings.empty();
+  TellFigure("natural_real_told_" + folder, told ? 1 : 0);
+  TellFigure("natural_real_rotation_deg_" + folder, error.rotation_deg, "deg");
+  TellFigure("natural_real_translation_mm_" + folder, error.translation_mm, "mm");
+  if (told) {
     EXPECT_LT(error.rotation_deg, 0.4);
   } else {
     EXPECT_FALSE(found.detail.empty() && report.cameras[0].warnings.empty());

@@ -13,6 +13,7 @@
 #include "services/bags/bag_reader.h"
 #include "services/drivers/hesai/hesai_packets.h"
 #include "services/drivers/velodyne/velodyne_packets.h"
+#include "tests/figures.h"
 
 namespace rgbdt {
 namespace {
@@ -60,6 +61,11 @@ std::vector<std::string> PacketsOf(const BagMessage& message, std::size_t packet
   return packets;
 }
 
+// To a micrometre, and to what a float has of it.
+bool IsRange(double range_m, double expected_m) {
+  return std::abs(range_m - expected_m) < 2e-7 * expected_m + 1e-6;
+}
+
 fs::path DataFolder() {
   const char* data = std::getenv("RGBDT_REAL_DATA");
   return fs::path(data == nullptr ? "" : data) / "nebula";
@@ -101,30 +107,38 @@ TEST(NebulaReal, AVelodynesPointsAreThoseOfNebula) {
   const std::multimap<Key, Angles> beams = Decoded(folder / "vlp16.db3");
   // x y z intensity(u8) return_type(u8) channel(u16) azimuth elevation distance time_stamp(u32)
   constexpr std::size_t kPointBytes = 32;
+  constexpr std::uint8_t kIdentical = 6;  // both returns of a beam are one
   const std::string bytes = ReadWholeFile(folder / "vlp16.pcd");
   const std::size_t begin = bytes.find("DATA binary\n") + 12;
-  std::size_t points = 0, found = 0, near = 0;
+  std::size_t points = 0, found = 0, near = 0, single = 0, single_found = 0;
   for (std::size_t at = begin; at + kPointBytes <= bytes.size(); at += kPointBytes, ++points) {
-    const Key key{At<std::uint16_t>(bytes, at + 14),
-                  static_cast<int>(std::lround(1e3F * At<float>(bytes, at + 24))),
+    const double range = At<float>(bytes, at + 24);
+    const Key key{At<std::uint16_t>(bytes, at + 14), static_cast<int>(std::lround(1e3 * range)),
                   At<std::uint8_t>(bytes, at + 12)};
     const double azimuth = At<float>(bytes, at + 16) * 180 / M_PI;
     const double elevation = std::asin(At<float>(bytes, at + 20)) * 180 / M_PI;  // its sine
     double nearest = 360;
-    bool level = true;
+    bool level = IsRange(1e-3 * key.distance_mm, range);
     const auto [first, last] = beams.equal_range(key);
     for (auto beam = first; beam != last; ++beam) {
       level &= std::abs(beam->second.elevation_deg - elevation) < 1e-3;
       nearest =
           std::min(nearest, std::abs(std::remainder(beam->second.azimuth_deg - azimuth, 360)));
     }
-    if (first != last && level) ++found;
+    const bool is_single = At<std::uint8_t>(bytes, at + 13) == kIdentical;
+    const bool agrees = first != last && level;
+    if (agrees) ++found;
+    if (is_single) ++single;
+    if (is_single && agrees) ++single_found;
     // nebula rounds to 0.01 degrees.
     if (nearest < 0.006) ++near;
   }
-  std::printf("velodyne_agree: range, ring, elevation and reflectivity %zu of %zu; azimuth %zu\n",
-              found, points, near);
-  EXPECT_GT(points, 10'000U);
+  ASSERT_GT(points, 10'000U);
+  TellShare("velodyne_agree", found, points);  // range, ring, elevation and reflectivity
+  TellShare("velodyne_one_return_agree", single_found, single);
+  TellShare("velodyne_azimuth_agree", near, points);
+  TellFigure("velodyne_points", static_cast<double>(points));
+  EXPECT_EQ(single_found, single);
   // Of a beam's two returns the weaker one is not kept here.
   EXPECT_GT(found, 0.99 * static_cast<double>(points));
   EXPECT_GT(near, 0.98 * static_cast<double>(points));
@@ -185,13 +199,13 @@ TEST(NebulaReal, AHesaisPointsAreThoseOfNebula) {
       }
       const bool same = nearest < 1e-5 &&
                         std::abs(angles.elevation_rad[channel] - elevation) < 1e-5 &&
-                        std::abs(kUnit_m * static_cast<double>(units) - p.norm()) <
-                            2e-7 * p.norm() + 1e-6;  // of floats
+                        IsRange(kUnit_m * static_cast<double>(units), p.norm());
       if (same) ++agree;
     }
   }
   if (points == 0) GTEST_SKIP() << "no nebula in RGBDT_REAL_DATA: packets not compared";
-  std::printf("hesai_agree: %zu of %zu points\n", agree, points);
+  TellShare("hesai_agree", agree, points);
+  TellFigure("hesai_points", static_cast<double>(points));
   EXPECT_EQ(agree, points);
 }
 

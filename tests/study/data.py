@@ -10,12 +10,22 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+import data_decoders  # noqa: E402
 import data_lidars  # noqa: E402
 import data_livox  # noqa: E402
 import data_markers  # noqa: E402
+import data_mcap  # noqa: E402
 import trials  # noqa: E402
 
-SUBJECTS = (data_livox, data_markers, data_lidars)
+SUBJECTS = (data_livox, data_markers, data_lidars, data_decoders, data_mcap)
+
+
+def left_out(subject, figures):
+    """A line where figures of the subject were not measured."""
+    measured = {f["name"] for f in figures}
+    names = [name for name in subject.TARGETS if name not in measured]
+    needs = getattr(subject, "NEEDS", "no scenes")
+    return f"left out: {', '.join(names)}: {needs}\n" if names else ""
 
 
 def main():
@@ -33,7 +43,8 @@ def main():
         writer = csv.DictWriter(file, fieldnames=("name", "value", "unit"))
         writer.writeheader()
         writer.writerows(figures)
-    trials.write_summary(out, "data", figures, trials.table(figures, targets))
+    text = trials.table(figures, targets) + "".join(left_out(s, figures) for s in SUBJECTS)
+    trials.write_summary(out, "data", figures, text)
 
 
 main()

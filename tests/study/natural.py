@@ -1,5 +1,6 @@
 """Table, CSV, picture and summary.json of `scripts/study natural`: calibration without a target, in
-simulated streets and rooms, from starts that are off."""
+simulated streets and rooms, from starts that are off, and in recorded ones (tests/real/natural_test.cc),
+where there are any."""
 
 import pathlib
 import sys
@@ -22,7 +23,9 @@ TARGETS = {
     "natural_silent_failures": ("<=", 0),
     "natural_search_success": (">=", 0.95),
     "natural_search_wrong": ("<=", 0),
+    "natural_real_rotation_deg": ("<=", 0.4),
 }
+TOLD = "natural_real_told_"  # and a session's name: 1 where its result is called good
 SEARCHED_DEG = 0.3
 
 
@@ -57,6 +60,34 @@ def figures_of(rows):
                      mean(r["converged"] and r["rotation_deg"] <= SEARCHED_DEG for r in searched))
         yield figure("natural_search_wrong",
                      sum(bool(r["converged"]) and r["rotation_deg"] > SEARCHED_DEG for r in searched))
+
+
+def recorded_figures(parts):
+    """Of recorded sessions: the worst of those that are told, off the board's own calibration."""
+    trials.TEXT.update({"name", "unit"})
+    values = {row["name"]: row["value"] for row in trials.read(parts, "recorded-natural")}
+    sessions = [name[len(TOLD):] for name in values if name.startswith(TOLD)]
+    if not sessions:
+        return
+    told = [session for session in sessions if values[TOLD + session]]
+    yield figure("natural_real_sessions", len(sessions))
+    yield figure("natural_real_cannot_tell", len(sessions) - len(told))
+    for name, unit in (("natural_real_rotation_deg", "deg"), ("natural_real_translation_mm", "mm")):
+        if told:
+            yield figure(name, max(values[f"{name}_{session}"] for session in told), unit)
+
+
+def why_not_recorded(figures):
+    """In a line, where natural_real_rotation_deg was not measured."""
+    values = {f["name"]: f["value"] for f in figures}
+    if "natural_real_rotation_deg" in values:
+        return ""
+    if "natural_real_sessions" not in values:
+        why = "no acfr_vlp16 and no acfr_os64 in RGBDT_REAL_DATA"
+    else:
+        why = ("each recorded session says why it tells no pose, or not all of it"
+               " (parts/recorded-natural.log)")
+    return f"left out: natural_real_rotation_deg: {why}\n"
 
 
 def table(rows):
@@ -96,8 +127,9 @@ def main():
     if not rows:
         sys.exit(f"study: no session in {out}/parts")
     draw(rows, out / "natural.png")
-    figures = list(figures_of(rows))
-    trials.write(out, "natural", rows, figures, table(rows) + trials.table(figures, TARGETS))
+    figures = list(figures_of(rows)) + list(recorded_figures(out / "parts"))
+    text = table(rows) + trials.table(figures, TARGETS) + why_not_recorded(figures)
+    trials.write(out, "natural", rows, figures, text)
 
 
 main()

@@ -1,7 +1,7 @@
-"""Table, CSV, picture and summary.json of `scripts/study odometry`: how far a spinning LIDAR's
-odometry drifts, how fast it is, and whether it says what it is not told, against the synthetic
-truth. And how thick the walls of a map are whose drive came back to where it began, with its loops
-closed; how many loops are false. KITTI's relative error (Geiger, Lenz and Urtasun 2012), here over 100 m, from every tenth
+"""Table, CSV, picture and summary.json of `scripts/study odometry`: how far a LIDAR's odometry
+drifts, how fast it is, and whether it says what it is not told, against the synthetic truth. How
+thick the walls of a map are whose drive came back to where it began, with its loops closed; how many
+loops are false. Whether points are coloured as if the rig stood still. KITTI's relative error (Geiger, Lenz and Urtasun 2012), here over 100 m, from every tenth
 sweep on; TUM's absolute trajectory error (Sturm et al. 2012), aligned with the truth."""
 
 import math
@@ -17,7 +17,9 @@ import numpy as np  # noqa: E402
 import trials  # noqa: E402
 from trials import column, figure, mean, median, pick  # noqa: E402
 
-DRIVES = {"street-32": "street, 32 rings", "street-16": "street, 16 rings", "room-32": "room, 32"}
+DRIVES = {"street-32": "street, 32 rings", "street-16": "street, 16 rings", "room-32": "room, 32",
+          "stops-0": "room, turned scanner"}
+NAMES = {"street-32": "odometry", "stops-0": "odometry_turned"}  # of figures
 NOT_TOLD = {"corridor-32": "corridor", "plain-32": "plain"}
 WALLS = {"true_mm": "true poses", "open_mm": "odometry alone", "closed_mm": "loops closed"}
 PERIOD = 0.1  # [s] of a sweep
@@ -27,6 +29,9 @@ TARGETS = {
     "odometry_degenerate_found": (">=", 1),
     "odometry_degenerate_false": ("<=", 0),
     "odometry_lost": ("<=", 0),
+    "odometry_turned_percent": ("<=", 0.5),
+    "odometry_turned_lost": ("<=", 0),
+    "moving_colour_share": (">=", 0.97),
     "odometry_way_over_sigma": ("in", 0.5, 1.5),
     "map_wall_mm": ("<=", 30),
     "map_false_loops": ("<=", 0),
@@ -113,7 +118,7 @@ def summary(run):
         "percent": 100 * mean([e[0] for e in errors]),
         "deg_per_100m": 100 * mean([e[1] for e in errors]),
         "ate_m": absolute_error(truth, found),
-        "realtime": PERIOD / mean(column(placed, "seconds")),
+        "realtime": mean(column(placed, "lasts")) / mean(column(placed, "seconds")),
         "slowest_ms": 1000 * max(column(placed, "seconds")),
         "lost": sum(r["converged"] == 0 for r in placed),
         "degenerate": sum(r["degenerate"] > 0 for r in placed),
@@ -132,7 +137,7 @@ def figures_of(rows):
         own = [summary(run) for run in runs(rows, kind)]
         if not own:
             continue
-        name = "odometry" if kind == "street-32" else f"odometry_{kind.replace('-', '_')}"
+        name = NAMES.get(kind, f"odometry_{kind.replace('-', '_')}")
         yield figure(f"{name}_percent", mean([s["percent"] for s in own]), "%")
         yield figure(f"{name}_percent_worst", max(s["percent"] for s in own), "%")
         yield figure(f"{name}_deg_per_100m", mean([s["deg_per_100m"] for s in own]), "deg")
@@ -167,6 +172,14 @@ def map_figures_of(rows):
     yield figure("map_twin_drives", len(rows) - len(own))
 
 
+def colour_figures_of(rows):
+    for poses, name in (("odometry", "moving_colour"), ("true", "moving_colour_true_poses")):
+        own = pick(rows, poses=poses)
+        yield figure(f"{name}_share", sum(column(own, "alike")) / sum(column(own, "seen")))
+        yield figure(f"{name}_share_worst", min(r["alike"] / r["seen"] for r in own))
+    yield figure("moving_colour_scenes", len(pick(rows, poses="odometry")))
+
+
 def map_table(rows):
     head = ["drive", "way m", "loops", "false", "tried", "refused", "end off m, open", "closed"]
     head += ["walls", *(f"{label} mm" for label in WALLS.values())]
@@ -192,12 +205,14 @@ def draw(rows, path):
     for place, kind in enumerate(DRIVES):
         for number, run in enumerate(runs(rows, kind)):
             truth, found = poses(run, "true_"), poses(run, "")
+            spins = column(run, "lasts")[0] < 2 * PERIOD
             steps = [np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, truth[1:])]
             way = np.concatenate([[0], np.cumsum(steps)])
             off = [np.linalg.norm(b[:3, 3] - a[:3, 3]) for a, b in zip(truth, found)]
             label = None if number else DRIVES[kind]
             axes[0].plot(way, off, c=f"C{place}", label=label)
-            axes[1].plot(1000 * np.array(column(run, "seconds")), c=f"C{place}", lw=0.7)
+            if spins:
+                axes[1].plot(1000 * np.array(column(run, "seconds")), c=f"C{place}", lw=0.7)
     axes[0].set(xlabel="way [m]", ylabel="error since the start [m]")
     axes[0].legend()
     axes[1].axhline(1000 * PERIOD / 5, color="r", linestyle="--")
@@ -216,8 +231,11 @@ def main():
     maps = trials.read(out / "parts", "map-")
     if not any(r["part"].startswith("map-block-") for r in maps):
         sys.exit(f"study: no drive round a block in {out / 'parts'}")
+    colours = trials.read(out / "parts", "colour-")
+    if not colours:
+        sys.exit(f"study: nothing coloured in {out / 'parts'}")
     draw(rows, out / "odometry.png")
-    figures = [*figures_of(rows), *map_figures_of(maps)]
+    figures = [*figures_of(rows), *map_figures_of(maps), *colour_figures_of(colours)]
     tables = table(rows) + map_table(maps) + trials.table(figures, TARGETS)
     trials.write(out, "odometry", rows, figures, tables)
 

@@ -1,10 +1,13 @@
 // Odometry on simulated drives whose truth is known.
 //   study_odometry SCENE RINGS SPEED_MPS SEED SWEEPS CSV
-// SCENE: street, room, corridor or plain. A line of CSV for each sweep: where the LIDAR truly was
-// and where it was found, in its middle, since the first sweep; what was said; one core's time.
+// SCENE: street, room, corridor or plain; or stops: in the room, with the turned scanner (RINGS and
+// its speed do not count), a sweep every metre. A line of CSV for each sweep: where the LIDAR truly
+// was and where it was found, in its middle, since the first sweep; what was said; one core's time.
 #include <ctime>
 #include <fstream>
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +34,7 @@ Drive MakeDrive(const std::string& scene, int rings, double speed, std::uint64_t
                                                            {"plain", DriveScene::kPlain}};
   const auto found = scenes.find(scene);
   if (found == scenes.end()) {
-    throw InputError("scene is " + scene + "; expected street, room, corridor or plain");
+    throw InputError("scene is " + scene + "; expected street, room, corridor, plain or stops");
   }
   const double aside = found->second == DriveScene::kCorridor ? 0.2 : 0.7;
   return {
@@ -45,23 +48,42 @@ void WritePose(std::ostream& out, const Rigid3& pose) {
       << pose.rotation.w();
 }
 
+/// Sweep by sweep; and where the LIDAR truly was, by the sweep's number and the time of its pose.
+struct Source {
+  std::function<Cloud(int number)> sweep;
+  std::function<Rigid3(int number, Utime utime)> truth;
+};
+
+Source SourceOf(const std::string& scene, int rings, double speed, std::uint64_t seed) {
+  if (scene == "stops") {
+    constexpr double kApart = 1;  // [m]
+    const auto stops = std::make_shared<Stops>(seed, simulate::FullTurnScanner(), kApart);
+    return {[=](int number) { return stops->Sweep(number); },
+            [=](int number, Utime) { return stops->At(number); }};
+  }
+  const auto drive = std::make_shared<Drive>(MakeDrive(scene, rings, speed, seed));
+  return {[=](int number) { return drive->Sweep(number); },
+          [=](int, Utime utime) { return drive->At(utime); }};
+}
+
 void Run(const std::vector<std::string>& a) {
-  Drive drive = MakeDrive(a[0], std::stoi(a[1]), std::stod(a[2]), std::stoull(a[3]));
+  const Source source = SourceOf(a[0], std::stoi(a[1]), std::stod(a[2]), std::stoull(a[3]));
   std::ofstream csv(a[5]);
   csv.precision(12);
-  csv << "sweep,converged,degenerate,points,matched,iterations,seconds,sigma_m,"
+  csv << "sweep,converged,degenerate,points,matched,iterations,seconds,lasts,sigma_m,"
          "true_x,true_y,true_z,true_qx,true_qy,true_qz,true_qw,x,y,z,qx,qy,qz,qw\n";
   Odometry odometry;
   std::optional<Rigid3> first;
   for (int i = 0; i < std::stoi(a[4]); ++i) {
-    const Cloud sweep = drive.Sweep(i);
+    const Cloud sweep = source.sweep(i);
     const double before = CpuSeconds();
     const OdometryResult found = odometry.Add(sweep);
     const double seconds = CpuSeconds() - before;
-    const Rigid3 truth = drive.At(found.middle_utime);
+    const Rigid3 truth = source.truth(i, found.middle_utime);
     if (!first) first = truth * found.world_from_middle.Inverse();
     csv << i << ',' << found.converged << ',' << found.degenerate.size() << ',' << found.points
         << ',' << found.matched << ',' << found.iterations << ',' << seconds << ','
+        << ToSeconds(found.utime - found.first_utime) << ','
         << std::sqrt(found.covariance.bottomRightCorner<3, 3>().trace());
     WritePose(csv, truth);
     WritePose(csv, *first * found.world_from_middle);

@@ -119,11 +119,11 @@ class Target:
 
     def text(self, value):
         if self.least == -math.inf:
-            out = f"<= {self.most:.3g}"
+            out = f"<= {self.most:.4g}"
         elif self.most == math.inf:
-            out = f">= {self.least:.3g}"
+            out = f">= {self.least:.4g}"
         else:
-            out = f"{self.least:.3g} to {self.most:.3g}"
+            out = f"{self.least:.4g} to {self.most:.4g}"
         out = f"{out:<14}{'' if self.reached(value) else 'MISSED'}"
         if self.bound is not None:
             out = f"{out:<22}bound {self.bound:.3g}"
