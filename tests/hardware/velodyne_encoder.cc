@@ -74,7 +74,7 @@ double VelodyneEncoder::BlockTime_us() const {
   return model == Encoded::kVlp16    ? 2 * 55.296
          : model == Encoded::kVlp32c ? 55.296
          : model == Encoded::kHdl32e ? 46.08
-                                   : 48;
+                                     : 48;
 }
 
 double VelodyneEncoder::PacketDuration_us() const {
@@ -117,7 +117,7 @@ std::vector<std::uint8_t> VelodyneEncoder::Packet(int number) const {
   bytes.push_back(model == Encoded::kVlp16    ? 0x22
                   : model == Encoded::kVlp32c ? 0x28
                   : model == Encoded::kHdl32e ? 0x21
-                                            : 0x05);
+                                              : 0x05);
   return bytes;
 }
 

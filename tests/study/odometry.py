@@ -231,6 +231,7 @@ def main():
     maps = trials.read(out / "parts", "map-")
     if not any(r["part"].startswith("map-block-") for r in maps):
         sys.exit(f"study: no drive round a block in {out / 'parts'}")
+    trials.TEXT.add("poses")
     colours = trials.read(out / "parts", "colour-")
     if not colours:
         sys.exit(f"study: nothing coloured in {out / 'parts'}")

@@ -40,8 +40,9 @@ std::vector<Rigid3> LikelyPlaces(const TimedSweep& sweep, const PlaneMap& map, c
                                  double reach_m) {
   std::vector<Eigen::Vector3d> points;
   const std::size_t every = std::max<std::size_t>(1, sweep.selected.size() / kPoints);
+  points.reserve(sweep.selected.size() / every + 1);
   for (std::size_t i = 0; i < sweep.selected.size(); i += every) {
-    points.push_back(sweep.selected[i].point.cast<double>());
+    points.emplace_back(sweep.selected[i].point.cast<double>());
   }
   const int steps = static_cast<int>(std::ceil(reach_m / kStep));
   std::vector<Candidate> candidates;
@@ -49,7 +50,8 @@ std::vector<Rigid3> LikelyPlaces(const TimedSweep& sweep, const PlaneMap& map, c
     Rigid3 turned = last * RotationAbout(Eigen::Vector3d::UnitZ(), heading * 2 * M_PI / kHeadings);
     const Eigen::Matrix3d rotation = turned.rotation.toRotationMatrix();
     std::vector<Eigen::Vector3d> rotated;
-    for (const Eigen::Vector3d& p : points) rotated.push_back(rotation * p);
+    rotated.reserve(points.size());
+    for (const Eigen::Vector3d& p : points) rotated.emplace_back(rotation * p);
     for (int x = -steps; x <= steps; ++x) {
       for (int y = -steps; y <= steps; ++y) {
         const Eigen::Vector3d moved = kStep * Eigen::Vector3d(x, y, 0);

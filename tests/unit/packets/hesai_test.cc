@@ -118,8 +118,7 @@ TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
       const Driven driven(encoder, 80, 80 + lost);
       ASSERT_FALSE(driven.done.empty());
       for (const Cloud& cloud : driven.done) EXPECT_EQ(cloud.beams, 360) << lost;
-      EXPECT_EQ(driven.sweeps->Lost(),
-                "1 revolutions left out, as half a turn or more never came");
+      EXPECT_EQ(driven.sweeps->Lost(), "1 revolutions left out, as half a turn or more never came");
     }
   }
 }
