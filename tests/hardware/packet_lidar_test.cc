@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "calib/files/atomic_file.h"
 #include "calib/model/errors.h"
@@ -194,6 +195,36 @@ TEST_F(PacketLidar, LivePacketsLargerThanAFrameAnswerASweepCommand) {
   EXPECT_EQ(source.report().count("lost columns"), 0);
   EXPECT_GT(source.report().sweep_begun(), sweep.sweep_utime);
   EXPECT_THAT(source.report().GetStatus().text, HasSubstr("OS-0-4"));
+}
+
+// What comes, for a little more than the two seconds after which silence is told.
+Collected Hear(PacketSource* source, const std::vector<Sent>& packets) {
+  DeviceThread thread([&](DeviceThread& self) { source->Serve(self); });
+  for (int i = 0; i < 5000 && source->port() == 0; ++i) usleep(1000);
+  const UdpSender sender(source->port());
+  Collected collected;
+  const Utime begin = HostUtime();
+  for (std::size_t i = 0; HostUtime() < begin + 2'400'000; ++i) {
+    if (!packets.empty()) sender.Send(packets[i % packets.size()].payload);
+    usleep(20'000);
+    EXPECT_TRUE(Collect(&thread, &collected, [](const Collected&) { return true; }));
+  }
+  return collected;
+}
+
+TEST_F(PacketLidar, SilenceIsToldAndWhatIsNoSilenceIsNot) {
+  OusterEncoder encoder;
+  PacketLidarDevice device;
+  device.metadata = Write("os0.json", encoder.Metadata());
+  const auto silent = ": no packets for 2 s";
+  EXPECT_TRUE(Hear(std::make_unique<PacketSource>(device).get(), {}).HasWarning(silent));
+  const Collected its = Hear(std::make_unique<PacketSource>(device).get(), Packets(encoder, 8));
+  EXPECT_FALSE(its.HasWarning(silent));
+  EXPECT_FALSE(its.HasWarning("packets come"));
+  encoder.profile = "RNG15_RFL8_NIR8";
+  const Collected other = Hear(std::make_unique<PacketSource>(device).get(), Packets(encoder, 1));
+  EXPECT_FALSE(other.HasWarning(silent));
+  EXPECT_TRUE(other.HasWarning("but none with sweeps of a OS-0-4"));
 }
 
 TEST_F(PacketLidar, APacketOfAnotherSensorIsToldWithWhatToLookAt) {

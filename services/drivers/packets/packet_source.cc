@@ -83,14 +83,20 @@ void PacketSource::Listen(DeviceThread& thread) {
   const std::string where = "UDP port " + std::to_string(udp.port());
   report_.Set("waits for packets at " + where, false);
   auto last = Clock::now();
-  std::int64_t packets = report_.count("packets"), others = report_.count("other packets");
+  const auto heard = [this] { return report_.count("packets") + report_.count("bad packets"); };
+  std::int64_t packets = heard(), others = report_.count("other packets");
   while (!thread.Stopping()) {
     if (const auto datagram = udp.Receive(kSliceMs)) {
       Take(thread, datagram->payload, datagram->utime);
     }
-    if (std::exchange(packets, report_.count("packets")) != packets) last = Clock::now();
+    if (heard() != packets) {
+      packets = heard();
+      last = Clock::now();
+    }
     if (Clock::now() - last <= kMostSilence) continue;
-    if (std::exchange(others, report_.count("other packets")) != others) {
+    last = Clock::now();
+    if (report_.count("other packets") != others) {
+      others = report_.count("other packets");
       report_.Set("hears nothing that it knows at " + where, false);
       thread.Warn(where + ": " + OthersText());
     } else {
@@ -99,7 +105,6 @@ void PacketSource::Listen(DeviceThread& thread) {
                   ": no packets for 2 s; is the LIDAR on, does it send to this "
                   "machine's address and this port, and does a firewall let it in?");
     }
-    last = Clock::now();
   }
 }
 
@@ -172,7 +177,8 @@ void PacketSource::ReportLosses(DeviceThread& thread) {
     report_.Count(losses[i].counter, losses[i].count - lost_reported_[i]);
     lost_reported_[i] = losses[i].count;
   }
-  if (std::exchange(steps_reported_, sweeps_->clock_steps()) != sweeps_->clock_steps()) {
+  if (sweeps_->clock_steps() != steps_reported_) {
+    steps_reported_ = sweeps_->clock_steps();
     thread.Warn("the LIDAR's clock or this machine's was set; the points' times begin anew");
   }
 }
