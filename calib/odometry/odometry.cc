@@ -102,12 +102,13 @@ struct Odometry::Impl {
   Utime middle = 0;                 // of `motion`
   Motion motion;
   int lost = 0;
+  int refused = 0;              // in a row, as of another kind of LIDAR
   double usual_residual_m = 0;  // of the sweeps before; 0: not known
   double usual_share = 0;       // of their points, on planes seen before
   Eigen::Vector3d forgotten_at{0, 0, 0};
 
   OdometryResult Add(const Cloud& cloud);
-  double Since(const Cloud& cloud, const TimedSweep& sweep) const;
+  double Since(const Cloud& cloud, const TimedSweep& sweep);
   void Begin(const TimedSweep& sweep);
   void Lose(const TimedSweep& sweep, double seconds);
   void Follow(const TimedSweep& sweep, double seconds, OdometryResult* result);
@@ -126,7 +127,7 @@ void Odometry::Impl::Begin(const TimedSweep& sweep) {
   standing = sweep.standing;
   motion = Unknown(motion.world_from_lidar);
   forgotten_at = motion.world_from_lidar.translation;
-  lost = 0;
+  lost = refused = 0;
   usual_residual_m = usual_share = 0;
   begun = anew = true;
   first.reset();
@@ -252,7 +253,7 @@ void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) con
 }
 
 // The way since the sweep before [s]; 0: the map begins with this one.
-double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) const {
+double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) {
   if (!begun || cloud.sweep_utime < sweep_utime - kClockReset) return 0;
   const double seconds = ToSeconds(sweep.middle - middle);
   if (cloud.sweep_utime <= sweep_utime || seconds <= 0) {
@@ -260,10 +261,14 @@ double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) const 
                      " is not newer than the one before, " + std::to_string(sweep_utime));
   }
   if (sweep.standing != standing) {
+    // A part of a turned scanner's first sweep looks like a spinning LIDAR's: begun anew then.
+    if (sweep.standing && (first || ToSeconds(sweep.first - middle) > kMostGap)) return 0;
+    if (++refused > kMostLost) return 0;
     throw InputError("sweep " + std::to_string(cloud.sweep_utime) + " is a " +
                      KindOf(sweep.standing) + "'s by how long it lasts, the ones before are a " +
                      KindOf(standing) + "'s; expected those of one LIDAR");
   }
+  refused = 0;
   return standing || seconds <= kMostGap ? seconds : 0;
 }
 

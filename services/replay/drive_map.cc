@@ -66,10 +66,22 @@ bool IsOfWay(const std::string& channel) {
   return channel == "CLOUD" || channel == "POSE" || channel == "RIG";
 }
 
+bool IsOnePlace(const StampedPose& a, const StampedPose& b) {
+  return a.map_from_lidar.translation == b.map_from_lidar.translation &&
+         a.map_from_lidar.rotation.coeffs() == b.map_from_lidar.rotation.coeffs();
+}
+
 void Correct(const Keyframes& keyframes, MappedDrive* drive) {
   drive->closed = CloseLoops(keyframes);
-  for (StampedPose& pose : drive->way) {
-    pose.map_from_lidar = drive->closed->Corrected(pose.utime, pose.map_from_lidar);
+  const std::vector<StampedPose> found = drive->way;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    // A stop's two poses are one place, corrected as of its middle.
+    Utime utime = found[i].utime;
+    for (const std::size_t other : {i - 1, i + 1}) {
+      if (other >= found.size() || !IsOnePlace(found[i], found[other])) continue;
+      utime = found[i].utime + (found[other].utime - found[i].utime) / 2;
+    }
+    drive->way[i].map_from_lidar = drive->closed->Corrected(utime, found[i].map_from_lidar);
   }
 }
 

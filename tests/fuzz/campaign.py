@@ -58,7 +58,7 @@ services/messages/codec_scan.cc services/messages/codec_session.cc
 services/messages/codec_target.cc services/messages/internal/codec_board.cc
 services/messages/internal/image_file.cc services/messages/internal/layout.cc
 services/messages/signature.cc
-services/packets/bag_packets.cc services/packets/packet_sweeps.cc services/packets/recording.cc
+services/packets/bag_packets.cc services/drivers/packets/packet_sweeps.cc services/packets/recording.cc
 viewer/server/internal/browser.cc viewer/server/internal/foxglove_client.cc
 viewer/server/internal/foxglove_protocol.cc viewer/server/internal/http_answer.cc
 viewer/server/internal/http_connection.cc viewer/server/internal/message.cc

@@ -1,5 +1,5 @@
 // A recording of network packets.
-#include "services/drivers/packets/packet_source.h"
+#include "services/drivers/pcap/pcap_reader.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

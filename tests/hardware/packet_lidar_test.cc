@@ -39,7 +39,7 @@ struct Sent {
   Payload payload;
 };
 
-// A packet of 128 beams is larger than a network's frame.
+// A packet of 128 beams.
 OusterEncoder LargeOuster() {
   OusterEncoder encoder;
   encoder.rows = 128;
@@ -168,8 +168,7 @@ TEST_F(PacketLidar, RecordingsAreWhatTheirDecodersGive) {
   ExpectAsDecoded(device, sent, LivoxPackets(sent.front().payload).get(), 1);
 }
 
-// A sweep that begins after the command is the one that answers it.
-TEST_F(PacketLidar, LivePacketsLargerThanAFrameAnswerASweepCommand) {
+TEST_F(PacketLidar, LivePacketsOfManyKilobytesBecomeSweeps) {
   const OusterEncoder encoder = LargeOuster();
   PacketLidarDevice device;
   device.metadata = Write("os0.json", encoder.Metadata());
@@ -225,6 +224,22 @@ TEST_F(PacketLidar, SilenceIsToldAndWhatIsNoSilenceIsNot) {
   const Collected other = Hear(std::make_unique<PacketSource>(device).get(), Packets(encoder, 1));
   EXPECT_FALSE(other.HasWarning(silent));
   EXPECT_TRUE(other.HasWarning("but none with sweeps of a OS-0-4"));
+}
+
+// An Ouster whose metadata are of twice the columns, and whose clock is an hour behind.
+TEST_F(PacketLidar, HalfATurnAndAClockThatIsOffAreTold) {
+  OusterEncoder encoder;
+  encoder.first_ns = (HostUtime() - 3600 * kMicrosecondsPerSecond) * 1000;
+  std::vector<Sent> sent = Packets(encoder, 8);
+  for (std::size_t i = sent.size(); i-- > 0;) {
+    if (i % 2 == 1) sent.erase(sent.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  PacketLidarDevice device;
+  device.metadata = Write("os0.json", encoder.Metadata());
+  const Collected collected = Hear(std::make_unique<PacketSource>(device).get(), sent);
+  EXPECT_TRUE(collected.HasWarning("half of its columns or more never came; is"));
+  EXPECT_TRUE(collected.HasWarning("its clock is 3600"));
+  EXPECT_TRUE(collected.HasWarning("s behind this machine's"));
 }
 
 TEST_F(PacketLidar, APacketOfAnotherSensorIsToldWithWhatToLookAt) {

@@ -75,6 +75,7 @@ void CheckTimes(const Cloud& part) {
 
 void CheckMessageTimes(const Cloud& part) {
   CheckTimes(part);
+  if (part.utime.empty()) return;
   constexpr double kStretch = Odometry::kMostSweep / 2;  // two without a point: a gap
   std::vector<bool> any(static_cast<std::size_t>(2 * Odometry::kMostStop / kStretch) + 2, false);
   for (const Utime utime : part.utime) {

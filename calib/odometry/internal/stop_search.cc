@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rgbdt::odometry {
 namespace {
@@ -15,6 +16,7 @@ constexpr double kBeside = 1.1 * kStep, kBesideTurned = 1.1 * 2 * M_PI / kHeadin
 
 constexpr std::size_t kStarts = 16;  // registered from so many
 constexpr double kReach = 2.4;       // [m] how far away it is looked for
+constexpr int kMostReach = 3;        // so many times as far at most, after stops that were missed
 constexpr double kSamePlace = 0.3;   // [m]
 constexpr double kSameTurn = 0.2;    // [rad]
 constexpr double kAsGood = 0.93;     // of the points near a plane: another place is as good
@@ -100,15 +102,17 @@ Stop FindStop(const TimedSweep& sweep, const PlaneMap& map, const Motion& before
   Stop stop;
   std::vector<Registration> all;
   for (const Rigid3& place :
-       LikelyPlaces(sweep, map, before.world_from_lidar, (1 + lost) * kReach)) {
+       LikelyPlaces(sweep, map, before.world_from_lidar, std::min(1 + lost, kMostReach) * kReach)) {
     Motion start = before;
     start.world_from_lidar = place;
     all.push_back(Register(sweep, map, before, start, Untold::kAtTheEnd, options));
     const Registration& found = all.back();
-    if (found.converged >= stop.best.converged && found.near > stop.best.near) stop.best = found;
+    const auto worth = [](const Registration& r) { return std::make_pair(r.converged, r.near); };
+    if (worth(found) > worth(stop.best)) stop.best = found;
   }
   for (const Registration& other : all) {
     const Rigid3& place = other.motion.world_from_lidar;
+    if (!other.converged) continue;
     if (IsNear(place, stop.best.motion.world_from_lidar, kSamePlace, kSameTurn)) continue;
     if (static_cast<double>(other.near) < kAsGood * static_cast<double>(stop.best.near)) continue;
     stop.other = place;

@@ -1,6 +1,7 @@
 #include "services/drivers/packets/packet_source.h"
 
 #include <chrono>
+#include <cstdlib>
 #include <utility>
 
 #include "calib/files/atomic_file.h"
@@ -83,19 +84,22 @@ void PacketSource::Listen(DeviceThread& thread) {
   const std::string where = "UDP port " + std::to_string(udp.port());
   report_.Set("waits for packets at " + where, false);
   auto last = Clock::now();
-  const auto heard = [this] { return report_.count("packets") + report_.count("bad packets"); };
-  std::int64_t packets = heard(), others = report_.count("other packets");
+  std::int64_t packets = report_.count("packets"), bad = report_.count("bad packets"),
+               others = report_.count("other packets");
   while (!thread.Stopping()) {
     if (const auto datagram = udp.Receive(kSliceMs)) {
       Take(thread, datagram->payload, datagram->utime);
     }
-    if (heard() != packets) {
-      packets = heard();
+    if (report_.count("packets") != packets) {
+      packets = report_.count("packets");
       last = Clock::now();
     }
     if (Clock::now() - last <= kMostSilence) continue;
     last = Clock::now();
-    if (report_.count("other packets") != others) {
+    if (report_.count("bad packets") != bad) {  // each of them was named
+      bad = report_.count("bad packets");
+      report_.Set("hears only bad packets at " + where, false);
+    } else if (report_.count("other packets") != others) {
       others = report_.count("other packets");
       report_.Set("hears nothing that it knows at " + where, false);
       thread.Warn(where + ": " + OthersText());
@@ -166,14 +170,35 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
   }
   report_.SetSweepBegun(sweeps_->begun());
   report_.Count("packets");
-  ReportLosses(thread);
+  const std::int64_t lost = ReportLosses(thread);
+  if (!done.empty()) LookAt(thread, done.back(), lost, utime);
   for (const Cloud& sweep : done) Publish(thread, sweep);
 }
 
-void PacketSource::ReportLosses(DeviceThread& thread) {
+// What makes a whole sweep useless, and is no error of a packet.
+void PacketSource::LookAt(DeviceThread& thread, const Cloud& sweep, std::int64_t lost,
+                          Utime arrival) const {
+  constexpr Utime kMostApart = 2 * kMicrosecondsPerSecond;  // a Livox's sweep lasts a second
+  if (!link_.metadata.empty() && 2 * lost >= sweep.beams) {
+    thread.Warn(name_ + ": half of its columns or more never came; is " + link_.metadata +
+                " of this very LIDAR, as it is set up now (columns, azimuth window)?");
+  }
+  const Utime behind = arrival - sweep.sweep_utime;
+  if (link_.pcap.empty() && std::abs(behind) > kMostApart) {
+    thread.Warn(
+        Format("%s: its clock is %.1f s %s this machine's, so its sweeps answer no command "
+               "and belong to no image; let both follow one clock (PTP, NTP, GPS)",
+               name_.c_str(), std::abs(ToSeconds(behind)), behind > 0 ? "behind" : "ahead of"));
+  }
+}
+
+// How much since the last packet.
+std::int64_t PacketSource::ReportLosses(DeviceThread& thread) {
   const auto losses = sweeps_->Losses();
   lost_reported_.resize(losses.size());
+  std::int64_t lost = 0;
   for (std::size_t i = 0; i < losses.size(); ++i) {
+    lost += losses[i].count - lost_reported_[i];
     report_.Count(losses[i].counter, losses[i].count - lost_reported_[i]);
     lost_reported_[i] = losses[i].count;
   }
@@ -181,6 +206,7 @@ void PacketSource::ReportLosses(DeviceThread& thread) {
     steps_reported_ = sweeps_->clock_steps();
     thread.Warn("the LIDAR's clock or this machine's was set; the points' times begin anew");
   }
+  return lost;
 }
 
 void PacketSource::Publish(DeviceThread& thread, const Cloud& sweep) {

@@ -16,8 +16,10 @@
 namespace rgbdt {
 namespace {
 
-constexpr int kBufferBytes = 8 * 1024 * 1024;  // a fifth of a second of the fastest, at least
-constexpr std::size_t kMaxDatagram = 65'536;   // an Ouster's have up to 25 kB
+// A fifth of a second of the fastest, where the kernel allows it (net.core.rmem_max, which `rgbdt
+// doctor` looks at).
+constexpr int kBufferBytes = 8 * 1024 * 1024;
+constexpr std::size_t kMaxDatagram = 65'536;  // an Ouster's have up to 25 kB
 
 // When the kernel had it: a busy process does not make it later.
 Utime ArrivalOf(msghdr* message) {

@@ -297,6 +297,20 @@ TEST(Odometry, ATurnedScannersSweepFromElsewhereIsSaidAndTheNextOneGoesOn) {
       0.01);
 }
 
+// The last lines of a sweep that began before the odometry did.
+TEST(Odometry, APartOfATurnedScannersSweepDoesNotDecideWhatTheLidarIs) {
+  const study::Stops stops(5, Scanner(), 0.5);
+  Cloud part = stops.Sweep(0);
+  const std::size_t keep = part.size() / 8;
+  for (std::size_t i = keep; i < part.size(); ++i) part.points[i].setConstant(NAN);
+  Odometry odometry;
+  odometry.Add(part);
+  EXPECT_TRUE(odometry.Add(stops.Sweep(1)).converged);
+  const OdometryResult result = odometry.Add(stops.Sweep(2));
+  EXPECT_TRUE(result.converged);
+  EXPECT_TRUE(result.standing);
+}
+
 // What is seen, and the same turned by half a turn.
 Cloud Twice(Cloud sweep) {
   const Eigen::Quaternionf turn(0, 0, 0, 1);
