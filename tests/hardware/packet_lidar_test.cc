@@ -185,7 +185,8 @@ TEST_F(PacketLidar, LivePacketsOfManyKilobytesBecomeSweeps) {
   }
   Collected collected;
   ASSERT_TRUE(Collect(&thread, &collected, [&](const Collected& t) {
-    return Joined(t).size() == 4;  // the fifth turn's end has not come
+    // The fifth turn's end has not come.
+    return Joined(t).size() == 4 && source.report().count("packets") == 10;
   }));
   const Cloud sweep = Joined(collected).back();
   EXPECT_EQ(sweep.lines, 128);
