@@ -60,6 +60,10 @@ class Board:
         for x, y in self.squares(True):
             yield x, y, self.side, self.side, True
 
+    def circles(self):
+        """(x, y, radius) of each hole."""
+        return ()
+
     def fields(self):
         """Of the rig file's target, but for the board's size and the pattern's offset."""
         return [f"  squares_x: {self.nx} squares_y: {self.ny} square_m: {metres(self.side)}"]
@@ -181,6 +185,58 @@ class AprilGrid(Board):
         return f"{self.tags_x}x{self.tags_y} AprilTags ({self.family}) of {text(self.tag)} mm"
 
 
+class BoardWithHoles(Board):
+    """velo2cam's and FAST-Calib's: four round holes, and a marker towards each corner."""
+
+    FAMILY = "6X6_250"
+    FIRST = 1  # along the rows from the top
+    HOLES = 500, 400  # from centre to centre
+    MARKERS = 1100, 700
+    SIZE = "1400x1000"
+
+    def __init__(self, marker_mm, board_mm):
+        (self.marker,) = parse("--holes", marker_mm, NUMBER, "160")
+        if self.marker > 300:
+            die(f"--holes: markers of {self.marker:g} mm would touch the holes; 300 mm at most")
+        self.radius = 120
+        self.width, self.height = parse("--board-mm", board_mm, NUMBER + "x" + NUMBER, self.SIZE)
+        self.offset = 0, 0
+        self.black_border = False
+        for name, size, apart in (("width", self.width, self.MARKERS[0]),
+                                  ("height", self.height, self.MARKERS[1])):
+            if self.marker <= 0 or apart + self.marker > size + 1e-9:
+                die(f"--holes: markers of {self.marker:g} mm need {apart + self.marker:g} mm of the "
+                    f"board's {name}, which is {size:g} mm")
+        self.white, self.cells = markers_of(self.FAMILY, 1)
+
+    def centres(self, apart):
+        for y in (-0.5, 0.5):
+            for x in (-0.5, 0.5):
+                yield 0.5 * self.width + x * apart[0], 0.5 * self.height + y * apart[1]
+
+    def pattern(self):
+        across, down = (apart + self.marker for apart in self.MARKERS)
+        return 0.5 * (self.width - across), 0.5 * (self.height - down), across, down
+
+    def rectangles(self):
+        cell = self.marker / self.cells
+        for number, (middle_x, middle_y) in enumerate(self.centres(self.MARKERS), self.FIRST):
+            x, y = middle_x - 0.5 * self.marker, middle_y - 0.5 * self.marker
+            yield x, y, self.marker, self.marker, True
+            for column, row in self.white(number):
+                yield x + column * cell, y + row * cell, cell, cell, False
+
+    def circles(self):
+        for x, y in self.centres(self.HOLES):
+            yield x, y, self.radius
+
+    def fields(self):
+        return [f"  holes {{ marker_m: {metres(self.marker)} }}"]
+
+    def title(self):
+        return f"Four holes of {2 * self.radius} mm, {self.FAMILY} markers of {text(self.marker)} mm"
+
+
 def metres(mm):
     return f"{mm / 1000:.7f}".rstrip("0").rstrip(".")
 
@@ -206,6 +262,9 @@ def svg(board):
     ]
     for x, y, width, height, black in board.rectangles():
         lines.append(rect(x, y, width, height, "black" if black else "white"))
+    for x, y, radius in board.circles():  # to be cut out
+        lines.append(f'<circle cx="{text(x)}" cy="{text(y)}" r="{text(radius)}" fill="white" '
+                     'stroke="black" stroke-width="0.2"/>')
     return "\n".join(lines + ["</svg>", ""])
 
 
@@ -229,6 +288,9 @@ def dxf(board):
         codes += [0, "LAYER", 2, layer, 70, 0, 62, colour, 6, "CONTINUOUS"]
     codes += [0, "ENDTAB", 0, "ENDSEC", 0, "SECTION", 2, "ENTITIES"]
     codes += polyline("CUT", 0, 0, board.width, board.height)
+    for x, y, radius in board.circles():
+        codes += [0, "CIRCLE", 8, "CUT", 10, text(x), 20, text(board.height - y), 30, 0]
+        codes += [40, text(radius)]
     codes += polyline("FRAME", *board.pattern())
     if type(board) is Board:
         for layer, black in (("BLACK", True), ("WHITE", False)):
@@ -261,15 +323,18 @@ def write(path, content):
 
 
 def main():
-    charuco, aprilgrid, out = sys.argv[6:9]
-    if charuco and aprilgrid:
-        die("--charuco and --aprilgrid are two boards; expected one")
-    if aprilgrid:
-        board = AprilGrid(aprilgrid, sys.argv[3], sys.argv[4])
+    charuco, aprilgrid, holes, out = sys.argv[6:10]
+    if sum(map(bool, (charuco, aprilgrid, holes))) > 1:
+        die("--charuco, --aprilgrid and --holes are different boards; expected one")
+    size = sys.argv[3] or "1219.2x914.4"
+    if holes:
+        board = BoardWithHoles(holes, sys.argv[3] or BoardWithHoles.SIZE)
+    elif aprilgrid:
+        board = AprilGrid(aprilgrid, size, sys.argv[4])
     elif charuco:
-        board = Charuco(*sys.argv[1:6], charuco)
+        board = Charuco(*sys.argv[1:3], size, *sys.argv[4:6], charuco)
     else:
-        board = Board(*sys.argv[1:6])
+        board = Board(*sys.argv[1:3], size, *sys.argv[4:6])
     try:
         os.makedirs(out, exist_ok=True)
         for name, content in (("svg", svg), ("dxf", dxf), ("textproto", textproto)):

@@ -39,7 +39,7 @@ std::vector<Eigen::Vector2d> OutlineOf(const Camera& camera, const Target& targe
   return outline;
 }
 
-// Without a pattern: by its outline, as exactly as for the solve.
+// Without a pattern, or where a camera may not see it: by its outline, as exactly as for the solve.
 TargetStatus LookForPlain(const CameraSpec& spec, const Target& target, const Image& image,
                           TargetStatus status) {
   const Camera camera(spec);
@@ -61,7 +61,10 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   TargetStatus status;
   status.camera = image.camera;
   status.utime = image.utime;
-  if (!rig.target.HasPattern()) return LookForPlain(spec, rig.target, image, std::move(status));
+  const bool markers_may_hide = rig.target.holes && spec.kind == CameraKind::kThermal;
+  if (!rig.target.HasPattern() || markers_may_hide) {
+    return LookForPlain(spec, rig.target, image, std::move(status));
+  }
   cv::Mat grey = ToGrey(image);
   const double shrink = std::max(1.0, std::round(grey.cols / kEnoughPixels));
   if (shrink > 1) cv::resize(grey, grey, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);

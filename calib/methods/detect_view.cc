@@ -191,8 +191,9 @@ std::vector<LidarDetection> DetectFurther(const Rig& rig, const View& view) {
 
 ViewDetection DetectView(const Rig& rig, const View& view, const std::string& method) {
   RequireMethod(method);
-  if (!rig.target.HasPattern() && method != kAutoMethod) {
-    throw InputError("method \"" + method + "\" needs a checkerboard; the rig's target is plain");
+  if (rig.target.WhiteToTheRim() && method != kAutoMethod) {
+    throw InputError("method \"" + method + "\" needs a checkerboard; the rig's target " +
+                     (rig.target.holes ? "has holes" : "is plain"));
   }
   const bool by_paper = method == kPaperMethod;
   ViewDetection detection;

@@ -114,9 +114,45 @@ void CheckMarkers(const Target& target, const Markers& markers) {
           std::to_string(markers.gap_m), "metres, 0 or more");
   Require(markers.grid() || markers.side_m < target.square_m, "target.charuco.marker_m",
           Exact(markers.side_m), "less than square_m, " + Exact(target.square_m));
-  const auto count = target.MarkerPlaces().size();
-  Require(count <= static_cast<std::size_t>(family->count), "the number of markers on the target",
-          std::to_string(count), Format("%d at most: %s has no more", family->count, family->name));
+  const auto places = target.MarkerPlaces();
+  Require(places.back().id < family->count, "the number of the target's last marker",
+          std::to_string(places.back().id),
+          Format("%d at most: %s has no more", family->count - 1, family->name));
+}
+
+void CheckHoles(const Target& target, const Holes& holes) {
+  constexpr double kLeastRadiusM = 0.05, kLeastRimM = 0.01, kLeastOblongM = 0.05;
+  RequirePositive(target.markers->side_m, "target.holes.marker_m");
+  RequireMetres(target.markers->side_m, kLargestSquareM, "target.holes.marker_m");
+  Require(holes.radius_m >= kLeastRadiusM, "target.holes.hole_radius_m", Exact(holes.radius_m),
+          "5 cm or more");
+  Require(target.pattern_offset_m.isZero(0), "target.pattern_offset_m",
+          Exact(target.pattern_offset_m.x()) + ", " + Exact(target.pattern_offset_m.y()),
+          "none: holes and markers lie about the board's centre");
+  Require(std::abs(target.width_m - target.height_m) > kLeastOblongM, "target.width_m",
+          Exact(target.width_m), "not as much as height_m: a quarter turn is not told then");
+  Require(holes.first_marker >= 0, "target.holes.first_marker", std::to_string(holes.first_marker),
+          "0 or more");
+  const double side = target.markers->side_m;
+  const Eigen::Vector2d size(target.width_m, target.height_m);
+  for (int axis = 0; axis < 2; ++axis) {
+    const std::string along = axis == 0 ? "x" : "y";
+    Require(holes.spacing_m[axis] > 2 * holes.radius_m, "target.holes.hole_spacing_" + along + "_m",
+            Exact(holes.spacing_m[axis]), "more than a hole's width: it is from centre to centre");
+    Require(0.5 * holes.spacing_m[axis] + holes.radius_m < 0.5 * size[axis],
+            "target.holes.hole_spacing_" + along + "_m", Exact(holes.spacing_m[axis]),
+            "holes inside the board");
+    Require(holes.marker_spacing_m[axis] > 1.25 * side,
+            "target.holes.marker_spacing_" + along + "_m", Exact(holes.marker_spacing_m[axis]),
+            "more than a marker and a quarter of one: it is from centre to centre");
+    Require(holes.marker_spacing_m[axis] + side + 2 * kLeastRimM <= size[axis],
+            "target.holes.marker_spacing_" + along + "_m", Exact(holes.marker_spacing_m[axis]),
+            "markers at least 1 cm inside the board");
+  }
+  const Eigen::Vector2d apart =
+      (0.5 * (holes.marker_spacing_m - holes.spacing_m).cwiseAbs().array() - 0.5 * side).max(0);
+  Require(apart.norm() > holes.radius_m, "target.holes.hole_radius_m", Exact(holes.radius_m),
+          "holes that touch no marker");
 }
 
 void CheckTarget(const Target& target) {
@@ -125,6 +161,7 @@ void CheckTarget(const Target& target) {
   RequireMetres(target.width_m, kLargestBoardM, "target.width_m");
   RequireMetres(target.height_m, kLargestBoardM, "target.height_m");
   if (!target.HasPattern()) return;
+  if (target.holes) CheckHoles(target, *target.holes);
   Require(target.squares_x >= 3 && target.squares_x <= 100, "target.squares_x",
           std::to_string(target.squares_x), "3 to 100");
   Require(target.squares_y >= 3 && target.squares_y <= 100, "target.squares_y",
@@ -181,31 +218,52 @@ void CheckFurtherLidars(const Rig& rig, std::set<std::string> names) {
   }
 }
 
+// Which processes there are is not known here.
+void CheckHosts(const std::vector<HostSpec>& hosts) {
+  std::set<std::string> names;
+  std::set<std::string> processes;
+  for (const HostSpec& host : hosts) {
+    Require(!host.name.empty() && host.name.size() <= 64, "host.name", "\"" + host.name + "\"",
+            "what `hostname` prints there");
+    Require(names.insert(host.name).second, "host.name", "\"" + host.name + "\" twice",
+            "a name of its own for each machine");
+    for (const std::string& process : host.runs) {
+      Require(processes.insert(process).second, "host \"" + host.name + "\": runs",
+              "\"" + process + "\", as another does", "each process on one machine");
+    }
+  }
+}
+
 }  // namespace
 
-double Target::EdgeAt(int column_or_row) const {
-  if (!markers || !markers->grid()) return column_or_row * square_m;
-  const int gaps = (column_or_row + 1) / 2;
-  return gaps * markers->gap_m + (column_or_row - gaps) * markers->side_m;
+double Target::EdgeAt(int index, int axis) const {
+  if (!markers || !markers->grid()) return index * square_m;
+  const int gaps = (index + 1) / 2;
+  if (holes) {  // no gaps but the one between the two
+    return (index / 2) * markers->side_m +
+           (index >= 3 ? holes->marker_spacing_m[axis] - markers->side_m : 0);
+  }
+  return gaps * markers->gap_m + (index - gaps) * markers->side_m;
 }
 
 bool Target::IsBlack(int column, int row) const {
+  if (holes) return column % 2 == 1 && row % 2 == 1;
   const bool white_first = markers && markers->legacy && squares_y % 2 == 0;
   return ((column + row) % 2 == 0) != white_first;
 }
 
 std::vector<Eigen::Vector3d> Target::InnerCorners() const {
-  const auto from_middle = [&](int index, int squares, double scale) {
+  const auto from_middle = [&](int index, int squares, int axis) {
+    const double scale = print_scale[axis];
     if (!markers || !markers->grid()) return (index - 0.5 * squares) * (square_m * scale);
-    return (EdgeAt(index) - 0.5 * EdgeAt(squares)) * scale;
+    return (EdgeAt(index, axis) - 0.5 * EdgeAt(squares, axis)) * scale;
   };
   std::vector<Eigen::Vector3d> corners;
   corners.reserve(static_cast<std::size_t>(corners_x() * corners_y()));
   for (int row = 1; row < squares_y; ++row) {
     for (int column = 1; column < squares_x; ++column) {
-      corners.emplace_back(pattern_offset_m.x() + from_middle(column, squares_x, print_scale.x()),
-                           pattern_offset_m.y() + from_middle(row, squares_y, print_scale.y()),
-                           0.0);
+      corners.emplace_back(pattern_offset_m.x() + from_middle(column, squares_x, 0),
+                           pattern_offset_m.y() + from_middle(row, squares_y, 1), 0.0);
     }
   }
   return corners;
@@ -216,16 +274,28 @@ std::vector<MarkerPlace> Target::MarkerPlaces() const {
   if (!markers) return places;
   const Eigen::Vector2d first = pattern_offset_m - 0.5 * PatternSize();
   for (int i = 0; i < squares_y; ++i) {
-    const int row = markers->grid() ? squares_y - 1 - i : i;
+    const int row = markers->grid() && !holes ? squares_y - 1 - i : i;
     for (int column = 0; column < squares_x; ++column) {
       const bool here = markers->grid() ? column % 2 == 1 && row % 2 == 1 : !IsBlack(column, row);
       if (!here) continue;
-      const Eigen::Vector2d middle(EdgeAt(column) + EdgeAt(column + 1),
-                                   EdgeAt(row) + EdgeAt(row + 1));
-      places.push_back({static_cast<int>(places.size()), first + 0.5 * middle});
+      const Eigen::Vector2d middle(ColumnEdge(column) + ColumnEdge(column + 1),
+                                   RowEdge(row) + RowEdge(row + 1));
+      const int number = static_cast<int>(places.size()) + (holes ? holes->first_marker : 0);
+      places.push_back({number, first + 0.5 * middle});
     }
   }
   return places;
+}
+
+std::vector<Eigen::Vector2d> Target::HoleCentres() const {
+  std::vector<Eigen::Vector2d> centres;
+  if (!holes) return centres;
+  for (const double y : {-0.5, 0.5}) {
+    for (const double x : {-0.5, 0.5}) {
+      centres.emplace_back(x * holes->spacing_m.x(), y * holes->spacing_m.y());
+    }
+  }
+  return centres;
 }
 
 Eigen::Vector3d Target::BowFactors(const Eigen::Vector2d& at) const {
@@ -250,6 +320,18 @@ Target GridOfMarkers(int markers_x, int markers_y, const Markers& markers) {
   return target;
 }
 
+Target BoardWithHoles(const Markers& markers, const Holes& holes) {
+  Target target;
+  target.markers = markers;
+  target.holes = holes;
+  target.squares_x = target.squares_y = 5;
+  target.square_m = markers.side_m;
+  target.markers->gap_m = holes.marker_spacing_m.minCoeff() - markers.side_m;
+  target.width_m = 1.4;
+  target.height_m = 1.0;
+  return target;
+}
+
 void Rig::Check(LensNeed lenses) const {
   Require(!cameras.empty() && cameras.size() <= 32, "number of cameras",
           std::to_string(cameras.size()), "1 to 32");
@@ -261,6 +343,7 @@ void Rig::Check(LensNeed lenses) const {
   }
   CheckLidar(lidar, "lidar");
   CheckFurtherLidars(*this, std::move(names));
+  CheckHosts(hosts);
   CheckTarget(target);
 }
 

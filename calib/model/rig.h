@@ -82,10 +82,11 @@ inline constexpr double kBowSigmaM = 0.001;
 /// y down, z away from who looks at it; the printed side is z = 0. The top left square is black:
 /// where squares_x + squares_y is odd, that tells top from bottom. A grid of markers is one, too,
 /// whose rows and columns are in turn as wide as a gap and as a marker, gaps all round: markers and
-/// the small squares between them are black.
+/// the small squares between them are black. A board with holes is a grid of two by two markers,
+/// nothing round them and no small squares: its inner corners are the markers' corners.
 struct Target {
   int squares_x = 0, squares_y = 0;  ///< along width and height; inner corners: one fewer
-  double square_m = 0;  ///< side of a square; grid of markers: the mean of gap and marker
+  double square_m = 0;  ///< side of a square; grid: mean of gap and marker; holes: a marker's
   double width_m = 0, height_m = 0;        ///< of the whole board, border included
   Eigen::Vector2d pattern_offset_m{0, 0};  ///< pattern's centre minus board's centre
   std::optional<Markers> markers;          ///< absent: squares alone
@@ -93,22 +94,29 @@ struct Target {
   double print_sigma = 0;
   /// The pattern's width and height over what square_m makes them, as a solve found them.
   Eigen::Vector2d print_scale{1, 1};
+  std::optional<Holes> holes{};  ///< with markers only
 
   /// Whether it has a checkerboard. A plain board, of no squares, is known by its outline alone; it
   /// has no inner corners, and half a turn (a square: a quarter) cannot be told in one view.
   bool HasPattern() const { return squares_x != 0 || squares_y != 0; }
+  /// White as far as its outline: a plain board, or one with holes.
+  bool WhiteToTheRim() const { return !HasPattern() || holes; }
   int corners_x() const { return squares_x - 1; }
   int corners_y() const { return squares_y - 1; }
   /// Inner corners, row by row from the top left, target frame [m]; corners_x() * corners_y().
   std::vector<Eigen::Vector3d> InnerCorners() const;
-  /// From the pattern's left (top) to where that column (row) begins [m]; 0 to squares_x
-  /// (squares_y). As square_m says, whatever print_scale is.
-  double EdgeAt(int column_or_row) const;
-  Eigen::Vector2d PatternSize() const { return {EdgeAt(squares_x), EdgeAt(squares_y)}; }
+  /// From the pattern's left to where that column begins [m]; 0 to squares_x. As square_m says,
+  /// whatever print_scale is.
+  double ColumnEdge(int column) const { return EdgeAt(column, 0); }
+  /// From the pattern's top to where that row begins, likewise.
+  double RowEdge(int row) const { return EdgeAt(row, 1); }
+  Eigen::Vector2d PatternSize() const { return {ColumnEdge(squares_x), RowEdge(squares_y)}; }
   /// Of the square in that column and row.
   bool IsBlack(int column, int row) const;
   /// Each marker, by rising number. Empty without markers.
   std::vector<MarkerPlace> MarkerPlaces() const;
+  /// The holes' centres (x and y of the target frame [m]); none without holes.
+  std::vector<Eigen::Vector2d> HoleCentres() const;
   /// No board is quite flat. A point of it lies so far behind its mean plane, to the second order:
   /// z = bow_x (4 x^2 / w^2 - 1/3) + twist 4 x y / (w h) + bow_y (4 y^2 / h^2 - 1/3), w and h the
   /// board's width and height; here the factors of the three, at (x, y) of the target [m]. The
@@ -116,10 +124,23 @@ struct Target {
   Eigen::Vector3d BowFactors(const Eigen::Vector2d& at) const;
   /// The board's corners: top left, top right, bottom right, bottom left; target frame [m].
   std::array<Eigen::Vector3d, 4> OutlineCorners() const;
+
+ private:
+  double EdgeAt(int index, int axis) const;
 };
 
 /// A grid of so many markers along width and height, on a board that is not yet given a size.
 Target GridOfMarkers(int markers_x, int markers_y, const Markers& markers);
+
+/// A board with holes, of velo2cam's and FAST-Calib's size; of these markers, the rest as `holes`
+/// says.
+Target BoardWithHoles(const Markers& markers, const Holes& holes = {});
+
+/// A machine, and what of the rig runs there.
+struct HostSpec {
+  std::string name;               ///< as `hostname` prints it
+  std::vector<std::string> runs;  ///< processes, by their names in STATUS: "camera-rgb", "solver"
+};
 
 struct Rig {
   std::string name;
@@ -131,6 +152,7 @@ struct Rig {
   /// LIDARs beside the reference, in the rig file's order; their poses are solved for
   /// (Calibration::lidars).
   std::vector<LidarSpec> further_lidars{};
+  std::vector<HostSpec> hosts{};  ///< empty: one machine runs all
 
   /// Throws InputError naming the field and its value.
   void Check(LensNeed lenses = LensNeed::kKnown) const;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "calib/model/errors.h"
+#include "calib/simulate/internal/board.h"
 #include "calib/simulate/internal/lens_table.h"
 #include "calib/simulate/internal/option_checks.h"
 
@@ -81,10 +82,11 @@ void Check(const BoardOptions& o) {
     kCheck.Between(o.markers->border_bits, 1, 4, "board.markers.border_bits");
     kCheck.NotNegative(o.markers->gap_m, "board.markers.gap_m");
   }
-  kCheck.Require(o.width_m >= o.squares_x * o.square_m * o.print_scale.x(), "board.width_m",
-                 o.width_m, "at least the squares' width");
-  kCheck.Require(o.height_m >= o.squares_y * o.square_m * o.print_scale.y(), "board.height_m",
-                 o.height_m, "at least the squares' height");
+  const Eigen::Vector2d pattern = MakeTarget(o).PatternSize().cwiseProduct(o.print_scale);
+  kCheck.Require(o.width_m >= pattern.x(), "board.width_m", o.width_m,
+                 "at least the pattern's width");
+  kCheck.Require(o.height_m >= pattern.y(), "board.height_m", o.height_m,
+                 "at least the pattern's height");
   kCheck.Positive(o.thickness_m, "board.thickness_m");
   kCheck.Between(o.black_reflectivity, 0, 1, "board.black_reflectivity");
   kCheck.Between(o.white_reflectivity, 1e-3, 1, "board.white_reflectivity");

@@ -91,6 +91,7 @@ struct BoardOptions {
   int squares_x = 11, squares_y = 8;
   double square_m = 0.1;
   std::optional<Markers> markers;  ///< and what they do to the squares: see Target
+  std::optional<Holes> holes{};    ///< likewise; the border is white then
   /// The pattern's true width and height over what the rig file's square_m makes them, and how well
   /// that is stated to be known (1 sigma, of each).
   Eigen::Vector2d print_scale{1, 1};

@@ -305,6 +305,18 @@ BoardSolution SolveBoards(const BoardProblem& problem, const BoardState& start, 
   return solution;
 }
 
+bool BoardProblem::PatternIsSeen() const {
+  if (!target.HasPattern()) return false;
+  bool images = false;
+  for (const BoardView& view : views) {
+    for (const BoardImage& image : view.images) {
+      if (!image.edges->corners.empty()) return true;
+      images = true;
+    }
+  }
+  return !images;
+}
+
 SharedPlaces::SharedPlaces(const BoardProblem& problem) : shared_(Pose(problem.cameras.size())) {
   Eigen::Index next = shared_ + kSharedUnknowns;
   for (std::size_t c = 0; c < problem.cameras.size(); ++c) {

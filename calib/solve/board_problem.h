@@ -51,6 +51,10 @@ struct BoardProblem {
   }
   bool HasOwnLens(std::size_t camera) const { return LensOf(camera) == camera; }
 
+  /// Whether a camera sees the target's pattern (a thermal one may not); without cameras: whether
+  /// it has one.
+  bool PatternIsSeen() const;
+
   /// The prior's, of a term of `ranges` [m].
   double SigmaOfTerm(std::size_t term) const {
     return term < ranges.rings.size() ? priors.ring_sigma_m : priors.octave_sigma_m;

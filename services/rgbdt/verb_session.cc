@@ -105,6 +105,7 @@ void CheckBoardIsSeen(const FolderSession& session) {
   const auto colour = std::find_if(cameras.begin(), cameras.end(), [](const CameraSpec& camera) {
     return camera.kind == CameraKind::kColor;
   });
+  if (colour == cameras.end() && board.holes) return;  // who sees no markers finds its outline
   const CameraSpec& camera = colour == cameras.end() ? cameras[0] : *colour;
   const BoardCheck check = CheckBoard(camera, board, SomeImages(session, camera));
   if (check.instead) {
@@ -175,7 +176,8 @@ void AddSession(CommandLine* program) {
       "corners, which are one fewer each way and are written 7x5corners@... A board\n"
       "without a pattern: plain@WIDTHxHEIGHT. With markers: charuco@SQUARESxSQUARES,SQUARE,\n"
       "MARKER,DICTIONARY,WIDTHxHEIGHT[,legacy] (charuco@8x6,0.095,0.07,5X5_100,0.85x0.61),\n"
-      "or Kalibr's aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT");
+      "or Kalibr's aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT. With four holes: "
+      "velo2cam@MARKER or fast-calib@MARKER, its markers' side");
   verb->Required("--out", &flags->out, "the session directory to write");
   verb->Option("--lens", &flags->lenses,
                "[NAME=]FILE[:PART], in the order of the cameras: YAML of OpenCV, ROS camera_info,\n"

@@ -54,6 +54,7 @@ void SetTarget(const std::string& text, simulate::BoardOptions* board) {
   board->squares_y = target.squares_y;
   board->square_m = target.square_m;
   board->markers = target.markers;
+  board->holes = target.holes;
   board->width_m = target.width_m;
   board->height_m = target.height_m;
 }
@@ -177,7 +178,7 @@ void AddSimulate(CommandLine* program) {
   verb->Option("--target", &flags->target,
                "the board, as rgbdt session's --board: 8x6@0.095,0.85x0.61 or "
                "charuco@11x8,0.1,0.075,5X5_100,1.2192x0.9144 or "
-               "aprilgrid@7x5,0.13,0.25,36h11,1.2192x0.9144");
+               "aprilgrid@7x5,0.13,0.25,36h11,1.2192x0.9144 or velo2cam@0.16");
   verb->Option("--picked", &flags->picked, "cameras whose corners a person picks");
 }
 

@@ -11,13 +11,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 import data_decoders  # noqa: E402
+import data_holes  # noqa: E402
 import data_lidars  # noqa: E402
 import data_livox  # noqa: E402
 import data_markers  # noqa: E402
 import data_mcap  # noqa: E402
 import trials  # noqa: E402
 
-SUBJECTS = (data_livox, data_markers, data_lidars, data_decoders, data_mcap)
+SUBJECTS = (data_livox, data_markers, data_holes, data_lidars, data_decoders, data_mcap)
 
 
 def left_out(subject, figures):

@@ -21,6 +21,7 @@ simulate::Options OptionsOf(const RenderedOptions& rendered, std::uint64_t seed)
   options.scene = static_cast<simulate::Scene>(seed % 3);
   options.threads = 1;  // the study runs one program on each core
   simulate::UseLidar(rendered.rings, &options);
+  if (rendered.board) options.board = *rendered.board;
   if (rendered.random_physics) DrawPhysics(RandomPhysics(), seed, &options);
   return options;
 }

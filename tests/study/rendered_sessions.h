@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/model/calibration.h"
@@ -14,7 +15,8 @@ namespace rgbdt::study {
 struct RenderedOptions {
   int rings = 0;  ///< of the LIDAR; 0: the turned scanner
   int views = 8, heldout = 4;
-  bool random_physics = false;  ///< see RandomPhysics
+  bool random_physics = false;                    ///< see RandomPhysics
+  std::optional<simulate::BoardOptions> board{};  ///< absent: the usual one
 };
 
 struct RenderedSession {

@@ -68,6 +68,7 @@ struct Filling {
   double inside = 0;  // of the beams well inside that were not stopped before: those on the plane
   double seen = 0;    // how densely its inside is on the plane, against the beams' spacing
   double beyond = 0;  // how densely a band round the rectangle is on the plane, against its inside
+  double closed = 0;  // how densely its holes are on the plane, against the beams' spacing
   BoardPoints on;     // its rim left out
 };
 
@@ -78,17 +79,30 @@ Filling Fill(const Cloud& cloud, const PlaneMembers& members, const FlatRectangl
   constexpr double kBand = 0.15;
   const double c = std::cos(rectangle.angle_rad);
   const double s = std::sin(rectangle.angle_rad);
-  // How far outside of the rectangle a place lies; negative inside.
-  const auto outside = [&](const Eigen::Vector2d& p) {
+  const double radius = target.holes ? target.holes->radius_m : 0;
+  const std::vector<Eigen::Vector2d> holes = target.HoleCentres();
+  // A place on the board, which may be turned by half a turn: its holes lie alike then.
+  const auto on_board = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
     const Eigen::Vector2d d = p - rectangle.centre;
-    return std::max(std::abs(c * d.x() + s * d.y()) - target.width_m / 2,
-                    std::abs(-s * d.x() + c * d.y()) - target.height_m / 2);
+    return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
+  };
+  // How far beyond its sides a place lies, and how far outside of the board, its holes being
+  // outside, too; negative inside.
+  const auto beyond_sides = [&](const Eigen::Vector2d& p) {
+    return std::max(std::abs(p.x()) - target.width_m / 2, std::abs(p.y()) - target.height_m / 2);
+  };
+  const auto outside = [&](const Eigen::Vector2d& p) {
+    double off = beyond_sides(p);
+    for (const Eigen::Vector2d& hole : holes) off = std::max(off, radius - (p - hole).norm());
+    return off;
   };
   Filling filling;
   int band = 0;
+  int in_holes = 0;
   int through = 0;
   for (std::size_t i = 0; i < members.flat.size(); ++i) {
-    const double off = outside(members.flat[i]);
+    const Eigen::Vector2d place = on_board(members.flat[i]);
+    const double off = outside(place);
     if (off < -kMargin) {
       filling.on.points.push_back(members.points[i]);
       filling.on.flat.push_back(members.flat[i]);
@@ -97,19 +111,23 @@ Filling Fill(const Cloud& cloud, const PlaneMembers& members, const FlatRectangl
       filling.on.log2_intensity.push_back(bright ? Log2Intensity(cloud.intensity[members.index[i]])
                                                  : 0);
     }
-    if (off > kMargin && off < kMargin + kBand) ++band;
+    if (off > kMargin && beyond_sides(place) <= 0) ++in_holes;
+    if (off > kMargin && off < kMargin + kBand && beyond_sides(place) > 0) ++band;
   }
   for (const Eigen::Vector2d& p : members.through) {
-    if (outside(p) < -kMargin) ++through;
+    if (outside(on_board(p)) < -kMargin) ++through;
   }
   const auto on = static_cast<double>(filling.on.points.size());
   filling.inside = on / std::max(1.0, on + through);
   const double band_area =
       (target.width_m + 2 * (kMargin + kBand)) * (target.height_m + 2 * (kMargin + kBand)) -
       (target.width_m + 2 * kMargin) * (target.height_m + 2 * kMargin);
-  const double inner_area = (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin);
+  const auto circles = [&](double r) { return static_cast<double>(holes.size()) * M_PI * r * r; };
+  const double inner_area =
+      (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin) - circles(radius + kMargin);
   const double cell = members.row_spacing_m * members.column_spacing_m;
   filling.seen = on * cell / inner_area;
+  if (radius > kMargin) filling.closed = in_holes * cell / circles(radius - kMargin);
   filling.beyond = on == 0 ? 1 : std::min(1.0, band / band_area / (on / inner_area));
   return filling;
 }
@@ -197,7 +215,7 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
     return std::nullopt;
   }
   Filling filling = Fill(cloud, members, rectangle, target);
-  if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 ||
+  if (filling.inside < 0.85 || filling.seen < 0.7 || filling.beyond > 0.5 || filling.closed > 0.4 ||
       filling.on.points.size() < 12) {
     return std::nullopt;
   }
@@ -338,7 +356,7 @@ std::vector<FlatRectangle> Vote(const PlaneMembers& members, const Target& targe
   constexpr double kSwellRad = 0.004;
   constexpr int kPlainSizes = 3;
   std::vector<FlatRectangle> voted;
-  for (int i = 0; i < (target.HasPattern() ? 1 : kPlainSizes); ++i) {
+  for (int i = 0; i < (target.WhiteToTheRim() ? kPlainSizes : 1); ++i) {
     const double swell = 2 * i * kSwellRad * range_m;
     const auto more =
         VoteForRectangles(members.crossings, target.width_m + swell, target.height_m + swell);
@@ -435,7 +453,7 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
   constexpr double kMostSigma = 0.045;
   BoardInCloudOptions noisier = options;
-  if (!target.HasPattern()) {
+  if (target.WhiteToTheRim()) {
     noisier.edge.class_sigma_rad = std::max(noisier.edge.class_sigma_rad, kPlainClassShiftSigmaRad);
   }
   const BoardsInCloud as_stated = FindAtNoise(grid, target, noisier);

@@ -23,6 +23,7 @@ std::optional<double> ValueAt(const cv::Mat& grey, const Eigen::Vector2d& pixel)
 
 double SquareContrast(const cv::Mat& grey, const Target& target,
                       const std::vector<Eigen::Vector2d>& corners) {
+  if (target.holes) return 0;  // a marker's middle is black or white
   const int columns = target.corners_x() - 1;
   const int rows = target.corners_y() - 1;
   const auto value = [&](int column, int row) {

@@ -11,6 +11,7 @@
 #include "calib/detect/image/internal/clipped.h"
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
+#include "calib/detect/image/internal/marked_board.h"
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/plain_board.h"
 #include "calib/model/linear_algebra.h"
@@ -241,7 +242,11 @@ Located FromPlainBoard(const Image& image, const cv::Mat& grey, const Camera& ca
 Located FromCheckerboard(const Image& image, const cv::Mat& grey, const Camera& camera,
                          const Target& target, CameraKind kind) {
   Located located;
-  const CheckerboardResult found = FindCheckerboard(grey, target, SaturatedFrom(image));
+  // A thermal camera may well see no markers; its outline tells then.
+  const bool markers_may_hide = target.holes && kind == CameraKind::kThermal;
+  const CheckerboardResult found = markers_may_hide
+                                       ? FindMarkedBoard(grey, target, SaturatedFrom(image), false)
+                                       : FindCheckerboard(grey, target, SaturatedFrom(image));
   if (!found.board) {
     located.why = found.why;
     return located;
@@ -308,8 +313,8 @@ ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& 
   if (edges.edge_pixels.empty()) {
     return {
         std::nullopt,
-        "no edge of the board stands out in the image where its squares put it: more contrast is "
-        "needed, or square_m, width_m and height_m in the rig file do not go together"};
+        "no edge of the board stands out in the image where its pattern puts it: more contrast is "
+        "needed, or the sizes of pattern and board in the rig file do not go together"};
   }
   if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
   if (located.plain) {
@@ -334,8 +339,13 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
     return EdgesOf(image, grey, camera, target, FromPlainBoard(image, grey, camera, target));
   }
   if (picks == nullptr) {
-    return EdgesOf(image, grey, camera, target,
-                   FromCheckerboard(image, grey, camera, target, kind));
+    Located located = FromCheckerboard(image, grey, camera, target, kind);
+    if (!located.why.empty() && target.holes && kind == CameraKind::kThermal) {
+      Located by_outline = FromPlainBoard(image, grey, camera, target);
+      if (by_outline.why.empty()) return EdgesOf(image, grey, camera, target, by_outline);
+      located.why += "; nor is its outline found: " + by_outline.why;
+    }
+    return EdgesOf(image, grey, camera, target, located);
   }
   return Picked(EdgesOf(image, grey, camera, target, FromPicks(camera, target, picks->corners)));
 }

@@ -19,7 +19,9 @@ struct ImageEdgesResult {
 /// that join the outline corners. The corners are a person's picks, or, without any, follow from
 /// the detected inner corners and the board's known size. A line is straight in space: it bends in
 /// the image as the lens bends it (the paper assumes no distortion). Without picks the result also
-/// has the target's pose and the board's sides. `kind`: in a colour image black is dark, which may
+/// has the target's pose and the board's sides. Of a board with holes whose markers a thermal
+/// camera does not see, these follow from the outline, as a plain board's do, without corners.
+/// `kind`: in a colour image black is dark, which may
 /// tell the target's top from its bottom; in a thermal one that is not known.
 ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
                                   const CornerSelection* picks,

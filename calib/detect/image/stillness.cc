@@ -63,6 +63,10 @@ int HalfWindow(const Target& target, const Pixels& corners) {
     if ((i + 1) % columns != 0) look_at(corners[i + 1], corners[i]);
     if (i + columns < corners.size()) look_at(corners[i + columns], corners[i]);
   }
+  if (target.holes) {  // no farther than the marker's border is wide
+    const int cells = FindMarkerFamily(target.markers->family)->cells;
+    return std::clamp(static_cast<int>(shortest / (cells + 2)), 2, 11);
+  }
   // Of ChArUco also beside the markers in two of them.
   const bool inside = target.markers && !target.markers->grid();
   const double share = inside ? 0.5 * (1 - target.markers->side_m / target.square_m) : 0.35;
@@ -144,8 +148,8 @@ std::array<OuterSide, 4> OuterSquares(const Target& target) {
     return index == 0 ? -out : index == squares - 1 ? out : 0;
   };
   const auto at = [&](int column, int row) {
-    const double x = 0.5 * (target.EdgeAt(column) + target.EdgeAt(column + 1));
-    const double y = 0.5 * (target.EdgeAt(row) + target.EdgeAt(row + 1));
+    const double x = 0.5 * (target.ColumnEdge(column) + target.ColumnEdge(column + 1));
+    const double y = 0.5 * (target.RowEdge(row) + target.RowEdge(row + 1));
     return Eigen::Vector3d(first.x() + x + outwards(column, target.squares_x),
                            first.y() + y + outwards(row, target.squares_y), 0);
   };
@@ -186,9 +190,11 @@ std::optional<double> Brightness(const Camera& camera, const cv::Mat& grey,
 // A pattern is like itself two squares farther on, and a tracker may take one for the other; but
 // then its outermost squares are not there. In three of four pairs of neighbours along each side
 // the difference in brightness is to be what it was, in sign and at least a third of it in size.
-// Pairs beside a corner that was not seen, then or now, say nothing.
+// Pairs beside a corner that was not seen, then or now, say nothing. Markers that stand alone are
+// like no others.
 bool OuterSquaresAreThere(const Sight& sight, const cv::Mat& grey, const Rigid3& pose,
                           const Pixels& corners) {
+  if (sight.target->holes) return true;
   for (const OuterSide& side : OuterSquares(*sight.target)) {
     std::size_t alike = 0;
     std::size_t pairs = 0;

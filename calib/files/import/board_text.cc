@@ -50,7 +50,8 @@ class Reader {
                      "; it is SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres, such as "
                      "8x6@0.095,0.85x0.61, or plain@WIDTHxHEIGHT, or "
                      "charuco@SQUARESxSQUARES,SQUARE,MARKER,DICTIONARY,WIDTHxHEIGHT, or "
-                     "aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT");
+                     "aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT, or the board with "
+                     "four holes velo2cam@MARKER (or fast-calib@MARKER)");
   }
 
  private:
@@ -183,10 +184,35 @@ Target ParseAprilGrid(const std::string& text, Reader* reader) {
   return board;
 }
 
+// velo2cam@MARKER[,WIDTHxHEIGHT]: holes and markers lie where that board's drawing has them.
+Target ParseBoardWithHoles(const std::string& text, Reader* reader) {
+  Markers markers;
+  markers.family = kHolesFamily;
+  reader->Require("@");
+  markers.side_m = reader->Number<double>("a marker's side (its black square) in metres");
+  CheckMetres(text, markers.side_m, "a marker's side", 0.05, 0.3);
+  Target board = BoardWithHoles(markers);
+  if (reader->Take(",")) ReadSize(text, reader, &board);
+  reader->RequireEnd();
+  board.print_sigma = kUsualPrintSigma;
+  const Eigen::Vector2d size = board.PatternSize();
+  constexpr double kRimM = 0.01;
+  if (size.x() + 2 * kRimM > board.width_m || size.y() + 2 * kRimM > board.height_m) {
+    throw InputError("--board " + text + ": markers of " + Exact(markers.side_m) +
+                     Format(" m where that board has them need %g x %g m and a rim of 1 cm",
+                            size.x(), size.y()) +
+                     Format("; the board has %g x %g m", board.width_m, board.height_m));
+  }
+  return board;
+}
+
 }  // namespace
 
 Target ParseBoard(const std::string& text) {
   Reader reader(text);
+  if (reader.Take("velo2cam") || reader.Take("fast-calib")) {
+    return ParseBoardWithHoles(text, &reader);
+  }
   if (reader.Take("charuco")) return ParseCharuco(text, &reader);
   if (reader.Take("aprilgrid")) return ParseAprilGrid(text, &reader);
   Target board;
@@ -220,6 +246,11 @@ Target ParseBoard(const std::string& text) {
 
 std::string DescribeBoard(const Target& board) {
   if (!board.HasPattern()) return Format("plain, %g x %g m", board.width_m, board.height_m);
+  if (board.holes) {
+    return Format("four holes of %g m radius, %s markers of %g m, %g x %g m", board.holes->radius_m,
+                  board.markers->family.c_str(), board.markers->side_m, board.width_m,
+                  board.height_m);
+  }
   if (board.markers && board.markers->grid()) {
     return Format("%d x %d %s tags of %g m, %g m apart", board.squares_x / 2, board.squares_y / 2,
                   board.markers->family.c_str(), board.markers->side_m, board.markers->gap_m);

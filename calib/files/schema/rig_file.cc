@@ -255,6 +255,11 @@ proto::Rig text::FromRig(const Rig& rig) {
   for (const LidarSpec& lidar : rig.further_lidars) FromLidar(lidar, message.add_lidar());
   for (const CameraSpec& camera : rig.cameras) FromCamera(camera, message.add_camera());
   if (rig.target.width_m > 0) text::FromTarget(rig.target, message.mutable_target());
+  for (const HostSpec& host : rig.hosts) {
+    proto::Host* out = message.add_host();
+    out->set_name(ValidUtf8(host.name));
+    for (const std::string& process : host.runs) out->add_runs(ValidUtf8(process));
+  }
   return message;
 }
 
@@ -270,6 +275,9 @@ Rig text::ToRig(const proto::Rig& message, const Place& place, LensNeed lenses) 
     rig.cameras.push_back(ToCamera(message.camera(i), place.In("camera", i), lenses));
   }
   if (message.has_target()) rig.target = text::ToTarget(message.target(), place.In("target"));
+  for (const proto::Host& host : message.host()) {
+    rig.hosts.push_back({host.name(), {host.runs().begin(), host.runs().end()}});
+  }
   return rig;
 }
 
@@ -309,6 +317,7 @@ std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   KeepLidars(&was, &is);
   for (proto::Rig* rig : {&was, &is}) {
     rig->clear_name();
+    rig->clear_host();
     for (proto::Camera& camera : *rig->mutable_camera()) {
       camera.clear_device();
       camera.clear_camera_from_lidar_guess();

@@ -30,12 +30,13 @@ double HeatMap::Between(const Eigen::Vector2d& place, double whiteness) const {
 
 namespace {
 
-// Which column (row) of a pattern a place is in, measured from the pattern's middle [m]; -1:
-// beside.
-double ColumnAt(const Target& target, int columns, double from_middle) {
-  const double at = from_middle + 0.5 * target.EdgeAt(columns);
+// Which column (or row) of a pattern a place is in, measured from the pattern's middle [m]; -1:
+// beside. `edge_at`: where each begins.
+template <typename EdgeAt>
+double ColumnAt(const EdgeAt& edge_at, int columns, double from_middle) {
+  const double at = from_middle + 0.5 * edge_at(columns);
   for (int column = 0; column < columns; ++column) {
-    if (at >= target.EdgeAt(column) && at < target.EdgeAt(column + 1)) return column;
+    if (at >= edge_at(column) && at < edge_at(column + 1)) return column;
   }
   return -1;
 }
@@ -60,7 +61,18 @@ Board::Board(const BoardOptions& options, const Rigid3& lidar_from_target, const
 Mesh Board::Shape() const {
   const double x = 0.5 * options_.width_m;
   const double y = 0.5 * options_.height_m;
-  return Transformed(lidar_from_target_, MakeBox({-x, -y, 0}, {x, y, options_.thickness_m}));
+  const double depth = options_.thickness_m;
+  if (!options_.holes) return Transformed(lidar_from_target_, MakeBox({-x, -y, 0}, {x, y, depth}));
+  Mesh shape;
+  for (const Eigen::Vector2d& hole : target_.HoleCentres()) {  // each in a quarter of the board
+    const Eigen::Vector2d to(hole.x() < 0 ? -x : x, hole.y() < 0 ? -y : y);
+    const Eigen::Vector2d low = to.cwiseMin(0);
+    const Eigen::Vector2d high = to.cwiseMax(0);
+    Add(MakePlateWithHole({low.x(), low.y(), 0}, {high.x(), high.y(), depth}, hole,
+                          options_.holes->radius_m),
+        &shape);
+  }
+  return Transformed(lidar_from_target_, std::move(shape));
 }
 
 std::vector<Mesh> Board::Stand(double ground_z) const {
@@ -91,8 +103,10 @@ int Board::Patch(const Eigen::Vector2d& place) const {
   double x = place.x() / square.x() + 0.5 * options_.squares_x;
   double y = place.y() / square.y() + 0.5 * options_.squares_y;
   if (options_.markers && options_.markers->grid()) {
-    x = ColumnAt(target_, options_.squares_x, place.x() / options_.print_scale.x());
-    y = ColumnAt(target_, options_.squares_y, place.y() / options_.print_scale.y());
+    x = ColumnAt([&](int column) { return target_.ColumnEdge(column); }, options_.squares_x,
+                 place.x() / options_.print_scale.x());
+    y = ColumnAt([&](int row) { return target_.RowEdge(row); }, options_.squares_y,
+                 place.y() / options_.print_scale.y());
   }
   if (x < 0 || y < 0 || x >= options_.squares_x || y >= options_.squares_y) return 0;
   const int column = static_cast<int>(x);
@@ -118,7 +132,7 @@ std::optional<int> Board::CellOf(const Eigen::Vector2d& place, int column, int r
 }
 
 bool Board::IsBlack(int patch) const {
-  if (patch <= 0) return true;
+  if (patch <= 0) return !options_.holes;
   // Cells that differ from their square: black in ChArUco's white ones, white in a grid's black.
   if (patch > options_.squares_x * options_.squares_y) return !options_.markers->grid();
   return target_.IsBlack((patch - 1) % options_.squares_x, (patch - 1) / options_.squares_x);
@@ -143,7 +157,8 @@ Material Board::At(const Eigen::Vector3d& point_in_lidar, int* patch) const {
   material.reflectivity = black ? options_.black_reflectivity : options_.white_reflectivity;
   material.albedo.setConstant(material.reflectivity);
   material.emissivity = options_.emissivity;
-  material.temperature_k = *patch == 0 ? heat_.BorderAt(p.head<2>()) : heat_.At(p.head<2>(), black);
+  const bool border = *patch == 0 && !options_.holes;
+  material.temperature_k = border ? heat_.BorderAt(p.head<2>()) : heat_.At(p.head<2>(), black);
   return material;
 }
 
@@ -174,6 +189,7 @@ Target MakeTarget(const BoardOptions& options) {
   target.height_m = options.height_m;
   target.print_sigma = options.print_sigma;
   target.markers = options.markers;
+  target.holes = options.holes;
   return target;
 }
 

@@ -1,6 +1,9 @@
 #include "calib/simulate/internal/mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace rgbdt::simulate {
 namespace {
@@ -35,6 +38,57 @@ Mesh MakeBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     mesh.triangles.push_back({f[0], f[2], f[3]});
   }
   return mesh;
+}
+
+Mesh MakePlateWithHole(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                       const Eigen::Vector2d& centre, double radius) {
+  // Round the hole: the polygon's corners and the plate's, which join two quadrilaterals.
+  constexpr int kCorners = 128;
+  std::vector<double> angles;
+  for (int i = 0; i < kCorners; ++i) angles.push_back(2 * M_PI * i / kCorners - M_PI);
+  for (const double x : {low.x(), high.x()}) {
+    for (const double y : {low.y(), high.y()}) {
+      angles.push_back(std::atan2(y - centre.y(), x - centre.x()));
+    }
+  }
+  std::sort(angles.begin(), angles.end());
+  Mesh mesh;
+  for (const double angle : angles) {
+    const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+    // How far the plate reaches that way.
+    double reach = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 2; ++axis) {
+      const double side = along[axis] > 0 ? high[axis] : low[axis];
+      if (std::abs(along[axis]) > 1e-12) {
+        reach = std::min(reach, (side - centre[axis]) / along[axis]);
+      }
+    }
+    for (const double far : {radius, reach}) {
+      for (const double z : {low.z(), high.z()}) {
+        mesh.vertices.emplace_back(centre.x() + far * along.x(), centre.y() + far * along.y(), z);
+      }
+    }
+  }
+  const auto count = static_cast<unsigned>(angles.size());
+  for (unsigned i = 0; i < count; ++i) {
+    const unsigned a = 4 * i;
+    const unsigned b = 4 * ((i + 1) % count);
+    // Front, back, the hole's wall and the rim: 0 inner front, 1 inner back, 2 outer front, 3 back.
+    for (const auto& [first, second] :
+         std::array<std::pair<unsigned, unsigned>, 4>{{{0, 2}, {3, 1}, {1, 0}, {2, 3}}}) {
+      mesh.triangles.push_back({a + first, a + second, b + second});
+      mesh.triangles.push_back({a + first, b + second, b + first});
+    }
+  }
+  return mesh;
+}
+
+void Add(const Mesh& part, Mesh* mesh) {
+  const auto first = static_cast<unsigned>(mesh->vertices.size());
+  mesh->vertices.insert(mesh->vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const auto& t : part.triangles) {
+    mesh->triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
 }
 
 Mesh MakeEllipsoid(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii) {

@@ -23,11 +23,19 @@ Mesh MakeQuad(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::V
               const Eigen::Vector3d& d);
 /// Axis-aligned box between two corners.
 Mesh MakeBox(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
+/// Axis-aligned plate between two corners, with a round hole through it along z; the hole's centre
+/// and radius [m] must leave some of the plate on all sides. A polygon of 128 corners stands for
+/// the circle: it is within 0.04 mm of one of 0.12 m.
+Mesh MakePlateWithHole(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                       const Eigen::Vector2d& centre, double radius);
 /// Ellipsoid with its axes along x, y, z.
 Mesh MakeEllipsoid(const Eigen::Vector3d& centre, const Eigen::Vector3d& radii);
 /// Round rod with closed ends, tapering from one radius to the other.
 Mesh MakeRod(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double from_radius,
              double to_radius);
+
+/// More triangles, of a flat mesh.
+void Add(const Mesh& part, Mesh* mesh);
 
 Mesh Transformed(const Rigid3& a_from_b, Mesh mesh_in_b);
 

@@ -8,6 +8,7 @@
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 #include "calib/solve/internal/lens_by_images.h"
+#include "calib/solve/internal/pattern_word.h"
 
 namespace rgbdt {
 namespace {
@@ -133,18 +134,21 @@ std::vector<Cause> CausesOfScale(const Target& target, double board, const Estim
       Format("the boards of any two views lie %.1f +- %.1f%% %s in the clouds than by the images: ",
              100 * off, 100 * sigma, scale.value > 1 ? "farther apart" : "nearer to each other");
   const char* larger = scale.value > 1 ? "larger" : "smaller";
+  const std::string pattern = PatternWord(target);
   const Cause cloud{
       "cloud's scale",
-      apart + Format("the cloud is too %s, or squares and board are all %s than given. Measure "
-                     "board and squares, and check the LIDAR's unit of length against a tape "
+      apart + Format("the cloud is too %s, or %s and board are all %s than given. Measure "
+                     "board and %s, and check the LIDAR's unit of length against a tape "
                      "measure",
-                     scale.value > 1 ? "large" : "small", larger),
+                     scale.value > 1 ? "large" : "small", pattern.c_str(), larger, pattern.c_str()),
       chi2, 1};
-  const Cause size{target.HasPattern() ? "squares" : "board's size",
-                   apart + Format("the %s %s than given. Measure %s",
-                                  target.HasPattern() ? "squares are" : "board is", larger,
-                                  target.HasPattern() ? "ten of them with a ruler" : "it"),
-                   chi2, 1};
+  const std::string what = target.HasPattern() ? pattern + " are" : "board is";
+  const char* measure = target.holes          ? "them, and from one to the next"
+                        : target.HasPattern() ? "ten of them with a ruler"
+                                              : "it";
+  const Cause size{
+      target.HasPattern() ? pattern : "board's size",
+      apart + Format("the %s %s than given. Measure %s", what.c_str(), larger, measure), chi2, 1};
   const Cause focal{"focal length",
                     apart + Format("the focal length of the lens in the rig file is too %s. Find "
                                    "the lens with 20 views or more all over the image (rgbdt "

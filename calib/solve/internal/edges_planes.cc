@@ -34,8 +34,8 @@ std::optional<EdgesAndPlanes> SolveApart(const BoardProblem& all, const BoardSta
   }
   for (BoardView& view : planes.views) {
     view.cloud.crossings.clear();
-    if (!all.target.HasPattern()) continue;
     for (BoardImage& image : view.images) {
+      if (image.edges->corners.empty()) continue;  // its sides are all that it tells
       without_sides.push_back(*image.edges);
       without_sides.back().sides = {};
       image.edges = &without_sides.back();

@@ -136,7 +136,7 @@ std::optional<BoardProblem> ProblemOf(const BoardProblem& reference, int min_vie
   }
   OpenRanges(lidar->range_offset_sigma_m, &problem);
   // What hides an offset by a plain board is its rim in images, of which two clouds know nothing.
-  if (lidar->range_offset_sigma_m > 0 && !reference.target.HasPattern()) {
+  if (lidar->range_offset_sigma_m > 0 && !reference.PatternIsSeen()) {
     const bool held = reference.priors.range_offset_sigma_m < reference_offset_sigma_m;
     problem.priors.range_offset_sigma_m =
         std::hypot(lidar->range_offset_sigma_m, held ? reference_offset_sigma_m : 0);

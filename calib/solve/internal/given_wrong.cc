@@ -12,6 +12,7 @@
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 #include "calib/solve/internal/lens_by_images.h"
+#include "calib/solve/internal/pattern_word.h"
 
 namespace rgbdt {
 namespace {
@@ -91,8 +92,7 @@ class Tester {
         if (own || cause.Sigmas() >= kGivenWrongSigmas) add(std::move(cause));
       }
     }
-    const bool pattern = problem_.target.HasPattern();
-    if (pattern) {
+    if (problem_.PatternIsSeen()) {
       add(Squares());
       add(CloudScale());
       add(PatternPlace());
@@ -286,6 +286,16 @@ class Tester {
     const auto off = Test(v, kSquareTolerance);
     if (!off) return std::nullopt;
     const double by = off->value[0];
+    if (Board().holes) {
+      const Eigen::Vector2d& given = Board().holes->marker_spacing_m;
+      return CauseOf("markers",
+                     Format("the markers lie %s %s than given: %.0f x %.0f mm where the rig file "
+                            "has %.0f x %.0f mm. Measure from marker to marker",
+                            Percent(by, off->Sigma(0)).c_str(), by > 0 ? "farther apart" : "nearer",
+                            1000 * (1 + by) * given.x(), 1000 * (1 + by) * given.y(),
+                            1000 * given.x(), 1000 * given.y()),
+                     *off);
+    }
     return CauseOf("squares",
                    Format("the squares are %s %s than given: %.1f mm where the rig file has %.1f "
                           "mm. Measure ten of them with a ruler",
@@ -303,13 +313,14 @@ class Tester {
     const auto off = Test(v, kScaleTolerance);
     if (!off) return std::nullopt;
     const double by = off->value[0];
-    return CauseOf("cloud's scale",
-                   Format("the cloud is %s too %s, or squares and board are all %s than given. "
-                          "Measure board and squares, and check the LIDAR's unit of length against "
-                          "a tape measure",
-                          Percent(by, off->Sigma(0)).c_str(), by > 0 ? "large" : "small",
-                          by > 0 ? "larger" : "smaller"),
-                   *off);
+    return CauseOf(
+        "cloud's scale",
+        Format("the cloud is %s too %s, or %s and board are all %s than given. "
+               "Measure board and %s, and check the LIDAR's unit of length against a "
+               "tape measure",
+               Percent(by, off->Sigma(0)).c_str(), by > 0 ? "large" : "small", PatternWord(Board()),
+               by > 0 ? "larger" : "smaller", PatternWord(Board())),
+        *off);
   }
 
   std::optional<Cause> BoardSize() const {
@@ -321,7 +332,7 @@ class Tester {
   }
 
   double SizeTolerance() const {
-    return Board().HasPattern() ? kSizeToleranceM : kPlainSizeToleranceM;
+    return Board().WhiteToTheRim() ? kPlainSizeToleranceM : kSizeToleranceM;
   }
 
   Cause SizeCause(const Off& off) const {

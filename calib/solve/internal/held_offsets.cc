@@ -9,7 +9,7 @@ namespace rgbdt {
 std::vector<RefutedOffset> HeldOffsets(const BoardProblem& problem) {
   std::vector<RefutedOffset> held;
   const double reference = problem.priors.range_offset_sigma_m;
-  if (reference < kRangeOffsetSigmaM && problem.target.HasPattern()) {
+  if (reference < kRangeOffsetSigmaM && problem.PatternIsSeen()) {
     held.push_back({std::nullopt, reference});
   }
   for (std::size_t l = 0; l < problem.lidars.size(); ++l) {

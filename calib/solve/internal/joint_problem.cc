@@ -137,7 +137,7 @@ BoardPriors PriorsOf(const Target& target) {
   BoardPriors priors;
   priors.print_sigma = std::max(kNoPrintSigma, target.print_sigma);
   if (target.HasPattern() && target.print_sigma > 0) priors.bow_sigma_m = kBowSigmaM;
-  if (!target.HasPattern()) {
+  if (target.WhiteToTheRim()) {
     priors.class_sigma_rad = kSharedPlainClassShiftSigmaRad;
     priors.fringe_sigma_m = kPlainFringeSigmaM;
   }
@@ -149,7 +149,7 @@ bool OpenRanges(double range_offset_sigma_m, BoardProblem* problem) {
   // A plain board's rim, which images show beside its front, leans it there as an offset of the
   // ranges would: such boards are no evidence of one, unless nothing is to be known of it.
   const bool offset = range_offset_sigma_m > 0 &&
-                      (problem->target.HasPattern() || range_offset_sigma_m >= kRangeOffsetSigmaM);
+                      (problem->PatternIsSeen() || range_offset_sigma_m >= kRangeOffsetSigmaM);
   if (!problem->ranges_exact) OpenBeams(problem);
   if (offset) problem->priors.range_offset_sigma_m = range_offset_sigma_m;
   return offset;

@@ -54,6 +54,12 @@ void AddRigs(Inputs* seeds) {
     (*seeds)["aprilgrid " + rest] =
         board("aprilgrid { tags_x: 3 tags_y: 2 tag_m: 0.2 spacing: 0.3 " + rest + " }");
   }
+  for (const std::string rest :
+       {"", "hole_radius_m: 1", "first_marker: 249", "marker_spacing_x_m: 9"}) {
+    (*seeds)["holes " + rest] = board("holes { marker_m: 0.1 " + rest + " }");
+  }
+  (*seeds)["host"] =
+      small + "host { name: \"a\" runs: [\"lidar\", \"viewer\"] } host { name: \"b\" }";
   (*seeds)["distortion"] = with("fx: 4", "distortion: [1, 2, 3]");
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(RGBDT_SOURCE_DIR) + "/scripts/rigs")) {

@@ -52,8 +52,7 @@ Prediction SideOnTarget(const Target& target, std::size_t side) {
   p.to = corners[(side + 1) % 4];
   const Eigen::Vector3d along = (p.to - p.from).normalized();
   p.inwards = {-along.y(), along.x(), 0};
-  const Eigen::Vector2d half(0.5 * target.squares_x * target.square_m,
-                             0.5 * target.squares_y * target.square_m);
+  const Eigen::Vector2d half = 0.5 * target.PatternSize();
   const double pattern =
       p.inwards.cwiseAbs().head<2>().dot(half) - p.inwards.head<2>().dot(target.pattern_offset_m);
   p.border_m = p.inwards.head<2>().dot(-p.from.head<2>()) - pattern;
@@ -209,7 +208,7 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
                   const TargetPose& pose, std::size_t index, const BoardSidesOptions& options) {
   ImageSide side;
   Prediction p = SideOnTarget(target, index);
-  if (!target.HasPattern()) KeepInside(camera, pose.sensor_from_target, &p);
+  if (target.WhiteToTheRim()) KeepInside(camera, pose.sensor_from_target, &p);
   if (!FillCurve(camera, pose.sensor_from_target, &p)) {
     side.why = "this side lies outside the image";
     return side;
@@ -221,7 +220,7 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
     return side;
   }
   if (reach.inner_px > -0.5) {
-    side.why = "the border between outline and squares is only " + OneDecimal(reach.border_px) +
+    side.why = "the border between outline and pattern is only " + OneDecimal(reach.border_px) +
                " px wide";
     return side;
   }

@@ -14,7 +14,6 @@ namespace {
 constexpr int kUnknowns = 16;
 constexpr int kLinear = 11;         // the last ones: contrast and b
 constexpr int kCubic = 4;           // the last ones of these: only where the rest does not do
-constexpr double kReach = 0.75;     // of the distance to the next corner
 constexpr double kMostPx = 10;      // edges are straight enough and blur is seen within that
 constexpr double kMostShift = 0.3;  // of the distance to the next corner
 constexpr int kRounds = 20;
@@ -66,6 +65,26 @@ struct Fixed {
   bool shape = false;                     ///< angles and blur stay as they are
   bool cubic = true;                      ///< and so do b's terms of third degree
   double curvature1 = 0, curvature2 = 0;  ///< of the edges, towards rising e1 and e2 [1/px]
+  LonePatch lone{0, 0};
+};
+
+// How the patches differ, from -1 to 1 (of a lone one from 0 to 2), and its derivatives by the
+// distances from the edges.
+struct Patches {
+  Patches(const Step& first, const Step& second, const LonePatch& lone) {
+    if (lone.x() == 0) {
+      value = first.value * second.value;
+      by_first = first.slope * second.value;
+      by_second = first.value * second.slope;
+      return;
+    }
+    const double a = 1 + lone.x() * first.value;
+    const double b = 1 + lone.y() * second.value;
+    value = 0.5 * a * b;
+    by_first = 0.5 * lone.x() * first.slope * b;
+    by_second = 0.5 * a * lone.y() * second.slope;
+  }
+  double value, by_first, by_second;
 };
 
 Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed fixed) {
@@ -81,11 +100,12 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
     const double e2 = c2 * x + s2 * y - 0.5 * fixed.curvature2 * t2 * t2;
     const Step first(e1, u[4]);
     const Step second(e2, u[4]);
-    const double g1 = u[5] * first.slope * second.value;
-    const double g2 = u[5] * first.value * second.slope;
+    const Patches patches(first, second, fixed.lone);
+    const double g1 = u[5] * patches.by_first;
+    const double g2 = u[5] * patches.by_second;
     Unknowns j;
     j << -(g1 * c1 + g2 * c2), -(g1 * s1 + g2 * s2), g1 * t1, g2 * t2, -(g1 * e1 + g2 * e2) / u[4],
-        first.value * second.value, 1, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y, p.x * p.x * p.x,
+        patches.value, 1, p.x, p.y, p.x * p.x, p.x * p.y, p.y * p.y, p.x * p.x * p.x,
         p.x * p.x * p.y, p.x * p.y * p.y, p.y * p.y * p.y;
     if (fixed.shape) j.segment<3>(2).setZero();
     if (fixed.cubic) j.tail<kCubic>().setZero();
@@ -114,7 +134,7 @@ Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed
 }
 
 std::vector<Pixel> PixelsRound(const cv::Mat& grey, const Eigen::Vector2d& place,
-                               const Eigen::Matrix2d& steps, double clear) {
+                               const Eigen::Matrix2d& steps, double clear, const LonePatch& lone) {
   std::vector<Pixel> pixels;
   const Eigen::Matrix2d grid_from_image = steps.inverse();
   const Eigen::Vector2d reach = CornerReach(steps);
@@ -127,8 +147,10 @@ std::vector<Pixel> PixelsRound(const cv::Mat& grey, const Eigen::Vector2d& place
   for (int y = static_cast<int>(std::ceil(place.y() - ry)); y <= place.y() + ry; ++y) {
     for (int x = static_cast<int>(std::ceil(place.x() - rx)); x <= place.x() + rx; ++x) {
       const Eigen::Vector2d offset = Eigen::Vector2d(x, y) - place;
-      const Eigen::Vector2d off_edges = (grid_from_image * offset).cwiseAbs();
-      if (off_edges.maxCoeff() > kReach || off_edges.minCoeff() > clear) continue;
+      const Eigen::Vector2d on_grid = grid_from_image * offset;
+      const Eigen::Vector2d off_edges = on_grid.cwiseAbs();
+      const Eigen::Vector2d inwards = lone.x() == 0 ? off_edges : on_grid.cwiseProduct(lone);
+      if (off_edges.maxCoeff() > kCornerReach || inwards.minCoeff() > clear) continue;
       if (offset.squaredNorm() > kMostPx * kMostPx) continue;
       pixels.push_back({offset.x(), offset.y(), grey.at<float>(y, x)});
     }
@@ -224,33 +246,36 @@ Solution SolveWithBounds(const std::vector<Pixel>& pixels, Solution s, double sp
 }
 
 // Half of light minus dark, as far as the image shows it.
-double ContrastOf(const Unknowns& u, double level) {
-  const double dark = u[6] - std::abs(u[5]);
-  if (u[6] + std::abs(u[5]) <= level) return u[5];
-  return std::copysign(0.5 * (level - dark), u[5]);
+double ContrastOf(const Unknowns& u, const Fixed& fixed) {
+  const bool lone = fixed.lone.x() != 0;
+  const double middle = lone ? u[6] + u[5] : u[6];
+  const double dark = middle - std::abs(u[5]);
+  if (middle + std::abs(u[5]) <= fixed.level) return u[5];
+  return std::copysign(0.5 * (fixed.level - dark), u[5]);
 }
 
 }  // namespace
 
 Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps) {
-  return (kReach * steps.cwiseAbs().rowwise().sum()).cwiseMin(kMostPx);
+  return (kCornerReach * steps.cwiseAbs().rowwise().sum()).cwiseMin(kMostPx);
 }
 
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
                                    std::optional<double> blur_px, double saturated_from,
-                                   double clear) {
+                                   double clear, const LonePatch& lone) {
   const double spacing = steps.colwise().norm().minCoeff();
   if (!(spacing > 3) || !(std::abs(steps.determinant()) > 0.2 * spacing * spacing)) {
     return std::nullopt;
   }
-  const std::vector<Pixel> pixels = PixelsRound(grey, place, steps, clear);
+  const std::vector<Pixel> pixels = PixelsRound(grey, place, steps, clear, lone);
   const auto values = std::count_if(pixels.begin(), pixels.end(),
                                     [&](const Pixel& p) { return p.value < saturated_from; });
   if (values < 2 * kUnknowns) return std::nullopt;
   const double blur = std::clamp(blur_px.value_or(1), kLeastBlur, 0.5 * spacing);
   Fixed fixed;
   fixed.level = saturated_from;
+  fixed.lone = lone;
   const double half_range = HalfRange(pixels, saturated_from);
   fixed.noise = kFirstNoise * half_range;
   fixed.shape = blur_px.has_value();
@@ -273,7 +298,7 @@ std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& p
   if (!s.good) return std::nullopt;
   CornerFit fit;
   fit.place = place + s.unknowns.head<2>();
-  fit.contrast = ContrastOf(s.unknowns, saturated_from);
+  fit.contrast = ContrastOf(s.unknowns, fixed);
   fit.saturated = bounds;
   fit.blur_px = s.unknowns[4];
   const double variance = VarianceOf(s, fixed);

@@ -21,8 +21,14 @@ struct CornerFit {
   double sigma_px = 0;  ///< of the place along its worst direction, from what the fit leaves over
 };
 
+inline constexpr double kCornerReach = 0.75;  ///< of a step, that FitCorner looks far
+
 /// How far from a corner FitCorner looks along x and y [px].
 Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps);
+
+/// Where the one patch lies that differs from the three others, at the corner of a square that
+/// stands alone: 1 or -1 along each of the two steps; 0, 0: two patches of each colour meet.
+using LonePatch = Eigen::Vector2d;
 
 /// Fits to the pixels round a corner
 ///   b(x, y) + contrast * erf(e1 / (sqrt(2) s)) * erf(e2 / (sqrt(2) s))
@@ -37,12 +43,16 @@ Eigen::Vector2d CornerReach(const Eigen::Matrix2d& steps);
 /// is CV_32FC1, dead pixels repaired. `steps`: image shift from this corner to the next column
 /// (first) and to the next row [px]; `bends`: second differences of the grid's places, likewise
 /// (GridModel::Bends). `clear`: pixels farther than that from both edges [steps] are not looked at,
-/// since something else is there. Nothing where the fit leaves the neighbourhood of `place`, the
-/// pixels are not all seen or do not look like that.
+/// since something else is there. With a `lone` patch that holds in this patch alone, and the
+/// product above is
+///   (1 + lone.x erf(e1 / ...)) (1 + lone.y erf(e2 / ...)) / 2
+/// and contrast is negative where that patch is the darker one. Nothing where the fit leaves the
+/// neighbourhood of `place`, the pixels are not all seen or do not look like that.
 std::optional<CornerFit> FitCorner(const cv::Mat& grey, const Eigen::Vector2d& place,
                                    const Eigen::Matrix2d& steps, const Eigen::Matrix2d& bends,
                                    std::optional<double> blur_px = std::nullopt,
                                    double saturated_from = kNeverSaturated,
-                                   double clear = std::numeric_limits<double>::infinity());
+                                   double clear = std::numeric_limits<double>::infinity(),
+                                   const LonePatch& lone = {0, 0});
 
 }  // namespace rgbdt

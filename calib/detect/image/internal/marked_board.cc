@@ -73,8 +73,8 @@ std::string WhyTooFew(const MarkerLayout& layout, const MeasuredCorners& measure
 
 }  // namespace
 
-CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target,
-                                   double saturated_from) {
+CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target, double saturated_from,
+                                   bool tell_why) {
   CheckerboardResult result;
   const cv::Mat repaired = RepairDeadPixels(grey);
   const Markers& markers = *target.markers;
@@ -84,7 +84,7 @@ CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target,
   if (!result.why.empty()) return result;
   const auto layout = LayOut(seen, target);
   if (!layout) {
-    result.why = WhyNoMarkers(repaired, target, seen);
+    result.why = tell_why ? WhyNoMarkers(repaired, target, seen) : "its markers are not seen";
     return result;
   }
   const auto otherwise = LayOutOtherWay(target, seen);

@@ -15,8 +15,9 @@ namespace rgbdt {
 ///      fitted to these, and they are measured again
 /// What does not look like the rest, or lies off the map, is left out (NaN). Refused, in words:
 /// markers of another family or mirrored, numbers that the board has not, or markers that lie as on
-/// a board with other rows or columns.
-CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target,
-                                   double saturated_from);
+/// a board with other rows or columns. Of a board with holes the corners are its markers'. Why
+/// there are no markers takes long to find out: without `tell_why` it is not asked.
+CheckerboardResult FindMarkedBoard(const cv::Mat& grey, const Target& target, double saturated_from,
+                                   bool tell_why = true);
 
 }  // namespace rgbdt

@@ -83,7 +83,7 @@ BoardMap MapByModel(const GridModel& model, const Target& target) {
 
 std::optional<MarkerLayout> LayOut(const std::vector<SeenMarker>& seen, const Target& target) {
   std::optional<MarkerLayout> best;
-  const std::size_t turns = target.markers->grid() ? 4 : 1;
+  const std::size_t turns = target.markers->grid() && !target.holes ? 4 : 1;
   for (std::size_t turn = 0; turn < turns; ++turn) {
     const OnBoard all = Pair(seen, target, turn);
     if (all.places.size() < kLeastMarkers) continue;

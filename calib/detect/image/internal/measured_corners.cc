@@ -35,17 +35,42 @@ double FreeOf(double free_px, double blur_px) {
   return std::max(0.5 * free_px, free_px - 1.5 * blur_px);
 }
 
+// Of a marker that stands alone: over its border inwards, outwards as far as the board and the
+// white between marker and hole reach.
+std::optional<Surroundings> SurroundingsOfLone(const Target& target, const BoardMap& map,
+                                               const Eigen::Vector2d& corner, double blur_px) {
+  constexpr double kOfMarker = 0.3;  // a sheet that it is printed on ends soon
+  const Markers& markers = *target.markers;
+  const Eigen::Vector2d gaps = target.holes->marker_spacing_m.array() - markers.side_m;
+  double free_m = std::min({0.5 * target.width_m - std::abs(corner.x()),
+                            0.5 * target.height_m - std::abs(corner.y()), gaps.minCoeff()});
+  for (const Eigen::Vector2d& hole : target.HoleCentres()) {
+    free_m = std::min(free_m, ((corner - hole).norm() - target.holes->radius_m) * M_SQRT1_2);
+  }
+  const double marker_m = kOfMarker * markers.side_m;
+  const auto whole = GridAt(map, corner, std::min(marker_m, free_m) / kCornerReach);
+  if (!whole) return std::nullopt;
+  const double px_per_m = kCornerReach * whole->spacing() / std::min(marker_m, free_m);
+  const double step_m =
+      std::min(marker_m, FreeOf(free_m * px_per_m, blur_px) / px_per_m) / kCornerReach;
+  const auto grid = GridAt(map, corner, step_m);
+  if (!grid) return std::nullopt;
+  const int cells = FindMarkerFamily(markers.family)->cells + 2 * markers.border_bits;
+  const double border_px = px_per_m * markers.side_m * markers.border_bits / cells;
+  return Surroundings{*grid, FreeOf(border_px, blur_px) / grid->spacing()};
+}
+
 // Of ChArUco along the edges, as far as markers leave it free; of a grid of markers as far as gap
 // and border reach.
 std::optional<Surroundings> SurroundingsOf(const Target& target, const BoardMap& map,
                                            const Eigen::Vector2d& corner, double blur_px) {
-  constexpr double kReach = 0.75;  // of a step, that FitCorner looks far
+  if (target.holes) return SurroundingsOfLone(target, map, corner, blur_px);
   const bool of_grid = target.markers && target.markers->grid();
   double step_m = target.square_m;
   if (of_grid) {
     const Markers& markers = *target.markers;
     const int cells = FindMarkerFamily(markers.family)->cells + 2 * markers.border_bits;
-    step_m = std::min(markers.gap_m, markers.side_m * markers.border_bits / cells) / kReach;
+    step_m = std::min(markers.gap_m, markers.side_m * markers.border_bits / cells) / kCornerReach;
   }
   auto grid = GridAt(map, corner, step_m);
   if (!grid || !target.markers) return grid ? std::optional<Surroundings>({*grid}) : std::nullopt;
@@ -54,7 +79,7 @@ std::optional<Surroundings> SurroundingsOf(const Target& target, const BoardMap&
     const double free_px = 0.5 * (1 - target.markers->side_m / target.square_m) * spacing;
     return Surroundings{*grid, FreeOf(free_px, blur_px) / spacing};
   }
-  const double share = FreeOf(kReach * spacing, blur_px) / (kReach * spacing);
+  const double share = FreeOf(kCornerReach * spacing, blur_px) / (kCornerReach * spacing);
   grid = GridAt(map, corner, share * step_m);
   return grid ? std::optional<Surroundings>({*grid}) : std::nullopt;
 }
@@ -103,11 +128,15 @@ MeasuredCorners MeasureCorners(const cv::Mat& grey, double saturated_from, const
     const GridPlace& grid = around->grid;
     measured.spacings[i] = grid.spacing();
     auto& fit = measured.fits[i];
-    fit =
-        FitCorner(grey, grid.place, grid.steps, grid.bends, blur_px, saturated_from, around->clear);
-    const int index = static_cast<int>(i);
-    const bool even = (index % target.corners_x() + index / target.corners_x()) % 2 == 0;
-    if (fit && !even) fit->contrast = -fit->contrast;
+    const int column = static_cast<int>(i) % target.corners_x();
+    const int row = static_cast<int>(i) / target.corners_x();
+    // Markers that stand alone begin at even columns and rows, and end at odd ones.
+    const LonePatch lone =
+        target.holes ? LonePatch(column % 2 == 0 ? 1 : -1, row % 2 == 0 ? 1 : -1) : LonePatch(0, 0);
+    fit = FitCorner(grey, grid.place, grid.steps, grid.bends, blur_px, saturated_from,
+                    around->clear, lone);
+    const bool even = (column + row) % 2 == 0;
+    if (fit && !even && !target.holes) fit->contrast = -fit->contrast;
   }
   return measured;
 }

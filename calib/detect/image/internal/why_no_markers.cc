@@ -14,6 +14,7 @@ constexpr std::size_t kSure = 4;  // markers, that chance does not decode
 constexpr int kMostOther = 4;     // rows and columns more or fewer
 
 std::string SizeText(const Target& target) {
+  if (target.holes) return "four holes";
   if (!target.markers->grid()) return Format("%d x %d squares", target.squares_x, target.squares_y);
   return Format("%d x %d tags", target.squares_x / 2, target.squares_y / 2);
 }
@@ -87,7 +88,7 @@ std::string WhyNoMarkers(const cv::Mat& grey, const Target& target,
   std::string why = WhyImageIsUseless(grey);
   if (!why.empty()) return why;
   if (seen.size() >= kSure) {
-    why = WhyOtherLayout(target, seen);
+    if (!target.holes) why = WhyOtherLayout(target, seen);
     if (!why.empty()) return why;
     return Format("%zu markers of %s are in the image, but not laid out as on a board of %s",
                   seen.size(), family.name, SizeText(target).c_str());
@@ -127,16 +128,21 @@ std::string WhyOtherWay(const Target& target) {
 }
 
 std::string WhyNotThisBoard(const Target& target, const std::vector<SeenMarker>& seen) {
-  const int count = static_cast<int>(target.MarkerPlaces().size());
+  const auto places = target.MarkerPlaces();
+  const int first = places.front().id;
+  const int last = places.back().id;
   std::vector<int> others;
   for (const SeenMarker& marker : seen) {
-    if (marker.id >= count) others.push_back(marker.id);
+    if (marker.id < first || marker.id > last) others.push_back(marker.id);
   }
+  // Another such board may stand in view.
+  constexpr std::size_t kOwn = 3;
+  if (target.holes && seen.size() - others.size() >= kOwn) return "";
   if (others.size() < 2 || 10 * others.size() < seen.size()) return "";
   return Format(
-      "markers %d to %d are in the image, but a board of %s has 0 to %d; check the rig "
+      "markers %d to %d are in the image, but a board of %s has %d to %d; check the rig "
       "file",
-      others.front(), others.back(), SizeText(target).c_str(), count - 1);
+      others.front(), others.back(), SizeText(target).c_str(), first, last);
 }
 
 }  // namespace rgbdt

@@ -39,6 +39,32 @@ void ToAprilGrid(const proto::AprilGrid& grid, const Place& place, Target* spec)
   *spec = GridOfMarkers(grid.tags_x(), grid.tags_y(), markers);
 }
 
+// Sizes that are not stated are velo2cam's and FAST-Calib's.
+void ToBoardWithHoles(const proto::BoardWithHoles& board, Target* spec) {
+  Holes holes;
+  if (board.has_first_marker()) holes.first_marker = board.first_marker();
+  if (board.has_hole_radius_m()) holes.radius_m = board.hole_radius_m();
+  if (board.has_hole_spacing_x_m()) holes.spacing_m.x() = board.hole_spacing_x_m();
+  if (board.has_hole_spacing_y_m()) holes.spacing_m.y() = board.hole_spacing_y_m();
+  if (board.has_marker_spacing_x_m()) holes.marker_spacing_m.x() = board.marker_spacing_x_m();
+  if (board.has_marker_spacing_y_m()) holes.marker_spacing_m.y() = board.marker_spacing_y_m();
+  Markers markers;
+  markers.family = board.dictionary().empty() ? kHolesFamily : board.dictionary();
+  markers.side_m = board.marker_m();
+  *spec = BoardWithHoles(markers, holes);
+}
+
+void FromBoardWithHoles(const Markers& markers, const Holes& holes, proto::BoardWithHoles* out) {
+  out->set_marker_m(markers.side_m);
+  out->set_dictionary(ValidUtf8(markers.family));
+  out->set_first_marker(holes.first_marker);
+  out->set_hole_radius_m(holes.radius_m);
+  out->set_hole_spacing_x_m(holes.spacing_m.x());
+  out->set_hole_spacing_y_m(holes.spacing_m.y());
+  out->set_marker_spacing_x_m(holes.marker_spacing_m.x());
+  out->set_marker_spacing_y_m(holes.marker_spacing_m.y());
+}
+
 void FromCharuco(const Target& spec, const Markers& markers, proto::Charuco* out) {
   out->set_squares_x(spec.squares_x);
   out->set_squares_y(spec.squares_y);
@@ -65,7 +91,7 @@ Target ToTarget(const proto::Target& target, const Place& place) {
   Target spec;
   const bool squares = target.squares_x() != 0 || target.squares_y() != 0 || target.square_m() != 0;
   const int kinds = (target.has_plain() ? 1 : 0) + (target.has_charuco() ? 1 : 0) +
-                    (target.has_aprilgrid() ? 1 : 0);
+                    (target.has_aprilgrid() ? 1 : 0) + (target.has_holes() ? 1 : 0);
   if (target.has_plain()) {
     if (kinds > 1 || squares || target.width_m() != 0 || target.height_m() != 0 ||
         target.pattern_offset_m_size() > 0 || target.has_print_sigma()) {
@@ -76,24 +102,29 @@ Target ToTarget(const proto::Target& target, const Place& place) {
     return spec;
   }
   if (kinds > 1 || (kinds > 0 && squares)) {
-    place.Fail(target.has_charuco() ? "charuco" : "aprilgrid",
+    place.Fail(target.has_charuco()     ? "charuco"
+               : target.has_aprilgrid() ? "aprilgrid"
+                                        : "holes",
                "stands beside another board's fields; expected one board");
   }
   if (target.has_charuco()) {
     ToCharuco(target.charuco(), place.In("charuco"), &spec);
   } else if (target.has_aprilgrid()) {
     ToAprilGrid(target.aprilgrid(), place.In("aprilgrid"), &spec);
+  } else if (target.has_holes()) {
+    ToBoardWithHoles(target.holes(), &spec);
   } else if (target.squares_x() == 0) {
     place.Fail("squares_x",
-               "is 0; expected 3 to 100, or charuco { ... }, aprilgrid { ... } or plain { width_m: "
-               "... height_m: ... }");
+               "is 0; expected 3 to 100, or charuco { ... }, aprilgrid { ... }, holes { ... } or "
+               "plain { width_m: ... height_m: ... }");
   } else {
     spec.squares_x = target.squares_x();
     spec.squares_y = target.squares_y();
     spec.square_m = target.square_m();
   }
-  spec.width_m = target.width_m();
-  spec.height_m = target.height_m();
+  // A board with holes has a usual size.
+  if (!spec.holes || target.width_m() != 0) spec.width_m = target.width_m();
+  if (!spec.holes || target.height_m() != 0) spec.height_m = target.height_m();
   spec.print_sigma = target.has_print_sigma() ? target.print_sigma() : kUsualPrintSigma;
   if (target.pattern_offset_m_size() > 0) {
     RequireNumbers(target.pattern_offset_m(), 2, place, "pattern_offset_m");
@@ -112,6 +143,8 @@ void FromTarget(const Target& spec, proto::Target* out) {
     out->set_squares_x(spec.squares_x);
     out->set_squares_y(spec.squares_y);
     out->set_square_m(spec.square_m);
+  } else if (spec.holes) {
+    FromBoardWithHoles(*spec.markers, *spec.holes, out->mutable_holes());
   } else if (spec.markers->grid()) {
     FromAprilGrid(spec, *spec.markers, out->mutable_aprilgrid());
   } else {

@@ -6,8 +6,8 @@
 
 namespace rgbdt::text {
 
-/// The board of a rig file: a checkerboard, ChArUco, a grid of AprilTags or a plain board. Throws
-/// InputError with file, line and field.
+/// The board of a rig file: a checkerboard, ChArUco, a grid of AprilTags, holes or a plain one.
+/// Throws InputError with file, line and field.
 Target ToTarget(const proto::Target& target, const Place& place);
 
 void FromTarget(const Target& spec, proto::Target* out);

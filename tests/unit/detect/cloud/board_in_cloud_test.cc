@@ -68,7 +68,39 @@ Tilt TiltOf(const CloudEdges& found, const Rigid3& truth) {
   return {tilt.squaredNorm(), tilt.dot(covariance.ldlt().solve(tilt))};
 }
 
+// The board of velo2cam and FAST-Calib, 1.4 x 1.0 m.
+simulate::Options WithHoles(simulate::Options options) {
+  const Target target = BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false});
+  options.board.markers = target.markers;
+  options.board.holes = target.holes;
+  options.board.squares_x = options.board.squares_y = target.squares_x;
+  options.board.square_m = target.square_m;
+  options.board.width_m = target.width_m;
+  options.board.height_m = target.height_m;
+  return options;
+}
+
 class AnyLidar : public ::testing::TestWithParam<int> {};
+
+TEST_P(AnyLidar, FindsABoardWithHoles) {
+  for (int view = 0; view < 3; ++view) {
+    const CloudWorld world(WithHoles(Physics(GetParam())), view);
+    const Cloud cloud = world.Sweep(kSweepTime);
+    const auto boards = FindBoards(cloud, world.target(), Detection(GetParam()));
+    ASSERT_FALSE(boards.candidates.empty()) << "view " << view << ": " << boards.why;
+    const Vector6d error = ErrorOf(boards.candidates[0], world.lidar_from_target());
+    EXPECT_LT(error.head<3>().norm(), 0.03) << "view " << view;
+    EXPECT_LT(CentreError(boards.candidates[0], world.lidar_from_target()), 0.06) << view;
+    // A board without them is none.
+    simulate::Options filled = WithHoles(Physics(GetParam()));
+    filled.board.holes.reset();
+    filled.board.markers.reset();
+    const CloudWorld other(filled, view);
+    EXPECT_TRUE(FindBoards(other.Sweep(kSweepTime), world.target(), Detection(GetParam()))
+                    .candidates.empty())
+        << view;
+  }
+}
 
 TEST_P(AnyLidar, FindsTheBoardInTheWholeCloud) {
   for (int view = 0; view < 6; ++view) {

@@ -126,7 +126,7 @@ TEST(BoardSides, TheSquaresStrongerEdgeIsNotTaken) {
   board.target.width_m = 1.1 + 2 * 0.007;  // of 2.3 px
   const auto sides = Fit(board);
   EXPECT_FALSE(sides[1].seen);
-  EXPECT_THAT(sides[1].why, HasSubstr("border between outline and squares is only 2.3 px"));
+  EXPECT_THAT(sides[1].why, HasSubstr("border between outline and pattern is only 2.3 px"));
 }
 
 TEST(BoardSides, WhereTheBoardsThicknessMayShowNothingIsSaid) {

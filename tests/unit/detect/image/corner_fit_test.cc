@@ -100,6 +100,42 @@ TEST(CornerFit, ContrastTellsWhichPatchesAreLight) {
   }
 }
 
+// One of a marker's corners, dark or light, with its code inside of a border of 6 px.
+TEST(CornerFit, TheCornerOfASquareThatStandsAlone) {
+  const Eigen::Matrix2d steps = 16 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d truth(50.3, 40.7);
+  for (const LonePatch& lone : {LonePatch(1, 1), LonePatch(-1, 1), LonePatch(1, -1)}) {
+    for (const double inside : {-80.0, 80.0}) {
+      cv::Mat image(90, 100, CV_32FC1);
+      for (int y = 0; y < image.rows; ++y) {
+        for (int x = 0; x < image.cols; ++x) {
+          const auto part = [](double e) {
+            return 0.5 * (1 + std::erf(e / (std::sqrt(2.0) * 1.1)));
+          };
+          const double dx = lone.x() * (x - truth.x());
+          const double dy = lone.y() * (y - truth.y());
+          const double code = part(dx - 6) * part(dy - 6) * (x % 8 < 4 ? -0.9 : 0);
+          image.at<float>(y, x) =
+              static_cast<float>(100 + 0.05 * x + inside * (part(dx) * part(dy) + code));
+        }
+      }
+      const auto fit = FitCorner(image, truth + Eigen::Vector2d(0.4, -0.3), steps, kStraight, {},
+                                 kNeverSaturated, 4.0 / 16, lone);
+      ASSERT_TRUE(fit.has_value()) << lone.transpose() << " " << inside;
+      EXPECT_LT((fit->place - truth).norm(), 0.02) << lone.transpose() << " " << inside;
+      EXPECT_NEAR(fit->contrast, 0.5 * inside, 3);
+      EXPECT_NEAR(fit->blur_px, 1.1, 0.1);
+      // Where light is clipped, the dark side of the corner still tells its place.
+      const double level = inside < 0 ? 95 : 150;
+      cv::Mat clipped = cv::min(image, level);
+      const auto bounded = FitCorner(clipped, truth, steps, kStraight, 1.1, level, 4.0 / 16, lone);
+      ASSERT_TRUE(bounded.has_value());
+      EXPECT_TRUE(bounded->saturated);
+      EXPECT_LT((bounded->place - truth).norm(), 0.1) << lone.transpose() << " " << inside;
+    }
+  }
+}
+
 TEST(CornerFit, NothingWhereThereIsNoCorner) {
   const PaintedCheckerboard board;
   const cv::Mat image = board.Paint();

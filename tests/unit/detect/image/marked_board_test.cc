@@ -69,6 +69,57 @@ TEST(MarkedBoard, ALegacyBoardIsToldFromANewOne) {
               HasSubstr("take out legacy: true"));
 }
 
+TEST(MarkedBoard, MarkersThatStandAloneAreMeasuredAtTheirCorners) {
+  Errors all;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const MarkedScene scene = RenderMarked(HolesBoard(), seed);
+    ASSERT_EQ(scene.corners.size(), 16U);
+    const ImageEdgesResult found =
+        DetectImageEdges(scene.image, Camera(scene.spec), scene.target, nullptr, scene.spec.kind);
+    ASSERT_TRUE(found.edges.has_value()) << "seed " << seed << ": " << found.why;
+    EXPECT_EQ(SeenOf(found.edges->corners), 16) << "seed " << seed;
+    const Errors errors = Compare(found.edges->corners, scene.corners);
+    EXPECT_LT(errors.rms, 0.1) << "seed " << seed;
+    EXPECT_LT(errors.worst, 0.3) << "seed " << seed;
+    EXPECT_FALSE(errors.turned);
+    ASSERT_TRUE(found.edges->pose.has_value());
+    EXPECT_TRUE(found.edges->pose->half_turn_known);
+    EXPECT_THAT(found.edges->pose->sensor_from_target.translation,
+                EigenNear(scene.camera_from_target.translation, 0.02));
+  }
+}
+
+// Its markers are too small for it, and as warm as the rest.
+TEST(MarkedBoard, AThermalCameraFindsABoardWithHolesByItsOutline) {
+  simulate::BoardOptions board = HolesBoard();
+  board.black_minus_white_k = 0;
+  board.hidden_outline_m = 0;
+  board.temperature_k = 330;
+  const MarkedScene scene = RenderMarked(board, 2, 1);
+  ASSERT_EQ(scene.spec.kind, CameraKind::kThermal);
+  const Camera camera(scene.spec);
+  const ImageEdgesResult found =
+      DetectImageEdges(scene.image, camera, scene.target, nullptr, scene.spec.kind);
+  ASSERT_TRUE(found.edges.has_value()) << found.why;
+  EXPECT_TRUE(found.edges->corners.empty());
+  ASSERT_TRUE(found.edges->pose.has_value());
+  EXPECT_FALSE(found.edges->pose->half_turn_known);
+  EXPECT_THAT(found.edges->pose->sensor_from_target.translation,
+              EigenNear(scene.camera_from_target.translation, 0.05));
+  // A colour camera that does not see them is told so.
+  const ImageEdgesResult colour =
+      DetectImageEdges(scene.image, camera, scene.target, nullptr, CameraKind::kColor);
+  EXPECT_FALSE(colour.edges.has_value());
+}
+
+TEST(MarkedBoard, MarkersOfAnotherBoardWithHolesAreNamed) {
+  const MarkedScene scene = RenderMarked(HolesBoard(), 1);
+  Target target = scene.target;
+  target.holes->first_marker = 11;
+  EXPECT_THAT(FindCheckerboard(scene.grey(), target).why,
+              HasSubstr("markers 1 to 4 are in the image, but a board of four holes has 11 to 14"));
+}
+
 TEST(MarkedBoard, WhatIsWrongIsSaid) {
   const cv::Mat grey = Charuco().grey();
   Target target = Charuco().target;

@@ -39,15 +39,31 @@ inline simulate::BoardOptions AprilGridBoard() {
   return board;
 }
 
-inline MarkedScene RenderMarked(const simulate::BoardOptions& board, std::uint64_t seed) {
+/// Four holes and as many markers: velo2cam's and FAST-Calib's, markers with a white rim.
+inline simulate::BoardOptions HolesBoard() {
+  const Target target = BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false});
+  simulate::BoardOptions board;
+  board.markers = target.markers;
+  board.holes = target.holes;
+  board.squares_x = target.squares_x;
+  board.squares_y = target.squares_y;
+  board.square_m = target.square_m;
+  board.width_m = target.width_m;
+  board.height_m = target.height_m;
+  return board;
+}
+
+/// By one of the usual cameras: 0 colour, 1 thermal.
+inline MarkedScene RenderMarked(const simulate::BoardOptions& board, std::uint64_t seed,
+                                std::size_t camera_index = 0) {
   simulate::Options options;
   options.seed = seed;
-  options.cameras.resize(1);  // colour alone
+  options.cameras = {options.cameras[camera_index]};
   options.board = board;
   simulate::Simulator simulator(options);
   simulator.ShowView(0, "0001");
   MarkedScene scene;
-  scene.spec = simulator.rig().cameras[0];
+  scene.spec = simulator.rig().cameras.front();
   scene.target = simulator.rig().target;
   scene.image = simulator.TakeImage(scene.spec.name, 1'000'000);
   scene.camera_from_target = simulator.truth().camera_from_lidar.at(scene.spec.name) *

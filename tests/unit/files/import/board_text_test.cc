@@ -53,6 +53,19 @@ TEST(BoardText, KnowsBoardsWithMarkers) {
   EXPECT_EQ(DescribeBoard(grid), "6 x 5 APRILTAG_36h11 tags of 0.1 m, 0.025 m apart");
 }
 
+TEST(BoardText, KnowsTheBoardOfVelo2camAndFastCalib) {
+  const Target board = ParseBoard("velo2cam@0.16");
+  ASSERT_TRUE(board.holes.has_value());
+  EXPECT_EQ(board.markers->side_m, 0.16);
+  EXPECT_EQ(board.width_m, 1.4);
+  EXPECT_EQ(DescribeBoard(board),
+            "four holes of 0.12 m radius, 6X6_250 markers of 0.16 m, 1.4 x 1 m");
+  EXPECT_EQ(ParseBoard("fast-calib@0.2,1.5x1.1").height_m, 1.1);
+  EXPECT_THAT(ErrorOfBoard("velo2cam"), HasSubstr("expected \"@\""));
+  EXPECT_THAT(ErrorOfBoard("velo2cam@160"), HasSubstr("looks like millimetres"));
+  EXPECT_THAT(ErrorOfBoard("velo2cam@0.16,1.2x0.9"), HasSubstr("need 1.26 x 0.86 m"));
+}
+
 TEST(BoardText, MarkersThatCannotBeAreRefused) {
   EXPECT_THAT(ErrorOfBoard("charuco@8x6,0.07,0.095,5X5_100,0.85x0.61"),
               HasSubstr("not smaller than its square"));

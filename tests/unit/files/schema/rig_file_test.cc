@@ -73,6 +73,65 @@ TEST(RigFile, BoardsWithMarkersAreReadAndWritten) {
   EXPECT_DOUBLE_EQ(grid.markers->gap_m, 0.0325);
 }
 
+TEST(RigFile, HostsAreReadAndWritten) {
+  const std::string hosts =
+      "host { name: \"sensor\" runs: [\"lidar\", \"camera-rgb\"] }\nhost { name: \"desk\" }\n";
+  const Rig rig = ParseRig(PrintRig(ParseRig(kRig + hosts, "rig.textproto")), "again");
+  ASSERT_EQ(rig.hosts.size(), 2U);
+  EXPECT_EQ(rig.hosts[0].name, "sensor");
+  EXPECT_EQ(rig.hosts[0].runs, std::vector<std::string>({"lidar", "camera-rgb"}));
+  EXPECT_TRUE(rig.hosts[1].runs.empty());
+  EXPECT_THAT(DifferencesOf(rig, ParseRig(kRig, "rig.textproto")), testing::IsEmpty())
+      << "a calibration holds whichever machine runs what";
+  const auto error = [&](const std::string& more) {
+    return test::ErrorOf([&] { ParseRig(kRig + hosts + more, "rig.textproto"); });
+  };
+  EXPECT_THAT(error("host { name: \"sensor\" }"), HasSubstr("a name of its own"));
+  EXPECT_THAT(error("host { name: \"third\" runs: \"lidar\" }"), HasSubstr("on one machine"));
+}
+
+TEST(RigFile, ABoardWithHolesHasTheUsualSizesUnlessTheyAreStated) {
+  const auto round = [](const std::string& holes) {
+    const Rig rig = ParseRig(With(kRig, kTarget, "target { holes { " + holes), "rig.textproto");
+    return ParseRig(PrintRig(rig), "again").target;
+  };
+  const Target usual = round("marker_m: 0.16 } }");
+  ASSERT_TRUE(usual.holes.has_value());
+  EXPECT_EQ(usual.width_m, 1.4);
+  EXPECT_EQ(usual.height_m, 1.0);
+  EXPECT_EQ(usual.markers->family, "6X6_250");
+  EXPECT_EQ(usual.HoleCentres().at(0), Eigen::Vector2d(-0.25, -0.2));
+  const Target own = round(
+      "marker_m: 0.1 dictionary: \"4X4_50\" first_marker: 5 hole_radius_m: 0.1 "
+      "hole_spacing_x_m: 0.4 hole_spacing_y_m: 0.3 marker_spacing_x_m: 0.8 "
+      "marker_spacing_y_m: 0.5 } width_m: 1 height_m: 0.7 print_sigma: 0.001 }");
+  EXPECT_EQ(own.width_m, 1);
+  EXPECT_EQ(own.holes->radius_m, 0.1);
+  EXPECT_EQ(own.holes->spacing_m, Eigen::Vector2d(0.4, 0.3));
+  EXPECT_EQ(own.holes->marker_spacing_m, Eigen::Vector2d(0.8, 0.5));
+  EXPECT_EQ(own.MarkerPlaces().at(0).id, 5);
+  EXPECT_EQ(own.print_sigma, 0.001);
+}
+
+TEST(RigFile, BoardsWithHolesThatCannotBeAreRefused) {
+  const auto holes = [](const std::string& fields) {
+    return ErrorOfRig(kTarget, "target { holes { " + fields + " } }");
+  };
+  EXPECT_THAT(holes(""), HasSubstr("target.holes.marker_m is 0"));
+  EXPECT_THAT(holes("marker_m: 0.16 hole_spacing_x_m: 0.2"), HasSubstr("from centre to centre"));
+  EXPECT_THAT(holes("marker_m: 0.16 hole_spacing_y_m: 0.8"), HasSubstr("holes inside the board"));
+  EXPECT_THAT(holes("marker_m: 0.16 marker_spacing_x_m: 0.6 marker_spacing_y_m: 0.45"),
+              HasSubstr("holes that touch no marker"));
+  EXPECT_THAT(holes("marker_m: 0.16 first_marker: 247"), HasSubstr("249 at most"));
+  EXPECT_THAT(holes("marker_m: 0.16 marker_spacing_x_m: 1.3"), HasSubstr("1 cm inside the board"));
+  EXPECT_THAT(holes("marker_m: 0.16 marker_spacing_x_m: 0.1"), HasSubstr("a quarter of one"));
+  EXPECT_THAT(ErrorOfRig(kTarget, "target { holes { marker_m: 0.16 } height_m: 1.4 }"),
+              HasSubstr("a quarter turn is not told"));
+  EXPECT_THAT(
+      ErrorOfRig(kTarget, "target { holes { marker_m: 0.16 } pattern_offset_m: [0.01, 0] }"),
+      HasSubstr("about the board's centre"));
+}
+
 TEST(RigFile, BoardsWithMarkersThatCannotBeAreRefused) {
   EXPECT_THAT(
       ErrorOfRig("target { squares_x: 11", "target { charuco { squares_x: 3 } squares_x: 11"),
