@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
+#include "services/bus/bus.h"
+#include "services/bus/bus_url.h"
 #include "services/nodes/earlier_views.h"
 #include "services/rgbdt/verbs.h"
 #include "services/runtime/process.h"
@@ -16,7 +21,7 @@ namespace {
 
 struct UpFlags {
   BusFlags bus;
-  std::string rig, listen, certificate, tls_key, logs;
+  std::string rig, listen, certificate, tls_key, logs, log, host;
   std::string out = "out/session";
 };
 
@@ -75,9 +80,42 @@ class Screen {
   std::string table_, page_;
 };
 
+std::string NameOfThisMachine() {
+  char name[256] = {};
+  if (gethostname(name, sizeof(name) - 1) != 0) throw InputError("this machine has no host name");
+  return name;
+}
+
+// Hosts of a bus that keeps to its machine hear nothing of each other.
+void WarnOfTtl(const Rig& rig, const std::string& url) {
+  const BusUrl bus = ParseBusUrl(CompleteUrl(url));
+  if (rig.hosts.size() < 2 || bus.ttl > 0 || !bus.error.empty()) return;
+  std::fprintf(stderr,
+               "rgbdt up: the rig has %zu hosts, but the bus is of ttl=0, which other machines do "
+               "not hear: on each, LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=1'\n",
+               rig.hosts.size());
+}
+
+const Program* Find(const std::vector<Program>& programs, const std::string& name) {
+  const auto found = std::find_if(programs.begin(), programs.end(),
+                                  [&](const Program& program) { return program.name == name; });
+  return found == programs.end() ? nullptr : &*found;
+}
+
+// It comes with LCM's programs, which are not always there.
+void RequireLogger() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((std::filesystem::path(folder) / kLoggerProgram).c_str(), X_OK) == 0) return;
+  }
+  throw InputError(std::string(kLoggerProgram) +
+                   " is not installed: apt-get install liblcm-bin, or leave --log and the rig's "
+                   "`logger` out");
+}
+
 int RunUp(const UpFlags& flags) {
   const Rig rig = ReadRig(flags.rig);
-  ReadEarlierViews(flags.out, rig);  // what the session would refuse again and again
   UpOptions options;
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   options.rig = flags.rig;
@@ -86,15 +124,24 @@ int RunUp(const UpFlags& flags) {
   options.listen = flags.listen;
   options.certificate = flags.certificate;
   options.tls_key = flags.tls_key;
-  options.url = flags.bus.url;
+  options.url = CompleteUrl(flags.bus.url);  // the logger, too, is to have a large buffer
   options.key = flags.bus.key;
-  std::vector<Program> programs = ProgramsOf(rig, options);
+  options.log = flags.log;
+  const std::string host = flags.host.empty() ? NameOfThisMachine() : flags.host;
+  std::vector<Program> programs = ProgramsOn(host, rig, ProgramsOf(rig, options));
+  if (programs.empty()) throw InputError("the rig's file has nothing for this machine to run");
+  if (Find(programs, kLogger) != nullptr) RequireLogger();
+  WarnOfTtl(rig, flags.bus.url);
+  // What the session would refuse again and again.
+  if (Find(programs, "session") != nullptr) ReadEarlierViews(flags.out, rig);
   for (const Program& program : programs) std::filesystem::remove(program.log);
-  Screen screen(programs.back().log);
+  const Program* viewer = Find(programs, "viewer");
+  Screen screen(viewer == nullptr ? std::filesystem::path() : viewer->log);
   std::printf("What the processes print is in %s\n", options.logs.c_str());
   UpNode node(
       std::move(programs), [&](const std::string& line) { screen.Tell(line); },
-      [&](const std::string& table) { screen.Show(table); });
+      [&](const std::string& table) { screen.Show(table); },
+      rig.hosts.empty() ? "up" : "up-" + host);
   const int code = RunOnLcm(node, flags.bus);
   node.Stop();
   return code;
@@ -109,7 +156,8 @@ void AddUp(CommandLine* program) {
                     "Runs all processes of a rig on this machine, and again where one dies: the\n"
                     "drivers of its devices, assembler, detector, solver, fuser, a session that\n"
                     "the viewer's page leads, and the viewer. One table tells how each does;\n"
-                    "Ctrl-C ends all of it.\n"
+                    "Ctrl-C ends all of it. Where the rig file names hosts, the same command on\n"
+                    "each of them runs what is that machine's.\n"
                     "Example: rgbdt up rig.textproto --out out/monday",
                     [flags] { return RunUp(*flags); });
   verb->Required("RIG", &flags->rig, "rig.textproto");
@@ -117,6 +165,13 @@ void AddUp(CommandLine* program) {
                "session directory to write, or, where it was ended before its end, to go on with");
   verb->Option("--logs", &flags->logs,
                "folder for what the processes print; default: beside the session's, OUT.logs");
+  verb->Option(
+      "--log", &flags->log,
+      "keep what is said on the bus here, by lcm-logger: FILE.00, and FILE.01 where it died "
+      "and was started again. Default: only where a host of the rig runs `logger`, in "
+      "OUT.lcmlog.00");
+  verb->Option("--host", &flags->host,
+               "which of the rig's hosts this machine is; default: its host name");
   verb->Option("--listen", &flags->listen,
                "of the page, e.g. 0.0.0.0:8080 for a phone; default: the viewer's");
   verb->Two("--tls", &flags->certificate, &flags->tls_key, "CERT KEY",

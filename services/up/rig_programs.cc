@@ -1,8 +1,55 @@
 #include "services/up/rig_programs.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
+#include "calib/model/errors.h"
+
 namespace rgbdt {
+namespace {
+
+bool Runs(const HostSpec& host, const std::string& name) {
+  return std::find(host.runs.begin(), host.runs.end(), name) != host.runs.end();
+}
+
+bool HostsLog(const Rig& rig) {
+  return std::any_of(rig.hosts.begin(), rig.hosts.end(),
+                     [](const HostSpec& host) { return Runs(host, kLogger); });
+}
+
+// A program of LCM's, which says nothing in STATUS. A name that is not taken yet each time: what an
+// earlier one wrote stays.
+Program Logger(const UpOptions& options) {
+  Program logger;
+  logger.name = kLogger;
+  const std::filesystem::path log =
+      !options.log.empty()
+          ? options.log
+          : std::filesystem::path((options.out / "").parent_path().string() + ".lcmlog");
+  // LCM's --increment, unlike -i, takes the word behind it for its own.
+  logger.arguments = {kLoggerProgram, "-q", "-i"};
+  if (!options.url.empty()) logger.arguments.push_back("--lcm-url=" + options.url);
+  logger.arguments.push_back(log.string());
+  logger.log = options.logs / "logger.log";
+  logger.speaks = false;
+  return logger;
+}
+
+template <typename Names>
+std::string Listed(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string NamesOf(const std::vector<Program>& programs) {
+  std::vector<std::string> names;
+  for (const Program& program : programs) names.push_back(program.name);
+  return Listed(names);
+}
+
+}  // namespace
 
 std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
   std::vector<Program> all;
@@ -45,7 +92,40 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
     page.insert(page.end(), {"--tls", options.certificate, options.tls_key});
   }
   add("viewer", "viewer", page);
+  if (!options.log.empty() || HostsLog(rig)) all.push_back(Logger(options));
   return all;
+}
+
+std::vector<Program> ProgramsOn(const std::string& host, const Rig& rig, std::vector<Program> all) {
+  if (rig.hosts.empty()) return all;
+  std::set<std::string> nobodys;
+  for (const Program& program : all) nobodys.insert(program.name);
+  std::vector<std::string> hosts;
+  const HostSpec* own = nullptr;
+  for (const HostSpec& one : rig.hosts) {
+    hosts.push_back(one.name);
+    if (one.name == host) own = &one;
+    for (const std::string& name : one.runs) {
+      if (nobodys.erase(name) > 0) continue;
+      throw InputError("rig: host \"" + one.name + "\" runs \"" + name +
+                       "\", which this rig has not; expected some of " + NamesOf(all));
+    }
+  }
+  nobodys.erase(kLogger);
+  if (!nobodys.empty()) {
+    throw InputError("rig: no host runs " + Listed(nobodys) +
+                     "; name each in one host { name: ... runs: ... }");
+  }
+  if (own == nullptr) {
+    throw InputError("this machine is \"" + host + "\", and the rig's hosts are " + Listed(hosts) +
+                     "; say which one it is by --host");
+  }
+  std::vector<Program> mine;
+  for (Program& program : all) {
+    const bool asked = program.name == kLogger && !HostsLog(rig);  // by --log, here
+    if (asked || Runs(*own, program.name)) mine.push_back(std::move(program));
+  }
+  return mine;
 }
 
 }  // namespace rgbdt

@@ -8,12 +8,16 @@
 
 namespace rgbdt {
 
+inline constexpr const char* kLogger = "logger";             ///< as a process
+inline constexpr const char* kLoggerProgram = "lcm-logger";  ///< what it runs: LCM's own
+
 /// A program to be run.
 struct Program {
   std::string name;                    ///< as its STATUS calls it: "camera-rgb"
   std::vector<std::string> arguments;  ///< the program's path first
   std::filesystem::path log;           ///< what it prints is added to this file
   bool ends = false;                   ///< exit code 0 means that it is done, for good
+  bool speaks = true;                  ///< it sends STATUS
 };
 
 /// How a rig's processes are called.
@@ -26,11 +30,19 @@ struct UpOptions {
   std::string certificate, tls_key;  ///< of the viewer's TLS; empty: its own choice
   std::string url;                   ///< of the bus; empty: LCM_DEFAULT_URL
   std::string key;                   ///< file of the rig's key; empty: RGBDT_KEY, or else none
+  /// What is said on the bus goes here, by lcm-logger; each start of it appends .00, .01 or so.
+  /// Empty: no logger, unless the rig's hosts have one, which writes beside `out`.
+  std::filesystem::path log;
 };
 
 /// The processes of a rig, as systemd's rgbdt.target has them: a driver for each device that the
 /// rig names, assembler (of a turned scanner), detector, solver, fuser, a session that the page
-/// leads, the viewer.
+/// leads, the viewer, and a logger where one is asked for.
 std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options);
+
+/// Those of all of a rig's programs that run on `host`, as the rig's hosts say; without any: all.
+/// Throws InputError where the rig has other hosts, where a host runs what the rig has not, or
+/// where a program is nobody's.
+std::vector<Program> ProgramsOn(const std::string& host, const Rig& rig, std::vector<Program> all);
 
 }  // namespace rgbdt

@@ -43,7 +43,7 @@ Descriptor OpenLog(const std::filesystem::path& path) {
   if (nothing >= 0) dup2(nothing, STDIN_FILENO);
   dup2(log, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
-  execv(arguments[0], arguments);
+  execvp(arguments[0], arguments);
   _exit(kCannotRun);
 }
 

@@ -28,8 +28,10 @@ std::string StateOf(const Supervisor::Child& child, Utime now) {
 
 }  // namespace
 
-UpNode::UpNode(std::vector<Program> programs, Supervisor::Tell tell, Show show)
-    : supervisor_(std::move(programs), std::move(tell)), show_(std::move(show)) {
+UpNode::UpNode(std::vector<Program> programs, Supervisor::Tell tell, Show show, std::string name)
+    : supervisor_(std::move(programs), std::move(tell)),
+      show_(std::move(show)),
+      name_(std::move(name)) {
   for (const Supervisor::Child& child : supervisor_.children()) heard_[child.program.name];
 }
 
@@ -64,7 +66,8 @@ std::string UpNode::Table() const {
     const Heard& heard = heard_.at(child.program.name);
     const bool speaks = child.pid != 0 && heard.when != 0 && now_ - heard.when < kSilent;
     std::string text = speaks ? heard.status.text : child.how_it_ended;
-    if (text.empty()) text = "starts";
+    if (child.pid != 0 && !child.program.speaks) text.clear();  // nothing takes its last words back
+    if (text.empty() && child.program.speaks) text = "starts";
     const std::int64_t lost = Counter(heard.status, "gaps") + Counter(heard.status, "dropped");
     std::snprintf(line, sizeof(line), "%-16s %-7s %8.0f %8lld %8d  %s\n",
                   child.program.name.c_str(), StateOf(child, now_).c_str(),

@@ -17,9 +17,10 @@ class UpNode : public Node {
  public:
   using Show = std::function<void(const std::string& table)>;
 
-  UpNode(std::vector<Program> programs, Supervisor::Tell tell, Show show);
+  /// `name`: as its own STATUS has it, one of a machine's.
+  UpNode(std::vector<Program> programs, Supervisor::Tell tell, Show show, std::string name = "up");
 
-  std::string name() const override { return "up"; }
+  std::string name() const override { return name_; }
   std::vector<std::string> Subscriptions() const override { return {"STATUS"}; }
   Messages Handle(const Message& message) override;
   Messages Advance(Utime now) override;
@@ -39,6 +40,7 @@ class UpNode : public Node {
 
   Supervisor supervisor_;
   Show show_;
+  std::string name_;
   Periodic show_period_{kMicrosecondsPerSecond};
   Utime now_ = 0;
   std::map<std::string, Heard> heard_;  // of the processes that it runs

@@ -9,7 +9,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 processes=(assembler detector solver fuser session viewer)
 
 up() {  # NAME
-  start "$1" "$bin/rgbdt" up "$scratch/rig.textproto" --out "$scratch/$1" --listen 127.0.0.1:0
+  start "$1" "$bin/rgbdt" up "$scratch/rig.textproto" --out "$scratch/$1" --listen 127.0.0.1:0 \
+    --log "$scratch/$1.lcmlog"
   helper ready "${processes[@]}" up || fail "not every process came up"
 }
 
@@ -45,7 +46,7 @@ up first
 until_it_says first '^page: http://127.0.0.1:' 1
 helper ask next_pose || fail "no pose"
 helper ask capture || fail "no view"
-for process in "${processes[@]}"; do
+for process in "${processes[@]}" logger; do
   kill -KILL "$(pid_of first "$process")"
   until_it_says first "^$process: was killed by SIGKILL" 1
   until_it_says first "^$process: started, pid" 2
@@ -62,8 +63,11 @@ done
 [ -s "$scratch/first/calibration.textproto" ] || fail "no calibration"
 
 echo "== Ctrl-C ends all"
-mapfile -t all < <(for process in "${processes[@]}"; do pid_of first "$process"; done)
+mapfile -t all < <(for process in "${processes[@]}" logger; do pid_of first "$process"; done)
 stop INT first
+for log in 00 01; do
+  [ -s "$scratch/first.lcmlog.$log" ] || fail "what the logger wrote before it was killed, or after, is missing"
+done
 none_is_left "${all[@]}"
 
 echo "== a session that has ended is refused before anything is started"

@@ -1,0 +1,80 @@
+#include "services/up/rig_programs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+UpOptions Options() {
+  UpOptions options;
+  options.programs = "/programs";
+  options.rig = "rig.textproto";
+  options.out = "out/session";
+  options.logs = "out/session.logs";
+  return options;
+}
+
+std::vector<std::string> NamesOn(const std::string& host, const Rig& rig,
+                                 const UpOptions& options = Options()) {
+  std::vector<std::string> names;
+  for (const Program& program : ProgramsOn(host, rig, ProgramsOf(rig, options))) {
+    names.push_back(program.name);
+  }
+  return names;
+}
+
+Rig OnTwoHosts() {
+  Rig rig;
+  rig.hosts = {{"sensor", {"detector", "fuser"}},
+               {"desk", {"solver", "session", "viewer", "logger"}}};
+  return rig;
+}
+
+TEST(RigPrograms, OneMachineRunsAllWhateverItsName) {
+  EXPECT_THAT(NamesOn("anything", Rig()),
+              ElementsAre("detector", "solver", "fuser", "session", "viewer"));
+}
+
+TEST(RigPrograms, EachHostRunsWhatIsIts) {
+  EXPECT_THAT(NamesOn("sensor", OnTwoHosts()), ElementsAre("detector", "fuser"));
+  EXPECT_THAT(NamesOn("desk", OnTwoHosts()), ElementsAre("solver", "session", "viewer", "logger"));
+}
+
+TEST(RigPrograms, HostsThatDoNotFitTheRigAreNamed) {
+  EXPECT_THAT(InputErrorOf([] { NamesOn("laptop", OnTwoHosts()); }),
+              AllOf(HasSubstr("\"laptop\""), HasSubstr("sensor, desk"), HasSubstr("--host")));
+  Rig rig = OnTwoHosts();
+  rig.hosts[0].runs = {"detector"};
+  EXPECT_THAT(InputErrorOf([&] { NamesOn("desk", rig); }), HasSubstr("no host runs fuser"));
+  rig.hosts[0].runs = {"detector", "fuser", "camera-rgb"};
+  EXPECT_THAT(InputErrorOf([&] { NamesOn("desk", rig); }),
+              AllOf(HasSubstr("\"sensor\" runs \"camera-rgb\""), HasSubstr("expected some of")));
+}
+
+TEST(RigPrograms, ALoggerRunsWhereItIsAskedForAndKeepsWhatAnEarlierOneWrote) {
+  UpOptions options = Options();
+  options.log = "bus.lcmlog";
+  options.url = "udpm://239.255.76.67:7667?ttl=1";
+  const Program logger = ProgramsOf(Rig(), options).back();
+  EXPECT_EQ(logger.name, "logger");
+  EXPECT_THAT(logger.arguments, Contains("bus.lcmlog"));
+  EXPECT_THAT(logger.arguments, Contains("-i"));
+  EXPECT_THAT(logger.arguments, Contains("--lcm-url=udpm://239.255.76.67:7667?ttl=1"));
+  EXPECT_FALSE(logger.speaks);
+  EXPECT_THAT(ProgramsOf(OnTwoHosts(), Options()).back().arguments, Contains("out/session.lcmlog"));
+  // Where no host of the rig has one, on the machine where it was asked for.
+  Rig rig = OnTwoHosts();
+  rig.hosts[1].runs.pop_back();
+  EXPECT_THAT(NamesOn("sensor", rig, options), ElementsAre("detector", "fuser", "logger"));
+}
+
+}  // namespace
+}  // namespace rgbdt
