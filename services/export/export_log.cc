@@ -12,21 +12,16 @@
 #include "services/bags/mcap_writer.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
 
 namespace rgbdt {
 namespace {
-
-bool IsImages(const std::string& channel) {
-  static const std::string kEnd = "_IMAGE";
-  return channel.size() > kEnd.size() &&
-         channel.compare(channel.size() - kEnd.size(), kEnd.size(), kEnd) == 0;
-}
 
 bool IsExported(const std::string& channel) {
   static const std::set<std::string> channels = {"CLOUD",       "RGBDT_CLOUD",   "RGBDT_SWEEP",
                                                  "CALIBRATION", "POSE",          "RIG",
                                                  "STATUS",      "SESSION_EVENT", "MOUNT_CHECK"};
-  return channels.count(channel) != 0 || IsImages(channel);
+  return channels.count(channel) != 0 || IsImageChannel(channel);
 }
 
 Message DecodeEvent(const LogEvent& event) {

@@ -10,16 +10,12 @@
 #include "calib/model/errors.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/odometry_node.h"
 
 namespace rgbdt {
 namespace {
-
-bool IsImage(const std::string& channel) {
-  constexpr std::size_t kEnd = 6;
-  return channel.size() > kEnd && channel.compare(channel.size() - kEnd, kEnd, "_IMAGE") == 0;
-}
 
 /// The log's messages on some channels, one after the other; broken ones are counted.
 class Reader {
@@ -180,7 +176,8 @@ MappedDrive MapDrive(const std::string& log, MapperNode* mapper, const DriveOpti
       .Each(
           [has_rig](const std::string& channel) {
             return channel == "CLOUD" ||
-                   (has_rig && (channel == "RIG" || channel == "CALIBRATION" || IsImage(channel)));
+                   (has_rig &&
+                    (channel == "RIG" || channel == "CALIBRATION" || IsImageChannel(channel)));
           },
           [&](const Message& message) {
             if (const auto* chunk = std::get_if<CloudChunk>(&message)) {

@@ -12,6 +12,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
 #include "services/nodes/assembler_node.h"
 #include "services/nodes/shot_collector.h"
 
@@ -173,11 +174,8 @@ class Cutter {
 };
 
 bool IsOfUse(const std::string& channel) {
-  static const std::string kImage = "_IMAGE";
   return channel == "RIG" || channel == "CLOUD" || channel == "LINE_SCAN" || channel == "ENCODER" ||
-         channel == "POSE" || channel == "CALIBRATION" ||
-         (channel.size() > kImage.size() &&
-          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
+         channel == "POSE" || channel == "CALIBRATION" || IsImageChannel(channel);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/messages/image_channel.h"
+
 namespace rgbdt {
 namespace {
 
@@ -13,12 +15,9 @@ CalibrateOptions OptionsOf(const std::string& method) {
 
 // What sensors, people and the session said.
 bool IsInput(const std::string& channel) {
-  static const std::string kImage = "_IMAGE";
   return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
          channel == "CORNER_SELECTION" || channel == "LEFT_OUT_VIEWS" ||
-         channel == "SESSION_COMMAND" || channel == "POSE" ||
-         (channel.size() > kImage.size() &&
-          channel.compare(channel.size() - kImage.size(), kImage.size(), kImage) == 0);
+         channel == "SESSION_COMMAND" || channel == "POSE" || IsImageChannel(channel);
 }
 
 }  // namespace

@@ -15,14 +15,10 @@
 #include "calib/scan_assembly/sweep_collector.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
 
 namespace rgbdt {
 namespace {
-
-bool IsImage(const std::string& channel) {
-  constexpr std::size_t kEnd = 6;
-  return channel.size() > kEnd && channel.compare(channel.size() - kEnd, kEnd, "_IMAGE") == 0;
-}
 
 /// The log's rig and its last calibration of each camera: they come once a second, and later than
 /// the first sweeps.
@@ -179,7 +175,7 @@ WavedLog ReadWavedLog(const std::string& path, const std::optional<Calibration>&
   std::string last_problem;
   while (const auto event = log.Next()) {
     if (progress) progress(static_cast<double>(log.position()) / static_cast<double>(log.size()));
-    if (event->channel != "CLOUD" && !IsImage(event->channel)) continue;
+    if (event->channel != "CLOUD" && !IsImageChannel(event->channel)) continue;
     try {
       reader.Take(Decode(event->channel, event->bytes.data(), event->bytes.size()));
     } catch (const InputError& error) {  // as a process does: dropped and counted

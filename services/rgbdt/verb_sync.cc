@@ -1,24 +1,33 @@
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "calib/files/image_files.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/present/pictures/sync_picture.h"
 #include "calib/sync/sync.h"
+#include "services/posix/clock.h"
+#include "services/replay/recording_node.h"
 #include "services/replay/waved_log.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
+#include "services/runtime/process.h"
 
 namespace rgbdt {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kLive = "live";
+
 struct SyncFlags {
   std::string log, calibration, out = "out/sync";
+  BusFlags bus;
+  double seconds = 25;
   bool refine = false, find_poses = false;
 };
 
@@ -82,13 +91,31 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
   return calibration;
 }
 
+// What the bus says while the board is waved, as a log; Ctrl-C ends it sooner.
+std::string Record(const SyncFlags& flags) {
+  const fs::path log = fs::path(flags.out) / "wave.lcmlog";
+  CheckWritable(log);
+  fs::create_directories(flags.out);
+  RecordingNode node(log.string(), flags.seconds,
+                     [](const std::string& line) { PrintProgress(line); });
+  const int code = RunOnLcm(
+      node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+        node.Overhear(channel, data, size, HostUtime());
+      });
+  std::signal(SIGINT, SIG_DFL);  // from here on Ctrl-C ends all
+  if (code != 0) throw InputError("nothing was recorded");
+  node.Close();
+  return log.string();
+}
+
 int RunSync(const SyncFlags& flags) {
   std::optional<Calibration> calibration;
   if (!flags.calibration.empty()) calibration = ReadCalibration(flags.calibration);
   WavedLogOptions options;
   options.find_poses = flags.find_poses;
+  const std::string log = flags.log == kLive ? Record(flags) : flags.log;
   int percent = 0;
-  const WavedLog input = ReadWavedLog(flags.log, calibration, options, [&](double share) {
+  const WavedLog input = ReadWavedLog(log, calibration, options, [&](double share) {
     const int now = static_cast<int>(100 * share);
     if (now / 10 != percent / 10) PrintProgress("reading the log: " + std::to_string(now) + "%");
     percent = now;
@@ -141,17 +168,22 @@ void AddSync(CommandLine* program) {
       "the LIDAR (within 1 s, no guess), the read-out time of its shutter, and its pose, with "
       "sigma.\n"
       "Clocks that drift or jump, and frames that are repeated, are named.\n"
+      "`live` in place of a log listens to the bus: wave for as long as it says.\n"
       "Example: rgbdt sync wave.lcmlog --calibration out/session/calibration.textproto",
       [flags] { return RunSync(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or a camera does not tell its offset");
-  verb->Required("LOG", &flags->log, "log written by lcm-logger");
+  verb->Required("LOG", &flags->log, "log written by lcm-logger, or `live`");
+  verb->Within("--seconds", &flags->seconds, 2, 600, "how long `live` listens [s]");
   verb->Option("--calibration", &flags->calibration,
                "where the cameras sit; without it the log's CALIBRATION says, or the sweeps do");
   verb->Flag("--refine", &flags->refine,
              "write the pose that came out, too; else a pose that was known stays");
   verb->Flag("--find-poses", &flags->find_poses,
              "find the poses from the waved board alone, whatever a calibration says");
-  verb->Option("--out", &flags->out, "the folder to write calibration, rig and picture into");
+  verb->Option("--out", &flags->out,
+               "the folder to write calibration, rig and picture into, and what `live` heard "
+               "(wave.lcmlog)");
+  verb->Bus(&flags->bus.url, &flags->bus.key);
 }
 
 }  // namespace rgbdt

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
 
 namespace rgbdt::viewer {
 namespace {
@@ -11,12 +12,6 @@ namespace {
 bool IsLarge(const Message& message) {
   return std::holds_alternative<Image>(message) || std::holds_alternative<CloudChunk>(message) ||
          std::holds_alternative<RgbdtCloud>(message);
-}
-
-bool IsImageChannel(const std::string& channel) {
-  const std::string end = "_IMAGE";
-  return channel.size() > end.size() &&
-         channel.compare(channel.size() - end.size(), end.size(), end) == 0;
 }
 
 }  // namespace

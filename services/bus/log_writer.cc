@@ -1,0 +1,49 @@
+#include "services/bus/log_writer.h"
+
+#include <lcm/eventlog.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "calib/model/errors.h"
+
+namespace rgbdt {
+
+struct LogWriter::Impl {
+  struct Destroy {
+    void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
+  };
+
+  explicit Impl(const std::string& at) : path(at), log(lcm_eventlog_create(at.c_str(), "w")) {
+    if (log == nullptr) ThrowErrno();
+  }
+
+  [[noreturn]] void ThrowErrno() const {
+    throw InputError("cannot write " + path + ": " + std::strerror(errno));
+  }
+
+  std::string path;
+  std::unique_ptr<lcm_eventlog_t, Destroy> log;
+};
+
+LogWriter::LogWriter(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+LogWriter::~LogWriter() = default;
+
+void LogWriter::Write(const std::string& channel, const std::uint8_t* data, std::size_t size,
+                      Utime receive_utime) {
+  lcm_eventlog_event_t event{};
+  event.timestamp = receive_utime;
+  event.channellen = static_cast<std::int32_t>(channel.size());
+  event.datalen = static_cast<std::int32_t>(size);
+  event.channel = const_cast<char*>(channel.data());  // LCM only reads them
+  event.data = const_cast<std::uint8_t*>(data);
+  if (lcm_eventlog_write_event(impl_->log.get(), &event) != 0) impl_->ThrowErrno();
+}
+
+void LogWriter::Close() {
+  if (std::fflush(impl_->log->f) != 0) impl_->ThrowErrno();
+  impl_->log.reset();
+}
+
+}  // namespace rgbdt

@@ -1,0 +1,114 @@
+#include "services/replay/recording_node.h"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <variant>
+
+#include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "services/messages/codec.h"
+#include "services/messages/image_channel.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr const char* kClouds = "CLOUD";
+constexpr const char* kRig = "RIG";
+
+std::string PartOf(const std::string& log) { return log + ".part"; }
+
+}  // namespace
+
+RecordingNode::RecordingNode(const std::string& log, double seconds, Tell tell)
+    : path_(log), log_(PartOf(log)), length_(FromSeconds(seconds)), tell_(std::move(tell)) {}
+
+Messages RecordingNode::Handle(const Message& message) {
+  const Bytes bytes = Encode(message);
+  if (const auto* rig = std::get_if<RigText>(&message)) {
+    const Rig parsed = ParseRig(rig->text, kRig);
+    if (parsed.lidar.turned_scanner) {
+      problem_ =
+          "the rig's LIDAR is a turned scanner, whose sweeps last too long for a waved board";
+    } else if (!parsed.target.HasPattern()) {
+      problem_ = "the rig's target is plain; a waved board needs a pattern";
+    }
+  }
+  Keep(ChannelOf(message), bytes.data(), bytes.size(), host_utime_);
+  return {};
+}
+
+Messages RecordingNode::Advance(Utime now) {
+  if (!started_) started_ = now;
+  if (!began_ && counts_.count(kClouds) > 0) began_ = now;
+  if (now - *started_ > kPatience && problem_.empty()) problem_ = WhatIsMissing();
+  over_ = began_ && now - *began_ >= length_;
+  if (over_ || !second_.IsDue(now)) return {};
+  if (!began_) {
+    tell_("waiting for a sweep ...");
+  } else {
+    tell_(Format("wave the board: %.0f s left; ", std::ceil(ToSeconds(*began_ + length_ - now))) +
+          Heard());
+  }
+  return {};
+}
+
+Status RecordingNode::GetStatus() const {
+  Status status;
+  status.ready = began_.has_value();
+  status.text = Heard();
+  return status;
+}
+
+void RecordingNode::Overhear(const std::string& channel, const std::uint8_t* data, std::size_t size,
+                             Utime host_utime) {
+  host_utime_ = host_utime;
+  const bool image = IsImageChannel(channel);
+  if (channel != kClouds && !image) return;
+  images_ += image ? 1 : 0;
+  Keep(channel, data, size, host_utime);
+}
+
+void RecordingNode::Keep(const std::string& channel, const std::uint8_t* data, std::size_t size,
+                         Utime host_utime) {
+  if (finished()) return;
+  try {
+    log_.Write(channel, data, size, host_utime);
+    ++counts_[channel];
+  } catch (const InputError& error) {
+    problem_ = error.what();
+  }
+}
+
+std::string RecordingNode::WhatIsMissing() const {
+  const std::string wait = Format(" on the bus in %.0f s", ToSeconds(kPatience));
+  if (counts_.count(kClouds) == 0) {
+    return "no sweep" + wait + ": are the LIDAR and its process up (CLOUD)?";
+  }
+  if (counts_.count(kRig) == 0) {
+    return "no RIG" + wait + ": rgbdt-session or rgbdt-monitor sends it, or rgbdt up";
+  }
+  return images_ == 0 ? "no image" + wait + ": are the cameras and their processes up?" : "";
+}
+
+void RecordingNode::Close() {
+  std::error_code ignored;
+  if (problem_.empty() && !over_ && counts_.count(kRig) == 0) problem_ = "stopped before it began";
+  if (!problem_.empty()) {
+    std::filesystem::remove(PartOf(path_), ignored);
+    throw InputError(problem_);
+  }
+  log_.Close();
+  std::filesystem::rename(PartOf(path_), path_);
+}
+
+std::string RecordingNode::Heard() const {
+  std::string heard;
+  for (const auto& [channel, count] : counts_) {
+    heard += (heard.empty() ? "" : ", ") + std::to_string(count) + " " + channel;
+  }
+  return heard.empty() ? "nothing heard" : heard;
+}
+
+}  // namespace rgbdt

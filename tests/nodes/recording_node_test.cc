@@ -1,0 +1,99 @@
+#include "services/replay/recording_node.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "calib/files/atomic_file.h"
+#include "calib/files/schema/rig_file.h"
+#include "services/bus/log.h"
+#include "tests/numbers.h"
+#include "tests/unit/files/test_data.h"
+#include "tests/unit/matchers.h"
+
+namespace rgbdt {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class RecordingNodeTest : public ::testing::Test {
+ protected:
+  RecordingNode Make() {
+    return {path_.string(), 2, [this](const std::string& line) { told_ = line; }};
+  }
+  static RigText RigOf(const std::string& lidar) {
+    const std::string text =
+        "name: \"small\"\n"
+        "lidar { name: \"lidar\" " +
+        lidar +
+        " }\n"
+        "camera { name: \"rgb\" kind: COLOR width: 640 height: 480 pixel_format: MONO8\n"
+        "  pinhole { fx: 500 fy: 500 cx: 320 cy: 240 } }\n"
+        "target { squares_x: 8 squares_y: 6 square_m: 0.1 width_m: 1 height_m: 0.8 }\n";
+    return {0, HashOfRigText(text), text};
+  }
+  static void Hear(const std::string& channel, RecordingNode* node) {
+    const Bytes bytes{1, 2, 3};
+    node->Overhear(channel, bytes.data(), bytes.size(), kSecond);
+  }
+
+  test::TempDir dir_;
+  const std::filesystem::path path_ = dir_ / "wave.lcmlog";
+  std::string told_;
+};
+
+TEST_F(RecordingNodeTest, KeepsWhatTellsOfAWavedBoardFromTheFirstSweepOn) {
+  RecordingNode node = Make();
+  node.Advance(0);
+  EXPECT_THAT(told_, HasSubstr("waiting"));
+  node.Handle(RigOf(""));
+  for (const char* channel : {"CLOUD", "RGB_IMAGE", "POSE", "RGBDT_CLOUD"}) Hear(channel, &node);
+  node.Advance(5 * kSecond);
+  EXPECT_THAT(told_, HasSubstr("2 s left; 1 CLOUD, 1 RGB_IMAGE, 1 RIG"));
+  EXPECT_FALSE(node.finished());
+  EXPECT_FALSE(std::filesystem::exists(path_)) << "it is not whole yet";
+  node.Advance(7 * kSecond);
+  ASSERT_TRUE(node.finished());
+  Hear("CLOUD", &node);  // too late
+  node.Close();
+  std::vector<std::string> channels;
+  LogReader log(path_.string());
+  while (const auto event = log.Next()) channels.push_back(event->channel);
+  EXPECT_THAT(channels, ElementsAre("RIG", "CLOUD", "RGB_IMAGE"));
+}
+
+TEST_F(RecordingNodeTest, WhatIsMissingIsNamedAndAnEarlierRecordingStays) {
+  WriteFileAtomically(path_, "before");
+  const std::vector<std::string> heard{"", "CLOUD", "RIG", "RGB_IMAGE"};
+  const std::vector<std::string> missing{"no sweep", "no RIG", "no image"};
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    RecordingNode node{path_.string(), 100, [](const std::string&) {}};
+    node.Advance(0);
+    for (std::size_t k = 1; k <= i; ++k) {
+      if (heard[k] == "RIG") {
+        node.Handle(RigOf(""));
+      } else {
+        Hear(heard[k], &node);
+      }
+    }
+    node.Advance(RecordingNode::kPatience);
+    EXPECT_FALSE(node.finished());
+    node.Advance(RecordingNode::kPatience + 1);
+    EXPECT_TRUE(node.finished());
+    EXPECT_THAT(InputErrorOf([&] { node.Close(); }), HasSubstr(missing[i]));
+    EXPECT_EQ(ReadWholeFile(path_), "before");
+  }
+}
+
+TEST_F(RecordingNodeTest, ARigThatCannotDoItIsRefusedAtOnce) {
+  RecordingNode node = Make();
+  node.Handle(RigOf("turned_scanner { ticks_per_degree: 100 }"));
+  EXPECT_TRUE(node.finished());
+  EXPECT_THAT(InputErrorOf([&] { node.Close(); }), HasSubstr("turned scanner"));
+  EXPECT_TRUE(std::filesystem::is_empty(path_.parent_path()));
+}
+
+}  // namespace
+}  // namespace rgbdt
