@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The tutorial of bags prints what its page says, of bags that are made here. Usage:
-# tutorial_test.sh BIN_DIR
+# The tutorials of bags and of packets print what their pages say, of recordings that are made here.
+# Usage: tutorial_test.sh BIN_DIR
 set -euo pipefail
 # shellcheck source=tests/cli/common.sh
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -13,5 +13,13 @@ accepts "its bags" python3 "$here/make_bag.py" "$scratch/session" --seconds 2 --
 rm -r "$scratch/session"
 python3 "$here/check_page.py" "$here/../../scripts/examples/bag/README.md" "$bin" "$scratch" \
   >"$scratch/output" 2>&1 || complain "the tutorial"
+
+rm -r "$scratch/monday"
+accepts "a session of 128 rings" "$bin/rgbdt" simulate "$scratch/session" --lidar 128 --views 9 --seed 7 \
+  --picked rgb
+accepts "its packets" python3 "$here/make_session_pcap.py" "$scratch/session" "$scratch/monday"
+rm -r "$scratch/session"
+python3 "$here/check_page.py" "$here/../../scripts/examples/pcap/README.md" "$bin" "$scratch" \
+  >"$scratch/output" 2>&1 || complain "the tutorial of packets"
 
 verdict
