@@ -36,22 +36,24 @@ void PointSpacing::Pair::Add(const std::optional<Eigen::Vector2d>& a,
 }
 
 // Within the image; nothing for a miss.
-std::optional<Eigen::Vector2d> PointSpacing::PixelOf(const Eigen::Vector3f& point,
-                                                     const Rigid3& camera_from_lidar) const {
-  if (!point.allFinite()) return std::nullopt;
-  const auto pixel = camera_.Project(camera_from_lidar * point.cast<double>());
+std::optional<Eigen::Vector2d> PointSpacing::PixelOf(const Eigen::Vector3d& point_in_camera) const {
+  if (!point_in_camera.allFinite()) return std::nullopt;
+  const auto pixel = camera_.Project(point_in_camera);
   return pixel && camera_.Contains(*pixel) ? pixel : std::nullopt;
 }
 
 void PointSpacing::Add(const Cloud& cloud, const Rigid3& camera_from_lidar) {
   if (cloud.organised && cloud.beams > 1) {
-    AddOrganised(cloud, camera_from_lidar);
+    AddOrganised(cloud, camera_from_lidar.rotation);
   } else {
     AddUnorganised(cloud, camera_from_lidar);
   }
 }
 
-void PointSpacing::AddOrganised(const Cloud& cloud, const Rigid3& camera_from_lidar) {
+void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& camera_from_lidar) {
+  const auto far = [&](const Eigen::Vector3f& point) {
+    return PixelOf(camera_from_lidar * point.cast<double>());
+  };
   // Some 40 lines of a cloud, every seventh beam.
   constexpr std::size_t kEvery = 7;
   const auto beams = static_cast<std::size_t>(cloud.beams);
@@ -64,10 +66,10 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Rigid3& camera_from_li
                                     : follows ? line_before_.data()
                                               : nullptr;
     for (std::size_t beam = 1; beam < beams; beam += kEvery) {
-      const auto here = PixelOf(points[beam], camera_from_lidar);
+      const auto here = far(points[beam]);
       if (!here) continue;
-      beams_.Add(here, PixelOf(points[beam - 1], camera_from_lidar));
-      if (before != nullptr) lines_.Add(here, PixelOf(before[beam], camera_from_lidar));
+      beams_.Add(here, far(points[beam - 1]));
+      if (before != nullptr) lines_.Add(here, far(before[beam]));
     }
   }
   line_before_.clear();
@@ -83,7 +85,7 @@ void PointSpacing::AddUnorganised(const Cloud& cloud, const Rigid3& camera_from_
   double count = 0;
   const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSample);
   for (std::size_t i = 0; i < cloud.size(); i += step) {
-    const auto pixel = PixelOf(cloud.points[i], camera_from_lidar);
+    const auto pixel = PixelOf(camera_from_lidar * cloud.points[i].cast<double>());
     if (!pixel) continue;
     const auto column = static_cast<std::size_t>(pixel->x() * kParts / camera_.width());
     const auto row = static_cast<std::size_t>(pixel->y() * kParts / camera_.height());

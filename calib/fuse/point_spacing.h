@@ -12,8 +12,9 @@
 namespace rgbdt {
 
 /// How far apart a LIDAR's neighbouring points lie in a camera's image: medians over beams of a
-/// line and over lines. Takes clouds line by line or as a whole and looks at a sample of their
-/// points; bounded in memory.
+/// line and over lines, of organised clouds by their directions alone (as if all were far away), so
+/// that neither the scene nor how the rig moves has a say. Takes clouds line by line or as a whole
+/// and looks at a sample of their points; bounded in memory.
 class PointSpacing {
  public:
   explicit PointSpacing(const Camera& camera) : camera_(camera) {}
@@ -40,10 +41,9 @@ class PointSpacing {
     void Add(const std::optional<Eigen::Vector2d>& a, const std::optional<Eigen::Vector2d>& b);
   };
 
-  void AddOrganised(const Cloud& cloud, const Rigid3& camera_from_lidar);
+  void AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& camera_from_lidar);
   void AddUnorganised(const Cloud& cloud, const Rigid3& camera_from_lidar);
-  std::optional<Eigen::Vector2d> PixelOf(const Eigen::Vector3f& point,
-                                         const Rigid3& camera_from_lidar) const;
+  std::optional<Eigen::Vector2d> PixelOf(const Eigen::Vector3d& point_in_camera) const;
 
   Camera camera_;
   Pair beams_, lines_;
