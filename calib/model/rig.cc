@@ -240,7 +240,8 @@ double Target::EdgeAt(int index, int axis) const {
   if (!markers || !markers->grid()) return index * square_m;
   const int gaps = (index + 1) / 2;
   if (holes) {  // no gaps but the one between the two
-    return (index / 2) * markers->side_m +
+    const int markers_before = index / 2;
+    return markers_before * markers->side_m +
            (index >= 3 ? holes->marker_spacing_m[axis] - markers->side_m : 0);
   }
   return gaps * markers->gap_m + (index - gaps) * markers->side_m;

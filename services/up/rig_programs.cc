@@ -45,6 +45,7 @@ std::string Listed(const Names& names) {
 
 std::string NamesOf(const std::vector<Program>& programs) {
   std::vector<std::string> names;
+  names.reserve(programs.size());
   for (const Program& program : programs) names.push_back(program.name);
   return Listed(names);
 }

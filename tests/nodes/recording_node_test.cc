@@ -89,7 +89,9 @@ TEST_F(RecordingNodeTest, WhatIsMissingIsNamedAndAnEarlierRecordingStays) {
 
 TEST_F(RecordingNodeTest, ARigThatCannotDoItIsRefusedAtOnce) {
   RecordingNode node = Make();
-  node.Handle(RigOf("turned_scanner { ticks_per_degree: 100 }"));
+  node.Handle(
+      RigOf("turned_scanner { ticks_per_degree: 100 motor_from_scanner {"
+            " quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0] } }"));
   EXPECT_TRUE(node.finished());
   EXPECT_THAT(InputErrorOf([&] { node.Close(); }), HasSubstr("turned scanner"));
   EXPECT_TRUE(std::filesystem::is_empty(path_.parent_path()));

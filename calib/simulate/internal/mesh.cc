@@ -45,6 +45,7 @@ Mesh MakePlateWithHole(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
   // Round the hole: the polygon's corners and the plate's, which join two quadrilaterals.
   constexpr int kCorners = 128;
   std::vector<double> angles;
+  angles.reserve(kCorners + 4);
   for (int i = 0; i < kCorners; ++i) angles.push_back(2 * M_PI * i / kCorners - M_PI);
   for (const double x : {low.x(), high.x()}) {
     for (const double y : {low.y(), high.y()}) {

@@ -87,7 +87,7 @@ struct Patches {
   double value, by_first, by_second;
 };
 
-Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, Fixed fixed) {
+Equations EquationsAt(const std::vector<Pixel>& pixels, const Unknowns& u, const Fixed& fixed) {
   Equations sums;
   const double c1 = std::cos(u[2]), s1 = std::sin(u[2]);
   const double c2 = std::cos(u[3]), s2 = std::sin(u[3]);
@@ -178,7 +178,7 @@ struct Solution {
 };
 
 // Levenberg-Marquardt from `start`.
-Solution Solve(const std::vector<Pixel>& pixels, const Unknowns& start, Fixed fixed,
+Solution Solve(const std::vector<Pixel>& pixels, const Unknowns& start, const Fixed& fixed,
                double spacing) {
   Solution s{start, EquationsAt(pixels, start, fixed), false};
   double damping = 1e-3;
