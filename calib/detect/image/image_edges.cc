@@ -314,7 +314,7 @@ ImageEdgesResult EdgesOf(const Image& image, const cv::Mat& grey, const Camera& 
     return {
         std::nullopt,
         "no edge of the board stands out in the image where its pattern puts it: more contrast is "
-        "needed, or the sizes of pattern and board in the rig file do not go together"};
+        "needed, or square_m, width_m and height_m in the rig file do not go together"};
   }
   if (located.pose) AddPose(image, grey, camera, target, *located.pose, &edges);
   if (located.plain) {
