@@ -130,7 +130,11 @@ int RunUp(const UpFlags& flags) {
   const std::string host = flags.host.empty() ? NameOfThisMachine() : flags.host;
   std::vector<Program> programs = ProgramsOn(host, rig, ProgramsOf(rig, options));
   if (programs.empty()) throw InputError("the rig's file has nothing for this machine to run");
-  if (Find(programs, kLogger) != nullptr) RequireLogger();
+  const bool logs = Find(programs, kLogger) != nullptr;
+  if (!flags.log.empty() && !logs) {
+    throw InputError("--log: by the rig's file another host runs the logger; leave --log out here");
+  }
+  if (logs) RequireLogger();
   WarnOfTtl(rig, flags.bus.url);
   // What the session would refuse again and again.
   if (Find(programs, "session") != nullptr) ReadEarlierViews(flags.out, rig);
