@@ -1,6 +1,3 @@
-#include <unistd.h>
-
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -10,6 +7,7 @@
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
+#include "services/bus/host_name.h"
 #include "services/bus/multicast.h"
 #include "services/command_line/command_line.h"
 #include "services/nodes/session_node.h"
@@ -29,12 +27,11 @@ struct Flags {
 constexpr rgbdt::Utime kListen = 2 * rgbdt::kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
 
 rgbdt::SessionIdentity Identity(const std::string& out) {
-  std::array<char, 256> host{};
-  if (gethostname(host.data(), host.size() - 1) != 0) host = {'?'};
   std::random_device lot;
   rgbdt::SessionIdentity identity;
   identity.id = std::uniform_int_distribution<std::int64_t>(0, identity.kIds - 1)(lot);
-  identity.place = host.data() + (":" + std::filesystem::absolute(out).lexically_normal().string());
+  identity.place =
+      rgbdt::HostName() + ":" + std::filesystem::absolute(out).lexically_normal().string();
   identity.listen = kListen;
   return identity;
 }

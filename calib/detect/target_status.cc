@@ -61,8 +61,7 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
   TargetStatus status;
   status.camera = image.camera;
   status.utime = image.utime;
-  const bool markers_may_hide = rig.target.holes && spec.kind == CameraKind::kThermal;
-  if (!rig.target.HasPattern() || markers_may_hide) {
+  if (!rig.target.HasPattern() || MarkersMayHide(rig.target, spec.kind)) {
     return LookForPlain(spec, rig.target, image, std::move(status));
   }
   cv::Mat grey = ToGrey(image);

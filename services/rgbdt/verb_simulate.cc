@@ -7,6 +7,7 @@
 #include "calib/model/errors.h"
 #include "calib/simulate/imperfections.h"
 #include "calib/simulate/simulator.h"
+#include "calib/simulate/use_target.h"
 #include "services/rgbdt/verbs.h"
 #include "services/simulator/simulated_sweep.h"
 #include "services/simulator/simulator_node.h"
@@ -50,13 +51,7 @@ void SetTarget(const std::string& text, simulate::BoardOptions* board) {
   if (!target.HasPattern()) {
     throw UsageError("--target " + text + ": only boards with a pattern are simulated");
   }
-  board->squares_x = target.squares_x;
-  board->squares_y = target.squares_y;
-  board->square_m = target.square_m;
-  board->markers = target.markers;
-  board->holes = target.holes;
-  board->width_m = target.width_m;
-  board->height_m = target.height_m;
+  simulate::UseTarget(target, board);
 }
 
 // Natural scenes have no board unless asked for, and nobody picks corners of none.

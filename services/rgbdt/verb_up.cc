@@ -11,6 +11,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/bus/bus_url.h"
+#include "services/bus/host_name.h"
 #include "services/nodes/earlier_views.h"
 #include "services/rgbdt/verbs.h"
 #include "services/runtime/process.h"
@@ -80,12 +81,6 @@ class Screen {
   std::string table_, page_;
 };
 
-std::string NameOfThisMachine() {
-  char name[256] = {};
-  if (gethostname(name, sizeof(name) - 1) != 0) throw InputError("this machine has no host name");
-  return name;
-}
-
 // Hosts of a bus that keeps to its machine hear nothing of each other.
 void WarnOfTtl(const Rig& rig, const std::string& url) {
   const BusUrl bus = ParseBusUrl(CompleteUrl(url));
@@ -127,7 +122,7 @@ int RunUp(const UpFlags& flags) {
   options.url = CompleteUrl(flags.bus.url);  // the logger, too, is to have a large buffer
   options.key = flags.bus.key;
   options.log = flags.log;
-  const std::string host = flags.host.empty() ? NameOfThisMachine() : flags.host;
+  const std::string host = flags.host.empty() ? HostName() : flags.host;
   std::vector<Program> programs = ProgramsOn(host, rig, ProgramsOf(rig, options));
   if (programs.empty()) throw InputError("the rig's file has nothing for this machine to run");
   const bool logs = Find(programs, kLogger) != nullptr;

@@ -46,6 +46,12 @@ at() {  # HOST COMMAND...
   nsenter --target "$target" --net --uts "$@"
 }
 
+start_at() {  # HOST NAME COMMAND...: as `start`
+  local target=${host_pids[$1]} name=$2
+  shift 2
+  start "$name" nsenter --target "$target" --net --uts "$@"
+}
+
 # What goes over RGBDT_REPAIR is counted apart: a receiver counts what was sent and did not come,
 # and what is sent about that is none of it. (The channel's name stands 8 bytes into LCM's header.)
 lose() {  # PERMILLE HOST...: of the datagrams, and pieces of datagrams, on the way to each

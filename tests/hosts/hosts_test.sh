@@ -32,13 +32,13 @@ can_have_hosts || {
 begin() {  # NAME
   local process
   folder=$scratch/$1
-  start simulator nsenter --target "${host_pids[sensor]}" --net --uts "$bin/rgbdt-simulator" \
+  start_at sensor simulator "$bin/rgbdt-simulator" \
     --speed "$speed" --rig "$scratch/rig.textproto"
   for process in "${services[@]}"; do
-    start "$process" nsenter --target "${host_pids[compute]}" --net --uts "$bin/rgbdt-$process"
+    start_at compute "$process" "$bin/rgbdt-$process"
   done
   if [ "$log_host" = log ]; then
-    start viewer nsenter --target "${host_pids[viewer]}" --net --uts "$bin/rgbdt-viewer" \
+    start_at viewer viewer "$bin/rgbdt-viewer" \
       --listen 127.0.0.1:0
   fi
   at compute "$bin/live_helper" ready "${services[@]}" simulator || fail "not every process came up"
@@ -47,7 +47,7 @@ begin() {  # NAME
 lead_session() {
   began=$(now_ms)
   bytes_before=$(all_bytes)
-  start session nsenter --target "${host_pids[$log_host]}" --net --uts "$bin/rgbdt-session" \
+  start_at "$log_host" session "$bin/rgbdt-session" \
     "$scratch/session.textproto" --rig "$scratch/rig.textproto" --out "$folder"
 }
 

@@ -22,12 +22,6 @@ told() {  # PROCESS EXPRESSION: within a minute
   fail "$1 does not say: $2"
 }
 
-start_at() {  # HOST NAME COMMAND...
-  local target=${host_pids[$1]} name=$2
-  shift 2
-  start "$name" nsenter --target "$target" --net --uts "$@"
-}
-
 make_hosts 1500 compute sensor viewer
 
 echo "== a clock that is off"

@@ -13,12 +13,6 @@ can_have_hosts || {
   exit 77
 }
 
-start_at() {  # HOST NAME COMMAND...
-  local target=${host_pids[$1]} name=$2
-  shift 2
-  start "$name" nsenter --target "$target" --net --uts "$@"
-}
-
 up_at() { start_at "$1" "up-$1" "$bin/rgbdt" up "$scratch/hosts.textproto" --out "$scratch/$1"; }  # HOST
 
 ask() { at desk "$bin/live_helper" ask "$1" || fail "$2"; }

@@ -242,9 +242,7 @@ Located FromPlainBoard(const Image& image, const cv::Mat& grey, const Camera& ca
 Located FromCheckerboard(const Image& image, const cv::Mat& grey, const Camera& camera,
                          const Target& target, CameraKind kind) {
   Located located;
-  // A thermal camera may well see no markers; its outline tells then.
-  const bool markers_may_hide = target.holes && kind == CameraKind::kThermal;
-  const CheckerboardResult found = markers_may_hide
+  const CheckerboardResult found = MarkersMayHide(target, kind)
                                        ? FindMarkedBoard(grey, target, SaturatedFrom(image), false)
                                        : FindCheckerboard(grey, target, SaturatedFrom(image));
   if (!found.board) {
@@ -332,6 +330,10 @@ ImageEdgesResult Picked(ImageEdgesResult result) {
 
 }  // namespace
 
+bool MarkersMayHide(const Target& target, CameraKind kind) {
+  return target.holes.has_value() && kind == CameraKind::kThermal;
+}
+
 ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, const Target& target,
                                   const CornerSelection* picks, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
@@ -340,7 +342,7 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
   }
   if (picks == nullptr) {
     Located located = FromCheckerboard(image, grey, camera, target, kind);
-    if (!located.why.empty() && target.holes && kind == CameraKind::kThermal) {
+    if (!located.why.empty() && MarkersMayHide(target, kind)) {
       Located by_outline = FromPlainBoard(image, grey, camera, target);
       if (by_outline.why.empty()) return EdgesOf(image, grey, camera, target, by_outline);
       located.why += "; nor is its outline found: " + by_outline.why;

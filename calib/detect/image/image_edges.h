@@ -15,6 +15,9 @@ struct ImageEdgesResult {
   std::string why;
 };
 
+/// Whether a camera of that kind may see the board and none of its markers: its outline tells then.
+bool MarkersMayHide(const Target& target, CameraKind kind);
+
 /// The target's edges in an image (paper II-A.1): Sobel edges within a 5x5 window of the four lines
 /// that join the outline corners. The corners are a person's picks, or, without any, follow from
 /// the detected inner corners and the board's known size. A line is straight in space: it bends in

@@ -3,7 +3,6 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <random>
 
 #include "calib/model/errors.h"
+#include "services/bus/host_name.h"
 #include "services/posix/clock.h"
 
 namespace rgbdt {
@@ -40,11 +40,6 @@ Descriptor OpenSendSocket(const BusUrl& url) {
     throw InputError(std::string("a socket to send by: ") + std::strerror(errno));
   }
   return udp;
-}
-
-std::string HostName() {
-  std::array<char, 65> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
 // All of them. Throws InputError.

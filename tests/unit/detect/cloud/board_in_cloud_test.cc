@@ -14,6 +14,7 @@
 #include "calib/simulate/internal/board.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/internal/spinning.h"
+#include "calib/simulate/use_target.h"
 #include "tests/simulated_variants.h"
 
 namespace rgbdt {
@@ -70,13 +71,7 @@ Tilt TiltOf(const CloudEdges& found, const Rigid3& truth) {
 
 // The board of velo2cam and FAST-Calib, 1.4 x 1.0 m.
 simulate::Options WithHoles(simulate::Options options) {
-  const Target target = BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false});
-  options.board.markers = target.markers;
-  options.board.holes = target.holes;
-  options.board.squares_x = options.board.squares_y = target.squares_x;
-  options.board.square_m = target.square_m;
-  options.board.width_m = target.width_m;
-  options.board.height_m = target.height_m;
+  simulate::UseTarget(BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false}), &options.board);
   return options;
 }
 

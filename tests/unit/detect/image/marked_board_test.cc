@@ -70,7 +70,6 @@ TEST(MarkedBoard, ALegacyBoardIsToldFromANewOne) {
 }
 
 TEST(MarkedBoard, MarkersThatStandAloneAreMeasuredAtTheirCorners) {
-  Errors all;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const MarkedScene scene = RenderMarked(HolesBoard(), seed);
     ASSERT_EQ(scene.corners.size(), 16U);

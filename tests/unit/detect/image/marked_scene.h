@@ -6,6 +6,7 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/pixels.h"
 #include "calib/simulate/simulator.h"
+#include "calib/simulate/use_target.h"
 #include "tests/unit/detect/image/covered_board.h"
 
 namespace rgbdt {
@@ -41,15 +42,8 @@ inline simulate::BoardOptions AprilGridBoard() {
 
 /// Four holes and as many markers: velo2cam's and FAST-Calib's, markers with a white rim.
 inline simulate::BoardOptions HolesBoard() {
-  const Target target = BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false});
   simulate::BoardOptions board;
-  board.markers = target.markers;
-  board.holes = target.holes;
-  board.squares_x = target.squares_x;
-  board.squares_y = target.squares_y;
-  board.square_m = target.square_m;
-  board.width_m = target.width_m;
-  board.height_m = target.height_m;
+  simulate::UseTarget(BoardWithHoles(Markers{kHolesFamily, 0.16, 1, 0, false}), &board);
   return board;
 }
 
