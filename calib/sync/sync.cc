@@ -44,7 +44,7 @@ struct Entrant {
 
 void CheckInput(const WavedBoard& input) {
   if (!input.target.HasPattern()) {
-    throw InputError("the rig's target is plain; a waved board needs a checkerboard");
+    throw InputError("the rig's target is plain; a waved board needs a pattern");
   }
   if (input.cameras.empty()) throw InputError("no camera to be synchronised");
   if (input.sweeps.empty()) throw InputError("no sweep to be synchronised with");

@@ -1,5 +1,6 @@
 #include "services/replay/recording_node.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "calib/model/text.h"
 #include "services/messages/codec.h"
 #include "services/messages/image_channel.h"
+#include "services/replay/wave_reader.h"
 
 namespace rgbdt {
 namespace {
@@ -21,43 +23,45 @@ std::string PartOf(const std::string& log) { return log + ".part"; }
 
 }  // namespace
 
-RecordingNode::RecordingNode(const std::string& log, double seconds, Tell tell)
-    : path_(log), log_(PartOf(log)), length_(FromSeconds(seconds)), tell_(std::move(tell)) {}
+RecordingNode::RecordingNode(const std::string& log, double seconds, Tell tell,
+                             WavePreview* preview)
+    : path_(log),
+      log_(PartOf(log)),
+      length_(FromSeconds(seconds)),
+      tell_(std::move(tell)),
+      preview_(preview) {}
 
 Messages RecordingNode::Handle(const Message& message) {
   const Bytes bytes = Encode(message);
   if (const auto* rig = std::get_if<RigText>(&message)) {
     const Rig parsed = ParseRig(rig->text, kRig);
-    if (parsed.lidar.turned_scanner) {
-      problem_ =
-          "the rig's LIDAR is a turned scanner, whose sweeps last too long for a waved board";
-    } else if (!parsed.target.HasPattern()) {
-      problem_ = "the rig's target is plain; a waved board needs a pattern";
-    }
+    if (const std::string why = WhyNotWaved(parsed); !why.empty()) problem_ = why;
+    if (preview_ != nullptr) preview_->TakeRig(parsed);
+  }
+  if (const auto* known = std::get_if<CalibrationMessage>(&message);
+      known != nullptr && preview_ != nullptr) {
+    preview_->TakeCalibration(*known);
   }
   Keep(ChannelOf(message), bytes.data(), bytes.size(), host_utime_);
   return {};
 }
 
 Messages RecordingNode::Advance(Utime now) {
+  now_ = now;
   if (!started_) started_ = now;
   if (!began_ && counts_.count(kClouds) > 0) began_ = now;
   if (now - *started_ > kPatience && problem_.empty()) problem_ = WhatIsMissing();
+  if (preview_ != nullptr && problem_.empty()) problem_ = preview_->WhyNot();
   over_ = began_ && now - *began_ >= length_;
   if (over_ || !second_.IsDue(now)) return {};
-  if (!began_) {
-    tell_("waiting for a sweep ...");
-  } else {
-    tell_(Format("wave the board: %.0f s left; ", std::ceil(ToSeconds(*began_ + length_ - now))) +
-          Heard());
-  }
+  tell_(Progress());
   return {};
 }
 
 Status RecordingNode::GetStatus() const {
   Status status;
   status.ready = began_.has_value();
-  status.text = Heard();
+  status.text = Progress();
   return status;
 }
 
@@ -68,6 +72,7 @@ void RecordingNode::Overhear(const std::string& channel, const std::uint8_t* dat
   if (channel != kClouds && !image) return;
   images_ += image ? 1 : 0;
   Keep(channel, data, size, host_utime);
+  if (preview_ != nullptr) preview_->Take(channel, data, size);
 }
 
 void RecordingNode::Keep(const std::string& channel, const std::uint8_t* data, std::size_t size,
@@ -101,6 +106,15 @@ void RecordingNode::Close() {
   }
   log_.Close();
   std::filesystem::rename(PartOf(path_), path_);
+}
+
+std::string RecordingNode::Progress() const {
+  if (!began_) return "waiting for a sweep ...; " + Heard();
+  if (finished()) return "recorded: " + Heard();
+  const std::string known = preview_ == nullptr ? "" : preview_->Text();
+  return Format("wave the board: %.0f s left; ",
+                std::max(0.0, std::ceil(ToSeconds(*began_ + length_ - now_)))) +
+         (known.empty() ? "" : "time offsets to (1 sigma) " + known + "; ") + Heard();
 }
 
 std::string RecordingNode::Heard() const {

@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "services/bus/log_writer.h"
+#include "services/replay/wave_preview.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
 /// Keeps what tells of a waved board (RIG, CALIBRATION, CLOUD, images) as a log, for so many
-/// seconds from the first sweep on, and tells once a second how much is left and what came. It
+/// seconds from the first sweep on, and tells once a second how much is left and what came.
+/// `preview`, if any, gets the same and is asked what it says so far; both stand in STATUS, too. It
 /// gives up where no sweep comes, or no RIG or image with the sweeps, within kPatience, and at once
 /// where the rig cannot do it: a turned scanner, a plain board.
 ///
@@ -25,7 +27,7 @@ class RecordingNode : public Node {
   static constexpr Utime kPatience = 10 * kMicrosecondsPerSecond;
 
   /// The log gets its name when it is whole (Close). Throws InputError where it cannot be made.
-  RecordingNode(const std::string& log, double seconds, Tell tell);
+  RecordingNode(const std::string& log, double seconds, Tell tell, WavePreview* preview = nullptr);
 
   std::string name() const override { return "sync"; }
   std::vector<std::string> Subscriptions() const override { return {"RIG", "CALIBRATION"}; }
@@ -46,14 +48,17 @@ class RecordingNode : public Node {
             Utime host_utime);
   std::string WhatIsMissing() const;
   std::string Heard() const;
+  std::string Progress() const;
 
   std::string path_;
   LogWriter log_;
   Utime length_;
   Tell tell_;
+  WavePreview* preview_;
   Periodic second_{kMicrosecondsPerSecond};
   std::optional<Utime> started_, began_;  // the node's clock; began_: the first sweep
-  std::map<std::string, int> counts_;     // by channel
+  Utime now_ = 0;
+  std::map<std::string, int> counts_;  // by channel
   int images_ = 0;
   Utime host_utime_ = 0;  // of the newest message
   bool over_ = false;

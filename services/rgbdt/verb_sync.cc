@@ -12,6 +12,7 @@
 #include "calib/sync/sync.h"
 #include "services/posix/clock.h"
 #include "services/replay/recording_node.h"
+#include "services/replay/wave_preview.h"
 #include "services/replay/waved_log.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
@@ -23,11 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLive = "live";
+constexpr double kUsualListen = 25;  // [s]
 
 struct SyncFlags {
   std::string log, calibration, out = "out/sync";
   BusFlags bus;
-  double seconds = 25;
+  double seconds = kUsualListen;  ///< how long `live` listens
   bool refine = false, find_poses = false;
 };
 
@@ -92,12 +94,14 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
 }
 
 // What the bus says while the board is waved, as a log; Ctrl-C ends it sooner.
-std::string Record(const SyncFlags& flags) {
+std::string Record(const SyncFlags& flags, const std::optional<Calibration>& calibration,
+                   const WavedLogOptions& options) {
   const fs::path log = fs::path(flags.out) / "wave.lcmlog";
   CheckWritable(log);
   fs::create_directories(flags.out);
-  RecordingNode node(log.string(), flags.seconds,
-                     [](const std::string& line) { PrintProgress(line); });
+  WavePreview preview(calibration, options);
+  RecordingNode node(
+      log.string(), flags.seconds, [](const std::string& line) { PrintProgress(line); }, &preview);
   const int code = RunOnLcm(
       node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
         node.Overhear(channel, data, size, HostUtime());
@@ -105,15 +109,19 @@ std::string Record(const SyncFlags& flags) {
   std::signal(SIGINT, SIG_DFL);  // from here on Ctrl-C ends all
   if (code != 0) throw InputError("nothing was recorded");
   node.Close();
+  PrintProgress("recorded");
   return log.string();
 }
 
 int RunSync(const SyncFlags& flags) {
+  if (flags.seconds != kUsualListen && flags.log != kLive) {
+    throw UsageError("--seconds is how long `live` listens; a log is read whole");
+  }
   std::optional<Calibration> calibration;
   if (!flags.calibration.empty()) calibration = ReadCalibration(flags.calibration);
   WavedLogOptions options;
   options.find_poses = flags.find_poses;
-  const std::string log = flags.log == kLive ? Record(flags) : flags.log;
+  const std::string log = flags.log == kLive ? Record(flags, calibration, options) : flags.log;
   int percent = 0;
   const WavedLog input = ReadWavedLog(log, calibration, options, [&](double share) {
     const int now = static_cast<int>(100 * share);
@@ -168,7 +176,8 @@ void AddSync(CommandLine* program) {
       "the LIDAR (within 1 s, no guess), the read-out time of its shutter, and its pose, with "
       "sigma.\n"
       "Clocks that drift or jump, and frames that are repeated, are named.\n"
-      "`live` in place of a log listens to the bus: wave for as long as it says.\n"
+      "`live` in place of a log listens to the bus: wave for as long as it says. Every few\n"
+      "seconds it tells how well each offset is known so far, as does the page (Bus, `sync`).\n"
       "Example: rgbdt sync wave.lcmlog --calibration out/session/calibration.textproto",
       [flags] { return RunSync(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or a camera does not tell its offset");

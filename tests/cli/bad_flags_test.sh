@@ -27,6 +27,8 @@ says=("magic" "paper")
 misuses "an unknown method" "$bin/rgbdt" calibrate "$good" --method magic --out "$scratch/kept"
 says=("--views" "0")
 misuses "no views at all" "$bin/rgbdt" simulate "$scratch/new" --views 0
+says=("--seconds" "live")
+misuses "a log that is read for some seconds" "$bin/rgbdt" sync "$scratch/log" --seconds 5
 says=("--scene" "moon")
 misuses "an unknown scene" "$bin/rgbdt" simulate "$scratch/new" --scene moon
 says=("--lidar" "moon")

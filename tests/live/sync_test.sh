@@ -10,16 +10,19 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
   --out "$scratch/file" >"$scratch/file.log" 2>&1 || fail "the log tells no offset"
 
 echo "== as it is played"
-start live "$bin/rgbdt" sync live --seconds 4.8 --calibration "$scratch/calibration.textproto" \
+start live "$bin/rgbdt" sync live --seconds 14 --calibration "$scratch/calibration.textproto" \
   --out "$scratch/live"
 for _ in $(seq 100); do
   ! grep -q 'waiting for a sweep' "$scratch/live.log" || break
   sleep 0.1
 done
-lcm-logplayer "$scratch/wave.lcmlog" >"$scratch/player.log" 2>&1
+# So slowly that there is time to say what it knows so far, on a busy machine, too.
+lcm-logplayer --speed=0.35 "$scratch/wave.lcmlog" >"$scratch/player.log" 2>&1
 wait_for live || fail "rgbdt sync live ended with exit code $?"
-grep -Eq 'wave the board: [1-5] s left; [0-9]+ CLOUD, .*[0-9]+ RGB_IMAGE' "$scratch/live.log" ||
+grep -Eq 'wave the board: [1-9][0-9]* s left; [0-9]+ CLOUD, .*[0-9]+ RGB_IMAGE' "$scratch/live.log" ||
   fail "it does not say how far it is"
+grep -Eq '[1-9][0-9]* s left; time offsets to \(1 sigma\) rgb [0-9.]+ ms; [0-9]+ CLOUD' "$scratch/live.log" ||
+  fail "it does not say how well it knows the offset so far"
 offset() {  # FOLDER: of the camera [s], and its sigma
   tr -d '\n' <"$scratch/$1/calibration.textproto" |
     sed -E 's/.*time_offset_s *\{ *value: *([^ ]+) *sigma: *([^ }]+).*/\1 \2/'

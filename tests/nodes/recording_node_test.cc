@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
+#include "calib/model/errors.h"
 #include "services/bus/log.h"
 #include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
@@ -17,22 +20,52 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Property;
+using ::testing::Throws;
+
+RigText RigTextOf(const std::string& lidar) {
+  const std::string text =
+      "name: \"small\"\n"
+      "lidar { name: \"lidar\" " +
+      lidar +
+      " }\n"
+      "camera { name: \"rgb\" kind: COLOR width: 640 height: 480 pixel_format: MONO8\n"
+      "  pinhole { fx: 500 fy: 500 cx: 320 cy: 240 } }\n"
+      "target { squares_x: 8 squares_y: 6 square_m: 0.1 width_m: 1 height_m: 0.8 }\n";
+  return {0, HashOfRigText(text), text};
+}
+
+// While it waits for anything at all, for the rig, and for calibrations.
+TEST(WavePreview, EndsWithoutWaitingForWhatDoesNotCome) {
+  const Bytes noise(1000, 7);
+  WavePreview nothing({}, {});
+  WavePreview noisy({}, {});
+  noisy.Take("CLOUD", noise.data(), noise.size());
+  WavePreview begun({}, {});
+  begun.TakeRig(ParseRig(RigTextOf("").text, "RIG"));
+  EXPECT_EQ(nothing.Text() + noisy.Text() + begun.Text(), "");
+}
+
+TEST(WavePreview, OutlivesMessagesThatAreNone) {
+  const RigText rig = RigTextOf("");
+  Calibration calibration;
+  calibration.rig_hash = rig.hash;
+  WavePreview preview(calibration, {});
+  preview.TakeRig(ParseRig(rig.text, "RIG"));
+  const Bytes noise(1000, 7);
+  for (int i = 0; i < 2000; ++i) {
+    for (const char* channel : {"CLOUD", "RGB_IMAGE", "OTHER_IMAGE"}) {
+      preview.Take(channel, noise.data(), noise.size());
+    }
+  }
+  EXPECT_EQ(preview.WhyNot(), "");
+  EXPECT_EQ(preview.Text(), "");
+}
 
 class RecordingNodeTest : public ::testing::Test {
  protected:
   RecordingNode Make() {
     return {path_.string(), 2, [this](const std::string& line) { told_ = line; }};
-  }
-  static RigText RigOf(const std::string& lidar) {
-    const std::string text =
-        "name: \"small\"\n"
-        "lidar { name: \"lidar\" " +
-        lidar +
-        " }\n"
-        "camera { name: \"rgb\" kind: COLOR width: 640 height: 480 pixel_format: MONO8\n"
-        "  pinhole { fx: 500 fy: 500 cx: 320 cy: 240 } }\n"
-        "target { squares_x: 8 squares_y: 6 square_m: 0.1 width_m: 1 height_m: 0.8 }\n";
-    return {0, HashOfRigText(text), text};
   }
   static void Hear(const std::string& channel, RecordingNode* node) {
     const Bytes bytes{1, 2, 3};
@@ -48,7 +81,7 @@ TEST_F(RecordingNodeTest, KeepsWhatTellsOfAWavedBoardFromTheFirstSweepOn) {
   RecordingNode node = Make();
   node.Advance(0);
   EXPECT_THAT(told_, HasSubstr("waiting"));
-  node.Handle(RigOf(""));
+  node.Handle(RigTextOf(""));
   for (const char* channel : {"CLOUD", "RGB_IMAGE", "POSE", "RGBDT_CLOUD"}) Hear(channel, &node);
   node.Advance(5 * kSecond);
   EXPECT_THAT(told_, HasSubstr("2 s left; 1 CLOUD, 1 RGB_IMAGE, 1 RIG"));
@@ -64,6 +97,22 @@ TEST_F(RecordingNodeTest, KeepsWhatTellsOfAWavedBoardFromTheFirstSweepOn) {
   EXPECT_THAT(channels, ElementsAre("RIG", "CLOUD", "RGB_IMAGE"));
 }
 
+TEST_F(RecordingNodeTest, ACalibrationOfAnotherRigIsToldAtOnce) {
+  Calibration calibration;
+  calibration.rig_hash = 1;
+  WavePreview preview(calibration, {});
+  RecordingNode node(
+      path_.string(), 2, [](const std::string&) {}, &preview);
+  node.Handle(RigTextOf(""));
+  for (int i = 0; i < 1000 && preview.WhyNot().empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  node.Advance(0);
+  EXPECT_TRUE(node.finished());
+  EXPECT_THAT([&] { node.Close(); },
+              Throws<InputError>(Property(&InputError::what, HasSubstr("RIG"))));
+}
+
 TEST_F(RecordingNodeTest, WhatIsMissingIsNamedAndAnEarlierRecordingStays) {
   WriteFileAtomically(path_, "before");
   const std::vector<std::string> heard{"", "CLOUD", "RIG", "RGB_IMAGE"};
@@ -73,7 +122,7 @@ TEST_F(RecordingNodeTest, WhatIsMissingIsNamedAndAnEarlierRecordingStays) {
     node.Advance(0);
     for (std::size_t k = 1; k <= i; ++k) {
       if (heard[k] == "RIG") {
-        node.Handle(RigOf(""));
+        node.Handle(RigTextOf(""));
       } else {
         Hear(heard[k], &node);
       }
@@ -90,8 +139,8 @@ TEST_F(RecordingNodeTest, WhatIsMissingIsNamedAndAnEarlierRecordingStays) {
 TEST_F(RecordingNodeTest, ARigThatCannotDoItIsRefusedAtOnce) {
   RecordingNode node = Make();
   node.Handle(
-      RigOf("turned_scanner { ticks_per_degree: 100 motor_from_scanner {"
-            " quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0] } }"));
+      RigTextOf("turned_scanner { ticks_per_degree: 100 motor_from_scanner {"
+                " quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0] } }"));
   EXPECT_TRUE(node.finished());
   EXPECT_THAT(InputErrorOf([&] { node.Close(); }), HasSubstr("turned scanner"));
   EXPECT_TRUE(std::filesystem::is_empty(path_.parent_path()));
