@@ -11,7 +11,7 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kDistancesM[] = {2, 5, 10};
 
@@ -48,7 +48,7 @@ std::array<Estimate, 3> Estimates(const Eigen::Vector3d& values,
                                   const std::optional<Eigen::Matrix3d>& covariance, double scale) {
   std::array<Estimate, 3> out;
   for (int k = 0; k < 3; ++k) {
-    const double sigma = covariance ? std::sqrt(std::max(0.0, (*covariance)(k, k))) : kNan;
+    const double sigma = covariance ? std::sqrt(std::max(0.0, (*covariance)(k, k))) : kUnknown;
     out[static_cast<std::size_t>(k)] = {scale * values[k], scale * sigma};
   }
   return out;
@@ -89,7 +89,7 @@ PixelShift ShiftAt(const Pair& pair, double distance_m) {
     squares += (*moved - pixel).squaredNorm();
     ++count;
   }
-  shift.rms_px = count > 0 ? std::sqrt(squares / count) : kNan;
+  shift.rms_px = count > 0 ? std::sqrt(squares / count) : kUnknown;
   if (pair.of_a && pair.of_b && count > 0) shift.sigma_px = std::sqrt(variances / count);
   return shift;
 }

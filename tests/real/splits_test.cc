@@ -15,6 +15,8 @@
 namespace rgbdt {
 namespace {
 
+constexpr std::size_t kSplits = 40;  // scripts/study real takes 100
+
 struct Splits {
   std::vector<double> rotation_deg, translation_mm, chi2;
 
@@ -34,7 +36,7 @@ Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::s
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), 0U);
   Splits out;
-  for (int i = 0; i < 100; ++i) {
+  for (std::size_t i = 0; i < kSplits; ++i) {
     std::shuffle(order.begin(), order.end(), random);
     std::vector<CameraCalibration> halves;
     for (std::size_t half = 0; half < 2; ++half) {
@@ -64,8 +66,8 @@ TEST(Acfr, HalvesOfTheViewsAgreeAsTheStatedSigmaSays) {
   detected->session.rig.cameras.at(0).lens_uncertainty = LensUncertainty{};
   const Splits joint = Split(detected->session.rig, detected->views, kAutoMethod);
   const Splits plane = Split(detected->session.rig, detected->views, kPlaneMethod);
-  ASSERT_EQ(joint.chi2.size(), 100U);
-  ASSERT_EQ(plane.chi2.size(), 100U);
+  ASSERT_EQ(joint.chi2.size(), kSplits);
+  ASSERT_EQ(plane.chi2.size(), kSplits);
   std::printf(
       "halves differ by a median of %.2f deg, %.1f mm (plane: %.2f deg, %.1f mm); %.0f%% lie in "
       "the stated 95%% region\n",
@@ -84,7 +86,7 @@ TEST(Acfr, HalvesOfTheViewsAgreeWithTheLensUnknown) {
   auto detected = DetectReal(kAutoMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
   const Splits joint = Split(detected->session.rig, detected->views, kAutoMethod);
-  ASSERT_EQ(joint.chi2.size(), 100U);
+  ASSERT_EQ(joint.chi2.size(), kSplits);
   std::printf(
       "halves differ by a median of %.2f deg, %.1f mm; %.0f%% lie in the stated 95%% region\n",
       Median(joint.rotation_deg), Median(joint.translation_mm), 100 * joint.Inside());

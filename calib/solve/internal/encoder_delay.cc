@@ -27,7 +27,7 @@ constexpr double kMostLateS = 1;       // as a rig file may have it
 constexpr double kStandsStill = 1e-4;  // [rad/s] and less: no motor
 constexpr double kLooksLate = 2;       // sigmas, from which on it is tried
 constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
-constexpr double kSettled = 0.5;       // sigmas that may be left
+constexpr double kDelaySettled = 0.5;  // sigmas that may be left
 constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
 constexpr int kMostTries = 4;
 
@@ -177,7 +177,7 @@ bool IsSure(const CalibratedCameras& found, double taken_off_s,
   if (!left || !left->BothWays()) return false;
   const Estimate& seconds = left->seconds;
   const double total = taken_off_s + seconds.value;
-  return std::abs(seconds.value) < kSettled * seconds.sigma &&
+  return std::abs(seconds.value) < kDelaySettled * seconds.sigma &&
          std::abs(total) > kGivenWrongSigmas * seconds.sigma && std::abs(total) <= kMostLateS &&
          ImagesUsed(found) >= ImagesUsed(as_they_are);
 }
@@ -295,7 +295,7 @@ CalibratedCameras CalibrateWithoutEncoderDelay(
     found = calibrate(taken_off);
     if (!found.encoder_delay) break;
     next = found.encoder_delay->seconds.value;
-    if (std::abs(next) < kSettled * found.encoder_delay->seconds.sigma) break;
+    if (std::abs(next) < kDelaySettled * found.encoder_delay->seconds.sigma) break;
   }
   const bool sure = IsSure(found, taken_off, as_they_are);
   return sure ? Told(std::move(found), taken_off) : Told(std::move(as_they_are), 0);
