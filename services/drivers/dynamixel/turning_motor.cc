@@ -29,10 +29,22 @@ double SteadyUs() {
   return Us(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// UTC of a moment of the steady clock that lies just behind us.
+// UTC of a moment of the steady clock that lies just behind us. The wall clock is read between two
+// readings of the steady one, anew where the machine did something else in between.
 Utime ToUtime(double steady_us) {
-  const Utime utc = HostUtime();
-  return utc - std::llround(SteadyUs() - steady_us);
+  constexpr int kTries = 3;
+  constexpr double kClose = 5;  // [us]
+  double apart = std::numeric_limits<double>::infinity();
+  Utime utime = 0;
+  for (int i = 0; i < kTries && apart > kClose; ++i) {
+    const double before = SteadyUs();
+    const Utime utc = HostUtime();
+    const double after = SteadyUs();
+    if (after - before >= apart) continue;
+    apart = after - before;
+    utime = utc - std::llround((before + after) / 2 - steady_us);
+  }
+  return utime;
 }
 
 std::string Degrees(const TurnedScanner& scanner, std::int64_t ticks) {
