@@ -6,6 +6,7 @@
 
 #include "calib/model/errors.h"
 #include "services/messages/check.h"
+#include "services/messages/image_channel.h"
 #include "services/messages/internal/codec_types.h"
 #include "services/messages/internal/layout.h"
 #include "services/messages/signature.h"
@@ -78,10 +79,8 @@ const Decoders& AllDecoders() {
 
 Decoder DecoderOf(const std::string& channel) {
   const Decoders& decoders = AllDecoders();
-  static const std::string image = ChannelOf(Image());
-  const bool is_image = channel.size() > image.size() &&
-                        channel.compare(channel.size() - image.size(), image.size(), image) == 0;
-  const auto found = decoders.find(is_image ? image : channel);
+  static const std::string image = ImageChannel("");
+  const auto found = decoders.find(IsImageChannel(channel) ? image : channel);
   if (found == decoders.end() || channel == image) {
     throw InputError("no message type belongs to channel " + Shown(channel));
   }

@@ -109,8 +109,8 @@ void Fields(const Copy& copy, WireOf<Copy, camera_timing_t>& wire,
 camera_timing_t ToWire(const CameraTiming& timing) { return FieldsToWire<camera_timing_t>(timing); }
 
 void Check(const camera_timing_t& wire) {
-  // A minute is no offset of a clock, a second no read-out.
-  if (!(std::abs(wire.time_offset_s) <= 60)) {
+  // A second is no read-out.
+  if (!(std::abs(wire.time_offset_s) <= kMaxTimeOffset_s)) {
     Fail("timing.time_offset_s", wire.time_offset_s, "-60 to 60");
   }
   if (!(std::abs(wire.rolling_s) <= 1)) Fail("timing.rolling_s", wire.rolling_s, "-1 to 1");

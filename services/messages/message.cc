@@ -1,16 +1,11 @@
 #include "services/messages/message.h"
 
 #include <algorithm>
-#include <cctype>
+
+#include "services/messages/image_channel.h"
 
 namespace rgbdt {
 namespace {
-
-std::string ImageChannel(const std::string& camera) {
-  std::string channel = camera;
-  for (char& c : channel) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return channel + "_IMAGE";
-}
 
 struct Channel {
   std::string operator()(const LineScan&) const { return "LINE_SCAN"; }
@@ -31,6 +26,7 @@ struct Channel {
   std::string operator()(const LeftOutViews&) const { return "LEFT_OUT_VIEWS"; }
   std::string operator()(const TargetStatus&) const { return "TARGET_STATUS"; }
   std::string operator()(const MountCheck&) const { return "MOUNT_CHECK"; }
+  std::string operator()(const WaveProgress&) const { return "WAVE_PROGRESS"; }
   std::string operator()(const Status&) const { return "STATUS"; }
   std::string operator()(const ReportText&) const { return "REPORT"; }
 };

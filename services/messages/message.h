@@ -11,6 +11,7 @@
 #include "calib/model/rgbdt_cloud.h"
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
+#include "calib/model/wave_progress.h"
 
 namespace rgbdt {
 
@@ -24,10 +25,10 @@ struct CalibrationMessage {
 };
 
 /// Everything that crosses the bus, decoded and checked.
-using Message =
-    std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, ViewDetection,
-                 CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
-                 SessionRequest, LeftOutViews, TargetStatus, MountCheck, Status, ReportText>;
+using Message = std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection,
+                             ViewDetection, CalibrationMessage, RgbdtCloud, StampedPose, RigText,
+                             SessionCommand, SessionEvent, SessionRequest, LeftOutViews,
+                             TargetStatus, MountCheck, WaveProgress, Status, ReportText>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

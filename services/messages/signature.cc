@@ -29,7 +29,7 @@ bool IsSignedChannel(const std::string& channel) {
   static const std::set<std::string> channels = {
       "CALIBRATION",     "CORNER_SELECTION", "DETECTION", "LEFT_OUT_VIEWS",
       "MOUNT_CHECK",     "REPORT",           "RIG",       "SESSION_EVENT",
-      "SESSION_COMMAND", "SESSION_REQUEST",  "STATUS"};
+      "SESSION_COMMAND", "SESSION_REQUEST",  "STATUS",    "WAVE_PROGRESS"};
   return channels.count(channel) != 0;
 }
 

@@ -10,7 +10,9 @@
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/messages/codec.h"
+#include "services/messages/header.h"
 #include "services/messages/image_channel.h"
+#include "services/messages/limits.h"
 #include "services/replay/wave_reader.h"
 
 namespace rgbdt {
@@ -18,6 +20,17 @@ namespace {
 
 constexpr const char* kClouds = "CLOUD";
 constexpr const char* kRig = "RIG";
+
+// "rgb 0.41 ms, thermal not yet"
+std::string SigmasOf(const std::vector<WavedClock>& clocks) {
+  std::string text;
+  for (const WavedClock& clock : clocks) {
+    text += (text.empty() ? "" : ", ") + clock.camera +
+            (clock.time_offset_s ? Format(" %.2f ms", 1e3 * clock.time_offset_s->sigma)
+                                 : std::string(" not yet"));
+  }
+  return text;
+}
 
 std::string PartOf(const std::string& log) { return log + ".part"; }
 
@@ -52,10 +65,11 @@ Messages RecordingNode::Advance(Utime now) {
   if (!began_ && counts_.count(kClouds) > 0) began_ = now;
   if (now - *started_ > kPatience && problem_.empty()) problem_ = WhatIsMissing();
   if (preview_ != nullptr && problem_.empty()) problem_ = preview_->WhyNot();
+  if (!problem_.empty()) return {Told()};
   over_ = began_ && now - *began_ >= length_;
   if (over_ || !second_.IsDue(now)) return {};
   tell_(Progress());
-  return {};
+  return {Told()};
 }
 
 Status RecordingNode::GetStatus() const {
@@ -71,6 +85,8 @@ void RecordingNode::Overhear(const std::string& channel, const std::uint8_t* dat
   const bool image = IsImageChannel(channel);
   if (channel != kClouds && !image) return;
   images_ += image ? 1 : 0;
+  const Utime utime = HeaderOf(data, size).value_or(Header()).utime;
+  if (utime <= kMaxInteger) newest_utime_ = std::max(newest_utime_, utime);  // not checked yet
   Keep(channel, data, size, host_utime);
   if (preview_ != nullptr) preview_->Take(channel, data, size);
 }
@@ -108,12 +124,32 @@ void RecordingNode::Close() {
   std::filesystem::rename(PartOf(path_), path_);
 }
 
+WaveProgress RecordingNode::Told() const {
+  WaveProgress told;
+  told.utime = newest_utime_;
+  if (preview_ != nullptr) told.clocks = preview_->Clocks();
+  if (!problem_.empty()) {
+    told.phase = WavePhase::kFailed;
+    told.text = problem_;
+  } else if (!began_) {
+    told.text = "waiting for a sweep ...; " + Heard();
+  } else {
+    told.phase = WavePhase::kRecording;
+    told.left_s = Left();
+    told.text = "wave the board towards the sensors and away, and tilt it; " + Heard();
+  }
+  return told;
+}
+
+double RecordingNode::Left() const {
+  return std::max(0.0, std::ceil(ToSeconds(*began_ + length_ - now_)));
+}
+
 std::string RecordingNode::Progress() const {
   if (!began_) return "waiting for a sweep ...; " + Heard();
   if (finished()) return "recorded: " + Heard();
-  const std::string known = preview_ == nullptr ? "" : preview_->Text();
-  return Format("wave the board: %.0f s left; ",
-                std::max(0.0, std::ceil(ToSeconds(*began_ + length_ - now_)))) +
+  const std::string known = preview_ == nullptr ? "" : SigmasOf(preview_->Clocks());
+  return Format("wave the board: %.0f s left; ", Left()) +
          (known.empty() ? "" : "time offsets to (1 sigma) " + known + "; ") + Heard();
 }
 

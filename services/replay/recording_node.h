@@ -14,8 +14,8 @@
 namespace rgbdt {
 
 /// Keeps what tells of a waved board (RIG, CALIBRATION, CLOUD, images) as a log, for so many
-/// seconds from the first sweep on, and tells once a second how much is left and what came.
-/// `preview`, if any, gets the same and is asked what it says so far; both stand in STATUS, too. It
+/// seconds from the first sweep on, and tells once a second how much is left and what came:
+/// WAVE_PROGRESS. `preview`, if any, gets the same and is asked what it says so far. It
 /// gives up where no sweep comes, or no RIG or image with the sweeps, within kPatience, and at once
 /// where the rig cannot do it: a turned scanner, a plain board.
 ///
@@ -40,6 +40,9 @@ class RecordingNode : public Node {
   void Overhear(const std::string& channel, const std::uint8_t* data, std::size_t size,
                 Utime host_utime);
 
+  /// What it tells the bus.
+  WaveProgress Told() const;
+
   /// All is in the log. Throws InputError where it is not: the disk is full, or there was no sweep.
   void Close();
 
@@ -48,6 +51,7 @@ class RecordingNode : public Node {
             Utime host_utime);
   std::string WhatIsMissing() const;
   std::string Heard() const;
+  double Left() const;
   std::string Progress() const;
 
   std::string path_;
@@ -60,7 +64,8 @@ class RecordingNode : public Node {
   Utime now_ = 0;
   std::map<std::string, int> counts_;  // by channel
   int images_ = 0;
-  Utime host_utime_ = 0;  // of the newest message
+  Utime host_utime_ = 0;    // of the newest message
+  Utime newest_utime_ = 0;  // of clouds and images
   bool over_ = false;
   std::string problem_;
 };

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "calib/model/errors.h"
-#include "calib/model/text.h"
 #include "services/messages/codec.h"
 #include "services/messages/image_channel.h"
 #include "services/replay/waved_log.h"
@@ -27,12 +26,6 @@ constexpr std::size_t kMostBytes = 64'000'000;                       // that wai
 constexpr std::size_t kLeastSweeps = 20, kLeastImages = 20;
 constexpr double kMostGap_s = 0.6;  // between images of which some were passed over
 
-std::string ChannelOfCamera(const std::string& camera) {
-  Image image;
-  image.camera = camera;
-  return ChannelOf(image);
-}
-
 bool Tells(const WavedBoard& board) {
   return board.sweeps.size() >= kLeastSweeps &&
          std::any_of(board.cameras.begin(), board.cameras.end(), [](const WavedCamera& camera) {
@@ -40,17 +33,20 @@ bool Tells(const WavedBoard& board) {
          });
 }
 
-std::string TextOf(const SyncResult& result) {
-  std::string text;
-  for (const SyncedCamera& camera : result.cameras) {
-    text += (text.empty() ? "" : ", ") + camera.camera +
-            (camera.why_not.empty() ? Format(" %.2f ms", 1e3 * camera.time_offset_s.sigma)
-                                    : std::string(" not yet"));
-  }
-  return text;
-}
-
 }  // namespace
+
+std::vector<WavedClock> ClocksOf(const SyncResult& result) {
+  std::vector<WavedClock> clocks;
+  for (const SyncedCamera& camera : result.cameras) {
+    WavedClock& clock = clocks.emplace_back();
+    clock.camera = camera.camera;
+    clock.text = camera.why_not;
+    if (!camera.why_not.empty()) continue;
+    clock.time_offset_s = camera.time_offset_s;
+    if (!camera.warnings.empty()) clock.text = camera.warnings.front();
+  }
+  return clocks;
+}
 
 void WavePreview::Queue::Add(Bytes message) {
   bytes += message.size();
@@ -90,7 +86,7 @@ void WavePreview::TakeRig(const Rig& rig) {
   rig_ = rig;
   waiting_["CLOUD"].most_messages = kMostChunks;
   for (const CameraSpec& camera : rig.cameras) {
-    waiting_[ChannelOfCamera(camera.name)].most_messages = kMostImages;
+    waiting_[ImageChannel(camera.name)].most_messages = kMostImages;
   }
   wake_.notify_all();
 }
@@ -108,9 +104,9 @@ void WavePreview::Take(const std::string& channel, const std::uint8_t* data, std
   wake_.notify_all();
 }
 
-std::string WavePreview::Text() const {
+std::vector<WavedClock> WavePreview::Clocks() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return text_;
+  return clocks_;
 }
 
 std::string WavePreview::WhyNot() const {
@@ -170,14 +166,14 @@ void WavePreview::TakeAll(const Batch& batch, WaveReader* reader) const {
 void WavePreview::Solve(const WavedBoard& board) {
   SyncOptions options;
   options.most_gap_s = kMostGap_s;
-  std::string text;
+  std::vector<WavedClock> clocks;
   try {
-    text = TextOf(Synchronise(board, options));
+    clocks = ClocksOf(Synchronise(board, options));
   } catch (const InputError&) {  // so far it makes no sense
     return;
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  text_ = std::move(text);
+  clocks_ = std::move(clocks);
 }
 
 void WavePreview::Watch() {

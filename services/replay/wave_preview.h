@@ -17,6 +17,9 @@
 
 namespace rgbdt {
 
+/// What a solve tells of each camera's clock.
+std::vector<WavedClock> ClocksOf(const SyncResult& result);
+
 /// What a wave tells so far, for who waves: how well each camera's time offset is known, anew every
 /// few seconds, on a thread of its own that yields to all others. Of images that come faster than
 /// boards are found some are passed over, so it knows less than the recording tells afterwards.
@@ -34,8 +37,8 @@ class WavePreview {
   /// cameras that are not the rig's, none is kept.
   void Take(const std::string& channel, const std::uint8_t* data, std::size_t size);
 
-  /// "rgb 0.41 ms, thermal not yet"; empty: nothing was solved so far.
-  std::string Text() const;
+  /// Of each camera; empty: nothing was solved so far.
+  std::vector<WavedClock> Clocks() const;
   /// Why nothing can be solved: the calibration is another rig's; empty: it can.
   std::string WhyNot() const;
 
@@ -59,14 +62,15 @@ class WavePreview {
 
   std::optional<Calibration> calibration_;
   const WavedLogOptions options_;
-  mutable std::mutex mutex_;  // of what follows
+  const int threads_before_;  // of OpenCV
+  mutable std::mutex mutex_;  // guards all below but the thread
   std::condition_variable wake_;
   std::optional<Rig> rig_;
   std::map<std::string, CalibrationMessage> cameras_;
   std::map<std::string, Queue> waiting_;
-  std::string text_, why_not_;
+  std::vector<WavedClock> clocks_;
+  std::string why_not_;
   bool stopping_ = false;
-  int threads_before_;  // of OpenCV
   std::thread thread_;  // last: it uses all the others
 };
 

@@ -31,7 +31,7 @@ WaveReader::WaveReader(const Rig& rig, const std::optional<Calibration>& calibra
   read_.rig = rig;
   read_.calibration = calibration;
   if (calibration) {
-    RequireSameRig(*calibration, rig, {"the calibration", "the log's RIG"}, Use::kIfSound);
+    RequireSameRig(*calibration, rig, {"the calibration", "the RIG message"}, Use::kIfSound);
   }
   read_.board.target = rig.target;
   read_.board.range_sigma_m = rig.lidar.range_sigma_m;

@@ -43,10 +43,11 @@ WaveReader ReaderFor(const std::string& path, const Known& known,
                      const std::optional<Calibration>& calibration,
                      const WavedLogOptions& options) {
   if (!known.rig) throw InputError(path + ": no RIG in this log; record that channel, too");
-  if (const std::string why = WhyNotWaved(*known.rig); !why.empty()) {
-    throw InputError(path + ": " + why);
+  try {
+    return {*known.rig, calibration ? calibration : CalibrationOf(known.cameras), options};
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
   }
-  return {*known.rig, calibration ? calibration : CalibrationOf(known.cameras), options};
 }
 
 }  // namespace

@@ -1,8 +1,13 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <exception>
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/check_writable.h"
@@ -12,6 +17,7 @@
 #include "calib/sync/sync.h"
 #include "services/posix/clock.h"
 #include "services/replay/recording_node.h"
+#include "services/replay/telling_node.h"
 #include "services/replay/wave_preview.h"
 #include "services/replay/waved_log.h"
 #include "services/rgbdt/print_report.h"
@@ -93,24 +99,115 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
   return calibration;
 }
 
+using Say = std::function<void(const std::string& progress)>;
+
+/// What came of a log.
+struct Synced {
+  bool all = false;      ///< every camera tells its offset
+  bool written = false;  ///< a calibration
+  std::string words;     ///< what was written, and what to do next
+  std::vector<WavedClock> clocks;
+};
+
+// Writes calibration, rig and picture.
+Synced Write(const fs::path& out, const WavedLog& input, const SyncResult& result, bool refine) {
+  Synced synced;
+  synced.clocks = ClocksOf(result);
+  const auto told = [](const WavedClock& clock) { return clock.time_offset_s.has_value(); };
+  synced.all = std::all_of(synced.clocks.begin(), synced.clocks.end(), told);
+  synced.written = std::any_of(synced.clocks.begin(), synced.clocks.end(), told);
+  const cv::Mat picture = SyncPicture(result);
+  if (!picture.empty()) WritePng(out / "sync.png", picture);
+  if (!synced.written) {
+    // Offsets that change too much to be given make a picture.
+    synced.words = picture.empty()
+                       ? "nothing was written"
+                       : "only sync.png (the offsets over time) was written, into " + out.string();
+    return synced;
+  }
+  WriteFileAtomically(out / "rig.textproto", input.rig.text);
+  WriteCalibration(out / "calibration.textproto", WithTimings(input, result, refine));
+  synced.words = "wrote calibration.textproto (with `timing`), rig.textproto" +
+                 std::string(picture.empty() ? "" : ", sync.png (the offsets over time)") +
+                 " into " + out.string() + "\nnext: rgbdt-monitor " + out.string() +
+                 ", which sends both; the fuser takes offset and read-out from there";
+  return synced;
+}
+
+Synced SyncLog(const SyncFlags& flags, const std::string& log,
+               const std::optional<Calibration>& calibration, const WavedLogOptions& options,
+               const Say& say) {
+  int percent = 0;
+  const WavedLog input = ReadWavedLog(log, calibration, options, [&](double share) {
+    const int now = static_cast<int>(100 * share);
+    if (now / 10 != percent / 10) say("reading the log: " + std::to_string(now) + "%");
+    percent = now;
+  });
+  PrintUnreadable(input.problems, "not used");
+  say("solving ...");
+  const SyncResult result = Synchronise(input.board);
+  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
+    PrintCamera(result.cameras[i], input.board.cameras[i].spec);
+  }
+  Synced synced = Write(flags.out, input, result, flags.refine);
+  if (synced.written) {
+    std::printf(
+        "%d sweeps in %.1f s; the board moved by %.2f m/s and %.2f rad/s (RMS), its points "
+        "are %.1f mm off it\n",
+        result.sweeps, result.seconds, result.speed, result.turn_speed, 1e3 * result.plane_rms_m);
+  }
+  std::printf("%s\n", synced.words.c_str());
+  return synced;
+}
+
 // What the bus says while the board is waved, as a log; Ctrl-C ends it sooner.
-std::string Record(const SyncFlags& flags, const std::optional<Calibration>& calibration,
-                   const WavedLogOptions& options) {
-  const fs::path log = fs::path(flags.out) / "wave.lcmlog";
-  CheckWritable(log);
-  fs::create_directories(flags.out);
+WaveProgress Record(const std::string& log, const SyncFlags& flags,
+                    const std::optional<Calibration>& calibration, const WavedLogOptions& options) {
   WavePreview preview(calibration, options);
   RecordingNode node(
-      log.string(), flags.seconds, [](const std::string& line) { PrintProgress(line); }, &preview);
+      log, flags.seconds, [](const std::string& line) { PrintProgress(line); }, &preview);
   const int code = RunOnLcm(
       node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
         node.Overhear(channel, data, size, HostUtime());
       });
-  std::signal(SIGINT, SIG_DFL);  // from here on Ctrl-C ends all
   if (code != 0) throw InputError("nothing was recorded");
   node.Close();
-  PrintProgress("recorded");
-  return log.string();
+  return node.Told();
+}
+
+// Solves on a thread of its own, while the bus hears how far it is.
+Synced SolveAndTell(const WaveProgress& recorded, const BusFlags& bus,
+                    const std::function<Synced(const Say& say)>& solve) {
+  TellingNode node(recorded);
+  std::future<Synced> solved = std::async(std::launch::async, [&] {
+    try {
+      Synced synced = solve([&](const std::string& progress) {
+        PrintProgress(progress);
+        node.Tell(progress);
+      });
+      node.End(synced.written ? WavePhase::kDone : WavePhase::kFailed, synced.words, synced.clocks);
+      return synced;
+    } catch (const std::exception& error) {
+      node.End(WavePhase::kFailed, error.what(), {});
+      throw;
+    }
+  });
+  RunOnLcm(node, bus);
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  if (!node.finished()) PrintProgress("still solving; Ctrl-C once more ends it");
+  return solved.get();
+}
+
+Synced SyncLive(const SyncFlags& flags, const std::optional<Calibration>& calibration,
+                const WavedLogOptions& options) {
+  const fs::path log = fs::path(flags.out) / "wave.lcmlog";
+  CheckWritable(log);
+  fs::create_directories(flags.out);
+  const WaveProgress recorded = Record(log.string(), flags, calibration, options);
+  return SolveAndTell(recorded, flags.bus, [&](const Say& say) {
+    return SyncLog(flags, log.string(), calibration, options, say);
+  });
 }
 
 int RunSync(const SyncFlags& flags) {
@@ -121,47 +218,10 @@ int RunSync(const SyncFlags& flags) {
   if (!flags.calibration.empty()) calibration = ReadCalibration(flags.calibration);
   WavedLogOptions options;
   options.find_poses = flags.find_poses;
-  const std::string log = flags.log == kLive ? Record(flags, calibration, options) : flags.log;
-  int percent = 0;
-  const WavedLog input = ReadWavedLog(log, calibration, options, [&](double share) {
-    const int now = static_cast<int>(100 * share);
-    if (now / 10 != percent / 10) PrintProgress("reading the log: " + std::to_string(now) + "%");
-    percent = now;
-  });
-  PrintUnreadable(input.problems, "not used");
-  PrintProgress("solving ...");
-  const SyncResult result = Synchronise(input.board);
-  bool all = true;
-  for (std::size_t i = 0; i < result.cameras.size(); ++i) {
-    PrintCamera(result.cameras[i], input.board.cameras[i].spec);
-    all &= result.cameras[i].why_not.empty();
-  }
-  const Calibration found = WithTimings(input, result, flags.refine);
-  const fs::path out = flags.out;
-  const cv::Mat picture = SyncPicture(result);
-  if (std::none_of(result.cameras.begin(), result.cameras.end(),
-                   [](const SyncedCamera& camera) { return camera.why_not.empty(); })) {
-    if (picture.empty()) {
-      std::printf("nothing was written\n");
-    } else {  // offsets that change too much to be given
-      WritePng(out / "sync.png", picture);
-      std::printf("only sync.png (the offsets over time) was written, into %s\n", out.c_str());
-    }
-    return EndsWith(false);
-  }
-  std::printf(
-      "%d sweeps in %.1f s; the board moved by %.2f m/s and %.2f rad/s (RMS), its points "
-      "are %.1f mm off it\n",
-      result.sweeps, result.seconds, result.speed, result.turn_speed, 1e3 * result.plane_rms_m);
-  WriteFileAtomically(out / "rig.textproto", input.rig.text);
-  WriteCalibration(out / "calibration.textproto", found);
-  if (!picture.empty()) WritePng(out / "sync.png", picture);
-  std::printf(
-      "wrote calibration.textproto (with `timing`), rig.textproto%s into %s\n"
-      "next: rgbdt-monitor %s, which sends both; the fuser takes offset and read-out from "
-      "there\n",
-      picture.empty() ? "" : ", sync.png (the offsets over time)", out.c_str(), out.c_str());
-  return EndsWith(all);
+  const Synced synced = flags.log == kLive
+                            ? SyncLive(flags, calibration, options)
+                            : SyncLog(flags, flags.log, calibration, options, PrintProgress);
+  return EndsWith(synced.all);
 }
 
 }  // namespace
@@ -177,7 +237,7 @@ void AddSync(CommandLine* program) {
       "sigma.\n"
       "Clocks that drift or jump, and frames that are repeated, are named.\n"
       "`live` in place of a log listens to the bus: wave for as long as it says. Every few\n"
-      "seconds it tells how well each offset is known so far, as does the page (Bus, `sync`).\n"
+      "seconds it tells how well each offset is known so far, as does the page (Session).\n"
       "Example: rgbdt sync wave.lcmlog --calibration out/session/calibration.textproto",
       [flags] { return RunSync(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or a camera does not tell its offset");

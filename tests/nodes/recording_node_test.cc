@@ -6,11 +6,15 @@
 #include <chrono>
 #include <filesystem>
 #include <thread>
+#include <variant>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "services/bus/log.h"
+#include "services/messages/codec.h"
+#include "services/messages/header.h"
+#include "services/replay/telling_node.h"
 #include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
@@ -43,7 +47,7 @@ TEST(WavePreview, EndsWithoutWaitingForWhatDoesNotCome) {
   noisy.Take("CLOUD", noise.data(), noise.size());
   WavePreview begun({}, {});
   begun.TakeRig(ParseRig(RigTextOf("").text, "RIG"));
-  EXPECT_EQ(nothing.Text() + noisy.Text() + begun.Text(), "");
+  for (const WavePreview* one : {&nothing, &noisy, &begun}) EXPECT_TRUE(one->Clocks().empty());
 }
 
 TEST(WavePreview, OutlivesMessagesThatAreNone) {
@@ -59,7 +63,7 @@ TEST(WavePreview, OutlivesMessagesThatAreNone) {
     }
   }
   EXPECT_EQ(preview.WhyNot(), "");
-  EXPECT_EQ(preview.Text(), "");
+  EXPECT_TRUE(preview.Clocks().empty());
 }
 
 class RecordingNodeTest : public ::testing::Test {
@@ -68,7 +72,9 @@ class RecordingNodeTest : public ::testing::Test {
     return {path_.string(), 2, [this](const std::string& line) { told_ = line; }};
   }
   static void Hear(const std::string& channel, RecordingNode* node) {
-    const Bytes bytes{1, 2, 3};
+    Bytes bytes(kHeaderBytes, 0);
+    bytes[14] = 1234 / 256;
+    bytes[15] = 1234 % 256;
     node->Overhear(channel, bytes.data(), bytes.size(), kSecond);
   }
 
@@ -83,8 +89,14 @@ TEST_F(RecordingNodeTest, KeepsWhatTellsOfAWavedBoardFromTheFirstSweepOn) {
   EXPECT_THAT(told_, HasSubstr("waiting"));
   node.Handle(RigTextOf(""));
   for (const char* channel : {"CLOUD", "RGB_IMAGE", "POSE", "RGBDT_CLOUD"}) Hear(channel, &node);
-  node.Advance(5 * kSecond);
+  const Messages messages = node.Advance(5 * kSecond);
   EXPECT_THAT(told_, HasSubstr("2 s left; 1 CLOUD, 1 RGB_IMAGE, 1 RIG"));
+  ASSERT_EQ(messages.size(), 1U);
+  const auto& progress = std::get<WaveProgress>(messages[0]);
+  EXPECT_EQ(progress.phase, WavePhase::kRecording);
+  EXPECT_EQ(progress.left_s, 2);
+  EXPECT_EQ(progress.utime, 1234) << "of the newest image, as its bytes say";
+  EXPECT_TRUE(Encode(progress).size() > 0);
   EXPECT_FALSE(node.finished());
   EXPECT_FALSE(std::filesystem::exists(path_)) << "it is not whole yet";
   node.Advance(7 * kSecond);
@@ -107,7 +119,9 @@ TEST_F(RecordingNodeTest, ACalibrationOfAnotherRigIsToldAtOnce) {
   for (int i = 0; i < 1000 && preview.WhyNot().empty(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  node.Advance(0);
+  const Messages messages = node.Advance(0);
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(std::get<WaveProgress>(messages[0]).phase, WavePhase::kFailed);
   EXPECT_TRUE(node.finished());
   EXPECT_THAT([&] { node.Close(); },
               Throws<InputError>(Property(&InputError::what, HasSubstr("RIG"))));
@@ -144,6 +158,40 @@ TEST_F(RecordingNodeTest, ARigThatCannotDoItIsRefusedAtOnce) {
   EXPECT_TRUE(node.finished());
   EXPECT_THAT(InputErrorOf([&] { node.Close(); }), HasSubstr("turned scanner"));
   EXPECT_TRUE(std::filesystem::is_empty(path_.parent_path()));
+}
+
+TEST(TellingNode, TellsOnceASecondAndThreeTimesWhatCameOfIt) {
+  WaveProgress recorded;
+  recorded.phase = WavePhase::kRecording;
+  recorded.utime = 7;
+  recorded.left_s = 1;
+  recorded.clocks = {{"rgb", Estimate{0.01, 0.001}, ""}};
+  TellingNode node(recorded);
+  int solving = 0;
+  for (Utime now = 0; now < 3 * kSecond; now += kSecond / 10) {
+    for (const Message& message : node.Advance(now)) {
+      const auto& progress = std::get<WaveProgress>(message);
+      EXPECT_EQ(progress.phase, WavePhase::kSolving);
+      EXPECT_EQ(progress.utime, 7);
+      EXPECT_EQ(progress.left_s, 0);
+      EXPECT_EQ(progress.clocks.size(), 1U) << "what was known while it was recorded";
+      ++solving;
+    }
+    node.Tell("solving ...");
+  }
+  EXPECT_EQ(solving, 3);
+  EXPECT_EQ(node.GetStatus().text, "solving ...");
+  EXPECT_FALSE(node.finished());
+  node.End(WavePhase::kFailed, "no offset", {});
+  int ended = 0;
+  for (Utime now = 3 * kSecond; !node.finished() && now < 9 * kSecond; now += kSecond / 10) {
+    for (const Message& message : node.Advance(now)) {
+      EXPECT_EQ(std::get<WaveProgress>(message).phase, WavePhase::kFailed);
+      EXPECT_EQ(std::get<WaveProgress>(message).text, "no offset");
+      ++ended;
+    }
+  }
+  EXPECT_EQ(ended, 3);
 }
 
 }  // namespace

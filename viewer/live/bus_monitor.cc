@@ -1,21 +1,15 @@
 #include "viewer/live/bus_monitor.h"
 
 #include <cmath>
-#include <cstring>
+#include <optional>
 
 #include "services/messages/check.h"
+#include "services/messages/header.h"
 
 namespace rgbdt::viewer {
 namespace {
 
-constexpr std::size_t kHeader = 24;  // fingerprint, utime, seq
 constexpr std::size_t kMaxArrivals = 10'000;
-
-std::int64_t Int64At(const std::uint8_t* data) {
-  std::uint64_t value = 0;
-  for (int i = 0; i < 8; ++i) value = value << 8 | data[i];
-  return static_cast<std::int64_t>(value);
-}
 
 // Several processes count on these channels, each for itself; their name follows.
 bool IsShared(const std::string& channel) {
@@ -25,7 +19,7 @@ bool IsShared(const std::string& channel) {
 // The sender's name, a string after the header (session_event_t: after `command`).
 std::string SenderOf(const std::string& channel, const std::uint8_t* data, std::size_t size) {
   if (!IsShared(channel)) return "";
-  const std::size_t at = kHeader + (channel == "SESSION_EVENT" ? 8 : 0);
+  const std::size_t at = kHeaderBytes + (channel == "SESSION_EVENT" ? 8 : 0);
   if (size < at + 4) return "";
   std::size_t length = 0;
   for (std::size_t i = 0; i < 4; ++i) length = length << 8 | data[at + i];
@@ -46,12 +40,12 @@ void BusMonitor::Add(const std::string& channel, const std::uint8_t* data, std::
          (c.newest.front().at_s < now_s - kWindow || c.newest.size() > kMaxArrivals)) {
     c.newest.pop_front();
   }
-  if (size < kHeader) return;
-  const Utime utime = Int64At(data + 8);
+  const std::optional<Header> header = HeaderOf(data, size);
+  if (!header) return;
   // The bytes are not checked: numbers that no message may have are passed over.
-  c.latency_s = utime > 0 ? ToSeconds(now_utime - utime) : 0;
-  c.has_latency = utime > 0 && std::abs(c.latency_s) < kSameClock;
-  const std::int64_t seq = Int64At(data + 16);
+  c.latency_s = header->utime > 0 ? ToSeconds(now_utime - header->utime) : 0;
+  c.has_latency = header->utime > 0 && std::abs(c.latency_s) < kSameClock;
+  const std::int64_t seq = header->seq;
   const std::string sender = SenderOf(channel, data, size);
   if (seq < 0 || seq > kMaxInteger ||
       (c.senders.size() >= kMaxChannels && c.senders.count(sender) == 0))

@@ -9,9 +9,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "calib/model/pose_sigma.h"
-#include "calib/present/frames/cloud_frame.h"
 #include "calib/present/frames/image_frame.h"
-#include "calib/present/frames/overlay_frame.h"
 #include "calib/present/layout/frame.h"
 #include "services/nodes/rig_check.h"
 #include "viewer/live/kept_view.h"
@@ -22,7 +20,6 @@ namespace {
 constexpr double kBetweenStates = 0.1;  // s
 constexpr std::size_t kMaxViews = 200;
 constexpr char kNoSolver[] = "No rgbdt-solver is running; start one to leave views out.";
-constexpr std::size_t kMaxSweepPoints = 2'000'000;  // laid on images
 
 // Without what the page does not show and is large.
 ViewDetection Slim(ViewDetection detection) {
@@ -43,10 +40,10 @@ SessionRequestKind RequestOf(const std::string& name) {
 }  // namespace
 
 std::vector<std::string> LiveNode::Subscriptions() const {
-  return {"RIG",           "CLOUD",           ".*_IMAGE",      "CORNER_SELECTION",
-          "DETECTION",     "CALIBRATION",     "REPORT",        "RGBDT_CLOUD",
-          "RGBDT_SWEEP",   "SESSION_COMMAND", "TARGET_STATUS", "STATUS",
-          "SESSION_EVENT", "LEFT_OUT_VIEWS",  "MOUNT_CHECK",   "POSE"};
+  return {"RIG",           "CLOUD",  ".*_IMAGE",      "CORNER_SELECTION", "DETECTION",
+          "CALIBRATION",   "REPORT", "RGBDT_CLOUD",   "RGBDT_SWEEP",      "SESSION_COMMAND",
+          "TARGET_STATUS", "STATUS", "SESSION_EVENT", "LEFT_OUT_VIEWS",   "MOUNT_CHECK",
+          "WAVE_PROGRESS", "POSE"};
 }
 
 Messages LiveNode::Handle(const Message& message) {
@@ -95,6 +92,8 @@ void LiveNode::Take(const Message& message) {
     OnTargetStatus(*target);
   } else if (const auto* mount = std::get_if<MountCheck>(&message)) {
     OnMountCheck(*mount);
+  } else if (const auto* wave = std::get_if<WaveProgress>(&message)) {
+    OnWave(*wave);
   } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
     OnLeftOut({left_out->views.begin(), left_out->views.end()});
   } else if (const auto* status = std::get_if<Status>(&message)) {
@@ -110,7 +109,7 @@ void LiveNode::OnRig(const RigText& text) {
     state_.calibration = {};  // who made it says it again
     state_.calibration_utime.clear();
   }
-  target_status_.clear();  // of cameras that this rig may not have
+  overlays_.Clear();  // of cameras that this rig may not have
   mounts_.Clear();
   outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
@@ -305,65 +304,21 @@ void LiveNode::CountSigma(const CameraCalibration& calibration) {
 }
 
 void LiveNode::OnFused(const RgbdtCloud& cloud) {
-  auto shared = std::make_shared<const RgbdtCloud>(cloud);
-  if (!cloud.whole_sweep) {
-    const auto number = static_cast<int>(cloud.seq % 1'000'000'000);
-    outbox_->Send({"chunk/" + std::to_string(cloud.seq), "cloud", false, true, kPointBytes,
-                   [shared, number] { return CloudFrame(*shared, number); }, true});
-    return;
-  }
-  if (cloud.sweep_utime != sweep_utime_) {
-    sweep_utime_ = cloud.sweep_utime;
-    sweep_part_ = 0;
-    sweep_points_.clear();
-    outbox_->Forget("sweep/");
-  }
-  const int part = sweep_part_++;
-  outbox_->Send({"sweep/" + std::to_string(part), "cloud", true, true, kPointBytes,
-                 [shared, part] { return CloudFrame(*shared, part); }, true});
-  if (sweep_points_.size() < kMaxSweepPoints) {
-    sweep_points_.insert(sweep_points_.end(), cloud.points.begin(), cloud.points.end());
-  }
-  if (!cloud.sweep_end || !rig_) return;
-  using Points = std::vector<Eigen::Vector3f>;
-  whole_sweep_ = std::make_shared<const Points>(std::exchange(sweep_points_, {}));
+  const bool whole = fused_.Add(cloud, outbox_);
+  if (!whole || !rig_) return;
   for (const CameraSpec& camera : rig_->cameras) PostLiveOverlay(camera.name);
 }
 
-// The newest target status' corners and the newest sweep, laid on a camera's image.
 void LiveNode::PostLiveOverlay(const std::string& camera) {
   if (!rig_) return;
-  const CameraSpec spec = state_.calibration.WithSolvedLens(rig_->Camera(camera));
-  const CameraCalibration* calibration = state_.calibration.Find(camera);
-  Overlay overlay;
-  overlay.camera = camera;
-  overlay.calibrated = calibration != nullptr;
-  const auto seen = target_status_.find(camera);
-  if (seen != target_status_.end()) {
-    const TargetStatus& status = seen->second.status;
-    overlay.utime = status.utime;
-    overlay.text = (status.seen ? "board seen, " : "") + status.text;
-    overlay.corners = status.corners;
-    overlay.outline = status.outline;
-  }
-  std::optional<Rigid3> camera_from_lidar;
-  if (calibration != nullptr) camera_from_lidar = calibration->camera_from_lidar;
-  Post post;
-  post.topic = "overlay/" + camera;
-  post.watch = "camera/" + camera;
-  post.heavy = true;
-  post.make = [overlay, spec, camera_from_lidar, points = whole_sweep_]() mutable {
-    if (camera_from_lidar && points) overlay.cloud = LayOnImage(spec, *camera_from_lidar, *points);
-    return OverlayFrame(overlay, true);
-  };
-  outbox_->Send(std::move(post));
+  outbox_->Send(
+      overlays_.OverlayPost(rig_->Camera(camera), state_.calibration, fused_.whole_sweep()));
 }
 
 void LiveNode::OnTargetStatus(const TargetStatus& status) {
   if (!status.camera.empty()) RequireCamera(status.camera);
-  if (target_status_.size() > 32) target_status_.clear();
-  target_status_[status.camera] = {status, now_s_};
-  PostTargetStatus();
+  overlays_.Add(status, now_s_);
+  outbox_->Send(overlays_.TargetStatusPost(rig_.get(), now_s_));
   if (rig_ && !status.camera.empty()) PostLiveOverlay(status.camera);
 }
 
@@ -373,30 +328,18 @@ void LiveNode::OnMountCheck(const MountCheck& check) {
   mounts_changed_ = true;
 }
 
-void LiveNode::PostTargetStatus() {
-  nlohmann::json sensors = nlohmann::json::array();
-  for (const auto& [camera, seen] : target_status_) {
-    std::string kind = "lidar";
-    if (!camera.empty() && rig_) {
-      kind = rig_->Camera(camera).kind == CameraKind::kColor ? "color" : "thermal";
-    }
-    sensors.push_back({{"sensor", camera.empty() ? "lidar" : camera},
-                       {"kind", kind},
-                       {"seen", seen.status.seen},
-                       {"text", seen.status.text},
-                       {"utime", seen.status.utime},
-                       {"age_s", now_s_ - seen.at_s}});
-  }
-  const nlohmann::json frame = {{"type", "target_status"}, {"sensors", sensors}};
-  outbox_->Send({"target_status", "", true, false, 0, [frame] { return JsonFrame(frame); }});
-}
-
 Messages LiveNode::Advance(Utime now) {
   nlohmann::json bus;  // asked for without the lock: the server has locks of its own
   if (describe_bus_ && bus_.IsDue(now)) bus = describe_bus_(ToSeconds(now));
   const std::lock_guard<std::mutex> lock(mutex_);
   now_s_ = ToSeconds(now);
   PostState();
+  wave_changed_ |= wave_.Update(now_s_);
+  if (wave_changed_ && wave_due_.IsDue(now)) {
+    wave_changed_ = false;
+    outbox_->Send(
+        {"wave", "", true, false, 0, [frame = wave_.Frame()] { return JsonFrame(frame); }});
+  }
   if (mounts_changed_ && mounts_due_.IsDue(now)) {
     mounts_changed_ = false;
     outbox_->Send(
@@ -407,6 +350,12 @@ Messages LiveNode::Advance(Utime now) {
     outbox_->Send({"bus", "", true, false, 0, [bus] { return JsonFrame(bus); }});
   }
   return std::exchange(messages_, {});
+}
+
+void LiveNode::OnWave(const WaveProgress& progress) {
+  for (const WavedClock& clock : progress.clocks) RequireCamera(clock.camera);
+  wave_.Add(progress, now_s_);
+  wave_changed_ = true;
 }
 
 void LiveNode::PostState() {

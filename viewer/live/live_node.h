@@ -16,19 +16,22 @@
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
 #include "services/runtime/periodic.h"
+#include "viewer/live/fused_posts.h"
 #include "viewer/live/kept_view.h"
+#include "viewer/live/live_overlays.h"
 #include "viewer/live/mount_history.h"
 #include "viewer/live/session_watch.h"
+#include "viewer/live/wave_history.h"
 #include "viewer/server/outbox.h"
 
 namespace rgbdt::viewer {
 
 /// All that is on the bus, as posts for browsers; what browsers ask for, as messages for the bus:
 /// RIG, `<CAMERA>_IMAGE`, CLOUD, CORNER_SELECTION, DETECTION, CALIBRATION, REPORT, RGBDT_CLOUD,
-/// RGBDT_SWEEP, POSE, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, MOUNT_CHECK, STATUS,
-/// LEFT_OUT_VIEWS -> SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of another
-/// rig is refused. Nothing large is encoded here: a post makes its bytes when a browser is about to
-/// get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
+/// RGBDT_SWEEP, POSE, SESSION_COMMAND, SESSION_EVENT, TARGET_STATUS, MOUNT_CHECK, WAVE_PROGRESS,
+/// STATUS, LEFT_OUT_VIEWS -> SESSION_REQUEST, CORNER_SELECTION, LEFT_OUT_VIEWS. A calibration of
+/// another rig is refused. Nothing large is encoded here: a post makes its bytes when a browser is
+/// about to get it. Of each view its images are kept as JPEG, and some points of its cloud. Advance
 /// publishes what browsers asked for, and posts the session's state where it has changed, at most
 /// ten times a second. All but OnBrowser belong to the bus' thread, that to the server's.
 class LiveNode : public Node {
@@ -73,13 +76,13 @@ class LiveNode : public Node {
   void OnFused(const RgbdtCloud& cloud);
   void OnTargetStatus(const TargetStatus& status);
   void OnMountCheck(const MountCheck& check);
+  void OnWave(const WaveProgress& progress);
   void OnLeftOut(const std::set<std::string>& views);
   void AskToLeaveOut(const std::set<std::string>& views);
   void TellMoved(const CameraCalibration& camera);
   void CompleteView();
   void ShowCapture();
   void PostLiveOverlay(const std::string& camera);
-  void PostTargetStatus();
   void CountSigma(const CameraCalibration& calibration);
   ViewState* StateOf(const std::string& view);
   std::vector<Post> PostsOf(const KeptView& view) const;
@@ -100,18 +103,14 @@ class LiveNode : public Node {
   SessionWatch watch_;
   ViewCollector collector_{ViewCollector::During::kForget};
   std::map<std::string, std::shared_ptr<KeptView>> views_;
-  struct Seen {
-    TargetStatus status;
-    double at_s;
-  };
-  std::map<std::string, Seen> target_status_;  // by camera; "": the LIDAR
+  LiveOverlays overlays_;
+  FusedPosts fused_;
+  WaveHistory wave_;
+  bool wave_changed_ = false;
+  Periodic wave_due_{kMicrosecondsPerSecond / 5};
   MountHistory mounts_;
   bool mounts_changed_ = false;
   Periodic mounts_due_{kMicrosecondsPerSecond};
-  Utime sweep_utime_ = 0;  // of the newest whole sweep
-  int sweep_part_ = 0;
-  std::vector<Eigen::Vector3f> sweep_points_;  // as far as it has come
-  std::shared_ptr<const std::vector<Eigen::Vector3f>> whole_sweep_;
   Messages messages_;
 };
 

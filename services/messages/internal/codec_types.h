@@ -25,6 +25,7 @@
 #include <lcmtypes/rgbdt/status_t.hpp>
 #include <lcmtypes/rgbdt/target_status_t.hpp>
 #include <lcmtypes/rgbdt/view_detection_t.hpp>
+#include <lcmtypes/rgbdt/wave_progress_t.hpp>
 
 #include "services/messages/message.h"
 
@@ -61,7 +62,7 @@ target_status_t ToWire(const TargetStatus& status);
 void Check(const target_status_t& wire);
 TargetStatus FromWire(const target_status_t& wire);
 
-// codec_observation.cc
+// codec_detection.cc
 view_detection_t ToWire(const ViewDetection& detection);
 void Check(const view_detection_t& wire);
 ViewDetection FromWire(const view_detection_t& wire);
@@ -85,6 +86,14 @@ MountCheck FromWire(const mount_check_t& wire);
 pose_t ToWire(const StampedPose& pose);
 void Check(const pose_t& wire);
 StampedPose FromWire(const pose_t& wire);
+
+// codec_wave.cc
+waved_clock_t ToWire(const WavedClock& clock);
+void Check(const waved_clock_t& wire);
+WavedClock FromWire(const waved_clock_t& wire);
+wave_progress_t ToWire(const WaveProgress& progress);
+void Check(const wave_progress_t& wire);
+WaveProgress FromWire(const wave_progress_t& wire);
 
 // codec_session.cc
 rig_t ToWire(const RigText& rig);

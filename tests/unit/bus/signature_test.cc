@@ -165,7 +165,7 @@ TEST(SignedChannels, SensorsAreNot) {
        {Message(SessionCommand()), Message(SessionRequest()), Message(RigText()),
         Message(CalibrationMessage()), Message(LeftOutViews()), Message(CornerSelection()),
         Message(ViewDetection()), Message(SessionEvent()), Message(MountCheck()),
-        Message(ReportText()), Message(Status())}) {
+        Message(WaveProgress()), Message(ReportText()), Message(Status())}) {
     EXPECT_TRUE(IsSignedChannel(ChannelOf(message))) << ChannelOf(message);
   }
   Image image;

@@ -246,6 +246,21 @@ TEST_F(Invalid, Session) {
   };
   EXPECT_THAT(target([](auto& w) { w.camera = "a b"; }), HasSubstr("camera is"));
   EXPECT_THAT(target([](auto& w) { w.centre_m[1] = NAN; }), HasSubstr("centre_m"));
+  const auto waving = [&](auto change) {
+    WaveProgress told = random_.Waving();
+    told.clocks = {{"rgb", Estimate{0.01, 0.001}, ""}};
+    return ErrorAfter<wave_progress_t>(told, change);
+  };
+  EXPECT_THAT(waving([](auto& w) { w.phase = 0; }), HasSubstr("phase is 0"));
+  EXPECT_THAT(waving([](auto& w) { w.phase = 6; }), HasSubstr("phase is 6"));
+  EXPECT_THAT(waving([](auto& w) { w.left_s = -1; }), HasSubstr("left_s is -1"));
+  EXPECT_THAT(waving([](auto& w) { w.clocks[0].camera = "../rgb"; }), HasSubstr("clocks.camera"));
+  EXPECT_THAT(waving([](auto& w) { w.clocks[0].time_offset_s = 61; }),
+              HasSubstr("clocks.time_offset_s is 61"));
+  EXPECT_THAT(waving([](auto& w) { w.clocks[0].time_offset_s = NAN; }),
+              HasSubstr("clocks.time_offset_s is nan"));
+  EXPECT_THAT(waving([](auto& w) { w.clocks[0].time_offset_sigma_s = -1; }),
+              HasSubstr("clocks.time_offset_sigma_s"));
   const auto watched = [&](auto change) {
     return ErrorAfter<mount_check_t>(random_.Watched(), change);
   };

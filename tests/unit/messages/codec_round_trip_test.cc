@@ -225,6 +225,26 @@ TEST_F(RoundTrip, RequestAndTargetStatus) {
   }
 }
 
+TEST_F(RoundTrip, WaveProgress) {
+  for (int round = 0; round < kRounds; ++round) {
+    const WaveProgress a = random_.Waving();
+    const WaveProgress b = ThroughTheWire(a);
+    EXPECT_EQ(a.utime, b.utime);
+    EXPECT_EQ(a.phase, b.phase);
+    EXPECT_EQ(a.left_s, b.left_s);
+    EXPECT_EQ(a.text, b.text);
+    ASSERT_EQ(a.clocks.size(), b.clocks.size());
+    for (std::size_t i = 0; i < a.clocks.size(); ++i) {
+      EXPECT_EQ(a.clocks[i].camera, b.clocks[i].camera);
+      EXPECT_EQ(a.clocks[i].text, b.clocks[i].text);
+      ASSERT_EQ(a.clocks[i].time_offset_s.has_value(), b.clocks[i].time_offset_s.has_value());
+      if (!a.clocks[i].time_offset_s) continue;
+      EXPECT_EQ(a.clocks[i].time_offset_s->value, b.clocks[i].time_offset_s->value);
+      EXPECT_EQ(a.clocks[i].time_offset_s->sigma, b.clocks[i].time_offset_s->sigma);
+    }
+  }
+}
+
 TEST_F(RoundTrip, MountCheck) {
   for (int round = 0; round < kRounds; ++round) {
     const MountCheck a = random_.Watched();

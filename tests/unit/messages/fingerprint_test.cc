@@ -56,6 +56,8 @@ const Fingerprint kFingerprints[] = {
     Of<target_pose_t>(0x9d6616d77af99f13U),
     Of<target_status_t>(0x283a34272dbe5254U),
     Of<view_detection_t>(0xc9e1319ede1e345eU),
+    Of<wave_progress_t>(0x81a9410fdf5c44fdU),
+    Of<waved_clock_t>(0x397e8c863aac8ed7U),
 };
 
 TEST(Fingerprint, IsWhatItWas) {

@@ -372,13 +372,28 @@ class RandomMessages {
     check.text = Text();
     return check;
   }
+  WaveProgress Waving() {
+    WaveProgress progress;
+    progress.seq = Seq();
+    progress.utime = Time();
+    progress.phase = static_cast<WavePhase>(Int(1, 5));
+    progress.left_s = 12.5;
+    progress.text = Text();
+    for (int i = 0; i < Int(0, 3); ++i) {
+      WavedClock& clock = progress.clocks.emplace_back();
+      clock.camera = Name();
+      if (Coin()) clock.time_offset_s = {-0.0125, 0.0005};
+      clock.text = Text();
+    }
+    return progress;
+  }
   ReportText Report() { return {Seq(), Time(), "{\"method\": \"paper\"}"}; }
 
   /// One of every alternative.
   Messages OneOfEach() {
-    return {Line(),       Encoder(), Picture(),    Chunk(),   Corners(), Seen(),
-            Calibrated(), Fused(),   Pose(),       RigFile(), Command(), Event(),
-            Request(),    LeftOut(), TargetSeen(), Watched(), Health(),  Report()};
+    return {Line(),       Encoder(), Picture(), Chunk(),   Corners(), Seen(),    Calibrated(),
+            Fused(),      Pose(),    RigFile(), Command(), Event(),   Request(), LeftOut(),
+            TargetSeen(), Watched(), Waving(),  Health(),  Report()};
   }
 
  private:

@@ -427,6 +427,22 @@ TEST_F(LiveNodeTest, TargetStatusSaysWhoSeesTheBoard) {
   EXPECT_EQ(sensors[1].at("text"), "3.1 m away");
 }
 
+TEST_F(LiveNodeTest, AWavedBoardIsPostedAndThatItWentWithoutAWord) {
+  WaveProgress wave;
+  wave.phase = WavePhase::kRecording;
+  wave.clocks = {{"rgb", Estimate{0.01, 0.001}, ""}};
+  node_.Advance(kMicrosecondsPerSecond);
+  EXPECT_EQ(posts_.Newest("wave"), nullptr);
+  node_.Handle(wave);
+  node_.Advance(2 * kMicrosecondsPerSecond);
+  EXPECT_EQ(posts_.Header("wave").at("phase"), "recording");
+  EXPECT_EQ(posts_.Header("wave").at("cameras")[0].at("camera"), "rgb");
+  node_.Advance(20 * kMicrosecondsPerSecond);
+  EXPECT_EQ(posts_.Header("wave").at("phase"), "failed");
+  wave.clocks[0].camera = "stranger";
+  EXPECT_THROW(node_.Handle(wave), InputError);
+}
+
 TEST_F(LiveNodeTest, MountsHaveALampAndAHistory) {
   MountCheck check;
   check.camera = "thermal";

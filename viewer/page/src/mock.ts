@@ -1,7 +1,7 @@
 // A bridge that is none: plausible frames of every type, for `npm run dev` without the C++ side.
 import type { Header, ToBridge } from "./protocol";
 import { decodeFrame } from "./protocol";
-import { busFrame, mountsFrame, targetStatusFrame } from "./mock/bus";
+import { busFrame, mountsFrame, targetStatusFrame, waveFrame } from "./mock/bus";
 import { chunk, wholeSweep } from "./mock/clouds";
 import { encodeFrame } from "./mock/encode";
 import { boardThumb, kMaxK, kMinK, overlayArrays, picture } from "./mock/pictures";
@@ -89,7 +89,7 @@ export function startMock(): void {
   post(session.frame());
   postClouds();
   void (async () => { for (let index = 0; index < session.viewCount; ++index) await postThumbs(index); })();
-  setInterval(() => { post(busFrame(seconds())); post(targetStatusFrame(seconds())); post(mountsFrame(seconds())); }, 1000);
+  setInterval(() => { post(busFrame(seconds())); post(targetStatusFrame(seconds())); post(mountsFrame(seconds())); post(waveFrame(seconds())); }, 1000);
   setInterval(() => kCameras.filter(({ name }) => watched.value.cameras.includes(name))
     .forEach((camera) => void postImage(camera, "", boardAt(seconds()))), 500);
 }

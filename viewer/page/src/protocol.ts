@@ -248,6 +248,21 @@ export interface MountsFrame {
   }[];
 }
 
+/// What `rgbdt sync live` is at, and how well it knows each camera's time offset so far.
+export interface WaveFrame {
+  type: "wave";
+  phase: "waiting" | "recording" | "solving" | "done" | "failed";
+  left_s: number; // of the recording
+  text: string; // what to do now, what was written, or why it failed
+  cameras: {
+    camera: string;
+    offset_ms: number | null; // null: not told
+    sigma_ms: number | null; // 1 sigma
+    text: string; // why nothing is told, or what is to be known beside it
+  }[];
+  steps: { seconds: number; cameras: { camera: string; sigma_ms: number }[] }[]; // since the wave began
+}
+
 export interface BusFrame {
   type: "bus";
   channels: {
@@ -280,7 +295,7 @@ export interface NoticeFrame {
 
 export type Header =
   | Hello | RigFrame | ImageFrame | OverlayFrame | ThumbFrame | CloudFrame | SessionFrame
-  | TargetStatusFrame | MountsFrame | BusFrame | NoticeFrame;
+  | TargetStatusFrame | MountsFrame | WaveFrame | BusFrame | NoticeFrame;
 
 export type ToBridge =
   | { type: "hello"; token: string } // first of all

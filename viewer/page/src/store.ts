@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import type {
   BusFrame, CloudFrame, Frame, Hello, ImageFrame, NoticeFrame, OverlayFrame, RigFrame,
-  MountsFrame, SessionFrame, TargetStatusFrame, ToBridge,
+  MountsFrame, SessionFrame, TargetStatusFrame, ToBridge, WaveFrame,
 } from "./protocol";
 import { floats, octets } from "./protocol";
 
@@ -25,6 +25,7 @@ export const rig = signal<RigFrame | null>(null);
 export const session = signal<SessionFrame | null>(null);
 export const targetStatus = signal<TargetStatusFrame | null>(null);
 export const mounts = signal<MountsFrame | null>(null);
+export const wave = signal<WaveFrame | null>(null);
 export const bus = signal<BusFrame | null>(null);
 export const notices = signal<(NoticeFrame & { at: number })[]>([]);
 export const images = signal<ReadonlyMap<string, ShownImage>>(new Map());
@@ -71,6 +72,7 @@ export function take(frame: Frame): void {
     case "session": session.value = header; break;
     case "target_status": targetStatus.value = header; break;
     case "mounts": mounts.value = header; break;
+    case "wave": wave.value = header; break;
     case "bus": bus.value = header; break;
     case "notice": notices.value = [...notices.value.slice(-4), { ...header, at: Date.now() }]; break;
     case "image": {

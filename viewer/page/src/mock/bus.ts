@@ -1,4 +1,4 @@
-import type { BusFrame, MountsFrame, TargetStatusFrame } from "../protocol";
+import type { BusFrame, MountsFrame, TargetStatusFrame, WaveFrame } from "../protocol";
 
 const wave = (base: number, seconds: number): number => base * (1 + 0.05 * Math.sin(seconds) + 0.03 * (Math.random() - 0.5));
 
@@ -45,6 +45,26 @@ export function mountsFrame(seconds: number): MountsFrame {
         text: "moved by 0.42 +- 0.05 deg, mostly a turn about the camera's y (yaw), and by 3 +- 4 mm: fasten the mount, then calibrate again or run `rgbdt refine`",
         where: [0, 0.1, 0.1, 0, 0.2, 0.3, 0.3, 0, 0, 0, 0, 0], steps: drift(0.42) },
     ],
+  };
+}
+
+/// Over and over: 20 s of waving, 5 s of solving, then the result.
+export function waveFrame(seconds: number): WaveFrame {
+  const at = seconds % 40, waved = Math.min(at, 20);
+  const sigma = (second: number): number => 4 / Math.sqrt(1 + second ** 2);
+  const steps = Array.from({ length: Math.floor(waved) }, (_, i) => ({
+    seconds: i + 1,
+    cameras: [{ camera: "rgb", sigma_ms: sigma(i) }, ...(i < 5 ? [] : [{ camera: "thermal", sigma_ms: 3 * sigma(i) }])],
+  }));
+  const told = (camera: string, offset: number, scale: number, from: number) => waved < from
+    ? { camera, offset_ms: null, sigma_ms: null, text: "seen in 4 images; 20 are needed" }
+    : { camera, offset_ms: offset, sigma_ms: scale * sigma(waved - 1), text: "" };
+  const phase = at < 20 ? "recording" : at < 25 ? "solving" : "done";
+  return {
+    type: "wave", phase, left_s: Math.ceil(20 - waved),
+    text: { recording: "wave the board towards the sensors and away, and tilt it; 120 CLOUD, 240 RGB_IMAGE", solving: "solving ...",
+      done: "wrote calibration.textproto into out/sync\nnext: rgbdt-monitor out/sync" }[phase],
+    cameras: [told("rgb", -12.34, 1, 1), told("thermal", 48.6, 3, 6)], steps,
   };
 }
 

@@ -1,6 +1,6 @@
 // The session: what is to be done now, what came of it, and the result's uncertainty.
 import type { SessionFrame } from "../protocol";
-import { mounts, rig, session, targetStatus } from "../store";
+import { mounts, rig, session, targetStatus, wave } from "../store";
 import { Answer } from "./session/answer";
 import { Controls } from "./session/controls";
 import { Coverage } from "./session/coverage";
@@ -12,6 +12,7 @@ import { TargetStatusLine } from "./session/target_status_line";
 import { SigmaCharts } from "./session/uncertainty";
 import { Progress } from "./session/verdict";
 import { ViewCards } from "./session/view_cards";
+import { Wave, waveComesFirst } from "./session/wave";
 import "./panels.css";
 
 function NextView({ next }: { next: NonNullable<SessionFrame["next_view"]> }) {
@@ -42,10 +43,14 @@ function isEmpty(state: SessionFrame): boolean {
 export function SessionPanel() {
   const state = session.value;
   if (!state) return <p class="empty">No session data yet.</p>;
+  const waved = wave.value && <Wave frame={wave.value} />;
+  const wavedFirst = wave.value !== null && waveComesFirst(wave.value, state.mode);
   return (
     <div class="panel session">
+      {wavedFirst && waved}
       <Answer session={state} />
       {!isEmpty(state) && <Now session={state} />}
+      {!wavedFirst && waved}
       {mounts.value && <Mounts frame={mounts.value} />}
       <section class="card" aria-label="Uncertainty">
         <h2>Uncertainty</h2>

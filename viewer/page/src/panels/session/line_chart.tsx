@@ -1,4 +1,4 @@
-// Lines over the number of views, on a logarithmic axis.
+// Lines over whole numbers (views, seconds), on a logarithmic axis.
 import { useEffect, useRef } from "preact/hooks";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
