@@ -12,9 +12,9 @@ int main(int argc, char** argv) {
       "LIDAR may move\n"
       "while it sweeps; the rig of a turned scanner stands for each sweep and "
       "goes on by a metre\n"
-      "or two in between. What the surroundings do not tell, as a corridor the "
-      "way along it,\n"
-      "the status names.\n"
+      "or two in between or, from the second sweep on, drives slowly "
+      "meanwhile. What the\n"
+      "surroundings do not tell, as a corridor the way along it, the status names.\n"
       "Example: rgbdt-odometry --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
   rgbdt::BusFlags bus;
   rgbdt::OdometryOptions options;

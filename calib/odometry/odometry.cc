@@ -13,6 +13,7 @@
 #include "calib/odometry/internal/plane_map.h"
 #include "calib/odometry/internal/registration.h"
 #include "calib/odometry/internal/stop_search.h"
+#include "calib/odometry/internal/way_registration.h"
 
 namespace rgbdt {
 namespace {
@@ -24,6 +25,7 @@ using odometry::Stop;
 using odometry::SweepMotion;
 using odometry::TimedSweep;
 using odometry::Untold;
+using odometry::WayRegistration;
 
 constexpr std::size_t kFewestPoints = 300;
 constexpr Utime kClockReset = 10 * kMicrosecondsPerSecond;
@@ -42,7 +44,14 @@ constexpr double kMuchWorse = 2;      // and so much worse is another place
 constexpr double kLeastBad = 0.02;    // [m]
 constexpr double kLeastShare = 0.75;  // of the share that finds a plane as a rule
 constexpr double kOtherTurn = 0.2;    // [rad/s]
-constexpr double kUsualOver = 10;     // sweeps
+// Of a turned scanner's rig that drives, see RegisterWay. One that half as much scatter puts
+// elsewhere is not known.
+constexpr double kScatter = 0.1;       // [m]
+constexpr double kMostApart = 0.1;     // [m]
+constexpr std::size_t kMostOpen = 10;  // parts that wait for the next sweep
+constexpr double kLeastNear = 0.85;    // of the share that lies on planes as a rule
+constexpr double kBetter = 1.1;        // so much more lies on planes where the rig drove
+constexpr double kUsualOver = 10;      // sweeps
 
 // Before anything is seen: 1 sigma.
 constexpr double kFirstSpeed = 15;  // [m/s]
@@ -59,7 +68,17 @@ Motion Unknown(const Rigid3& world_from_lidar) {
   return motion;
 }
 
-const char* KindOf(bool standing) { return standing ? "turned scanner" : "spinning LIDAR"; }
+const char* KindOf(bool turned) { return turned ? "turned scanner" : "spinning LIDAR"; }
+
+// Of two ways, over their first `settled` parts [m].
+double MostApart(const WayRegistration& a, const WayRegistration& b, std::size_t settled) {
+  double most = 0;
+  for (std::size_t k = 0; k < settled; ++k) {
+    const Rigid3 apart = a.parts[k].world_from_lidar.Inverse() * b.parts[k].world_from_lidar;
+    most = std::max(most, apart.translation.norm());
+  }
+  return most;
+}
 
 double ShareOf(std::size_t matched, std::size_t selected) {
   return static_cast<double>(matched) / static_cast<double>(std::max<std::size_t>(1, selected));
@@ -94,17 +113,20 @@ struct Odometry::Impl {
 
   OdometryOptions options;
   PlaneMap map;
-  bool standing = false;            // the sweeps are a turned scanner's
+  bool turned = false;              // the sweeps are a turned scanner's
   std::optional<TimedSweep> first;  // while the second has not come
   bool begun = false;               // the map holds something, or `first` does
   bool anew = false;                // there was a map before
   Utime sweep_utime = 0;            // of the newest sweep
   Utime middle = 0;                 // of `motion`
-  Motion motion;
+  Motion motion;                    // after a turned scanner's sweep: at its end
+  Utime last = 0;                   // point of the newest sweep
+  std::vector<TimedSweep> open;     // parts of it that the next one is to tell of
   int lost = 0;
   int refused = 0;              // in a row, as of another kind of LIDAR
   double usual_residual_m = 0;  // of the sweeps before; 0: not known
   double usual_share = 0;       // of their points, on planes seen before
+  double usual_near = 0;        // and so near that they lie on them
   Eigen::Vector3d forgotten_at{0, 0, 0};
 
   OdometryResult Add(const Cloud& cloud);
@@ -114,24 +136,35 @@ struct Odometry::Impl {
   void Follow(const TimedSweep& sweep, double seconds, OdometryResult* result);
   Registration Second(const TimedSweep& sweep);
   Registration Next(const TimedSweep& sweep, const Motion& before, double seconds) const;
-  std::string WhyNot(const TimedSweep& sweep, const Registration& found, const Motion& before,
+  std::string WhyNot(std::size_t selected, const Registration& found, const Motion& before,
                      double seconds) const;
+  void Place(const Registration& found, std::size_t selected, OdometryResult* result);
+  std::string WhyNotTurned(std::size_t selected, const Registration& found,
+                           const Motion& before) const;
+  void FollowTurned(const Cloud& cloud, const TimedSweep& sweep, OdometryResult* result);
+  bool IsWay(const WayRegistration& way, std::size_t settled) const;
+  bool Drive(const Cloud& cloud, const TimedSweep& sweep, double stood, OdometryResult* result);
+  void Forget(const Eigen::Vector3d& place);
   void Grow(const TimedSweep& sweep);
   void Report(const TimedSweep& sweep, OdometryResult* result) const;
+  static void Tell(const Registration& found, OdometryResult* result);
+  void ReportWay(const TimedSweep& sweep, const std::vector<TimedSweep>& parts,
+                 const WayRegistration& way, std::size_t settled, OdometryResult* result) const;
 };
 
 // The map begins with this sweep, as far as its own motion is known: the second tells it.
 void Odometry::Impl::Begin(const TimedSweep& sweep) {
   map.Clear();
-  middle = sweep.middle;
-  standing = sweep.standing;
+  middle = sweep.turned ? sweep.last : sweep.middle;
+  turned = sweep.turned;
   motion = Unknown(motion.world_from_lidar);
   forgotten_at = motion.world_from_lidar.translation;
   lost = refused = 0;
-  usual_residual_m = usual_share = 0;
+  usual_residual_m = usual_share = usual_near = 0;
   begun = anew = true;
   first.reset();
-  if (!standing) {
+  open.clear();
+  if (!turned) {
     first = sweep;
     return;
   }
@@ -170,7 +203,7 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
                                   double seconds) const {
   Registration best =
       odometry::Register(sweep, map, before, before, Untold::kFromTheBeginning, options);
-  bool fits = WhyNot(sweep, best, before, seconds).empty();
+  bool fits = WhyNot(sweep.selected.size(), best, before, seconds).empty();
   if (fits && best.residual_m <= kWorse * usual_residual_m) return best;
   if (usual_residual_m == 0) return best;
   for (int start = 0; start < 7; ++start) {
@@ -180,7 +213,7 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
     other.velocity += turn;
     other.world_from_lidar = before.world_from_lidar * Exp(Vector6d(seconds * turn));
     Registration found = odometry::Register(sweep, map, before, other, Untold::kAtTheEnd, options);
-    if (!WhyNot(sweep, found, before, seconds).empty()) continue;
+    if (!WhyNot(sweep.selected.size(), found, before, seconds).empty()) continue;
     // Of seven places one may fit somehow that is none.
     if (!fits && found.residual_m > kWorse * usual_residual_m) continue;
     if (fits && found.near <= best.near) continue;
@@ -190,7 +223,7 @@ Registration Odometry::Impl::Next(const TimedSweep& sweep, const Motion& before,
   return best;
 }
 
-std::string Odometry::Impl::WhyNot(const TimedSweep& sweep, const Registration& found,
+std::string Odometry::Impl::WhyNot(std::size_t selected, const Registration& found,
                                    const Motion& before, double seconds) const {
   if (found.matched < kFewestMatched) {
     return Text("%.0f points of the sweep lie on planes seen before; expected %.0f or more",
@@ -206,7 +239,7 @@ std::string Odometry::Impl::WhyNot(const TimedSweep& sweep, const Registration& 
     return Text("the sweep's points lie %.0f mm off the map (median) where %.0f mm is usual",
                 1000 * found.residual_m, 1000 * usual_residual_m);
   }
-  const double share = ShareOf(found.matched, sweep.selected.size());
+  const double share = ShareOf(found.matched, selected);
   if (worse > kWorse && share < kLeastShare * usual_share) {
     return Text(
         "%.0f%% of the sweep's points lie on planes seen before, and badly; %.0f%% is usual",
@@ -226,7 +259,12 @@ std::string Odometry::Impl::WhyNot(const TimedSweep& sweep, const Registration& 
 
 void Odometry::Impl::Grow(const TimedSweep& sweep) {
   const SweepMotion moved(motion.world_from_lidar, motion.velocity, sweep.seconds);
-  const Eigen::Vector3d& place = motion.world_from_lidar.translation;
+  Forget(motion.world_from_lidar.translation);
+  map.Add(odometry::InWorld(sweep, moved), motion.world_from_lidar.translation);
+}
+
+// What is far from this place, and what there is no room for.
+void Odometry::Impl::Forget(const Eigen::Vector3d& place) {
   if ((place - forgotten_at).norm() > kForgetEvery) {
     map.Forget(place, options.keep_m);
     forgotten_at = place;
@@ -236,17 +274,48 @@ void Odometry::Impl::Grow(const TimedSweep& sweep) {
     keep = std::max(kLeastKept, keep / 2);
     map.Forget(place, keep);
   }
-  map.Add(odometry::InWorld(sweep, moved), place);
+}
+
+void Odometry::Impl::Tell(const Registration& found, OdometryResult* result) {
+  result->matched = found.matched;
+  result->residual_m = found.residual_m;
+  result->iterations = found.iterations;
+}
+
+void Odometry::Impl::ReportWay(const TimedSweep& sweep, const std::vector<TimedSweep>& parts,
+                               const WayRegistration& way, std::size_t settled,
+                               OdometryResult* result) const {
+  const auto at = [&](std::size_t part, Utime utime) {
+    return odometry::Predict(way.parts[part], ToSeconds(utime - parts[part].middle), options);
+  };
+  const auto part_of = [&](Utime utime) {
+    std::size_t k = 0;
+    while (k + 1 < settled && parts[k + 1].first <= utime) ++k;
+    return k;
+  };
+  const std::size_t middle_part = part_of(sweep.middle);
+  result->middle_utime = sweep.middle;
+  result->world_from_middle = at(middle_part, sweep.middle).world_from_lidar;
+  result->velocity = way.parts[middle_part].velocity;
+  for (std::size_t k = 0; k < settled; ++k) {
+    result->way.push_back({parts[k].first, at(k, parts[k].first).world_from_lidar});
+  }
+  result->utime = parts[settled - 1].last;
+  const Motion at_end = at(settled - 1, result->utime);
+  result->world_from_lidar = at_end.world_from_lidar;
+  result->covariance = at_end.covariance.topLeftCorner<6, 6>();
+  result->way.push_back({result->utime, at_end.world_from_lidar});
+  result->first_utime = result->way.front().utime;
 }
 
 void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) const {
   result->first_utime = sweep.first;
   result->middle_utime = sweep.middle;
   result->utime = sweep.last;
-  result->standing = sweep.standing;
+  result->standing = sweep.turned;
   result->world_from_middle = motion.world_from_lidar;
   result->velocity = motion.velocity;
-  const double onward = sweep.standing ? 0 : ToSeconds(sweep.last - sweep.middle);
+  const double onward = sweep.turned ? 0 : ToSeconds(sweep.last - sweep.middle);
   const Motion at_end = odometry::Predict(motion, onward, options);
   result->world_from_lidar = at_end.world_from_lidar;
   result->covariance = at_end.covariance.topLeftCorner<6, 6>();
@@ -260,23 +329,23 @@ double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) {
     throw InputError("sweep " + std::to_string(cloud.sweep_utime) +
                      " is not newer than the one before, " + std::to_string(sweep_utime));
   }
-  if (sweep.standing != standing) {
+  if (sweep.turned != turned) {
     // A part of a turned scanner's first sweep looks like a spinning LIDAR's: begun anew then.
-    if (sweep.standing && (first || ToSeconds(sweep.first - middle) > kMostGap)) return 0;
+    if (sweep.turned && (first || ToSeconds(sweep.first - middle) > kMostGap)) return 0;
     if (++refused > kMostLost) return 0;
     throw InputError("sweep " + std::to_string(cloud.sweep_utime) + " is a " +
-                     KindOf(sweep.standing) + "'s by how long it lasts, the ones before are a " +
-                     KindOf(standing) + "'s; expected those of one LIDAR");
+                     KindOf(sweep.turned) + "'s by how long it lasts, the ones before are a " +
+                     KindOf(turned) + "'s; expected those of one LIDAR");
   }
   refused = 0;
-  return standing || seconds <= kMostGap ? seconds : 0;
+  return turned || seconds <= kMostGap ? seconds : 0;
 }
 
 // A sweep that tells nothing: on as before.
 void Odometry::Impl::Lose(const TimedSweep& sweep, double seconds) {
-  motion =
-      standing ? odometry::AfterStop(motion, lost) : odometry::Predict(motion, seconds, options);
+  motion = turned ? odometry::AfterStop(motion, lost) : odometry::Predict(motion, seconds, options);
   middle = sweep.middle;
+  open.clear();
   if (++lost >= kMostLost) begun = false;
 }
 
@@ -295,58 +364,146 @@ OdometryResult Odometry::Impl::Add(const Cloud& cloud) {
     Report(sweep, &result);
   } else if (seconds == 0) {
     result.restarted = anew;
-    result.converged = sweep.standing;  // its place is the map's
-    if (!sweep.standing) {
+    result.converged = sweep.turned;  // its place is the map's
+    if (!sweep.turned) {
       result.reason = "the map begins with this sweep; the next one tells how it moved";
     }
     Begin(sweep);
     Report(sweep, &result);
+  } else if (turned) {
+    FollowTurned(cloud, sweep, &result);
   } else {
     Follow(sweep, seconds, &result);
   }
+  last = sweep.last;
   return result;
 }
 
+// It was found where `found` says.
+void Odometry::Impl::Place(const Registration& found, std::size_t selected,
+                           OdometryResult* result) {
+  lost = 0;
+  const double weight = usual_residual_m > 0 ? 1 / kUsualOver : 1;
+  usual_residual_m += weight * (found.residual_m - usual_residual_m);
+  usual_share += weight * (ShareOf(found.matched, selected) - usual_share);
+  usual_near += weight * (ShareOf(found.near, selected) - usual_near);
+  first.reset();
+  motion = found.motion;
+  result->converged = true;
+  result->degenerate = odometry::DegenerateWords(found.degenerate);
+}
+
 void Odometry::Impl::Follow(const TimedSweep& sweep, double seconds, OdometryResult* result) {
-  const Motion before =
-      standing ? odometry::AfterStop(motion, lost) : odometry::Predict(motion, seconds, options);
-  const Stop stop = standing ? odometry::FindStop(sweep, map, before, lost, options) : Stop();
-  const Registration found = standing ? stop.best
-                             : first  ? Second(sweep)
-                                      : Next(sweep, before, seconds);
-  result->matched = found.matched;
-  result->residual_m = found.residual_m;
-  result->iterations = found.iterations;
-  result->reason = WhyNot(sweep, found, first ? found.motion : before, seconds);
-  if (result->reason.empty() && stop.other) {
-    const Rigid3 apart = found.motion.world_from_lidar.Inverse() * *stop.other;
-    result->reason = Text("the sweep fits two places about as well, %.1f m and %.0f degrees apart",
-                          apart.translation.norm(), RotationDistance(apart, {}) * 180 / M_PI);
-  }
-  result->converged = result->reason.empty();
-  if (!result->converged && standing) {
-    result->reason +=
-        "; a turned scanner's rig is to stand while it sweeps, and to go on by a "
-        "metre or two";
-  }
-  if (result->converged) {
-    lost = 0;
-    const double weight = usual_residual_m > 0 ? 1 / kUsualOver : 1;
-    usual_residual_m += weight * (found.residual_m - usual_residual_m);
-    usual_share += weight * (ShareOf(found.matched, sweep.selected.size()) - usual_share);
-    first.reset();
-    motion = found.motion;
+  const Motion before = odometry::Predict(motion, seconds, options);
+  const Registration found = first ? Second(sweep) : Next(sweep, before, seconds);
+  Tell(found, result);
+  result->reason = WhyNot(sweep.selected.size(), found, first ? found.motion : before, seconds);
+  if (result->reason.empty()) {
+    Place(found, sweep.selected.size(), result);
     middle = sweep.middle;
-    result->degenerate = odometry::DegenerateWords(found.degenerate);
     Grow(sweep);
   } else if (first) {  // neither is better than the other: the newer one leads on
     Begin(sweep);
-    Report(sweep, result);
-    return;
   } else {
     Lose(sweep, seconds);
   }
   Report(sweep, result);
+}
+
+// A turned scanner's sweep covers more at a time and meets the map less often: of wrong places the
+// points that find none are not missed, and the first sweep tells nothing of what is usual.
+std::string Odometry::Impl::WhyNotTurned(std::size_t selected, const Registration& found,
+                                         const Motion& before) const {
+  std::string why = WhyNot(selected, found, before, 1);
+  if (!why.empty()) return why;
+  const double most = std::max(kLeastBad, 2 * options.range_sigma_m);
+  if (usual_near == 0 && found.residual_m > most) {
+    return Text("the sweep's points lie %.0f mm off the map (median); expected %.0f mm or less",
+                1000 * found.residual_m, 1000 * most);
+  }
+  if (ShareOf(found.near, selected) < kLeastNear * usual_near) {
+    return Text("%.0f%% of the sweep's points lie on the map's planes; %.0f%% is usual",
+                100 * ShareOf(found.near, selected), 100 * usual_near);
+  }
+  return why;
+}
+
+// A rig that stood for the sweep, or one that drove on meanwhile.
+void Odometry::Impl::FollowTurned(const Cloud& cloud, const TimedSweep& sweep,
+                                  OdometryResult* result) {
+  const Motion before = odometry::AfterStop(motion, lost);
+  const Stop stop = odometry::FindStop(sweep, map, before, lost, options);
+  const std::size_t selected = sweep.selected.size();
+  result->reason = WhyNotTurned(selected, stop.best, before);
+  if (result->reason.empty() && stop.other) {
+    const Rigid3 apart = stop.best.motion.world_from_lidar.Inverse() * *stop.other;
+    result->reason = Text("the sweep fits two places about as well, %.1f m and %.0f degrees apart",
+                          apart.translation.norm(), RotationDistance(apart, {}) * 180 / M_PI);
+  }
+  const double stood = result->reason.empty() ? ShareOf(stop.best.near, selected) : 0;
+  if (Drive(cloud, sweep, stood, result)) return;
+  Tell(stop.best, result);
+  if (result->reason.empty()) {
+    Place(stop.best, selected, result);
+    middle = sweep.last;
+    open.clear();
+    Grow(sweep);
+  } else {
+    result->reason +=
+        "; a turned scanner's rig is to stand while it sweeps and to go on by a metre or two, or, "
+        "from such a sweep on, to drive slowly, sweep after sweep";
+    Lose(sweep, ToSeconds(sweep.middle - middle));
+  }
+  Report(sweep, result);
+}
+
+// Whether all of it lies on the map, as points that find no plane are not missed by least squares;
+// and the first `settled` parts are known.
+bool Odometry::Impl::IsWay(const WayRegistration& way, std::size_t settled) const {
+  constexpr double kMostSigma = 0.1;    // [m]
+  constexpr double kLeastShare = 0.75;  // of what lies near planes as a rule, everywhere
+  if (!WhyNotTurned(way.selected, way.whole, way.whole.motion).empty()) return false;
+  const double usual = usual_near > 0 ? usual_near : ShareOf(way.whole.near, way.selected);
+  if (way.worst_near < kLeastShare * usual) return false;
+  return std::all_of(way.parts.begin(), way.parts.begin() + static_cast<std::ptrdiff_t>(settled),
+                     [](const Motion& part) {
+                       return part.covariance.diagonal().segment<3>(3).maxCoeff() <=
+                              kMostSigma * kMostSigma;
+                     });
+}
+
+// Whether it drove on from where it was at the end of the sweep before. `stood`: the share of the
+// points that lie near a plane where it stands. The last parts hardly know where they are, as what
+// tells of it is seen only when the scanner has turned on: they wait for the next sweep.
+bool Odometry::Impl::Drive(const Cloud& cloud, const TimedSweep& sweep, double stood,
+                           OdometryResult* result) {
+  if (lost > 0 || ToSeconds(sweep.first - last) > kMostGap) return false;
+  std::vector<TimedSweep> parts = open;
+  const std::vector<TimedSweep> own = odometry::PartsOf(cloud, options);
+  parts.insert(parts.end(), own.begin(), own.end());
+  const std::size_t settled = parts.size() - std::min(kMostOpen, own.size() / 3);
+  const auto along = [&](double scatter_m) {
+    return odometry::RegisterWay(parts, map, odometry::SetOff(motion), middle, scatter_m, options);
+  };
+  const WayRegistration way = along(kScatter), other = along(kScatter / 2);
+  if (!IsWay(way, settled) || MostApart(way, other, settled) > kMostApart) return false;
+  if (ShareOf(way.whole.near, way.selected) < kBetter * stood) return false;
+  Tell(way.whole, result);
+  result->reason.clear();
+  result->selected = way.selected;
+  Place(way.whole, way.selected, result);
+  for (std::size_t k = 0; k < settled; ++k) {
+    const Motion& part = way.parts[k];
+    const SweepMotion moved(part.world_from_lidar, part.velocity, parts[k].seconds);
+    Forget(part.world_from_lidar.translation);
+    map.Add(odometry::InWorld(parts[k], moved), part.world_from_lidar.translation);
+  }
+  ReportWay(sweep, parts, way, settled, result);
+  motion = way.parts[settled - 1];
+  motion.covariance = way.so_far[settled - 1];
+  middle = parts[settled - 1].middle;
+  open.assign(parts.begin() + static_cast<std::ptrdiff_t>(settled), parts.end());
+  return true;
 }
 
 Odometry::Odometry(const OdometryOptions& options) : impl_(std::make_unique<Impl>(options)) {

@@ -25,6 +25,11 @@ struct OdometryOptions {
   void Check() const;
 };
 
+struct PoseAtTime {
+  Utime utime = 0;
+  Rigid3 world_from_lidar;
+};
+
 /// What a sweep tells of where the LIDAR is.
 struct OdometryResult {
   Utime utime = 0;           ///< of the pose: when the sweep's last point was taken
@@ -39,9 +44,12 @@ struct OdometryResult {
   Matrix6d covariance = Matrix6d::Zero();
   bool converged = false;  ///< false: the pose is as the motion before goes on, see `reason`
   std::string reason;      ///< why not; of a restart, too
-  /// The sweep is a turned scanner's, which the rig stands for: from first_utime to utime at
+  /// The sweep is a turned scanner's, for which the rig stood: from first_utime to utime at
   /// world_from_lidar.
   bool standing = false;
+  /// Where it was during a turned scanner's sweep for which it did not stand, from first_utime to
+  /// utime, ten a second; straight on in between. Empty otherwise.
+  std::vector<PoseAtTime> way;
   Utime first_utime = 0;   ///< of the sweep's first point
   bool restarted = false;  ///< the map was begun anew: the way since the last pose is a guess
   /// Directions that the sweep does not tell, in words; there the pose goes on as before.
@@ -54,16 +62,18 @@ struct OdometryResult {
 };
 
 /// Where a LIDAR is, from its sweeps alone: each is registered, points to planes, to a map of the
-/// sweeps before. A spinning LIDAR moves while it sweeps; the rig of a turned scanner, whose sweeps
-/// last longer than kMostSweep, stands, and goes on by up to some metres in between. Its README has
-/// the method and its sources. The same sweeps in the same order give the same poses, bit for bit.
-/// One core.
+/// sweeps before. A spinning LIDAR moves while it sweeps. The rig of a turned scanner, whose sweeps
+/// last longer than kMostSweep, stands for the first; then it either stands for each and goes on by
+/// up to some metres in between, or drives on while it sweeps, one sweep behind the other. Its
+/// README has the method and its sources. The same sweeps in the same order give the same poses,
+/// bit for bit. One core.
 class Odometry {
  public:
   static constexpr double kMostSweep = 0.6;  ///< [s] a longer sweep is a turned scanner's
   static constexpr double kMostStop = 120;   ///< [s] and a longer one nobody's
   static constexpr double kMostGap = 1.0;    ///< [s] between a spinning LIDAR's sweeps; after more:
-                                             ///< begun anew
+                                             ///< begun anew. Between a turned scanner's, while
+                                             ///< the rig drives
   static constexpr int kMostLost = 5;        ///< sweeps in a row that do not fit; then: begun anew
 
   explicit Odometry(const OdometryOptions& options = {});

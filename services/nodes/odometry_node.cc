@@ -43,6 +43,15 @@ Messages OdometryNode::Handle(const Message& message) {
       Warn("not told by what stands about: " + Joined(newest_.degenerate));
   }
   Messages poses;
+  if (!newest_.way.empty()) {
+    for (const PoseAtTime& pose : newest_.way) {
+      if (pose.utime <= told_until_) continue;  // its end was the sweep's before
+      poses.emplace_back(StampedPose{poses_++, pose.utime, kSource, pose.world_from_lidar});
+    }
+    told_until_ = newest_.utime;
+    return poses;
+  }
+  told_until_ = newest_.utime;
   if (newest_.standing) {
     poses.emplace_back(
         StampedPose{poses_++, newest_.first_utime, kSource, newest_.world_from_lidar});

@@ -111,6 +111,31 @@ TEST(OdometryNode, SaysWhereATurnedScannersRigStoodForASweep) {
   EXPECT_THAT(node.GetStatus().text, HasSubstr("stop 2"));
 }
 
+// The sweeps' ways end where the next one's begin: no pose is told twice.
+TEST(OdometryNode, SaysTheWayThatATurnedScannersRigDroveDuringASweep) {
+  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
+  scanner.motor_speed_rad_s *= 8;
+  scanner.beams /= 2;
+  scanner.angle_step_rad *= 2;
+  study::TurningDrive drive(5, scanner, 0.4);
+  OdometryNode node;
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 3; ++i) {
+    for (const CloudChunk& chunk : SplitSweep(drive.Sweep(i))) {
+      for (const auto& pose : Only<StampedPose>(node.Handle(chunk))) poses.push_back(pose);
+    }
+  }
+  ASSERT_GT(poses.size(), 50U);
+  const Rigid3 start = drive.At(poses[0].utime);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    EXPECT_GT(poses[i].utime, poses[i - 1].utime);
+    EXPECT_LT((start * poses[i].map_from_lidar).translation.x() -
+                  drive.At(poses[i].utime).translation.x(),
+              0.03);
+  }
+  EXPECT_THAT(node.GetStatus().text, HasSubstr("0.4 m/s"));
+}
+
 TEST(OdometryNode, SaysWhatIsNotTold) {
   OdometryNode node;
   std::vector<std::string> warnings;

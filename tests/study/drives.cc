@@ -202,6 +202,20 @@ Way RoomWay(std::uint64_t seed, double speed) {
   };
 }
 
+Way SlowRoomWay(std::uint64_t seed, double speed_mps) {
+  const double a = 2 * M_PI * static_cast<double>(seed % 97) / 97;
+  return [a, speed_mps](double seconds) {
+    constexpr double kRadius = 0.8;
+    const double way = speed_mps * seconds;
+    const double round = a + way / kRadius;
+    Rigid3 pose = Turned(round + 0.3 * std::sin(0.9 * way + a), 0.02 * std::sin(2.3 * way),
+                         0.015 * std::sin(1.7 * way));
+    pose.translation = {kRadius * std::cos(round), kRadius * std::sin(round),
+                        0.02 * std::sin(2.1 * way)};
+    return pose;
+  };
+}
+
 Cloud MovingSweep(const simulate::World& world, const simulate::SpinningOptions& lidar,
                   std::uint64_t seed, Utime utime,
                   const std::function<Rigid3(Utime)>& world_from_lidar) {
@@ -334,6 +348,43 @@ Cloud Stops::Sweep(int number) const {
   scene->objects = room.parts();
   const simulate::World world(std::move(scene), std::nullopt, options_);
   return scanner_.Sweep(world, kStart + FromSeconds(number * (lasts + kBetween)), 0);
+}
+
+TurningDrive::TurningDrive(std::uint64_t seed, const simulate::ScannerOptions& scanner,
+                           double speed_mps)
+    : scanner_(scanner, seed) {
+  options_.seed = seed;
+  options_.scanner = scanner;
+  options_.natural.on = true;
+  options_.natural.people = 0;
+  options_.scene = simulate::Scene::kIndoor;
+  auto scene = std::make_shared<simulate::SceneModel>();
+  scene->objects = simulate::MakeRoom(options_, {294, 0}, &scene->lights).parts();
+  world_ = std::make_shared<const simulate::World>(std::move(scene), std::nullopt, options_);
+  // Sets off softly, within two seconds.
+  const double stands = ToSeconds(BeginOf(1) - kStart);
+  way_ = [way = SlowRoomWay(seed, speed_mps), stands](double seconds) {
+    constexpr double kSoft = 2;
+    const double driven = std::max(0.0, seconds - stands);
+    return way(driven < kSoft ? driven * driven / (2 * kSoft) : driven - kSoft / 2);
+  };
+}
+
+Utime TurningDrive::BeginOf(int number) const {
+  constexpr Utime kBetween = 100'000;  // while the motor turns round
+  return kStart + number * (scanner_.sweep_lines() * scanner_.line_period() + kBetween);
+}
+
+Rigid3 TurningDrive::At(Utime utime) const { return way_(ToSeconds(utime - kStart)); }
+
+Cloud TurningDrive::StandingSweep(int number) {
+  const Rigid3 pose = At(BeginOf(number));
+  return scanner_.Sweep(*world_, BeginOf(number), 0, [&](Utime) { return pose; });
+}
+
+Cloud TurningDrive::Sweep(int number) {
+  scanner_.SweepBack(number % 2 == 1);
+  return scanner_.Sweep(*world_, BeginOf(number), 0, [this](Utime utime) { return At(utime); });
 }
 
 }  // namespace rgbdt::study

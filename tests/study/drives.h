@@ -34,6 +34,9 @@ Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double
 /// Round the free middle of the room, looking about.
 Way RoomWay(std::uint64_t seed, double speed_mps);
 
+/// Likewise, slowly: all of it goes with the way.
+Way SlowRoomWay(std::uint64_t seed, double speed_mps);
+
 /// Along x for `length_m`, half a turn on the spot, and back beside where it came from. Sets off
 /// and stops softly each way; stands for good at its end, after ThereAndBackSeconds.
 Way ThereAndBackWay(double length_m, double speed_mps);
@@ -85,6 +88,27 @@ class Stops {
   simulate::Options options_;
   simulate::Scanner scanner_;
   Way way_;  // by metres
+};
+
+/// Sweeps of a turned scanner, one behind the other, on a rig that stands for the first and then
+/// drives through a furnished room while it sweeps. Every other sweep turns back.
+class TurningDrive {
+ public:
+  TurningDrive(std::uint64_t seed, const simulate::ScannerOptions& scanner, double speed_mps);
+
+  Cloud Sweep(int number);
+  /// As if it stood where it is when the sweep begins.
+  Cloud StandingSweep(int number);
+  /// world_from_lidar at a time.
+  Rigid3 At(Utime utime) const;
+
+ private:
+  Utime BeginOf(int number) const;
+
+  simulate::Options options_;
+  simulate::Scanner scanner_;
+  std::shared_ptr<const simulate::World> world_;
+  Way way_;
 };
 
 }  // namespace rgbdt::study

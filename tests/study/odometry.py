@@ -18,8 +18,10 @@ import trials  # noqa: E402
 from trials import column, figure, mean, median, pick  # noqa: E402
 
 DRIVES = {"street-32": "street, 32 rings", "street-16": "street, 16 rings", "room-32": "room, 32",
-          "stops-0": "room, turned scanner"}
-NAMES = {"street-32": "odometry", "stops-0": "odometry_turned"}  # of figures
+          "stops-0": "room, turned scanner",
+          "turning-0": "room, turned scanner that drives"}
+NAMES = {"street-32": "odometry", "stops-0": "odometry_turned",
+         "turning-0": "odometry_driving"}  # of figures
 NOT_TOLD = {"corridor-32": "corridor", "plain-32": "plain"}
 WALLS = {"true_mm": "true poses", "open_mm": "odometry alone", "closed_mm": "loops closed"}
 PERIOD = 0.1  # [s] of a sweep
@@ -31,6 +33,8 @@ TARGETS = {
     "odometry_lost": ("<=", 0),
     "odometry_turned_percent": ("<=", 0.5),
     "odometry_turned_lost": ("<=", 0),
+    "odometry_driving_percent": ("<=", 0.5),
+    "odometry_driving_lost": ("<=", 0),
     "moving_colour_share": (">=", 0.97),
     "odometry_way_over_sigma": ("in", 0.5, 1.5),
     "map_wall_mm": ("<=", 30),
@@ -123,6 +127,7 @@ def summary(run):
         "lost": sum(r["converged"] == 0 for r in placed),
         "degenerate": sum(r["degenerate"] > 0 for r in placed),
         "over_sigma": way_over_sigma(placed),
+        "way_off_mm": 1000 * max(column(placed, "way_off_m")),
     }
 
 
@@ -146,6 +151,8 @@ def figures_of(rows):
         yield figure(f"{name}_way_over_sigma", mean([s["over_sigma"] for s in own]))
         yield figure(f"{name}_lost", sum(s["lost"] for s in own))
         yield figure(f"{name}_degenerate_false", sum(s["degenerate"] for s in own))
+        if kind == "turning-0":
+            yield figure(f"{name}_way_off_mm", max(s["way_off_mm"] for s in own), "mm")
         yield figure(f"{name}_drives", len(own))
     for kind, label in NOT_TOLD.items():
         own = [told(run) for run in runs(rows, kind)]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -38,6 +39,30 @@ std::optional<Place> PlaceIn(const TimedSweep& sweep, const Vector6d& velocity) 
   return PlaceOf(points);
 }
 
+// A turned scanner's sweep, as if seen from where the LIDAR was in its middle; without the points
+// of which the way does not tell.
+Cloud Straightened(Cloud cloud, const OdometryResult& found) {
+  const Rigid3 middle_from_world = found.world_from_middle.Inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto after =
+        std::lower_bound(found.way.begin(), found.way.end(), cloud.utime[i],
+                         [](const PoseAtTime& pose, Utime utime) { return pose.utime < utime; });
+    if (after == found.way.begin() || after == found.way.end()) {
+      cloud.points[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+      continue;
+    }
+    const PoseAtTime& before = *(after - 1);
+    const double share =
+        ToSeconds(cloud.utime[i] - before.utime) / ToSeconds(after->utime - before.utime);
+    const Vector6d step = share * Log(before.world_from_lidar.Inverse() * after->world_from_lidar);
+    const Rigid3 middle_from_own = middle_from_world * before.world_from_lidar * Exp(step);
+    cloud.points[i] =
+        (middle_from_own * Eigen::Vector3d(cloud.points[i].cast<double>())).cast<float>();
+  }
+  cloud.utime.clear();
+  return cloud;
+}
+
 }  // namespace
 
 bool KeyframeStore::IsFar(const OdometryResult& found) const {
@@ -66,13 +91,14 @@ void KeyframeStore::Add(const Cloud& cloud, const OdometryResult& found) {
   unknown_ = unknown_ || (found.restarted && !frames_.empty());
   if (!found.converged || !IsFar(found)) return;
   Keyframe frame;
-  frame.sweep = TimeSweep(cloud, odometry_);
-  const auto place = PlaceIn(frame.sweep, found.velocity);
+  const bool drove = !found.way.empty();
+  frame.sweep = TimeSweep(drove ? Straightened(cloud, found) : cloud, odometry_);
+  frame.velocity = drove ? Vector6d(Vector6d::Zero()) : found.velocity;
+  const auto place = PlaceIn(frame.sweep, frame.velocity);
   if (!place) return;
   frame.place = *place;
   Thin(&frame.sweep.points, options_.map_points);
   frame.world_from_middle = found.world_from_middle;
-  frame.velocity = found.velocity;
   frame.covariance = found.covariance;
   frame.residual_m = found.residual_m;
   if (!frames_.empty()) AddEdge(found, &frame.way_m);

@@ -91,36 +91,51 @@ void CheckMessageTimes(const Cloud& part) {
                    "; expected those that follow one another");
 }
 
-TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options) {
+namespace {
+
+struct Hits {
+  std::vector<std::size_t> places;
+  Utime first = 0, last = 0;
+  double seconds() const { return ToSeconds(last - first); }
+};
+
+// What returned from where it is of use.
+Hits HitsOf(const Cloud& cloud, const OdometryOptions& options) {
   CheckTimes(cloud);
-  TimedSweep sweep;
-  std::vector<std::size_t> hits;
-  hits.reserve(cloud.size());
-  Utime first = cloud.sweep_utime, last = cloud.sweep_utime;
+  Hits hits;
+  hits.places.reserve(cloud.size());
+  hits.first = hits.last = cloud.sweep_utime;
   const auto least = static_cast<float>(options.min_range_m * options.min_range_m);
   const auto most = static_cast<float>(options.max_range_m * options.max_range_m);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float squared = cloud.points[i].squaredNorm();
     if (!(squared >= least && squared <= most)) continue;  // nor NaN
     if (!cloud.utime.empty()) {
-      first = hits.empty() ? cloud.utime[i] : std::min(first, cloud.utime[i]);
-      last = hits.empty() ? cloud.utime[i] : std::max(last, cloud.utime[i]);
+      hits.first = hits.places.empty() ? cloud.utime[i] : std::min(hits.first, cloud.utime[i]);
+      hits.last = hits.places.empty() ? cloud.utime[i] : std::max(hits.last, cloud.utime[i]);
     }
-    hits.push_back(i);
+    hits.places.push_back(i);
   }
-  const double lasts = ToSeconds(last - first);
-  if (!(lasts <= Odometry::kMostStop)) {
-    throw InputError("the sweep lasts " + SecondsText(lasts) + "; expected up to " +
+  if (!(hits.seconds() <= Odometry::kMostStop)) {
+    throw InputError("the sweep lasts " + SecondsText(hits.seconds()) + "; expected up to " +
                      SecondsText(Odometry::kMostStop));
   }
-  sweep.standing = lasts > Odometry::kMostSweep;
-  sweep.seconds = sweep.standing ? 0 : lasts;
-  sweep.first = first;
-  sweep.middle = first + (last - first) / 2;
-  sweep.last = last;
-  sweep.points.reserve(hits.size());
-  for (const std::size_t i : hits) {
-    const bool moves = !sweep.standing && !cloud.utime.empty();
+  return hits;
+}
+
+}  // namespace
+
+TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options) {
+  const Hits hits = HitsOf(cloud, options);
+  TimedSweep sweep;
+  sweep.turned = hits.seconds() > Odometry::kMostSweep;
+  sweep.seconds = sweep.turned ? 0 : hits.seconds();
+  sweep.first = hits.first;
+  sweep.middle = hits.first + (hits.last - hits.first) / 2;
+  sweep.last = hits.last;
+  sweep.points.reserve(hits.places.size());
+  for (const std::size_t i : hits.places) {
+    const bool moves = !sweep.turned && !cloud.utime.empty();
     const Utime after = moves ? cloud.utime[i] - sweep.middle : 0;
     sweep.points.push_back(
         {cloud.points[i], static_cast<float>(ToSeconds(after)), ElevationOf(cloud.points[i])});
@@ -128,6 +143,37 @@ TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options) {
   sweep.selected =
       Select(sweep.points, Mix(static_cast<std::uint64_t>(sweep.middle)), options.selected);
   return sweep;
+}
+
+std::vector<TimedSweep> PartsOf(const Cloud& cloud, const OdometryOptions& options) {
+  constexpr double kPart = 0.1;           // [s]
+  constexpr std::size_t kSelected = 120;  // of a part, about
+  const Hits hits = HitsOf(cloud, options);
+  const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(hits.seconds() / kPart)));
+  const double lasts = hits.seconds() / static_cast<double>(count);
+  std::vector<TimedSweep> parts(count);
+  const auto begin = [&](std::size_t k) {
+    return hits.first + FromSeconds(lasts * static_cast<double>(k));
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    parts[k].first = begin(k);
+    parts[k].last = begin(k + 1);
+    parts[k].middle = parts[k].first + (parts[k].last - parts[k].first) / 2;
+    parts[k].seconds = lasts;
+    parts[k].turned = true;
+  }
+  if (cloud.utime.empty()) return parts;
+  for (const std::size_t i : hits.places) {
+    const double after = ToSeconds(cloud.utime[i] - hits.first);
+    const auto k = std::min(count - 1, static_cast<std::size_t>(after / std::max(lasts, 1e-9)));
+    parts[k].points.push_back({cloud.points[i],
+                               static_cast<float>(ToSeconds(cloud.utime[i] - parts[k].middle)),
+                               ElevationOf(cloud.points[i])});
+  }
+  for (TimedSweep& part : parts) {
+    part.selected = Select(part.points, Mix(static_cast<std::uint64_t>(part.middle)), kSelected);
+  }
+  return parts;
 }
 
 SweepMotion::SweepMotion(const Rigid3& world_from_middle, const Vector6d& velocity, double seconds)

@@ -21,9 +21,8 @@ struct TimedPoint {
 /// What of a sweep is of use.
 struct TimedSweep {
   Utime first = 0, middle = 0, last = 0;  ///< first point, half-way between it and the last one
-  /// It took longer than Odometry::kMostSweep: a turned scanner's, whose rig stands meanwhile.
-  bool standing = false;
-  double seconds = 0;  ///< from first to last point; 0: the rig stands
+  bool turned = false;  ///< it took longer than Odometry::kMostSweep: a turned scanner's
+  double seconds = 0;   ///< from first to last point; 0: the rig stands meanwhile
   std::vector<TimedPoint> points;
   std::vector<TimedPoint> selected;  ///< spread evenly over what was seen
 };
@@ -35,6 +34,10 @@ void CheckMessageTimes(const Cloud& part);
 
 /// Throws InputError likewise, and for a sweep that lasts too long.
 TimedSweep TimeSweep(const Cloud& cloud, const OdometryOptions& options);
+
+/// A turned scanner's sweep in parts of a tenth of a second, one behind the other: in each the
+/// motion may be taken to be constant. One in which nothing returned has no points.
+std::vector<TimedSweep> PartsOf(const Cloud& cloud, const OdometryOptions& options);
 
 /// The motion within a sweep, constant in the LIDAR's axes: world_from_middle * Exp(t velocity), by
 /// a table; between its places straight on, which is off by less than 0.1 mm.

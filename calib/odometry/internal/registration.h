@@ -26,6 +26,16 @@ struct Motion {
 /// the other sign, as large, sweep after sweep. `before` may be `seconds` earlier or later.
 Motion Predict(const Motion& before, double seconds, const OdometryOptions& options);
 
+/// What a time of `seconds` at about this velocity does to a small error of a motion, and the
+/// covariance that white acceleration adds to it.
+struct Onward {
+  Matrix12d transition = Matrix12d::Identity(), noise = Matrix12d::Zero();
+};
+Onward OnwardOf(const Vector6d& velocity, double seconds, const OdometryOptions& options);
+
+/// By what a motion is off what was expected: (delta, velocity's difference).
+Vector12d OffOf(const Motion& expected, const Motion& motion);
+
 struct Registration {
   Motion motion;           ///< in the sweep's middle
   bool converged = false;  ///< the last step was small

@@ -97,6 +97,19 @@ Motion AfterStop(Motion motion, int lost) {
   return motion;
 }
 
+Motion SetOff(Motion motion) {
+  constexpr double kSpeed = 0.5;    // [m/s]
+  constexpr double kTurning = 0.2;  // [rad/s]
+  if (!motion.velocity.isZero(0)) return motion;
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(kTurning), Eigen::Vector3d::Constant(kSpeed);
+  const Matrix6d place = motion.covariance.topLeftCorner<6, 6>();
+  motion.covariance.setZero();
+  motion.covariance.topLeftCorner<6, 6>() = place;
+  motion.covariance.bottomRightCorner<6, 6>().diagonal() = sigma.cwiseAbs2();
+  return motion;
+}
+
 Stop FindStop(const TimedSweep& sweep, const PlaneMap& map, const Motion& before, int lost,
               const OdometryOptions& options) {
   Stop stop;

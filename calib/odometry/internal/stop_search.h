@@ -12,6 +12,10 @@ namespace rgbdt::odometry {
 /// in between.
 Motion AfterStop(Motion motion, int lost);
 
+/// What is known of a rig that drives on from where it was, as fast as it was; one that stood may
+/// set off.
+Motion SetOff(Motion motion);
+
 /// Where it stands now.
 struct Stop {
   Registration best;

@@ -44,31 +44,37 @@ Eigen::Vector3d Scanner::Centre(double motor_angle) const {
          geometry_.motor_from_scanner.translation;
 }
 
-BeamReturn Scanner::Beam(const World& world, int beam, double motor_angle) const {
+BeamReturn Scanner::Beam(const World& world, int beam, double motor_angle,
+                         const Rigid3& world_from_lidar) const {
   const double c = std::cos(motor_angle);
   const double s = std::sin(motor_angle);
   const auto turned = [&](const Eigen::Vector3d& v) {
     return Eigen::Vector3d(c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z());
   };
-  const Eigen::Vector3d origin = turned(geometry_.motor_from_scanner.translation);
+  const Eigen::Vector3d origin =
+      world_from_lidar * turned(geometry_.motor_from_scanner.translation);
   thread_local std::vector<Eigen::Vector3d> directions;
   directions.resize(static_cast<std::size_t>(sub_ray_count_));
   const std::size_t first = static_cast<std::size_t>(beam) * directions.size();
-  for (std::size_t i = 0; i < directions.size(); ++i) directions[i] = turned(sub_rays_[first + i]);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    directions[i] = world_from_lidar.rotation * turned(sub_rays_[first + i]);
+  }
   BeamReturn back;
   CastBeams(world, options_, origin, directions, sub_ray_count_, &back);
   return back;
 }
 
-LineScan Scanner::Line(const World& world, Utime sweep_utime, int line) const {
+LineScan Scanner::Line(const World& world, Utime sweep_utime, int line, const Way& way) const {
   const Utime utime = sweep_utime + line * line_period();
-  return LineAt(world, utime, [&](double seconds) {
+  const auto motor_angle = [&](double seconds) {
     return MotorAngle(ToSeconds(utime - sweep_utime) + seconds);
-  });
+  };
+  return LineAt(world, utime, motor_angle, way);
 }
 
 LineScan Scanner::LineAt(const World& world, Utime utime,
-                         const std::function<double(double seconds)>& motor_angle) const {
+                         const std::function<double(double seconds)>& motor_angle,
+                         const Way& way) const {
   LineScan scan;
   scan.utime = utime;
   scan.beam_period_s = options_.beam_period_s;
@@ -78,7 +84,9 @@ LineScan Scanner::LineAt(const World& world, Utime utime,
   scan.intensity.resize(scan.range.size());
   const Noise noise(seed_, scan.utime, "lidar");
   for (int beam = 0; beam < options_.beams; ++beam) {
-    const BeamReturn back = Beam(world, beam, motor_angle(beam * options_.beam_period_s));
+    const double fired = beam * options_.beam_period_s;
+    const BeamReturn back =
+        Beam(world, beam, motor_angle(fired), way ? way(utime + FromSeconds(fired)) : Rigid3());
     const auto i = static_cast<std::size_t>(beam);
     scan.range[i] = static_cast<float>(back.range + RangeError(options_, back) +
                                        RangeSigma(options_, back) * noise.Normal(2 * i));
@@ -109,7 +117,7 @@ void Scanner::AddLine(const LineScan& scan, int line, Cloud* cloud) const {
   cloud->origins[static_cast<std::size_t>(line)] = Centre(MotorAngle(middle)).cast<float>();
 }
 
-Cloud Scanner::Sweep(const World& world, Utime sweep_utime, int threads) const {
+Cloud Scanner::Sweep(const World& world, Utime sweep_utime, int threads, const Way& way) const {
   Cloud cloud;
   cloud.sweep_utime = sweep_utime;
   cloud.lines = sweep_lines();
@@ -123,7 +131,7 @@ Cloud Scanner::Sweep(const World& world, Utime sweep_utime, int threads) const {
   cloud.ring.resize(size);
   cloud.origins.resize(static_cast<std::size_t>(cloud.lines));
   ForEach(cloud.lines, threads,
-          [&](int line) { AddLine(Line(world, sweep_utime, line), line, &cloud); });
+          [&](int line) { AddLine(Line(world, sweep_utime, line, way), line, &cloud); });
   return cloud;
 }
 

@@ -29,14 +29,20 @@ class Scanner {
   /// Scanner's centre in the LIDAR frame at a motor angle.
   Eigen::Vector3d Centre(double motor_angle) const;
 
+  /// world_from_lidar at a time, of a rig that drives; empty: it stands at the world's origin.
+  using Way = std::function<Rigid3(Utime utime)>;
+
   /// One beam without noise, at a motor angle.
-  BeamReturn Beam(const World& world, int beam, double motor_angle) const;
-  LineScan Line(const World& world, Utime sweep_utime, int line) const;
+  BeamReturn Beam(const World& world, int beam, double motor_angle,
+                  const Rigid3& world_from_lidar = {}) const;
+  LineScan Line(const World& world, Utime sweep_utime, int line, const Way& way = {}) const;
   /// A line that begins at `utime`, wherever the motor is: its angle [rad] so many seconds later.
   LineScan LineAt(const World& world, Utime utime,
-                  const std::function<double(double seconds)>& motor_angle) const;
-  /// A whole sweep, line x beam, with the motor's true angles (an encoder reads whole ticks).
-  Cloud Sweep(const World& world, Utime sweep_utime, int threads) const;
+                  const std::function<double(double seconds)>& motor_angle,
+                  const Way& way = {}) const;
+  /// A whole sweep, line x beam, with the motor's true angles (an encoder reads whole ticks); each
+  /// point in the LIDAR's frame of its own time.
+  Cloud Sweep(const World& world, Utime sweep_utime, int threads, const Way& way = {}) const;
 
  private:
   void AddLine(const LineScan& scan, int line, Cloud* cloud) const;
