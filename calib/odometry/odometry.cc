@@ -458,13 +458,13 @@ void Odometry::Impl::FollowTurned(const Cloud& cloud, const TimedSweep& sweep,
 }
 
 // Whether all of it lies on the map, as points that find no plane are not missed by least squares;
-// and the first `settled` parts are known.
+// the sweep tells all directions; and the first `settled` parts are known.
 bool Odometry::Impl::IsWay(const WayRegistration& way, std::size_t settled) const {
   constexpr double kMostSigma = 0.1;    // [m]
   constexpr double kLeastShare = 0.75;  // of what lies near planes as a rule, everywhere
   if (!WhyNotTurned(way.selected, way.whole, way.whole.motion).empty()) return false;
   const double usual = usual_near > 0 ? usual_near : ShareOf(way.whole.near, way.selected);
-  if (way.worst_near < kLeastShare * usual) return false;
+  if (way.worst_near < kLeastShare * usual || way.whole.degenerate.cols() > 0) return false;
   return std::all_of(way.parts.begin(), way.parts.begin() + static_cast<std::ptrdiff_t>(settled),
                      [](const Motion& part) {
                        return part.covariance.diagonal().segment<3>(3).maxCoeff() <=
@@ -477,7 +477,7 @@ bool Odometry::Impl::IsWay(const WayRegistration& way, std::size_t settled) cons
 // tells of it is seen only when the scanner has turned on: they wait for the next sweep.
 bool Odometry::Impl::Drive(const Cloud& cloud, const TimedSweep& sweep, double stood,
                            OdometryResult* result) {
-  if (lost > 0 || ToSeconds(sweep.first - last) > kMostGap) return false;
+  if (lost > 0 || sweep.first < last || ToSeconds(sweep.first - last) > kMostGap) return false;
   std::vector<TimedSweep> parts = open;
   const std::vector<TimedSweep> own = odometry::PartsOf(cloud, options);
   parts.insert(parts.end(), own.begin(), own.end());

@@ -11,9 +11,10 @@
 namespace rgbdt::odometry {
 namespace {
 
-constexpr std::size_t kTogether = 5;  // parts that are judged together
-constexpr int kWhileItGrows = 3;      // iterations
-constexpr double kGrowing = 0.1;      // [m] the least width of weights meanwhile
+constexpr std::size_t kTogether = 5;       // parts that are judged together
+constexpr int kWhileItGrows = 3;           // iterations
+constexpr std::size_t kGrowTogether = 30;  // parts that move meanwhile, the newest
+constexpr double kGrowing = 0.1;           // [m] the least width of weights meanwhile
 constexpr int kMostIterations = 25;
 constexpr int kMostSearches = 10;  // of these, in which points look for their planes
 constexpr double kSettled = 0.02;  // [m] after smaller steps points keep their planes
@@ -21,7 +22,7 @@ constexpr double kDone = 3e-4;     // [m], of the lever for turns
 constexpr std::size_t kFewest = 50;
 constexpr double kMostScatter = 0.02;  // [m] for what is told, see registration.cc
 
-/// H x = -g, H symmetric with blocks beside the diagonal only.
+/// H x = -g, H symmetric with blocks beside the diagonal only, of the parts that are solved for.
 struct Chain {
   std::vector<Matrix12d> diagonal, below;  // below[k]: row k, column k - 1
   std::vector<Vector12d> gradient;
@@ -42,11 +43,13 @@ class Solver {
   WayRegistration Solve() {
     while (way_.parts.size() < parts_.size()) {
       Grow();
+      from_ = way_.parts.size() - std::min(way_.parts.size(), kGrowTogether);
       for (int i = 0; i < kWhileItGrows; ++i) {
         Evaluate(true, kGrowing);
         Step();
       }
     }
+    from_ = 0;
     Registration& whole = way_.whole;
     bool settled = false;
     double step = 0;
@@ -79,7 +82,7 @@ class Solver {
 
   void Evaluate(bool match, double least_width_m = 0) {
     residuals_.Clear();
-    for (std::size_t k = 0; k < way_.parts.size(); ++k) {
+    for (std::size_t k = from_; k < way_.parts.size(); ++k) {
       const Motion& motion = way_.parts[k];
       residuals_.Add(k, parts_[k],
                      SweepMotion(motion.world_from_lidar, motion.velocity, parts_[k].seconds),
@@ -103,7 +106,8 @@ class Solver {
   const std::vector<TimedSweep>& parts_;
   double scatter_;  // [m]
   const OdometryOptions& options_;
-  Motion first_;  // of the first part, before it is looked at
+  Motion first_;          // of the first part, before it is looked at
+  std::size_t from_ = 0;  // which part is the first that is solved for: those before stay
   std::vector<std::vector<Match>> matches_;
   PlaneResiduals residuals_;
   WayRegistration way_;
@@ -114,32 +118,37 @@ class Solver {
 Chain Solver::Equations() const {
   const std::vector<Motion>& motions = way_.parts;
   Chain chain;
-  chain.diagonal.assign(motions.size(), Matrix12d::Zero());
+  const std::size_t size = motions.size() - from_;
+  chain.diagonal.assign(size, Matrix12d::Zero());
   chain.below = chain.diagonal;
-  chain.gradient.assign(motions.size(), Vector12d::Zero());
+  chain.gradient.assign(size, Vector12d::Zero());
   for (const Residual& r : residuals_.all()) {
     const double weight = residuals_.WeightOf(r, scatter_);
     Vector12d slope;
     slope << r.slope, r.seconds * r.slope;
-    chain.diagonal[r.part] += weight * slope * slope.transpose();
-    chain.gradient[r.part] += weight * r.distance * slope;
+    chain.diagonal[r.part - from_] += weight * slope * slope.transpose();
+    chain.gradient[r.part - from_] += weight * r.distance * slope;
   }
-  const Matrix12d known = InverseOfSymmetric(first_.covariance);
-  chain.diagonal[0] += known;
-  chain.gradient[0] += known * OffOf(first_, motions[0]);
-  for (std::size_t k = 1; k < motions.size(); ++k) {
+  if (from_ == 0) {
+    const Matrix12d known = InverseOfSymmetric(first_.covariance);
+    chain.diagonal[0] += known;
+    chain.gradient[0] += known * OffOf(first_, motions[0]);
+  }
+  for (std::size_t k = std::max<std::size_t>(1, from_); k < motions.size(); ++k) {
     const Onward onward = OnwardOf(motions[k - 1].velocity, Between(k), options_);
     const Matrix12d weight = InverseOfSymmetric(onward.noise);
     Motion expected = motions[k - 1];
     expected.world_from_lidar =
         expected.world_from_lidar * Exp(Vector6d(Between(k) * expected.velocity));
     const Vector12d off = OffOf(expected, motions[k]);
+    const std::size_t own = k - from_;
+    chain.diagonal[own] += weight;
+    chain.gradient[own] += weight * off;
+    if (k == from_) continue;  // the one before stays
     const Matrix12d back = weight * onward.transition;
-    chain.diagonal[k] += weight;
-    chain.gradient[k] += weight * off;
-    chain.diagonal[k - 1] += onward.transition.transpose() * back;
-    chain.gradient[k - 1] -= back.transpose() * off;
-    chain.below[k] = -back;
+    chain.diagonal[own - 1] += onward.transition.transpose() * back;
+    chain.gradient[own - 1] -= back.transpose() * off;
+    chain.below[own] = -back;
   }
   return chain;
 }
@@ -169,7 +178,7 @@ double Solver::Step() {
     Vector12d right = -chain.gradient[k];
     if (k + 1 < size) right -= chain.below[k + 1].transpose() * step;
     step = solved[k].solve(right);
-    Motion& motion = way_.parts[k];
+    Motion& motion = way_.parts[from_ + k];
     motion.world_from_lidar = motion.world_from_lidar * Exp(Vector6d(step.head<6>()));
     motion.velocity += step.tail<6>();
     most = std::max(most, step.segment<3>(3).norm() + way_.whole.lever_m * step.head<3>().norm());
