@@ -70,12 +70,14 @@ Motion Unknown(const Rigid3& world_from_lidar) {
 
 const char* KindOf(bool turned) { return turned ? "turned scanner" : "spinning LIDAR"; }
 
-// Of two ways, over their first `settled` parts [m].
+// Of two ways, over their first `settled` parts [m]; turns by what they move at 1 m.
 double MostApart(const WayRegistration& a, const WayRegistration& b, std::size_t settled) {
   double most = 0;
   for (std::size_t k = 0; k < settled; ++k) {
     const Rigid3 apart = a.parts[k].world_from_lidar.Inverse() * b.parts[k].world_from_lidar;
-    most = std::max(most, apart.translation.norm());
+    const double own = std::max(apart.translation.norm(), RotationDistance(apart, {}));
+    if (!(own <= most)) most = own;  // NaN, too
+    if (!std::isfinite(own)) return HUGE_VAL;
   }
   return most;
 }
@@ -299,6 +301,8 @@ void Odometry::Impl::ReportWay(const TimedSweep& sweep, const std::vector<TimedS
   result->velocity = way.parts[middle_part].velocity;
   for (std::size_t k = 0; k < settled; ++k) {
     result->way.push_back({parts[k].first, at(k, parts[k].first).world_from_lidar});
+    const bool gap = k + 1 < settled && parts[k + 1].first > parts[k].last;
+    if (gap) result->way.push_back({parts[k].last, at(k, parts[k].last).world_from_lidar});
   }
   result->utime = parts[settled - 1].last;
   const Motion at_end = at(settled - 1, result->utime);
@@ -325,7 +329,8 @@ void Odometry::Impl::Report(const TimedSweep& sweep, OdometryResult* result) con
 double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) {
   if (!begun || cloud.sweep_utime < sweep_utime - kClockReset) return 0;
   const double seconds = ToSeconds(sweep.middle - middle);
-  if (cloud.sweep_utime <= sweep_utime || seconds <= 0) {
+  const bool back = !turned && seconds <= 0;  // a turned scanner's middle is its sweep's end
+  if (cloud.sweep_utime <= sweep_utime || back) {
     throw InputError("sweep " + std::to_string(cloud.sweep_utime) +
                      " is not newer than the one before, " + std::to_string(sweep_utime));
   }
@@ -338,7 +343,8 @@ double Odometry::Impl::Since(const Cloud& cloud, const TimedSweep& sweep) {
                      KindOf(turned) + "'s; expected those of one LIDAR");
   }
   refused = 0;
-  return turned || seconds <= kMostGap ? seconds : 0;
+  if (turned) return std::max(seconds, ToSeconds(1));
+  return seconds <= kMostGap ? seconds : 0;
 }
 
 // A sweep that tells nothing: on as before.
@@ -460,10 +466,13 @@ void Odometry::Impl::FollowTurned(const Cloud& cloud, const TimedSweep& sweep,
 // Whether all of it lies on the map, as points that find no plane are not missed by least squares;
 // the sweep tells all directions; and the first `settled` parts are known.
 bool Odometry::Impl::IsWay(const WayRegistration& way, std::size_t settled) const {
-  constexpr double kMostSigma = 0.1;    // [m]
-  constexpr double kLeastShare = 0.75;  // of what lies near planes as a rule, everywhere
+  constexpr double kMostSigma = 0.1;          // [m]
+  constexpr double kLeastShare = 0.75;        // of what lies near planes as a rule, everywhere
+  constexpr double kLeastShareAtFirst = 0.5;  // of all points, where nothing is usual yet
   if (!WhyNotTurned(way.selected, way.whole, way.whole.motion).empty()) return false;
-  const double usual = usual_near > 0 ? usual_near : ShareOf(way.whole.near, way.selected);
+  const double near = ShareOf(way.whole.near, way.selected);
+  if (near < kLeastShareAtFirst) return false;
+  const double usual = usual_near > 0 ? usual_near : near;
   if (way.worst_near < kLeastShare * usual || way.whole.degenerate.cols() > 0) return false;
   return std::all_of(way.parts.begin(), way.parts.begin() + static_cast<std::ptrdiff_t>(settled),
                      [](const Motion& part) {
@@ -477,7 +486,9 @@ bool Odometry::Impl::IsWay(const WayRegistration& way, std::size_t settled) cons
 // tells of it is seen only when the scanner has turned on: they wait for the next sweep.
 bool Odometry::Impl::Drive(const Cloud& cloud, const TimedSweep& sweep, double stood,
                            OdometryResult* result) {
-  if (lost > 0 || sweep.first < last || ToSeconds(sweep.first - last) > kMostGap) return false;
+  if (kBetter * stood >= 1 || lost > 0 || sweep.first < last ||
+      ToSeconds(sweep.first - last) > kMostGap)
+    return false;
   std::vector<TimedSweep> parts = open;
   const std::vector<TimedSweep> own = odometry::PartsOf(cloud, options);
   parts.insert(parts.end(), own.begin(), own.end());
@@ -486,7 +497,8 @@ bool Odometry::Impl::Drive(const Cloud& cloud, const TimedSweep& sweep, double s
     return odometry::RegisterWay(parts, map, odometry::SetOff(motion), middle, scatter_m, options);
   };
   const WayRegistration way = along(kScatter), other = along(kScatter / 2);
-  if (!IsWay(way, settled) || MostApart(way, other, settled) > kMostApart) return false;
+  if (!IsWay(way, settled) || !other.whole.converged) return false;
+  if (MostApart(way, other, settled) > kMostApart) return false;
   if (ShareOf(way.whole.near, way.selected) < kBetter * stood) return false;
   Tell(way.whole, result);
   result->reason.clear();

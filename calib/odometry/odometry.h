@@ -32,7 +32,8 @@ struct PoseAtTime {
 
 /// What a sweep tells of where the LIDAR is.
 struct OdometryResult {
-  Utime utime = 0;           ///< of the pose: when the sweep's last point was taken
+  Utime utime = 0;  ///< of the pose: when the sweep's last point was taken; of a way its end, some
+                    ///< time before that
   Rigid3 world_from_lidar;   ///< world: the LIDAR in the middle of the first sweep
   Utime middle_utime = 0;    ///< half-way between the sweep's first and last point
   Rigid3 world_from_middle;  ///< world_from_lidar at that time, when it is known best
@@ -48,9 +49,10 @@ struct OdometryResult {
   /// world_from_lidar.
   bool standing = false;
   /// Where it was during a turned scanner's sweep for which it did not stand, from first_utime to
-  /// utime, ten a second; straight on in between. Empty otherwise.
+  /// utime, ten a second; straight on in between. It begins where the way of the sweep before
+  /// ended; the velocity is that in the sweep's middle only. Empty otherwise.
   std::vector<PoseAtTime> way;
-  Utime first_utime = 0;   ///< of the sweep's first point
+  Utime first_utime = 0;   ///< of the sweep's first point; of a way its begin
   bool restarted = false;  ///< the map was begun anew: the way since the last pose is a guess
   /// Directions that the sweep does not tell, in words; there the pose goes on as before.
   std::vector<std::string> degenerate;

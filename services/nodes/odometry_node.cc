@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "calib/model/pose_track.h"
+
 namespace rgbdt {
 namespace {
 
@@ -53,8 +55,11 @@ Messages OdometryNode::Handle(const Message& message) {
   }
   told_until_ = newest_.utime;
   if (newest_.standing) {
-    poses.emplace_back(
-        StampedPose{poses_++, newest_.first_utime, kSource, newest_.world_from_lidar});
+    // A track of poses knows no way across a longer gap (PoseTrack::kGap).
+    constexpr Utime kWithin = PoseTrack::kGap / 2;
+    for (Utime utime = newest_.first_utime; utime < newest_.utime; utime += kWithin) {
+      poses.emplace_back(StampedPose{poses_++, utime, kSource, newest_.world_from_lidar});
+    }
   } else if (!before.converged && newest_.middle_utime < newest_.utime) {
     // A single pose would be that of a rig that stands.
     poses.emplace_back(

@@ -71,13 +71,13 @@ void Correct(const Keyframes& keyframes, MappedDrive* drive) {
   drive->closed = CloseLoops(keyframes);
   const std::vector<StampedPose> found = drive->way;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    // A stop's two poses are one place, corrected as of its middle.
-    Utime utime = found[i].utime;
-    for (const std::size_t other : {i - 1, i + 1}) {
-      if (other >= found.size() || !IsOnePlace(found[i], found[other])) continue;
-      utime = found[i].utime + (found[other].utime - found[i].utime) / 2;
-    }
-    drive->way[i].map_from_lidar = drive->closed->Corrected(utime, found[i].map_from_lidar);
+    // A stop's poses are one place, corrected as of its middle.
+    std::size_t last = i;
+    while (last + 1 < found.size() && IsOnePlace(found[i], found[last + 1])) ++last;
+    const Utime middle = found[i].utime + (found[last].utime - found[i].utime) / 2;
+    const Rigid3 corrected = drive->closed->Corrected(middle, found[i].map_from_lidar);
+    for (; i < last; ++i) drive->way[i].map_from_lidar = corrected;
+    drive->way[last].map_from_lidar = corrected;
   }
 }
 

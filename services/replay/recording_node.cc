@@ -8,6 +8,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 #include "services/messages/codec.h"
 #include "services/messages/header.h"
@@ -18,6 +19,7 @@
 namespace rgbdt {
 namespace {
 
+constexpr std::size_t kMostChannels = 40;
 constexpr const char* kClouds = "CLOUD";
 constexpr const char* kRig = "RIG";
 
@@ -94,6 +96,7 @@ void RecordingNode::Overhear(const std::string& channel, const std::uint8_t* dat
 void RecordingNode::Keep(const std::string& channel, const std::uint8_t* data, std::size_t size,
                          Utime host_utime) {
   if (finished()) return;
+  if (counts_.size() >= kMostChannels && counts_.count(channel) == 0) return;  // strangers' names
   try {
     log_.Write(channel, data, size, host_utime);
     ++counts_[channel];
@@ -130,7 +133,7 @@ WaveProgress RecordingNode::Told() const {
   if (preview_ != nullptr) told.clocks = preview_->Clocks();
   if (!problem_.empty()) {
     told.phase = WavePhase::kFailed;
-    told.text = problem_;
+    told.text = PrintableText(problem_);
   } else if (!began_) {
     told.text = "waiting for a sweep ...; " + Heard();
   } else {
@@ -156,7 +159,7 @@ std::string RecordingNode::Progress() const {
 std::string RecordingNode::Heard() const {
   std::string heard;
   for (const auto& [channel, count] : counts_) {
-    heard += (heard.empty() ? "" : ", ") + std::to_string(count) + " " + channel;
+    heard += (heard.empty() ? "" : ", ") + std::to_string(count) + " " + PrintableText(channel);
   }
   return heard.empty() ? "nothing heard" : heard;
 }

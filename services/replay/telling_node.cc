@@ -1,6 +1,13 @@
 #include "services/replay/telling_node.h"
 
+#include "calib/model/printable.h"
+
 namespace rgbdt {
+namespace {
+
+constexpr char kLines[] = "\n";
+
+}  // namespace
 
 TellingNode::TellingNode(const WaveProgress& recorded) : progress_(recorded) {
   progress_.phase = WavePhase::kSolving;
@@ -10,14 +17,14 @@ TellingNode::TellingNode(const WaveProgress& recorded) : progress_(recorded) {
 
 void TellingNode::Tell(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  progress_.text = text;
+  progress_.text = PrintableText(text, kLines);
 }
 
 void TellingNode::End(WavePhase phase, const std::string& text,
                       const std::vector<WavedClock>& clocks) {
   const std::lock_guard<std::mutex> lock(mutex_);
   progress_.phase = phase;
-  progress_.text = text;
+  progress_.text = PrintableText(text, kLines);  // a path may be none
   progress_.clocks = clocks;
 }
 

@@ -161,17 +161,22 @@ Synced SyncLog(const SyncFlags& flags, const std::string& log,
 }
 
 // What the bus says while the board is waved, as a log; Ctrl-C ends it sooner.
-WaveProgress Record(const std::string& log, const SyncFlags& flags,
-                    const std::optional<Calibration>& calibration, const WavedLogOptions& options) {
-  WavePreview preview(calibration, options);
+WaveProgress Record(const std::string& log, const SyncFlags& flags, WavePreview* preview) {
   RecordingNode node(
-      log, flags.seconds, [](const std::string& line) { PrintProgress(line); }, &preview);
+      log, flags.seconds, [](const std::string& line) { PrintProgress(line); }, preview);
   const int code = RunOnLcm(
       node, flags.bus, [&](const std::string& channel, const std::uint8_t* data, std::size_t size) {
         node.Overhear(channel, data, size, HostUtime());
       });
   if (code != 0) throw InputError("nothing was recorded");
-  node.Close();
+  try {
+    node.Close();
+  } catch (const InputError& error) {
+    TellingNode failed(node.Told());
+    failed.End(WavePhase::kFailed, error.what(), {});
+    RunOnLcm(failed, flags.bus);
+    throw;
+  }
   return node.Told();
 }
 
@@ -204,8 +209,10 @@ Synced SyncLive(const SyncFlags& flags, const std::optional<Calibration>& calibr
   const fs::path log = fs::path(flags.out) / "wave.lcmlog";
   CheckWritable(log);
   fs::create_directories(flags.out);
-  const WaveProgress recorded = Record(log.string(), flags, calibration, options);
+  auto preview = std::make_unique<WavePreview>(calibration, options);
+  const WaveProgress recorded = Record(log.string(), flags, preview.get());
   return SolveAndTell(recorded, flags.bus, [&](const Say& say) {
+    preview.reset();  // what it is at may take seconds: the bus hears on meanwhile
     return SyncLog(flags, log.string(), calibration, options, say);
   });
 }

@@ -10,7 +10,7 @@ log=$scratch/fused.lcmlog
 # ones of sweeps (lcmtypes/cloud_t.lcm) of drives.
 drive=$scratch/drive.lcmlog
 "$bin/map_test_log" "$log" "$scratch/other.lcmlog" "$drive" "$scratch/rigged.lcmlog" \
-  "$scratch/truth" "$scratch/loop.lcmlog"
+  "$scratch/truth" "$scratch/loop.lcmlog" "$scratch/turned.lcmlog"
 
 accepts "map" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/kept/map.ply"
 grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
@@ -69,6 +69,12 @@ accepts "a loop again" "$bin/rgbdt" map "$scratch/loop.lcmlog" --close-loops --o
 for kind in ply tum png; do
   cmp "$scratch/drive/closed.$kind" "$scratch/drive/again.$kind" || complain "the same loop, another $kind"
 done
+# A turned scanner, whose rig stands for a sweep of 3.75 s and drives through two: all of that but the
+# last second is in the map.
+accepts "a turned scanner" "$bin/rgbdt" map "$scratch/turned.lcmlog" --out "$scratch/turned/map.ply"
+grep -q '^3 sweeps, 0 without a place, 0 that' "$scratch/output" || complain "a turned scanner's sweeps"
+points=$(sed -nE 's/^[0-9]+ clouds, ([0-9]+) points.*/\1/p' "$scratch/output")
+{ [ "$points" -gt 95000 ] && [ "$points" -lt 108000 ]; } || complain "$points points of a turned scanner"
 says=("no POSE" "0 sweeps")
 refuses "a drive without sweeps" "$bin/rgbdt" map "$log" --drive --out "$scratch/kept/map.ply"
 

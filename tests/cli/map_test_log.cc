@@ -1,11 +1,13 @@
 // Writes LCM logs for map_test.sh: of fused clouds over level ground with a crate, 27 C warm; of
 // poses only; and of the sweeps of a drive through a street, without a rig and with one, and the
 // truth beside it: a line a sweep, time [us] x y z [m]; and of a drive that comes back to where it
-// began. Usage: map_test_log FUSED OTHER [DRIVE RIGGED TRUTH [LOOP]]
+// began, and of a turned scanner. Usage: map_test_log FUSED OTHER [DRIVE RIGGED TRUTH [LOOP
+// TURNED]]
 #include <cmath>
 #include <fstream>
 
 #include "calib/files/schema/rig_file.h"
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
 #include "tests/log_writer.h"
@@ -70,6 +72,20 @@ void WriteLoop(const char* path) {
   log.Close();
 }
 
+// A turned scanner in a room: the rig stands for the first sweep and drives through two more.
+void WriteTurned(const char* path) {
+  rgbdt::simulate::ScannerOptions scanner = rgbdt::simulate::FullTurnScanner();
+  scanner.motor_speed_rad_s *= 8;
+  scanner.beams /= 2;
+  scanner.angle_step_rad *= 2;
+  rgbdt::study::TurningDrive drive(5, scanner, 0.4);
+  rgbdt::test::LogWriter log(path);
+  for (int i = 0; i < 3; ++i) {
+    for (const rgbdt::CloudChunk& chunk : rgbdt::SplitSweep(drive.Sweep(i))) Write(&log, chunk);
+  }
+  log.Close();
+}
+
 void WriteDrive(const char* log_path, const char* rigged_path, const char* truth_path) {
   rgbdt::simulate::SpinningOptions lidar = rgbdt::simulate::SpinningLidar(32);
   lidar.azimuth_step_rad *= 4;
@@ -96,7 +112,7 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3 && argc != 6 && argc != 7) return 1;
+  if (argc != 3 && argc != 6 && argc != 8) return 1;
   rgbdt::test::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
@@ -107,6 +123,7 @@ int main(int argc, char** argv) {
   Write(&other, pose);
   other.Close();
   if (argc >= 6) WriteDrive(argv[3], argv[4], argv[5]);
-  if (argc == 7) WriteLoop(argv[6]);
+  if (argc == 8) WriteLoop(argv[6]);
+  if (argc == 8) WriteTurned(argv[7]);
   return 0;
 }

@@ -99,9 +99,13 @@ TEST(OdometryNode, SaysWhereATurnedScannersRigStoodForASweep) {
     for (const CloudChunk& chunk : SplitSweep(sweep)) {
       for (const auto& pose : Only<StampedPose>(node.Handle(chunk))) poses.push_back(pose);
     }
-    ASSERT_EQ(poses.size(), 2U) << i;
+    ASSERT_GT(poses.size(), 4U) << i;
     EXPECT_LT(poses[0].utime, sweep.sweep_utime + 100'000);
-    EXPECT_GT(poses[1].utime, poses[0].utime + 2'000'000);
+    EXPECT_GT(poses.back().utime, poses[0].utime + 2'000'000);
+    for (std::size_t k = 1; k < poses.size(); ++k) {
+      EXPECT_LE(poses[k].utime - poses[k - 1].utime, PoseTrack::kGap / 2)
+          << "a track of them holds";
+    }
     for (const StampedPose& pose : poses) {
       const Rigid3 truth = stops.At(0).Inverse() * stops.At(i);
       EXPECT_LT((pose.map_from_lidar.translation - truth.translation).norm(), 0.02);
@@ -129,9 +133,9 @@ TEST(OdometryNode, SaysTheWayThatATurnedScannersRigDroveDuringASweep) {
   const Rigid3 start = drive.At(poses[0].utime);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     EXPECT_GT(poses[i].utime, poses[i - 1].utime);
-    EXPECT_LT((start * poses[i].map_from_lidar).translation.x() -
-                  drive.At(poses[i].utime).translation.x(),
-              0.03);
+    const Rigid3 found = start * poses[i].map_from_lidar;
+    EXPECT_LT((found.translation - drive.At(poses[i].utime).translation).norm(), 0.03) << i;
+    EXPECT_LT(ToSeconds(poses[i].utime - poses[i - 1].utime), 0.6) << i;
   }
   EXPECT_THAT(node.GetStatus().text, HasSubstr("0.4 m/s"));
 }

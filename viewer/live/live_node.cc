@@ -49,7 +49,8 @@ std::vector<std::string> LiveNode::Subscriptions() const {
 Messages LiveNode::Handle(const Message& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   Take(message);
-  if (!std::holds_alternative<Status>(message)) {
+  // What others say of the time is not checked.
+  if (!std::holds_alternative<Status>(message) && !std::holds_alternative<WaveProgress>(message)) {
     newest_utime_ = std::max(newest_utime_, UtimeOf(message));
   }
   try {
@@ -111,6 +112,7 @@ void LiveNode::OnRig(const RigText& text) {
   }
   overlays_.Clear();  // of cameras that this rig may not have
   mounts_.Clear();
+  wave_ = {};
   outbox_->Send({"rig", "", true, false, 0, [rig = rig_] { return RigFrame(*rig); }});
   changed_ = true;
 }
@@ -268,7 +270,7 @@ void LiveNode::OnCalibration(const CalibrationMessage& message) {
   } else if (all.size() < 32) {
     all.push_back(camera);
   }
-  state_.projection[camera.camera] = ProjectionOf(*rig_, camera);
+  if (rig_) state_.projection[camera.camera] = ProjectionOf(*rig_, camera);
   CountSigma(camera);
   changed_ = true;
   PostLiveOverlay(camera.camera);
@@ -353,6 +355,7 @@ Messages LiveNode::Advance(Utime now) {
 }
 
 void LiveNode::OnWave(const WaveProgress& progress) {
+  if (!rig_) return;
   for (const WavedClock& clock : progress.clocks) RequireCamera(clock.camera);
   wave_.Add(progress, now_s_);
   wave_changed_ = true;

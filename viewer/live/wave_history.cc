@@ -25,22 +25,25 @@ const char* NameOf(WavePhase phase) {
 bool IsOver(WavePhase phase) { return phase == WavePhase::kDone || phase == WavePhase::kFailed; }
 
 constexpr double kMillisecondsPerSecond = 1e3;
+constexpr char kGoneText[] = "no word from rgbdt sync live: see its terminal, or start it again";
 
 }  // namespace
 
 void WaveHistory::Add(const WaveProgress& progress, double now_s) {
-  if (progress.phase < newest_.phase || gone_) *this = {};
+  if (progress.phase < newest_.phase) *this = {};
+  gone_ = false;
   if (!begun_ && progress.phase == WavePhase::kRecording) {
     begun_ = true;
     began_s_ = now_s;
   }
   newest_ = progress;
   heard_s_ = now_s;
+  if (progress.phase != WavePhase::kRecording) return;
   Step step{static_cast<int>(std::lround(now_s - began_s_)), {}};
   for (const WavedClock& clock : progress.clocks) {
     if (clock.time_offset_s) step.sigmas[clock.camera] = clock.time_offset_s->sigma;
   }
-  if (step.sigmas.empty() || !begun_) return;
+  if (step.sigmas.empty()) return;
   if (!steps_.empty() && steps_.back().sigmas == step.sigmas) return;  // nothing new was solved
   if (!steps_.empty() && steps_.back().seconds >= step.seconds) steps_.pop_back();
   steps_.push_back(std::move(step));
@@ -50,9 +53,6 @@ void WaveHistory::Add(const WaveProgress& progress, double now_s) {
 bool WaveHistory::Update(double now_s) {
   if (heard_s_ == 0 || gone_ || IsOver(newest_.phase) || now_s - heard_s_ < kGone) return false;
   gone_ = true;
-  newest_.phase = WavePhase::kFailed;
-  newest_.left_s = 0;
-  newest_.text = "rgbdt sync live ended without a word, or was stopped; start it again";
   return true;
 }
 
@@ -77,8 +77,12 @@ nlohmann::json WaveHistory::Frame() const {
     }
     steps.push_back({{"seconds", step.seconds}, {"cameras", std::move(sigmas)}});
   }
-  return {{"type", "wave"},       {"phase", NameOf(newest_.phase)}, {"left_s", newest_.left_s},
-          {"text", newest_.text}, {"cameras", std::move(cameras)},  {"steps", std::move(steps)}};
+  return {{"type", "wave"},
+          {"phase", NameOf(gone_ ? WavePhase::kFailed : newest_.phase)},
+          {"left_s", gone_ ? 0 : newest_.left_s},
+          {"text", gone_ ? kGoneText : newest_.text},
+          {"cameras", std::move(cameras)},
+          {"steps", std::move(steps)}};
 }
 
 }  // namespace rgbdt::viewer

@@ -39,15 +39,18 @@ std::optional<Place> PlaceIn(const TimedSweep& sweep, const Vector6d& velocity) 
   return PlaceOf(points);
 }
 
-// A turned scanner's sweep, as if seen from where the LIDAR was in its middle; without the points
-// of which the way does not tell.
-Cloud Straightened(Cloud cloud, const OdometryResult& found) {
+// A turned scanner's sweep, as if seen from where the LIDAR was in its middle; without points that
+// are the rig's own or too far away, and those of which the way does not tell.
+TimedSweep Straightened(Cloud cloud, const OdometryResult& found, OdometryOptions options) {
   const Rigid3 middle_from_world = found.world_from_middle.Inverse();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const auto after =
         std::lower_bound(found.way.begin(), found.way.end(), cloud.utime[i],
                          [](const PoseAtTime& pose, Utime utime) { return pose.utime < utime; });
-    if (after == found.way.begin() || after == found.way.end()) {
+    const float range = cloud.points[i].norm();
+    const bool of_use = range >= static_cast<float>(options.min_range_m) &&
+                        range <= static_cast<float>(options.max_range_m);
+    if (!of_use || after == found.way.begin() || after == found.way.end()) {
       cloud.points[i].setConstant(std::numeric_limits<float>::quiet_NaN());
       continue;
     }
@@ -60,7 +63,13 @@ Cloud Straightened(Cloud cloud, const OdometryResult& found) {
         (middle_from_own * Eigen::Vector3d(cloud.points[i].cast<double>())).cast<float>();
   }
   cloud.utime.clear();
-  return cloud;
+  options.min_range_m = 0.05;  // near the middle's place may be what was far away
+  options.max_range_m = 2 * options.max_range_m;
+  TimedSweep sweep = TimeSweep(cloud, options);
+  sweep.first = found.first_utime;
+  sweep.middle = found.middle_utime;
+  sweep.last = found.utime;
+  return sweep;
 }
 
 }  // namespace
@@ -92,7 +101,7 @@ void KeyframeStore::Add(const Cloud& cloud, const OdometryResult& found) {
   if (!found.converged || !IsFar(found)) return;
   Keyframe frame;
   const bool drove = !found.way.empty();
-  frame.sweep = TimeSweep(drove ? Straightened(cloud, found) : cloud, odometry_);
+  frame.sweep = drove ? Straightened(cloud, found, odometry_) : TimeSweep(cloud, odometry_);
   frame.velocity = drove ? Vector6d(Vector6d::Zero()) : found.velocity;
   const auto place = PlaceIn(frame.sweep, frame.velocity);
   if (!place) return;

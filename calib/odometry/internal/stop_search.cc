@@ -98,9 +98,9 @@ Motion AfterStop(Motion motion, int lost) {
 }
 
 Motion SetOff(Motion motion) {
-  constexpr double kSpeed = 0.5;    // [m/s]
-  constexpr double kTurning = 0.2;  // [rad/s]
-  if (!motion.velocity.isZero(0)) return motion;
+  constexpr double kSpeed = 0.5;                     // [m/s]
+  constexpr double kTurning = 0.2;                   // [rad/s]
+  if (!motion.velocity.isZero(1e-9)) return motion;  // it drives
   Vector6d sigma;
   sigma << Eigen::Vector3d::Constant(kTurning), Eigen::Vector3d::Constant(kSpeed);
   const Matrix6d place = motion.covariance.topLeftCorner<6, 6>();

@@ -344,11 +344,11 @@ TEST(Odometry, ATurnedScannersRigThatCannotBeFollowedIsSaidToBeLost) {
   }
 }
 
-TEST(Odometry, ATurnedScannersRigStopsAfterADriveAndGoesOn) {
+TEST(Odometry, ATurnedScannersRigStandsAgainAfterADrive) {
   study::TurningDrive drive(6, Scanner(), 0.25);
   Odometry odometry;
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(odometry.Add(drive.Sweep(i)).converged) << i;
-  // It stands from here on: the sweeps of another drive's beginning, in the same room.
+  // It stands for this one.
   const Cloud sweep = drive.StandingSweep(3);
   const OdometryResult stood = odometry.Add(sweep);
   ASSERT_TRUE(stood.converged) << stood.reason;

@@ -427,6 +427,23 @@ TEST_F(LiveNodeTest, TargetStatusSaysWhoSeesTheBoard) {
   EXPECT_EQ(sensors[1].at("text"), "3.1 m away");
 }
 
+TEST(LiveNode, WhatComesBeforeTheRigHarmsNothing) {
+  Posts posts;
+  LiveNode node;
+  node.PostTo(&posts);
+  CalibrationMessage calibration;
+  calibration.calibration.camera = "rgb";
+  calibration.calibration.status = SolveStatus::kConverged;
+  calibration.calibration.covariance = Matrix6d::Identity();
+  node.Handle(calibration);
+  WaveProgress wave;
+  wave.clocks = {{"stranger", std::nullopt, ""}};
+  node.Handle(wave);
+  node.Advance(kMicrosecondsPerSecond);
+  EXPECT_NE(posts.Newest("session"), nullptr);
+  EXPECT_EQ(posts.Newest("wave"), nullptr);
+}
+
 TEST_F(LiveNodeTest, AWavedBoardIsPostedAndThatItWentWithoutAWord) {
   WaveProgress wave;
   wave.phase = WavePhase::kRecording;
