@@ -16,6 +16,7 @@ run(async () => {
     return found ? { offset: Number(found[1].replace("−", "-")), sigma: Number(found[2]) } : null;
   };
 
+  writeFileSync(join(process.env.RGBDT_SCRATCH, "page_open"), "");
   await phaseIs("waiting");
   require((await byId(page, "wave-text").innerText()).includes("aiting for a sweep"), "it does not say what it waits for");
   writeFileSync(join(process.env.RGBDT_SCRATCH, "page_waits"), "");

@@ -11,13 +11,13 @@ source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
   --out "$scratch/file" >"$scratch/file.log" 2>&1 || fail "the log tells no offset"
 
 start_viewer
-start live "$bin/rgbdt" sync live --seconds 14 --calibration "$scratch/calibration.textproto" \
-  --out "$scratch/live"
-wait_for_line live 'waiting for a sweep' >/dev/null
-# So slowly that there is time to say what it knows so far, on a busy machine, too; once the page
-# waits for it.
-start player sh -c 'while [ ! -e "$1/page_waits" ]; do sleep 0.1; done
-  exec lcm-logplayer --speed=0.35 "$1/wave.lcmlog"' sh "$scratch"
+# Once the page is there, and the log so slowly that there is time to say what it knows so far, on a
+# busy machine, too.
+# shellcheck disable=SC2016 # $1 and $@ are the inner shell's
+once='while [ ! -e "$1" ]; do sleep 0.1; done; shift; exec "$@"'
+start live sh -c "$once" sh "$scratch/page_open" "$bin/rgbdt" sync live --seconds 14 \
+  --calibration "$scratch/calibration.textproto" --out "$scratch/live"
+start player sh -c "$once" sh "$scratch/page_waits" lcm-logplayer --speed=0.35 "$scratch/wave.lcmlog"
 drive "$scratch/live"
 wait_for live || fail "rgbdt sync live ended with exit code $?"
 grep -Eq 'wave the board: [1-9][0-9]* s left; [0-9]+ CLOUD, .*[0-9]+ RGB_IMAGE' "$scratch/live.log" ||

@@ -355,9 +355,10 @@ Messages LiveNode::Advance(Utime now) {
 }
 
 void LiveNode::OnWave(const WaveProgress& progress) {
-  if (!rig_) return;
   for (const WavedClock& clock : progress.clocks) RequireCamera(clock.camera);
-  wave_.Add(progress, now_s_);
+  WaveProgress taken = progress;
+  if (!rig_) taken.clocks.clear();  // of cameras that nobody knows
+  wave_.Add(taken, now_s_);
   wave_changed_ = true;
 }
 

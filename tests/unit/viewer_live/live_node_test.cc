@@ -441,7 +441,8 @@ TEST(LiveNode, WhatComesBeforeTheRigHarmsNothing) {
   node.Handle(wave);
   node.Advance(kMicrosecondsPerSecond);
   EXPECT_NE(posts.Newest("session"), nullptr);
-  EXPECT_EQ(posts.Newest("wave"), nullptr);
+  EXPECT_EQ(posts.Header("wave").at("phase"), "waiting");
+  EXPECT_TRUE(posts.Header("wave").at("cameras").empty());
 }
 
 TEST_F(LiveNodeTest, AWavedBoardIsPostedAndThatItWentWithoutAWord) {
