@@ -22,7 +22,7 @@ run(async () => {
   writeFileSync(join(process.env.RGBDT_SCRATCH, "page_waits"), "");
   await phaseIs("recording");
   const left = numberOf(await byId(page, "wave-left").innerText());
-  require(left > 0 && left <= 14, `${left} s left of 14`);
+  require(left > 0 && left <= 22, `${left} s left of 22`);
   await byId(page, "wave-rgb").waitFor();
   const first = await until("an offset", clock);
   await shot(page, "first");

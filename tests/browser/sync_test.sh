@@ -15,9 +15,9 @@ start_viewer
 # busy machine, too.
 # shellcheck disable=SC2016 # $1 and $@ are the inner shell's
 once='while [ ! -e "$1" ]; do sleep 0.1; done; shift; exec "$@"'
-start live sh -c "$once" sh "$scratch/page_open" "$bin/rgbdt" sync live --seconds 14 \
+start live sh -c "$once" sh "$scratch/page_open" "$bin/rgbdt" sync live --seconds 22 \
   --calibration "$scratch/calibration.textproto" --out "$scratch/live"
-start player sh -c "$once" sh "$scratch/page_waits" lcm-logplayer --speed=0.35 "$scratch/wave.lcmlog"
+start player sh -c "$once" sh "$scratch/page_waits" lcm-logplayer --speed=0.22 "$scratch/wave.lcmlog"
 drive "$scratch/live"
 wait_for live || fail "rgbdt sync live ended with exit code $?"
 grep -Eq 'wave the board: [1-9][0-9]* s left; [0-9]+ CLOUD, .*[0-9]+ RGB_IMAGE' "$scratch/live.log" ||
