@@ -74,11 +74,7 @@ void WriteLoop(const char* path) {
 
 // A turned scanner in a room: the rig stands for the first sweep and drives through two more.
 void WriteTurned(const char* path) {
-  rgbdt::simulate::ScannerOptions scanner = rgbdt::simulate::FullTurnScanner();
-  scanner.motor_speed_rad_s *= 8;
-  scanner.beams /= 2;
-  scanner.angle_step_rad *= 2;
-  rgbdt::study::TurningDrive drive(5, scanner, 0.4);
+  rgbdt::study::TurningDrive drive(5, rgbdt::study::QuickScanner(), 0.4);
   rgbdt::test::LogWriter log(path);
   for (int i = 0; i < 3; ++i) {
     for (const rgbdt::CloudChunk& chunk : rgbdt::SplitSweep(drive.Sweep(i))) Write(&log, chunk);

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "calib/model/pose_track.h"
 #include "calib/scan_assembly/sweep_chunks.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/nodes/twins.h"
@@ -117,11 +118,7 @@ TEST(OdometryNode, SaysWhereATurnedScannersRigStoodForASweep) {
 
 // The sweeps' ways end where the next one's begin: no pose is told twice.
 TEST(OdometryNode, SaysTheWayThatATurnedScannersRigDroveDuringASweep) {
-  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
-  scanner.motor_speed_rad_s *= 8;
-  scanner.beams /= 2;
-  scanner.angle_step_rad *= 2;
-  study::TurningDrive drive(5, scanner, 0.4);
+  study::TurningDrive drive(5, study::QuickScanner(), 0.4);
   OdometryNode node;
   std::vector<StampedPose> poses;
   for (int i = 0; i < 3; ++i) {

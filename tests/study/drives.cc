@@ -327,6 +327,14 @@ Cloud Drive::Sweep(int number) {
   return MovingSweep(*world_, lidar_, options_.seed, utime, [this](Utime at) { return At(at); });
 }
 
+simulate::ScannerOptions QuickScanner() {
+  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
+  scanner.motor_speed_rad_s *= 8;
+  scanner.beams /= 2;
+  scanner.angle_step_rad *= 2;
+  return scanner;
+}
+
 Stops::Stops(std::uint64_t seed, const simulate::ScannerOptions& scanner, double apart_m)
     : scanner_(scanner, seed),
       way_([way = RoomWay(seed, 1), apart_m](double number) { return way(apart_m * number); }) {

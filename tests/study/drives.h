@@ -74,6 +74,10 @@ class Drive {
   double world_x_ = 0;
 };
 
+/// FullTurnScanner eight times as fast, with half the beams: all the way round in 3.75 s, by 139
+/// lines.
+simulate::ScannerOptions QuickScanner();
+
 /// Sweeps of a turned scanner on a rig that stands for each, in a furnished room, and goes on along
 /// RoomWay in between. Sweep and noise are functions of (seed, number).
 class Stops {

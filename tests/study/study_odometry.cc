@@ -52,15 +52,6 @@ void WritePose(std::ostream& out, const Rigid3& pose) {
       << pose.rotation.w();
 }
 
-// All the way round in 3.75 s, by 139 lines.
-simulate::ScannerOptions QuickScanner() {
-  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
-  scanner.motor_speed_rad_s *= 8;
-  scanner.beams /= 2;
-  scanner.angle_step_rad *= 2;
-  return scanner;
-}
-
 /// Sweep by sweep; and where the LIDAR truly was, by the sweep's number and the time of its pose.
 struct Source {
   std::function<Cloud(int number)> sweep;

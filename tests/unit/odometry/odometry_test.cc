@@ -255,17 +255,8 @@ TEST(Odometry, WhatCannotBeTakenIsAsIfItHadNeverCome) {
   }
 }
 
-// A quarter of the lines and beams.
-simulate::ScannerOptions Scanner() {
-  simulate::ScannerOptions scanner = simulate::FullTurnScanner();
-  scanner.motor_speed_rad_s *= 8;
-  scanner.beams /= 2;
-  scanner.angle_step_rad *= 2;
-  return scanner;
-}
-
 TEST(Odometry, ATurnedScannersRigStandsForEachSweepAndGoesOnInBetween) {
-  const study::Stops stops(5, Scanner(), 1.2);
+  const study::Stops stops(5, study::QuickScanner(), 1.2);
   Odometry odometry;
   for (int i = 0; i < 6; ++i) {
     const Cloud sweep = stops.Sweep(i);
@@ -283,7 +274,7 @@ TEST(Odometry, ATurnedScannersRigStandsForEachSweepAndGoesOnInBetween) {
 }
 
 TEST(Odometry, ATurnedScannersSweepFromElsewhereIsSaidAndTheNextOneGoesOn) {
-  const study::Stops stops(5, Scanner(), 1.2), elsewhere(6, Scanner(), 1.2);
+  const study::Stops stops(5, study::QuickScanner(), 1.2), elsewhere(6, study::QuickScanner(), 1.2);
   Odometry odometry;
   odometry.Add(stops.Sweep(0));
   odometry.Add(stops.Sweep(1));
@@ -298,7 +289,7 @@ TEST(Odometry, ATurnedScannersSweepFromElsewhereIsSaidAndTheNextOneGoesOn) {
 }
 
 TEST(Odometry, ATurnedScannersRigDrivesWhileItSweeps) {
-  study::TurningDrive drive(5, Scanner(), 0.5);
+  study::TurningDrive drive(5, study::QuickScanner(), 0.5);
   Odometry odometry;
   Utime until = 0;
   for (int i = 0; i < 5; ++i) {
@@ -333,7 +324,7 @@ TEST(Odometry, ATurnedScannersRigDrivesWhileItSweeps) {
 
 // What was said to stand was up to 0.3 m off, with a sigma of some millimetres.
 TEST(Odometry, ATurnedScannersRigThatCannotBeFollowedIsSaidToBeLost) {
-  study::TurningDrive drive(5, Scanner(), 2.5);
+  study::TurningDrive drive(5, study::QuickScanner(), 2.5);
   Odometry odometry;
   odometry.Add(drive.Sweep(0));
   for (int i = 1; i < 4; ++i) {
@@ -345,7 +336,7 @@ TEST(Odometry, ATurnedScannersRigThatCannotBeFollowedIsSaidToBeLost) {
 }
 
 TEST(Odometry, ATurnedScannersRigStandsAgainAfterADrive) {
-  study::TurningDrive drive(6, Scanner(), 0.25);
+  study::TurningDrive drive(6, study::QuickScanner(), 0.25);
   Odometry odometry;
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(odometry.Add(drive.Sweep(i)).converged) << i;
   // It stands for this one.
@@ -360,7 +351,7 @@ TEST(Odometry, ATurnedScannersRigStandsAgainAfterADrive) {
 
 // The last lines of a sweep that began before the odometry did.
 TEST(Odometry, APartOfATurnedScannersSweepDoesNotDecideWhatTheLidarIs) {
-  const study::Stops stops(5, Scanner(), 0.5);
+  const study::Stops stops(5, study::QuickScanner(), 0.5);
   Cloud part = stops.Sweep(0);
   const std::size_t keep = part.size() / 8;
   for (std::size_t i = keep; i < part.size(); ++i) part.points[i].setConstant(NAN);
@@ -386,7 +377,7 @@ Cloud Twice(Cloud sweep) {
 }
 
 TEST(Odometry, AStopThatFitsTwoPlacesIsNotTakenForOneOfThem) {
-  const study::Stops stops(5, Scanner(), 0);
+  const study::Stops stops(5, study::QuickScanner(), 0);
   Odometry odometry;
   odometry.Add(Twice(stops.Sweep(0)));
   const OdometryResult result = odometry.Add(Twice(stops.Sweep(1)));
