@@ -386,8 +386,8 @@ Utime TurningDrive::BeginOf(int number) const {
 Rigid3 TurningDrive::At(Utime utime) const { return way_(ToSeconds(utime - kStart)); }
 
 Cloud TurningDrive::StandingSweep(int number) {
-  const Rigid3 pose = At(BeginOf(number));
-  return scanner_.Sweep(*world_, BeginOf(number), 0, [&](Utime) { return pose; });
+  const Utime begin = BeginOf(number);
+  return scanner_.Sweep(*world_, begin, 0, [this, begin](Utime) { return At(begin); });
 }
 
 Cloud TurningDrive::Sweep(int number) {
