@@ -28,11 +28,9 @@ double PointSpacing::Histogram::Median() const {
   return 0;
 }
 
-void PointSpacing::Pair::Add(const std::optional<Eigen::Vector2d>& a,
-                             const std::optional<Eigen::Vector2d>& b) {
-  if (!a || !b) return;
-  u.Add(std::abs(a->x() - b->x()));
-  v.Add(std::abs(a->y() - b->y()));
+void PointSpacing::Pair::Add(const Eigen::Vector2d& apart) {
+  u.Add(std::abs(apart.x()));
+  v.Add(std::abs(apart.y()));
 }
 
 // Within the image; nothing for a miss.
@@ -67,9 +65,15 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& ca
                                               : nullptr;
     for (std::size_t beam = 1; beam < beams; beam += kEvery) {
       const auto here = far(points[beam]);
-      if (!here) continue;
-      beams_.Add(here, far(points[beam - 1]));
-      if (before != nullptr) lines_.Add(here, far(before[beam]));
+      const auto beside = here ? far(points[beam - 1]) : std::nullopt;
+      if (!beside) continue;
+      const Eigen::Vector2d along = *here - *beside;
+      beams_.Add(along);
+      const auto other = before != nullptr ? far(before[beam]) : std::nullopt;
+      if (!other || !(along.squaredNorm() > 0)) continue;
+      // Beams of one number may lie far apart along the lines (an Ouster's columns are staggered).
+      const Eigen::Vector2d apart = *here - *other;
+      lines_.Add(apart - along * (along.dot(apart) / along.squaredNorm()));
     }
   }
   line_before_.clear();

@@ -12,9 +12,9 @@
 namespace rgbdt {
 
 /// How far apart a LIDAR's neighbouring points lie in a camera's image: medians over beams of a
-/// line and over lines, of organised clouds by their directions alone (as if all were far away), so
-/// that neither the scene nor how the rig moves has a say. Takes clouds line by line or as a whole
-/// and looks at a sample of their points; bounded in memory.
+/// line and, across these, over lines, of organised clouds by their directions alone (as if all
+/// were far away), so that neither the scene nor how the rig moves has a say. Takes clouds line by
+/// line or as a whole and looks at a sample of their points; bounded in memory.
 class PointSpacing {
  public:
   explicit PointSpacing(const Camera& camera) : camera_(camera) {}
@@ -38,7 +38,7 @@ class PointSpacing {
   };
   struct Pair {
     Histogram u, v;
-    void Add(const std::optional<Eigen::Vector2d>& a, const std::optional<Eigen::Vector2d>& b);
+    void Add(const Eigen::Vector2d& apart);
   };
 
   void AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& camera_from_lidar);

@@ -12,6 +12,7 @@
 #include "calib/methods/single_shot/by_single_shot.h"
 #include "calib/solve/by_boards.h"
 #include "calib/solve/camera_views.h"
+#include "calib/solve/colouring.h"
 #include "calib/solve/evaluate.h"
 
 namespace rgbdt {
@@ -85,6 +86,7 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
       views.report.first_guess = camera.camera_from_lidar_guess;
     }
     views.report.calibration = *found;
+    if (found->covariance) views.report.sigma = SigmaOf(camera, *found);
     if (found->lens) views = PosedAgain(std::move(views), found->lens->lens, rig.target);
     views.Describe();
     const EdgeModel edges{rig.target, BoardPriors().Means(), {}};

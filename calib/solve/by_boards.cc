@@ -19,6 +19,7 @@
 #include "calib/solve/internal/given_wrong.h"
 #include "calib/solve/internal/joint_solve.h"
 #include "calib/solve/internal/lidar_reports.h"
+#include "calib/solve/internal/mount_moved.h"
 #include "calib/solve/internal/next_view.h"
 #include "calib/solve/internal/nuisances.h"
 #include "calib/solve/internal/scatter_sigmas.h"
@@ -269,6 +270,7 @@ CalibratedCameras CalibrateAsTheyAre(const Target& target, const CalibrateOption
   pairing.first_guess.accept = kVotingGate;  // what contradicts the rest is found by the solve
   std::vector<GuessedCamera> guessed = GuessOrSayWhyNot(target, pairing, &cameras);
   out.rough_encoder_delay = RoughEncoderDelay(guessed);
+  out.mount_breaks = LikeliestBreaks(guessed);
   for (const std::vector<std::size_t>& group : GroupsOf(guessed, options.joint)) {
     std::vector<GuessedCamera> together;
     std::vector<CameraViews> detected;
@@ -298,10 +300,17 @@ CalibratedCameras CalibrateAsTheyAre(const Target& target, const CalibrateOption
 CalibratedCameras CalibrateWithLidars(const Target& target, const CalibrateOptions& options,
                                       std::vector<CameraViews> cameras,
                                       std::vector<LidarViews> lidars) {
+  CalibrateOptions poses_alone = options;
+  poses_alone.diagnostics = false;
+  poses_alone.min_views = 2;
   return CalibrateWithoutEncoderDelay([&](double delay_s) {
     std::vector<CameraViews> turned = cameras;
     for (CameraViews& camera : turned) camera = WithoutEncoderDelay(std::move(camera), delay_s);
-    return CalibrateAsTheyAre(target, options, std::move(turned), lidars);
+    CalibratedCameras found = CalibrateAsTheyAre(target, options, turned, lidars);
+    if (!options.diagnostics) return found;
+    return WithMovedMountNamed(std::move(found), turned, [&](std::vector<CameraViews> split) {
+      return CalibrateAsTheyAre(target, poses_alone, std::move(split), {});
+    });
   });
 }
 

@@ -36,6 +36,25 @@ struct Pair {
   }
 };
 
+// By how much it puts the camera beside a pose.
+BesideGuess Beside(const Pair& pair, const Rigid3& camera_from_lidar) {
+  const Matrix6d adjoint = Adjoint(camera_from_lidar);
+  BesideGuess beside{
+      Log(pair.CameraFromLidar() * camera_from_lidar.Inverse()),
+      pair.in_camera->covariance + adjoint * pair.in_lidar->covariance * adjoint.transpose()};
+  // Nothing is exact: a tenth of a milliradian, a tenth of a millimetre.
+  beside.covariance.diagonal().array() += 1e-8;
+  return beside;
+}
+
+// How it moves the camera's pose that ranges are off by a metre.
+Vector6d ByRangeOffset(const Pair& pair, const Rigid3& camera_from_lidar) {
+  Vector6d by = Vector6d::Zero();
+  by.tail<3>() =
+      camera_from_lidar.rotation * pair.in_lidar->sensor_from_target.translation.normalized();
+  return by;
+}
+
 // In which a view's board may be paired with a candidate. One with a pattern knows its width.
 std::vector<int> TurnsOf(const CameraView& view) {
   return view.image->corners.empty() ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{0, 2};
@@ -74,6 +93,11 @@ CandidateChoice Nearest(const CameraView& view, const Mount& mount, const PoseGa
     }
   }
   return best;
+}
+
+Pair PairOf(const CameraView& view, const CandidateChoice& choice) {
+  const CloudEdges& candidate = *view.candidates[static_cast<std::size_t>(choice.candidate)];
+  return {&*view.image->pose, &*candidate.pose, choice.quarter_turns};
 }
 
 bool HasPoses(const CameraView& view) {
@@ -152,21 +176,13 @@ FirstGuess AverageFrom(const Rigid3& start, const Views& views, const FirstGuess
           Nearest(*view, {pose, offset}, round < 4 ? kVotingGate : options.accept);
       if (choice.cost >= 1) continue;
       ++guess.agreeing;
-      const TargetPose& in_lidar =
-          *view->candidates[static_cast<std::size_t>(choice.candidate)]->pose;
-      const Pair pair{&*view->image->pose, &in_lidar, choice.quarter_turns};
-      const Matrix6d adjoint = Adjoint(pose);
-      Matrix6d covariance =
-          pair.in_camera->covariance + adjoint * in_lidar.covariance * adjoint.transpose();
-      // Nothing is exact: a tenth of a milliradian, a tenth of a millimetre.
-      covariance.diagonal().array() += 1e-8;
-      const Vector6d delta = Log(pair.CameraFromLidar() * pose.Inverse());
-      Eigen::Matrix<double, 6, 7> j = Eigen::Matrix<double, 6, 7>::Zero();
+      const Pair pair = PairOf(*view, choice);
+      const BesideGuess beside = Beside(pair, pose);
+      Eigen::Matrix<double, 6, 7> j;
       j.leftCols<6>().setIdentity();
-      j.block<3, 1>(3, 6) = pose.rotation * in_lidar.sensor_from_target.translation.normalized();
-      Vector6d residual = delta;
-      residual -= j.col(6) * offset;
-      const Matrix6d weight = InverseOfSymmetric(covariance);
+      j.col(6) = ByRangeOffset(pair, pose);
+      const Vector6d residual = beside.delta - j.col(6) * offset;
+      const Matrix6d weight = InverseOfSymmetric(beside.covariance);
       // Beyond what six Gaussian unknowns do in 3 of 10,000 views, a view counts less.
       const double robust = std::min(1.0, 25 / std::max(1e-12, residual.dot(weight * residual)));
       information += robust * j.transpose() * weight * j;
@@ -289,6 +305,17 @@ CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_fro
   CandidateChoice choice = Nearest(view, {camera_from_lidar, range_offset_m}, gate);
   if (choice.cost >= 1) choice.candidate = -1;
   return choice;
+}
+
+std::optional<BesideGuess> BesideGuessOf(const CameraView& view, const FirstGuess& guess) {
+  if (!guess.camera_from_lidar) return std::nullopt;
+  const Rigid3& pose = *guess.camera_from_lidar;
+  const CandidateChoice choice = ChooseCandidate(view, pose, kJudgeGate, guess.range_offset_m);
+  if (choice.candidate < 0) return std::nullopt;
+  const Pair pair = PairOf(view, choice);
+  BesideGuess beside = Beside(pair, pose);
+  beside.delta -= ByRangeOffset(pair, pose) * guess.range_offset_m;
+  return beside;
 }
 
 CameraView WithChosenCandidate(CameraView view, const Rigid3& camera_from_lidar,

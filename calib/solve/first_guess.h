@@ -77,6 +77,15 @@ FirstGuess GuessFromBoards(const std::vector<const CameraView*>& all,
 CandidateChoice ChooseCandidate(const CameraView& view, const Rigid3& camera_from_lidar,
                                 const PoseGate& gate = kAcceptGate, double range_offset_m = 0);
 
+/// Where one view alone puts the camera: camera_from_lidar = Exp(delta) * guess.
+struct BesideGuess {
+  Vector6d delta;
+  Matrix6d covariance;  ///< of delta, as image and cloud state it
+};
+
+/// By the candidate that fits best; nothing where none is near (kJudgeGate).
+std::optional<BesideGuess> BesideGuessOf(const CameraView& view, const FirstGuess& guess);
+
 /// The view with its `cloud` the candidate that fits, its image turned by a quarter where that is
 /// how the two fit; or rejected, with how far off the nearest one
 /// lies. Without poses (the paper's method) it stays as it is.

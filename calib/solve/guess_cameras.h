@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calib/model/comparison.h"
@@ -41,6 +42,12 @@ struct EncoderDelay {
   bool IsTold() const { return BothWays() && stated_sigma_s < known_sigma_s; }
 };
 
+/// Two views, one behind the other, between which a mount seems to have moved.
+struct MountBreak {
+  std::string last_before, first_after;
+  Utime utime = 0;  ///< of the first one's image
+};
+
 /// What a method makes of the cameras' views: each one's report, and what they say together.
 struct CalibratedCameras {
   std::vector<CameraViews> cameras;
@@ -52,6 +59,7 @@ struct CalibratedCameras {
   /// no motor turned, or not told.
   std::optional<EncoderDelay> encoder_delay{};
   std::optional<Estimate> rough_encoder_delay{};  ///< [s]
+  std::vector<MountBreak> mount_breaks{};         ///< by each view alone, the likeliest first
 };
 
 /// A camera and where the first guess puts it. With a pose, its usable views know their board;

@@ -35,6 +35,7 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->first_guess = before.first_guess;
   camera->contradiction = before.contradiction;
   camera->cannot_tell = before.cannot_tell;
+  camera->causes = before.causes;
   camera->view_scatter = before.view_scatter;
   camera->variance_factor = before.variance_factor;
   camera->other_starts = before.other_starts;
@@ -75,15 +76,26 @@ void KeepFromSolve(const Report& before, std::vector<LidarReport>* lidars) {
   }
 }
 
-// What only the solve could tell is kept from the report that it wrote; what it tells of the
-// cameras together, where all of them are still the same.
-void KeepFromSolve(const std::filesystem::path& path, Report* report) {
-  if (!std::filesystem::exists(path)) return;
-  const Report before = ReadReport(path);
+constexpr char kNoReport[] =
+    "Beside the calibration lies no report of its solve: what that has found (causes, halves, "
+    "scatter of the views) is not known here.";
+
+// What only the solve could tell is kept from the report that it wrote, beside the calibration or,
+// where that lies elsewhere, in the session; what it tells of the cameras together, where all of
+// them are still the same.
+void KeepFromSolve(const CalibrationFiles& files, const std::filesystem::path& session,
+                   Report* report) {
+  std::filesystem::path path = files.calibration.parent_path() / "report.json";
+  if (!std::filesystem::exists(path)) path = session / "report.json";
+  const Report before = std::filesystem::exists(path) ? ReadReport(path) : Report();
   bool all_same = true;
   for (CameraReport& camera : report->cameras) {
     const CameraReport* same = FindSame(before, camera.calibration);
-    if (same != nullptr) KeepFromSolve(*same, &camera);
+    if (same != nullptr) {
+      KeepFromSolve(*same, &camera);
+    } else if (report->method == kAutoMethod) {
+      camera.cannot_tell = kNoReport;
+    }
     all_same = all_same && same != nullptr;
   }
   KeepFromSolve(before, &report->lidars);
@@ -104,7 +116,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
       DetectSession(session, by_paper ? kPaperMethod : kAutoMethod, PrintProgress);
   RequireReadable(session, detection.unreadable);
   Report report = Evaluate(session.rig, detection.views, calibration);
-  KeepFromSolve(session.root / "report.json", &report);
+  KeepFromSolve(files, session.root, &report);
   report = WithUnlisted(std::move(report), session, detection.views);
   const auto truth = TruthPath(flags.truth, session.root);
   if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));

@@ -78,7 +78,8 @@ void WriteIntrinsics(const fs::path& out, const Session& session, const Rig& rig
               out.c_str());
   const fs::path in_use = session.root / "rig.textproto";
   if (fs::weakly_canonical(out) != fs::weakly_canonical(in_use)) {
-    std::printf("next: mv %s %s\n", out.c_str(), in_use.c_str());
+    std::printf("next: mv %s %s && rgbdt calibrate %s\n", ForShell(out).c_str(),
+                ForShell(in_use).c_str(), ForShell(session.root).c_str());
   }
 }
 

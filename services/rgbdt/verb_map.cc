@@ -180,7 +180,7 @@ int RunDrive(const MapFlags& flags) {
   WritePng(picture, MapPicture(map, places, PlacesOfLoops(drive)));
   TellDrive(drive);
   std::printf("wrote %s (the way, in TUM's format) and %s (from above)\nnext: rgbdt terrain %s\n",
-              way.c_str(), picture.c_str(), flags.out.c_str());
+              way.c_str(), picture.c_str(), ForShell(flags.out).c_str());
   return EndsWith(true);
 }
 
@@ -198,7 +198,7 @@ int RunMap(const MapFlags& flags) {
                      "record either channel, as rgbdt-fuser or the LIDAR publishes it");
   }
   WriteMap(flags, node, node.map().Cloud(), read.clouds);
-  std::printf("next: rgbdt terrain %s\n", flags.out.c_str());
+  std::printf("next: rgbdt terrain %s\n", ForShell(flags.out).c_str());
   return EndsWith(true);
 }
 

@@ -147,7 +147,7 @@ int FinishSession(const std::string& session_dir, const std::vector<std::string>
         session_dir.c_str());
     return 1;
   }
-  std::printf("next: rgbdt calibrate %s\n", session_dir.c_str());
+  std::printf("next: rgbdt calibrate %s\n", ForShell(session_dir).c_str());
   return 0;
 }
 

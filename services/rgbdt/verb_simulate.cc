@@ -132,7 +132,7 @@ int RunSimulate(SimulateFlags flags) {
   std::printf("wrote %s: rig.textproto, %d views, truth.textproto\n", flags.dir.c_str(),
               flags.views);
   if (!options.natural.on || options.natural.board) {
-    std::printf("next: rgbdt calibrate %s\n", flags.dir.c_str());
+    std::printf("next: rgbdt calibrate %s\n", ForShell(flags.dir).c_str());
   }
   return EndsWith(true);
 }

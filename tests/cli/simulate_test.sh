@@ -20,9 +20,11 @@ for kind in "vlp16 16 1800" "64 64 2118"; do
   [ -s "$session/views/0001/thermal.png" ] || complain "$lidar: no thermal image"
 done
 
-accepts "the turned scanner by name" "$bin/rgbdt" simulate "$scratch/named" --views 1 --lidar turned
+accepts "the turned scanner by name" "$bin/rgbdt" simulate "$scratch/by name" --views 1 --lidar turned
+grep -qF "next: rgbdt calibrate '$scratch/by name'" "$scratch/output" ||
+  complain "what is next is no command: $(tail -1 "$scratch/output")"
 accepts "the turned scanner by default" "$bin/rgbdt" simulate "$scratch/default" --views 1
-diff -r "$scratch/named" "$scratch/default" >"$scratch/output" 2>&1 ||
+diff -r "$scratch/by name" "$scratch/default" >"$scratch/output" 2>&1 ||
   complain "the turned scanner is not the default"
 grep -q turned_scanner "$scratch/named/rig.textproto" || complain "the turned scanner has no motor"
 

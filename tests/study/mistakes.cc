@@ -13,6 +13,7 @@ namespace rgbdt::study {
 namespace {
 
 constexpr char kPairing[] = "pairs of images and clouds";
+constexpr char kContradicts[] = "a view contradicts the others";
 constexpr char kSizeInCloud[] = "board's size in the cloud";
 
 double At(const Mistake& mistake, const std::array<double, 3>& sizes) {
@@ -81,8 +82,16 @@ const std::map<std::string, std::set<std::string>>& NamesOfMistakes() {
       {"board", {"board's size", kSizeInCloud}},
       {"size", {"board's size", kSizeInCloud}},
       {"place", {"pattern's place"}},
-      {"pairs", {kPairing}}};
+      {"pairs", {kPairing}},
+      {"bumped", {"mount"}},
+      {"moved", {kContradicts}}};
   return kNames;
+}
+
+// The beams, too, where the cloud has them.
+void Move(const Eigen::Quaternionf& rotation, const Eigen::Vector3f& by, Cloud* cloud) {
+  for (Eigen::Vector3f& point : cloud->points) point = rotation * point + by;
+  for (Eigen::Vector3f& direction : cloud->directions) direction = rotation * direction;
 }
 
 // More than half of a camera's views, with these words in the reason.
@@ -119,15 +128,23 @@ Rig WithMistake(const Mistake& mistake, Rig rig) {
   return rig;
 }
 
-Cloud WithMistake(const Mistake& mistake, Cloud cloud) {
-  if (mistake.name != "scale") return cloud;
-  const auto by = static_cast<float>(At(mistake, {1.01, 1.03, 1.1}));
-  for (Eigen::Vector3f& point : cloud.points) point *= by;
+Cloud WithMistake(const Mistake& mistake, Cloud cloud, std::size_t view, std::size_t views) {
+  if (mistake.name == "scale") {
+    const auto by = static_cast<float>(At(mistake, {1.01, 1.03, 1.1}));
+    for (Eigen::Vector3f& point : cloud.points) point *= by;
+  } else if (mistake.name == "bumped" && 3 * view >= 2 * views) {
+    const auto angle = static_cast<float>(At(mistake, {0.2, 0.5, 1.0}) * M_PI / 180);
+    Move(Eigen::Quaternionf(Eigen::AngleAxisf(angle, Eigen::Vector3f(1, 2, 2) / 3)), {0, 0, 0},
+         &cloud);
+  } else if (mistake.name == "moved" && view == 1) {
+    Move(Eigen::Quaternionf::Identity(),
+         {0, static_cast<float>(At(mistake, {0.015, 0.03, 0.1})), 0}, &cloud);
+  }
   return cloud;
 }
 
 bool IsOfTheCloud(const Mistake& mistake) {
-  static const std::set<std::string> kNames = {"board", "size", "scale"};
+  static const std::set<std::string> kNames = {"board", "size", "scale", "bumped", "moved"};
   return kNames.count(mistake.name) > 0;
 }
 
@@ -166,6 +183,11 @@ std::vector<std::string> CausesRead(const CameraReport& camera) {
       if (said && read.size() < kRead) read.push_back(cause.name);
     }
   }
+  const bool contradicted =
+      std::any_of(camera.rejected.begin(), camera.rejected.end(), [](const RejectedView& view) {
+        return view.why.find("contradicts the other") != std::string::npos;
+      });
+  if (contradicted && read.size() < kRead) read.emplace_back(kContradicts);
   return read;
 }
 

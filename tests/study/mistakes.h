@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace rgbdt::study {
 
-/// What people give wrong in a rig file, or in what lies beside it.
+/// What people give wrong in a rig file, or in what lies beside it, or do while views are taken.
 struct Mistake {
   std::string name;  ///< "none": the rig as it is
   int size = 0;      ///< 1 small, 2 middling, 3 large
@@ -23,8 +24,9 @@ std::vector<Mistake> AllMistakes(const Target& target);
 /// The rig with the mistake in it.
 Rig WithMistake(const Mistake& mistake, Rig rig);
 
-/// A view's cloud with the mistake in it: scaled.
-Cloud WithMistake(const Mistake& mistake, Cloud cloud);
+/// The cloud of view `view` of so many with the mistake in it: scaled; turned, as the mount was
+/// bumped when two thirds of the views were taken; moved, as in one view the board was.
+Cloud WithMistake(const Mistake& mistake, Cloud cloud, std::size_t view, std::size_t views);
 
 /// Whether it changes what is found of a board in a cloud: its size, or the cloud.
 bool IsOfTheCloud(const Mistake& mistake);

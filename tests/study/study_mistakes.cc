@@ -145,7 +145,7 @@ void RunSampled(const std::string& sensor, int sessions, std::uint64_t seed,
       for (std::size_t v = 0; v < session->views.size(); ++v) {
         std::optional<Cloud> cloud;
         if (mistake.name == "none" || IsOfTheCloud(mistake)) {
-          cloud = WithMistake(mistake, session->views[v].cloud);
+          cloud = WithMistake(mistake, session->views[v].cloud, v, session->views.size());
         }
         views.push_back(SeenBy(rig, cloud ? &*cloud : nullptr, clouds[v], session->detections[v]));
         if (mistake.name == "none") clouds[v] = views.back().cloud;
@@ -166,9 +166,9 @@ void RunRecorded(const std::string& dir, const std::string& path) {
   for (const Mistake& mistake : AllMistakes(session.rig.target)) {
     const Rig rig = WithMistake(mistake, session.rig);
     std::vector<ViewDetection> views;
-    for (const std::string& name : session.views) {
-      View view = ReadView(session, name);
-      view.cloud = WithMistake(mistake, std::move(view.cloud));
+    for (std::size_t v = 0; v < session.views.size(); ++v) {
+      View view = ReadView(session, session.views[v]);
+      view.cloud = WithMistake(mistake, std::move(view.cloud), v, session.views.size());
       views.push_back(DetectView(rig, view));
     }
     const Report report = Calibrate(rig, PairedApart(std::move(views), ViewsApart(mistake)));

@@ -25,6 +25,12 @@ bool WasJudged(const CameraReport* report) {
          (report->edge_rms_px.train || report->edge_rms_px.heldout || report->scene);
 }
 
+// Of enough views no pose came.
+bool HasFailed(const JudgedCamera& camera) {
+  return camera.report != nullptr && camera.views_found >= kEnoughViews &&
+         !camera.report->calibration.solved() && !camera.report->calibration.detail.empty();
+}
+
 // The worst over all cameras [px]; nothing where one has none.
 std::optional<double> ProjectionUncertainty(const std::vector<JudgedCamera>& cameras) {
   double worst = 0;
@@ -97,7 +103,7 @@ Cell JudgedSigmas(const std::optional<double>& rms) {
 }  // namespace
 
 Verdict VerdictOf(const JudgedCamera& camera, const std::optional<NextView>& next_view) {
-  if (WasJudged(camera.report)) return Judge(*camera.report, next_view);
+  if (WasJudged(camera.report) || HasFailed(camera)) return Judge(*camera.report, next_view);
   if (camera.calibrated) return {Grade::kNone, "Calibrated, but not judged on views yet", {}};
   Verdict words{Grade::kNone, kNoneYet, {ViewsToTake(camera.views_found)}};
   if (camera.report != nullptr && !camera.report->calibration.detail.empty()) {
@@ -124,7 +130,7 @@ Verdict VerdictOfAll(const std::vector<JudgedCamera>& cameras,
     }
   }
   const bool none_judged = std::all_of(cameras.begin(), cameras.end(), [](const JudgedCamera& c) {
-    return !c.calibrated && !WasJudged(c.report);
+    return !c.calibrated && !WasJudged(c.report) && !HasFailed(c);
   });
   if (all.grade == Grade::kGood) {
     all.headline = AllGood(cameras);

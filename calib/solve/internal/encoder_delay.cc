@@ -30,6 +30,8 @@ constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
 constexpr double kDelaySettled = 0.5;  // sigmas that may be left
 constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
 constexpr int kMostTries = 4;
+// By what factor of variance views may still scatter beyond what they state once it is taken off.
+constexpr double kMostLeft = 6;
 
 bool Turns(const BoardView& view) { return std::abs(view.cloud.turn_rad_s) > kStandsStill; }
 
@@ -89,16 +91,17 @@ CloudEdges Turned(const CloudEdges& cloud, double angle) {
 
 // How a view's cloud turned, and the turn about the LIDAR's z by which the view alone has the
 // camera beside the guess.
-struct Beside {
+struct TurnedBeside {
   double turn_rad_s = 0;
   double turned_rad = 0;
 };
 
 // Of the candidate that fits the guess best. Also of views that are too far beside it to be used.
-std::optional<Beside> BesideGuess(const CameraView& view, const Rigid3& camera_from_lidar) {
+std::optional<TurnedBeside> TurnedBesideGuess(const CameraView& view,
+                                              const Rigid3& camera_from_lidar) {
   if (view.image == nullptr || !view.image->pose) return std::nullopt;
   const Rigid3 seen = camera_from_lidar.Inverse() * view.image->pose->sensor_from_target;
-  std::optional<Beside> best;
+  std::optional<TurnedBeside> best;
   double least = kMostTurned;
   for (const CloudEdges* candidate : view.candidates) {
     if (!candidate->pose || std::abs(candidate->turn_rad_s) < kStandsStill) continue;
@@ -175,6 +178,11 @@ bool IsSure(const CalibratedCameras& found, double taken_off_s,
             const CalibratedCameras& as_they_are) {
   const auto& left = found.encoder_delay;
   if (!left || !left->BothWays()) return false;
+  // Where views contradict each other as much as before, it is something else that they show.
+  const bool fits = std::all_of(found.cameras.begin(), found.cameras.end(), [](const auto& camera) {
+    return camera.report.variance_factor <= kMostLeft;
+  });
+  if (!fits) return false;
   const Estimate& seconds = left->seconds;
   const double total = taken_off_s + seconds.value;
   return std::abs(seconds.value) < kDelaySettled * seconds.sigma &&
@@ -247,7 +255,7 @@ std::optional<Estimate> RoughEncoderDelay(const std::vector<GuessedCamera>& came
   for (const GuessedCamera& camera : cameras) {
     if (!camera.guess.camera_from_lidar) continue;
     for (const CameraView& view : camera.views.all) {
-      const auto beside = BesideGuess(view, *camera.guess.camera_from_lidar);
+      const auto beside = TurnedBesideGuess(view, *camera.guess.camera_from_lidar);
       if (!beside) continue;
       const std::size_t way = beside->turn_rad_s > 0 ? 0 : 1;
       turned[way].push_back(beside->turned_rad);

@@ -56,19 +56,69 @@ std::vector<int> ViewsOfSensors(const BoardProblem& problem) {
   return views;
 }
 
-const Contradiction* WorstToReject(const JointProblem& joint,
-                                   const std::vector<Contradiction>& contradictions,
-                                   const std::vector<int>& at_first) {
-  const double limit = kContradictionChi2 * ScatterOf(contradictions);
-  const std::vector<int> now = ViewsOfSensors(joint.problem);
+// Whether a camera, or a further LIDAR, has enough views to lose this one's.
+class MayLose {
+ public:
+  MayLose(const BoardProblem& problem, const std::vector<int>& at_first)
+      : problem_(problem), at_first_(at_first), now_(ViewsOfSensors(problem)) {}
+
+  bool operator()(const Contradiction& c) const {
+    const std::size_t sensor = SensorOf(problem_, c);
+    return now_[sensor] > 3 && 3 * (now_[sensor] - 1) >= 2 * at_first_[sensor];
+  }
+
+ private:
+  const BoardProblem& problem_;
+  const std::vector<int>& at_first_;
+  std::vector<int> now_;
+};
+
+// How far the other views scatter among themselves.
+double ScatterWithout(const BoardProblem& problem, const BoardSolution& solution,
+                      std::size_t left_out) {
+  std::vector<std::size_t> others;
+  for (std::size_t v = 0; v < problem.views.size(); ++v) {
+    if (v != left_out) others.push_back(v);
+  }
+  const BoardSolution rest = SolveSome(problem, solution, others);
+  return ScatterOf(Contradictions(Part(problem, others, solution.state).problem, rest));
+}
+
+// A view that is far off draws the result so far away from all others that these seem to scatter as
+// much: each of the worst is held against what the others scatter without it.
+const Contradiction* WorstBehindItsMask(const BoardProblem& problem, const BoardSolution& solution,
+                                        std::vector<const Contradiction*> beyond_chance) {
+  constexpr std::size_t kMostTried = 4;  // views
+  std::sort(beyond_chance.begin(), beyond_chance.end(),
+            [](const Contradiction* a, const Contradiction* b) { return a->chi2 > b->chi2; });
   const Contradiction* worst = nullptr;
-  for (const Contradiction& c : contradictions) {
-    const std::size_t sensor = SensorOf(joint.problem, c);
-    const int left = now[sensor];
-    if (left <= 3 || 3 * (left - 1) < 2 * at_first[sensor]) continue;
-    if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
+  double most = kContradictionChi2;
+  std::vector<std::size_t> tried;
+  for (const Contradiction* c : beyond_chance) {
+    if (std::find(tried.begin(), tried.end(), c->view) != tried.end()) continue;
+    if (tried.size() == kMostTried) break;
+    tried.push_back(c->view);
+    const double times = c->chi2 / ScatterWithout(problem, solution, c->view);
+    if (times <= most) continue;
+    most = times;
+    worst = c;
   }
   return worst;
+}
+
+const Contradiction* WorstToReject(const BoardProblem& problem, const BoardSolution& solution,
+                                   const std::vector<Contradiction>& contradictions,
+                                   const std::vector<int>& at_first) {
+  const MayLose may_lose(problem, at_first);
+  const double limit = kContradictionChi2 * ScatterOf(contradictions);
+  const Contradiction* worst = nullptr;
+  std::vector<const Contradiction*> beyond_chance;
+  for (const Contradiction& c : contradictions) {
+    if (!(c.chi2 > kContradictionChi2) || !may_lose(c)) continue;
+    beyond_chance.push_back(&c);
+    if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
+  }
+  return worst != nullptr ? worst : WorstBehindItsMask(problem, solution, beyond_chance);
 }
 
 // Solves, and again without what contradicts the rest.
@@ -88,7 +138,8 @@ class JointSolver {
     for (std::size_t round = 0; round < 4 * Problem().views.size() + 4; ++round) {
       SolveOnce();
       const auto contradictions = Contradictions(Problem(), result_.solution);
-      const Contradiction* worst = WorstToReject(Joint(), contradictions, views_at_first_);
+      const Contradiction* worst =
+          WorstToReject(Problem(), result_.solution, contradictions, views_at_first_);
       if (worst != nullptr) {
         if (worst->lidar) {
           RejectCloud(*worst, &Joint());

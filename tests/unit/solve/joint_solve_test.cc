@@ -27,18 +27,20 @@ TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   }
 }
 
+// Between the sweep and the image.
+void MoveBoard(const Eigen::Vector3d& move, CloudEdges* cloud) {
+  cloud->pose->sensor_from_target.translation += move;
+  cloud->centre += move;
+  for (Crossing& crossing : cloud->crossings) crossing.point += move;
+  for (Eigen::Vector3d& p : cloud->boundary) p += move;
+}
+
 TEST(CalibrateJointly, AViewWhoseBoardMovedIsRejectedByNameAndTheResultAsGoodAsWithoutIt) {
   SolveWorld world(Views(12));
   SolveWorld without(Views(12));
   without.detections.erase(without.detections.begin() + 4);
-  // By 20 mm sideways, between the sweep and the image.
-  const Eigen::Vector3d move =
-      0.02 * (world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0));
-  CloudEdges& cloud = world.CloudAt(4);
-  cloud.pose->sensor_from_target.translation += move;
-  cloud.centre += move;
-  for (Crossing& crossing : cloud.crossings) crossing.point += move;
-  for (Eigen::Vector3d& p : cloud.boundary) p += move;
+  MoveBoard(0.02 * (world.lidar_from_target[4].rotation * Eigen::Vector3d(1, 0, 0)),
+            &world.CloudAt(4));
   const Report report = Calibrate(world.rig, world.detections, Brief());
   const Report good = Calibrate(without.rig, without.detections, Brief());
   for (std::size_t c = 0; c < 2; ++c) {
@@ -49,6 +51,22 @@ TEST(CalibrateJointly, AViewWhoseBoardMovedIsRejectedByNameAndTheResultAsGoodAsW
     EXPECT_THAT(report.cameras[c].calibration.camera_from_lidar,
                 Rigid3Near(good.cameras[c].calibration.camera_from_lidar, 1e-6, 1e-6));
     EXPECT_LT(Chi2(world, report, c), kMostChi2);
+  }
+}
+
+// Of few views one that is far off draws the result along, so that all others contradict it, too.
+TEST(CalibrateJointly, AViewThatIsFarOffDoesNotHideBehindTheOthers) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    SolveWorldOptions options = Views(6);
+    options.seed = seed;
+    SolveWorld world(options);
+    MoveBoard({0, 0.1, 0}, &world.CloudAt(3));
+    const Report report = Calibrate(world.rig, world.detections, Brief());
+    for (std::size_t c = 0; c < 2; ++c) {
+      EXPECT_THAT(report.cameras[c].rejected, ElementsAre(Field(&RejectedView::view, "0004")))
+          << seed;
+      EXPECT_LT(Chi2(world, report, c), kMostChi2) << seed;
+    }
   }
 }
 

@@ -82,7 +82,10 @@ void JudgeFit(const CameraReport& camera, Judgement* judgement) {
     judgement->AddReason(held + ".");
   } else if (*rms.heldout > kWorse * *rms.train + kWorsePx) {
     judgement->Usable(held + ", clearly worse than the " + Number(*rms.train, 2) +
-                      " px on the views used: take more views, at other distances and tilts.");
+                      " px on the views used" +
+                      (camera.variance_factor > kMuchScatter
+                           ? ". " + std::string(kWhyViewsDisagree)
+                           : ": take more views, at other distances and tilts."));
   } else {
     judgement->AddReason(held + ", as well as on the views used (" + Number(*rms.train, 2) +
                          " px).");
@@ -190,7 +193,16 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
         " is expected (50 is the most that is counted). " + kWhyViewsDisagree);
   }
   const auto& scatter = camera.view_scatter;
-  if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) return;
+  if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) {
+    if (camera.variance_factor > kMuchScatter) {
+      judgement->Usable("The stated sigma was enlarged " +
+                        Number(std::sqrt(camera.variance_factor), 1) +
+                        " times: the views seem to scatter more than they state, and are too few "
+                        "to be sure. " +
+                        kWhyViewsDisagree);
+    }
+    return;
+  }
   const std::string scatters =
       "The views scatter " + Number(std::sqrt(scatter->factor), 1) +
       " times as much as their own sigmas say; the stated sigma was enlarged for it, but what "

@@ -1,0 +1,65 @@
+#include "calib/fuse/point_spacing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/fuse/small_camera.h"
+
+namespace rgbdt {
+namespace {
+
+// Lines one above the other before the camera, a degree apart, their beams a third of one; those of
+// every second line lie so many beams beside the others'. What they meet lies near and far.
+Cloud Lines(int staggered_beams) {
+  Cloud cloud;
+  cloud.organised = true;
+  cloud.lines = 30;
+  cloud.beams = 180;
+  for (int line = 0; line < cloud.lines; ++line) {
+    for (int beam = 0; beam < cloud.beams; ++beam) {
+      const int column = beam + (line % 2) * staggered_beams;
+      const double azimuth = (column / 3.0 - 30) * M_PI / 180;
+      const double elevation = (line - 15) * M_PI / 180;
+      const double range = 2 + (beam / 7 + line) % 5;
+      // Camera axes: x right, y down, z forward.
+      const Eigen::Vector3d direction(std::sin(azimuth) * std::cos(elevation), -std::sin(elevation),
+                                      std::cos(azimuth) * std::cos(elevation));
+      cloud.points.emplace_back((range * direction).cast<float>());
+    }
+  }
+  return cloud;
+}
+
+constexpr double kFocal = 500;
+
+CameraSpec Spec() {
+  CameraSpec spec = test::SpecOf(CameraKind::kColor);
+  spec.width = 800;
+  spec.height = 600;
+  spec.lens = {Lens::Model::kPinhole, kFocal, kFocal, 400, 300, {}};
+  return spec;
+}
+
+Eigen::Vector2d CellsOf(const Cloud& cloud) {
+  PointSpacing spacing{Camera(Spec())};
+  spacing.Add(cloud, {});
+  return spacing.CellPx();
+}
+
+TEST(PointSpacing, IsThatOfBeamsAlongLinesAndOfLines) {
+  const Eigen::Vector2d cell = CellsOf(Lines(0));
+  // A tenth more than the spacing, which the histogram tells to 9%; wider beside the middle.
+  EXPECT_NEAR(cell.x(), 1.2 * kFocal * M_PI / 180 / 3, 0.2 * kFocal * M_PI / 180 / 3);
+  EXPECT_NEAR(cell.y(), 1.2 * kFocal * M_PI / 180, 0.2 * kFocal * M_PI / 180);
+}
+
+// As an Ouster's columns are, by up to six degrees.
+TEST(PointSpacing, StaggeredLinesHaveTheCellsOfOnesThatAreNot) {
+  const Eigen::Vector2d straight = CellsOf(Lines(0)), staggered = CellsOf(Lines(17));
+  EXPECT_NEAR(staggered.x(), straight.x(), 0.2 * straight.x());
+  EXPECT_NEAR(staggered.y(), straight.y(), 0.2 * straight.y());
+}
+
+}  // namespace
+}  // namespace rgbdt
