@@ -58,6 +58,25 @@ awk '/translation_m:/ && !moved { sub(/: .*/, ": [0.01, 0.2, 0.03]"); moved = 1 
   "$scratch/s/calibration.textproto" >"$scratch/moved.textproto"
 ends_with 4 "a moved camera" "$bin/rgbdt" evaluate "$scratch/s" --out "$scratch" \
   --calibration "$scratch/moved.textproto"
-tells "a moved camera" "$scratch/report.json" "$thermal"
+tells "a moved camera" "$scratch/report.json" "rgb.sigma $thermal"
+
+# A calibration from elsewhere: what its own solve has found counts, not what the session's has.
+mkdir "$scratch/elsewhere"
+cp "$scratch/s/calibration.textproto" "$scratch/elsewhere"
+python3 - "$scratch/s/report.json" "$scratch/elsewhere/report.json" <<'EOF'
+import json, sys
+report = json.load(open(sys.argv[1]))
+report["cameras"]["rgb"]["causes"] = [{"name": "squares", "words": "the squares are 3% smaller",
+                                       "chi2": 100, "freedom": 1, "moves_sigma": 3}]
+json.dump(report, open(sys.argv[2], "w"))
+EOF
+elsewhere=(--calibration "$scratch/elsewhere/calibration.textproto" --out "$scratch/elsewhere/by_s")
+ends_with 3 "doubts of its solve" "$bin/rgbdt" evaluate "$scratch/s" "${elsewhere[@]}"
+grep -q "Likeliest cause: the squares are 3% smaller" "$scratch/output" ||
+  complain "what the calibration's own solve has found is lost"
+rm "$scratch/elsewhere/report.json" "$scratch/s/report.json"
+accepts "no report of its solve" "$bin/rgbdt" evaluate "$scratch/s" "${elsewhere[@]}"
+grep -q "Usable. Beside the calibration lies no report of its solve" "$scratch/output" ||
+  complain "nothing says that the solve's own findings are not known"
 
 verdict

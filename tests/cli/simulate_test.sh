@@ -26,7 +26,7 @@ grep -qF "next: rgbdt calibrate '$scratch/by name'" "$scratch/output" ||
 accepts "the turned scanner by default" "$bin/rgbdt" simulate "$scratch/default" --views 1
 diff -r "$scratch/by name" "$scratch/default" >"$scratch/output" 2>&1 ||
   complain "the turned scanner is not the default"
-grep -q turned_scanner "$scratch/named/rig.textproto" || complain "the turned scanner has no motor"
+grep -q turned_scanner "$scratch/by name/rig.textproto" || complain "the turned scanner has no motor"
 
 session=$scratch/imperfect
 accepts "an imperfect rig" "$bin/rgbdt" simulate "$session" --views 1 --lidar vlp16 --imperfect

@@ -50,8 +50,9 @@ bool IsBefore(Utime a_utime, const std::string& a, Utime b_utime, const std::str
 }
 
 std::vector<const CameraView*> InOrder(const std::vector<CameraView>& all) {
-  std::vector<const CameraView*> views;
-  for (const CameraView& view : all) views.push_back(&view);
+  std::vector<const CameraView*> views(all.size());
+  std::transform(all.begin(), all.end(), views.begin(),
+                 [](const CameraView& view) { return &view; });
   std::stable_sort(views.begin(), views.end(), [](const CameraView* a, const CameraView* b) {
     return IsBefore(a->image_utime, a->view, b->image_utime, b->view);
   });

@@ -124,8 +124,8 @@ TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   EXPECT_EQ(grade(4.9), Grade::kDoubtful);
   EXPECT_EQ(grade(5.1), Grade::kBad);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("not where this pose puts them")));
-  camera.variance_factor = 4;  // the stated uncertainty was enlarged for it
-  EXPECT_EQ(grade(2.7), Grade::kGood);
+  camera.variance_factor = 4;  // the stated uncertainty was enlarged for it, which is said
+  EXPECT_EQ(grade(2.7), Grade::kUsable);
   EXPECT_EQ(grade(2.9), Grade::kDoubtful);
   camera.variance_factor = 1;
   grade(1.5);
@@ -170,6 +170,34 @@ TEST(Verdict, ViewsThatScatterFarMoreThanStatedAreAnAlarm) {
   camera.view_scatter = ViewScatter{9, 5};
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("scatter 3.0 times as much"));
+}
+
+// Of few views chance may make as much, but the sigma has it already.
+TEST(Verdict, ASigmaThatWasMuchEnlargedIsSaidAndNoMoreViewsAreAdvised) {
+  CameraReport camera = Good();
+  camera.view_scatter = ViewScatter{5, 2.5};
+  camera.variance_factor = 2.4;
+  camera.edge_rms_px = {1.4, 3.1};
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("take more views"));
+  camera.variance_factor = 4;
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kUsable);
+  EXPECT_THAT(verdict.reasons, Contains(HasSubstr("sigma was enlarged 2.0 times")));
+  EXPECT_THAT(verdict.reasons, Contains(AllOf(HasSubstr("3.10 px RMS"), HasSubstr("stood still"))));
+  EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("take more views"))));
+}
+
+TEST(Verdict, ASolveOfEnoughViewsThatFailedIsNotOneToCome) {
+  CameraReport camera;
+  camera.calibration.camera = "rgb";
+  camera.calibration.detail = "the views do not agree where the camera is";
+  JudgedCamera judged{"rgb", false, 3, &camera};
+  EXPECT_EQ(VerdictOfAll({judged}, std::nullopt).headline, "No calibration yet");
+  judged.views_found = 11;
+  const Verdict all = VerdictOfAll({judged}, std::nullopt);
+  EXPECT_EQ(all.grade, Grade::kBad);
+  EXPECT_THAT(all.headline, HasSubstr("o not use"));
+  EXPECT_THAT(all.reasons, Contains(HasSubstr("do not agree where the camera is")));
 }
 
 TEST(Verdict, WhatViewsCannotTellIsSaidAndNoMoreThanUsable) {
