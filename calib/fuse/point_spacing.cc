@@ -11,6 +11,20 @@ constexpr double kBinRatio = 1.17;  // of the next one: 64 bins end at 1000 px
 constexpr double kCell = 1.1;       // of the spacing
 constexpr double kMostCells = 480;  // along the image's width: finer ones cost more than they tell
 
+// Steps of a grid of points as the shortest ones that lead to the same points (Lagrange and Gauss):
+// an Ouster's rings are staggered, so that the next beam, or that of the next line, may lie far
+// off.
+void Shorten(Eigen::Vector2d* a, Eigen::Vector2d* b) {
+  constexpr int kMostRounds = 10;
+  for (int round = 0; round < kMostRounds; ++round) {
+    Eigen::Vector2d* const longer = a->squaredNorm() > b->squaredNorm() ? a : b;
+    const Eigen::Vector2d& shorter = longer == a ? *b : *a;
+    const double times = std::round(longer->dot(shorter) / shorter.squaredNorm());
+    if (!(std::abs(times) >= 1) || !std::isfinite(times)) return;
+    *longer -= times * shorter;
+  }
+}
+
 }  // namespace
 
 void PointSpacing::Histogram::Add(double distance_px) {
@@ -67,13 +81,14 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& ca
       const auto here = far(points[beam]);
       const auto beside = here ? far(points[beam - 1]) : std::nullopt;
       if (!beside) continue;
-      const Eigen::Vector2d along = *here - *beside;
-      beams_.Add(along);
+      Eigen::Vector2d along = *here - *beside;
       const auto other = before != nullptr ? far(before[beam]) : std::nullopt;
-      if (!other || !(along.squaredNorm() > 0)) continue;
-      // Beams of one number may lie far apart along the lines (an Ouster's columns are staggered).
-      const Eigen::Vector2d apart = *here - *other;
-      lines_.Add(apart - along * (along.dot(apart) / along.squaredNorm()));
+      if (other) {
+        Eigen::Vector2d across = *here - *other;
+        Shorten(&along, &across);
+        lines_.Add(across);
+      }
+      beams_.Add(along);
     }
   }
   line_before_.clear();

@@ -19,7 +19,8 @@ inline constexpr std::size_t kMostSweepPoints = 20'000'000;
 ///  - utime [us, UTC], or timestamp or time [s], or t [ns]; the last three count from
 ///    `sweep_utime` unless they are themselves times since 1970.
 ///  - line, beam: the place in an organised cloud. Without them an organised cloud is HEIGHT lines
-///    of WIDTH beams; HEIGHT 1 is a cloud without order.
+///    of WIDTH beams, but where all rings come in turn: these are the beams then; HEIGHT 1 is a
+///    cloud without order.
 ///  - dir_x dir_y dir_z: unit vector of the beam; origin_x origin_y origin_z [m]: where it starts.
 /// What the file does not have stays empty. Throws InputError naming the file, and where it is cut
 /// short, inconsistent, without x y z, without a single point that returned or claims more than

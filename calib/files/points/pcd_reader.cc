@@ -63,9 +63,28 @@ bool OrganiseByFields(const records::Table& table, Cloud* cloud) {
   return true;
 }
 
+// Columns one behind the other, each with all rings, whatever the header says of rows: so some
+// drivers of Ouster's write them.
+bool OrganiseByRings(Cloud* cloud) {
+  const std::vector<std::uint16_t>& ring = cloud->ring;
+  if (ring.empty()) return false;
+  const std::size_t rings = std::size_t{1} + *std::max_element(ring.begin(), ring.end());
+  if (rings < 2 || ring.size() % rings != 0 || ring.size() < 2 * rings) return false;
+  std::vector<bool> seen(rings, false);
+  for (std::size_t i = 0; i < rings; ++i) seen[ring[i]] = true;
+  if (std::find(seen.begin(), seen.end(), false) != seen.end()) return false;
+  for (std::size_t i = rings; i < ring.size(); ++i) {
+    if (ring[i] != ring[i - rings]) return false;
+  }
+  cloud->lines = static_cast<int>(ring.size() / rings);
+  cloud->beams = static_cast<int>(rings);
+  return true;
+}
+
 void Organise(const pcd::File& file, Cloud* cloud) {
   cloud->organised = true;
   if (OrganiseByFields(file.table, cloud)) return;
+  if (file.header.height > 1 && OrganiseByRings(cloud)) return;
   cloud->lines = static_cast<int>(file.header.height);
   cloud->beams = static_cast<int>(file.header.width);
   cloud->organised = cloud->lines > 1;
@@ -101,11 +120,11 @@ Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_u
   cloud.sweep_utime = sweep_utime;
   cloud.points = ReadVectors(table, "x", "y", "z");
   MarkMisses(&cloud.points, where);
+  if (table.Has("ring")) cloud.ring = ReadRing(table, where);
   Organise(file, &cloud);
   if (HasVector(table, "dir_")) cloud.directions = ReadVectors(table, "dir_x", "dir_y", "dir_z");
   if (HasVector(table, "origin_")) cloud.origins = ReadOrigins(table, cloud);
   if (table.Has("intensity")) cloud.intensity = ReadIntensity(table);
-  if (table.Has("ring")) cloud.ring = ReadRing(table, where);
   cloud.utime = ReadUtime(table, sweep_utime, where);
   return cloud;
 }

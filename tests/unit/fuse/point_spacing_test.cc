@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "tests/unit/fuse/small_camera.h"
 
@@ -31,6 +32,20 @@ Cloud Lines(int staggered_beams) {
   return cloud;
 }
 
+// The same points column by column.
+Cloud Columns(int staggered_beams) {
+  const Cloud by_line = Lines(staggered_beams);
+  Cloud cloud = by_line;
+  std::swap(cloud.lines, cloud.beams);
+  for (int column = 0; column < cloud.lines; ++column) {
+    for (int line = 0; line < cloud.beams; ++line) {
+      cloud.points[static_cast<std::size_t>(column * cloud.beams + line)] =
+          by_line.points[static_cast<std::size_t>(line * cloud.lines + column)];
+    }
+  }
+  return cloud;
+}
+
 constexpr double kFocal = 500;
 
 CameraSpec Spec() {
@@ -54,11 +69,14 @@ TEST(PointSpacing, IsThatOfBeamsAlongLinesAndOfLines) {
   EXPECT_NEAR(cell.y(), 1.2 * kFocal * M_PI / 180, 0.2 * kFocal * M_PI / 180);
 }
 
-// As an Ouster's columns are, by up to six degrees.
+// As an Ouster's rings are, by up to six degrees.
 TEST(PointSpacing, StaggeredLinesHaveTheCellsOfOnesThatAreNot) {
-  const Eigen::Vector2d straight = CellsOf(Lines(0)), staggered = CellsOf(Lines(17));
-  EXPECT_NEAR(staggered.x(), straight.x(), 0.2 * straight.x());
-  EXPECT_NEAR(staggered.y(), straight.y(), 0.2 * straight.y());
+  const Eigen::Vector2d straight = CellsOf(Lines(0));
+  for (const Cloud& cloud : {Lines(17), Lines(-16), Columns(0), Columns(17), Columns(-6)}) {
+    const Eigen::Vector2d cell = CellsOf(cloud);
+    EXPECT_NEAR(cell.x(), straight.x(), 0.25 * straight.x());
+    EXPECT_NEAR(cell.y(), straight.y(), 0.25 * straight.y());
+  }
 }
 
 }  // namespace

@@ -146,6 +146,28 @@ TEST(CloudFiles, AFileOfManyLinesIsOrganised) {
   EXPECT_TRUE(cloud.IsHit(5));
 }
 
+// Columns of three rings, although the header speaks of rows of six.
+TEST(CloudFiles, RingsThatComeInTurnAreTheBeamsOfALine) {
+  const auto read = [](const std::string& rows) {
+    return ParsePcd(Ascii("x y z ring", "F F F U", 6, 2, rows), "a.pcd");
+  };
+  std::string in_turn, in_rows, some_missing;
+  for (int i = 0; i < 12; ++i) {
+    in_turn += "1 1 1 " + std::to_string(i % 3) + "\n";
+    in_rows += "1 1 1 " + std::to_string(i / 6) + "\n";
+    some_missing += "1 1 1 " + std::to_string(i == 7 ? 2 : i % 3) + "\n";
+  }
+  const Cloud columns = read(in_turn);
+  EXPECT_TRUE(columns.organised);
+  EXPECT_EQ(columns.lines, 4);
+  EXPECT_EQ(columns.beams, 3);
+  for (const std::string& rows : {in_rows, some_missing}) {
+    const Cloud as_it_says = read(rows);
+    EXPECT_EQ(as_it_says.lines, 2);
+    EXPECT_EQ(as_it_says.beams, 6);
+  }
+}
+
 TEST(CloudFiles, LineAndBeamThatDoNotFitAreNoOrder) {
   const auto organised = [](const std::string& rows) {
     return ParsePcd(Ascii("x y z line beam", "F F F I I", 4, 1, rows), "a.pcd").organised;
