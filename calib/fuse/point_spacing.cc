@@ -79,7 +79,9 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& ca
                                               : nullptr;
     for (std::size_t beam = 1; beam < beams; beam += kEvery) {
       const auto here = far(points[beam]);
-      const auto beside = here ? far(points[beam - 1]) : std::nullopt;
+      if (!here) continue;
+      auto beside = far(points[beam - 1]);
+      if (!beside && beam + 1 < beams) beside = far(points[beam + 1]);
       if (!beside) continue;
       Eigen::Vector2d along = *here - *beside;
       const auto other = before != nullptr ? far(before[beam]) : std::nullopt;

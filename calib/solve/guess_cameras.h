@@ -42,10 +42,9 @@ struct EncoderDelay {
   bool IsTold() const { return BothWays() && stated_sigma_s < known_sigma_s; }
 };
 
-/// Two views, one behind the other, between which a mount seems to have moved.
+/// Two views, one after the other, between which a mount seems to have moved.
 struct MountBreak {
   std::string last_before, first_after;
-  Utime utime = 0;  ///< of the first one's image
 };
 
 /// What a method makes of the cameras' views: each one's report, and what they say together.

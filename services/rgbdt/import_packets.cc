@@ -42,7 +42,8 @@ int ImportPackets(const PacketsToImport& packets) {
     std::printf("next: add --out\n");
   } else {
     std::printf("wrote %lld PCD files to %s\nnext: rgbdt session --clouds %s --images ...\n",
-                static_cast<long long>(recording.sweeps), packets.out.c_str(), packets.out.c_str());
+                static_cast<long long>(recording.sweeps), packets.out.c_str(),
+                ForShell(packets.out).c_str());
   }
   return EndsWith(true);
 }

@@ -42,20 +42,20 @@ void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->sigma = before.sigma;
   camera->nuisance = before.nuisance;
   camera->folds = before.folds;
-  camera->warnings = before.warnings;
   camera->halves = before.halves;
   camera->edges_planes = before.edges_planes;
   camera->solve_s = before.solve_s;
 }
 
 // What only the solve tells of a LIDAR beside the reference, where its pose is the same.
-void KeepFromSolve(const LidarReport& before, LidarReport* lidar) {
+void KeepFromSolve(const LidarReport& before, bool same_session, LidarReport* lidar) {
   const Rigid3& pose = before.calibration.reference_from_lidar;
   const Rigid3& given = lidar->calibration.reference_from_lidar;
   if (RotationDistance(pose, given) > 1e-9 || CentreDistance(pose, given) > 1e-9) return;
   lidar->first_guess = before.first_guess;
-  lidar->rejected = before.rejected;
   lidar->nuisance = before.nuisance;
+  if (!same_session) return;
+  lidar->rejected = before.rejected;
   for (const std::string& warning : before.warnings) {
     const auto said = std::find(lidar->warnings.begin(), lidar->warnings.end(), warning);
     if (said == lidar->warnings.end()) lidar->warnings.push_back(warning);
@@ -63,13 +63,13 @@ void KeepFromSolve(const LidarReport& before, LidarReport* lidar) {
 }
 
 // Those without a pose have their reason in the report alone.
-void KeepFromSolve(const Report& before, std::vector<LidarReport>* lidars) {
+void KeepFromSolve(const Report& before, bool same_session, std::vector<LidarReport>* lidars) {
   for (const LidarReport& other : before.lidars) {
     const auto same = std::find_if(lidars->begin(), lidars->end(), [&](const LidarReport& lidar) {
       return lidar.calibration.lidar == other.calibration.lidar;
     });
     if (same != lidars->end()) {
-      KeepFromSolve(other, &*same);
+      KeepFromSolve(other, same_session, &*same);
     } else if (!other.calibration.solved()) {
       lidars->push_back(other);
     }
@@ -88,17 +88,21 @@ void KeepFromSolve(const CalibrationFiles& files, const std::filesystem::path& s
   std::filesystem::path path = files.calibration.parent_path() / "report.json";
   if (!std::filesystem::exists(path)) path = session / "report.json";
   const Report before = std::filesystem::exists(path) ? ReadReport(path) : Report();
+  // Of another session's report: its views have the same names, and are others.
+  const bool same_session = std::filesystem::weakly_canonical(path.parent_path()) ==
+                            std::filesystem::weakly_canonical(session);
   bool all_same = true;
   for (CameraReport& camera : report->cameras) {
     const CameraReport* same = FindSame(before, camera.calibration);
     if (same != nullptr) {
       KeepFromSolve(*same, &camera);
+      if (same_session) camera.warnings = same->warnings;
     } else if (report->method == kAutoMethod) {
       camera.cannot_tell = kNoReport;
     }
     all_same = all_same && same != nullptr;
   }
-  KeepFromSolve(before, &report->lidars);
+  KeepFromSolve(before, same_session, &report->lidars);
   if (!all_same) return;
   report->closure = before.closure;
   report->next_view = before.next_view;

@@ -129,7 +129,7 @@ Synced Write(const fs::path& out, const WavedLog& input, const SyncResult& resul
   WriteCalibration(out / "calibration.textproto", WithTimings(input, result, refine));
   synced.words = "wrote calibration.textproto (with `timing`), rig.textproto" +
                  std::string(picture.empty() ? "" : ", sync.png (the offsets over time)") +
-                 " into " + out.string() + "\nnext: rgbdt-monitor " + out.string() +
+                 " into " + out.string() + "\nnext: rgbdt-monitor " + ForShell(out.string()) +
                  ", which sends both; the fuser takes offset and read-out from there";
   return synced;
 }

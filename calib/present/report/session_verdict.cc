@@ -25,10 +25,13 @@ bool WasJudged(const CameraReport* report) {
          (report->edge_rms_px.train || report->edge_rms_px.heldout || report->scene);
 }
 
-// Of enough views no pose came.
+// There were enough views, and the solve failed.
 bool HasFailed(const JudgedCamera& camera) {
-  return camera.report != nullptr && camera.views_found >= kEnoughViews &&
-         !camera.report->calibration.solved() && !camera.report->calibration.detail.empty();
+  if (camera.report == nullptr || camera.calibrated) return false;
+  const CameraReport& report = *camera.report;
+  const std::size_t views = report.used.size() + report.heldout.size() + report.rejected.size();
+  return views >= std::size_t{kEnoughViews} && !report.calibration.solved() &&
+         !report.calibration.detail.empty();
 }
 
 // The worst over all cameras [px]; nothing where one has none.

@@ -30,7 +30,8 @@ constexpr double kRoughlyLate = 4;     // the same, of the rough estimate
 constexpr double kDelaySettled = 0.5;  // sigmas that may be left
 constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
 constexpr int kMostTries = 4;
-// By what factor of variance views may still scatter beyond what they state once it is taken off.
+// By what factor of variance views may still scatter beyond what they state once it is taken off,
+// unless that is less than half of what it was.
 constexpr double kMostLeft = 6;
 
 bool Turns(const BoardView& view) { return std::abs(view.cloud.turn_rad_s) > kStandsStill; }
@@ -178,11 +179,13 @@ bool IsSure(const CalibratedCameras& found, double taken_off_s,
             const CalibratedCameras& as_they_are) {
   const auto& left = found.encoder_delay;
   if (!left || !left->BothWays()) return false;
-  // Where views contradict each other as much as before, it is something else that they show.
-  const bool fits = std::all_of(found.cameras.begin(), found.cameras.end(), [](const auto& camera) {
-    return camera.report.variance_factor <= kMostLeft;
-  });
-  if (!fits) return false;
+  // Where views contradict each other nearly as much as before, it is something else that they
+  // show.
+  for (std::size_t c = 0; c < found.cameras.size(); ++c) {
+    const double now = found.cameras[c].report.variance_factor;
+    const double before = as_they_are.cameras[c].report.variance_factor;
+    if (now > kMostLeft && now > 0.5 * before) return false;
+  }
   const Estimate& seconds = left->seconds;
   const double total = taken_off_s + seconds.value;
   return std::abs(seconds.value) < kDelaySettled * seconds.sigma &&

@@ -87,8 +87,10 @@ double ScatterWithout(const BoardProblem& problem, const BoardSolution& solution
 // A view that is far off draws the result so far away from all others that these seem to scatter as
 // much: each of the worst is held against what the others scatter without it.
 const Contradiction* WorstBehindItsMask(const BoardProblem& problem, const BoardSolution& solution,
+                                        double scatter,
                                         std::vector<const Contradiction*> beyond_chance) {
   constexpr std::size_t kMostTried = 4;  // views
+  constexpr double kUnmasked = 0.5;      // of the scatter: what a mask hides is more than it leaves
   std::sort(beyond_chance.begin(), beyond_chance.end(),
             [](const Contradiction* a, const Contradiction* b) { return a->chi2 > b->chi2; });
   const Contradiction* worst = nullptr;
@@ -98,8 +100,9 @@ const Contradiction* WorstBehindItsMask(const BoardProblem& problem, const Board
     if (std::find(tried.begin(), tried.end(), c->view) != tried.end()) continue;
     if (tried.size() == kMostTried) break;
     tried.push_back(c->view);
-    const double times = c->chi2 / ScatterWithout(problem, solution, c->view);
-    if (times <= most) continue;
+    const double without = ScatterWithout(problem, solution, c->view);
+    const double times = c->chi2 / without;
+    if (without > kUnmasked * scatter || times <= most) continue;
     most = times;
     worst = c;
   }
@@ -110,7 +113,8 @@ const Contradiction* WorstToReject(const BoardProblem& problem, const BoardSolut
                                    const std::vector<Contradiction>& contradictions,
                                    const std::vector<int>& at_first) {
   const MayLose may_lose(problem, at_first);
-  const double limit = kContradictionChi2 * ScatterOf(contradictions);
+  const double scatter = ScatterOf(contradictions);
+  const double limit = kContradictionChi2 * scatter;
   const Contradiction* worst = nullptr;
   std::vector<const Contradiction*> beyond_chance;
   for (const Contradiction& c : contradictions) {
@@ -118,7 +122,7 @@ const Contradiction* WorstToReject(const BoardProblem& problem, const BoardSolut
     beyond_chance.push_back(&c);
     if (c.chi2 > limit && (worst == nullptr || c.chi2 > worst->chi2)) worst = &c;
   }
-  return worst != nullptr ? worst : WorstBehindItsMask(problem, solution, beyond_chance);
+  return worst != nullptr ? worst : WorstBehindItsMask(problem, solution, scatter, beyond_chance);
 }
 
 // Solves, and again without what contradicts the rest.

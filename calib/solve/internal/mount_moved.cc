@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "calib/model/linear_algebra.h"
 #include "calib/model/text.h"
@@ -44,37 +48,47 @@ struct Together {
   double SquaresAboutMean() const { return std::max(0.0, squares - gradient.dot(Mean())); }
 };
 
-// Views are numbered as they were taken, with leading zeros or without.
-bool IsBefore(Utime a_utime, const std::string& a, Utime b_utime, const std::string& b) {
-  return a_utime != b_utime ? a_utime < b_utime : NaturalLess(a, b);
-}
+// In which order views were taken: by when their images were, where all are known, else by their
+// names, numbered with leading zeros or without.
+class ViewOrder {
+ public:
+  void Add(const std::vector<CameraView>& views) {
+    for (const CameraView& view : views) {
+      Utime& first = taken_[view.view];
+      if (first == 0 || (view.image_utime > 0 && view.image_utime < first)) {
+        first = view.image_utime;
+      }
+    }
+    timed_ =
+        std::all_of(taken_.begin(), taken_.end(), [](const auto& view) { return view.second > 0; });
+  }
 
-std::vector<const CameraView*> InOrder(const std::vector<CameraView>& all) {
-  std::vector<const CameraView*> views(all.size());
-  std::transform(all.begin(), all.end(), views.begin(),
-                 [](const CameraView& view) { return &view; });
-  std::stable_sort(views.begin(), views.end(), [](const CameraView* a, const CameraView* b) {
-    return IsBefore(a->image_utime, a->view, b->image_utime, b->view);
-  });
-  return views;
-}
+  bool IsBefore(const std::string& a, const std::string& b) const {
+    const Utime at_a = taken_.at(a), at_b = taken_.at(b);
+    return timed_ && at_a != at_b ? at_a < at_b : NaturalLess(a, b);
+  }
 
-// Cameras take a view's images some milliseconds apart.
-bool IsBehind(const CameraView& view, const MountBreak& at) {
-  return view.view != at.last_before &&
-         IsBefore(at.utime, at.last_before, view.image_utime, view.view);
-}
+ private:
+  std::map<std::string, Utime> taken_;  // a view's first image; 0: not known
+  bool timed_ = false;
+};
 
 struct Candidate {
   MountBreak at;
   double times = 0;  // of the squares within either side, per degree of freedom
 };
 
-std::vector<Candidate> BreaksOf(const GuessedCamera& camera) {
+std::vector<Candidate> BreaksOf(const GuessedCamera& camera, const ViewOrder& order) {
+  std::vector<const CameraView*> in_order(camera.views.all.size());
+  std::transform(camera.views.all.begin(), camera.views.all.end(), in_order.begin(),
+                 [](const CameraView& view) { return &view; });
+  std::stable_sort(in_order.begin(), in_order.end(), [&](const CameraView* a, const CameraView* b) {
+    return order.IsBefore(a->view, b->view);
+  });
   std::vector<const CameraView*> views;
   std::vector<Together> up_to;  // and with each of them
   Together all;
-  for (const CameraView* view : InOrder(camera.views.all)) {
+  for (const CameraView* view : in_order) {
     const auto beside = BesideGuessOf(*view, camera.guess);
     if (!beside) continue;
     all.Add(*beside);
@@ -93,28 +107,33 @@ std::vector<Candidate> BreaksOf(const GuessedCamera& camera) {
     const double within = (before.SquaresAboutMean() + behind.SquaresAboutMean()) / freedom;
     // Views that agree better than they state do not make a difference of theirs larger.
     if (!Exceeds(between, 6, std::max(1.0, within), freedom)) continue;
-    breaks.push_back({{views[k - 1]->view, views[k]->view, views[k - 1]->image_utime},
-                      between / std::max(1.0, within)});
+    breaks.push_back({{views[k - 1]->view, views[k]->view}, between / std::max(1.0, within)});
   }
   return breaks;
 }
 
-bool HasOneOfEach(const std::vector<CameraViews>& cameras) {
+// Of several sessions it is known when one ended and the next began: CalibrateSessions says it.
+bool IsOneSession(const std::vector<CameraViews>& cameras) {
   std::set<std::string> names;
   return std::all_of(cameras.begin(), cameras.end(), [&](const CameraViews& camera) {
-    return names.insert(camera.spec->name).second;
+    const bool of_several = std::any_of(
+        camera.all.begin(), camera.all.end(),
+        [](const CameraView& view) { return view.view.find('/') != std::string::npos; });
+    return !of_several && names.insert(camera.spec->name).second;
   });
 }
 
 // The cameras with the views before, then with those behind; all of them are to be solved by.
 std::vector<CameraViews> SplitAt(const MountBreak& at, const std::vector<CameraViews>& cameras) {
+  ViewOrder order;
+  for (const CameraViews& camera : cameras) order.Add(camera.all);
   std::vector<CameraViews> split;
   for (const bool behind : {false, true}) {
     for (const CameraViews& camera : cameras) {
       CameraViews part = camera;
       part.all.clear();
       for (CameraView view : camera.all) {
-        if (IsBehind(view, at) != behind) continue;
+        if (order.IsBefore(at.last_before, view.view) != behind) continue;
         view.heldout = false;
         part.all.push_back(std::move(view));
       }
@@ -137,7 +156,7 @@ std::string WordsOf(const MountBreak& at, const PoseComparison& moved) {
 double SigmasBeside(const CameraReport& result, const CameraReport& on_one_side) {
   const CameraCalibration& all = result.calibration;
   const CameraCalibration& side = on_one_side.calibration;
-  if (!all.covariance || !side.solved()) return 0;
+  if (!all.covariance || !side.converged()) return 0;
   const Vector6d apart = Log(side.camera_from_lidar * all.camera_from_lidar.Inverse());
   return std::sqrt(apart.dot(SolveSymmetric(*all.covariance, apart)));
 }
@@ -162,9 +181,11 @@ std::vector<std::optional<Cause>> MovedAt(const MountBreak& at, const Calibrated
 }  // namespace
 
 std::vector<MountBreak> LikeliestBreaks(const std::vector<GuessedCamera>& cameras) {
+  ViewOrder order;
+  for (const GuessedCamera& camera : cameras) order.Add(camera.views.all);
   std::vector<Candidate> all;
   for (const GuessedCamera& camera : cameras) {
-    const std::vector<Candidate> own = BreaksOf(camera);
+    const std::vector<Candidate> own = BreaksOf(camera, order);
     all.insert(all.end(), own.begin(), own.end());
   }
   std::stable_sort(all.begin(), all.end(),
@@ -182,24 +203,25 @@ std::vector<MountBreak> LikeliestBreaks(const std::vector<GuessedCamera>& camera
 CalibratedCameras WithMovedMountNamed(
     CalibratedCameras calibrated, const std::vector<CameraViews>& cameras,
     const std::function<CalibratedCameras(std::vector<CameraViews>)>& solve) {
-  if (!HasOneOfEach(cameras)) return calibrated;
+  if (!IsOneSession(cameras)) return calibrated;
   for (const MountBreak& at : calibrated.mount_breaks) {
     const CalibratedCameras apart = solve(SplitAt(at, cameras));
     const std::vector<std::optional<Cause>> moved = MovedAt(at, apart, cameras.size());
-    const auto first = std::find_if(moved.begin(), moved.end(),
-                                    [](const auto& cause) { return cause.has_value(); });
-    if (first == moved.end()) continue;
+    bool any = false;
     for (std::size_t c = 0; c < cameras.size(); ++c) {
       CameraReport& report = calibrated.cameras[c].report;
-      if (!report.calibration.solved()) continue;
-      // Cameras that are solved together share boards: one that moved bends the others, too.
-      Cause cause = moved[c] ? *moved[c] : **first;
+      if (!moved[c] || !report.calibration.solved()) continue;
+      any = true;
+      Cause cause = *moved[c];
       const double moves = std::max(SigmasBeside(report, apart.cameras[c].report),
                                     SigmasBeside(report, apart.cameras[c + cameras.size()].report));
       if (moves > 1) cause.moves_sigma = moves;
-      report.causes.insert(report.causes.begin(), std::move(cause));
+      const auto less_sure =
+          std::find_if(report.causes.begin(), report.causes.end(),
+                       [&](const Cause& other) { return other.Sigmas() < cause.Sigmas(); });
+      report.causes.insert(less_sure, std::move(cause));
     }
-    break;
+    if (any) break;
   }
   return calibrated;
 }

@@ -194,7 +194,7 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   }
   const auto& scatter = camera.view_scatter;
   if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) {
-    if (camera.variance_factor > kMuchScatter) {
+    if (scatter && camera.variance_factor > kMuchScatter) {
       judgement->Usable("The stated sigma was enlarged " +
                         Number(std::sqrt(camera.variance_factor), 1) +
                         " times: the views seem to scatter more than they state, and are too few "

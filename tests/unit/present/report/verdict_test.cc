@@ -124,8 +124,8 @@ TEST(Verdict, HeldOutCrossingsThatAreLessExactThanStatedAreDoubtful) {
   EXPECT_EQ(grade(4.9), Grade::kDoubtful);
   EXPECT_EQ(grade(5.1), Grade::kBad);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("not where this pose puts them")));
-  camera.variance_factor = 4;  // the stated uncertainty was enlarged for it, which is said
-  EXPECT_EQ(grade(2.7), Grade::kUsable);
+  camera.variance_factor = 4;  // the stated uncertainty was enlarged for it
+  EXPECT_EQ(grade(2.7), Grade::kGood);
   EXPECT_EQ(grade(2.9), Grade::kDoubtful);
   camera.variance_factor = 1;
   grade(1.5);
@@ -191,9 +191,10 @@ TEST(Verdict, ASolveOfEnoughViewsThatFailedIsNotOneToCome) {
   CameraReport camera;
   camera.calibration.camera = "rgb";
   camera.calibration.detail = "the views do not agree where the camera is";
-  JudgedCamera judged{"rgb", false, 3, &camera};
+  camera.used = {"1", "2", "3"};
+  const JudgedCamera judged{"rgb", false, 11, &camera};
   EXPECT_EQ(VerdictOfAll({judged}, std::nullopt).headline, "No calibration yet");
-  judged.views_found = 11;
+  camera.rejected.resize(8);
   const Verdict all = VerdictOfAll({judged}, std::nullopt);
   EXPECT_EQ(all.grade, Grade::kBad);
   EXPECT_THAT(all.headline, HasSubstr("o not use"));
