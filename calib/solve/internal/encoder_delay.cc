@@ -31,8 +31,8 @@ constexpr double kDelaySettled = 0.5;  // sigmas that may be left
 constexpr double kMostTurned = 0.2;    // [rad] of a view beside the first guess
 constexpr int kMostTries = 4;
 // By what factor of variance views may still scatter beyond what they state once it is taken off,
-// unless that is less than half of what it was.
-constexpr double kMostLeft = 6;
+// unless that is less than a tenth of what it was.
+constexpr double kMostLeft = 6, kMostOfBefore = 0.1;
 
 bool Turns(const BoardView& view) { return std::abs(view.cloud.turn_rad_s) > kStandsStill; }
 
@@ -184,7 +184,7 @@ bool IsSure(const CalibratedCameras& found, double taken_off_s,
   for (std::size_t c = 0; c < found.cameras.size(); ++c) {
     const double now = found.cameras[c].report.variance_factor;
     const double before = as_they_are.cameras[c].report.variance_factor;
-    if (now > kMostLeft && now > 0.5 * before) return false;
+    if (now > kMostLeft && now > kMostOfBefore * before) return false;
   }
   const Estimate& seconds = left->seconds;
   const double total = taken_off_s + seconds.value;
