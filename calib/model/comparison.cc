@@ -14,4 +14,10 @@ bool Moved(const PoseComparison& camera) {
   return camera.chi2 && ChanceOfChi2(*camera.chi2) < kMovedChance;
 }
 
+bool ColoursMoved(const PoseComparison& camera) {
+  return std::any_of(camera.pixels.begin(), camera.pixels.end(), [](const PixelShift& at) {
+    return at.sigma_px && at.rms_px > kTellingSigmas * *at.sigma_px;
+  });
+}
+
 }  // namespace rgbdt

@@ -40,11 +40,19 @@ struct CalibrationComparison {
   std::vector<PoseComparison> cameras;
 };
 
+/// In how many of its sigmas a single figure of a difference tells.
+inline constexpr double kTellingSigmas = 3;
+
 /// From which chance on a camera is said to have moved.
 inline constexpr double kMovedChance = 0.01;
 
 /// Whether a comparison says that a camera moved: beyond what chance does once in a hundred.
 bool Moved(const PoseComparison& camera);
+
+/// Whether colours lie farther apart, at some distance, than the covariances of both allow. Where
+/// the camera did not move, it is the lenses that differ: each solved from its own part of the
+/// image.
+bool ColoursMoved(const PoseComparison& camera);
 
 /// How often chance alone makes a chi-square of six degrees of freedom as large.
 double ChanceOfChi2(double chi2);

@@ -1,9 +1,11 @@
 #include "calib/model/text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cstdarg>
 #include <cstdio>
+#include <string_view>
 
 #include "calib/model/printable.h"
 
@@ -57,6 +59,17 @@ bool NaturalLess(const std::string& a, const std::string& b) {
   }
   if (i == a.size() && j == b.size()) return a < b;  // "1" and "01": any order, but one
   return i == a.size();
+}
+
+std::string ForShell(const std::string& path) {
+  constexpr std::string_view kPlain = "_./@:=+,-%";
+  const bool plain = !path.empty() && std::all_of(path.begin(), path.end(), [&](unsigned char c) {
+    return c >= 0x80 || std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != kPlain.npos;
+  });
+  if (plain) return path;
+  std::string quoted = "'";
+  for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string ValidUtf8(const std::string& text) {

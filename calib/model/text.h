@@ -16,6 +16,10 @@ std::string Exact(double value);
 /// "view2" before "view10": digits compare as numbers.
 bool NaturalLess(const std::string& a, const std::string& b);
 
+/// A path as a shell takes it for one word, in quotes where it must be: for a command that a person
+/// is to copy.
+std::string ForShell(const std::string& path);
+
 /// `text` with every byte that is not UTF-8 replaced: Protobuf, JSON and HTML take nothing else.
 std::string ValidUtf8(const std::string& text);
 

@@ -208,6 +208,16 @@ std::string CommandLine::Called() const {
   return app_->get_name() + (verbs.empty() ? "" : " " + verbs.front()->get_name());
 }
 
+// Options that were given and are none, for an error about another one: it may be this one
+// misspelt.
+std::string CommandLine::Unknown() const {
+  std::vector<std::string> words = app_->remaining(true);
+  words.erase(std::remove_if(words.begin(), words.end(),
+                             [](const std::string& word) { return word.rfind('-', 0) != 0; }),
+              words.end());
+  return words.empty() ? "" : "; not known: " + Joined(words, ", ");
+}
+
 int CommandLine::Run(int argc, char** argv, const std::function<int()>& run) {
   const auto fail = [&](ExitCode code, const std::string& why) {
     std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), OneLine(why).c_str());
@@ -223,7 +233,7 @@ int CommandLine::Run(int argc, char** argv, const std::function<int()>& run) {
     return app_->exit(help);
   } catch (const CLI::RequiredError& e) {
     const bool no_verb = !verbs_.empty() && app_->get_subcommands().empty();
-    return misused(no_verb ? "which verb?" : e.what());
+    return misused(no_verb ? "which verb?" : e.what() + Unknown());
   } catch (const CLI::ParseError& e) {
     return misused(e.what());
   } catch (const UsageError& e) {

@@ -93,6 +93,7 @@ class CommandLine {
   void ChoiceOf(const std::string& name, std::vector<std::string> names, const std::string& usual,
                 const std::string& help, const std::function<void(const std::string&)>& choose);
   std::string Called() const;
+  std::string Unknown() const;
 
   std::unique_ptr<CLI::App> program_;  // none: this is a verb, which its program owns
   CLI::App* app_;

@@ -56,12 +56,9 @@ Session OpenEarlier(const fs::path& directory, const Rig& rig) {
     throw InputError(holds + " that has ended (see the file 'ended'); " + kWayOut);
   }
   Session session = OpenSession(directory, LensNeed::kKnown);
-  std::string differences;
-  for (const std::string& line : DifferencesOf(session.rig, rig)) {
-    differences += (differences.empty() ? "" : "; ") + line;
-  }
+  const std::vector<std::string> differences = DifferencesOf(session.rig, rig);
   if (!differences.empty()) {
-    throw InputError(holds + " of another rig (" + differences + "); " + kWayOut);
+    throw InputError(holds + " of another rig (" + InOneLine(differences) + "); " + kWayOut);
   }
   return session;
 }

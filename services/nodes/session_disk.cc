@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "calib/files/session/session_dir.h"
+#include "calib/model/text.h"
 #include "calib/solve/options.h"
 #include "services/nodes/session_node.h"
 
@@ -69,8 +70,8 @@ void SessionNode::WriteToDisk() {
 std::string SessionNode::WhatIsOnDisk() const {
   const std::size_t views = earlier_.detected.size() + taken_.size() - unwritten_.views();
   if (!started_ || views < static_cast<std::size_t>(CalibrateOptions{}.min_views)) return {};
-  return "; rgbdt calibrate " + directory_.string() + " takes the " + std::to_string(views) +
-         " views that are on disk";
+  return "; rgbdt calibrate " + ForShell(directory_.string()) + " takes the " +
+         std::to_string(views) + " views that are on disk";
 }
 
 // Why no view is to be taken now; empty: there is room. A script that waits asks once a second.

@@ -9,6 +9,7 @@
 #include "calib/files/schema/report_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "calib/present/report/verdict.h"
 #include "services/nodes/internal/session_steps.h"
 
@@ -149,7 +150,7 @@ Messages SessionNode::GoOnWithEarlierViews() {
     std::string names;
     for (const std::string& name : earlier_.undetected) names += (names.empty() ? "" : ", ") + name;
     Tell("view " + names + " was not detected and does not count here; rgbdt calibrate " +
-         directory_.string() + " takes all views that are there");
+         ForShell(directory_.string()) + " takes all views that are there");
   }
   if (by_request_ && !earlier_.detected.empty()) {
     Append(SessionStep::Kind::kSolve);

@@ -2,6 +2,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "services/packets/bag_packets.h"
 #include "services/packets/recording.h"
 #include "services/rgbdt/packet_import.h"

@@ -64,14 +64,15 @@ inline void PrintReport(bool json, const Report& report, const std::filesystem::
   std::printf("%s report.json, report.html\n", wrote.c_str());
 }
 
-/// In words and figures. False: a camera moved.
+/// In words and figures. False: a camera moved, or its colours did.
 inline bool PrintComparisons(const std::vector<CalibrationComparison>& comparisons) {
-  bool moved = false;
+  bool same = true;
   for (const CalibrationComparison& comparison : comparisons) {
     std::printf("%s", ComparisonText(comparison).c_str());
-    for (const PoseComparison& camera : comparison.cameras) moved = moved || Moved(camera);
+    for (const PoseComparison& camera : comparison.cameras)
+      same = same && !Moved(camera) && !ColoursMoved(camera);
   }
-  return !moved;
+  return same;
 }
 
 }  // namespace rgbdt

@@ -93,7 +93,7 @@ void AddCompare(CommandLine* program) {
       "Example: rgbdt compare out/monday out/friday",
       [flags] { return RunCompare(*flags); });
   verb->Ends(ExitCode::kFailed,
-             "failed, or a camera moved by more than chance does once in a hundred");
+             "failed, or a camera or its colours moved by more than chance does once in a hundred");
   verb->Required("CALIBRATION", &flags->calibrations,
                  "two or more: session directories, or calibration.textproto files");
   verb->Option("--rig", &flags->rig,

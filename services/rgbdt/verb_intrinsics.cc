@@ -11,6 +11,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/methods/session_corners.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "calib/present/report/intrinsics_html.h"
 #include "calib/present/report/intrinsics_text.h"
 #include "services/rgbdt/print_report.h"

@@ -7,6 +7,7 @@
 #include "calib/files/image_files.h"
 #include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "calib/present/pictures/map_picture.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"

@@ -5,6 +5,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "calib/simulate/imperfections.h"
 #include "calib/simulate/simulator.h"
 #include "calib/simulate/use_target.h"

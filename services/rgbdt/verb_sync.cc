@@ -13,6 +13,7 @@
 #include "calib/files/check_writable.h"
 #include "calib/files/image_files.h"
 #include "calib/files/schema/calibration_file.h"
+#include "calib/model/text.h"
 #include "calib/present/pictures/sync_picture.h"
 #include "calib/sync/sync.h"
 #include "services/posix/clock.h"

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -88,17 +85,6 @@ Folders::LensFile LensFileOf(const std::string& text);
 /// How `session` and `import` end once the session is written: the lenses of these cameras are
 /// found from its images, and what to do next is said. Gives the exit code.
 int FinishSession(const std::string& session_dir, const std::vector<std::string>& unknown);
-
-/// A path as a shell takes it for one word.
-inline std::string ForShell(const std::string& path) {
-  const bool plain = !path.empty() && std::all_of(path.begin(), path.end(), [](unsigned char c) {
-    return c >= 0x80 || std::isalnum(c) != 0 || std::strchr("_./@:=+,-%", c) != nullptr;
-  });
-  if (plain) return path;
-  std::string quoted = "'";
-  for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 /// A line of progress, on stderr.
 inline void PrintProgress(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }

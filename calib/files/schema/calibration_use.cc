@@ -44,12 +44,6 @@ void AddDifferences(const Rig& was, const Rig& is, std::vector<std::string>* lin
   }
 }
 
-std::string InOneLine(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
-  return text;
-}
-
 std::vector<std::string> ThrowUnlessAnyway(std::vector<std::string> against, Use use) {
   if (!against.empty() && use == Use::kIfSound) throw InputError(against.front());
   return against;

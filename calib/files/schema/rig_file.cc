@@ -311,6 +311,18 @@ std::string PrintRig(const Rig& rig) {
       "y left, z up. Camera: x right, y down, z forward.");
 }
 
+std::string InOneLine(const std::vector<std::string>& differences) {
+  constexpr std::size_t kMost = 5, kMaxBytes = 150;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(differences.size(), kMost); ++i) {
+    const std::string& line = differences[i];
+    text += (i == 0 ? "" : "; ") +
+            (line.size() <= kMaxBytes ? line : ValidUtf8(line.substr(0, kMaxBytes)) + " ...");
+  }
+  const std::size_t more = differences.size() - std::min(differences.size(), kMost);
+  return more == 0 ? text : text + "; and " + std::to_string(more) + " more";
+}
+
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
   proto::Rig was = text::FromRig(a);
   proto::Rig is = text::FromRig(b);

@@ -24,6 +24,9 @@ std::string PrintRig(const Rig& rig);
 /// but for the model of a LIDAR where both rigs have it.
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b);
 
+/// Those in one line, the first few of them: rigs that have nothing in common differ in everything.
+std::string InOneLine(const std::vector<std::string>& differences);
+
 /// What stands in Rig::hash: FNV-1a, 64 bit, 16 hexadecimal digits.
 std::string HashOfRigText(const std::string& text);
 

@@ -69,10 +69,8 @@ void AddPart(Session::Part part, Session* joined) {
 void RequireSameRig(const Session& a, const Session& b) {
   const std::vector<std::string> differences = DifferencesOf(a.rig, b.rig);
   if (differences.empty()) return;
-  std::string text;
-  for (const std::string& line : differences) text += (text.empty() ? "" : "; ") + line;
   throw InputError("the rigs of " + a.root.string() + " and " + b.root.string() +
-                   " differ, so they cannot be solved together (" + text +
+                   " differ, so they cannot be solved together (" + InOneLine(differences) +
                    "): make the rig files agree, or calibrate each session by itself and use "
                    "`rgbdt compare`");
 }

@@ -1,5 +1,6 @@
 #include "calib/present/frames/page.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "calib/model/text.h"
@@ -26,6 +27,8 @@ namespace {
 
 // Where the page wants its frames: before its own script.
 constexpr std::string_view kPlace = "<!--rgbdt-frames-->";
+// Before its end is what is shown without JavaScript.
+constexpr std::string_view kPlainPlace = "</noscript>";
 
 std::string ScriptOf(const NamedFrame& frame) {
   return "<script type=\"application/x-rgbdt-frames\" data-topic=\"" +
@@ -43,14 +46,19 @@ std::string_view ViewerPage() {
 #endif
 }
 
-std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>& frames) {
+std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>& frames,
+                           const std::string& plain_text) {
   const std::size_t place = page.find(kPlace);
   if (place == std::string_view::npos) {
     throw std::logic_error("the viewer's page has no place for frames: " + std::string(kPlace));
   }
   std::string out(page.substr(0, place));
   for (const NamedFrame& frame : frames) out += ScriptOf(frame);
-  return out.append(page.substr(place + kPlace.size()));
+  const std::string_view rest = page.substr(place + kPlace.size());
+  const std::size_t without_script = std::min(rest.rfind(kPlainPlace), rest.size());
+  out.append(rest.substr(0, without_script));
+  if (!plain_text.empty()) out += "<pre>" + html::Escape(ValidUtf8(plain_text)) + "</pre>";
+  return out.append(rest.substr(without_script));
 }
 
 }  // namespace rgbdt

@@ -16,6 +16,8 @@ struct NamedFrame {
 std::string_view ViewerPage();
 
 /// The page with frames in it: one file that opens without a server. `page` must not be empty.
-std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>& frames);
+/// Who opens it without JavaScript sees `plain_text` instead.
+std::string PageWithFrames(std::string_view page, const std::vector<NamedFrame>& frames,
+                           const std::string& plain_text);
 
 }  // namespace rgbdt

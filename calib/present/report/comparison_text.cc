@@ -11,7 +11,6 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kTellingSigmas = 3;  // from which a single axis is named
 constexpr std::size_t kMostAxes = 2;  // in a sentence
 
 struct Axis {
@@ -37,6 +36,21 @@ std::vector<Axis> TellingAxes(const PoseComparison& camera) {
   return axes;
 }
 
+// How far apart colours lie, at the distance where that is the farthest beyond what is stated.
+std::string LensesDiffer(const PoseComparison& camera) {
+  const auto& worst = *std::max_element(
+      camera.pixels.begin(), camera.pixels.end(), [](const PixelShift& a, const PixelShift& b) {
+        return a.rms_px / a.sigma_px.value_or(HUGE_VAL) < b.rms_px / b.sigma_px.value_or(HUGE_VAL);
+      });
+  return fmt::format(
+      "; but the lenses differ: colours at {:.0f} m lie {:.1f} px apart (RMS over the image), "
+      "where "
+      "{:.1f} px are stated. Where a session has no board in the image, its lens is a guess: find "
+      "it "
+      "from images that cover all of it (rgbdt intrinsics), and calibrate both again",
+      worst.distance_m, worst.rms_px, worst.sigma_px.value_or(0));
+}
+
 std::string Words(const PoseComparison& camera, const CalibrationComparison& all) {
   if (!camera.chi2) {
     return fmt::format(
@@ -46,7 +60,9 @@ std::string Words(const PoseComparison& camera, const CalibrationComparison& all
   }
   const double chance = ChanceOfChi2(*camera.chi2);
   if (!Moved(camera)) {
-    return fmt::format("the same within what both can tell (chi-square {:.1f} of 6)", *camera.chi2);
+    return fmt::format("the same {}within what both can tell (chi-square {:.1f} of 6){}",
+                       ColoursMoved(camera) ? "pose " : "", *camera.chi2,
+                       ColoursMoved(camera) ? LensesDiffer(camera) : "");
   }
   std::string moved;
   for (const Axis& axis : TellingAxes(camera)) {

@@ -6,6 +6,7 @@
 #include "calib/present/pictures/colouring_picture.h"
 #include "calib/present/pictures/lidar_picture.h"
 #include "calib/present/report/report_html.h"
+#include "calib/present/report/summary.h"
 #include "calib/present/report/verdict.h"
 #include "calib/present/session/internal/overlay_picture.h"
 
@@ -33,7 +34,8 @@ std::string PlainPage(const FinishedSession& finished) {
 std::string PageOf(const FinishedSession& finished) {
   SessionFramesOptions options;
   options.title = finished.session.Title();
-  return PageWithFrames(ViewerPage(), SessionFrames(finished, options));
+  return PageWithFrames(ViewerPage(), SessionFrames(finished, options),
+                        Summary(finished.report()).FullReport());
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ constexpr std::size_t kLeastEachSide = 2;  // views: one alone may be off for a 
 constexpr double kSureSigmas = 5;
 constexpr std::size_t kMostTried = 3;  // breaks
 // By what factor of variance views on one side may scatter beyond what they state.
-constexpr double kMostLeft = 2.5;
+constexpr double kMostScatter = 2.5;
 
 // What some views say of the pose together, by what each says alone.
 struct Together {
@@ -98,13 +98,13 @@ std::vector<Candidate> BreaksOf(const GuessedCamera& camera, const ViewOrder& or
   std::vector<Candidate> breaks;
   for (std::size_t k = kLeastEachSide; k + kLeastEachSide <= views.size(); ++k) {
     const Together& before = up_to[k - 1];
-    const Together behind = all.Without(before);
-    const Vector6d apart = behind.Mean() - before.Mean();
+    const Together after = all.Without(before);
+    const Vector6d apart = after.Mean() - before.Mean();
     const Matrix6d covariance =
-        InverseOfSymmetric(before.information) + InverseOfSymmetric(behind.information);
+        InverseOfSymmetric(before.information) + InverseOfSymmetric(after.information);
     const double between = apart.dot(SolveSymmetric(covariance, apart)) / 6;
     const double freedom = 6 * static_cast<double>(views.size() - 2);
-    const double within = (before.SquaresAboutMean() + behind.SquaresAboutMean()) / freedom;
+    const double within = (before.SquaresAboutMean() + after.SquaresAboutMean()) / freedom;
     // Views that agree better than they state do not make a difference of theirs larger.
     if (!Exceeds(between, 6, std::max(1.0, within), freedom)) continue;
     breaks.push_back({{views[k - 1]->view, views[k]->view}, between / std::max(1.0, within)});
@@ -123,17 +123,17 @@ bool IsOneSession(const std::vector<CameraViews>& cameras) {
   });
 }
 
-// The cameras with the views before, then with those behind; all of them are to be solved by.
+// The cameras with the views before, then with those after; all of them are to be solved by.
 std::vector<CameraViews> SplitAt(const MountBreak& at, const std::vector<CameraViews>& cameras) {
   ViewOrder order;
   for (const CameraViews& camera : cameras) order.Add(camera.all);
   std::vector<CameraViews> split;
-  for (const bool behind : {false, true}) {
+  for (const bool after : {false, true}) {
     for (const CameraViews& camera : cameras) {
       CameraViews part = camera;
       part.all.clear();
       for (CameraView view : camera.all) {
-        if (order.IsBefore(at.last_before, view.view) != behind) continue;
+        if (order.IsBefore(at.last_before, view.view) != after) continue;
         view.heldout = false;
         part.all.push_back(std::move(view));
       }
@@ -147,7 +147,7 @@ std::string WordsOf(const MountBreak& at, const PoseComparison& moved) {
   return Format(
       "%s and the LIDAR moved against each other between views %s and %s, by %.2f deg and %.0f mm: "
       "no pose is right for all views. Leave out those before it (--without), or solve those "
-      "before and behind as two sessions (rgbdt calibrate A B --mounts-moved)",
+      "before and after as two sessions (rgbdt calibrate A B --mounts-moved)",
       moved.camera.c_str(), at.last_before.c_str(), at.first_after.c_str(),
       moved.difference.rotation_deg, moved.difference.translation_mm);
 }
@@ -168,7 +168,7 @@ std::vector<std::optional<Cause>> MovedAt(const MountBreak& at, const Calibrated
   std::vector<std::optional<Cause>> moved(cameras);
   const bool agree = std::all_of(
       apart.cameras.begin(), apart.cameras.end(),
-      [](const CameraViews& camera) { return camera.report.variance_factor <= kMostLeft; });
+      [](const CameraViews& camera) { return camera.report.variance_factor <= kMostScatter; });
   if (!agree) return moved;
   for (const MountChange& change : apart.changes) {
     if (!change.moved.chi2) continue;

@@ -163,6 +163,10 @@ TEST(CommandLine, RunsTheVerbThatIsNamed) {
   EXPECT_EQ(RunWith(&line, {"work"}, nullptr), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "program: DIR is required; see program work --help\n");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {"work", "--dirr=here"}, nullptr), 2);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "program: DIR is required; not known: --dirr=here; see program work --help\n");
 }
 
 TEST(CommandLine, AVectorWithoutDashesTakesAllWords) {

@@ -32,6 +32,16 @@ TEST(Exact, ReadsBackAsTheSameBits) {
   }
 }
 
+TEST(ForShell, IsOneWordToAShell) {
+  EXPECT_EQ(ForShell("out/session_2.pcd"), "out/session_2.pcd");
+  EXPECT_EQ(ForShell("M\xC3\xA4rz"), "M\xC3\xA4rz");
+  EXPECT_EQ(ForShell("my session"), "'my session'");
+  EXPECT_EQ(ForShell("it's"), "'it'\\''s'");
+  EXPECT_EQ(ForShell("$(reboot)"), "'$(reboot)'");
+  EXPECT_EQ(ForShell("~/out"), "'~/out'");
+  EXPECT_EQ(ForShell(""), "''");
+}
+
 TEST(NaturalLess, ComparesDigitsAsNumbers) {
   EXPECT_TRUE(NaturalLess("2", "10"));
   EXPECT_TRUE(NaturalLess("a2b3", "a2b20"));

@@ -263,6 +263,13 @@ TEST(RigFile, HowFarTheMonitorIsFollowed) {
   EXPECT_THROW(rig.Check(), InputError);
 }
 
+TEST(RigFile, InOneLineAreTheFirstDifferences) {
+  EXPECT_EQ(InOneLine({}), "");
+  EXPECT_EQ(InOneLine({"fx: 1 -> 2", "fy: 1 -> 2"}), "fx: 1 -> 2; fy: 1 -> 2");
+  EXPECT_EQ(InOneLine({"a", "b", "c", "d", "e", "f", "g"}), "a; b; c; d; e; and 2 more");
+  EXPECT_LT(InOneLine({std::string(5000, 'x')}).size(), 200U);
+}
+
 TEST(RigFile, WhatDiffersBetweenTwoRigsIsNamed) {
   const Rig rig = test::MakeRig();
   Rig other = rig;

@@ -52,22 +52,30 @@ TEST(PageWithFrames, FramesComeBackByteForByteBeforeThePagesScript) {
   const std::vector<std::string> bytes = {"", "</script><script>alert(1)</script>", all, "a", "ab"};
   std::vector<NamedFrame> frames;
   for (const std::string& frame : bytes) frames.push_back({"session", frame});
-  const std::string page = PageWithFrames(kPage, frames);
+  const std::string page = PageWithFrames(kPage, frames, "");
   EXPECT_EQ(FramesIn(page), bytes);
   EXPECT_GT(page.find("<script>go()"), page.rfind("application/x-rgbdt-frames"));
   EXPECT_EQ(page.find("alert"), std::string::npos);
 }
 
 TEST(PageWithFrames, NoTopicIsMarkup) {
-  const std::string page = PageWithFrames(kPage, {{"\"></script><b>\xff", "frame"}});
+  const std::string page = PageWithFrames(kPage, {{"\"></script><b>\xff", "frame"}}, "");
   EXPECT_EQ(page.find("<b>"), std::string::npos);
   EXPECT_EQ(page.find('\xff'), std::string::npos);
   EXPECT_EQ(FramesIn(page), std::vector<std::string>{"frame"});
 }
 
+TEST(PageWithFrames, SaysInWordsWhatItShowsWithoutJavaScript) {
+  const std::string page = std::string(kPage) + "<noscript>It needs JavaScript.</noscript>";
+  EXPECT_NE(
+      PageWithFrames(page, {}, "good, 2 < 3 \xff")
+          .find("<noscript>It needs JavaScript.<pre>good, 2 &lt; 3 \xEF\xBF\xBD</pre></noscript>"),
+      std::string::npos);
+}
+
 TEST(PageWithFrames, WithoutFramesOrAPlace) {
-  EXPECT_EQ(PageWithFrames(kPage, {}), "<html><head><script>go()</script></head></html>");
-  EXPECT_THROW(PageWithFrames("<html></html>", {}), std::logic_error);
+  EXPECT_EQ(PageWithFrames(kPage, {}, ""), "<html><head><script>go()</script></head></html>");
+  EXPECT_THROW(PageWithFrames("<html></html>", {}, ""), std::logic_error);
 }
 
 }  // namespace

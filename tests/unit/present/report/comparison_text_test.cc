@@ -24,7 +24,7 @@ CalibrationComparison Turned(double deg, double chi2) {
   camera.rotation_deg[1].value = deg;
   camera.difference = {deg, 0};
   camera.chi2 = chi2;
-  camera.pixels = {{2, 3.4, 0.6}, {5, 3.3, 0.5}};
+  camera.pixels = {{2, 1.4, 0.6}, {5, 1.3, 0.5}};
   return comparison;
 }
 
@@ -34,7 +34,20 @@ TEST(ComparisonText, WithinWhatBothCanTellItIsTheSame) {
   EXPECT_THAT(text, HasSubstr("rgb: the same within what both can tell (chi-square 7.2 of 6)"));
   EXPECT_THAT(text, HasSubstr("+0.100 +- 0.080"));
   EXPECT_THAT(text, HasSubstr("colours at 2, 5 m, RMS over the image [px]"));
-  EXPECT_THAT(text, HasSubstr("3.40 +- 0.60"));
+  EXPECT_THAT(text, HasSubstr("1.40 +- 0.60"));
+}
+
+TEST(ComparisonText, OfTheSamePoseWithOtherLensesItSaysSo) {
+  CalibrationComparison comparison = Turned(0.1, 7.2);
+  comparison.cameras[0].pixels = {{2, 3.0, 1.1}, {5, 33.2, 5.0}, {10, 30, 5.1}};
+  EXPECT_TRUE(ColoursMoved(comparison.cameras[0]));
+  const std::string text = ComparisonText(comparison);
+  EXPECT_THAT(text, HasSubstr("rgb: the same pose within what both can tell (chi-square 7.2 of 6); "
+                              "but the lenses differ: colours at 5 m lie 33.2 px apart"));
+  EXPECT_THAT(text, HasSubstr("where 5.0 px are stated"));
+  comparison.cameras[0].pixels[1].rms_px = 14;
+  comparison.cameras[0].pixels[2].sigma_px.reset();  // whatever they are, nothing is stated
+  EXPECT_FALSE(ColoursMoved(comparison.cameras[0]));
 }
 
 TEST(ComparisonText, BeyondItTheMountMovedAboutAnAxisSinceADay) {
