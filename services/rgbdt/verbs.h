@@ -70,6 +70,13 @@ inline void PrintWarnings(const std::vector<std::string>& against) {
   }
 }
 
+/// What is doubtful about a calibration that is used, on stderr.
+inline void PrintDoubts(const Calibration& calibration, const std::filesystem::path& file) {
+  for (const std::string& line : DoubtsOf(calibration, file.string())) {
+    std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
+  }
+}
+
 /// Of a verb that uses a calibration.
 inline void AddAnyway(CommandLine* verb, bool* anyway, const std::string& although) {
   verb->Flag("--anyway", anyway, "use the calibration although " + although);

@@ -71,6 +71,14 @@ ends_with 4 "judging what is not to be used" "$bin/rgbdt" evaluate "$s" --out "$
 sed '0,/status: CONVERGED/s//status: DEGENERATE/' "$scratch/good.textproto" >"$s/calibration.textproto"
 refuses_it "degenerate" fuse "camera rgb is not to be used: degenerate"
 
+sed '0,/status: CONVERGED/s//status: CONVERGED detail: "doubtful: a mount moved."/' \
+  "$scratch/good.textproto" >"$s/calibration.textproto"
+for verb in fuse export; do
+  uses "doubtful ($verb)" "$verb"
+  grep -q "^rgbdt: $s/calibration.textproto: camera rgb: doubtful: a mount moved." "$scratch/output" ||
+    complain "doubtful ($verb): nothing said"
+done
+
 for program in "rgbdt fuse" "rgbdt export" "rgbdt evaluate" "rgbdt replay" rgbdt-fuser rgbdt-viewer; do
   read -ra words <<<"$program"
   accepts "help of $program" "$bin/${words[0]}" "${words[@]:1}" --help

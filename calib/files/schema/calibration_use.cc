@@ -123,6 +123,15 @@ std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name) 
          " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
 }
 
+std::vector<std::string> DoubtsOf(const Calibration& calibration, const std::string& name) {
+  std::vector<std::string> doubts;
+  for (const CameraCalibration& camera : calibration.cameras) {
+    if (!camera.converged() || camera.detail.empty()) continue;
+    doubts.push_back(name + ": camera " + camera.camera + ": " + camera.detail);
+  }
+  return doubts;
+}
+
 std::vector<std::string> RequireSameRig(const Calibration& calibration, const Rig& rig,
                                         const UseNames& names, Use use) {
   const std::string why = WhyAnotherRig(calibration, rig, names);

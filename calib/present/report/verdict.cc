@@ -201,6 +201,9 @@ Calibration JudgedCalibration(const Report& report, const Rig& rig) {
     for (const CameraReport& judged : report.cameras) {
       if (judged.calibration.camera != camera.camera) continue;
       const Verdict verdict = Judge(judged);
+      if (verdict.grade == Grade::kDoubtful && camera.detail.empty()) {
+        camera.detail = "doubtful: " + verdict.reasons.front();
+      }
       if (verdict.grade != Grade::kBad) continue;
       camera.status = SolveStatus::kContradicted;
       camera.detail = verdict.reasons.front();

@@ -303,11 +303,15 @@ TEST(Verdict, AMethodWithoutACovarianceIsNoMoreThanUsable) {
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("cannot be told by this method")));
 }
 
-TEST(JudgedCalibration, WhatIsNotToBeUsedSaysSo) {
+TEST(JudgedCalibration, WhatIsDoubtfulOrNotToBeUsedSaysSo) {
   const Rig rig = test::MakeRig();
   Report report = test::MakeReport();
   EXPECT_EQ(JudgedCalibration(report, rig).cameras[0].status, report.cameras[0].calibration.status);
   report.cameras[0].calibration.status = SolveStatus::kConverged;
+  report.cameras[0].causes = {Wrong(100, 2)};
+  const Calibration doubtful = JudgedCalibration(report, rig);
+  EXPECT_TRUE(doubtful.cameras[0].converged());
+  EXPECT_THAT(doubtful.cameras[0].detail, testing::StartsWith("doubtful: Likeliest cause: "));
   report.cameras[0].causes = {Wrong(100, 10)};
   const Calibration judged = JudgedCalibration(report, rig);
   EXPECT_EQ(judged.cameras[0].status, SolveStatus::kContradicted);
