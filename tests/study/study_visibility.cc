@@ -21,8 +21,10 @@ void Run(const std::string& sensor, int scenes, std::uint64_t seed, const std::s
     options.scene = static_cast<simulate::Scene>(i % 3);
     if (sensor == "dense") options.scanner = simulate::DenseScanner();
     const bool turned = sensor == "dense" || sensor == "turned";
-    simulate::UseLidar(turned ? 0 : std::stoi(sensor), &options);
-    const VisibilityScores scores = ScoreVisibility(options);
+    simulate::UseLidar(turned ? 0 : std::stoi(sensor), &options);  // "64s": 64
+    const bool staggered = !turned && sensor.back() == 's';
+    const VisibilityScores scores =
+        ScoreVisibility(options, staggered ? Columns::kStaggered : Columns::kAligned);
     const auto write = [&](const char* judged, const VisibilityScore& s) {
       csv << sensor << ',' << options.seed << ',' << judged << ',' << s.hidden << ','
           << s.hidden_coloured << ',' << s.visible << ',' << s.visible_coloured << '\n';
@@ -42,5 +44,5 @@ int main(int argc, char** argv) {
                       arguments[3]);
   };
   return rgbdt::study::StudyMain(
-      {"study_visibility", "turned|dense|128|64|32|16 SCENES SEED CSV", 4, 4, run}, argc, argv);
+      {"study_visibility", "turned|dense|128|64|64s|32|16 SCENES SEED CSV", 4, 4, run}, argc, argv);
 }

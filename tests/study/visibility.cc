@@ -72,6 +72,22 @@ Cloud Lines(const Cloud& cloud, int first, int count) {
   return chunk;
 }
 
+// Of four rings in turn each looks this many columns ahead, once round.
+Cloud Staggered(const Cloud& cloud) {
+  constexpr int kAhead[] = {9, 3, -3, -9};
+  Cloud staggered = cloud;
+  for (int line = 0; line < cloud.lines; ++line) {
+    for (int ring = 0; ring < cloud.beams; ++ring) {
+      const int from_line = (line + kAhead[ring % 4] + cloud.lines) % cloud.lines;
+      const auto at = static_cast<std::size_t>(line * cloud.beams + ring);
+      const auto from = static_cast<std::size_t>(from_line * cloud.beams + ring);
+      staggered.points[at] = cloud.points[from];
+      staggered.directions[at] = cloud.directions[from];
+    }
+  }
+  return staggered;
+}
+
 // One camera of the rig, and which of a sweep's points it should see.
 struct Judge {
   std::uint32_t bit;
@@ -164,11 +180,15 @@ double VisibilityScore::VisibleColoured() const {
   return static_cast<double>(visible_coloured) / static_cast<double>(std::max(1L, visible));
 }
 
-VisibilityScores ScoreVisibility(const simulate::Options& options) {
+VisibilityScores ScoreVisibility(const simulate::Options& options, Columns columns) {
   const simulate::Simulator simulator(options);
   const CloudWorld world(options, 0);
-  const Cloud first = world.Sweep(1'000'000);
-  const Cloud second = world.Sweep(100'000'000);
+  const auto sweep = [&](Utime utime) {
+    Cloud cloud = world.Sweep(utime);
+    return columns == Columns::kStaggered ? Staggered(cloud) : cloud;
+  };
+  const Cloud first = sweep(1'000'000);
+  const Cloud second = sweep(100'000'000);
   SweepFuser fuser = FuserOf(simulator);
   // A spinning LIDAR's revolution comes as one.
   const int lines = options.spinning ? first.lines : 1;

@@ -24,7 +24,12 @@ struct VisibilityScores {
   VisibilityScore live;   ///< chunk by chunk, after a sweep that went before
 };
 
+/// Which beams of a spinning LIDAR make a line: all of one direction, or all of one moment where
+/// lasers look past each other by some columns, as an Ouster's do.
+enum class Columns { kAligned, kStaggered };
+
 /// A sweep of the rig's LIDAR past the board in one place, through SweepFuser.
-VisibilityScores ScoreVisibility(const simulate::Options& options);
+VisibilityScores ScoreVisibility(const simulate::Options& options,
+                                 Columns columns = Columns::kAligned);
 
 }  // namespace rgbdt::study

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/simulated_variants.h"
+
 namespace rgbdt {
 namespace {
 
@@ -25,6 +27,20 @@ TEST(Visibility, ColoursWhatIsSeenAndNothingElse) {
   EXPECT_GE(all.whole.VisibleColoured(), 0.98);
   EXPECT_LE(all.live.HiddenColoured(), 0.005);
   EXPECT_GE(all.live.VisibleColoured(), 0.97);
+}
+
+// Which beams stand in a line says nothing of the scene.
+TEST(Visibility, IsTheSameWhereLasersLookPastEachOther) {
+  simulate::Options options;
+  options.seed = 7200;
+  options.scene = simulate::Scene::kOutdoor;
+  simulate::UseLidar(64, &options);
+  const VisibilityScores aligned = ScoreVisibility(options);
+  const VisibilityScores staggered = ScoreVisibility(options, study::Columns::kStaggered);
+  ASSERT_GT(aligned.whole.visible, 3000);
+  EXPECT_EQ(staggered.whole.visible, aligned.whole.visible);
+  EXPECT_NEAR(staggered.whole.VisibleColoured(), aligned.whole.VisibleColoured(), 0.01);
+  EXPECT_NEAR(staggered.whole.HiddenColoured(), aligned.whole.HiddenColoured(), 0.01);
 }
 
 }  // namespace
