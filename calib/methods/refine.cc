@@ -37,6 +37,11 @@ CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views, s
     if (image == view.images.end()) continue;
     (view.heldout ? shots.heldout : shots.used).push_back({view.name, &view.cloud, &*image});
   }
+  // A result that nothing was left out to judge by may be worse than the start.
+  if (shots.heldout.empty() && shots.used.size() > 1) {
+    shots.heldout.push_back(shots.used.back());
+    shots.used.pop_back();
+  }
   return {Spread(shots.used, most), Spread(shots.heldout, most)};
 }
 
@@ -190,7 +195,6 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
   for (const View& view : views) {
     DetectedView& seen = report.detections.emplace_back();
     seen.view = view.name;
-    seen.heldout = view.heldout;
     for (const Image& image : view.images) {
       seen.images.push_back({image.camera, "not looked for"});
       report.utime = std::max(report.utime, image.utime);
@@ -209,6 +213,10 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
       own.natural.start_covariance = given->PoseAndLens();
     }
     report.cameras.push_back(RefineCamera(camera, views, start, own));
+    const std::vector<std::string>& heldout = report.cameras.back().heldout;
+    for (DetectedView& seen : report.detections) {
+      seen.heldout |= std::find(heldout.begin(), heldout.end(), seen.view) != heldout.end();
+    }
   }
   return report;
 }

@@ -30,12 +30,12 @@ struct RefineOptions {
 };
 
 /// Refines the poses of `start` by what stands about: by the views that are not held out, judged by
-/// those that are. A camera that `start` lacks begins at the rig's hand-measured guess. A result
-/// that fits the sweeps that were left out worse than the start is not taken: the pose is the
-/// start's, and the status says so. One that did not converge has the start's pose, too, and says
-/// why. Each camera that was solved has `scene` in its report; one without a start, or without a
-/// view to solve with, has no pose and a status that says so. Throws InputError for an unknown
-/// method, and for a start that is to be joined and has no covariance.
+/// those that are, or by the last one where none is. A camera that `start` lacks begins at the
+/// rig's hand-measured guess. A result that fits the sweeps that were left out worse than the start
+/// is not taken: the pose is the start's, and the status says so. One that did not converge has the
+/// start's pose, too, and says why. Each camera that was solved has `scene` in its report; one
+/// without a start, or without a view to solve with, has no pose and a status that says so. Throws
+/// InputError for an unknown method, and for a start that is to be joined and has no covariance.
 Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration& start,
               const RefineOptions& options = {});
 

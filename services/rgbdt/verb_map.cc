@@ -14,6 +14,7 @@
 #include "services/nodes/mapper_node.h"
 #include "services/replay/drive_map.h"
 #include "services/rgbdt/verbs.h"
+#include "services/rgbdt/write_terrain.h"
 
 namespace rgbdt {
 namespace {
@@ -28,7 +29,15 @@ struct MapFlags {
 struct LogRead {
   std::int64_t events = 0, clouds = 0, sweeps = 0, dropped = 0;
   std::string last_problem;
+  std::vector<StampedPose> way;  // where clouds say that the rig was
 };
+
+void AddPose(const Message& message, std::vector<StampedPose>* way) {
+  const auto* cloud = std::get_if<RgbdtCloud>(&message);
+  if (cloud == nullptr || !cloud->map_from_lidar) return;
+  if (!way->empty() && cloud->frame_utime <= way->back().utime) return;
+  way->push_back({0, cloud->frame_utime, "", *cloud->map_from_lidar});
+}
 
 // As a process does: what cannot be used is dropped and counted, not the end.
 LogRead ReadLog(const std::string& path, MapperNode* node) {
@@ -39,7 +48,9 @@ LogRead ReadLog(const std::string& path, MapperNode* node) {
     if (event->channel == "CLOUD") ++read.sweeps;
     if (event->channel != "RGBDT_CLOUD") continue;
     try {
-      node->Handle(Decode(event->channel, event->bytes.data(), event->bytes.size()));
+      const Message message = Decode(event->channel, event->bytes.data(), event->bytes.size());
+      node->Handle(message);
+      AddPose(message, &read.way);
       ++read.clouds;
     } catch (const std::exception& e) {
       ++read.dropped;
@@ -59,8 +70,21 @@ void TellDropped(const std::string& log, std::int64_t dropped, const std::string
                static_cast<long long>(dropped), last_problem.c_str());
 }
 
-void WriteMap(const MapFlags& flags, const MapperNode& node, const MapCloud& map,
-              std::int64_t clouds) {
+std::vector<Eigen::Vector3d> PlacesOf(const std::vector<StampedPose>& way) {
+  std::vector<Eigen::Vector3d> places(way.size());
+  std::transform(way.begin(), way.end(), places.begin(),
+                 [](const StampedPose& pose) { return pose.map_from_lidar.translation; });
+  return places;
+}
+
+std::filesystem::path Beside(const std::filesystem::path& map, const std::string& end) {
+  return map.parent_path() / (map.stem().string() + end);
+}
+
+// The map, and beside it the way, a picture from above and the terrain.
+void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds,
+              const std::vector<StampedPose>& way, const std::vector<Eigen::Vector3d>& loops) {
+  const MapCloud map = node.map().Cloud();
   WriteMapPly(flags.out, map);
   std::printf(
       "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
@@ -72,6 +96,28 @@ void WriteMap(const MapFlags& flags, const MapperNode& node, const MapCloud& map
     std::printf("the map was full: %lld voxels went; take larger ones, or --max-voxels\n",
                 static_cast<long long>(node.map().evicted()));
   }
+  std::string wrote;
+  if (!way.empty()) {
+    const std::filesystem::path tum = Beside(flags.out, ".tum");
+    WriteFileAtomically(tum, TumText(way));
+    wrote = tum.string() + " (the way, in TUM's format), ";
+  }
+  const std::filesystem::path picture = Beside(flags.out, ".png");
+  WritePng(picture, MapPicture(map, PlacesOf(way), loops));
+  wrote += picture.string() + " (from above)";
+  const std::filesystem::path terrain = Beside(flags.out, "_terrain.png");
+  try {
+    WriteTerrain(map, {}, flags.out, Beside(flags.out, "_terrain.json"), terrain);
+    wrote += ", " + terrain.string() + " and .json (where a vehicle can drive)";
+  } catch (const InputError& e) {  // the map is there all the same
+    std::fprintf(stderr, "no terrain: %s\n", e.what());
+  }
+  std::printf("wrote %s\n", wrote.c_str());
+}
+
+void TellNext(const MapFlags& flags) {
+  std::printf("next: for the limits of your vehicle: rgbdt terrain %s --max-slope ... --out DIR\n",
+              ForShell(flags.out).c_str());
 }
 
 void TellRefused(const ClosedWay& closed) {
@@ -120,12 +166,9 @@ bool ComesBack(const std::vector<Eigen::Vector3d>& places) {
 }
 
 void TellDrive(const MappedDrive& drive) {
-  std::vector<Eigen::Vector3d> places;
+  const std::vector<Eigen::Vector3d> places = PlacesOf(drive.way);
   double way = 0;
-  for (const StampedPose& pose : drive.way) {
-    places.push_back(pose.map_from_lidar.translation);
-    if (places.size() > 1) way += (places.back() - places[places.size() - 2]).norm();
-  }
+  for (std::size_t i = 1; i < places.size(); ++i) way += (places[i] - places[i - 1]).norm();
   std::printf("%.1f m of way, %zu poses by %s\n", way, drive.way.size(),
               drive.by_odometry ? "odometry from the sweeps" : "the log's POSE");
   if (!drive.by_odometry) return;
@@ -167,21 +210,12 @@ int RunDrive(const MapFlags& flags) {
   options.close_loops = flags.close_loops;
   const MappedDrive drive = MapDrive(flags.log, &node, options);
   TellDropped(flags.log, drive.dropped, drive.last_problem);
-  const MapCloud map = node.map().Cloud();
-  if (map.size() == 0) {
+  if (node.map().size() == 0) {
     throw InputError(flags.log + ": its poses and its sweeps (CLOUD) are of different times");
   }
-  WriteMap(flags, node, map, drive.clouds);
-  const std::filesystem::path out = flags.out;
-  const std::filesystem::path way = std::filesystem::path(out).replace_extension(".tum");
-  const std::filesystem::path picture = std::filesystem::path(out).replace_extension(".png");
-  WriteFileAtomically(way, TumText(drive.way));
-  std::vector<Eigen::Vector3d> places;
-  for (const StampedPose& pose : drive.way) places.push_back(pose.map_from_lidar.translation);
-  WritePng(picture, MapPicture(map, places, PlacesOfLoops(drive)));
+  WriteMap(flags, node, drive.clouds, drive.way, PlacesOfLoops(drive));
   TellDrive(drive);
-  std::printf("wrote %s (the way, in TUM's format) and %s (from above)\nnext: rgbdt terrain %s\n",
-              way.c_str(), picture.c_str(), ForShell(flags.out).c_str());
+  TellNext(flags);
   return EndsWith(true);
 }
 
@@ -198,8 +232,8 @@ int RunMap(const MapFlags& flags) {
                      " messages is a fused cloud with points (RGBDT_CLOUD), or a sweep (CLOUD); "
                      "record either channel, as rgbdt-fuser or the LIDAR publishes it");
   }
-  WriteMap(flags, node, node.map().Cloud(), read.clouds);
-  std::printf("next: rgbdt terrain %s\n", ForShell(flags.out).c_str());
+  WriteMap(flags, node, read.clouds, read.way, {});
+  TellNext(flags);
   return EndsWith(true);
 }
 
@@ -210,12 +244,12 @@ void AddMap(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "map",
       "Fused clouds of a log (RGBDT_CLOUD) to a map of voxels, in the pose stream's frame: mean\n"
-      "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live. A log that "
-      "has\n"
-      "sweeps (CLOUD) and no fused clouds is a drive: its way comes from POSE or else from the\n"
-      "sweeps themselves, as rgbdt-odometry finds it, and is written beside the map (.tum), with "
-      "a\n"
-      "picture from above (.png). With --close-loops the way is corrected where it came back to a\n"
+      "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live. Beside the "
+      "map\n"
+      "are written the way (.tum), a picture from above (.png) and where a vehicle can drive\n"
+      "(_terrain.png and .json, as rgbdt terrain finds it). A log that has sweeps (CLOUD) and no\n"
+      "fused clouds is a drive: its way comes from POSE or else from the sweeps themselves, as\n"
+      "rgbdt-odometry finds it. With --close-loops the way is corrected where it came back to a\n"
       "place, and so is all that is made of it.\n"
       "Example: rgbdt map session.lcmlog --voxel 0.1 --out out/map.ply",
       [flags] { return RunMap(*flags); });

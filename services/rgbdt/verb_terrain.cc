@@ -12,6 +12,7 @@
 #include "calib/present/pictures/terrain_picture.h"
 #include "calib/terrain/terrain.h"
 #include "services/rgbdt/verbs.h"
+#include "services/rgbdt/write_terrain.h"
 
 namespace rgbdt {
 namespace {
@@ -43,16 +44,6 @@ void PrintSites(const std::vector<LandingSite>& sites) {
   }
 }
 
-void PrintCells(const TerrainGrid& grid, const std::string& frame) {
-  const auto count = [&](CellState state) {
-    return static_cast<long long>(std::count(grid.state.begin(), grid.state.end(), state));
-  };
-  std::printf(
-      "%d x %d cells of %g m, frame %s: %lld traversable, %lld obstacle, the others unknown\n",
-      grid.columns, grid.rows, grid.cell_m, frame.c_str(), count(CellState::kTraversable),
-      count(CellState::kObstacle));
-}
-
 int RunTerrain(TerrainFlags flags) {
   flags.options.max_slope_rad = flags.max_slope_deg * kDegree;
   flags.options.site_max_slope_rad = flags.site_max_slope_deg * kDegree;
@@ -60,12 +51,9 @@ int RunTerrain(TerrainFlags flags) {
   const std::filesystem::path out = flags.out;
   CheckWritable(out / "terrain.json");
   const MapCloud cloud = ReadMapOrCloud(flags.input);
-  const Terrain terrain = FindTerrain(cloud, flags.options);
-  WriteFileAtomically(out / "terrain.json",
-                      TerrainJson(terrain, flags.options, cloud.frame, flags.input));
-  WritePng(out / "terrain.png", TerrainPicture(terrain, flags.options, cloud.frame));
-  PrintCells(terrain.grid, cloud.frame);
-  PrintSites(terrain.sites);
+  PrintSites(
+      WriteTerrain(cloud, flags.options, flags.input, out / "terrain.json", out / "terrain.png")
+          .sites);
   std::printf("wrote terrain.json, terrain.png to %s; look at terrain.png\n", flags.out.c_str());
   return EndsWith(true);
 }
@@ -88,6 +76,22 @@ void AddLimits(TerrainFlags* flags, CommandLine* verb) {
 }
 
 }  // namespace
+
+Terrain WriteTerrain(const MapCloud& cloud, const TerrainOptions& options, const std::string& input,
+                     const std::filesystem::path& json, const std::filesystem::path& picture) {
+  Terrain terrain = FindTerrain(cloud, options);
+  WriteFileAtomically(json, TerrainJson(terrain, options, cloud.frame, input));
+  WritePng(picture, TerrainPicture(terrain, options, cloud.frame));
+  const std::vector<CellState>& state = terrain.grid.state;
+  const auto count = [&](CellState one) {
+    return static_cast<long long>(std::count(state.begin(), state.end(), one));
+  };
+  std::printf(
+      "%d x %d cells of %g m, frame %s: %lld traversable, %lld obstacle, the others unknown\n",
+      terrain.grid.columns, terrain.grid.rows, terrain.grid.cell_m, cloud.frame.c_str(),
+      count(CellState::kTraversable), count(CellState::kObstacle));
+  return terrain;
+}
 
 void AddTerrain(CommandLine* program) {
   auto flags = std::make_shared<TerrainFlags>();

@@ -7,6 +7,8 @@
 #include <memory>
 #include <sstream>
 
+#include "calib/files/check_writable.h"
+#include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
@@ -23,7 +25,7 @@ namespace {
 struct UpFlags {
   BusFlags bus;
   std::string rig, listen, certificate, tls_key, logs, log, host;
-  std::string out = "out/session";
+  std::string out, drive;
 };
 
 constexpr const char* kPageAt = "http";
@@ -109,12 +111,28 @@ void RequireLogger() {
                    "`logger` out");
 }
 
-int RunUp(const UpFlags& flags) {
+// What the fuser would refuse again and again.
+void RequireCalibrated(const std::filesystem::path& session, const std::string& rig_file,
+                       const Rig& rig) {
+  const std::filesystem::path file = session / "calibration.textproto";
+  const Calibration calibration = ReadCalibration(file);
+  RequireSound(calibration, rig, {file.string(), rig_file}, Use::kIfSound);
+  PrintDoubts(calibration, file);
+}
+
+int RunUp(UpFlags flags) {
   const Rig rig = ReadRig(flags.rig);
+  const bool drives = !flags.drive.empty();
+  if (flags.out.empty()) flags.out = drives ? "out/drive" : "out/session";
+  if (drives) {
+    RequireCalibrated(flags.drive, flags.rig, rig);
+    CheckWritable(std::filesystem::path(flags.out) / "map.ply");
+  }
   UpOptions options;
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   options.rig = flags.rig;
   options.out = flags.out;
+  options.drive = flags.drive;
   options.logs = PathOr(flags.logs, flags.out + ".logs");
   options.listen = flags.listen;
   options.certificate = flags.certificate;
@@ -156,12 +174,17 @@ void AddUp(CommandLine* program) {
                     "drivers of its devices, assembler, detector, solver, fuser, a session that\n"
                     "the viewer's page leads, and the viewer. One table tells how each does;\n"
                     "Ctrl-C ends all of it. Where the rig file names hosts, the same command on\n"
-                    "each of them runs what is that machine's.\n"
-                    "Example: rgbdt up rig.textproto --out out/monday",
+                    "each of them runs what is that machine's. With --drive: monitor, odometry\n"
+                    "and mapper in place of detector, solver and session.\n"
+                    "Examples: rgbdt up rig.textproto --out out/monday\n"
+                    "          rgbdt up rig.textproto --drive out/monday --log out/drive.lcmlog",
                     [flags] { return RunUp(*flags); });
   verb->Required("RIG", &flags->rig, "rig.textproto");
   verb->Option("--out", &flags->out,
-               "session directory to write, or, where it was ended before its end, to go on with");
+               "session directory to write, or, where it was ended before its end, to go on with;\n"
+               "of a drive the folder of its map, map.ply. Default: out/session; out/drive");
+  verb->Option("--drive", &flags->drive,
+               "SESSION, a calibrated one: the rig drives, and is watched and mapped");
   verb->Option("--logs", &flags->logs,
                "folder for what the processes print; default: beside the session's, OUT.logs");
   verb->Option(

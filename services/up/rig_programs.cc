@@ -1,6 +1,7 @@
 #include "services/up/rig_programs.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -8,6 +9,10 @@
 
 namespace rgbdt {
 namespace {
+
+// What only a session needs, and what only a drive does.
+constexpr std::array kOfASession{"detector", "solver", "session"};
+constexpr std::array kOfADrive{"monitor", "odometry", "mapper"};
 
 bool Runs(const HostSpec& host, const std::string& name) {
   return std::find(host.runs.begin(), host.runs.end(), name) != host.runs.end();
@@ -34,6 +39,34 @@ Program Logger(const UpOptions& options) {
   logger.log = options.logs / "logger.log";
   logger.speaks = false;
   return logger;
+}
+
+// The rig's hosts with what they run of `all`: a rig file holds for sessions and drives.
+std::vector<HostSpec> HostsFor(const Rig& rig, const std::vector<Program>& all) {
+  const auto is_here = [&](const std::string& name) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](const Program& program) { return program.name == name; });
+  };
+  std::vector<HostSpec> hosts = rig.hosts;
+  const auto without = [&](const auto& names) {
+    for (const char* name : names) {
+      if (is_here(name)) continue;
+      for (HostSpec& host : hosts) {
+        host.runs.erase(std::remove(host.runs.begin(), host.runs.end(), name), host.runs.end());
+      }
+    }
+  };
+  without(kOfASession);
+  without(kOfADrive);
+  for (const char* name : kOfADrive) {
+    const bool named = std::any_of(hosts.begin(), hosts.end(),
+                                   [&](const HostSpec& host) { return Runs(host, name); });
+    if (named || !is_here(name)) continue;
+    for (HostSpec& host : hosts) {
+      if (Runs(host, "fuser")) host.runs.emplace_back(name);
+    }
+  }
+  return hosts;
 }
 
 template <typename Names>
@@ -84,9 +117,15 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
     add("motor", "motor", {"--rig", file});
   }
   if (rig.lidar.turned_scanner) add("assembler", "assembler", {});
-  for (const char* name : {"detector", "solver", "fuser"}) add(name, name, {});
-  add("session", "session", {"--rig", file, "--out", options.out.string()});
-  all.back().ends = true;
+  if (options.drive.empty()) {
+    for (const char* name : {"detector", "solver", "fuser"}) add(name, name, {});
+    add("session", "session", {"--rig", file, "--out", options.out.string()});
+    all.back().ends = true;
+  } else {
+    add("monitor", "monitor", {options.drive.string()});
+    for (const char* name : {"fuser", "odometry"}) add(name, name, {});
+    add("mapper", "mapper", {"--out", (options.out / "map.ply").string()});
+  }
   std::vector<std::string> page;
   if (!options.listen.empty()) page = {"--listen", options.listen};
   if (!options.certificate.empty()) {
@@ -99,11 +138,12 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
 
 std::vector<Program> ProgramsOn(const std::string& host, const Rig& rig, std::vector<Program> all) {
   if (rig.hosts.empty()) return all;
+  const std::vector<HostSpec> rig_hosts = HostsFor(rig, all);
   std::set<std::string> nobodys;
   for (const Program& program : all) nobodys.insert(program.name);
   std::vector<std::string> hosts;
   const HostSpec* own = nullptr;
-  for (const HostSpec& one : rig.hosts) {
+  for (const HostSpec& one : rig_hosts) {
     hosts.push_back(one.name);
     if (one.name == host) own = &one;
     for (const std::string& name : one.runs) {

@@ -22,9 +22,11 @@ struct Program {
 
 /// How a rig's processes are called.
 struct UpOptions {
-  std::filesystem::path programs;    ///< the folder where rgbdt-assembler and the others are
-  std::filesystem::path rig;         ///< rig.textproto
-  std::filesystem::path out;         ///< the session's directory
+  std::filesystem::path programs;  ///< the folder where rgbdt-assembler and the others are
+  std::filesystem::path rig;       ///< rig.textproto
+  std::filesystem::path out;       ///< the session's directory, or the folder of a drive's map
+  /// Directory of the calibrated session whose rig drives; empty: it is to be calibrated.
+  std::filesystem::path drive;
   std::filesystem::path logs;        ///< a folder
   std::string listen;                ///< of the viewer; empty: its usual address
   std::string certificate, tls_key;  ///< of the viewer's TLS; empty: its own choice
@@ -37,10 +39,12 @@ struct UpOptions {
 
 /// The processes of a rig, as systemd's rgbdt.target has them: a driver for each device that the
 /// rig names, assembler (of a turned scanner), detector, solver, fuser, a session that the page
-/// leads, the viewer, and a logger where one is asked for.
+/// leads, the viewer, and a logger where one is asked for. Of a drive monitor, fuser, odometry and
+/// mapper in place of detector, solver, fuser and session.
 std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options);
 
 /// Those of all of a rig's programs that run on `host`, as the rig's hosts say; without any: all.
+/// What only a drive has runs beside the fuser where no host names it.
 /// Throws InputError where the rig has other hosts, where a host runs what the rig has not, or
 /// where a program is nobody's.
 std::vector<Program> ProgramsOn(const std::string& host, const Rig& rig, std::vector<Program> all);

@@ -17,6 +17,14 @@ grep -q 'rgbdt terrain' "$scratch/output" || complain "map names no next step"
 head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment voxel_m: 0.1$' || complain "no voxel_m"
 head -c 500 "$scratch/kept/map.ply" | grep -qa '^comment frame: lidar$' || complain "no frame"
 accepts "the map again" "$bin/rgbdt" map "$log" --voxel 0.1 --out "$scratch/again.ply"
+head -c 8 "$scratch/again.png" | grep -qa PNG || complain "no picture from above of fused clouds"
+[ ! -e "$scratch/again.tum" ] || complain "a way of clouds that have no poses"
+python3 - "$scratch/again_terrain.json" <<'END' || complain "the map's terrain"
+import json, sys
+grid = json.load(open(sys.argv[1]))["grid"]
+traversable = grid["states"].index("traversable")
+assert grid["state"].count(traversable) > 100, grid["state"].count(traversable)
+END
 cmp "$scratch/kept/map.ply" "$scratch/again.ply" || complain "the same log, another map"
 
 # A drive with nothing but sweeps: the way is found from them.
@@ -41,6 +49,8 @@ accepts "a drive with a rig" "$bin/rgbdt" map "$scratch/rigged.lcmlog" --out "$s
 grep '^18 clouds' "$scratch/output" | cut -d ';' -f 1 | cmp - "$scratch/unrigged" ||
   complain "fused by a rig whose cameras saw nothing, another map"
 accepts "the drive again" "$bin/rgbdt" map "$drive" --out "$scratch/drive/again.ply"
+cmp "$scratch/drive/map_terrain.png" "$scratch/drive/again_terrain.png" ||
+  complain "the same drive, another terrain"
 for kind in ply tum png; do
   cmp "$scratch/drive/map.$kind" "$scratch/drive/again.$kind" || complain "the same drive, another $kind"
 done

@@ -144,6 +144,18 @@ TEST(Refine, WhatTheStartKnowsStaysAndWhatItDoesNotIsFound) {
   }
 }
 
+TEST(Refine, OneOfTwoSweepsIsLeftOutToJudgeBy) {
+  std::vector<View> views = ViewsOf(Room());
+  views.resize(2);
+  for (View& view : views) view.heldout = false;
+  const Report report = Refine(Room().rig(), views, StartOff(Room(), 0.5 * kDegree, 0.01));
+  for (const CameraReport& camera : report.cameras) {
+    EXPECT_EQ(camera.used, std::vector<std::string>{"0"});
+    EXPECT_EQ(camera.heldout, std::vector<std::string>{"1"});
+    ASSERT_TRUE(camera.scene && camera.scene->heldout_result);
+  }
+}
+
 TEST(Refine, SaysThatNothingIsToBeSeen) {
   const SceneWorld& world = Room();
   std::vector<View> views = ViewsOf(world);

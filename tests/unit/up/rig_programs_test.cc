@@ -48,6 +48,26 @@ TEST(RigPrograms, EachHostRunsWhatIsIts) {
   EXPECT_THAT(NamesOn("desk", OnTwoHosts()), ElementsAre("solver", "session", "viewer", "logger"));
 }
 
+TEST(RigPrograms, ADriveIsWatchedAndMappedByTheRigOfASession) {
+  UpOptions options = Options();
+  options.out = "out/drive";
+  options.drive = "out/session";
+  EXPECT_THAT(NamesOn("anything", Rig(), options),
+              ElementsAre("monitor", "fuser", "odometry", "mapper", "viewer"));
+  const std::vector<Program> all = ProgramsOf(Rig(), options);
+  EXPECT_THAT(all[0].arguments, ElementsAre("/programs/rgbdt-monitor", "out/session"));
+  EXPECT_THAT(all[3].arguments,
+              ElementsAre("/programs/rgbdt-mapper", "--out", "out/drive/map.ply"));
+  // A rig file that says where a session's programs run holds for the drive, too.
+  EXPECT_THAT(NamesOn("sensor", OnTwoHosts(), options),
+              ElementsAre("monitor", "fuser", "odometry", "mapper"));
+  EXPECT_THAT(NamesOn("desk", OnTwoHosts(), options), ElementsAre("viewer", "logger"));
+  Rig rig = OnTwoHosts();
+  rig.hosts[1].runs.emplace_back("mapper");
+  EXPECT_THAT(NamesOn("desk", rig, options), ElementsAre("mapper", "viewer", "logger"));
+  EXPECT_THAT(NamesOn("desk", rig), ElementsAre("solver", "session", "viewer", "logger"));
+}
+
 TEST(RigPrograms, HostsThatDoNotFitTheRigAreNamed) {
   EXPECT_THAT(InputErrorOf([] { NamesOn("laptop", OnTwoHosts()); }),
               AllOf(HasSubstr("\"laptop\""), HasSubstr("sensor, desk"), HasSubstr("--host")));
