@@ -46,8 +46,8 @@ RgbdtCloud Line(int number) {
   return cloud;
 }
 
-void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message) {
-  log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), kNow);
+void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message, Utime heard = kNow) {
+  log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), heard);
 }
 
 rgbdt::CloudChunk Chunk(int sweep, rgbdt::study::Drive* drive) {
@@ -97,9 +97,9 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
     const Utime last = chunk.cloud.utime.back();
     const Eigen::Vector3d place = drive.At(last).translation;
     truth << last << ' ' << place.x() << ' ' << place.y() << ' ' << place.z() << '\n';
-    if (i == 3) Write(&rigged, rgbdt::RigText{0, rig.hash, rig.text});  // once a second it comes
-    Write(&log, chunk);
-    Write(&rigged, chunk);
+    if (i == 3) Write(&rigged, rgbdt::RigText{0, rig.hash, rig.text}, last);  // it is repeated
+    Write(&log, chunk, last);
+    Write(&rigged, chunk, last);
   }
   log.Close();
   rigged.Close();

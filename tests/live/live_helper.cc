@@ -37,7 +37,7 @@ constexpr auto kPatience = std::chrono::seconds(90);
 int Usage() {
   std::fputs(
       "usage: live_helper VERB ...\n"
-      "  ready PROCESS...       until the bus carries a status of each\n"
+      "  ready PROCESS[=TEXT]... until the bus carries a status of each, with this in its text\n"
       "  ask next_pose|capture|finish  of the session, as the page does, and waits until it is "
       "done with "
       "it;\n"
@@ -101,9 +101,17 @@ class Listener {
 
 int Ready(const Arguments& processes) {
   Listener listener;
-  for (const std::string& process : processes) {
-    listener.RunUntil([&] { return listener.statuses.count(process) != 0; },
-                      "a status of " + process);
+  for (const std::string& word : processes) {
+    const std::size_t at = std::min(word.find('='), word.size());
+    const std::string process = word.substr(0, at),
+                      says = word.substr(std::min(at + 1, word.size()));
+    listener.RunUntil(
+        [&] {
+          const auto status = listener.statuses.find(process);
+          return status != listener.statuses.end() &&
+                 status->second.text.find(says) != std::string::npos;
+        },
+        "a status of " + word);
   }
   return 0;
 }
