@@ -3,6 +3,7 @@
 #include <memory>
 #include <random>
 
+#include "calib/files/check_writable.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
@@ -57,6 +58,7 @@ std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
 }
 
 int Run(const Flags& flags) {
+  rgbdt::CheckWritable(std::filesystem::path(flags.out) / "rig.textproto");
   const auto node = flags.script.empty() ? LedByThePage(flags) : ByScript(flags);
   const int code = rgbdt::RunOnLcm(*node, flags.bus);
   if (!node->failure().empty()) {

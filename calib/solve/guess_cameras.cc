@@ -1,7 +1,6 @@
 #include "calib/solve/guess_cameras.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <utility>
 
@@ -37,32 +36,64 @@ std::string Place(const Eigen::Vector3d& p) {
   return Format("x %.1f, y %.1f, z %.1f m", p.x(), p.y(), p.z());
 }
 
-// Two boards of a cloud lie where the guess puts one: only the one taken has a say, and it may be
-// the wrong one. What lies elsewhere does no harm. Empty: there are none.
-std::string RivalsIn(const CameraViews& camera, const FirstGuess& guess, const PoseGate& gate) {
+// Whether both lie in one plane, and their centres nearer to each other than to their rims.
+bool Overlap(const CloudEdges& a, const CloudEdges& b) {
+  constexpr double kOnePlaneM = 0.05;  // boards' thickness, and ranges' noise
+  const Eigen::Vector3d apart = a.centre - b.centre;
+  std::vector<double> to_rim;
+  for (const Eigen::Vector3d& point : b.boundary) to_rim.push_back((point - b.centre).norm());
+  return !to_rim.empty() && std::abs(apart.dot(b.normal)) < kOnePlaneM &&
+         apart.norm() < Median(std::move(to_rim));
+}
+
+// Of candidates that the guess takes for the target, besides the one taken: how often they are, and
+// the first of them, in words.
+struct Rivals {
   int views = 0;
   std::string example;
+
+  void Add(const CameraView& view, const CloudEdges& other) {
+    if (views++ > 0) return;
+    example = "view " + view.view + ": the target at " + Place(view.cloud->centre) +
+              ", the other at " + Place(other.centre) + " (LIDAR frame)";
+  }
+};
+
+// Two boards of a cloud lie where the guess puts one: only the one taken has a say, and it may be
+// the wrong one. What lies elsewhere does no harm. Two in one plane that overlap are one surface,
+// larger than the board.
+std::vector<std::string> RivalsIn(const CameraViews& camera, const FirstGuess& guess,
+                                  const PoseGate& gate) {
+  Rivals boards, places;
   for (const CameraView* o : camera.Usable()) {
-    const CloudEdges* rival = nullptr;
+    const CloudEdges* other_board = nullptr;
+    const CloudEdges* other_place = nullptr;
     for (const CloudEdges* candidate : o->candidates) {
       if ((candidate->centre - o->cloud->centre).norm() < 0.01) continue;
       CameraView alone = *o;
       alone.candidates = {candidate};
       const CandidateChoice choice =
           ChooseCandidate(alone, *guess.camera_from_lidar, gate, guess.range_offset_m);
-      if (choice.candidate >= 0) rival = candidate;
+      if (choice.candidate < 0) continue;
+      (Overlap(*candidate, *o->cloud) ? other_place : other_board) = candidate;
     }
-    if (rival == nullptr) continue;
-    ++views;
-    if (!example.empty()) continue;
-    example = "view " + o->view + ": the target at " + Place(o->cloud->centre) + ", the other at " +
-              Place(rival->centre) + " (LIDAR frame)";
+    if (other_board != nullptr) boards.Add(*o, *other_board);
+    if (other_place != nullptr) places.Add(*o, *other_place);
   }
-  if (example.empty()) return "";
-  return Format(
-      "two boards of the target's size stand close together in %d of %zu clouds. %s. "
-      "Remove one of them",
-      views, camera.Usable().size(), example.c_str());
+  std::vector<std::string> warnings;
+  if (boards.views > 0) {
+    warnings.push_back(
+        Format("two boards of the target's size stand close together in %d of %zu clouds. %s. "
+               "Remove one of them",
+               boards.views, camera.Usable().size(), boards.example.c_str()));
+  }
+  if (places.views > 0) {
+    warnings.push_back(
+        Format("the board fits in two places of one surface in %d of %zu clouds. %s. Is it larger "
+               "than given? Measure its width and height",
+               places.views, camera.Usable().size(), places.example.c_str()));
+  }
+  return warnings;
 }
 
 // A camera looks along its own z, a LIDAR's z is up: boards stand beside it. Empty: they do.
@@ -103,10 +134,11 @@ GuessedCamera Guess(const CalibrateOptions& options, CameraViews views) {
     return {std::move(views), {}};
   }
   report.first_guess = guess.camera_from_lidar;
-  for (std::string& warning :
-       std::array{RivalsIn(views, guess, options.first_guess.accept), AxesAreACameras(views)}) {
-    if (!warning.empty()) report.warnings.push_back(std::move(warning));
+  for (std::string& warning : RivalsIn(views, guess, options.first_guess.accept)) {
+    report.warnings.push_back(std::move(warning));
   }
+  std::string axes = AxesAreACameras(views);
+  if (!axes.empty()) report.warnings.push_back(std::move(axes));
   return {std::move(views), std::move(guess)};
 }
 

@@ -237,7 +237,7 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   CheckFlags(flags);
   const bool writes = !flags.out.empty();
   const RigWishes wishes = writes ? RigWishesOf(flags) : RigWishes();
-  if (writes) RequireNoSession(flags.out);
+  if (writes) RequireRoomForSession(flags.out);
   const std::unique_ptr<BagReader> bag = OpenBag(flags.bag);
   BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));
   PrintTopics(*bag, survey);

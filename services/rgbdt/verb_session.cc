@@ -118,7 +118,7 @@ void CheckBoardIsSeen(const FolderSession& session) {
 
 int RunSession(const FolderFlags& flags) {
   const Folders folders = FoldersOf(flags);
-  RequireNoSession(flags.out);
+  RequireRoomForSession(flags.out);
   const FolderSession session = ReadFolders(folders);
   CheckBoardIsSeen(session);
   for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());

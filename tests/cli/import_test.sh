@@ -144,6 +144,10 @@ says=("--board" "--out")
 misuses "no directory" "$bin/rgbdt" import "$scratch/b.mcap" --board "$board"
 says=("--at" "noon")
 refuses_bag "no time" "$scratch/o.bag" --at noon
+says=("rgb.yaml/new")
+refuses "a folder that cannot be made" "$bin/rgbdt" import "$scratch/b.mcap" --board "$board" \
+  --out "$scratch/rgb.yaml/new"
+! grep -q '/lidar/points' "$scratch/output" || complain "a folder that cannot be made: after the bag was read"
 cp -r "$scratch/import" "$scratch/kept/import"
 says=("earlier session")
 refuses "a session that is there" "$bin/rgbdt" import "$scratch/b.mcap" --board "$board" --out "$scratch/kept/import"

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "calib/files/check_writable.h"
 #include "calib/files/import/internal/folder_files.h"
 #include "calib/files/import/lens_file.h"
 #include "calib/files/schema/rig_file.h"
@@ -351,7 +352,7 @@ FolderSession ReadFolders(const Folders& folders) {
   return session;
 }
 
-void RequireNoSession(const fs::path& dir) {
+void RequireRoomForSession(const fs::path& dir) {
   const fs::path views = dir / "views";
   std::error_code ignored;
   if (fs::exists(views, ignored) && !fs::is_empty(views, ignored)) {
@@ -362,10 +363,11 @@ void RequireNoSession(const fs::path& dir) {
     throw InputError((dir / "rig.textproto").string() +
                      " is an earlier session's; remove it or name another directory");
   }
+  CheckWritable(dir / "rig.textproto");
 }
 
 void WriteSession(const fs::path& dir, const FolderSession& session) {
-  RequireNoSession(dir);
+  RequireRoomForSession(dir);
   for (const ViewFiles& view : session.views) WriteView(dir, view);
   WriteRig(dir, session.rig);
 }

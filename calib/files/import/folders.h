@@ -63,10 +63,10 @@ std::string NameOf(Lens::Model model);
 /// folder, a lens of another size or of a model that we do not have, clouds in millimetres.
 FolderSession ReadFolders(const Folders& folders);
 
-/// Throws InputError where `dir` holds a session already.
-void RequireNoSession(const std::filesystem::path& dir);
+/// Throws InputError where `dir` holds a session already, or cannot be written.
+void RequireRoomForSession(const std::filesystem::path& dir);
 
-/// Writes the views and last rig.textproto, once RequireNoSession holds.
+/// Writes the views and last rig.textproto, once RequireRoomForSession holds.
 void WriteSession(const std::filesystem::path& dir, const FolderSession& session);
 
 }  // namespace rgbdt

@@ -19,7 +19,7 @@ constexpr double kUncertainPx = 1;
 // Of what was given wrong, in sigmas of the pose that it moves.
 constexpr double kMovesLittle = 1, kMovesMuch = 4;
 // What is less likely than this is not named as a cause.
-constexpr double kLeastNamedSigmas = 1;
+constexpr double kLeastNamedSigmas = 1, kLeastNamedWhereUsable = 2.5;
 constexpr std::size_t kMostNamed = 2;
 
 std::string Moves(const Cause& cause) {
@@ -35,13 +35,16 @@ Grade GradeOf(const Cause& cause) {
                                              : Grade::kUsable;
 }
 
-// Those to be named, what counts most first. Where something else says that all is not well
-// (`alarm`), also what may be behind it.
-std::vector<const Cause*> CausesToName(const CameraReport& camera, bool alarm) {
+// Those to be named, what counts most first. Where something else says that all is not well, also
+// what may be behind it.
+std::vector<const Cause*> CausesToName(const CameraReport& camera, Grade grade) {
   std::vector<const Cause*> named;
   const auto wrong = [](const Cause& cause) { return cause.Sigmas() >= kGivenWrongSigmas; };
+  const double least = grade >= Grade::kDoubtful ? kLeastNamedSigmas
+                       : ViewsDisagree(camera)   ? kLeastNamedWhereUsable
+                                                 : kGivenWrongSigmas;
   for (const Cause& cause : camera.causes) {
-    if (wrong(cause) || (alarm && cause.Sigmas() >= kLeastNamedSigmas)) named.push_back(&cause);
+    if (cause.Sigmas() >= least) named.push_back(&cause);
   }
   std::stable_sort(named.begin(), named.end(), [&](const Cause* a, const Cause* b) {
     if (wrong(*a) != wrong(*b)) return wrong(*a);
@@ -56,7 +59,7 @@ void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
   // Where it left no pose, nothing tells how far that would move.
   const bool solved = camera.calibration.status != SolveStatus::kNotSolved;
   const char* prefix = "Likeliest cause: ";
-  for (const Cause* cause : CausesToName(camera, judgement->grade() >= Grade::kDoubtful)) {
+  for (const Cause* cause : CausesToName(camera, judgement->grade())) {
     const std::string sentence = prefix + cause->words + "." + Moves(*cause);
     prefix = "Second likeliest: ";
     if (cause->Sigmas() >= kGivenWrongSigmas) {

@@ -7,6 +7,7 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
 using testing::HasSubstr;
@@ -190,14 +191,16 @@ TEST(MakeJointProblem, TheBoardsAreToldAsTheCameraThatKnowsItsTopTellsThem) {
 
 // A second board that nobody declared, likelier by itself, here and there about the target.
 // One more candidate in each cloud, likelier by itself, so far aside.
-void AddSecondBoards(double aside, double further, SolveWorld* world) {
+void AddSecondBoards(double aside, double further, SolveWorld* world,
+                     const Eigen::Vector3d& way = Eigen::Vector3d::UnitY()) {
   double by = aside;
   for (ViewDetection& detection : world->detections) {
     CloudEdges other = detection.cloud.candidates.at(0);
-    const Rigid3 moved{Eigen::Quaterniond::Identity(), {0, by, 0}};
+    const Rigid3 moved{Eigen::Quaterniond::Identity(), by * way};
     other.pose->sensor_from_target = moved * other.pose->sensor_from_target;
     other.centre = moved * other.centre;
     for (Crossing& crossing : other.crossings) crossing.point = moved * crossing.point;
+    for (Eigen::Vector3d& point : other.boundary) point = moved * point;
     detection.cloud.candidates.insert(detection.cloud.candidates.begin(), other);
     by = by > 1.5 * aside ? aside : by + further;
   }
@@ -219,13 +222,26 @@ TEST(CalibrateJointly, ASecondBoardElsewhereIsNeitherUsedNorSpokenOf) {
 
 TEST(CalibrateJointly, ASecondBoardThatCouldBeTheTargetIsNamed) {
   SolveWorld world(Views(8));
-  AddSecondBoards(0.08, 0.02, &world);
+  AddSecondBoards(0.08, 0.02, &world, Eigen::Vector3d::UnitX());  // behind it
   const Report report = Calibrate(world.rig, world.detections, Brief());
   for (const CameraReport& camera : report.cameras) {
     EXPECT_THAT(
         camera.warnings,
         Contains(AllOf(HasSubstr("two boards of the target's size"), HasSubstr("of 8 clouds"),
                        HasSubstr("the target at"), HasSubstr("the other at"))));
+  }
+}
+
+// Two boards cannot be in one place.
+TEST(CalibrateJointly, ABoardThatFitsInTwoPlacesOfOneSurfaceMayBeLarger) {
+  SolveWorld world(Views(8));
+  AddSecondBoards(0.08, 0.02, &world);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (const CameraReport& camera : report.cameras) {
+    EXPECT_THAT(camera.warnings,
+                Contains(AllOf(HasSubstr("fits in two places of one surface in"),
+                               HasSubstr("of 8 clouds"), HasSubstr("Is it larger than given?"))));
+    EXPECT_THAT(camera.warnings, Each(Not(HasSubstr("two boards"))));
   }
 }
 

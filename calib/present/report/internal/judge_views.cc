@@ -217,6 +217,11 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   }
 }
 
+bool ViewsDisagree(const CameraReport& camera) {
+  return camera.variance_factor > kMuchScatter ||
+         (camera.edges_planes && camera.edges_planes->chi2 > kUnlikelyChi2);
+}
+
 void JudgeResiduals(const CameraReport& camera, Judgement* judgement) {
   if (camera.scene) {
     JudgeScene(*camera.scene, judgement);

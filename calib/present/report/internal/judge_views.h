@@ -8,6 +8,10 @@ namespace rgbdt {
 /// Whether the views fit together at all: before any figure that takes them to.
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement);
 
+/// Whether the views scatter, or their edges and planes differ, by more than they state: the stated
+/// sigma was enlarged for it, and why is worth a look.
+bool ViewsDisagree(const CameraReport& camera);
+
 /// Whether the boards, or the scene, lie in the images where the pose puts them: in pixels, on the
 /// board in millimetres, and in their sigmas; halves, and edges against planes.
 void JudgeResiduals(const CameraReport& camera, Judgement* judgement);

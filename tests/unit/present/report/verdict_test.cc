@@ -249,6 +249,17 @@ TEST(Verdict, AnUnsureCauseIsNamedOnlyBesideAnotherAlarm) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Likeliest cause"))));
 }
 
+// A sigma that was enlarged covers it, and so it is usable; what is behind it may be easy to mend.
+TEST(Verdict, ACauseThatIsNearlySureIsNamedWhereTheSigmaWasEnlarged) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(9, 3)};
+  camera.variance_factor = 3;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("Likeliest cause: the squares")));
+  camera.causes = {Wrong(4, 3)};
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Likeliest cause"))));
+}
+
 TEST(Verdict, WhyThereIsNoPoseComesBeforeThatThereIsNone) {
   CameraReport camera = Good();
   camera.calibration.status = SolveStatus::kNotSolved;
