@@ -36,7 +36,7 @@ TARGETS = {
     "thermal_separate_rotation_deg_median": ("<=", 0.025),
     "rotation_deg_worst": ("<=", 0.04),
     "translation_mm_worst": ("<=", 2.5),
-    "rms_over_bound": ("<=", 1.5),
+    "rms_over_bound": ("<=", 1.1),
     "nees_mean": ("in", 5, 8),
     "coverage95": ("in", 0.90, 0.98),
     "edge_rms_whitened": ("in", 0.9, 1.1),
@@ -53,9 +53,11 @@ ONCE = {
     "solve_ms": ("<=", 100),
     "range_offset_mm_median": ("<=", 1.5),
     "range_offset_nees": ("in", 0.7, 1.4),
+    "beams16_range_offset_mm_median": ("<=", 1.5),
+    "beams16_range_offset_nees": ("in", 0.7, 1.4),
     "offset_nees_mean": ("in", 5, 8),
-    "lens_rgb_deg_median": ("<=", 0.03),
-    "lens_rgb_mm_median": ("<=", 2.5),
+    "lens_rgb_deg_median": ("<=", 0.03, 1.3),
+    "lens_rgb_mm_median": ("<=", 2.5, 1.3),
     "lens_nees_mean": ("in", 5, 8),
     "lens_rms_over_bound": ("<=", 1.3),
     "print_nees_mean": ("in", 5, 8),
@@ -220,7 +222,8 @@ bound: covariance of the cameras' poses by the Fisher information of the sampled
   boards' poses, three classes' and every side's shifts, the thickness and, where they are drawn, lens,
   print and the LIDAR's own errors unknown, within their priors.
   A median's bound is the median length of errors drawn from that covariance, and of that the median
-  over the sessions. Where 1.5 times it exceeds what was asked for, it is the figure to reach."""
+  over the sessions. Where 1.5 times it (lens_...: 1.3 times) exceeds what was asked for, it is the
+  figure to reach."""
 
 
 def accuracy_rows(parts):

@@ -104,15 +104,16 @@ def bounds_of(how, target):
 
 class Target:
     """What a figure is to reach. Where the bound itself lies too high, 1.5 times the bound is the
-    figure to reach."""
+    figure to reach; another factor stands behind the target, as in ("<=", 1, 1.3)."""
 
     def __init__(self, target, bound=None):
         self.least, self.most = bounds_of(target[0], target[1:])
-        self.raised = bound is not None and 1.5 * bound > self.most
+        self.factor = target[2] if target[0] == "<=" and len(target) > 2 else 1.5
+        self.raised = bound is not None and self.factor * bound > self.most
         self.bound = bound
         self.asked = self.most
         if self.raised:
-            self.most = 1.5 * bound
+            self.most = self.factor * bound
 
     def reached(self, value):
         return self.least <= value <= self.most
@@ -128,7 +129,7 @@ class Target:
         if self.bound is not None:
             out = f"{out:<22}bound {self.bound:.3g}"
         if self.raised:
-            out += f": {self.asked:.3g} was asked for, 1.5 times the bound counts"
+            out += f": {self.asked:.3g} was asked for, {self.factor:.3g} times the bound counts"
         return out.rstrip()
 
 
