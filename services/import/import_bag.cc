@@ -189,6 +189,10 @@ CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic) {
   };
 }
 
+PixelFormat FormatOf(BagReader* bag, const TopicChoice::Camera& camera) {
+  return DecodeImage(bag, *camera.images, camera.images->stamped.front()).format;
+}
+
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped) {
   Image image = DecodeImage(bag, *camera.images, stamped);

@@ -36,6 +36,9 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped);
 
+/// How the camera's images come, by the first of them. Throws InputError where that is unreadable.
+PixelFormat FormatOf(BagReader* bag, const TopicChoice::Camera& camera);
+
 /// Of a chosen topic of clouds the one at a place of `stamped`. Throws InputError where it cannot
 /// be read.
 using CloudReader = std::function<Cloud(const Stamped&)>;

@@ -216,10 +216,10 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
   for (const auto& [name, topic] : wishes.images) {
     add(name, Wanted(survey, topic, IsImages, "--image"));
   }
-  if (wishes.images.empty()) {
+  if (wishes.images.empty() && !wishes.clouds_alone) {
     for (const Topic* topic : SeenCameras(survey, &choice.left_out)) add("", *topic);
   }
-  if (choice.cameras.empty()) {
+  if (choice.cameras.empty() && !wishes.clouds_alone) {
     throw InputError("the bag holds no camera's images; topics of images: " +
                      NamesOf(survey, IsImages));
   }

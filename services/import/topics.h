@@ -12,6 +12,7 @@ namespace rgbdt {
 struct TopicWishes {
   std::vector<std::pair<std::string, std::string>> images;  ///< name (or empty), topic
   std::string cloud;
+  bool clouds_alone = false;  ///< no camera is needed, and none is chosen
 };
 
 struct TopicChoice {

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "calib/files/check_writable.h"
 #include "calib/files/import/board_text.h"
 #include "calib/files/import/folders.h"
 #include "calib/methods/board_check.h"
@@ -12,6 +14,7 @@
 #include "calib/model/text.h"
 #include "services/import/import_bag.h"
 #include "services/import/still.h"
+#include "services/rgbdt/import_to_log.h"
 #include "services/rgbdt/packet_import.h"
 #include "services/rgbdt/verbs.h"
 
@@ -19,7 +22,7 @@ namespace rgbdt {
 namespace {
 
 struct ImportFlags {
-  std::string bag, board, out, cloud, metadata;
+  std::string bag, board, out, log, session, cloud, metadata;
   std::vector<std::string> images, lenses, at;
   bool pinhole = false, fisheye = false;
   double every_s = 0, max_apart_s = 0.1;
@@ -188,6 +191,12 @@ void CheckFlags(const ImportFlags& flags) {
   if (flags.out.empty() != flags.board.empty()) {
     throw UsageError("--board and --out go together; with neither the bag is only listed");
   }
+  if (!flags.log.empty() && !flags.out.empty()) {
+    throw UsageError("--log and --out are both given; a bag becomes a log or a session");
+  }
+  if (flags.log.empty() && !flags.session.empty()) {
+    throw UsageError("--session goes with --log: the calibrated rig that the log is of");
+  }
   if (flags.views < 1 || flags.views > 9999) {
     throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
@@ -195,9 +204,9 @@ void CheckFlags(const ImportFlags& flags) {
 
 // A recording holds no images: what is of these makes no sense with it.
 int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
-  const bool of_bags = !flags.board.empty() || !flags.cloud.empty() || !flags.images.empty() ||
-                       !flags.lenses.empty() || !flags.at.empty() || flags.every_s > 0 ||
-                       flags.pinhole || flags.fisheye;
+  const bool of_bags = !flags.board.empty() || !flags.log.empty() || !flags.cloud.empty() ||
+                       !flags.images.empty() || !flags.lenses.empty() || !flags.at.empty() ||
+                       flags.every_s > 0 || flags.pinhole || flags.fisheye;
   if (of_bags) {
     throw UsageError(
         flags.bag +
@@ -238,12 +247,20 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   const bool writes = !flags.out.empty();
   const RigWishes wishes = writes ? RigWishesOf(flags) : RigWishes();
   if (writes) RequireRoomForSession(flags.out);
+  if (!flags.log.empty()) CheckWritable(flags.log);
+  const std::optional<LogRig> log_rig = LogRigOf(flags.session);
   const std::unique_ptr<BagReader> bag = OpenBag(flags.bag);
   BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));
   PrintTopics(*bag, survey);
-  const TopicChoice choice = ChooseTopics(survey, WishesOf(flags));
+  TopicWishes topics = WishesOf(flags);
+  topics.clouds_alone = !flags.log.empty() && !log_rig;
+  const TopicChoice choice = ChooseTopics(survey, topics);
   for (const std::string& line : choice.left_out) {
     std::printf("left out: %s\n", line.c_str());
+  }
+  if (!flags.log.empty()) {
+    const CloudReader read_cloud = CloudsOf(flags, packets, choice, bag.get(), &survey);
+    return ImportLog(flags.log, log_rig, choice, read_cloud, bag.get());
   }
   if (!writes) {
     for (const TopicChoice::Camera& camera : choice.cameras) {
@@ -251,7 +268,7 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
                   camera.images->topic.name.c_str(),
                   camera.info != nullptr ? camera.info->topic.name.c_str() : "none");
     }
-    std::printf("would take: lidar: %s\nnext: add --board and --out\n",
+    std::printf("would take: lidar: %s\nnext: add --board and --out, or --log\n",
                 choice.cloud->topic.name.c_str());
     return EndsWith(true);
   }
@@ -275,7 +292,8 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
   auto flags = std::make_shared<ImportFlags>();
   CommandLine* verb = program->Verb(
       "import",
-      "Makes a session directory of a bag, ready for `rgbdt calibrate`: MCAP (of ROS or with\n"
+      "Makes a session directory of a bag, ready for `rgbdt calibrate`, or (--log) a log for\n"
+      "`rgbdt map`, `refine`, `sync` and lcm-logplayer. A bag is MCAP (of ROS or with\n"
       "Foxglove's schemas), a ROS 2 bag (.db3, or the folder that holds it) or a ROS 1 bag; no "
       "ROS\n"
       "is needed. Without --board and --out it lists what is inside. Cameras, lenses "
@@ -295,6 +313,7 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "
       "\\\n"
       "            --cloud /velodyne_points --every 5 --out out/session\n"
+      "          rgbdt import drive.mcap --log drive.lcmlog --session out/session\n"
       "          rgbdt import drive.pcap --metadata os1.json --out out/clouds",
       [flags, packets] { return RunImport(*flags, packets); });
   verb->Required("FILE", &flags->bag,
@@ -302,6 +321,12 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
   verb->Option("--board", &flags->board,
                "the board as for `rgbdt session`: SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres");
   verb->Option("--out", &flags->out, "the session directory to write");
+  verb->Option(
+      "--log", &flags->log,
+      "in place of --board and --out: the log to write, of all clouds and images of the bag");
+  verb->Option("--session", &flags->session,
+               "of a log: the calibrated session whose rig was recorded; its cameras' names are\n"
+               "those of the topics, or of --image. Without: a log of clouds alone");
   verb->Option(
       "--image", &flags->images,
       "[NAME=]TOPIC, a camera's images; given again for each camera. Without: every camera\n"

@@ -235,7 +235,7 @@ TEST(CalibrateJointly, ASecondBoardThatCouldBeTheTargetIsNamed) {
 // Two boards cannot be in one place.
 TEST(CalibrateJointly, ABoardThatFitsInTwoPlacesOfOneSurfaceMayBeLarger) {
   SolveWorld world(Views(8));
-  AddSecondBoards(0.08, 0.02, &world);
+  AddSecondBoards(0.04, 0.005, &world);
   const Report report = Calibrate(world.rig, world.detections, Brief());
   for (const CameraReport& camera : report.cameras) {
     EXPECT_THAT(camera.warnings,

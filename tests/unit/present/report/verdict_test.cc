@@ -253,6 +253,7 @@ TEST(Verdict, AnUnsureCauseIsNamedOnlyBesideAnotherAlarm) {
 TEST(Verdict, ACauseThatIsNearlySureIsNamedWhereTheSigmaWasEnlarged) {
   CameraReport camera = Good();
   camera.causes = {Wrong(9, 3)};
+  camera.view_scatter = ViewScatter{3, 5};  // of few views, which chance may make scatter
   camera.variance_factor = 3;
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("Likeliest cause: the squares")));
