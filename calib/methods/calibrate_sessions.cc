@@ -21,8 +21,12 @@ CalibrationComparison* Between(const Report& a, const std::string& a_name, const
     return both.a == a_name && both.b == b_name;
   });
   if (found != comparisons->end()) return &*found;
-  comparisons->push_back({a_name, b_name, a.utime, b.utime, true, {}});
-  return &comparisons->back();
+  CalibrationComparison& begun = comparisons->emplace_back();
+  begun.a = a_name;
+  begun.b = b_name;
+  begun.utime_a = a.utime;
+  begun.utime_b = b.utime;
+  return &begun;
 }
 
 std::string MovedText(const PoseComparison& camera, const CalibrationComparison& sessions) {

@@ -64,6 +64,12 @@ std::string Summary(const std::vector<Found>& found) {
   return text.empty() ? "no image" : text;
 }
 
+// Noise makes no two images alike to the last bit.
+bool IsCopy(const IntrinsicsView& view, const std::vector<IntrinsicsView>& others) {
+  return std::any_of(others.begin(), others.end(),
+                     [&](const IntrinsicsView& other) { return other.corners == view.corners; });
+}
+
 CameraCorners Collect(const std::string& camera, std::vector<std::vector<Found>>* by_view) {
   CameraCorners all;
   all.camera = camera;
@@ -73,6 +79,8 @@ CameraCorners Collect(const std::string& camera, std::vector<std::vector<Found>>
       ++all.images;
       if (found.view.corners.empty()) {
         all.not_found.push_back(found.view.name);
+      } else if (IsCopy(found.view, all.views)) {
+        all.copies.push_back(found.view.name);
       } else {
         all.views.push_back(std::move(found.view));
         all.contrasts.push_back(found.contrast);

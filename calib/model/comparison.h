@@ -37,6 +37,8 @@ struct CalibrationComparison {
   std::string a, b;                ///< as the user named them
   Utime utime_a = 0, utime_b = 0;  ///< 0: not known
   bool same_rig = true;            ///< the rig files are the same, lenses and all
+  std::string rigs_differ;   ///< in what, of what a pose depends on; empty: not known, or nothing
+  std::string not_compared;  ///< cameras that only one of the two has, in words
   std::vector<PoseComparison> cameras;
 };
 

@@ -31,7 +31,9 @@ struct CameraCorners {
   int images = 0;
   std::vector<IntrinsicsView> views;   ///< where the checkerboard was found, in the session's order
   std::vector<double> contrasts;       ///< between its squares, of each view [DN or counts]
-  std::vector<std::string> not_found;  ///< the other images
+  std::vector<std::string> not_found;  ///< where it was not
+  /// Images that are another one's copy, to the last bit of their corners; left out.
+  std::vector<std::string> copies{};
 };
 
 /// What the intrinsic calibration of one camera is made from.

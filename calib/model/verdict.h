@@ -20,6 +20,9 @@ const char* NameOf(Grade grade);
 /// The same for a person: "do not use" where it is bad, "not judged yet" where it was not.
 const char* WordsOf(Grade grade);
 
+/// How `detail` of a calibration begins that is doubtful; the first reason follows.
+inline constexpr const char* kDoubtfulDetail = "doubtful: ";
+
 /// Throws InputError for a word that NameOf does not give.
 Grade GradeNamed(const std::string& name);
 

@@ -105,6 +105,17 @@ std::vector<MountChange> ChangesOf(const JointResult& result) {
   return changes;
 }
 
+// As the camera's stated sigma was, where its edges and planes contradict each other.
+NextView Enlarged(NextView next, const std::vector<GuessedCamera>& cameras) {
+  for (const GuessedCamera& camera : cameras) {
+    const auto& apart = camera.views.report.edges_planes;
+    if (camera.views.spec->name != next.camera || !apart || !apart->sigma_enlarged) continue;
+    next.sigma_before_px *= *apart->sigma_enlarged;
+    next.sigma_after_px *= *apart->sigma_enlarged;
+  }
+  return next;
+}
+
 // Cameras that were solved together, and where to hold the board next.
 struct SolvedGroup {
   std::vector<GuessedCamera> cameras;
@@ -202,6 +213,7 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   for (GuessedCamera& camera : solved.cameras) {
     camera.views = Judged(edges, std::move(camera.views));
   }
+  if (solved.next_view) solved.next_view = Enlarged(std::move(*solved.next_view), solved.cameras);
   return solved;
 }
 

@@ -30,6 +30,34 @@ void RejectEmpty(const CameraSpec& camera, CameraView* view) {
   if (view->usable()) view->cloud = *candidates.front();
 }
 
+// Noise makes no two images, and no two sweeps, alike to the last bit.
+bool IsSameImage(const CameraView& a, const CameraView& b) {
+  return a.image->outline_corners == b.image->outline_corners &&
+         a.image->edge_pixels == b.image->edge_pixels;
+}
+
+bool IsSameCloud(const CameraView& a, const CameraView& b) {
+  return a.cloud->centre == b.cloud->centre && a.cloud->normal == b.cloud->normal &&
+         a.cloud->boundary == b.cloud->boundary;
+}
+
+// A view that is a copy tells nothing new, and would make the result look better known than it is,
+// or, held out, better checked.
+void RejectCopies(std::vector<CameraView>* views) {
+  for (std::size_t i = 1; i < views->size(); ++i) {
+    CameraView& view = (*views)[i];
+    for (std::size_t k = 0; k < i && view.usable(); ++k) {
+      const CameraView& other = (*views)[k];
+      if (!other.usable()) continue;
+      if (IsSameImage(view, other)) {
+        view.Reject("its image is that of view " + other.view + ": it counts once");
+      } else if (IsSameCloud(view, other)) {
+        view.Reject("its cloud is that of view " + other.view + ": it counts once");
+      }
+    }
+  }
+}
+
 bool SeesAllCorners(const ImageEdges& image) {
   return std::all_of(image.corners.begin(), image.corners.end(), &IsSeen);
 }
@@ -144,6 +172,7 @@ CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& 
         "a part of the board lies outside the image, and no view shows it whole: a board of "
         "another size would look the same. Take a view with all of the board in the image");
   }
+  RejectCopies(&views.all);
   return views;
 }
 

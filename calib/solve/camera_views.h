@@ -55,6 +55,7 @@ struct CameraViews {
 
 /// `detections` must outlive the result. A view without an image of this camera is no view of it.
 /// A board that is partly outside an image counts only where any camera sees it whole in some view.
+/// A view whose image or cloud is another one's counts once.
 CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections);
 
 /// The same views with the target's pose in each image, and how exact its corners are, by another

@@ -106,8 +106,10 @@ const Topic& Wanted(const BagSurvey& survey, const std::string& name, bool (*is)
                     const std::string& option) {
   const Topic* topic = survey.Find(name);
   if (topic == nullptr || !is(*topic)) {
-    throw InputError(option + " " + name +
-                     ": the bag has no such topic; it has: " + NamesOf(survey, is));
+    const std::string why = topic == nullptr
+                                ? "the bag has no such topic"
+                                : "is of " + topic->topic.type + ", which is not read so";
+    throw InputError(option + " " + name + ": " + why + "; there are: " + NamesOf(survey, is));
   }
   if (!HasMessages(*topic)) {
     throw InputError(option + " " + name + ": none of its messages can be read" +

@@ -93,6 +93,23 @@ void BindCalibration(py::module_* module) {
       .def_property_readonly("cameras", &NamesOf)
       .def("__getitem__", &CameraOf, py::arg("camera"))
       .def("__len__", [](const Calibration& calibration) { return calibration.cameras.size(); })
+      .def("__iter__",
+           [](const Calibration& calibration) { return py::iter(py::cast(NamesOf(calibration))); })
+      .def(
+          "__contains__",
+          [](const Calibration& calibration, const std::string& camera) {
+            return calibration.Find(camera) != nullptr;
+          },
+          py::arg("camera"))
+      .def("keys", &NamesOf)
+      .def("items",
+           [](const Calibration& calibration) {
+             std::vector<std::pair<std::string, CameraCalibration>> items;
+             for (const CameraCalibration& camera : calibration.cameras) {
+               items.emplace_back(camera.camera, camera);
+             }
+             return items;
+           })
       .def("__str__", &PrintCalibration)
       .def(
           "write",

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -5,6 +6,7 @@
 #include <vector>
 
 #include "calib/files/schema/calibration_file.h"
+#include "calib/files/schema/calibration_use.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "calib/solve/compare.h"
@@ -47,13 +49,63 @@ std::optional<Rig> RigOf(const CompareFlags& flags) {
   return std::nullopt;
 }
 
+std::string KindOf(const CameraSpec& camera) {
+  return std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", " +
+         NameOf(camera.lens.model);
+}
+
+// Poses of other sensors are not to be compared: nothing moved.
+void RequireSameSensors(const Named& a, const Named& b, const std::vector<std::string>& differ) {
+  std::string other;
+  for (const std::string& line : differ) {
+    if (line.rfind("camera ", 0) != 0) other = "another LIDAR: " + line;
+  }
+  for (const CameraSpec& camera : a.calibration.sensors->cameras) {
+    for (const CameraSpec& now : b.calibration.sensors->cameras) {
+      if (now.name != camera.name || KindOf(now) == KindOf(camera)) continue;
+      other = "another camera \"" + camera.name + "\": " + KindOf(camera) + " -> " + KindOf(now);
+    }
+  }
+  if (other.empty()) return;
+  throw InputError(a.name + " and " + b.name + " are calibrations of different rigs (" + other +
+                   "); expected two of one rig");
+}
+
+// Which cameras are in one of them alone; empty: none.
+std::string OnlyInOne(const Named& a, const Named& b) {
+  std::string text;
+  const auto add = [&](const Named& has, const Named& lacks) {
+    for (const CameraCalibration& camera : has.calibration.cameras) {
+      if (lacks.calibration.Find(camera.camera) != nullptr) continue;
+      text +=
+          (text.empty() ? "not compared: " : ", ") + camera.camera + " (only in " + has.name + ")";
+    }
+  };
+  add(a, b);
+  add(b, a);
+  return text;
+}
+
 CalibrationComparison CompareAll(const Named& a, const Named& b, const std::optional<Rig>& rig) {
-  CalibrationComparison out{a.name,
-                            b.name,
-                            a.calibration.utime,
-                            b.calibration.utime,
-                            a.calibration.rig_hash == b.calibration.rig_hash,
-                            {}};
+  CalibrationComparison out;
+  out.a = a.name;
+  out.b = b.name;
+  out.utime_a = a.calibration.utime;
+  out.utime_b = b.calibration.utime;
+  out.same_rig = a.calibration.rig_hash == b.calibration.rig_hash;
+  if (!out.same_rig && a.calibration.sensors && b.calibration.sensors) {
+    std::vector<std::string> differ = SensorDifferences(a.calibration, *b.calibration.sensors);
+    // Those are told by themselves.
+    differ.erase(std::remove_if(differ.begin(), differ.end(),
+                                [&](const std::string& line) {
+                                  return line.find(": not in the rig") != std::string::npos;
+                                }),
+                 differ.end());
+    RequireSameSensors(a, b, differ);
+    out.rigs_differ = InOneLine(differ);
+    out.same_rig = differ.empty();
+  }
+  out.not_compared = OnlyInOne(a, b);
   for (const CameraCalibration& camera : a.calibration.cameras) {
     const CameraCalibration* other = b.calibration.Find(camera.camera);
     if (other == nullptr) continue;

@@ -112,7 +112,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
-  const Calibration calibration = ReadCalibration(files.calibration);
+  const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSameRig(calibration, session.rig, files.Names(), files.HowToUse()));
   // A calibration that was made elsewhere is judged on what is found without it.
   const bool by_paper = calibration.method == kPaperMethod;

@@ -129,7 +129,7 @@ int RunExport(const ExportFlags& flags) {
   if (std::filesystem::exists(dir)) CheckWritable(out / "calibration");
   const CalibrationFiles files = FilesOf(dir, flags.calibration, flags.anyway);
   const Rig rig = ReadRig(files.rig);
-  const Calibration calibration = ReadCalibration(files.calibration);
+  const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse(), Further::kUsed));
   PrintDoubts(calibration, files.calibration);
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {

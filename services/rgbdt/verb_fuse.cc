@@ -68,7 +68,7 @@ int RunFuse(const FuseFlags& flags) {
   const std::filesystem::path out = PathOr(flags.out, session.root);
   CheckWritable(out / "fused.ply");
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
-  const Calibration calibration = ReadCalibration(files.calibration);
+  const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSound(calibration, session.rig, files.Names(), files.HowToUse()));
   PrintDoubts(calibration, files.calibration);
   const std::string view = flags.view.empty() ? session.views.back() : flags.view;

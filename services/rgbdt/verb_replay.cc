@@ -103,7 +103,7 @@ void AddReplay(CommandLine* program) {
       "by the CALIBRATION in it; one that is not to be used, or was made with another rig, is\n"
       "refused. Of a session calibration.textproto and report.json are written; those of an\n"
       "earlier run are kept aside, as calibration.previous.textproto and so on.\n"
-      "Example: rgbdt replay out/demo/session.lcm --out out/replay",
+      "Example: rgbdt replay out/demo/session.lcmlog --out out/replay",
       [flags] { return RunReplay(*flags); });
   verb->Ends(ExitCode::kFailed,
              "failed, a camera or LIDAR did not converge, or a calibration was refused");

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "calib/files/import/folders.h"
+#include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/calibration_use.h"
+#include "calib/model/errors.h"
 #include "services/command_line/command_line.h"
 
 namespace rgbdt {
@@ -61,6 +63,14 @@ struct CalibrationFiles {
 inline CalibrationFiles FilesOf(const std::filesystem::path& dir, const std::string& calibration,
                                 bool anyway) {
   return {PathOr(calibration, dir / "calibration.textproto"), dir / "rig.textproto", anyway};
+}
+
+/// Throws InputError where the session has not been calibrated, too.
+inline Calibration ReadCalibrationOf(const CalibrationFiles& files) {
+  if (!std::filesystem::exists(files.calibration)) {
+    throw InputError(files.calibration.string() + " is missing: run rgbdt calibrate first");
+  }
+  return ReadCalibration(files.calibration);
 }
 
 /// What is used all the same, on stderr.

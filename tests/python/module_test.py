@@ -79,6 +79,13 @@ class Session(unittest.TestCase):
             rgbdt.read_calibration(f"{SESSION}/calibration.textproto")
         with self.assertRaisesRegex(rgbdt.InputError, "best"):
             rgbdt.calibrate(SESSION, method="best")
+        with self.assertRaisesRegex(rgbdt.InputError, "no view \"0009\""):
+            rgbdt.calibrate(SESSION, without="0009")
+        noise = os.path.join(SCRATCH.name, "noise.pcd")
+        with open(noise, "wb") as file:
+            file.write(b"\x89PNG\r\n")
+        with self.assertRaisesRegex(rgbdt.InputError, "noise.pcd"):
+            rgbdt.read_cloud(noise)
 
 
 class Solve(unittest.TestCase):
@@ -127,6 +134,11 @@ class Solve(unittest.TestCase):
             self.assertTrue(camera.converged, camera.status)
         with self.assertRaises(KeyError):
             calibration["front"]
+        self.assertEqual(list(calibration), calibration.cameras)
+        self.assertEqual(calibration.keys(), calibration.cameras)
+        self.assertTrue("rgb" in calibration and "front" not in calibration)
+        self.assertEqual({name: camera.camera for name, camera in calibration.items()},
+                         {"rgb": "rgb", "thermal": "thermal"})
 
     def test_fused_is_the_file(self):
         calibration = rgbdt.read_calibration(f"{OUT}/calibration.textproto")
@@ -181,11 +193,16 @@ class Logs(unittest.TestCase):
     def test_what_is_damaged_or_anybodys_is_told(self):
         pose = rgbdt.pose_t().encode()
         self.write(("POSE", pose[:-3]), ("OTHER", b"12345678 of another program"), ("POSE", b""))
-        for heard in rgbdt.read_log(self.path):
+        damaged, *others = rgbdt.read_log(self.path)
+        self.assertEqual(len(others), 2)
+        for heard in (damaged, *others):
             with self.assertRaises(rgbdt.InputError):
                 heard.message
-            with self.assertRaises(rgbdt.InputError):
-                heard.arrays()
+        with self.assertRaises(rgbdt.InputError):
+            damaged.arrays()
+        for other in others:  # as LCM's own, with which each log begins
+            self.assertIsNone(other.utime)
+            self.assertIsNone(other.arrays())
         with self.assertRaises(rgbdt.InputError):
             rgbdt.read_log("/nowhere.lcmlog")
 

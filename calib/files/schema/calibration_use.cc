@@ -5,6 +5,7 @@
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/verdict.h"
 
 namespace rgbdt {
 namespace {
@@ -126,7 +127,7 @@ std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name) 
 std::vector<std::string> DoubtsOf(const Calibration& calibration, const std::string& name) {
   std::vector<std::string> doubts;
   for (const CameraCalibration& camera : calibration.cameras) {
-    if (!camera.converged() || camera.detail.empty()) continue;
+    if (!camera.converged() || camera.detail.rfind(kDoubtfulDetail, 0) != 0) continue;
     doubts.push_back(name + ": camera " + camera.camera + ": " + camera.detail);
   }
   return doubts;

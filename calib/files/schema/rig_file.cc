@@ -334,6 +334,8 @@ std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b) {
       camera.clear_device();
       camera.clear_camera_from_lidar_guess();
       camera.clear_follow();
+      camera.clear_emissivity();
+      camera.clear_reflected_temperature_k();
     }
   }
   std::string text;

@@ -20,8 +20,8 @@ Rig ParseRig(const std::string& text, const std::string& where, LensNeed lenses 
 std::string PrintRig(const Rig& rig);
 
 /// What differs between two rigs that a calibration depends on, a line for each field ("modified:
-/// camera[0].pinhole.fx: 600 -> 610"): names of rig and LIDAR, devices and guesses do not count,
-/// but for the model of a LIDAR where both rigs have it.
+/// camera[0].pinhole.fx: 600 -> 610"): names of rig and LIDAR, devices, guesses and how warm the
+/// surroundings are do not count, but for the model of a LIDAR where both rigs have it.
 std::vector<std::string> DifferencesOf(const Rig& a, const Rig& b);
 
 /// Those in one line, the first few of them: rigs that have nothing in common differ in everything.

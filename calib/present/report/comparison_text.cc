@@ -106,8 +106,11 @@ std::string PixelsLine(const std::vector<PixelShift>& pixels) {
 std::string ComparisonText(const CalibrationComparison& comparison) {
   std::string text = fmt::format("{} against {}\n", comparison.b, comparison.a);
   if (!comparison.same_rig) {
-    text += "  the rig files differ: where lens or board do, so may the poses\n";
+    text += "  the rig files differ" +
+            (comparison.rigs_differ.empty() ? "" : " (" + comparison.rigs_differ + ")") +
+            ": where lens or board do, so may the poses\n";
   }
+  if (!comparison.not_compared.empty()) text += "  " + comparison.not_compared + "\n";
   for (const PoseComparison& camera : comparison.cameras) {
     text += fmt::format("{}: {}\n", camera.camera, Words(camera, comparison));
     text += AxesLine("rotation about the camera's x, y, z [deg]", camera.rotation_deg, 3);

@@ -84,12 +84,16 @@ std::string ViewsText(const CameraSpec& camera, const CameraCorners& corners,
                         view.worst_px, view.camera_from_target.translation.norm(), TiltOf(view));
     if (thermal) text += fmt::format("{:>10}", ContrastText(camera, corners.contrasts[i]));
     if (view.corners_left_out > 0) {
-      text += fmt::format("  {} corners left out", view.corners_left_out);
+      text += fmt::format("  {} corner{} left out", view.corners_left_out,
+                          view.corners_left_out == 1 ? "" : "s");
     }
     text += "\n";
   }
   for (const std::string& name : corners.not_found) {
     text += fmt::format("  {:<12} no board found\n", name);
+  }
+  for (const std::string& name : corners.copies) {
+    text += fmt::format("  {:<12} a copy of another image: it counts once\n", name);
   }
   return text;
 }

@@ -205,7 +205,7 @@ Calibration JudgedCalibration(const Report& report, const Rig& rig) {
       if (judged.calibration.camera != camera.camera) continue;
       const Verdict verdict = Judge(judged);
       if (verdict.grade == Grade::kDoubtful && camera.detail.empty()) {
-        camera.detail = "doubtful: " + verdict.reasons.front();
+        camera.detail = kDoubtfulDetail + verdict.reasons.front();
       }
       if (verdict.grade != Grade::kBad) continue;
       camera.status = SolveStatus::kContradicted;

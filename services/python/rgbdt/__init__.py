@@ -54,7 +54,8 @@ def calibrate(dir, method="auto", without=(), progress=None):
     report.json) and `unreadable` (a line for each view that could not be read). A camera whose
     solve did not converge says so in its status, and its verdict stands in the report: look at
     both. Raises InputError. Threads go on meanwhile."""
-    return Calibrated(_core.calibrate(dir, method, set(without), progress))
+    without = {without} if isinstance(without, str) else set(without)
+    return Calibrated(_core.calibrate(dir, method, without, progress))
 
 
 def fuse(view, calibration, anyway=False):

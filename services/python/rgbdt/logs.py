@@ -38,12 +38,16 @@ class LogEvent:
 
     @property
     def utime(self):
-        """The message's own time [us, UTC]; None where its type has none."""
+        """The message's own time [us, UTC]; None where its type has none, or is none of rgbdt's."""
+        if self.type is None:
+            return None
         return getattr(self.message, "utime", None)
 
     def arrays(self):
         """An Image, Cloud or FusedCloud with numpy arrays, checked as rgbdt's processes check what
         they hear; None for any other message. Raises InputError for one that they would drop."""
+        if self.type is None:
+            return None
         return _core.decode_arrays(self.channel, self.data)
 
 

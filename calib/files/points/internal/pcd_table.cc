@@ -7,6 +7,7 @@
 
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 
 namespace rgbdt::pcd {
 namespace {
@@ -55,7 +56,7 @@ class HeaderParser {
     const std::string_view key = words[0];
     if (!IsKey(key)) {
       Fail(Line() + ": is not a PCD file, or its header is damaged at \"" +
-           std::string(key.substr(0, 40)) + "\"");
+           PrintableText(key.substr(0, 40)) + "\"");
     }
     if (words.size() < 2) Fail("PCD header, " + Line() + ": " + std::string(key) + " is empty");
     if (key == "FIELDS") {

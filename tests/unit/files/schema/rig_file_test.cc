@@ -281,6 +281,8 @@ TEST(RigFile, WhatDiffersBetweenTwoRigsIsNamed) {
   for (CameraSpec& camera : other.cameras) {
     camera.camera_from_lidar_guess.reset();
     camera.device.reset();
+    camera.radiometry.emissivity = 0.9;
+    camera.radiometry.reflected_temperature_k = 275;
   }
   std::reverse(other.cameras.begin(), other.cameras.end());
   EXPECT_THAT(DifferencesOf(rig, other), IsEmpty());
