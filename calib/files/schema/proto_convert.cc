@@ -1,6 +1,8 @@
 #include "calib/files/schema/proto_convert.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 
 namespace rgbdt::text {
 namespace {
@@ -37,6 +39,19 @@ void Fill(const Rigid3& pose, Pose* out) {
   for (const double number : {q.w(), q.x(), q.y(), q.z()}) out->add_quaternion_wxyz(number);
   out->clear_translation_m();
   for (const double number : pose.translation) out->add_translation_m(number);
+}
+
+// Symmetric, and of no direction's variance below zero; what digits leave of either does not count.
+bool IsCovariance(const Matrix6d& matrix) {
+  constexpr double kRounding = 1e-6;
+  const Vector6d diagonal = matrix.diagonal();
+  if (!(diagonal.minCoeff() >= 0)) return false;
+  const Vector6d scale =
+      diagonal.cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Matrix6d correlation = scale.asDiagonal() * matrix * scale.asDiagonal();
+  if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kRounding) return false;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlation, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() > -kRounding;
 }
 
 }  // namespace
@@ -94,6 +109,10 @@ Matrix6d ToMatrix(const proto::Covariance& covariance, const Place& place) {
   RequireNumbers(covariance.row_by_row(), 36, place, "row_by_row");
   Matrix6d matrix;
   for (int i = 0; i < 36; ++i) matrix(i / 6, i % 6) = covariance.row_by_row(i);
+  if (!IsCovariance(matrix)) {
+    place.Fail("row_by_row",
+               "is no covariance; expected a symmetric matrix without negative eigenvalues");
+  }
   return matrix;
 }
 

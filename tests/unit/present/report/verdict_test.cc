@@ -93,7 +93,8 @@ TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
   CameraReport camera = Good();
   camera.edge_rms_px = {};
   camera.scene = SceneCheck{1000, 0.4, 0.1, 0.2};
-  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Refine in another place"));
   camera.scene->heldout_result.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It was not checked"));
