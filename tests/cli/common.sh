@@ -51,6 +51,13 @@ ends_with() {
 }
 accepts() { ends_with 0 "$@"; }
 
+says_all() {  # WHAT WORD...
+  local word
+  for word in "${@:2}"; do
+    grep -qF -- "$word" "$scratch/output" || complain "$1: no word of '$word'"
+  done
+}
+
 fingerprint() {
   { [ ! -d "$scratch/kept" ] || find "$scratch/kept" -type f -exec md5sum {} +; } | sort | md5sum
 }

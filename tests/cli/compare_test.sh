@@ -38,4 +38,18 @@ refuses "a folder without one" "$bin/rgbdt" compare "$scratch/s1" "$scratch/empt
 sed 's/camera: "\([a-z]*\)"/camera: "other_\1"/' "$scratch/s2/calibration.textproto" >"$scratch/other.textproto"
 says=("no camera in common")
 refuses "another rig's" "$bin/rgbdt" compare "$scratch/s1" "$scratch/other.textproto"
+# Other sensors: nothing moved.
+sed '/^sensors {/,/^}/ s/width: [0-9]*/width: 320/' "$scratch/s2/calibration.textproto" >"$scratch/smaller.textproto"
+sed -i 's/^rig_hash: .*/rig_hash: "0123456789abcdef"/' "$scratch/smaller.textproto"
+says=("different rigs" "another camera \"rgb\"" "320x")
+refuses "another camera of the same name" "$bin/rgbdt" compare "$scratch/s1" "$scratch/smaller.textproto"
+sed '/^sensors {/,/^}/ s/fx: 1100/fx: 1111/' "$scratch/s2/calibration.textproto" >"$scratch/lens.textproto"
+sed -i 's/^rig_hash: .*/rig_hash: "0123456789abcdef"/' "$scratch/lens.textproto"
+"$bin/rgbdt" compare "$scratch/s1" "$scratch/lens.textproto" >"$scratch/output" 2>&1 || true
+grep -q 'the rig files differ (camera rgb: pinhole.fx: 1100 -> 1111)' "$scratch/output" ||
+  complain "another lens: it is not said which"
+sed 's/camera: "thermal"/camera: "second"/' "$scratch/s2/calibration.textproto" >"$scratch/second.textproto"
+"$bin/rgbdt" compare "$scratch/s1" "$scratch/second.textproto" >"$scratch/output" 2>&1 || true
+grep -q 'not compared: thermal (only in ' "$scratch/output" || complain "a camera of one alone: not said"
+
 verdict

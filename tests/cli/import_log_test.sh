@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# `rgbdt import --log`: a bag as a log of lcm-logger. Usage: import_log_test.sh BIN_DIR
+set -euo pipefail
+# shellcheck source=tests/cli/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+make_bag=$(dirname "${BASH_SOURCE[0]}")/make_bag.py
+mkdir "$scratch/kept"
+
+# All of its clouds and images, by a calibrated session's rig.
+accepts "a room" "$bin/rgbdt" simulate "$scratch/room" --natural --scene indoor --views 3 --seed 12 --lidar 32
+"$bin/drive_test_log" "$scratch/room" 1 "$scratch/ignored.lcmlog" "$scratch/room/calibration.textproto"
+accepts "making a bag of it" python3 "$make_bag" "$scratch/room" --mosaic --seconds 3 --rate 2 "$scratch/room.mcap"
+accepts "a log" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/room.lcmlog" --session "$scratch/room"
+says_all "a log" "camera thermal: /thermal/image_raw" "9 clouds: their points' times are of another clock" \
+  "9 clouds, 36 images" "rgbdt refine $scratch/logs/room.lcmlog"
+[ "$(ls "$scratch/logs")" = room.lcmlog ] || complain "a log: left beside it: $(ls "$scratch/logs")"
+python3 - "$scratch/logs/room.lcmlog" <<'END' || complain "what is in the log"
+import collections, struct, sys
+data, at, events = open(sys.argv[1], "rb").read(), 0, []
+while at < len(data):
+    sync, number, utime, name, size = struct.unpack_from(">IQQII", data, at)
+    assert sync == 0xEDA1DA01 and number == len(events)
+    events.append((utime, data[at + 28:at + 28 + name].decode()))
+    at += 28 + name + size
+count = collections.Counter(channel for _, channel in events)
+assert count["RGB_IMAGE"] == count["THERMAL_IMAGE"] == 18 and count["CLOUD"] >= 9, count
+assert count["RIG"] == 9 and count["CALIBRATION"] == 18, count
+times = [utime for utime, _ in events]
+assert times == sorted(times), "not in the order of time"
+assert [channel for _, channel in events[:3]] == ["RIG", "CALIBRATION", "CALIBRATION"], events[:3]
+END
+accepts "refining by the log" "$bin/rgbdt" refine "$scratch/logs/room.lcmlog" --out "$scratch/refined" \
+  --truth "$scratch/room/truth.textproto"
+python3 - "$scratch/refined/report.json" <<'END' || complain "the log's calibration is not near the truth"
+import json, sys
+for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
+    assert camera["status"] in ("CONVERGED", "FIRST_GUESS_KEPT"), (name, camera["status"])
+    assert camera["truth_error"]["rotation_deg"] < 0.1, (name, camera["truth_error"])
+END
+accepts "a log of clouds alone" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/clouds.lcmlog"
+says_all "a log of clouds alone" "9 clouds, 0 images" "rgbdt map"
+says=("none of the rig's cameras" "--image")
+refuses "another rig's cameras" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/kept/log" \
+  --session "$scratch/room" --image left=/rgb/image_raw --image right=/thermal/image_raw
+says=("--log and --out")
+misuses "a log and a session" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/kept/log" \
+  --board 8x6@0.095,0.85x0.61 --out "$scratch/kept/new"
+says=("--session goes with --log")
+misuses "a session without a log" "$bin/rgbdt" import "$scratch/room.mcap" --session "$scratch/room"
+
+verdict
