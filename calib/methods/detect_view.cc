@@ -62,8 +62,14 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
       DetectImageEdges(image, camera, target, by_paper ? picks : nullptr, spec.kind);
   // Markers tell all that picks could.
   const bool picks_help = target.HasPattern() && !target.markers;
-  if (found.edges || by_paper || picks == nullptr || !picks_help) return found;
-  return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
+  if (found.edges || by_paper || !picks_help) return found;
+  if (picks != nullptr) return MeasurePickedBoard(image, camera, target, *picks, spec.kind);
+  ImageEdgesResult by_opencv = MeasureWhereOpenCvSees(image, camera, target, spec.kind);
+  if (by_opencv.edges) return by_opencv;
+  if (!by_opencv.why.empty()) {
+    found.why += "; where OpenCV sees one: " + by_opencv.why;
+  }
+  return found;
 }
 
 ImageDetection DetectImage(const CameraSpec& spec, const Target& target, const View& view,

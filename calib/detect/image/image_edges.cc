@@ -12,6 +12,7 @@
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/marked_board.h"
+#include "calib/detect/image/internal/outline_by_opencv.h"
 #include "calib/detect/image/internal/picked_board.h"
 #include "calib/detect/image/plain_board.h"
 #include "calib/model/linear_algebra.h"
@@ -350,6 +351,18 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
     return EdgesOf(image, grey, camera, target, located);
   }
   return Picked(EdgesOf(image, grey, camera, target, FromPicks(camera, target, picks->corners)));
+}
+
+ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
+                                        const Target& target, CameraKind kind) {
+  const cv::Mat grey = ToGrey(image);
+  const auto outline = OutlineByOpenCv(grey, camera, target);
+  if (!outline) return {};
+  const Located located = FromPickedBoard(image, grey, camera, target, *outline, kind);
+  const bool whole = std::all_of(located.inner.begin(), located.inner.end(), IsSeen);
+  if (located.why.empty() && !whole)
+    return {std::nullopt, "not all of its corners can be made out"};
+  return EdgesOf(image, grey, camera, target, located);
 }
 
 ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, const Target& target,

@@ -30,6 +30,12 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
                                   const CornerSelection* picks,
                                   CameraKind kind = CameraKind::kThermal);
 
+/// The same of a checkerboard that DetectImageEdges does not find and OpenCV's detectors do: they
+/// say where to look, all of its corners are measured from there (FindPickedBoard). `why` is empty
+/// where they do not see it either.
+ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
+                                        const Target& target, CameraKind kind);
+
 /// The same of a board that is not found without picks, most often as a part of it is hidden: the
 /// picks say where to look, corners are measured from there (FindPickedBoard). The result has pose
 /// and sides; inner corners that were not seen are NaN.
