@@ -125,8 +125,9 @@ int RunSession(const FolderFlags& flags) {
   std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
   PrintViews(session);
   WriteSession(flags.out, session);
-  std::printf("wrote %s: rig.textproto, %zu views; images and clouds stay where they are\n",
-              flags.out.c_str(), session.views.size());
+  std::printf("wrote %s: rig.textproto, %zu %s; images and clouds stay where they are\n",
+              flags.out.c_str(), session.views.size(),
+              session.views.size() == 1 ? "view" : "views");
   return FinishSession(flags.out, session.WithoutLens());
 }
 

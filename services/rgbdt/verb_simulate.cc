@@ -130,8 +130,8 @@ int RunSimulate(SimulateFlags flags) {
     WriteTruth(std::filesystem::path(flags.dir) / "truth.textproto", simulator.truth(), off_by);
   }
   if (!off_by.empty()) std::printf("drawn, and noted in truth.textproto:\n%s", off_by.c_str());
-  std::printf("wrote %s: rig.textproto, %d views, truth.textproto\n", flags.dir.c_str(),
-              flags.views);
+  std::printf("wrote %s: rig.textproto, %d view%s, truth.textproto\n", flags.dir.c_str(),
+              flags.views, flags.views == 1 ? "" : "s");
   if (!options.natural.on || options.natural.board) {
     std::printf("next: rgbdt calibrate %s\n", ForShell(flags.dir).c_str());
   }

@@ -165,7 +165,7 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
         [](const CameraReport& c) { return Error(WorstAxisSigma(c.calibration)); });
   }
   if (any([](const CameraReport& c) { return c.sigma.has_value(); })) {
-    row("projection at 2 / 5 / 10 m, 1 sigma [px]", ProjectionSigma);
+    row("worst projection at 2/5/10 m, 1 sigma [px]", ProjectionSigma);
   }
   if (any([](const CameraReport& c) { return c.edge_rms_whitened.heldout.has_value(); })) {
     row("outline error, held out [sigma, expected 1]",

@@ -122,7 +122,9 @@ TEST(Glossary, HasEveryLineOfAComparison) {
   PoseComparison camera;
   camera.camera = "rgb";
   camera.pixels = {{2, 0.1, {}}};
-  const std::string text = ComparisonText({"a", "b", 0, 0, true, {camera}});
+  CalibrationComparison comparison;
+  comparison.cameras = {camera};
+  const std::string text = ComparisonText(comparison);
   std::istringstream lines(text);
   std::set<std::string> labels;
   for (std::string line; std::getline(lines, line);) {

@@ -50,7 +50,7 @@ TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheProjection) {
   }
   const std::string table = FullReport(report);
   EXPECT_THAT(LineOf(table, "1 sigma, worst axis"), HasSubstr("0.011 deg 0.4 mm"));
-  EXPECT_THAT(LineOf(table, "projection at 2 / 5 / 10 m, 1 sigma"), HasSubstr("0.70 / 0.61 / -"));
+  EXPECT_THAT(LineOf(table, "worst projection at 2/5/10 m, 1 sigma"), HasSubstr("0.70 / 0.61 / -"));
   std::istringstream lines(table.substr(table.find("method ")));  // below the verdicts
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
