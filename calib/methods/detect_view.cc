@@ -67,7 +67,7 @@ ImageEdgesResult FindEdges(const CameraSpec& spec, const Target& target, const I
   ImageEdgesResult by_opencv = MeasureWhereOpenCvSees(image, camera, target, spec.kind);
   if (by_opencv.edges) return by_opencv;
   if (!by_opencv.why.empty()) {
-    found.why += "; where OpenCV sees one: " + by_opencv.why;
+    found.why += "; OpenCV sees one, but " + by_opencv.why;
   }
   return found;
 }

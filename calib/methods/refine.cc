@@ -141,6 +141,7 @@ CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& v
   SceneAlignment found = Align(spec, shots.used, *pose, options);
   report.solve_s = watch.Seconds();
   report.scene = CheckOf(spec, shots, found, *pose, options.natural);
+  report.scene->joined = options.join_start;
   CameraCalibration& result = report.calibration;
   if (given != nullptr) {
     result.timing = given->timing;
@@ -158,7 +159,7 @@ CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& v
     if (given != nullptr && given->converged()) {
       result = *given;
       result.status = SolveStatus::kFirstGuessKept;
-      result.detail = kept;
+      result.detail = given->detail.empty() ? kept : given->detail + "; " + kept;
     } else {
       result.status = SolveStatus::kNotConverged;
       result.detail = kept + ", and it is no calibration";
@@ -195,6 +196,7 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
   for (const View& view : views) {
     DetectedView& seen = report.detections.emplace_back();
     seen.view = view.name;
+    seen.heldout = view.heldout;
     for (const Image& image : view.images) {
       seen.images.push_back({image.camera, "not looked for"});
       report.utime = std::max(report.utime, image.utime);
@@ -213,10 +215,6 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
       own.natural.start_covariance = given->PoseAndLens();
     }
     report.cameras.push_back(RefineCamera(camera, views, start, own));
-    const std::vector<std::string>& heldout = report.cameras.back().heldout;
-    for (DetectedView& seen : report.detections) {
-      seen.heldout |= std::find(heldout.begin(), heldout.end(), seen.view) != heldout.end();
-    }
   }
   return report;
 }

@@ -149,6 +149,7 @@ struct PoseError {
 struct RejectedView {
   std::string view;
   std::string why;
+  bool copy = false;  ///< of another view, which counts: nothing speaks against it
 };
 
 /// An unknown of the solve besides the poses.
@@ -229,6 +230,7 @@ struct SceneCheck {
   /// On sweeps that the solver never saw: mean log-likelihood of a depth edge, over that of one the
   /// image shows nothing of; absent: none were left out.
   std::optional<double> heldout_start{}, heldout_result{};
+  bool joined = false;  ///< with what the start knew of itself by other data
 };
 
 struct CameraReport {

@@ -15,6 +15,7 @@ bool Moved(const PoseComparison& camera) {
 }
 
 bool ColoursMoved(const PoseComparison& camera) {
+  if (camera.same_lens) return false;
   return std::any_of(camera.pixels.begin(), camera.pixels.end(), [](const PixelShift& at) {
     return at.sigma_px && at.rms_px > kTellingSigmas * *at.sigma_px;
   });

@@ -30,6 +30,7 @@ struct PoseComparison {
   PoseError difference;
   std::optional<double> chi2;      ///< six degrees of freedom; absent where sigmas are NaN
   std::vector<PixelShift> pixels;  ///< empty: no lens at hand
+  bool same_lens = false;          ///< both have the very same; not known without one at hand
 };
 
 /// Two calibrations of a rig: b against a, whichever is the later one.
@@ -51,9 +52,8 @@ inline constexpr double kMovedChance = 0.01;
 /// Whether a comparison says that a camera moved: beyond what chance does once in a hundred.
 bool Moved(const PoseComparison& camera);
 
-/// Whether colours lie farther apart, at some distance, than the covariances of both allow. Where
-/// the camera did not move, it is the lenses that differ: each solved from its own part of the
-/// image.
+/// Whether colours lie farther apart, at some distance, than the covariances of both allow, by
+/// lenses that differ: each solved from its own part of the image.
 bool ColoursMoved(const PoseComparison& camera);
 
 /// How often chance alone makes a chi-square of six degrees of freedom as large.

@@ -49,11 +49,13 @@ void RejectCopies(std::vector<CameraView>* views) {
     for (std::size_t k = 0; k < i && view.usable(); ++k) {
       const CameraView& other = (*views)[k];
       if (!other.usable()) continue;
-      if (IsSameImage(view, other)) {
-        view.Reject("its image is that of view " + other.view + ": it counts once");
-      } else if (IsSameCloud(view, other)) {
-        view.Reject("its cloud is that of view " + other.view + ": it counts once");
-      }
+      const char* same = IsSameImage(view, other)   ? "image"
+                         : IsSameCloud(view, other) ? "cloud"
+                                                    : nullptr;
+      if (same == nullptr) continue;
+      view.copy = true;
+      view.Reject(std::string("its ") + same + " is that of view " + other.view +
+                  ": it counts once");
     }
   }
 }
@@ -139,7 +141,7 @@ const CameraView* CameraViews::Find(const std::string& view) const {
 void CameraViews::Describe() {
   for (const CameraView& view : all) {
     if (!view.usable()) {
-      report.rejected.push_back({view.view, view.rejected});
+      report.rejected.push_back({view.view, view.rejected, view.copy});
     } else {
       (view.heldout ? report.heldout : report.used).push_back(view.view);
     }

@@ -23,6 +23,7 @@ struct CameraView {
   std::vector<const CloudEdges*> candidates;  ///< the detection's, of this camera
   std::optional<CloudEdges> cloud;            ///< the candidate taken; at first the likeliest
   std::string rejected;                       ///< why it takes no part; empty: it does
+  bool copy = false;                          ///< rejected as another view's copy
 
   bool usable() const { return rejected.empty(); }
   /// It takes no part from here on. What was said first stays.

@@ -121,6 +121,7 @@ PoseComparison Compare(const CameraCalibration& a, const CameraCalibration& b,
   if (information) out.chi2 = delta.dot(*information * delta);
   if (spec == nullptr) return out;
   Pair pair{Camera(a.WithSolvedLens(*spec)), Camera(b.WithSolvedLens(*spec)), b_from_a, {}, {}};
+  out.same_lens = b_with_a || pair.a.lens() == pair.b.lens();
   if (information) {
     pair.of_a = b_with_a ? OfPoseAlone(Matrix6d::Zero()) : a.PoseAndLens();
     pair.of_b = b_with_a ? OfPoseAlone(*covariance) : b.PoseAndLens();

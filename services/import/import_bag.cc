@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 
 #include "calib/files/image_files.h"
 #include "calib/files/session/session_dir.h"
@@ -90,7 +91,11 @@ Cloud DecodeSecond(BagReader* bag, const BagSurvey::Topic& topic, const Stamped&
   const auto last = std::lower_bound(first, all.end(), middle.utime + kLivoxCloud_us / 2, before);
   Cloud whole;
   whole.sweep_utime = first->utime;
-  for (auto part = first; part != last; ++part) Append(DecodeCloud(bag, topic, *part), &whole);
+  for (auto part = first; part != last; ++part) {
+    Cloud one = DecodeCloud(bag, topic, *part);
+    ByHeadersClock(&one);
+    Append(one, &whole);
+  }
   return whole;
 }
 
@@ -189,8 +194,30 @@ CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic) {
   };
 }
 
-PixelFormat FormatOf(BagReader* bag, const TopicChoice::Camera& camera) {
-  return DecodeImage(bag, *camera.images, camera.images->stamped.front()).format;
+Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, const Stamped& stamped) {
+  Image image = DecodeImage(bag, *camera.images, stamped);
+  image.camera = camera.name;
+  return image;
+}
+
+bool ByHeadersClock(Cloud* cloud) {
+  constexpr Utime kOneClock = 10 * kMicrosecondsPerSecond;  // longer than any sweep
+  std::vector<Utime> times;
+  for (std::size_t i = 0; i < cloud->utime.size(); ++i) {
+    if (cloud->IsHit(i)) times.push_back(cloud->utime[i]);
+  }
+  if (times.empty()) return false;
+  // Of single points that have no time the others' tells.
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  if (std::abs(*middle - cloud->sweep_utime) < kOneClock) return false;
+  Utime first = *middle;
+  for (const Utime utime : times) {
+    if (*middle - utime < kOneClock) first = std::min(first, utime);
+  }
+  const Utime later = cloud->sweep_utime - first;
+  for (Utime& utime : cloud->utime) utime += later;
+  return true;
 }
 
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,

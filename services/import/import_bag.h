@@ -36,8 +36,13 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped);
 
-/// How the camera's images come, by the first of them. Throws InputError where that is unreadable.
-PixelFormat FormatOf(BagReader* bag, const TopicChoice::Camera& camera);
+/// The same as it is in the bag, whatever the camera's is. Throws InputError where it is
+/// unreadable.
+Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, const Stamped& stamped);
+
+/// Points' times that are of another clock than their header's, as of a LIDAR that counts since it
+/// was switched on, moved so that the first is the header's. False: they are of the header's clock.
+bool ByHeadersClock(Cloud* cloud);
 
 /// Of a chosen topic of clouds the one at a place of `stamped`. Throws InputError where it cannot
 /// be read.

@@ -1,35 +1,44 @@
 #include "services/import/import_log.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "calib/camera/pixels.h"
+#include "calib/files/atomic_file.h"
+#include "calib/files/image_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/livox.h"
 #include "calib/scan_assembly/sweep_chunks.h"
 #include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
+#include "services/messages/limits.h"
 
 namespace rgbdt {
 namespace {
 
 // A message of the bag that goes into the log.
 struct Source {
-  const Stamped* stamped = nullptr;
+  Utime until = 0;  // nothing that comes later in the bag is heard before this
+  Stamped stamped;
   const TopicChoice::Camera* camera = nullptr;  // none: a cloud
-  CameraSpec spec{};                            // of the camera, with the format that the bag has
+  const CameraSpec* spec = nullptr;             // of the camera
 };
 
-// Each second's middle: what is measured within half a second of it is one cloud.
-std::vector<const Stamped*> CloudsOf(const BagSurvey::Topic& topic) {
-  std::vector<const Stamped*> clouds;
-  Utime next = topic.stamped.empty() ? 0 : topic.stamped.front().utime + kLivoxCloud_us / 2;
+// Of a Livox each second's middle: what is measured within half a second of it is one cloud.
+std::vector<Source> CloudsOf(const BagSurvey::Topic& topic) {
+  std::vector<Source> clouds;
+  if (!topic.livox) {
+    for (const Stamped& stamped : topic.stamped) clouds.push_back({stamped.utime, stamped});
+    return clouds;
+  }
+  constexpr Utime kHalf = kLivoxCloud_us / 2;
+  Utime middle = topic.stamped.empty() ? 0 : topic.stamped.front().utime + kHalf;
   for (const Stamped& stamped : topic.stamped) {
-    if (topic.livox && stamped.utime < next) continue;
-    next = std::max(next, stamped.utime) + kLivoxCloud_us;
-    clouds.push_back(&stamped);
+    while (stamped.utime >= middle + kHalf) middle += kLivoxCloud_us;
+    if (!clouds.empty() && clouds.back().stamped.utime == middle) continue;
+    clouds.push_back({middle + kHalf, {middle, stamped.place}});
   }
   return clouds;
 }
@@ -43,20 +52,17 @@ const CameraSpec* CameraOf(const std::optional<LogRig>& rig, const std::string& 
 }
 
 // By their times.
-std::vector<Source> SourcesOf(BagReader* bag, const TopicChoice& choice,
-                              const std::optional<LogRig>& rig) {
-  std::vector<Source> sources;
-  for (const Stamped* cloud : CloudsOf(*choice.cloud)) sources.push_back({cloud, nullptr});
+std::vector<Source> SourcesOf(const TopicChoice& choice, const std::optional<LogRig>& rig) {
+  std::vector<Source> sources = CloudsOf(*choice.cloud);
   for (const TopicChoice::Camera& camera : choice.cameras) {
-    const CameraSpec* of_rig = CameraOf(rig, camera.name);
-    if (of_rig == nullptr) continue;
-    CameraSpec spec = *of_rig;
-    spec.format = FormatOf(bag, camera);  // compressed in one bag, raw in another
-    for (const Stamped& image : camera.images->stamped) sources.push_back({&image, &camera, spec});
+    const CameraSpec* spec = CameraOf(rig, camera.name);
+    if (spec == nullptr) continue;
+    for (const Stamped& image : camera.images->stamped) {
+      sources.push_back({image.utime, image, &camera, spec});
+    }
   }
-  std::stable_sort(sources.begin(), sources.end(), [](const Source& a, const Source& b) {
-    return a.stamped->utime < b.stamped->utime;
-  });
+  std::stable_sort(sources.begin(), sources.end(),
+                   [](const Source& a, const Source& b) { return a.until < b.until; });
   return sources;
 }
 
@@ -96,36 +102,47 @@ void AddRig(const LogRig& rig, Utime utime, TimedLog* log) {
   if (!rig.calibration) return;
   const Calibration& calibration = *rig.calibration;
   for (const CameraCalibration& camera : calibration.cameras) {
-    log->Add(
-        CalibrationMessage{0, calibration.utime, calibration.rig_hash, calibration.method, camera},
-        utime);
+    log->Add(CalibrationMessage{0, calibration.utime, rig.rig.hash, calibration.method, camera},
+             utime);
   }
 }
 
-// Whether the points' times are of another clock than their header's, as of a LIDAR that counts
-// since it was switched on; the first point is then taken for the header's time.
-bool SetRight(Cloud* cloud) {
-  constexpr Utime kOneClock = 10 * kMicrosecondsPerSecond;  // longer than any sweep
-  if (cloud->utime.empty()) return false;
-  const Utime first = *std::min_element(cloud->utime.begin(), cloud->utime.end());
-  const Utime later = cloud->sweep_utime - first;
-  if (std::abs(later) < kOneClock) return false;
-  for (Utime& utime : cloud->utime) utime += later;
-  return true;
-}
-
-void AddCloud(const Cloud& cloud, TimedLog* log) {
-  Utime heard = cloud.sweep_utime;
-  for (const Utime utime : cloud.utime) heard = std::max(heard, utime);
+void AddCloud(const Cloud& cloud, Utime least, TimedLog* log) {
+  // A time that is none of a sweep's is no reason to hold a cloud back.
+  constexpr Utime kLongestSweep = 10 * kMicrosecondsPerSecond;
+  Utime heard = std::max(least, cloud.sweep_utime);
+  for (const Utime utime : cloud.utime) {
+    if (utime < cloud.sweep_utime + kLongestSweep) heard = std::max(heard, utime);
+  }
   for (CloudChunk& chunk : SplitSweep(cloud)) log->Add(std::move(chunk), heard);
 }
 
-void AddImage(Image image, const CameraSpec& spec, bool compressed, TimedLog* log) {
-  image.radiometry = spec.radiometry;
-  if (compressed && image.format == PixelFormat::kBgr8) image.format = PixelFormat::kJpeg;
-  if (compressed && image.format == PixelFormat::kMono16) image.format = PixelFormat::kPng;
-  const Utime heard = image.utime;
-  log->Add(std::move(image), heard);
+// Colours may come raw in one bag and compressed in another; counts are temperatures by the rig.
+void RequireOfCamera(const Image& image, const CameraSpec& spec, const std::string& topic) {
+  const auto size = [](int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height);
+  };
+  const bool alike = image.pixels.cols == spec.width && image.pixels.rows == spec.height;
+  const bool thermal = spec.kind == CameraKind::kThermal;
+  if (alike && (!thermal || image.format == spec.format)) return;
+  throw InputError(topic + ": is " + size(image.pixels.cols, image.pixels.rows) + " " +
+                   NameOf(image.format) + ", and camera " + spec.name + " of the session " +
+                   size(spec.width, spec.height) + " " + NameOf(spec.format) +
+                   "; is it another camera's?");
+}
+
+// As it fits the bus: raw where it may be, and compressed where the bag has it so.
+Image Packed(Image image, bool compressed) {
+  const std::size_t bytes = image.pixels.total() * image.pixels.elemSize();
+  constexpr std::size_t kHead = 1000;  // of the message
+  if (!compressed && bytes + kHead < kMaxMessageBytes) return image;
+  if (image.format == PixelFormat::kMono8 || image.format == PixelFormat::kMono16) {
+    image.format = PixelFormat::kPng;
+  } else {
+    image.pixels = ToBgr(image);
+    image.format = PixelFormat::kJpeg;
+  }
+  return image;
 }
 
 // It has its name once it is whole.
@@ -133,7 +150,8 @@ class PartFile {
  public:
   explicit PartFile(const std::filesystem::path& path)
       : path_(path), part_(path.string() + ".part") {
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
+    std::error_code ignored;  // what cannot be made is told where it is opened
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
   }
   ~PartFile() {
     std::error_code ignored;
@@ -143,7 +161,7 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   const std::string& name() const { return part_; }
-  void Keep() const { std::filesystem::rename(part_, path_); }
+  void Keep() const { Rename(part_, path_); }
 
  private:
   std::filesystem::path path_;
@@ -155,28 +173,34 @@ class PartFile {
 WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::optional<LogRig>& rig,
                     const CloudReader& read_cloud, const std::filesystem::path& path,
                     const std::function<void(double)>& progress) {
-  const std::vector<Source> sources = SourcesOf(bag, choice, rig);
+  const std::vector<Source> sources = SourcesOf(choice, rig);
   const PartFile file(path);
   TimedLog log(file.name());
   WrittenLog written;
+  std::map<std::string, std::int64_t> images_of;
   Utime rig_due = 0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const Source& source = sources[i];
-    const Utime utime = source.stamped->utime;
-    log.WriteUntil(utime);
-    if (rig && utime >= rig_due) {
-      AddRig(*rig, utime, &log);
-      rig_due = utime + kMicrosecondsPerSecond;
+    log.WriteUntil(source.until);
+    if (rig && source.until >= rig_due) {
+      AddRig(*rig, source.until, &log);
+      rig_due = source.until + kMicrosecondsPerSecond;
     }
     try {
       if (source.camera == nullptr) {
-        Cloud cloud = read_cloud(*source.stamped);
-        written.other_clock += SetRight(&cloud) ? 1 : 0;
-        AddCloud(cloud, &log);
+        Cloud cloud = read_cloud(source.stamped);
+        written.other_clock += ByHeadersClock(&cloud) ? 1 : 0;
+        AddCloud(cloud, source.until, &log);
         ++written.clouds;
       } else {
-        AddImage(ReadImage(bag, *source.camera, source.spec, *source.stamped), source.spec,
-                 source.camera->images->data == BagData::kCompressedImage, &log);
+        Image image = ReadImageAsItIs(bag, *source.camera, source.stamped);
+        const BagSurvey::Topic& topic = *source.camera->images;
+        RequireOfCamera(image, *source.spec, topic.topic.name);
+        image.radiometry = source.spec->radiometry;
+        image = Packed(std::move(image), topic.data == BagData::kCompressedImage);
+        const Utime taken = image.utime;
+        log.Add(std::move(image), taken);
+        ++images_of[source.spec->name];
         ++written.images;
       }
     } catch (const InputError& error) {
@@ -188,6 +212,10 @@ WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::option
   if (written.clouds == 0) {
     throw InputError("no cloud of the bag can be used" +
                      (written.last_problem.empty() ? "" : ": " + written.last_problem));
+  }
+  for (const TopicChoice::Camera& camera : choice.cameras) {
+    if (CameraOf(rig, camera.name) == nullptr || images_of[camera.name] > 0) continue;
+    throw InputError("no image of camera " + camera.name + " can be used: " + written.last_problem);
   }
   log.Close();
   file.Keep();

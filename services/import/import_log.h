@@ -29,10 +29,11 @@ struct WrittenLog {
 /// each at the time at which the last of it was measured, as a log of lcm-logger; RIG and
 /// CALIBRATION once a second. Without a rig: clouds alone. Of a Livox, the clouds of each second
 /// are one. Points' times of another clock than their header's are moved, so that the first is the
-/// header's. Raw images stay raw, compressed ones are compressed again. Messages are read in the
-/// order of time, each once, and no more of them are held than come while a cloud is measured. The
-/// file is there once all of it is. `progress` gets 0 to 1. Throws InputError where nothing can be
-/// read, and where the log cannot be written.
+/// header's. Raw images stay raw as far as they fit the bus, compressed ones are compressed again.
+/// Messages are read in the order of time, each once, and no more of them are held than come while
+/// a cloud is measured. The file is there once all of it is. `progress` gets 0 to 1. Throws
+/// InputError where nothing can be read, of a camera of the rig nothing that is its, and where the
+/// log cannot be written.
 WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::optional<LogRig>& rig,
                     const CloudReader& read_cloud, const std::filesystem::path& path,
                     const std::function<void(double)>& progress);

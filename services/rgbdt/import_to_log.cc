@@ -48,8 +48,11 @@ std::optional<LogRig> LogRigOf(const std::string& session) {
     return rig;
   }
   rig.calibration = ReadCalibration(file);
-  RequireSameRig(*rig.calibration, rig.rig, {file.string(), (folder / "rig.textproto").string()},
-                 Use::kIfSound);
+  const UseNames names{file.string(), (folder / "rig.textproto").string()};
+  RequireSameRig(*rig.calibration, rig.rig, names, Use::kIfSound);
+  for (const std::string& why : RequireSound(*rig.calibration, rig.rig, names, Use::kAnyway)) {
+    std::fprintf(stderr, "rgbdt: %s\n", why.c_str());  // who uses the log is to decide
+  }
   PrintDoubts(*rig.calibration, file);
   return rig;
 }

@@ -50,19 +50,26 @@ std::optional<Rig> RigOf(const CompareFlags& flags) {
 }
 
 std::string KindOf(const CameraSpec& camera) {
-  return std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", " +
-         NameOf(camera.lens.model);
+  return std::string(camera.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
+         std::to_string(camera.width) + "x" + std::to_string(camera.height);
+}
+
+// Of a LIDAR: whether it is turned, and of what make, where that is known.
+bool IsAnotherLidar(const LidarSpec& a, const LidarSpec& b) {
+  if (a.turned_scanner.has_value() != b.turned_scanner.has_value()) return true;
+  return a.device.index() != 0 && b.device.index() != 0 && a.device.index() != b.device.index();
 }
 
 // Poses of other sensors are not to be compared: nothing moved.
-void RequireSameSensors(const Named& a, const Named& b, const std::vector<std::string>& differ) {
-  std::string other;
-  for (const std::string& line : differ) {
-    if (line.rfind("camera ", 0) != 0) other = "another LIDAR: " + line;
-  }
-  for (const CameraSpec& camera : a.calibration.sensors->cameras) {
-    for (const CameraSpec& now : b.calibration.sensors->cameras) {
-      if (now.name != camera.name || KindOf(now) == KindOf(camera)) continue;
+void RequireSameSensors(const Named& a, const Named& b) {
+  const Rig& was = *a.calibration.sensors;
+  const Rig& is = *b.calibration.sensors;
+  std::string other = IsAnotherLidar(was.lidar, is.lidar) ? "another LIDAR" : "";
+  for (const CameraSpec& camera : was.cameras) {
+    for (const CameraSpec& now : is.cameras) {
+      if (!other.empty() || now.name != camera.name || KindOf(now) == KindOf(camera)) continue;
+      if (a.calibration.Find(now.name) == nullptr || b.calibration.Find(now.name) == nullptr)
+        continue;
       other = "another camera \"" + camera.name + "\": " + KindOf(camera) + " -> " + KindOf(now);
     }
   }
@@ -94,6 +101,7 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
   out.utime_b = b.calibration.utime;
   out.same_rig = a.calibration.rig_hash == b.calibration.rig_hash;
   if (!out.same_rig && a.calibration.sensors && b.calibration.sensors) {
+    RequireSameSensors(a, b);
     std::vector<std::string> differ = SensorDifferences(a.calibration, *b.calibration.sensors);
     // Those are told by themselves.
     differ.erase(std::remove_if(differ.begin(), differ.end(),
@@ -101,9 +109,7 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
                                   return line.find(": not in the rig") != std::string::npos;
                                 }),
                  differ.end());
-    RequireSameSensors(a, b, differ);
-    out.rigs_differ = InOneLine(differ);
-    out.same_rig = differ.empty();
+    out.rigs_differ = differ.empty() ? "not in its sensors" : InOneLine(differ);
   }
   out.not_compared = OnlyInOne(a, b);
   for (const CameraCalibration& camera : a.calibration.cameras) {

@@ -194,6 +194,16 @@ void CheckFlags(const ImportFlags& flags) {
   if (!flags.log.empty() && !flags.out.empty()) {
     throw UsageError("--log and --out are both given; a bag becomes a log or a session");
   }
+  const bool of_views = flags.every_s > 0 || !flags.at.empty() || flags.pinhole || flags.fisheye ||
+                        !flags.lenses.empty();
+  if (!flags.log.empty() && of_views) {
+    throw UsageError(
+        "--log takes all clouds and images, and the lenses of --session; expected no "
+        "--every, --at, --lens, --pinhole or --fisheye");
+  }
+  if (!flags.log.empty() && flags.session.empty() && !flags.images.empty()) {
+    throw UsageError("--image: a log of images needs --session, their calibrated rig");
+  }
   if (flags.log.empty() && !flags.session.empty()) {
     throw UsageError("--session goes with --log: the calibrated rig that the log is of");
   }
@@ -204,9 +214,9 @@ void CheckFlags(const ImportFlags& flags) {
 
 // A recording holds no images: what is of these makes no sense with it.
 int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
-  const bool of_bags = !flags.board.empty() || !flags.log.empty() || !flags.cloud.empty() ||
-                       !flags.images.empty() || !flags.lenses.empty() || !flags.at.empty() ||
-                       flags.every_s > 0 || flags.pinhole || flags.fisheye;
+  const bool of_bags = !flags.board.empty() || !flags.log.empty() || !flags.session.empty() ||
+                       !flags.cloud.empty() || !flags.images.empty() || !flags.lenses.empty() ||
+                       !flags.at.empty() || flags.every_s > 0 || flags.pinhole || flags.fisheye;
   if (of_bags) {
     throw UsageError(
         flags.bag +
@@ -238,6 +248,14 @@ CloudReader CloudsOf(const ImportFlags& flags, const PacketImport* packets,
   return packets->in_bag({flags.bag, flags.metadata, survey, survey->Find(name)});
 }
 
+// A log may be an hour's drive, or the bag itself.
+void RequireNew(const std::filesystem::path& log) {
+  if (std::filesystem::exists(log)) {
+    throw InputError(log.string() + " is there already; remove it or name another --log");
+  }
+  CheckWritable(log);
+}
+
 int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   if (IsPacketFile(flags.bag)) return RunPackets(flags, packets);
   if (flags.port != 0) {
@@ -247,7 +265,7 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   const bool writes = !flags.out.empty();
   const RigWishes wishes = writes ? RigWishesOf(flags) : RigWishes();
   if (writes) RequireRoomForSession(flags.out);
-  if (!flags.log.empty()) CheckWritable(flags.log);
+  if (!flags.log.empty()) RequireNew(flags.log);
   const std::optional<LogRig> log_rig = LogRigOf(flags.session);
   const std::unique_ptr<BagReader> bag = OpenBag(flags.bag);
   BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/check_writable.h"
@@ -81,10 +82,29 @@ std::filesystem::path Beside(const std::filesystem::path& map, const std::string
   return map.parent_path() / (map.stem().string() + end);
 }
 
+// Where there is none, as a map is too wide for it, the map is there all the same.
+std::optional<Terrain> TerrainOf(const MapCloud& map, const TerrainOptions& limits) {
+  try {
+    return FindTerrain(map, limits);
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "no terrain: %s\n", e.what());
+    return std::nullopt;
+  }
+}
+
+// What an earlier map of this name had beside it.
+void RemoveSideFiles(const std::filesystem::path& map) {
+  std::error_code ignored;
+  for (const char* end : {".tum", ".png", "_terrain.png", "_terrain.json"}) {
+    std::filesystem::remove(Beside(map, end), ignored);
+  }
+}
+
 // The map, and beside it the way, a picture from above and the terrain.
 void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds,
               const std::vector<StampedPose>& way, const std::vector<Eigen::Vector3d>& loops) {
   const MapCloud map = node.map().Cloud();
+  RemoveSideFiles(flags.out);
   WriteMapPly(flags.out, map);
   std::printf(
       "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
@@ -106,11 +126,10 @@ void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds
   WritePng(picture, MapPicture(map, PlacesOf(way), loops));
   wrote += picture.string() + " (from above)";
   const std::filesystem::path terrain = Beside(flags.out, "_terrain.png");
-  try {
-    WriteTerrain(map, {}, flags.out, Beside(flags.out, "_terrain.json"), terrain);
+  const TerrainOptions limits;
+  if (const auto found = TerrainOf(map, limits)) {
+    WriteTerrain(*found, limits, map.frame, flags.out, Beside(flags.out, "_terrain.json"), terrain);
     wrote += ", " + terrain.string() + " and .json (where a vehicle can drive)";
-  } catch (const InputError& e) {  // the map is there all the same
-    std::fprintf(stderr, "no terrain: %s\n", e.what());
   }
   std::printf("wrote %s\n", wrote.c_str());
 }
@@ -246,7 +265,8 @@ void AddMap(CommandLine* program) {
       "Fused clouds of a log (RGBDT_CLOUD) to a map of voxels, in the pose stream's frame: mean\n"
       "place, colour, temperature [K], count, last seen. rgbdt-mapper does it live. Beside the "
       "map\n"
-      "are written the way (.tum), a picture from above (.png) and where a vehicle can drive\n"
+      "are written the way where poses tell it (.tum), a picture from above (.png) and where a "
+      "vehicle can drive\n"
       "(_terrain.png and .json, as rgbdt terrain finds it). A log that has sweeps (CLOUD) and no\n"
       "fused clouds is a drive: its way comes from POSE or else from the sweeps themselves, as\n"
       "rgbdt-odometry finds it. With --close-loops the way is corrected where it came back to a\n"

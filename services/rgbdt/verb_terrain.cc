@@ -51,9 +51,10 @@ int RunTerrain(TerrainFlags flags) {
   const std::filesystem::path out = flags.out;
   CheckWritable(out / "terrain.json");
   const MapCloud cloud = ReadMapOrCloud(flags.input);
-  PrintSites(
-      WriteTerrain(cloud, flags.options, flags.input, out / "terrain.json", out / "terrain.png")
-          .sites);
+  const Terrain terrain = FindTerrain(cloud, flags.options);
+  WriteTerrain(terrain, flags.options, cloud.frame, flags.input, out / "terrain.json",
+               out / "terrain.png");
+  PrintSites(terrain.sites);
   std::printf("wrote terrain.json, terrain.png to %s; look at terrain.png\n", flags.out.c_str());
   return EndsWith(true);
 }
@@ -77,20 +78,19 @@ void AddLimits(TerrainFlags* flags, CommandLine* verb) {
 
 }  // namespace
 
-Terrain WriteTerrain(const MapCloud& cloud, const TerrainOptions& options, const std::string& input,
-                     const std::filesystem::path& json, const std::filesystem::path& picture) {
-  Terrain terrain = FindTerrain(cloud, options);
-  WriteFileAtomically(json, TerrainJson(terrain, options, cloud.frame, input));
-  WritePng(picture, TerrainPicture(terrain, options, cloud.frame));
+void WriteTerrain(const Terrain& terrain, const TerrainOptions& options, const std::string& frame,
+                  const std::string& input, const std::filesystem::path& json,
+                  const std::filesystem::path& picture) {
+  WriteFileAtomically(json, TerrainJson(terrain, options, frame, input));
+  WritePng(picture, TerrainPicture(terrain, options, frame));
   const std::vector<CellState>& state = terrain.grid.state;
   const auto count = [&](CellState one) {
     return static_cast<long long>(std::count(state.begin(), state.end(), one));
   };
   std::printf(
       "%d x %d cells of %g m, frame %s: %lld traversable, %lld obstacle, the others unknown\n",
-      terrain.grid.columns, terrain.grid.rows, terrain.grid.cell_m, cloud.frame.c_str(),
+      terrain.grid.columns, terrain.grid.rows, terrain.grid.cell_m, frame.c_str(),
       count(CellState::kTraversable), count(CellState::kObstacle));
-  return terrain;
 }
 
 void AddTerrain(CommandLine* program) {

@@ -124,10 +124,6 @@ int RunUp(UpFlags flags) {
   const Rig rig = ReadRig(flags.rig);
   const bool drives = !flags.drive.empty();
   if (flags.out.empty()) flags.out = drives ? "out/drive" : "out/session";
-  if (drives) {
-    RequireCalibrated(flags.drive, flags.rig, rig);
-    CheckWritable(std::filesystem::path(flags.out) / "map.ply");
-  }
   UpOptions options;
   options.programs = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   options.rig = flags.rig;
@@ -149,6 +145,10 @@ int RunUp(UpFlags flags) {
   }
   if (logs) RequireLogger();
   WarnOfTtl(rig, flags.bus.url);
+  if (Find(programs, "monitor") != nullptr) RequireCalibrated(flags.drive, flags.rig, rig);
+  if (Find(programs, "mapper") != nullptr) {
+    CheckWritable(std::filesystem::path(flags.out) / "map.ply");
+  }
   // What the session would refuse again and again.
   if (Find(programs, "session") != nullptr) ReadEarlierViews(flags.out, rig);
   for (const Program& program : programs) std::filesystem::remove(program.log);

@@ -32,6 +32,13 @@ sed -n '/name: "thermal"/,/^}/p' "$good/rig.textproto" >"$scratch/before"
 sed -n '/name: "thermal"/,/^}/p' "$good/rig.intrinsics.textproto" >"$scratch/after"
 cmp -s "$scratch/before" "$scratch/after" || complain "the other camera is not as it was"
 
+# A copy tells nothing new.
+cp -r "$good/views/0001" "$good/views/0009"
+accepts "a copied view" "$bin/rgbdt" intrinsics "$good" --camera rgb --out "$scratch/copied.textproto"
+grep -q '^  0009 .*a copy of another image: it counts once' "$scratch/output" || complain "a copy is not told"
+grep -q 'board found in 8 of 9 images' "$scratch/output" || complain "a copy counts"
+rm -r "$good/views/0009"
+
 # More numbers than the images tell, which may not converge.
 "$bin/rgbdt" intrinsics "$good" --camera rgb --model pinhole8 --out "$scratch/eight/rig.textproto" \
   >"$scratch/output" 2>&1 || true

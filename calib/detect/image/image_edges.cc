@@ -356,13 +356,16 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
 ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
                                         const Target& target, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
-  const auto outline = OutlineByOpenCv(grey, camera, target);
-  if (!outline) return {};
-  const Located located = FromPickedBoard(image, grey, camera, target, *outline, kind);
-  const bool whole = std::all_of(located.inner.begin(), located.inner.end(), IsSeen);
-  if (located.why.empty() && !whole)
-    return {std::nullopt, "not all of its corners can be made out"};
-  return EdgesOf(image, grey, camera, target, located);
+  ImageEdgesResult result;
+  for (const Corners& outline : OutlinesByOpenCv(grey, camera, target)) {
+    result.why = "its corners cannot be measured";
+    const Located located = FromPickedBoard(image, grey, camera, target, outline, kind);
+    const bool whole = std::all_of(located.inner.begin(), located.inner.end(), IsSeen);
+    if (!located.why.empty() || !whole) continue;
+    ImageEdgesResult measured = EdgesOf(image, grey, camera, target, located);
+    if (measured.edges) return measured;
+  }
+  return result;
 }
 
 ImageEdgesResult MeasurePickedBoard(const Image& image, const Camera& camera, const Target& target,

@@ -37,6 +37,7 @@ void FromViews(const CameraReport& camera, proto::CameraReport* out) {
     proto::RejectedView* rejected = out->mutable_views()->add_rejected();
     rejected->set_view(ValidUtf8(view.view));
     rejected->set_why(ValidUtf8(view.why));
+    if (view.copy) rejected->set_copy(true);
   }
   for (const std::string& warning : camera.warnings) {
     out->mutable_views()->add_warnings(ValidUtf8(warning));
@@ -59,7 +60,7 @@ void ToViews(const proto::CameraReport& message, CameraReport* camera) {
   camera->heldout.assign(views.heldout().begin(), views.heldout().end());
   camera->warnings.assign(views.warnings().begin(), views.warnings().end());
   for (const proto::RejectedView& view : views.rejected()) {
-    camera->rejected.push_back({view.view(), view.why()});
+    camera->rejected.push_back({view.view(), view.why(), view.copy()});
   }
   for (const proto::ViewQuality& view : message.view_quality()) {
     ViewQuality& quality = camera->views.emplace_back(ViewQuality{

@@ -204,8 +204,9 @@ Calibration JudgedCalibration(const Report& report, const Rig& rig) {
     for (const CameraReport& judged : report.cameras) {
       if (judged.calibration.camera != camera.camera) continue;
       const Verdict verdict = Judge(judged);
-      if (verdict.grade == Grade::kDoubtful && camera.detail.empty()) {
-        camera.detail = kDoubtfulDetail + verdict.reasons.front();
+      if (verdict.grade == Grade::kDoubtful) {
+        camera.detail = kDoubtfulDetail + verdict.reasons.front() +
+                        (camera.detail.empty() ? "" : "; " + camera.detail);
       }
       if (verdict.grade != Grade::kBad) continue;
       camera.status = SolveStatus::kContradicted;

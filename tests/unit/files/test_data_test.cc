@@ -192,7 +192,7 @@ Report MakeReport() {
                        {"0006", false, {{"rgb", "too dark"}, {"thermal", ""}}, 0, "no plane"}};
   report.cameras = {MakeCameraReport("rgb"), MakeCameraReport("thermal")};
   Matrix6d covariance;
-  for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = 1e-8 / (i + 3);
+  for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = 1e-8 / (i / 6 + i % 6 + 3);
   report.cameras[0].calibration.covariance = covariance;
   AddUncertainty(&report.cameras[0]);
   report.closure = {{"rgb",

@@ -117,6 +117,23 @@ TEST(ViewsOf, APartOfABoardCountsOnlyWhereItsSizeIsKnown) {
   EXPECT_EQ(usable(0), 1U);
 }
 
+TEST(ViewsOf, ACopyOfAnotherViewCountsOnce) {
+  SolveWorldOptions options;
+  options.views = 4;
+  SolveWorld world(options);
+  world.detections[2].images = world.detections[0].images;  // the same image with another sweep
+  world.detections[3].cloud = world.detections[1].cloud;    // and the same sweep with another image
+  CameraViews views = ViewsOf(world.rig.cameras[0], world.detections);
+  EXPECT_EQ(views.Usable().size(), 2U);
+  EXPECT_EQ(views.all[2].rejected,
+            "its image is that of view " + views.all[0].view + ": it counts once");
+  EXPECT_EQ(views.all[3].rejected,
+            "its cloud is that of view " + views.all[1].view + ": it counts once");
+  views.Describe();
+  ASSERT_EQ(views.report.rejected.size(), 2U);
+  EXPECT_TRUE(views.report.rejected[0].copy) << "nothing speaks against it";
+}
+
 TEST(ViewsOf, ACandidateWithoutBoundaryPointsIsNone) {
   SolveWorldOptions options;
   options.views = 2;

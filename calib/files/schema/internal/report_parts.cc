@@ -234,12 +234,14 @@ void FromScene(const SceneCheck& check, proto::SceneCheck* out) {
   out->set_shown(check.shown);
   SetFinite(check.heldout_start, &proto::SceneCheck::set_heldout_start, out);
   SetFinite(check.heldout_result, &proto::SceneCheck::set_heldout_result, out);
+  if (check.joined) out->set_joined(true);
 }
 
 SceneCheck ToScene(const proto::SceneCheck& message) {
   SceneCheck check{message.edges(), message.shown(), {}, {}};
   if (message.has_heldout_start()) check.heldout_start = message.heldout_start();
   if (message.has_heldout_result()) check.heldout_result = message.heldout_result();
+  check.joined = message.joined();
   return check;
 }
 

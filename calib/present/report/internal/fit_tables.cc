@@ -28,7 +28,9 @@ std::vector<ViewLine> LinesOf(const CameraReport& camera) {
   std::vector<ViewLine> lines;
   for (const std::string& view : camera.used) lines.push_back({view, "used", ""});
   for (const std::string& view : camera.heldout) lines.push_back({view, "held out", ""});
-  for (const auto& [view, why] : camera.rejected) lines.push_back({view, "rejected", why});
+  for (const RejectedView& view : camera.rejected) {
+    lines.push_back({view.view, view.copy ? "copy" : "rejected", view.why});
+  }
   std::stable_sort(lines.begin(), lines.end(), [](const ViewLine& a, const ViewLine& b) {
     return NaturalLess(a.view, b.view);
   });

@@ -36,9 +36,12 @@ constexpr char kWhyViewsDisagree[] =
     "Check the lens (rgbdt intrinsics), the board's size in the rig file, and that board and rig "
     "stood still.";
 
+// A copy speaks against nothing.
 std::vector<Said> RejectedOf(const CameraReport& camera) {
   std::vector<Said> rejected;
-  for (const RejectedView& view : camera.rejected) rejected.push_back({"", view.view, view.why});
+  for (const RejectedView& view : camera.rejected) {
+    if (!view.copy) rejected.push_back({"", view.view, view.why});
+  }
   return rejected;
 }
 
@@ -62,6 +65,7 @@ void JudgeScene(const SceneCheck& scene, Judgement* judgement) {
     return;
   }
   if (*scene.heldout_result < *scene.heldout_start) return;  // the status says it
+  if (scene.joined) return;
   // No sweep of the same place would show it.
   judgement->Usable(
       "Nothing but this place tells it: what moves its edges all alike is not in the stated sigma. "
@@ -179,8 +183,9 @@ void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
 
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) judgement->Cause(Grade::kBad, camera.contradiction);
-  const std::size_t views = camera.used.size() + camera.heldout.size() + camera.rejected.size();
-  if (camera.rejected.size() >= kManyRejected && 4 * camera.rejected.size() > views) {
+  const std::size_t rejected = RejectedOf(camera).size();
+  const std::size_t views = camera.used.size() + camera.heldout.size() + rejected;
+  if (rejected >= kManyRejected && 4 * rejected > views) {
     judgement->Doubtful(ManyRejected(camera, views));
   }
   double misfit = 0;

@@ -1,5 +1,6 @@
 #include "calib/files/schema/calibration_file.h"
 
+#include <array>
 #include <cmath>
 
 #include "calib/files/atomic_file.h"
@@ -41,6 +42,26 @@ TEST(CalibrationFile, GivesBackEveryBit) {
   EXPECT_EQ(back.cameras[1].lens->lens, lens.lens);
   EXPECT_EQ(back.cameras[1].lens->covariance, lens.covariance);
   EXPECT_EQ(PrintCalibration(back), PrintCalibration(calibration));
+}
+
+TEST(CalibrationFile, ACovarianceThatIsNoneIsRefused) {
+  const test::TempDir dir;
+  Calibration calibration = test::MakeReport().ToCalibration();
+  const auto write = [&](double first, double off_diagonal, double mirrored) {
+    Matrix6d covariance = Matrix6d(Vector6d::Constant(1e-6).asDiagonal());
+    covariance(0, 0) = first;
+    covariance(1, 2) = off_diagonal;
+    covariance(2, 1) = mirrored;
+    calibration.cameras[0].covariance = covariance;
+    WriteCalibration(dir / "c", calibration);
+  };
+  for (const auto& [first, off_diagonal, mirrored] :
+       {std::array{-1e-6, 0., 0.}, std::array{1e-6, 2e-6, 2e-6}, std::array{1e-6, 5e-7, -5e-7}}) {
+    write(first, off_diagonal, mirrored);
+    EXPECT_THAT(test::ErrorOf([&] { ReadCalibration(dir / "c"); }), HasSubstr("is no covariance"));
+  }
+  write(1e-6, 9.99e-7, 9.99e-7);
+  EXPECT_NO_THROW(ReadCalibration(dir / "c"));
 }
 
 TEST(CalibrationFile, KeepsWhatItHoldsFor) {

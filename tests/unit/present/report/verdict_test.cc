@@ -95,6 +95,9 @@ TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
   camera.scene = SceneCheck{1000, 0.4, 0.1, 0.2};
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Refine in another place"));
+  camera.scene->joined = true;
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood) << "what is known by other data counts, too";
+  camera.scene->joined = false;
   camera.scene->heldout_result.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It was not checked"));
@@ -283,6 +286,16 @@ TEST(Verdict, ManyRejectedViewsAreDoubtful) {
   camera.rejected.push_back({"d", "why"});
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Rejected: 4 of 13 views"));
+}
+
+TEST(Verdict, CopiesOfViewsAreNoAlarm) {
+  CameraReport camera = Good();
+  for (int i = 0; i < 12; ++i) {
+    camera.rejected.push_back({"copy" + std::to_string(i), "it counts once", true});
+  }
+  EXPECT_EQ(Judge(camera).grade, Grade::kGood);
+  for (RejectedView& view : camera.rejected) view.copy = false;
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
 }
 
 TEST(Verdict, WhyMostViewsWereRejectedIsSaid) {
