@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, module) {
   // Python takes nothing but UTF-8, and a message may quote a file's bytes.
   static const pybind11::exception<rgbdt::InputError> input_error(module, "InputError",
                                                                   PyExc_ValueError);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 has it so
   pybind11::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -356,12 +356,15 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
 ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
                                         const Target& target, CameraKind kind) {
   const cv::Mat grey = ToGrey(image);
+  constexpr double kLeastSeen = 0.9;  // of the corners: it saw all of them
   ImageEdgesResult result;
   for (const Corners& outline : OutlinesByOpenCv(grey, camera, target)) {
     result.why = "its corners cannot be measured";
     const Located located = FromPickedBoard(image, grey, camera, target, outline, kind);
-    const bool whole = std::all_of(located.inner.begin(), located.inner.end(), IsSeen);
-    if (!located.why.empty() || !whole) continue;
+    const auto seen = std::count_if(located.inner.begin(), located.inner.end(), IsSeen);
+    const bool most =
+        static_cast<double>(seen) >= kLeastSeen * static_cast<double>(located.inner.size());
+    if (!located.why.empty() || !most) continue;
     ImageEdgesResult measured = EdgesOf(image, grey, camera, target, located);
     if (measured.edges) return measured;
   }

@@ -31,7 +31,7 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
                                   CameraKind kind = CameraKind::kThermal);
 
 /// The same of a checkerboard that DetectImageEdges does not find and OpenCV's detectors do: they
-/// say where to look, all of its corners are measured from there (FindPickedBoard). `why` is empty
+/// say where to look, nine of ten corners are measured from there (FindPickedBoard). `why` is empty
 /// where they do not see it either.
 ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
                                         const Target& target, CameraKind kind);

@@ -20,14 +20,11 @@ cv::Mat EightBits(const cv::Mat& grey) {
   return eight;
 }
 
+// The older findChessboardCorners takes minutes where noise is all over an image.
 std::optional<std::vector<cv::Point2f>> InnerCorners(const cv::Mat& eight, const cv::Size& inner) {
-  constexpr int kFlags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE;
   std::vector<cv::Point2f> corners;
-  if (cv::findChessboardCorners(eight, inner, corners, kFlags)) return corners;
-  if (cv::findChessboardCornersSB(eight, inner, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) {
-    return corners;
-  }
-  return std::nullopt;
+  if (!cv::findChessboardCornersSB(eight, inner, corners, 0)) return std::nullopt;
+  return corners;
 }
 
 // Where a pinhole of focal length 1 would see them.

@@ -5,7 +5,6 @@
 #include "calib/simulate/internal/board.h"
 #include "calib/simulate/simulator.h"
 #include "tests/study/image_scenes.h"
-#include "tests/unit/detect/image/corner_errors.h"
 
 namespace rgbdt {
 namespace {
@@ -22,16 +21,20 @@ CameraSpec ColourCamera(const study::SceneClass& scene_class) {
 }
 
 // OpenCV says where to look, and no more: corners are as exact as those that are found without it.
-TEST(MeasureWhereOpenCvSees, MeasuresAllCornersOfTheBoard) {
+TEST(MeasureWhereOpenCvSees, MeasuresTheBoardsCorners) {
   const study::SceneClass scene_class = ColourAtNight();
   const CameraSpec spec = ColourCamera(scene_class);
   study::RenderScenes(scene_class, 1, 5, [&](int, const study::ImageScene& scene) {
     const ImageEdgesResult found =
         MeasureWhereOpenCvSees(scene.image, Camera(spec), scene.target, spec.kind);
     ASSERT_TRUE(found.edges) << found.why;
-    const Errors errors = Compare(found.edges->corners, scene.corners);
-    EXPECT_LT(errors.worst, 1.0);
-    EXPECT_LT(errors.rms, 0.3);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+      if (!IsSeen(found.edges->corners[i])) continue;
+      ++seen;
+      EXPECT_LT((found.edges->corners[i] - scene.corners[i]).norm(), 1.0) << i;
+    }
+    EXPECT_GE(10 * seen, 9 * scene.corners.size());
     EXPECT_FALSE(found.edges->picked);
     // Of another count of squares there is none.
     Target other = scene.target;
