@@ -30,9 +30,9 @@ ImageEdgesResult DetectImageEdges(const Image& image, const Camera& camera, cons
                                   const CornerSelection* picks,
                                   CameraKind kind = CameraKind::kThermal);
 
-/// The same of a checkerboard that DetectImageEdges does not find and OpenCV's detectors do: they
-/// say where to look, nine of ten corners are measured from there (FindPickedBoard). `why` is empty
-/// where they do not see it either.
+/// The same of a checkerboard that DetectImageEdges does not find and OpenCV's detector does: it
+/// says where to look, nine of ten corners or more are measured from there (FindPickedBoard). `why`
+/// is empty where it does not see it either.
 ImageEdgesResult MeasureWhereOpenCvSees(const Image& image, const Camera& camera,
                                         const Target& target, CameraKind kind);
 
