@@ -81,7 +81,8 @@ TEST_F(FoldersTest, MakeASessionThatReadsBack) {
   EXPECT_THAT(test::ErrorOf([&] { WriteSession(dir_ / "out", made); }),
               HasSubstr("earlier session"));
   fs::remove_all(dir_ / "out/views");
-  EXPECT_THAT(test::ErrorOf([&] { RequireRoomForSession(dir_ / "out"); }), HasSubstr("rig.textproto"));
+  EXPECT_THAT(test::ErrorOf([&] { RequireRoomForSession(dir_ / "out"); }),
+              HasSubstr("rig.textproto"));
 }
 
 TEST_F(FoldersTest, TimesOfNamesAreTheViews) {
