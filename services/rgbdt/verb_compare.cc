@@ -109,7 +109,7 @@ CalibrationComparison CompareAll(const Named& a, const Named& b, const std::opti
                                   return line.find(": not in the rig") != std::string::npos;
                                 }),
                  differ.end());
-    out.rigs_differ = differ.empty() ? "not in its sensors" : InOneLine(differ);
+    out.rigs_differ = InOneLine(differ);
   }
   out.not_compared = OnlyInOne(a, b);
   for (const CameraCalibration& camera : a.calibration.cameras) {

@@ -108,7 +108,7 @@ std::string ComparisonText(const CalibrationComparison& comparison) {
   if (!comparison.same_rig) {
     text += "  the rig files differ" +
             (comparison.rigs_differ.empty() ? "" : " (" + comparison.rigs_differ + ")") +
-            ": where lenses or boards do, so may the poses\n";
+            ": where lens or board do, so may the poses\n";
   }
   if (!comparison.not_compared.empty()) text += "  " + comparison.not_compared + "\n";
   for (const PoseComparison& camera : comparison.cameras) {
