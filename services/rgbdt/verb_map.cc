@@ -104,8 +104,8 @@ void RemoveSideFiles(const std::filesystem::path& map) {
 void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds,
               const std::vector<StampedPose>& way, const std::vector<Eigen::Vector3d>& loops) {
   const MapCloud map = node.map().Cloud();
-  RemoveSideFiles(flags.out);
   WriteMapPly(flags.out, map);
+  RemoveSideFiles(flags.out);
   std::printf(
       "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
       static_cast<long long>(clouds), static_cast<long long>(node.map().points()), map.size(),

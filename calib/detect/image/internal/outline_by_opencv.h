@@ -10,11 +10,11 @@
 
 namespace rgbdt {
 
-/// The corners of the checkerboard's outline [px], in order round it, where OpenCV's detectors see
-/// all of its inner corners (findChessboardCorners, else findChessboardCornersSB): some pixels off,
-/// as a person's picks are. They do not tell half a turn, nor of a square pattern a quarter: one
-/// outline for each turn that looks different. Empty where neither sees it. `grey` is CV_32FC1 of
-/// any unit. Half a second for an image of 2 megapixels.
+/// The corners of the checkerboard's outline [px], in order round it, where OpenCV's detector
+/// (findChessboardCornersSB) sees all of its inner corners: some pixels off, as a person's picks
+/// are. It does not tell half a turn, nor of a square pattern a quarter: one outline for each turn
+/// that looks different. Empty where it sees none. `grey` is CV_32FC1 of any unit. Half a second
+/// for an image of 2 megapixels.
 std::vector<std::array<Eigen::Vector2d, 4>> OutlinesByOpenCv(const cv::Mat& grey,
                                                              const Camera& camera,
                                                              const Target& target);

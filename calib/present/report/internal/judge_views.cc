@@ -65,11 +65,11 @@ void JudgeScene(const SceneCheck& scene, Judgement* judgement) {
     return;
   }
   if (*scene.heldout_result < *scene.heldout_start) return;  // the status says it
-  if (scene.joined) return;
-  // No sweep of the same place would show it.
-  judgement->Usable(
-      "Nothing but this place tells it: what moves its edges all alike is not in the stated sigma. "
-      "Refine in another place, too, and compare the two (rgbdt compare).");
+  if (!scene.joined) {  // no sweep of the same place would show it
+    judgement->Usable(
+        "Nothing but this place tells it: what moves its edges all alike is not in the stated "
+        "sigma. Refine in another place, too, and compare the two (rgbdt compare).");
+  }
   judgement->AddReason(
       "On sweeps that the solver never saw, edges are met at least as well as by the start "
       "(log-likelihood of an edge " +

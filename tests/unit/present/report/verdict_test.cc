@@ -97,6 +97,7 @@ TEST(Verdict, ASceneIsJudgedBySweepsLeftOut) {
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("Refine in another place"));
   camera.scene->joined = true;
   EXPECT_EQ(Judge(camera).grade, Grade::kGood) << "what is known by other data counts, too";
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("On sweeps that the solver never saw")));
   camera.scene->joined = false;
   camera.scene->heldout_result.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
