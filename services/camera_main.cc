@@ -1,4 +1,6 @@
 #include "calib/files/schema/rig_file.h"
+#include "services/bus/bus.h"
+#include "services/bus/bus_url.h"
 #include "services/command_line/command_line.h"
 #include "services/drivers/camera/camera_node.h"
 #include "services/runtime/process.h"
@@ -19,8 +21,8 @@ int main(int argc, char** argv) {
               "where captured views stay raw when JPEG or PNG goes over the bus");
   line.Bus(&bus.url, &bus.key);
   return line.Run(argc, argv, [&] {
-    rgbdt::CameraNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown), name,
-                           captures);
+    rgbdt::CameraNode node(rgbdt::ReadRig(rig_file, rgbdt::LensNeed::kMayBeUnknown), name, captures,
+                           rgbdt::ParseBusUrl(rgbdt::CompleteUrl(bus.url)).ttl > 0);
     return rgbdt::RunOnLcm(node, bus);
   });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +23,8 @@ struct CameraDevice {
   std::string serial, address, id;  ///< one of them; address: IP of a GigE Vision camera
   std::vector<std::pair<std::string, std::string>> features;  ///< GenICam name, value; in order
   Trigger trigger = Trigger::kFree;
-  Wire wire = Wire::kRaw;
-  int packet_bytes = 0;  ///< GigE Vision stream packets; 0: the largest that arrives
+  std::optional<Wire> wire;  ///< absent: by where the bus goes (WireOf)
+  int packet_bytes = 0;      ///< GigE Vision stream packets; 0: the largest that arrives
 };
 
 /// A Hokuyo scanner with SCIP 2.0 over TCP.

@@ -352,12 +352,17 @@ LensUncertainty CameraSpec::LensUncertaintyOrUsual() const {
   return lens_uncertainty ? *lens_uncertainty : UsualLensUncertainty(lens, width, height);
 }
 
-const CameraSpec& Rig::Camera(const std::string& camera_name) const {
-  std::string names;
+const CameraSpec* Rig::FindCamera(const std::string& camera_name) const {
   for (const CameraSpec& camera : cameras) {
-    if (camera.name == camera_name) return camera;
-    names += (names.empty() ? "" : ", ") + camera.name;
+    if (camera.name == camera_name) return &camera;
   }
+  return nullptr;
+}
+
+const CameraSpec& Rig::Camera(const std::string& camera_name) const {
+  if (const CameraSpec* found = FindCamera(camera_name)) return *found;
+  std::string names;
+  for (const CameraSpec& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
   throw InputError("the rig has no camera \"" + camera_name + "\"; it has: " + names);
 }
 

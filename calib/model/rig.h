@@ -158,6 +158,8 @@ struct Rig {
   void Check(LensNeed lenses = LensNeed::kKnown) const;
   /// Throws InputError with the names that there are.
   const CameraSpec& Camera(const std::string& camera_name) const;
+  /// nullptr: there is none of that name.
+  const CameraSpec* FindCamera(const std::string& camera_name) const;
 };
 
 /// What a calibration holds for: each camera's image size and lens, the LIDAR's turned scanner.

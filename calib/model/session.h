@@ -99,4 +99,18 @@ struct StampedPose {
   Rigid3 map_from_lidar;
 };
 
+/// What a sweep tells of where the rig is: the `odometry_t` message.
+struct SweepOdometry {
+  std::int64_t seq = 0;
+  Utime utime = 0;          ///< of the pose: when the sweep's last point was taken
+  bool placed = false;      ///< false: no place was found, the pose is as the motion before goes on
+  bool begun_anew = false;  ///< the map was: the way since the last pose is not known
+  Rigid3 map_from_lidar;
+  Vector6d velocity = Vector6d::Zero();    ///< rad/s, m/s in the LIDAR's axes
+  Matrix6d covariance = Matrix6d::Zero();  ///< of delta in LIDAR axes, truth = pose * Exp(delta)
+  std::vector<std::string> untold;         ///< directions that the sweep does not tell, in words
+  double residual_m = 0;                   ///< median distance of points from the map's planes
+  std::string text;                        ///< for a person
+};
+
 }  // namespace rgbdt

@@ -94,6 +94,28 @@ std::string Explained(const std::string& help) {
   return (help.find('\n') == std::string::npos ? ": " : ":\n") + help;
 }
 
+// Longer lines of an option's help are broken where a word ends.
+std::string Wrapped(const std::string& help) {
+  constexpr std::size_t kLongest = 92;
+  std::string text;
+  std::size_t begin = 0;
+  while (help.size() - begin > kLongest || help.find('\n', begin) != std::string::npos) {
+    std::size_t end = help.find('\n', begin);
+    if (end == std::string::npos || end - begin > kLongest) end = help.rfind(' ', begin + kLongest);
+    if (end == std::string::npos || end <= begin) break;
+    text += help.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  return text + help.substr(begin);
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return Wrapped(CLI::Formatter::make_option_desc(option));
+  }
+};
+
 // In the columns that options have.
 std::string Footer(const std::map<ExitCode, std::string>& ends) {
   const std::string indent(29, ' ');
@@ -111,6 +133,7 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
     : program_(std::make_unique<CLI::App>(description, program)),
       app_(program_.get()),
       ends_(UsualEnds()) {
+  app_->formatter(std::make_shared<HelpFormatter>());
   app_->set_version_flag("--version", VersionText());
   app_->footer(Footer(ends_));
 }

@@ -18,6 +18,11 @@ Finding CheckDisk(const DiskFacts& facts);
 /// `failures`: datagrams that the kernel could not put together (ReassemblyFailures).
 Finding CheckReassembly(std::int64_t failures);
 
+/// How the processes on the bus do: who waits for something, loses or refuses messages, is there
+/// twice, and whose clock is off. `expected`: names of those that the rig needs; which of them are
+/// silent is told where another one speaks.
+Findings CheckProcesses(const BusFacts& facts, const std::vector<std::string>& expected);
+
 Finding CheckPort(const PortFacts& facts);
 Finding CheckSerial(const SerialFacts& facts);
 Finding CheckHokuyo(const HokuyoFacts& facts);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "calib/model/rig.h"
+#include "calib/model/session.h"
+#include "services/bus/bus.h"
 #include "services/bus/bus_url.h"
 #include "services/doctor/system.h"
 #include "services/drivers/camera/gvcp_discovery.h"
@@ -43,6 +45,22 @@ struct FirewallFacts {
   std::string ruleset;        ///< as `nft list ruleset` prints it
 };
 FirewallFacts GatherFirewall(int port, const std::vector<NetworkInterface>& interfaces);
+
+/// What a process said of itself, once a second, while the bus was listened to.
+struct ProcessFacts {
+  Status first, last;  ///< the same one where it was heard once
+  int heard = 0;
+  int fell_back = 0;  ///< how often its numbers did: of two programs of one name nearly each time
+};
+/// Who is on the bus.
+struct BusFacts {
+  double seconds = 0;                   ///< listened for
+  std::vector<ProcessFacts> processes;  ///< by name
+  Malformed malformed;
+  LinkReport links;
+};
+/// Listens for `seconds`. Throws InputError where the bus cannot be opened.
+BusFacts GatherBus(const std::string& url, double seconds);
 
 struct ClockFacts {
   bool synchronised = false;

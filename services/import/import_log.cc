@@ -44,11 +44,7 @@ std::vector<Source> CloudsOf(const BagSurvey::Topic& topic) {
 }
 
 const CameraSpec* CameraOf(const std::optional<LogRig>& rig, const std::string& name) {
-  if (!rig) return nullptr;
-  for (const CameraSpec& camera : rig->rig.cameras) {
-    if (camera.name == name) return &camera;
-  }
-  return nullptr;
+  return rig ? rig->rig.FindCamera(name) : nullptr;
 }
 
 // By their times.

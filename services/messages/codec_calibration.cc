@@ -222,4 +222,34 @@ void Check(const pose_t& wire) {
 
 StampedPose FromWire(const pose_t& wire) { return FieldsFromWire<StampedPose>(wire); }
 
+template <typename Copy>
+void Fields(const Copy& copy, WireOf<Copy, odometry_t>& wire,
+            StructOf<Copy, SweepOdometry>& odometry) {
+  copy(wire.utime, odometry.utime);
+  copy(wire.seq, odometry.seq);
+  copy(wire.placed, odometry.placed);
+  copy(wire.begun_anew, odometry.begun_anew);
+  copy.Pose(wire.quaternion_wxyz, wire.translation_m, odometry.map_from_lidar);
+  copy(wire.velocity, odometry.velocity);
+  copy(wire.covariance, odometry.covariance);
+  copy.List("untold", wire.num_untold, wire.untold, odometry.untold);
+  copy(wire.residual_m, odometry.residual_m);
+  copy(wire.text, odometry.text);
+}
+
+odometry_t ToWire(const SweepOdometry& odometry) { return FieldsToWire<odometry_t>(odometry); }
+
+void Check(const odometry_t& wire) {
+  CheckUtime("utime", wire.utime);
+  CheckRotation("quaternion_wxyz", wire.quaternion_wxyz);
+  CheckFinite("translation_m", wire.translation_m, 3);
+  CheckFinite("velocity", wire.velocity, 6);
+  CheckCovariance("covariance", wire.covariance[0], 6);
+  for (const std::string& direction : wire.untold) CheckText("untold", direction);
+  CheckNotNegative("residual_m", wire.residual_m);
+  CheckText("text", wire.text);
+}
+
+SweepOdometry FromWire(const odometry_t& wire) { return FieldsFromWire<SweepOdometry>(wire); }
+
 }  // namespace rgbdt

@@ -29,6 +29,7 @@ struct Channel {
   std::string operator()(const WaveProgress&) const { return "WAVE_PROGRESS"; }
   std::string operator()(const Status&) const { return "STATUS"; }
   std::string operator()(const ReportText&) const { return "REPORT"; }
+  std::string operator()(const SweepOdometry&) const { return "ODOMETRY"; }
 };
 
 struct Time {

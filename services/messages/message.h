@@ -25,10 +25,11 @@ struct CalibrationMessage {
 };
 
 /// Everything that crosses the bus, decoded and checked.
-using Message = std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection,
-                             ViewDetection, CalibrationMessage, RgbdtCloud, StampedPose, RigText,
-                             SessionCommand, SessionEvent, SessionRequest, LeftOutViews,
-                             TargetStatus, MountCheck, WaveProgress, Status, ReportText>;
+using Message =
+    std::variant<LineScan, EncoderReading, Image, CloudChunk, CornerSelection, ViewDetection,
+                 CalibrationMessage, RgbdtCloud, StampedPose, RigText, SessionCommand, SessionEvent,
+                 SessionRequest, LeftOutViews, TargetStatus, MountCheck, WaveProgress, Status,
+                 ReportText, SweepOdometry>;
 using Messages = std::vector<Message>;
 
 /// The channel a message travels on, e.g. "CLOUD", "RGB_IMAGE".

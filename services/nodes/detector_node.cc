@@ -9,6 +9,12 @@
 #include "calib/model/errors.h"
 
 namespace rgbdt {
+namespace {
+
+constexpr Utime kLookEvery = kMicrosecondsPerSecond / 10;
+constexpr Utime kLookShare = 4;  // of the time one look takes
+
+}  // namespace
 
 DetectorNode::DetectorNode(std::string method, Looks looks)
     : method_(std::move(method)), looks_(looks) {
@@ -115,7 +121,14 @@ Messages DetectorNode::Detect(const View& view, SessionEvent event) {
 }
 
 Messages DetectorNode::Advance(Utime now) {
-  if (looks_ == Looks::kNo || !look_.IsDue(now)) return {};
+  if (looks_ == Looks::kNo) return {};
+  if (looked_at_) {
+    const Utime took = now - *looked_at_;
+    look_from_ = *looked_at_ + std::clamp(kLookShare * took, kLookEvery, kMicrosecondsPerSecond);
+    looked_at_.reset();
+  }
+  if (now < look_from_) return {};
+  looked_at_ = now;
   try {
     return LookAtNext();
   } catch (const std::exception& e) {

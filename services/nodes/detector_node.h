@@ -9,7 +9,6 @@
 #include "calib/model/rig.h"
 #include "services/nodes/view_collector.h"
 #include "services/runtime/node.h"
-#include "services/runtime/periodic.h"
 
 namespace rgbdt {
 
@@ -19,9 +18,10 @@ namespace rgbdt {
 /// view that never becomes complete is dropped when the next capture or a reset comes; the status
 /// says what it waits for. Another rig forgets everything. Corners that a person picks in an image
 /// of one of the newest kKeptViews views have that view detected once more, with them: its
-/// DETECTION comes again, and the event of its capture. Once a second, where it `looks`, it sends
-/// whether a sensor sees the board now (TARGET_STATUS): one sensor at a time, the next in turn that
-/// has something new.
+/// DETECTION comes again, and the event of its capture. Where it `looks`, it sends whether a
+/// sensor sees the board now (TARGET_STATUS): one sensor at a time, the next in turn that has
+/// something new; ten times a second, or as often as takes a quarter of a core, once a second at
+/// least.
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;
@@ -50,7 +50,9 @@ class DetectorNode : public Node {
 
   std::string method_;
   Looks looks_;
-  Periodic look_{kMicrosecondsPerSecond};
+  std::optional<Utime>
+      looked_at_;  // when the newest look began; the next call says how long it took
+  Utime look_from_ = 0;
   std::optional<Rig> rig_;
   ViewCollector view_;
   std::int64_t views_ = 0;

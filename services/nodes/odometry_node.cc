@@ -1,9 +1,9 @@
 #include "services/nodes/odometry_node.h"
 
-#include <cstdio>
 #include <optional>
 
 #include "calib/model/pose_track.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -35,6 +35,12 @@ Messages OdometryNode::Handle(const Message& message) {
     Warn("the map is begun anew at sweep " + std::to_string(name) +
          ": the way since the last pose is not known");
   }
+  Messages answers = PosesOf(before);
+  answers.emplace_back(Told());
+  return answers;
+}
+
+Messages OdometryNode::PosesOf(const OdometryResult& before) {
   if (!newest_.converged) {
     ++not_placed_;
     return {};
@@ -69,27 +75,37 @@ Messages OdometryNode::Handle(const Message& message) {
   return poses;
 }
 
+SweepOdometry OdometryNode::Told() const {
+  SweepOdometry told;
+  told.seq = taken_ - 1;
+  told.utime = newest_.utime;
+  told.placed = newest_.converged;
+  told.begun_anew = newest_.restarted;
+  told.map_from_lidar = newest_.world_from_lidar;
+  told.velocity = newest_.velocity;
+  told.covariance = newest_.covariance;
+  told.untold = newest_.degenerate;
+  told.residual_m = newest_.residual_m;
+  told.text = Text();
+  return told;
+}
+
+std::string OdometryNode::Text() const {
+  if (taken_ == 0) return "waits for sweeps (CLOUD)";
+  if (!newest_.converged) return newest_.reason;
+  if (!newest_.degenerate.empty()) {
+    return "not told by what stands about: " + Joined(newest_.degenerate);
+  }
+  const std::string off =
+      Format("; points lie %.0f mm off the map's planes", 1e3 * newest_.residual_m);
+  if (newest_.standing) return "stop " + std::to_string(taken_) + off;
+  return Format("%.1f m/s", newest_.velocity.tail<3>().norm()) + off;
+}
+
 Status OdometryNode::GetStatus() const {
   Status status;
   status.ready = true;
-  if (taken_ == 0) {
-    status.text = "waits for sweeps (CLOUD)";
-  } else if (!newest_.converged) {
-    status.text = newest_.reason;
-  } else if (!newest_.degenerate.empty()) {
-    status.text = "not told by what stands about: " + Joined(newest_.degenerate);
-  } else {
-    char text[100];
-    const double off_mm = 1e3 * newest_.residual_m;
-    if (newest_.standing) {
-      std::snprintf(text, sizeof text, "stop %lld; points lie %.0f mm off the map's planes",
-                    static_cast<long long>(taken_), off_mm);
-    } else {
-      std::snprintf(text, sizeof text, "%.1f m/s; points lie %.0f mm off the map's planes",
-                    newest_.velocity.tail<3>().norm(), off_mm);
-    }
-    status.text = text;
-  }
+  status.text = Text();
   status.counters = {{"sweeps", taken_},
                      {"poses", poses_},
                      {"without a place", not_placed_},

@@ -12,15 +12,17 @@
 
 namespace rgbdt {
 
-/// CLOUD -> POSE (calib/odometry). Of a spinning LIDAR one a sweep, of the time of its last point;
-/// where there was none before, one of the sweep's middle, too, so that a track of them moves. Of a
-/// turned scanner whose rig stands while it sweeps, the same one from the sweep's begin to its end,
-/// two a second; where it drives meanwhile, ten a second, the last second's with the next sweep
-/// that it drives through. Each sweep is taken when its end comes, and once: nothing waits. A sweep
-/// that lacks lines is taken as it is. No POSE goes out for a sweep of which no place was found;
-/// for one that does not tell a direction it does, and the status names the direction. A sweep that
-/// is older than the one before is refused. Where the map is begun anew it goes on from the last
-/// pose, with a warning: the way in between is not known.
+/// CLOUD -> POSE and ODOMETRY (calib/odometry). Of each sweep that was taken one ODOMETRY: the pose
+/// of its last point with covariance and the directions that it does not tell. POSE: of a spinning
+/// LIDAR one a sweep, of the time of its last point; where there was none before, one of the
+/// sweep's middle, too, so that a track of them moves. Of a turned scanner whose rig stands while
+/// it sweeps, the same one from the sweep's begin to its end, two a second; where it drives
+/// meanwhile, ten a second, the last second's with the next sweep that it drives through. Each
+/// sweep is taken when its end comes, and once: nothing waits. A sweep that lacks lines is taken as
+/// it is. No POSE goes out for a sweep of which no place was found; for one that does not tell a
+/// direction it does, and the status names the direction. A sweep that is older than the one before
+/// is refused. Where the map is begun anew it goes on from the last pose, with a warning: the way
+/// in between is not known.
 class OdometryNode : public Node {
  public:
   static constexpr const char* kSource = "odometry";
@@ -40,6 +42,10 @@ class OdometryNode : public Node {
   const OdometryResult& newest() const { return newest_; }
 
  private:
+  Messages PosesOf(const OdometryResult& before);
+  SweepOdometry Told() const;
+  std::string Text() const;
+
   Odometry odometry_;
   Taken tell_;
   SweepCollector sweeps_;

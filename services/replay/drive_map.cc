@@ -103,7 +103,7 @@ std::optional<RigText> FindWay(const std::string& log, const DriveOptions& optio
             }
             if (!own.empty()) return;
             for (const Message& answer : odometry.Handle(message)) {
-              found.push_back(std::get<StampedPose>(answer));
+              if (const auto* pose = std::get_if<StampedPose>(&answer)) found.push_back(*pose);
             }
           },
           progress);

@@ -14,6 +14,7 @@
 #include "calib/methods/detect_session.h"
 #include "calib/model/beam_priors.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 #include "calib/present/session/report_files.h"
 #include "services/rgbdt/print_report.h"
 #include "services/rgbdt/verbs.h"
@@ -68,15 +69,33 @@ ExitCode Finish(const Place& place, const Session& session, const SessionDetecti
   return WorseOf(EndsIf(detection.unreadable.empty()), EndOf(report));
 }
 
+// What a person does with the result.
+void PrintNext(const Session& session, const std::filesystem::path& out, ExitCode end) {
+  const std::string page = ForShell((out / "report.html").string());
+  if (end != ExitCode::kDone) {
+    std::printf("next: open %s in a browser; it shows each view, and what is wrong\n",
+                page.c_str());
+    return;
+  }
+  std::string fuse = "rgbdt fuse " + ForShell(session.root.string());
+  if (out != session.root) {
+    fuse += " --calibration " + ForShell((out / "calibration.textproto").string()) + " --out " +
+            ForShell(out.string());
+  }
+  std::printf("next: %s --png; %s shows each view in a browser\n", fuse.c_str(), page.c_str());
+}
+
 ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
   const std::set<std::string> left_out = LeftOutOf(flags, session);
   SetAside(PathOr(flags.out, session.root));
   const SessionDetection detection = Detect(session, flags.options.method);
-  const ExitCode end = Finish(
-      {PathOr(flags.out, session.root), TruthPath(flags.truth, session.root), flags.json}, session,
-      detection, CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
+  const std::filesystem::path out = PathOr(flags.out, session.root);
+  const ExitCode end =
+      Finish({out, TruthPath(flags.truth, session.root), flags.json}, session, detection,
+             CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
   PrintUnreadable(detection.unreadable);
+  if (!flags.json) PrintNext(session, out, end);
   return end;
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -7,12 +8,14 @@
 #include "services/doctor/checks.h"
 #include "services/drivers/packets/packet_source.h"
 #include "services/rgbdt/verbs.h"
+#include "services/up/rig_programs.h"
 
 namespace rgbdt {
 namespace {
 
 struct DoctorFlags {
   std::string rig, url;
+  double listen = 3;  // [s]
 };
 
 Findings CheckBus(const SystemRoots& roots, const std::string& text,
@@ -81,10 +84,47 @@ Findings CheckRig(const SystemRoots& roots, const std::string& file,
   }
 }
 
+// The programs of a session, or of a drive where one of those speaks. What is simulated has no
+// drivers.
+std::vector<std::string> ProgramsExpected(const std::string& file, const BusFacts& facts) {
+  const auto speaks = [&](const std::string& name) {
+    return std::any_of(facts.processes.begin(), facts.processes.end(),
+                       [&](const ProcessFacts& process) { return process.last.process == name; });
+  };
+  std::vector<std::string> names;
+  try {
+    Rig rig = ReadRig(file, LensNeed::kMayBeUnknown);
+    if (speaks("simulator")) {
+      for (CameraSpec& camera : rig.cameras) camera.device.reset();
+      rig.lidar.device = {};
+      if (rig.lidar.turned_scanner) rig.lidar.turned_scanner->motor.reset();
+    }
+    UpOptions options;
+    if (speaks("monitor") || speaks("odometry") || speaks("mapper")) options.drive = "drive";
+    for (const Program& program : ProgramsOf(rig, options)) {
+      if (program.speaks) names.push_back(program.name);
+    }
+  } catch (const InputError&) {  // CheckRig tells
+  }
+  return names;
+}
+
+// Who speaks on a bus that can be opened; where it cannot, CheckBus tells.
+Findings CheckSpeakers(const DoctorFlags& flags) {
+  try {
+    const BusFacts facts = GatherBus(flags.url, flags.listen);
+    return CheckProcesses(
+        facts, flags.rig.empty() ? std::vector<std::string>() : ProgramsExpected(flags.rig, facts));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 int RunDoctor(const DoctorFlags& flags) {
   const SystemRoots roots;
   const std::vector<NetworkInterface> interfaces = ListInterfaces();
   Findings findings = CheckMachine(roots, flags.url, interfaces);
+  if (flags.listen > 0) Append(CheckSpeakers(flags), &findings);
   if (!flags.rig.empty()) Append(CheckRig(roots, flags.rig, interfaces), &findings);
   std::fputs(FindingsText(findings).c_str(), stdout);
   return EndsWith(!HasProblem(findings));
@@ -94,14 +134,17 @@ int RunDoctor(const DoctorFlags& flags) {
 
 void AddDoctor(CommandLine* program) {
   auto flags = std::make_shared<DoctorFlags>();
-  CommandLine* verb =
-      program->Verb("doctor",
-                    "Looks for what would go wrong with the live system, on this machine\n"
-                    "and with a rig's devices, and names the command that mends it.\n"
-                    "Example: rgbdt doctor --rig rig.textproto",
-                    [flags] { return RunDoctor(*flags); });
+  CommandLine* verb = program->Verb(
+      "doctor",
+      "Looks for what goes or would go wrong with the live system, on this machine,\n"
+      "with the processes on the bus and with a rig's devices, and names the command\n"
+      "that mends it.\n"
+      "Example: rgbdt doctor --rig rig.textproto",
+      [flags] { return RunDoctor(*flags); });
   verb->Ends(ExitCode::kFailed, "failed, or there is a problem");
   verb->Option("--rig", &flags->rig, "rig.textproto; default: only the machine is looked at");
+  verb->Within("--listen", &flags->listen, 0, 60,
+               "seconds to listen to the processes on the bus; 0: not at all");
   verb->Option("--lcm-url", &flags->url, "the bus; default: LCM_DEFAULT_URL");
 }
 

@@ -58,6 +58,22 @@ std::string WordsOf(const Action& action) {
   return "no error";
 }
 
+TEST(CameraNode, PacksWhatLeavesTheMachine) {
+  using Wire = CameraDevice::Wire;
+  CameraSpec colour, thermal;
+  colour.kind = CameraKind::kColor;
+  thermal.kind = CameraKind::kThermal;
+  for (CameraSpec* camera : {&colour, &thermal}) camera->device.emplace();
+  EXPECT_EQ(WireOf(colour, false), Wire::kRaw);
+  EXPECT_EQ(WireOf(thermal, false), Wire::kRaw);
+  EXPECT_EQ(WireOf(colour, true), Wire::kJpeg);
+  EXPECT_EQ(WireOf(thermal, true), Wire::kPng);
+  colour.device->wire = Wire::kRaw;
+  thermal.device->wire = Wire::kJpeg;
+  EXPECT_EQ(WireOf(colour, true), Wire::kRaw) << "as the rig file says";
+  EXPECT_EQ(WireOf(thermal, false), Wire::kJpeg);
+}
+
 TEST(DeviceNodes, WithoutADeviceSayWhatToAdd) {
   LidarSpec lidar;
   EXPECT_THAT(WordsOf([&] { MotorNode node(lidar); }), HasSubstr("no turned_scanner"));

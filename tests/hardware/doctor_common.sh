@@ -15,12 +15,13 @@ unprivileged=(setpriv --reuid 65534 --regid 65534)
 can_be_nobody() { "${unprivileged[@]}" --clear-groups test -x "$bin/rgbdt" 2>/dev/null; }
 
 as=()
+listen=0  # seconds, to the processes on the bus
 doctor() { doctor_in / "$@"; }
 doctor_in() {  # FOLDER OPTION...: output in $scratch/output, exit code in $code
   local folder=$1
   shift
   code=0
-  (cd "$folder" && timeout 20 "${as[@]}" "$bin/rgbdt" doctor "$@") >"$scratch/output" 2>&1 || code=$?
+  (cd "$folder" && timeout 20 "${as[@]}" "$bin/rgbdt" doctor --listen "$listen" "$@") >"$scratch/output" 2>&1 || code=$?
   as=()
   [ "$code" -le 1 ] || fail_with_output "exit code $code"
 }

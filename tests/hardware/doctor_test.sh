@@ -109,6 +109,30 @@ stop_peer holder
 doctor
 silent "LCM port"
 
+# -- the processes on the bus
+
+LCM_DEFAULT_URL='udpm://239.255.76.67:7667?ttl=0'
+export LCM_DEFAULT_URL
+for process in fuser solver; do start "$process" "$bin/rgbdt-$process"; done
+helper ready fuser solver || fail "fuser and solver did not come up"
+rig
+listen=3
+doctor
+grep -q '^WARNING  process fuser: waits for the rig (RIG)' "$scratch/output" ||
+  fail_with_output "it does not say what the fuser waits for"
+doctor --rig "$scratch/rig.textproto"
+finds WARNING "silent processes" "detector" "viewer" "rgbdt up"
+start second "$bin/rgbdt-fuser"
+doctor
+finds PROBLEM "process fuser" "two programs of this name"
+[ "$code" = 1 ] || fail "exit code $code with two fusers"
+stop TERM second
+stop TERM fuser solver
+doctor
+silent processes
+listen=0
+unset LCM_DEFAULT_URL
+
 # -- other machines and lcm-logger
 
 silent "LCM firewall"

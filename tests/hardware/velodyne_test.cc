@@ -181,6 +181,32 @@ TEST(VelodynePackets, DualKeepsTheReturnOfTheHigherReflectivity) {
   }
 }
 
+TEST(VelodynePackets, DualHasBothReturns) {
+  for (const Model model : {Model::kVlp16, Model::kVlp32c, Model::kHdl32e, Model::kHdl64e}) {
+    const velodyne::Sensor& sensor = velodyne::SensorOf(model);
+    VelodyneEncoder encoder = Encoder(model);
+    auto bytes = encoder.Packet(0);
+    const auto single = velodyne::Decode(sensor, bytes.data(), bytes.size());
+    for (const auto& column : single.columns) EXPECT_TRUE(column.second_returns.empty());
+    encoder.dual = true;  // the second returns are a metre farther and less reflective
+    bytes = encoder.Packet(0);
+    const auto dual = velodyne::Decode(sensor, bytes.data(), bytes.size());
+    std::size_t both = 0;
+    for (const auto& column : dual.columns) {
+      ASSERT_EQ(column.second_returns.size(), column.returns.size());
+      for (std::size_t laser = 0; laser < column.returns.size(); ++laser) {
+        const velodyne::Return &first = column.returns[laser],
+                               &second = column.second_returns[laser];
+        if (first.distance == 0 || second.distance == 0) continue;
+        ++both;
+        EXPECT_NEAR((second.distance - first.distance) * sensor.unit_m, 1, 2 * sensor.unit_m);
+        EXPECT_LT(second.reflectivity, first.reflectivity);
+      }
+    }
+    EXPECT_GT(both, 50U);
+  }
+}
+
 std::string WhyNot(Model model, const std::vector<std::uint8_t>& bytes) {
   try {
     velodyne::Decode(velodyne::SensorOf(model), bytes.data(), bytes.size());

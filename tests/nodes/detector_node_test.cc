@@ -202,6 +202,23 @@ TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
   EXPECT_TRUE(node_.Advance(100 * kMicrosecondsPerSecond).empty()) << "a capture comes first";
 }
 
+TEST_F(DetectorNodeTest, LooksAsOftenAsItHasTimeFor) {
+  // Its Advance is called so often, with a new image each time, and a look takes that long.
+  Utime begin = 0;
+  const auto looks_in_ten_seconds = [&](Utime every) {
+    std::size_t looks = 0;
+    for (Utime now = every; now <= 10 * kMicrosecondsPerSecond; now += every) {
+      node_.Handle(Blank("thermal", kCommand + begin + now));
+      looks += Only<TargetStatus>(node_.Advance(begin + now)).size();
+    }
+    begin += 11 * kMicrosecondsPerSecond;
+    return looks;
+  };
+  EXPECT_NEAR(static_cast<double>(looks_in_ten_seconds(20'000)), 100, 2);
+  EXPECT_NEAR(static_cast<double>(looks_in_ten_seconds(50'000)), 50, 2) << "a quarter of a core";
+  EXPECT_NEAR(static_cast<double>(looks_in_ten_seconds(500'000)), 10, 1) << "once a second";
+}
+
 TEST(DetectorNodeReplayTest, WhereNobodyWatchesItDoesNotLook) {
   DetectorNode node(kAutoMethod, DetectorNode::Looks::kNo);
   node.Handle(test::TextOf(SmallRig()));

@@ -66,10 +66,13 @@ TEST(OdometryNode, SaysWhereTheRigIsAfterEachSweep) {
   EXPECT_THAT(node.GetStatus().text, HasSubstr("waits for sweeps"));
   Drive drive = Street();
   std::vector<StampedPose> poses;
+  std::vector<SweepOdometry> told;
   for (int i = 0; i < 8; ++i) {
     const Messages chunks = ChunksOf(drive.Sweep(i));
     EXPECT_THAT(node.Handle(chunks[0]), IsEmpty()) << "a sweep is taken at its end";
-    for (const auto& pose : Only<StampedPose>(node.Handle(chunks[1]))) poses.push_back(pose);
+    const Messages answers = node.Handle(chunks[1]);
+    for (const auto& pose : Only<StampedPose>(answers)) poses.push_back(pose);
+    for (const auto& odometry : Only<SweepOdometry>(answers)) told.push_back(odometry);
     EXPECT_THAT(node.Handle(chunks[1]), IsEmpty()) << "and once";
   }
   // The first sweep tells nothing of its motion; of the second its middle, too.
@@ -82,6 +85,22 @@ TEST(OdometryNode, SaysWhereTheRigIsAfterEachSweep) {
     EXPECT_LT((moved.translation - truth.translation).norm(), 0.05);
     EXPECT_LT(RotationDistance(moved, truth), 0.005);
   }
+  ASSERT_EQ(told.size(), 8U) << "one a sweep, placed or not";
+  EXPECT_FALSE(told[0].placed);
+  for (std::size_t i = 1; i < told.size(); ++i) {
+    EXPECT_TRUE(told[i].placed);
+    EXPECT_EQ(told[i].seq, static_cast<std::int64_t>(i));
+    EXPECT_THAT(told[i].untold, IsEmpty());
+    EXPECT_NEAR(told[i].velocity.tail<3>().norm(), 5, 0.5) << i;
+    // Within what it states, of the position: chi-square of 3 beyond 30 is one in a million.
+    const Rigid3 moved = told[1].map_from_lidar.Inverse() * told[i].map_from_lidar;
+    const Rigid3 truth = drive.At(told[1].utime).Inverse() * drive.At(told[i].utime);
+    const Eigen::Vector3d off = (moved.Inverse() * truth).translation;
+    const Eigen::Matrix3d sum = (told[1].covariance + told[i].covariance).bottomRightCorner<3, 3>();
+    EXPECT_LT(off.dot(sum.ldlt().solve(off)), 30) << i;
+  }
+  EXPECT_EQ(told.back().utime, poses.back().utime);
+  EXPECT_EQ(told.back().map_from_lidar.translation, poses.back().map_from_lidar.translation);
   const Status status = node.GetStatus();
   EXPECT_THAT(status.text, HasSubstr("m/s"));
   EXPECT_EQ(Counter(status, "sweeps"), 8);
@@ -142,7 +161,15 @@ TEST(OdometryNode, SaysWhatIsNotTold) {
   std::vector<std::string> warnings;
   node.SetWarningHandler([&](const std::string& warning) { warnings.push_back(warning); });
   Drive drive(DriveScene::kPlain, 1, Lidar(), study::StreetWay(1, 5));
-  for (int i = 0; i < 4; ++i) test::HandleAll(&node, ChunksOf(drive.Sweep(i)));
+  SweepOdometry told;
+  for (int i = 0; i < 4; ++i) {
+    const auto answers = Only<SweepOdometry>(test::HandleAll(&node, ChunksOf(drive.Sweep(i))));
+    ASSERT_EQ(answers.size(), 1U);
+    told = answers[0];
+  }
+  EXPECT_THAT(told.untold, ::testing::Contains(HasSubstr("a turn about the LIDAR's z (yaw)")));
+  const Vector6d variances = told.covariance.diagonal();
+  EXPECT_GT(variances[2], 100 * variances[0]) << "what is told is known better";
   EXPECT_THAT(node.GetStatus().text, HasSubstr("a turn about the LIDAR's z (yaw)"));
   EXPECT_EQ(Counter(node.GetStatus(), "degenerate"), 3);
   ASSERT_EQ(warnings.size(), 1U) << "told once";
@@ -157,9 +184,12 @@ TEST(OdometryNode, ABlindSweepGivesNoPose) {
   for (Eigen::Vector3f& p : blind.points) {
     p.setConstant(std::numeric_limits<float>::quiet_NaN());
   }
-  EXPECT_THAT(test::HandleAll(&node, ChunksOf(blind)), IsEmpty());
+  const Messages answers = test::HandleAll(&node, ChunksOf(blind));
+  EXPECT_THAT(Only<StampedPose>(answers), IsEmpty());
+  ASSERT_EQ(Only<SweepOdometry>(answers).size(), 1U);
+  EXPECT_FALSE(Only<SweepOdometry>(answers)[0].placed);
   EXPECT_THAT(node.GetStatus().text, HasSubstr("0 points of use"));
-  EXPECT_EQ(test::HandleAll(&node, ChunksOf(drive.Sweep(4))).size(), 2U);
+  EXPECT_EQ(Only<StampedPose>(test::HandleAll(&node, ChunksOf(drive.Sweep(4)))).size(), 2U);
 }
 
 TEST(OdometryNode, IsAsIfWhatItRefusesHadNeverCome) {

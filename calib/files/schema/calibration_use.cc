@@ -12,12 +12,6 @@ namespace {
 
 constexpr char kAnywayHelps[] = ", or give --anyway to use it all the same";
 
-const CameraSpec* Find(const Rig& rig, const std::string& camera) {
-  const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(),
-                                  [&](const CameraSpec& spec) { return spec.name == camera; });
-  return found == rig.cameras.end() ? nullptr : &*found;
-}
-
 Rig LidarOf(const Rig& sensors) {
   Rig rig;
   rig.lidar = sensors.lidar;
@@ -79,8 +73,8 @@ std::vector<std::string> SensorDifferences(const Calibration& calibration, const
   AddDifferences(LidarOf(was), LidarOf(is), &lines);
   AddLidarDifferences(calibration, is, &lines);
   for (const CameraCalibration& camera : calibration.cameras) {
-    const CameraSpec* before = Find(was, camera.camera);
-    const CameraSpec* now = Find(is, camera.camera);
+    const CameraSpec* before = was.FindCamera(camera.camera);
+    const CameraSpec* now = is.FindCamera(camera.camera);
     if (now == nullptr) {
       lines.push_back("camera " + camera.camera + ": not in the rig");
     } else if (before != nullptr) {

@@ -2,6 +2,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/own_folder.h"
+#include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 
@@ -26,6 +27,13 @@ bool PreviousIsThere(const fs::path& dir) {
     if (fs::exists(dir / PreviousOf(name), ignored)) return true;
   }
   return false;
+}
+
+bool IsThatCamera(const Calibration& earlier, const CameraSpec& spec) {
+  if (!earlier.sensors) return true;
+  const CameraSpec* camera = earlier.sensors->FindCamera(spec.name);
+  return camera != nullptr && camera->kind == spec.kind && camera->width == spec.width &&
+         camera->height == spec.height;
 }
 
 void Remove(const fs::path& path) {
@@ -53,6 +61,27 @@ std::string SetResultsAside(const fs::path& dir) {
   }
   return kept.empty() ? ""
                       : "results of an earlier run are kept in " + dir.string() + " as " + kept;
+}
+
+std::string KeepTimings(const fs::path& dir, const Rig& rig, Calibration* calibration) {
+  const fs::path path = dir / PreviousOf(kResults[0]);
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return "";
+  std::string kept;
+  try {
+    const Calibration earlier = ReadCalibration(path);
+    for (CameraCalibration& camera : calibration->cameras) {
+      const CameraCalibration* before = earlier.Find(camera.camera);
+      if (camera.timing || before == nullptr || !before->timing) continue;
+      if (!IsThatCamera(earlier, rig.Camera(camera.camera))) continue;
+      camera.timing = before->timing;
+      kept += (kept.empty() ? "" : ", ") + camera.camera;
+    }
+  } catch (const InputError&) {  // what cannot be read has nothing to keep
+  }
+  return kept.empty() ? ""
+                      : "`timing` of " + kept + " is that of " + path.filename().string() +
+                            ": if a clock was set or a trigger changed since, rgbdt sync again";
 }
 
 std::string SetViewAside(const fs::path& dir, const std::string& view) {

@@ -3,6 +3,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/report_file.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/present/pictures/colouring_picture.h"
 #include "calib/present/pictures/lidar_picture.h"
 #include "calib/present/report/report_html.h"
@@ -42,12 +43,13 @@ std::string PageOf(const FinishedSession& finished) {
 
 std::string WriteIfSolved(const std::filesystem::path& dir, const Rig& rig, const Report& report) {
   const std::filesystem::path path = dir / "calibration.textproto";
-  const Calibration calibration = JudgedCalibration(report, rig);
+  Calibration calibration = JudgedCalibration(report, rig);
   if (calibration.cameras.empty()) {
     return "no camera was solved, so " + path.string() + " was not written; wrote";
   }
+  const std::string kept = KeepTimings(dir, rig, &calibration);
   WriteCalibration(path, calibration);
-  return "wrote " + path.string() + ",";
+  return (kept.empty() ? "" : kept + "\n") + "wrote " + path.string() + ",";
 }
 
 void WriteReportFiles(const std::filesystem::path& dir, const FinishedSession& finished) {

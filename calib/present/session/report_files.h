@@ -8,8 +8,8 @@
 namespace rgbdt {
 
 /// calibration.textproto (JudgedCalibration) into `dir`, unless no camera was solved: a guess must
-/// not take the place of what an earlier run found. Returns what it did, in words: "wrote
-/// DIR/calibration.textproto,".
+/// not take the place of what an earlier run found. The earlier one's timings stay (KeepTimings).
+/// Returns what it did, in words: "wrote DIR/calibration.textproto,".
 std::string WriteIfSolved(const std::filesystem::path& dir, const Rig& rig, const Report& report);
 
 /// report.json and report.html into `dir`. The HTML file is the viewer's page with the whole

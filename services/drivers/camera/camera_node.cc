@@ -45,9 +45,18 @@ std::string Seconds(Utime duration) { return Format("%.1f s", ToSeconds(duration
 
 }  // namespace
 
-CameraNode::CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures)
+CameraDevice::Wire WireOf(const CameraSpec& camera, bool leaves_machine) {
+  using Wire = CameraDevice::Wire;
+  if (camera.device && camera.device->wire) return *camera.device->wire;
+  if (!leaves_machine) return Wire::kRaw;
+  return camera.kind == CameraKind::kThermal ? Wire::kPng : Wire::kJpeg;
+}
+
+CameraNode::CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures,
+                       bool leaves_machine)
     : spec_(WithDevice(rig, camera)),
       captures_(std::move(captures)),
+      wire_(WireOf(spec_, leaves_machine)),
       thread_([this](DeviceThread& thread) { Serve(thread); }, kMaxWaiting) {}
 
 Messages CameraNode::Handle(const Message& message) {
@@ -220,17 +229,17 @@ void CameraNode::KeepRaw(const Image& image) {
     capture = *capture_;
     capture_.reset();
   }
-  if (spec_.device->wire == CameraDevice::Wire::kRaw) return;
+  if (wire_ == CameraDevice::Wire::kRaw) return;
   std::filesystem::create_directories(captures_ / capture.view);
   WritePng(captures_ / capture.view / (spec_.name + ".png"), image.pixels);
 }
 
 // For the wire; the bus compresses.
 void CameraNode::Pack(Image* image) const {
-  if (spec_.device->wire == CameraDevice::Wire::kJpeg) {
+  if (wire_ == CameraDevice::Wire::kJpeg) {
     image->pixels = ToBgr(*image);
     image->format = PixelFormat::kJpeg;
-  } else if (spec_.device->wire == CameraDevice::Wire::kPng) {
+  } else if (wire_ == CameraDevice::Wire::kPng) {
     if (spec_.kind == CameraKind::kColor) image->pixels = ToBgr(*image);
     image->format = PixelFormat::kPng;
   }

@@ -16,6 +16,11 @@
 
 namespace rgbdt {
 
+/// How a camera's images travel: as its rig file says; else raw on a bus that stays on this
+/// machine, and packed on one that leaves it, JPEG in colour, PNG (without loss) of a thermal
+/// camera.
+CameraDevice::Wire WireOf(const CameraSpec& camera, bool leaves_machine);
+
 /// One GigE Vision or USB3 Vision camera -> `<CAMERA>_IMAGE`. Frames that are not whole, or not of
 /// the rig file's size, are dropped, counted and named; none of them is published. A camera that is
 /// lost is looked for until it is back, and the gap is a warning.
@@ -38,9 +43,11 @@ class CameraNode : public DeviceNode {
   /// Frames that wait for the bus, which packs them; the oldest go first.
   static constexpr std::size_t kMaxWaiting = 8;
 
-  /// `camera`: its name; empty where only one camera of the rig has a device. Throws InputError
-  /// where the rig file has no device for it, or there is a choice.
-  CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures);
+  /// `camera`: its name; empty where only one camera of the rig has a device. `leaves_machine`: the
+  /// bus does (WireOf). Throws InputError where the rig file has no device for it, or there is a
+  /// choice.
+  CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures,
+             bool leaves_machine = false);
   ~CameraNode() override;
 
   std::string name() const override { return "camera-" + spec_.name; }
@@ -77,6 +84,7 @@ class CameraNode : public DeviceNode {
 
   CameraSpec spec_;
   std::filesystem::path captures_;
+  CameraDevice::Wire wire_;
 
   mutable std::mutex mutex_;  // of these three
   Health health_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "calib/model/errors.h"
 
@@ -161,15 +162,16 @@ std::array<Block, kBlocks> ReadBlocks(const Sensor& sensor, const std::uint8_t* 
   return blocks;
 }
 
-// Keeps the return of the higher reflectivity, of equal ones the first.
-void Merge(const std::uint8_t* bytes, std::size_t count, Return* returns) {
+// The return of the higher reflectivity first, of equal ones the one that came first.
+void Merge(const std::uint8_t* bytes, std::size_t count, Return* first, Return* second) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* at = bytes + 3 * i;
-    const Return other{Word(at), at[2]};
+    Return other{Word(at), at[2]};
     if (other.distance == 0) continue;
-    if (returns[i].distance == 0 || other.reflectivity > returns[i].reflectivity) {
-      returns[i] = other;
+    if (first[i].distance == 0 || other.reflectivity > first[i].reflectivity) {
+      std::swap(first[i], other);
     }
+    if (second != nullptr && other.distance != 0) second[i] = other;
   }
 }
 
@@ -242,10 +244,12 @@ Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size) 
           std::fmod(blocks[first].azimuth / 100.0 + static_cast<double>(c) * column.step_deg, 360);
       column.time_us = static_cast<double>(packet.columns.size()) * sensor.column_us;
       column.returns.resize(lasers);
+      if (packet.dual) column.second_returns.resize(lasers);
       for (std::size_t b = first; b < next; ++b) {
         const std::size_t count = std::min(lasers, kReturns);
-        Return* to = column.returns.data() + (blocks[b].lower ? kReturns : 0);
-        Merge(blocks[b].returns + 3 * count * c, count, to);
+        const std::size_t to = blocks[b].lower ? kReturns : 0;
+        Merge(blocks[b].returns + 3 * count * c, count, column.returns.data() + to,
+              packet.dual ? column.second_returns.data() + to : nullptr);
       }
       packet.columns.push_back(std::move(column));
     }

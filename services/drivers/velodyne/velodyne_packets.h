@@ -49,6 +49,8 @@ struct Column {
   double step_deg = 0;     ///< that the head turns until the next column; 0: unknown
   double time_us = 0;      ///< from the packet's time stamp
   std::vector<Return> returns;  ///< by laser
+  /// In dual mode, by laser: the other one, of the lower reflectivity; else empty.
+  std::vector<Return> second_returns;
 };
 
 struct Packet {
@@ -57,9 +59,10 @@ struct Packet {
   std::vector<Column> columns;
 };
 
-/// Decodes the 1206 bytes of a data packet. Two returns of a beam (dual mode) become one, that of
-/// the higher reflectivity: a board's edge is hit by beams of which the larger part decides. Throws
-/// InputError saying what is wrong: the size, a block's flag or azimuth, or another sensor's data.
+/// Decodes the 1206 bytes of a data packet. Of two returns of a beam (dual mode) that of the higher
+/// reflectivity comes first: a board's edge is hit by beams of which the larger part decides.
+/// Throws InputError saying what is wrong: the size, a block's flag or azimuth, or another sensor's
+/// data.
 Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size);
 
 }  // namespace rgbdt::velodyne

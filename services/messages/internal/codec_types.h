@@ -86,6 +86,9 @@ MountCheck FromWire(const mount_check_t& wire);
 pose_t ToWire(const StampedPose& pose);
 void Check(const pose_t& wire);
 StampedPose FromWire(const pose_t& wire);
+odometry_t ToWire(const SweepOdometry& odometry);
+void Check(const odometry_t& wire);
+SweepOdometry FromWire(const odometry_t& wire);
 
 // codec_wave.cc
 waved_clock_t ToWire(const WavedClock& clock);

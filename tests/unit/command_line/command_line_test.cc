@@ -1,6 +1,7 @@
 #include "services/command_line/command_line.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "tests/unit/matchers.h"
 
@@ -94,6 +95,28 @@ TEST(CommandLine, RefusesWhatMakesNoSenseInALine) {
               HasSubstr("--fruit: \"moon\" is none of apple, pear"));
   EXPECT_THAT(Refusal({"here", "--method", "magic"}),
               HasSubstr("--method: \"magic\" is none of 9, 10, auto"));
+}
+
+TEST(CommandLine, HelpBreaksLongLinesWhereAWordEnds) {
+  std::string dir;
+  CommandLine line("program", "Does it.");
+  std::string words = "begin";
+  for (int i = 0; i < 40; ++i) words += " word" + std::to_string(i);
+  line.Option("--long", &dir, words + "\nnext");
+  line.Option("--one", &dir, std::string(200, 'x'));
+  testing::internal::CaptureStdout();
+  RunWith(&line, {"--help"}, {});
+  const std::string help = testing::internal::GetCapturedStdout();
+  std::istringstream lines(help);
+  std::string all;
+  for (std::string text; std::getline(lines, text);) {
+    if (text.find("xxx") == std::string::npos) {
+      EXPECT_LE(text.size(), 125U) << text;
+    }
+    all += text.substr(std::min(text.find_first_not_of(' '), text.size())) + " ";
+  }
+  EXPECT_THAT(all, HasSubstr(words + " next")) << "not a word is lost";
+  EXPECT_THAT(help, HasSubstr(std::string(200, 'x'))) << "a word is not broken";
 }
 
 TEST(CommandLine, HelpShowsDefaultsThatAreNotEmpty) {

@@ -275,6 +275,17 @@ TEST_F(Invalid, Session) {
   EXPECT_THAT(watched([](auto& w) { w.shown = NAN; }), HasSubstr("shown is"));
   EXPECT_THAT(watched([](auto& w) { w.moved[4] = INFINITY; }), HasSubstr("moved[4] is"));
   EXPECT_THAT(watched([](auto& w) { w.covariance[1][1] = -1; }), HasSubstr("covariance"));
+  const auto driven = [&](auto change) {
+    return ErrorAfter<odometry_t>(random_.Odometry(), change);
+  };
+  EXPECT_THAT(driven([](auto& w) { w.velocity[5] = NAN; }), HasSubstr("velocity[5] is nan"));
+  EXPECT_THAT(driven([](auto& w) { w.covariance[2][2] = -1; }), HasSubstr("covariance"));
+  EXPECT_THAT(driven([](auto& w) { w.residual_m = -1; }), HasSubstr("residual_m is -1"));
+  EXPECT_THAT(driven([](auto& w) {
+                w.num_untold = 1;
+                w.untold.assign(1, std::string("a\0b", 3));
+              }),
+              HasSubstr("untold is"));
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));

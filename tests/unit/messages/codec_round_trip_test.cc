@@ -266,6 +266,22 @@ TEST_F(RoundTrip, MountCheck) {
   }
 }
 
+TEST_F(RoundTrip, Odometry) {
+  for (int round = 0; round < kRounds; ++round) {
+    const SweepOdometry a = random_.Odometry();
+    const SweepOdometry b = ThroughTheWire(a);
+    EXPECT_EQ(a.utime, b.utime);
+    EXPECT_EQ(a.placed, b.placed);
+    EXPECT_EQ(a.begun_anew, b.begun_anew);
+    EXPECT_EQ(a.map_from_lidar.translation, b.map_from_lidar.translation);
+    EXPECT_EQ(a.velocity, b.velocity);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.untold, b.untold);
+    EXPECT_EQ(a.residual_m, b.residual_m);
+    EXPECT_EQ(a.text, b.text);
+  }
+}
+
 TEST_F(RoundTrip, Status) {
   for (int round = 0; round < kRounds; ++round) {
     const Status a = random_.Health();

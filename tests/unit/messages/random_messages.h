@@ -372,6 +372,20 @@ class RandomMessages {
     check.text = Text();
     return check;
   }
+  SweepOdometry Odometry() {
+    SweepOdometry odometry;
+    odometry.seq = Seq();
+    odometry.utime = Time();
+    odometry.placed = Coin();
+    odometry.begun_anew = Coin();
+    odometry.map_from_lidar = Pose().map_from_lidar;
+    odometry.velocity = Vector6d::LinSpaced(-0.5, 0.75);
+    odometry.covariance = Matrix6d(Vector6d::Constant(0.25).asDiagonal());
+    for (auto i = Int(0, 3); i > 0; --i) odometry.untold.push_back(Text());
+    odometry.residual_m = 0.0625;
+    odometry.text = Text();
+    return odometry;
+  }
   WaveProgress Waving() {
     WaveProgress progress;
     progress.seq = Seq();
@@ -393,7 +407,7 @@ class RandomMessages {
   Messages OneOfEach() {
     return {Line(),       Encoder(), Picture(), Chunk(),   Corners(), Seen(),    Calibrated(),
             Fused(),      Pose(),    RigFile(), Command(), Event(),   Request(), LeftOut(),
-            TargetSeen(), Watched(), Waving(),  Health(),  Report()};
+            TargetSeen(), Watched(), Waving(),  Health(),  Report(),  Odometry()};
   }
 
  private:

@@ -48,7 +48,7 @@ CameraDevice ToDevice(const proto::CameraDevice& device, const Place& place) {
     spec.features.emplace_back(feature.name(), feature.value());
   }
   spec.trigger = static_cast<CameraDevice::Trigger>(device.trigger());
-  spec.wire = static_cast<CameraDevice::Wire>(device.wire());
+  if (device.has_wire()) spec.wire = static_cast<CameraDevice::Wire>(device.wire());
   spec.packet_bytes =
       OrDefault(device.packet_bytes(), 0, 576, 65535 - kHeaders, place, "packet_bytes");
   return spec;
@@ -134,7 +134,7 @@ void FromDevice(const CameraDevice& device, proto::CameraDevice* out) {
     feature->set_value(ValidUtf8(value));
   }
   out->set_trigger(static_cast<proto::CameraDevice::Trigger>(device.trigger));
-  out->set_wire(static_cast<proto::CameraDevice::Wire>(device.wire));
+  if (device.wire) out->set_wire(static_cast<proto::CameraDevice::Wire>(*device.wire));
   out->set_packet_bytes(device.packet_bytes);
 }
 

@@ -42,6 +42,10 @@ TEST(RigDevices, ACameraComesBack) {
   EXPECT_EQ(device.trigger, CameraDevice::Trigger::kSoftware);
   EXPECT_EQ(device.wire, CameraDevice::Wire::kJpeg);
   EXPECT_EQ(device.packet_bytes, 8228);
+  const Rig plain = Again("", "device { address: \"10.0.0.3\" }");
+  EXPECT_FALSE(plain.cameras[0].device->wire) << "by where the bus goes";
+  const Rig raw = Again("", "device { address: \"10.0.0.3\" wire: RAW }");
+  EXPECT_EQ(raw.cameras[0].device->wire, CameraDevice::Wire::kRaw);
 }
 
 TEST(RigDevices, EachLidarComesBack) {

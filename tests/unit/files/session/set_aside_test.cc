@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
 #include "tests/unit/files/test_data.h"
 
@@ -37,6 +38,37 @@ TEST_F(SetAside, ResultsAreKeptAndNamed) {
   EXPECT_EQ(Read("report.previous.json"), "report.json");
   EXPECT_EQ(Read("report.previous.html"), "report.html");
   EXPECT_EQ(Read("fused.ply"), "fused.ply");
+}
+
+TEST_F(SetAside, TimingsOfTheSameCamerasAreHandedOn) {
+  const Rig rig = test::TestRig();
+  Calibration earlier;
+  earlier.method = "sync";
+  earlier.sensors = SensorsOf(rig);
+  for (const CameraSpec& spec : rig.cameras) {
+    CameraCalibration& camera = earlier.cameras.emplace_back();
+    camera.camera = spec.name;
+    camera.status = SolveStatus::kConverged;
+    camera.timing = CameraTiming{{0.0125, 0.001}, {0.02, 0.002}};
+  }
+  WriteCalibration(dir_ / "calibration.textproto", earlier);
+  SetResultsAside(dir_.path());
+  Calibration solved = earlier;
+  for (CameraCalibration& camera : solved.cameras) camera.timing.reset();
+  const CameraTiming own{{0.5, 0.001}, {0, 0.002}};
+  solved.cameras.back().timing = own;
+  const std::string said = KeepTimings(dir_.path(), rig, &solved);
+  EXPECT_THAT(said, AllOf(HasSubstr("`timing` of " + solved.cameras.front().camera),
+                          HasSubstr("calibration.previous.textproto"), Not(HasSubstr("\n"))));
+  EXPECT_EQ(solved.cameras.front().timing, earlier.cameras.front().timing);
+  EXPECT_EQ(solved.cameras.back().timing, own) << "its own is newer";
+
+  Rig other = rig;
+  other.cameras.front().width *= 2;
+  solved.cameras.front().timing.reset();
+  EXPECT_EQ(KeepTimings(dir_.path(), other, &solved), "");
+  EXPECT_FALSE(solved.cameras.front().timing);
+  EXPECT_EQ(KeepTimings(dir_ / "nowhere", rig, &solved), "");
 }
 
 TEST_F(SetAside, NothingIsNothing) {
