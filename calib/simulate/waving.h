@@ -40,6 +40,12 @@ struct ClockOptions {
   }
 };
 
+/// What real clocks and shutters are off by, one a camera, drawn from the seed: offsets of up to
+/// 0.1 s, drifts of up to 2e-5, in colour a shutter that rolls for 10 to 25 ms.
+std::vector<ClockOptions> DrawClocks(const Options& options);
+/// A line a camera.
+std::string ClocksText(const Options& options, const std::vector<ClockOptions>& clocks);
+
 /// The rig before a board that is waved: a spinning LIDAR each of whose beams has its own time, and
 /// cameras whose rows have theirs. The board meets the beams as a thin sheet; nobody holds it
 /// there. Exposures are taken for short: nothing is blurred by motion. Noise is a function of

@@ -11,8 +11,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/livox.h"
 #include "calib/scan_assembly/sweep_chunks.h"
-#include "services/bus/log_writer.h"
-#include "services/messages/codec.h"
+#include "services/import/timed_log.h"
 #include "services/messages/limits.h"
 
 namespace rgbdt {
@@ -60,47 +59,6 @@ std::vector<Source> SourcesOf(const TopicChoice& choice, const std::optional<Log
   std::stable_sort(sources.begin(), sources.end(),
                    [](const Source& a, const Source& b) { return a.until < b.until; });
   return sources;
-}
-
-// What is heard at some time, in that order, whenever it was read.
-class TimedLog {
- public:
-  explicit TimedLog(const std::string& path) : log_(path) {}
-
-  void Add(Message message, Utime heard) {
-    const std::string channel = ChannelOf(message);
-    SetSeq(seq_[channel]++, &message);
-    waiting_.emplace(heard, std::pair(channel, Encode(message)));
-  }
-  // Nothing comes any more that was heard before this.
-  void WriteUntil(Utime utime) {
-    while (!waiting_.empty() && waiting_.begin()->first <= utime) WriteFirst();
-  }
-  void Close() {
-    while (!waiting_.empty()) WriteFirst();
-    log_.Close();
-  }
-
- private:
-  void WriteFirst() {
-    const auto first = waiting_.begin();
-    log_.Write(first->second.first, first->second.second, first->first);
-    waiting_.erase(first);
-  }
-
-  LogWriter log_;
-  std::map<std::string, std::int64_t> seq_;
-  std::multimap<Utime, std::pair<std::string, Bytes>> waiting_;
-};
-
-void AddRig(const LogRig& rig, Utime utime, TimedLog* log) {
-  log->Add(RigText{0, rig.rig.hash, rig.rig.text}, utime);
-  if (!rig.calibration) return;
-  const Calibration& calibration = *rig.calibration;
-  for (const CameraCalibration& camera : calibration.cameras) {
-    log->Add(CalibrationMessage{0, calibration.utime, rig.rig.hash, calibration.method, camera},
-             utime);
-  }
 }
 
 void AddCloud(const Cloud& cloud, Utime least, TimedLog* log) {
@@ -179,7 +137,7 @@ WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::option
     const Source& source = sources[i];
     log.WriteUntil(source.until);
     if (rig && source.until >= rig_due) {
-      AddRig(*rig, source.until, &log);
+      log.AddRig(rig->rig, rig->calibration, source.until);
       rig_due = source.until + kMicrosecondsPerSecond;
     }
     try {

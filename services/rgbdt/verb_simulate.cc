@@ -9,6 +9,7 @@
 #include "calib/simulate/imperfections.h"
 #include "calib/simulate/simulator.h"
 #include "calib/simulate/use_target.h"
+#include "services/rgbdt/simulate_log.h"
 #include "services/rgbdt/verbs.h"
 #include "services/simulator/simulated_sweep.h"
 #include "services/simulator/simulator_node.h"
@@ -25,6 +26,7 @@ struct SimulateFlags {
   std::vector<std::string> picked = {"thermal"};
   std::vector<std::string> further;
   int rings = 0;
+  double wave = 0, drive = 0;  // [s]
   bool full_turn = false, scanner_error = false, imperfect = false, board = false;
   simulate::Options options;
 };
@@ -91,7 +93,33 @@ void AddFurtherLidars(const std::vector<std::string>& further, simulate::Options
   }
 }
 
+// A log in place of views.
+int RunLog(SimulateFlags flags) {
+  if (flags.wave > 0 && flags.drive > 0) throw UsageError("--wave and --drive: one of them");
+  const bool others = flags.options.natural.on || flags.board || flags.full_turn ||
+                      flags.scanner_error || flags.options.scanner.encoder_delay_s != 0 ||
+                      !flags.further.empty() || (flags.drive > 0 && !flags.target.empty());
+  if (others) {
+    throw UsageError(
+        "a log is of one spinning LIDAR, of a board that is waved or of a drive without one; leave "
+        "the other options out");
+  }
+  SetTarget(flags.target, &flags.options.board);
+  // By its rings; the turned scanner is the views' usual one.
+  constexpr int kUsualRings = 32;
+  simulate::UseLidar(flags.rings == 0 ? kUsualRings : flags.rings, &flags.options);
+  if (flags.imperfect) simulate::MakeImperfect(&flags.options);
+  if (flags.wave > 0) {
+    SimulateWave(flags.dir, flags.options, flags.wave);
+  } else {
+    flags.options.supersampling = 4;  // as SetScene has it
+    SimulateDrive(flags.dir, flags.options, flags.drive);
+  }
+  return EndsWith(true);
+}
+
 int RunSimulate(SimulateFlags flags) {
+  if (flags.wave > 0 || flags.drive > 0) return RunLog(std::move(flags));
   if (flags.views < 1 || flags.views > 9999) {
     throw UsageError("--views is " + std::to_string(flags.views) + "; expected 1 to 9999");
   }
@@ -145,7 +173,9 @@ void AddSimulate(CommandLine* program) {
   CommandLine* verb = program->Verb(
       "simulate",
       "Writes a session directory of the synthetic rig, with its truth beside (truth.textproto).\n"
-      "Every third view is held out. Example: rgbdt simulate out/synthetic --seed 7 --scene night",
+      "Every third view is held out. Or a log: of a board that is waved, or of a drive.\n"
+      "Examples: rgbdt simulate out/synthetic --seed 7 --scene night\n"
+      "          rgbdt simulate out/drive --drive 20 --scene outdoor",
       [flags] { return RunSimulate(*flags); });
   verb->Required("DIR", &flags->dir, "session directory to write");
   verb->Option("--views", &flags->views, "number of views");
@@ -171,6 +201,13 @@ void AddSimulate(CommandLine* program) {
       "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "
       "the rig drives on between views");
   verb->Flag("--board", &flags->board, "with --natural: the board stands there, too");
+  verb->Within("--wave", &flags->wave, 0, 600,
+               "seconds that a board is waved before a spinning LIDAR (32 rings unless --lidar "
+               "says otherwise): DIR/wave.lcmlog, for `rgbdt sync`. Cameras' clocks and shutters "
+               "are off as the seed draws it");
+  verb->Within("--drive", &flags->drive, 0, 3600,
+               "seconds that the rig drives, along a street (outdoor) or through a room (indoor): "
+               "DIR/drive.lcmlog, for `rgbdt map` and `rgbdt refine`, with its true way beside");
   verb->Option("--target", &flags->target,
                "the board, as rgbdt session's --board: 8x6@0.095,0.85x0.61 or "
                "charuco@11x8,0.1,0.075,5X5_100,1.2192x0.9144 or "

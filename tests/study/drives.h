@@ -8,6 +8,7 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/rigid3.h"
+#include "calib/simulate/internal/driving_lidar.h"
 #include "calib/simulate/internal/scanner.h"
 #include "calib/simulate/internal/world.h"
 #include "calib/simulate/options.h"
@@ -23,18 +24,12 @@ enum class DriveScene {
   kTwins,     ///< likewise; from where the LIDAR is half the round later all looks the same
 };
 
-/// A LIDAR's way through a scene: world_from_lidar at a time [s]. The world's z is up, its origin
-/// at the LIDAR's height.
-using Way = std::function<Rigid3(double seconds)>;
+using simulate::MovingSweep;
+using simulate::RoomWay;
+using simulate::StreetWay;
+using simulate::Way;
 
-/// Along x at about this speed [m/s], which changes by a fifth, `aside_m` to and fro across, over
-/// streets of planes, over which the rig nods: smooth, and at no time of constant velocity.
-/// `at_rest_s`: stands before.
-Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double at_rest_s = 0);
-/// Round the free middle of the room, looking about.
-Way RoomWay(std::uint64_t seed, double speed_mps);
-
-/// Likewise, slowly: all of it goes with the way.
+/// As RoomWay, slowly: all of it goes with the way.
 Way SlowRoomWay(std::uint64_t seed, double speed_mps);
 
 /// Along x for `length_m`, half a turn on the spot, and back beside where it came from. Sets off
@@ -45,12 +40,6 @@ double ThereAndBackSeconds(double length_m, double speed_mps);
 /// and over streets as StreetWay's.
 Way BlockWay(std::uint64_t seed, double speed_mps);
 double BlockRound();  ///< [m]
-
-/// A sweep of a spinning LIDAR that moves while it turns: each column of beams starts from where
-/// the LIDAR is at its time. Ring x azimuth, each point with its time, as the LIDAR saw it then.
-Cloud MovingSweep(const simulate::World& world, const simulate::SpinningOptions& lidar,
-                  std::uint64_t seed, Utime utime,
-                  const std::function<Rigid3(Utime)>& world_from_lidar);
 
 /// The sweeps of a spinning LIDAR on its way. Sweep and noise are functions of (seed, number).
 class Drive {

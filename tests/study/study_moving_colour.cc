@@ -80,7 +80,9 @@ void Run(const std::vector<std::string>& a) {
                         world_from_lidar);
     for (const CloudChunk& chunk : SplitSweep(sweep)) {
       for (const Message& message : odometry.Handle(chunk)) {
-        StampedPose pose = std::get<StampedPose>(message);
+        const auto* found = std::get_if<StampedPose>(&message);
+        if (found == nullptr) continue;
+        StampedPose pose = *found;
         if (true_poses) pose.map_from_lidar = world_from_lidar(pose.utime);
         driving.AddPose(pose);
       }

@@ -122,18 +122,24 @@ void MoveIntoLidar(const Rigid3& world_from_lidar, SceneModel* scene) {
 
 }  // namespace
 
-SceneModel MakeNaturalScene(const Options& options, int index) {
-  const Rigid3 world_from_lidar = WorldFromLidar(options, index);
+SceneModel MakeNaturalWorld(const Options& options, double x_m) {
   SceneModel scene;
   if (options.scene == Scene::kIndoor) {
     MakeIndoors(options, &scene);
   } else {
-    MakeOutdoors(options, world_from_lidar.translation.x(), &scene);
+    MakeOutdoors(options, x_m, &scene);
   }
   if (options.world.reflected_temperature_k != 0) {
     scene.reflected_temperature_k = options.world.reflected_temperature_k;
   }
   scene.many_edges = true;
+  scene.world_from_lidar = Rigid3();
+  return scene;
+}
+
+SceneModel MakeNaturalScene(const Options& options, int index) {
+  const Rigid3 world_from_lidar = WorldFromLidar(options, index);
+  SceneModel scene = MakeNaturalWorld(options, world_from_lidar.translation.x());
   AddWalkers(options, world_from_lidar, index, &scene.objects);
   MoveIntoLidar(world_from_lidar, &scene);
   return scene;

@@ -9,4 +9,8 @@ namespace rgbdt::simulate {
 /// (seed, index).
 SceneModel MakeNaturalScene(const Options& options, int index);
 
+/// The same in the world's frame, for a rig that drives there, about so far along the street, and
+/// without people.
+SceneModel MakeNaturalWorld(const Options& options, double x_m);
+
 }  // namespace rgbdt::simulate

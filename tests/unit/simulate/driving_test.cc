@@ -1,0 +1,87 @@
+#include "calib/simulate/driving.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <opencv2/core.hpp>
+
+#include "calib/model/errors.h"
+#include "calib/simulate/internal/natural_scene.h"
+#include "calib/simulate/internal/spinning.h"
+#include "calib/simulate/internal/world.h"
+
+namespace rgbdt::simulate {
+namespace {
+
+Options SmallRig(Scene scene) {
+  Options options;
+  options.seed = 3;
+  options.scene = scene;
+  UseLidar(16, &options);
+  CameraOptions camera = DefaultColorCamera();
+  camera.width = 160;
+  camera.height = 120;
+  camera.lens.fx = camera.lens.fy = 105;
+  camera.lens.cx = 80;
+  camera.lens.cy = 60;
+  options.cameras = {camera};
+  options.supersampling = 2;
+  return options;
+}
+
+// The share of hits of `column` that are as far as in a sweep of a rig that stands at `pose`.
+double ShareAsFar(const Cloud& sweep, int column, const World& world, const Options& options,
+                  const Rigid3& pose) {
+  const Cloud still = SpinningSweep(world, *options.spinning, options.seed, 0, 0, pose);
+  int hits = 0, same = 0;
+  for (int ring = 0; ring < sweep.lines; ++ring) {
+    const auto i = static_cast<std::size_t>(ring) * static_cast<std::size_t>(sweep.beams) +
+                   static_cast<std::size_t>(column);
+    if (!sweep.IsHit(i) || !still.IsHit(i)) continue;
+    ++hits;
+    const double apart = std::abs(sweep.points[i].norm() - still.points[i].norm());
+    same += apart < 5 * std::sqrt(2.0) * options.spinning->range_sigma_m ? 1 : 0;
+  }
+  EXPECT_GE(hits, 8);
+  return static_cast<double>(same) / hits;
+}
+
+TEST(DrivingTest, EachColumnIsSeenFromWhereTheRigIsThen) {
+  Options options = SmallRig(Scene::kIndoor);
+  Driving driving(options, 2);
+  const Utime begin = Driving::kStart + 3 * kMicrosecondsPerSecond;
+  const Cloud sweep = driving.Sweep(begin);
+  options.natural.on = true;
+  options.natural.people = 0;
+  const World world(std::make_shared<SceneModel>(MakeNaturalWorld(options, 0)), std::nullopt,
+                    options);
+  const int last = sweep.beams - 1;
+  const Utime end = sweep.utime[static_cast<std::size_t>(last)];
+  EXPECT_NEAR(ToSeconds(end - begin), options.spinning->revolution_s, 0.002);
+  EXPECT_GE(ShareAsFar(sweep, 0, world, options, driving.WorldFromLidar(begin)), 0.9);
+  EXPECT_GE(ShareAsFar(sweep, last, world, options, driving.WorldFromLidar(end)), 0.9);
+  EXPECT_LE(ShareAsFar(sweep, last, world, options, driving.WorldFromLidar(begin)), 0.5);
+}
+
+TEST(DrivingTest, ImagesAreTakenOnTheWay) {
+  Driving driving(SmallRig(Scene::kOutdoor), 3), again(SmallRig(Scene::kOutdoor), 3);
+  const Image first = driving.TakeImage("rgb", Driving::kStart);
+  const Image later = driving.TakeImage("rgb", Driving::kStart + 5 * kMicrosecondsPerSecond);
+  EXPECT_GT(cv::norm(first.pixels, later.pixels, cv::NORM_L1) / first.pixels.total(), 5);
+  // In any order.
+  const Image same = again.TakeImage("rgb", later.utime);
+  EXPECT_EQ(cv::norm(later.pixels, same.pixels, cv::NORM_INF), 0);
+  EXPECT_EQ(driving.rig().Camera("rgb").width, 160);
+  EXPECT_EQ(driving.truth().camera_from_lidar.count("rgb"), 1U);
+}
+
+TEST(DrivingTest, RefusesATurnedScannerAndTheNight) {
+  Options turned = SmallRig(Scene::kOutdoor);
+  turned.spinning.reset();
+  EXPECT_THROW(Driving(turned, 1), InputError);
+  EXPECT_THROW(Driving(SmallRig(Scene::kNight), 1), InputError);
+}
+
+}  // namespace
+}  // namespace rgbdt::simulate
