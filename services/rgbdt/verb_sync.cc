@@ -100,6 +100,19 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
   return calibration;
 }
 
+// Each camera's offset over time, as the picture has it.
+std::string OffsetsCsv(const SyncResult& result) {
+  std::string text = "camera,utime_us,offset_from_mean_s,sigma_s\n";
+  for (const SyncedCamera& camera : result.cameras) {
+    for (const OffsetAt& at : camera.offsets) {
+      const auto utime = static_cast<long long>(result.start + FromSeconds(at.seconds));
+      text +=
+          camera.camera + Format(",%lld,%.7f,%.7f\n", utime, at.offset_s.value, at.offset_s.sigma);
+    }
+  }
+  return text;
+}
+
 using Say = std::function<void(const std::string& progress)>;
 
 /// What came of a log.
@@ -118,20 +131,25 @@ Synced Write(const fs::path& out, const WavedLog& input, const SyncResult& resul
   synced.all = std::all_of(synced.clocks.begin(), synced.clocks.end(), told);
   synced.written = std::any_of(synced.clocks.begin(), synced.clocks.end(), told);
   const cv::Mat picture = SyncPicture(result);
-  if (!picture.empty()) WritePng(out / "sync.png", picture);
+  if (!picture.empty()) {
+    WritePng(out / "sync.png", picture);
+    WriteFileAtomically(out / "sync.csv", OffsetsCsv(result));
+  }
   if (!synced.written) {
     // Offsets that change too much to be given make a picture.
     synced.words = picture.empty()
                        ? "nothing was written"
-                       : "only sync.png (the offsets over time) was written, into " + out.string();
+                       : "only sync.png and sync.csv (the offsets over time) were written, into " +
+                             out.string();
     return synced;
   }
   WriteFileAtomically(out / "rig.textproto", input.rig.text);
   WriteCalibration(out / "calibration.textproto", WithTimings(input, result, refine));
-  synced.words = "wrote calibration.textproto (with `timing`), rig.textproto" +
-                 std::string(picture.empty() ? "" : ", sync.png (the offsets over time)") +
-                 " into " + out.string() + "\nnext: rgbdt-monitor " + ForShell(out.string()) +
-                 ", which sends both; the fuser takes offset and read-out from there";
+  synced.words =
+      "wrote calibration.textproto (with `timing`), rig.textproto" +
+      std::string(picture.empty() ? "" : ", sync.png and sync.csv (the offsets over time)") +
+      " into " + out.string() + "\nnext: rgbdt-monitor " + ForShell(out.string()) +
+      ", which sends both; the fuser takes offset and read-out from there";
   return synced;
 }
 

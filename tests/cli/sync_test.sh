@@ -27,6 +27,14 @@ grep -q 'px at 1 m/s' "$scratch/output" || complain "what does the offset do?"
 grep -q 'rgbdt-monitor' "$scratch/output" || complain "no next step"
 holds "$scratch/synced/calibration.textproto"
 [ -s "$scratch/synced/rig.textproto" ] || complain "no rig"
+python3 - "$scratch/synced/sync.csv" <<'END' >"$scratch/output" 2>&1 || complain "sync.csv"
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+assert len(rows) >= 3, rows
+for row in rows:
+    off, sigma = float(row["offset_from_mean_s"]), float(row["sigma_s"])
+    assert row["camera"] == "rgb" and 0 < sigma < 0.01 and abs(off) < 6 * sigma, row
+END
 pose_of() { sed -n '/^  camera_from_lidar {/,/^  }/p' "$1"; }
 [ -n "$(pose_of "$scratch/calibration.textproto")" ] || complain "no pose to compare with"
 [ "$(pose_of "$scratch/synced/calibration.textproto")" = "$(pose_of "$scratch/calibration.textproto")" ] ||
