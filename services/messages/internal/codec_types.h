@@ -15,6 +15,7 @@
 #include <lcmtypes/rgbdt/left_out_views_t.hpp>
 #include <lcmtypes/rgbdt/line_scan_t.hpp>
 #include <lcmtypes/rgbdt/mount_check_t.hpp>
+#include <lcmtypes/rgbdt/odometry_t.hpp>
 #include <lcmtypes/rgbdt/pose_t.hpp>
 #include <lcmtypes/rgbdt/report_t.hpp>
 #include <lcmtypes/rgbdt/rgbdt_cloud_t.hpp>
