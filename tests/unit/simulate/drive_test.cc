@@ -10,7 +10,7 @@
 namespace rgbdt::simulate {
 namespace {
 
-Options Driving(std::uint64_t seed, Scene scene) {
+Options OnItsWay(std::uint64_t seed, Scene scene) {
   Options options;
   options.seed = seed;
   options.scene = scene;
@@ -25,7 +25,7 @@ double Yaw(const Rigid3& pose) {
 
 TEST(Drive, GoesOnByAboutAStepAndTurns) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Options options = Driving(seed, Scene::kOutdoor);
+    const Options options = OnItsWay(seed, Scene::kOutdoor);
     double turned = 0;
     for (int i = 0; i < 60; ++i) {
       const Rigid3 here = WorldFromLidar(options, i), next = WorldFromLidar(options, i + 1);
@@ -40,7 +40,7 @@ TEST(Drive, GoesOnByAboutAStepAndTurns) {
 }
 
 TEST(Drive, StaysInTheMiddleOfTheRoom) {
-  const Options options = Driving(4, Scene::kIndoor);
+  const Options options = OnItsWay(4, Scene::kIndoor);
   double least = 9, most = -9;
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector3d place = WorldFromLidar(options, i).translation;
@@ -54,14 +54,14 @@ TEST(Drive, StaysInTheMiddleOfTheRoom) {
 }
 
 TEST(Drive, IsAFunctionOfSeedAndView) {
-  const Options options = Driving(1, Scene::kOutdoor);
+  const Options options = OnItsWay(1, Scene::kOutdoor);
   EXPECT_EQ(WorldFromLidar(options, 7).translation, WorldFromLidar(options, 7).translation);
   EXPECT_NE(WorldFromLidar(options, 7).translation,
-            WorldFromLidar(Driving(2, Scene::kOutdoor), 7).translation);
+            WorldFromLidar(OnItsWay(2, Scene::kOutdoor), 7).translation);
 }
 
 TEST(Drive, StandsStillWithoutSteps) {
-  Options options = Driving(1, Scene::kOutdoor);
+  Options options = OnItsWay(1, Scene::kOutdoor);
   options.natural.step_m = 0;
   for (const int i : {0, 5}) {
     const Rigid3 pose = WorldFromLidar(options, i);

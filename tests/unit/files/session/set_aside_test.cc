@@ -41,7 +41,7 @@ TEST_F(SetAside, ResultsAreKeptAndNamed) {
 }
 
 TEST_F(SetAside, TimingsOfTheSameCamerasAreHandedOn) {
-  const Rig rig = test::TestRig();
+  const Rig rig = test::MakeRig();
   Calibration earlier;
   earlier.method = "sync";
   earlier.sensors = SensorsOf(rig);
