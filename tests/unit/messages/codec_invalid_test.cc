@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "services/messages/codec.h"
 #include "services/messages/internal/codec_types.h"
@@ -278,6 +279,10 @@ TEST_F(Invalid, Session) {
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));
+  status = random_.Health();
+  status.counters = {{"received", std::numeric_limits<std::int64_t>::min()}};
+  EXPECT_THAT(ErrorOf([&] { Encode(status); }),
+              HasSubstr("counter_value[0] is -9223372036854775808"));
 }
 
 }  // namespace
