@@ -20,6 +20,7 @@ using Inputs = std::map<std::string, std::string>;
 void AddRigs(Inputs* seeds) {
   (*seeds)["small"] = kSmallRig;
   (*seeds)["whole"] = PrintRig(test::MakeRig());
+  (*seeds)["turned"] = kTurnedRig;
   const std::string small = kSmallRig;
   const auto with = [&](const std::string& at, const std::string& more) {
     std::string text = small;
