@@ -152,7 +152,6 @@ class PartFile {
   explicit PartFile(const std::filesystem::path& path)
       : path_(path), part_(path.string() + ".part") {
     std::error_code ignored;                  // what cannot be made is told where it is opened
-    std::filesystem::remove(part_, ignored);  // a link would be written through
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
   }
   ~PartFile() {
