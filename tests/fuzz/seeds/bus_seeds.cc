@@ -119,6 +119,12 @@ void AddRepairs(std::map<std::string, std::string>* seeds) {
     far += DatagramSeed(test::Fragment{seq, 3'000'000, 0, 0, 2, name, {1}}.Datagram());
   }
   (*seeds)["far_ahead"] = far;
+  std::string lost;
+  for (std::uint64_t id = 1; id <= 3; ++id) {
+    lost += beat(id, 0, 0);
+    lost += RepairSeed(static_cast<int>(id), Encode(Beat{id, 0, 0, std::uint64_t{1} << 62, 1, ""}));
+  }
+  (*seeds)["lost_much"] = lost;
 }
 
 void AddDatagrams(std::map<std::string, std::string>* seeds) {
