@@ -1,24 +1,18 @@
 // What the processes of a rig make of messages that anybody may send, well-formed ones: the first
-// byte says which process, and what rig it has heard. Then again and again a byte for the channel
-// and a piece, the message without its fingerprint; or a byte that lets time go by.
+// byte says which process, and what rig it has heard; then come messages (feed_node.h).
 #include "calib/files/schema/rig_file.h"
 #include "calib/present/pictures/map_picture.h"
 #include "services/foxglove/stream/foxglove_stream.h"
-#include "services/messages/image_channel.h"
 #include "services/nodes/assembler_node.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/mapper_node.h"
 #include "services/nodes/monitor_node.h"
 #include "services/nodes/odometry_node.h"
-#include "tests/fuzz/channels.h"
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/feed_node.h"
 #include "tests/fuzz/small_session.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr unsigned kLater = 0xff;  // in place of a channel
-constexpr Utime kPasses = kMicrosecondsPerSecond / 2;
 
 // Hands on what it gets as Foxglove's messages, all of them made.
 class FoxgloveNode : public Node {
@@ -87,39 +81,11 @@ RigText RigOf(unsigned kind) {
   return {0, rig.hash, rig.text};
 }
 
-// A camera of the rig, whatever the one is called that `channels` has.
-std::string NameOf(const fuzz::Channel& channel, unsigned which) {
-  if (!IsImageChannel(channel.name)) return channel.name;
-  return which < 0x80 ? "RGB_IMAGE" : "THERMAL_IMAGE";
-}
-
-// What a node says goes out: it must be a message.
-void Publish(const Messages& said) {
-  for (const Message& message : said) Encode(message);
-}
-
 void TakeInput(fuzz::Input input) {
-  static const std::vector<fuzz::Channel> channels = fuzz::Channels();
   const unsigned kind = input.Byte();
   const std::unique_ptr<Node> node = NodeOf(kind);
   fuzz::Try([&] { node->Handle(RigOf(kind / 6)); });
-  Utime now = 0;
-  while (!input.empty()) {
-    const unsigned which = input.Byte();
-    if (which == kLater) {
-      now += kPasses;
-      fuzz::Try([&] { Publish(node->Advance(now)); });
-      continue;
-    }
-    const fuzz::Channel& channel = channels[which % channels.size()];
-    std::string bytes(channel.fingerprint.begin(), channel.fingerprint.end());
-    bytes += input.Piece();
-    fuzz::Try([&] {
-      Publish(node->Handle(Decode(NameOf(channel, which), fuzz::Data(bytes), bytes.size())));
-    });
-    fuzz::Require(node->GetStatus().text.size() < 10'000, "a status of some lines");
-  }
-  fuzz::Try([&] { Publish(node->Advance(now + kPasses)); });
+  fuzz::Feed(&input, node.get());
 }
 
 }  // namespace

@@ -123,8 +123,33 @@ std::string Fused(testing::RandomMessages* random) {
   return sent + kLater;
 }
 
-// A byte for the node and its rig (nodes.cc), and the messages.
-void AddNodes(Inputs* seeds) {
+// A view's capture, what came of it, and how the solver judges it.
+std::string Captured(testing::RandomMessages* random) {
+  SessionCommand command;
+  command.command = 1;
+  command.verb = SessionVerb::kCapture;
+  command.utime = kBegin + kPeriod;
+  command.view = "0001";
+  command.sweep_utime = kBegin;
+  Image thermal = random->Picture(PixelFormat::kMono16);
+  thermal.camera = "thermal";
+  thermal.utime = command.utime;
+  thermal.shutter_correcting = false;
+  thermal.pixels = cv::Mat(3, 4, CV_16UC1, cv::Scalar(8000));
+  ViewDetection detection = random->Seen();
+  detection.view = command.view;
+  detection.sweep_utime = kBegin;
+  detection.images.clear();
+  MountCheck check = random->Watched();
+  check.camera = "rgb";
+  constexpr char kCommand = 10, kDetection = 5, kThermal = static_cast<char>(0x8e);
+  return Sent(kCommand, command) + RoomSweep(0, 6) + Colour(random, command.utime) +
+         Sent(kThermal, thermal) + Sent(kDetection, detection) + Calibrated(random) +
+         Sent(kMountCheck, check) + kLater;
+}
+
+// A byte for the node and its rig (nodes.cc, viewer_node.cc), and the messages.
+void AddNodes(Inputs* seeds, Inputs* viewer_seeds) {
   testing::RandomMessages random(1);
   const std::string few = Drive(&random, 6), fused = Fused(&random);
   constexpr char kNodes = 6;
@@ -136,7 +161,11 @@ void AddNodes(Inputs* seeds) {
     char place = 0;
     for (const Message& message : random.OneOfEach()) each += Sent(place++, message);
     (*seeds)["each" + number] = each;
+    if (node < 2) (*viewer_seeds)["each" + number] = each;
   }
+  (*viewer_seeds)["drive"] = '\0' + few;
+  (*viewer_seeds)["fused"] = '\0' + fused;
+  (*viewer_seeds)["captured"] = '\0' + Captured(&random);
   (*seeds)["turned"] = static_cast<char>(kNodes) + Turned();
   (*seeds)["odometry"] = '\4' + Drive(&random, 60);
 }
@@ -177,7 +206,7 @@ void AddChunks(Inputs* seeds) {
 }  // namespace
 
 void AddNodeSeeds(Seeds* seeds) {
-  AddNodes(&(*seeds)["nodes"]);
+  AddNodes(&(*seeds)["nodes"], &(*seeds)["viewer_node"]);
   AddChunks(&(*seeds)["sweep_collector"]);
 }
 

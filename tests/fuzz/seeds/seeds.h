@@ -9,7 +9,7 @@ namespace rgbdt::fuzz {
 using Seeds = std::map<std::string, std::map<std::string, std::string>>;
 
 void AddBusSeeds(Seeds* seeds);       ///< message, datagrams, log, keys and signatures
-void AddNodeSeeds(Seeds* seeds);      ///< nodes, sweep_collector
+void AddNodeSeeds(Seeds* seeds);      ///< nodes, viewer_node, sweep_collector
 void AddFileSeeds(Seeds* seeds);      ///< text files, lenses, clouds, images
 void AddBagSeeds(Seeds* seeds);       ///< bag, bag_sqlite, ros_message, bag_import
 void AddFoxgloveSeeds(Seeds* seeds);  ///< more of bag and ros_message
