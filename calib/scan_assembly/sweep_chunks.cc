@@ -139,9 +139,10 @@ int LinesTold(const std::vector<CloudChunk>& chunks) {
   return lines;
 }
 
+// Of an unorganised sweep lines that never came take no memory.
 void RequireBounded(std::int64_t lines, const Cloud& sweep) {
   constexpr std::int64_t kMaxPoints = 100'000'000;
-  if (lines * sweep.beams <= kMaxPoints) return;
+  if (!sweep.organised || lines * sweep.beams <= kMaxPoints) return;
   throw InputError("a sweep reaches to line " + std::to_string(lines) + " of " +
                    std::to_string(sweep.beams) + " beams: more than " + std::to_string(kMaxPoints) +
                    " points");
@@ -193,6 +194,7 @@ Cloud JoinChunks(const std::vector<CloudChunk>& chunks) {
   if (!sweep.organised) {
     sweep.lines = 1;
     sweep.beams = static_cast<int>(sweep.points.size());
+    if (!sweep.origins.empty()) sweep.origins.resize(1);
   }
   return sweep;
 }

@@ -20,7 +20,7 @@ void RequireJoinable(const Cloud& a, const Cloud& b);
 /// sweep is its lines from 0 to the last that came or, where its end tells more, `sweep_lines`. Of
 /// an organised sweep those that never came become lines of NaN without known directions, so
 /// neighbours in the cloud are neighbours in the sweep. Throws InputError where chunks are not
-/// joinable, or for more than 100 million points.
+/// joinable, or for more than 100 million points. An unorganised sweep has the first one's origin.
 Cloud JoinChunks(const std::vector<CloudChunk>& chunks);
 
 /// How many of those lines never came, of an unorganised sweep's stretches, too.

@@ -10,6 +10,8 @@
 namespace rgbdt {
 namespace {
 
+constexpr std::size_t kChunkPoints = 8;  // an empty chunk takes as much memory
+
 int LinesToldBy(const CloudChunk& chunk) {
   const Cloud& cloud = chunk.cloud;
   return std::max(chunk.sweep_lines, cloud.size() == 0 ? 0 : cloud.first_line + cloud.lines);
@@ -43,7 +45,7 @@ void SweepCollector::Add(CloudChunk chunk) {
   static const Sweep kNone;
   Check(found == sweeps_.end() ? kNone : found->second, chunk);
   Sweep& sweep = sweeps_[chunk.cloud.sweep_utime];
-  sweep.points += chunk.cloud.size();
+  sweep.points += std::max(chunk.cloud.size(), kChunkPoints);
   sweep.lines = std::max(sweep.lines, LinesToldBy(chunk));
   sweep.ended |= chunk.sweep_end;
   sweep.chunks.push_back(std::move(chunk));

@@ -5,17 +5,31 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 #include "calib/model/errors.h"
 
 namespace rgbdt {
+namespace {
+
+// What lies there is not written through: it may be a stranger's link, or a pipe.
+lcm_eventlog_t* CreateAnew(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored))) {
+    std::filesystem::remove(path, ignored);
+  }
+  return lcm_eventlog_create(path.c_str(), "w");
+}
+
+}  // namespace
 
 struct LogWriter::Impl {
   struct Destroy {
     void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
   };
 
-  explicit Impl(const std::string& at) : path(at), log(lcm_eventlog_create(at.c_str(), "w")) {
+  explicit Impl(const std::string& at) : path(at), log(CreateAnew(at)) {
     if (log == nullptr) ThrowErrno();
   }
 

@@ -12,7 +12,8 @@ namespace rgbdt {
 /// Writes a log as lcm-logger does, by LCM's own event log.
 class LogWriter {
  public:
-  /// Throws InputError where the file cannot be made.
+  /// It takes the place of what is called so, be that a link. Throws InputError where the file
+  /// cannot be made.
   explicit LogWriter(const std::string& path);
   ~LogWriter();
 

@@ -8,6 +8,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/messages/limits.h"
 
 namespace rgbdt {
 namespace {
@@ -63,6 +64,10 @@ std::string SignatureCheck::WhyNot(const std::string& channel, const std::uint8_
   keys_.Tag(channel, data, message_bytes, tag);
   if (sodium_memcmp(tag, signature->tag, sizeof tag) != 0) {
     return "is signed with another key, or was changed on its way";
+  }
+  const auto may_be = [](std::int64_t value) { return value >= 0 && value <= kMaxInteger; };
+  if (!may_be(signature->number) || !may_be(signature->utime)) {
+    return "is signed with a number or a time that cannot be";
   }
   const Utime age = arrived - signature->utime;
   if (std::abs(age) > kMostApart) {

@@ -35,7 +35,8 @@ std::vector<Source> CloudsOf(const BagSurvey::Topic& topic) {
   constexpr Utime kHalf = kLivoxCloud_us / 2;
   Utime middle = topic.stamped.empty() ? 0 : topic.stamped.front().utime + kHalf;
   for (const Stamped& stamped : topic.stamped) {
-    while (stamped.utime >= middle + kHalf) middle += kLivoxCloud_us;
+    const Utime later = stamped.utime - middle + kHalf;
+    if (later >= kLivoxCloud_us) middle += later / kLivoxCloud_us * kLivoxCloud_us;
     if (!clouds.empty() && clouds.back().stamped.utime == middle) continue;
     clouds.push_back({middle + kHalf, {middle, stamped.place}});
   }
@@ -104,7 +105,7 @@ class PartFile {
  public:
   explicit PartFile(const std::filesystem::path& path)
       : path_(path), part_(path.string() + ".part") {
-    std::error_code ignored;  // what cannot be made is told where it is opened
+    std::error_code ignored;                  // what cannot be made is told where it is opened
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
   }
   ~PartFile() {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/model/errors.h"
+#include "services/messages/limits.h"
 
 namespace rgbdt {
 namespace {
@@ -206,6 +207,10 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
   TopicChoice choice;
   std::set<std::string> names;
   const auto add = [&](const std::string& wish, const Topic& topic) {
+    if (static_cast<std::int64_t>(choice.cameras.size()) >= kMaxCameras) {
+      throw InputError("the bag has more than " + std::to_string(kMaxCameras) +
+                       " cameras; say by --image which are to be taken");
+    }
     TopicChoice::Camera camera;
     camera.name = wish.empty() ? CameraName(topic, names) : wish;
     if (!names.insert(camera.name).second) {

@@ -27,7 +27,10 @@ line_scan_t ToWire(const LineScan& line) {
 
 void Check(const line_scan_t& wire) {
   CheckUtime("utime", wire.utime);
-  CheckNotNegative("beam_period_s", wire.beam_period_s);
+  // Times its beams are times, too.
+  if (!(wire.beam_period_s >= 0 && wire.beam_period_s <= 1)) {
+    Fail("beam_period_s", wire.beam_period_s, "0 to 1 s");
+  }
   CheckFinite("first_angle_rad", wire.first_angle_rad);
   CheckFinite("angle_step_rad", wire.angle_step_rad);
   for (std::size_t i = 0; i < wire.range_m.size(); ++i) {

@@ -156,6 +156,7 @@ void Check(const status_t& wire) {
   CheckRange("num_counters", wire.num_counters, 0, kMaxCounters);
   for (std::size_t i = 0; i < wire.counter_name.size(); ++i) {
     CheckText(At("counter_name", i), wire.counter_name[i], kMaxNameBytes);
+    CheckRange(At("counter_value", i), wire.counter_value[i], -kMaxInteger, kMaxInteger);
   }
 }
 

@@ -13,6 +13,9 @@ namespace {
 
 constexpr Utime kSilence = 5 * kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
 
+constexpr std::size_t kMostProcesses =
+    100;  // besides those that are needed: strangers make up names
+
 constexpr std::int64_t kMissedWords = 3;  // of a process that was cut off, at 1 Hz
 
 std::int64_t Received(const Status& status) {
@@ -63,13 +66,20 @@ bool SessionNode::Listens() const {
 void SessionNode::OnStatus(const Status& status) {
   const auto before = statuses_.find(status.process);
   const bool known = before != statuses_.end();
+  bool keeps = true;
   const bool anew = known && IsStartedAnew(before->second, status);
   const Utime silence = known ? now_ - heard_.at(status.process) : 0;
   // One that is at work is silent, too, but says no less for it.
   const bool cut_off =
       known && !anew && silence > kCutOff && status.seq - before->second.seq >= kMissedWords;
-  statuses_[status.process] = status;
-  heard_[status.process] = now_;
+  if (!known && statuses_.size() >= kMostProcesses) {
+    const std::vector<std::string> needed = Needed();
+    keeps = std::find(needed.begin(), needed.end(), status.process) != needed.end();
+  }
+  if (keeps) {
+    statuses_[status.process] = status;
+    heard_[status.process] = now_;
+  }
   if (anew && started_ && !finished_) OnStartedAnew(status.process);
   if (cut_off && started_ && !finished_) OnCutOff(status.process, silence);
   if (const std::string clocks = ClockTrouble(); clocks != clock_told_) {

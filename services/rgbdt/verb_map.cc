@@ -238,8 +238,18 @@ int RunDrive(const MapFlags& flags) {
   return EndsWith(true);
 }
 
+// What is written beside the map would take its place.
+void RequireNameOfMap(const std::filesystem::path& map) {
+  for (const char* end : {".tum", ".png"}) {
+    if (map.extension() != end) continue;
+    throw InputError("--out " + map.string() + ": the map is a PLY file, and what ends in " + end +
+                     " is written beside it; expected a name that ends in .ply");
+  }
+}
+
 int RunMap(const MapFlags& flags) {
   flags.options.Check();
+  RequireNameOfMap(flags.out);
   CheckWritable(flags.out);
   if (flags.drive || flags.close_loops) return RunDrive(flags);
   MapperNode node(flags.options);

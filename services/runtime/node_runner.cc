@@ -5,6 +5,7 @@
 
 #include "services/messages/check.h"
 #include "services/messages/codec.h"
+#include "services/messages/limits.h"
 #include "services/runtime/status_counters.h"
 
 namespace rgbdt {
@@ -159,6 +160,8 @@ Status NodeRunner::GetStatus() const {
   if (const std::int64_t count = bus_->refused().count; count != 0) {
     status.counters.emplace_back("unsigned", count);
   }
+  // What strangers say of their datagrams is counted, too: no more than a message may say.
+  for (auto& [name, value] : status.counters) value = std::clamp(value, -kMaxInteger, kMaxInteger);
   AddCounters("dropped", dropped_by_channel_, &status);
   AddCounters("gaps", gaps_by_channel_, &status);
   return status;

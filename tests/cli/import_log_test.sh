@@ -45,6 +45,12 @@ for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
 END
 accepts "a log of clouds alone" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/clouds.lcmlog"
 says_all "a log of clouds alone" "9 clouds, 0 images" "rgbdt map"
+# What lies under the name that it is written as, as a stranger's folder may have it, is not written through.
+echo precious >"$scratch/kept/precious"
+ln -s "$scratch/kept/precious" "$scratch/logs/linked.lcmlog.part"
+accepts "a link in the log's place" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/linked.lcmlog"
+[ "$(cat "$scratch/kept/precious")" = precious ] || complain "a log was written through a link"
+cmp "$scratch/logs/linked.lcmlog" "$scratch/logs/clouds.lcmlog" || complain "another log"
 says=("is there already")
 refuses "a log that is there" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/clouds.lcmlog"
 says=("is it another camera's" "1936x1456")

@@ -120,6 +120,10 @@ for verb in map terrain; do
 done
 says=("RGBDT_CLOUD" "record")
 refuses "a log without fused clouds" "$bin/rgbdt" map "$scratch/other.lcmlog" --out "$scratch/kept/map.ply"
+for end in png tum; do
+  says=("written beside it" ".ply")
+  refuses "a map called .$end" "$bin/rgbdt" map "$log" --out "$scratch/kept/map.$end"
+done
 says=("voxel_m" "-1")
 refuses "a negative voxel" "$bin/rgbdt" map "$log" --voxel -1 --out "$scratch/kept/map.ply"
 says=("cell_m")

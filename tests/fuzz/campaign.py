@@ -34,8 +34,10 @@ calib/files/schema/text_proto.cc calib/files/schema/internal/device_convert.cc
 calib/files/schema/internal/lens_convert.cc calib/files/schema/internal/lidar_convert.cc
 calib/files/schema/internal/target_convert.cc
 calib/files/session/truth_file.cc calib/files/session/view_reader.cc
+calib/scan_assembly/sweep_chunks.cc calib/scan_assembly/sweep_collector.cc
 services/bags/ services/bags/internal/
-services/bus/log_reader.cc services/bus/internal/datagram.cc
+services/bus/bus_key.cc services/bus/log_reader.cc services/bus/signature.cc
+services/bus/internal/datagram.cc
 services/bus/internal/ordered_stream.cc services/bus/internal/partial_message.cc
 services/bus/internal/reassembly.cc services/bus/internal/repair_message.cc
 services/bus/internal/repaired_streams.cc services/bus/internal/sent_messages.cc
@@ -49,8 +51,8 @@ services/drivers/ouster/ouster_sweeps.cc services/drivers/pcap/pcap_reader.cc
 services/drivers/velodyne/velodyne_packets.cc
 services/drivers/velodyne/velodyne_sweeps.cc
 services/import/internal/cursor.h services/import/internal/foxglove_reader.cc
-services/import/ros_messages.cc services/import/sensor_data.cc
-services/import/survey.cc
+services/import/import_log.cc services/import/ros_messages.cc services/import/sensor_data.cc
+services/import/survey.cc services/import/topics.cc
 services/messages/check.cc services/messages/codec.cc services/messages/codec_calibration.cc
 services/messages/codec_cloud.cc services/messages/codec_detection.cc
 services/messages/codec_image.cc services/messages/codec_rgbdt_cloud.cc

@@ -1,31 +1,11 @@
 // Decode of every message's channel. The first byte says which; the type's fingerprint is put in
 // front, as nothing gets past a wrong one.
 #include "services/messages/codec.h"
+#include "tests/fuzz/channels.h"
 #include "tests/fuzz/fuzz.h"
-#include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
 namespace {
-
-struct Channel {
-  std::string name;
-  Bytes fingerprint;
-};
-
-std::vector<Channel> Channels() {
-  testing::RandomMessages random(1);
-  Messages messages = random.OneOfEach();
-  RgbdtCloud sweep;
-  sweep.sweep_utime = 1;
-  sweep.whole_sweep = true;
-  messages.emplace_back(sweep);
-  std::vector<Channel> channels;
-  for (const Message& message : messages) {
-    const Bytes bytes = Encode(message);
-    channels.push_back({ChannelOf(message), Bytes(bytes.begin(), bytes.begin() + 8)});
-  }
-  return channels;
-}
 
 // What was taken crosses again, bit for bit.
 void CrossAgain(const Message& message) {
@@ -50,10 +30,10 @@ void CrossAgain(const Message& message) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace rgbdt;
-  static const std::vector<Channel> channels = Channels();
+  static const std::vector<fuzz::Channel> channels = fuzz::Channels();
   fuzz::Input input(data, size);
   const std::size_t which = input.Byte();
-  const Channel& channel = channels[which % channels.size()];
+  const fuzz::Channel& channel = channels[which % channels.size()];
   // A few go to the channels of other names: any camera's image, and none that is known.
   const std::string name = which >= 0xf8 ? input.Take(8) + "_IMAGE" : channel.name;
   std::string bytes(channel.fingerprint.begin(), channel.fingerprint.end());

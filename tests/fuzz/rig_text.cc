@@ -1,5 +1,7 @@
-// A rig file, as it lies on disk and as it comes over the bus.
+// A rig file, as it lies on disk and as it comes over the bus; which programs `rgbdt up` makes of
+// it.
 #include "calib/files/schema/rig_file.h"
+#include "services/up/rig_programs.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -17,5 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::Require(printed == again, "the same rig printed again");
     });
   }
+  fuzz::Try([&] {
+    const Rig rig = ParseRig(text, "rig.textproto");
+    const std::vector<Program> all = ProgramsOf(rig, {});
+    const std::string host = rig.hosts.empty() ? "a" : rig.hosts.front().name;
+    fuzz::Require(ProgramsOn(host, rig, all).size() <= all.size(), "none that the rig has not");
+  });
   return 0;
 }

@@ -23,6 +23,19 @@ camera {
 target { squares_x: 8 squares_y: 6 square_m: 0.1 width_m: 1 height_m: 0.8 }
 )";
 
+/// One whose LIDAR is a scanner on a motor.
+inline const char* const kTurnedRig = R"(name: "turned"
+lidar {
+  name: "lidar"
+  turned_scanner {
+    motor_from_scanner { quaternion_wxyz: [1, 0, 0, 0] translation_m: [0, 0, 0.05] }
+    ticks_per_degree: 1000
+  }
+}
+camera { name: "rgb" kind: COLOR width: 4 height: 3 pixel_format: BGR8 pinhole { fx: 4 fy: 4 cx: 2 cy: 1 } }
+target { squares_x: 8 squares_y: 6 square_m: 0.1 width_m: 1 height_m: 0.8 }
+)";
+
 inline const char* const kSmallView = R"(cloud: "cloud.pcd"
 sweep_utime: 1700000000000000
 heldout: true

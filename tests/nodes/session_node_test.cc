@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,22 @@ class SessionNodeTest : public ::testing::Test {
   std::unique_ptr<SessionNode> node_;
   std::function<void()> meanwhile_;  // what happens all the time
 };
+
+TEST_F(SessionNodeTest, NamesThatStrangersMakeUpFillNoMemory) {
+  Start(Script(kOneView));
+  const auto heap = [] {
+    const auto info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+  };
+  const std::size_t before = heap();
+  for (int i = 0; i < 2000; ++i) {
+    node_->Handle(Ready("stranger" + std::to_string(i), std::string(50'000, 'x')));
+  }
+  EXPECT_LT(heap(), before + 20'000'000);
+  EverybodyReady();
+  Run();
+  EXPECT_EQ(node_->failure(), "") << "those that are needed are heard all the same";
+}
 
 TEST_F(SessionNodeTest, TheHappyPathWritesTheSessionDirectory) {
   SessionScript script = Script(kOneView);

@@ -74,6 +74,8 @@ void LiveNode::Take(const Message& message) {
   } else if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
     OnChunk(*chunk);
   } else if (const auto* picks = std::get_if<CornerSelection>(&message)) {
+    if (!rig_) return;
+    RequireCamera(picks->camera);
     collector_.Add(*picks);
   } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
     OnDetection(*detection);
@@ -207,8 +209,10 @@ void LiveNode::OnChunk(const CloudChunk& chunk) {
   collector_.Add(std::move(shown));
 }
 
+// Before the rig nobody can look at it, and names that strangers make up would fill the memory.
 void LiveNode::OnImage(const Image& image) {
-  if (rig_) CheckImage(rig_->Camera(image.camera), image);
+  if (!rig_) return;
+  CheckImage(rig_->Camera(image.camera), image);
   collector_.Add(image);
   auto shared = std::make_shared<const Image>(image);
   Post post;

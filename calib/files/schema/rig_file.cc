@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <sstream>
 
 #include "calib/files/atomic_file.h"
@@ -154,7 +155,7 @@ double TicksPerDegree(double ticks_per_rad) {
   const double exact = ticks_per_rad / kDegreesPerRadian;
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.12g", exact);
-  const double rounded = std::stod(digits);
+  const double rounded = std::strtod(digits, nullptr);  // stod throws for the smallest
   return rounded * kDegreesPerRadian == ticks_per_rad ? rounded : exact;
 }
 

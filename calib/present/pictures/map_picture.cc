@@ -14,10 +14,12 @@ struct View {
   double pixel_m = 1;
   int width = 1, height = 1;
 
+  // The nearest pixel: a pose may lie anywhere.
   cv::Point At(const Eigen::Vector3d& p) const {
-    const auto column = static_cast<int>(std::floor((p.x() - low.x()) / pixel_m));
-    const auto row = static_cast<int>(std::floor((p.y() - low.y()) / pixel_m));
-    return {std::clamp(column, 0, width - 1), height - 1 - std::clamp(row, 0, height - 1)};
+    const auto along = [this](double metres, int pixels) {
+      return static_cast<int>(std::clamp(std::floor(metres / pixel_m), 0.0, pixels - 1.0));
+    };
+    return {along(p.x() - low.x(), width), height - 1 - along(p.y() - low.y(), height)};
   }
 };
 

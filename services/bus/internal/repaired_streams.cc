@@ -6,6 +6,7 @@
 #include <array>
 
 #include "services/messages/check.h"
+#include "services/messages/limits.h"
 
 namespace rgbdt {
 namespace {
@@ -17,6 +18,9 @@ std::string Text(std::uint32_t address) {
   inet_ntop(AF_INET, &address, text.data(), text.size());
   return text.data();
 }
+
+// A stranger's numbers: a sum of them is no more than a message may say.
+void AddTo(std::int64_t* sum, std::int64_t lost) { *sum = std::min(*sum + lost, kMaxInteger); }
 
 // One that asks for more fragments than a datagram can name is cut.
 std::vector<RepairRequest> InDatagrams(std::uint64_t id, std::vector<MissingParts> parts) {
@@ -55,7 +59,7 @@ RepairedStreams::Streams::iterator RepairedStreams::Find(const Sender& sender, c
 }
 
 void RepairedStreams::Forget(Streams::iterator stream) {
-  lost_ += stream->second.lost;
+  AddTo(&lost_, stream->second.lost);
   given_up_ += stream->second.messages.given_up();
   streams_.erase(stream);
 }
@@ -77,8 +81,9 @@ void RepairedStreams::OnBeat(const Sender& sender, const Beat& beat, Utime now, 
   stream.heard = now;
   stream.messages.OnBeat(beat.oldest, beat.next, now);
   // A duplicate on the network counts as one more that came.
-  stream.lost = std::max<std::int64_t>(
-      0, static_cast<std::int64_t>(beat.datagrams - stream.sent_before - stream.came));
+  stream.lost =
+      std::clamp(static_cast<std::int64_t>(beat.datagrams - stream.sent_before - stream.came),
+                 std::int64_t{0}, kMaxInteger);
   AddOffset(sender, beat, now, wall);
   ForgetSilent(now);
   KeepBounded();
@@ -172,7 +177,7 @@ LinkReport RepairedStreams::report() const {
   report.datagrams_repaired = repaired_;
   std::int64_t most = 0;
   for (const auto& [sender, stream] : streams_) {
-    report.datagrams_lost += stream.lost;
+    AddTo(&report.datagrams_lost, stream.lost);
     report.messages_given_up += stream.messages.given_up();
     const auto machine = machines_.find(sender.first);
     if (stream.lost > most && machine != machines_.end()) {

@@ -234,12 +234,50 @@ void AddSqliteBags(Inputs* seeds) {
   (*seeds)["no_tables"] = SqliteBag("DROP TABLE topics;", false);
 }
 
+std::string LivoxBytes(std::uint32_t seconds) {
+  RosBytes bytes(BagEncoding::kCdr);
+  bytes.Header(seconds, 0, "livox_frame").Add(std::uint64_t{seconds} * 1'000'000'000);
+  bytes.Add(2U).Add(0U).Add(2U);  // points, LIDAR and padding, points
+  for (int i = 0; i < 2; ++i) {
+    bytes.Add(i * 1'000'000).Add(1.0F + static_cast<float>(i)).Add(0.5F).Add(0.5F);
+    bytes.Add(std::uint8_t{51}).Add(std::uint8_t{0}).Add(std::uint8_t{1});
+  }
+  return bytes.Bytes();
+}
+
+// Of a Livox's own messages, one at each of these times.
+std::string LivoxBag(std::initializer_list<std::uint32_t> seconds) {
+  const std::uint16_t id = 1;
+  std::string bag = test::kMcapMagic;
+  bag += test::McapRecord(3, test::Little(id) + test::Text("livox_ros_driver2/msg/CustomMsg") +
+                                 test::Text("ros2msg") + test::Text(""));
+  bag += test::McapRecord(4, test::Little(id) + test::Little(id) + test::Text("/livox/lidar") +
+                                 test::Text("cdr") + test::Little(std::uint32_t{0}));
+  for (const std::uint32_t second : seconds) bag += test::McapMessage(id, 1, LivoxBytes(second));
+  return bag + test::McapEnd();
+}
+
+// A byte for what is to be made of it, and the bag.
+void AddBagImports(Inputs* seeds) {
+  const std::map<std::string, std::string> bags = {
+      {"cdr", test::kMcapMagic + McapRecords("cdr") + test::McapEnd()},
+      {"ros1", test::kRos1Magic + Ros1Records()},
+      {"livox", LivoxBag({1'700'000'000, 1'700'000'001})},
+      {"times", LivoxBag({1, 4'000'000'000})}};
+  for (const auto& [name, bag] : bags) {
+    for (char makes = 0; makes < 3; ++makes) {
+      (*seeds)[name + std::to_string(makes)] = makes + bag;
+    }
+  }
+}
+
 }  // namespace
 
 void AddBagSeeds(Seeds* seeds) {
   AddRosMessages(&(*seeds)["ros_message"]);
   AddBags(&(*seeds)["bag"]);
   AddSqliteBags(&(*seeds)["bag_sqlite"]);
+  AddBagImports(&(*seeds)["bag_import"]);
 }
 
 }  // namespace rgbdt::fuzz

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "services/bus/bus_key.h"
 #include "services/bus/internal/repair_message.h"
 #include "services/messages/codec.h"
 #include "services/messages/signature.h"
@@ -118,6 +119,12 @@ void AddRepairs(std::map<std::string, std::string>* seeds) {
     far += DatagramSeed(test::Fragment{seq, 3'000'000, 0, 0, 2, name, {1}}.Datagram());
   }
   (*seeds)["far_ahead"] = far;
+  std::string lost;
+  for (std::uint64_t id = 1; id <= 3; ++id) {
+    lost += beat(id, 0, 0);
+    lost += RepairSeed(static_cast<int>(id), Encode(Beat{id, 0, 0, std::uint64_t{1} << 62, 1, ""}));
+  }
+  (*seeds)["lost_much"] = lost;
 }
 
 void AddDatagrams(std::map<std::string, std::string>* seeds) {
@@ -151,12 +158,40 @@ void AddLogs(std::map<std::string, std::string>* seeds) {
   (*seeds)["rubbish"] = log + std::string(3000, 'x') + log;
 }
 
+void AddKeyFiles(std::map<std::string, std::string>* seeds) {
+  (*seeds)["key"] = Written([](const std::filesystem::path& path) { WriteNewBusKey(path); });
+  (*seeds)["no_end"] = std::string(64, 'A');
+  (*seeds)["long"] = std::string(64, '1') + "\n\n";
+  (*seeds)["odd"] = std::string(63, 'f') + "\n";
+}
+
+// Each a byte for whose it is (signature.cc) and a piece.
+void AddSignatures(std::map<std::string, std::string>* seeds) {
+  const std::string own = '\1' + Piece("abc"), other = '\5' + Piece("");
+  (*seeds)["own"] = own + other + own;
+  (*seeds)["stranger"] = '\0' + Piece(std::string(64, 'x') + "RGBDTSG1") + own;
+  (*seeds)["changed"] = '\2' + Piece("abc") + std::string("\0\7\1", 3) + own;
+  Bytes stamp;
+  AppendSignature({1, 2, 1'700'000'000'000'000, {}}, &stamp);
+  std::string liars;
+  for (const char at : {'\0', '\x7f', '\x80', '\xff'}) {
+    std::string odd = AsText(stamp).substr(0, kStampBytes);
+    for (const std::size_t field : {8, 16}) {  // number, time
+      odd[field] = at;
+      liars += '\3' + Piece("abc") + odd;
+    }
+  }
+  (*seeds)["liars"] = liars;
+}
+
 }  // namespace
 
 void AddBusSeeds(Seeds* seeds) {
   AddMessages(&(*seeds)["message"]);
   AddDatagrams(&(*seeds)["datagrams"]);
   AddLogs(&(*seeds)["log"]);
+  AddKeyFiles(&(*seeds)["key_file"]);
+  AddSignatures(&(*seeds)["signature"]);
 }
 
 }  // namespace rgbdt::fuzz

@@ -20,6 +20,7 @@ using Inputs = std::map<std::string, std::string>;
 void AddRigs(Inputs* seeds) {
   (*seeds)["small"] = kSmallRig;
   (*seeds)["whole"] = PrintRig(test::MakeRig());
+  (*seeds)["turned"] = kTurnedRig;
   const std::string small = kSmallRig;
   const auto with = [&](const std::string& at, const std::string& more) {
     std::string text = small;
@@ -217,6 +218,29 @@ void AddClouds(Inputs* seeds) {
                          "1 2 3 0.5 1 0\n1 2 3 nan 0.1 0.2\n";
 }
 
+// Level ground of cells that are seen, a wall, and what hangs over it.
+void AddGround(Inputs* seeds) {
+  MapCloud map;
+  map.frame = "map";
+  map.voxel_m = 0.1;
+  const auto add = [&](double x, double y, double z) {
+    map.points.emplace_back(x, y, z);
+    map.rgb.push_back({1, 2, 3});
+    map.temperature_k.push_back(290);
+    map.count.push_back(3);
+    map.last_seen.push_back(test::kNow);
+  };
+  for (int i = 0; i < 12; ++i) {
+    for (int k = 0; k < 12; ++k) add(0.2 * i, 0.2 * k, 0.01 * (i % 2));
+    for (int k = 0; k < 4; ++k) add(2.5, 0.2 * i, 0.2 * k);
+  }
+  add(1, 1, 5);
+  (*seeds)["map"] = Written([&](const std::filesystem::path& path) { WriteMapPly(path, map); });
+  (*seeds)["cloud"] = std::string(kPcdHead) +
+                      "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 5\nHEIGHT 1\nPOINTS 5\nDATA "
+                      "ascii\n0 0 0\n0.1 0 0\n0 0.1 0\n0.1 0.1 0\nnan nan nan\n";
+}
+
 void AddImages(Inputs* seeds) {
   cv::Mat grey(12, 16, CV_8UC1), colour(12, 16, CV_8UC3), counts(12, 16, CV_16UC1);
   cv::RNG random(1);
@@ -252,6 +276,7 @@ void AddFileSeeds(Seeds* seeds) {
   AddSessions(&(*seeds)["session_text"]);
   AddLenses(&(*seeds)["lens_file"]);
   AddClouds(&(*seeds)["cloud_file"]);
+  AddGround(&(*seeds)["terrain"]);
   AddImages(&(*seeds)["image"]);
 }
 

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   }
   Seeds seeds;
   AddBusSeeds(&seeds);
+  AddNodeSeeds(&seeds);
   AddFileSeeds(&seeds);
   AddBagSeeds(&seeds);
   AddFoxgloveSeeds(&seeds);

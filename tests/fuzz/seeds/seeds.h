@@ -8,9 +8,10 @@ namespace rgbdt::fuzz {
 /// By target and name.
 using Seeds = std::map<std::string, std::map<std::string, std::string>>;
 
-void AddBusSeeds(Seeds* seeds);       ///< message, datagrams, log
+void AddBusSeeds(Seeds* seeds);       ///< message, datagrams, log, keys and signatures
+void AddNodeSeeds(Seeds* seeds);      ///< nodes, viewer_node, sweep_collector
 void AddFileSeeds(Seeds* seeds);      ///< text files, lenses, clouds, images
-void AddBagSeeds(Seeds* seeds);       ///< bag, bag_sqlite, ros_message
+void AddBagSeeds(Seeds* seeds);       ///< bag, bag_sqlite, ros_message, bag_import
 void AddFoxgloveSeeds(Seeds* seeds);  ///< more of bag and ros_message
 void AddDeviceSeeds(Seeds* seeds);    ///< scip, velodyne, livox, pcap_file, dynamixel, camera
 void AddPacketSeeds(Seeds* seeds);    ///< ouster, hesai, recording, bag_packets

@@ -146,6 +146,23 @@ TEST_F(LogTest, RandomBytesFlippedNeverHarm) {
   }
 }
 
+TEST_F(LogTest, NothingIsWrittenThroughALinkNorWaitedFor) {
+  const Bytes before = FileBytes();
+  const std::filesystem::path link = directory_ / "link", pipe = directory_ / "pipe";
+  std::filesystem::create_symlink(path_, link);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::filesystem::path& path : {link, pipe}) {
+    LogWriter writer(path);
+    writer.Write("A", Bytes{1}, 5);
+    writer.Close();
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(path)));
+    EXPECT_EQ(LogReader(path).Next()->bytes, Bytes{1});
+  }
+  EXPECT_EQ(FileBytes(), before);
+  EXPECT_THROW(LogWriter{directory_.string()}, InputError);
+  EXPECT_TRUE(std::filesystem::is_directory(directory_));
+}
+
 TEST_F(LogTest, WhatIsNoLogIsSaid) {
   EXPECT_THROW(LogReader(path_ + "2"), InputError);
   EXPECT_THROW(LogReader(directory_.string()), InputError);

@@ -109,6 +109,19 @@ class Link {
   std::mt19937 random_{5};
 };
 
+// A stranger's numbers.
+TEST(RepairedStreams, LossesThatCannotBeAddNothingUpToLessThanNothing) {
+  RepairedStreams streams([](const std::string&) { return true; });
+  for (std::uint64_t id = 1; id <= 3; ++id) {
+    const Reassembly::Sender sender(static_cast<std::uint32_t>(id), 7667);
+    streams.OnBeat(sender, {id, 0, 0, 0, 1, "a"}, 1, 1);
+    streams.OnBeat(sender, {id, 0, 0, std::uint64_t{1} << 62, 1, "a"}, 2, 1);
+  }
+  EXPECT_EQ(streams.report().datagrams_lost, kMaxInteger);
+  streams.OnBeat({1, 7667}, {9, 0, 0, 0, 1, "another on that port"}, 3, 1);
+  EXPECT_EQ(streams.report().datagrams_lost, kMaxInteger);
+}
+
 TEST(SentMessage, FitsAFrameAndIsWhatLcmReads) {
   std::mt19937 random(1);
   for (const std::size_t size :

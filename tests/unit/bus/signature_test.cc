@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include "services/messages/codec.h"
@@ -76,6 +78,26 @@ TEST_F(SignatureTest, UnsignedIsRefused) {
   const Bytes plain = Encode(SessionCommand{0, 0, 1, SessionVerb::kReset, "", 0, false, {}});
   EXPECT_THAT(WhyNot(plain), HasSubstr("not signed"));
   EXPECT_THAT(WhyNot({}), HasSubstr("not signed"));
+}
+
+// Who has the key may be wrong, too: no number or time of a signature may count as another one.
+TEST_F(SignatureTest, AStampThatCannotBeIsRefused) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  ChannelKeys keys(KeyOf(1));
+  const auto why_not = [&](std::int64_t number, Utime utime) {
+    Signature signature{5, number, utime, {}};
+    Bytes message;
+    AppendSignature(signature, &message);
+    std::uint8_t tag[sizeof(Signature::tag)];
+    keys.Tag("RIG", message.data(), 0, tag);
+    std::copy(std::begin(tag), std::end(tag), message.begin() + kStampBytes);
+    return WhyNot(message, kNow, "RIG");
+  };
+  for (const std::int64_t value : {std::int64_t{-1}, -kMost, -kMost - 1, kMost}) {
+    EXPECT_THAT(why_not(value, kNow), HasSubstr("cannot be")) << value;
+    EXPECT_THAT(why_not(0, value), HasSubstr("cannot be")) << value;
+  }
+  EXPECT_EQ(why_not(0, kNow), "");
 }
 
 TEST_F(SignatureTest, EveryBitCounts) {

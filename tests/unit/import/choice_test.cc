@@ -51,6 +51,17 @@ TEST(ChooseTopics, OfEachCameraTheRawest) {
   EXPECT_THAT(choice.left_out, SizeIs(5));
 }
 
+TEST(ChooseTopics, MoreCamerasThanARigMayHaveAreRefused) {
+  BagSurvey survey;
+  survey.topics.push_back(Topic("/points", BagData::kCloud, {0}));
+  for (int i = 0; i < 33; ++i) {
+    survey.topics.push_back(Topic("/" + std::to_string(i) + "/cam/image", BagData::kImage, {0}));
+  }
+  EXPECT_THAT(test::ErrorOf([&] { ChooseTopics(survey, {}); }), HasSubstr("more than 32 cameras"));
+  survey.topics.pop_back();
+  EXPECT_THAT(ChooseTopics(survey, {}).cameras, SizeIs(32));
+}
+
 TEST(ChooseTopics, PacketsAreTakenWhereThereAreNoClouds) {
   BagSurvey survey;
   survey.topics = {Topic("/cam/image", BagData::kImage, {0}),

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "services/messages/codec.h"
 #include "services/messages/internal/codec_types.h"
@@ -71,6 +72,8 @@ TEST_F(Invalid, LineScan) {
   EXPECT_THAT(error([](auto& w) { w.range_m[0] = 0; }), HasSubstr("range_m[0] is 0"));
   EXPECT_THAT(error([](auto& w) { w.intensity[2] = 200; }), HasSubstr("intensity[2] is 200"));
   EXPECT_THAT(error([](auto& w) { w.angle_step_rad = NAN; }), HasSubstr("angle_step_rad is nan"));
+  EXPECT_THAT(error([](auto& w) { w.beam_period_s = 1e300; }),
+              HasSubstr("beam_period_s is 1e+300"));
   EXPECT_THAT(error([](auto& w) { w.utime = 0; }), HasSubstr("utime is 0"));
   EXPECT_THAT(error([](auto& w) { w.utime = std::int64_t{1} << 60; }), HasSubstr("utime is"));
   EXPECT_THAT(error([](auto& w) { w.seq = -1; }), HasSubstr("seq is -1"));
@@ -289,6 +292,10 @@ TEST_F(Invalid, Session) {
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));
+  status = random_.Health();
+  status.counters = {{"received", std::numeric_limits<std::int64_t>::min()}};
+  EXPECT_THAT(ErrorOf([&] { Encode(status); }),
+              HasSubstr("counter_value[0] is -9223372036854775808"));
 }
 
 }  // namespace

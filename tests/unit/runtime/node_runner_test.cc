@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 #include "calib/model/errors.h"
 #include "services/messages/codec.h"
+#include "services/messages/limits.h"
 
 namespace rgbdt {
 namespace {
@@ -43,6 +45,7 @@ class ScriptedNode : public Node {
     Status status;
     status.ready = true;
     status.text = "waits";
+    status.counters = counters;
     return status;
   }
 
@@ -62,6 +65,7 @@ class ScriptedNode : public Node {
   }
 
   std::vector<std::string> handled;
+  std::vector<std::pair<std::string, std::int64_t>> counters;
   bool advance_throws = false;
 };
 
@@ -223,6 +227,14 @@ TEST_F(NodeRunnerTest, AdvanceSurvivesTheNode) {
   bus_.Run();
   ASSERT_EQ(published_.size(), 1U);
   EXPECT_EQ(std::get<Status>(published_[0]).last_problem, "advancing: cannot repeat");
+}
+
+TEST_F(NodeRunnerTest, ACounterIsNoMoreThanAMessageMaySay) {
+  node_.counters = {{"much", std::numeric_limits<std::int64_t>::max()}};
+  runner_.Advance(0);
+  bus_.Run();
+  ASSERT_EQ(published_.size(), 2U) << "the status goes out";
+  EXPECT_EQ(std::get<Status>(published_[1]).counters[0].second, kMaxInteger);
 }
 
 TEST_F(NodeRunnerTest, StrangersDoNotFillTheStatus) {

@@ -221,8 +221,10 @@ TEST(JoinChunks, AnUnorganisedSweepIsOneLine) {
   CloudChunk first = ChunkOf(0, 1, 3);
   CloudChunk second = ChunkOf(1, 1, 5);
   first.cloud.organised = second.cloud.organised = false;
+  second.sweep_lines = 100'000'000;  // what it is said to have beside these is nothing to fill up
   const Cloud sweep = JoinChunks({first, second});
   EXPECT_FALSE(sweep.organised);
+  EXPECT_EQ(sweep.origins.size(), first.cloud.origins.empty() ? 0U : 1U);
   EXPECT_EQ(sweep.lines, 1);
   EXPECT_EQ(sweep.beams, 8);
   EXPECT_EQ(sweep.size(), 8U);

@@ -63,6 +63,32 @@ TEST(SweepCollectorTest, KeepsTheNewestOnesBoundedByPointsAndByCount) {
   EXPECT_EQ(OldestKept(130, 1), 30) << "kMaxSweeps";
 }
 
+TEST(SweepCollectorTest, ChunksOfNothingTakeMemoryToo) {
+  SweepCollector sweeps;
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 50'000; ++k) sweeps.Add(End(kSweep + i, 0));
+  }
+  EXPECT_FALSE(sweeps.Ended(kSweep + 4));
+  EXPECT_TRUE(sweeps.Ended(kSweep + 5)) << "750,000 are kept";
+}
+
+// A sweep without an order is as large as what came of it, whatever its end tells.
+TEST(SweepCollectorTest, WhatIsTakenCanBeJoined) {
+  SweepCollector sweeps;
+  CloudChunk stretch = Chunk(kSweep, 0, 1, 1000), far = Chunk(kSweep, 200'000, 1, 2);
+  stretch.cloud.organised = far.cloud.organised = false;
+  stretch.cloud.origins.assign(1, {0, 0, 1});
+  far.cloud.origins = stretch.cloud.origins;
+  sweeps.Add(stretch);
+  sweeps.Add(far);
+  sweeps.Add(End(kSweep, 1'000'000));
+  const auto cloud = sweeps.Complete(kSweep);
+  ASSERT_TRUE(cloud.has_value());
+  EXPECT_EQ(cloud->size(), 1002U);
+  EXPECT_EQ(cloud->origins.size(), 1U) << "of its one line";
+  EXPECT_THAT(sweeps.WhyTorn(kSweep), HasSubstr("never came"));
+}
+
 // What would make the sweep impossible to join, or larger than memory, never gets in.
 TEST(SweepCollectorTest, RefusesWhatDoesNotFitTheSweep) {
   SweepCollector sweeps;

@@ -439,6 +439,8 @@ TEST(LiveNode, WhatComesBeforeTheRigHarmsNothing) {
   WaveProgress wave;
   wave.clocks = {{"stranger", std::nullopt, ""}};
   node.Handle(wave);
+  node.Handle(test::Blank(TinyRig().cameras[0], test::kStart));
+  EXPECT_EQ(posts.Newest("image/" + TinyRig().cameras[0].name), nullptr) << "of whatever name";
   node.Advance(kMicrosecondsPerSecond);
   EXPECT_NE(posts.Newest("session"), nullptr);
   EXPECT_EQ(posts.Header("wave").at("phase"), "waiting");

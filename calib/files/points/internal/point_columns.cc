@@ -12,7 +12,8 @@ namespace {
 constexpr double kAbsoluteSeconds = 1e8;
 
 Utime ToUtime(double microseconds, const std::string& where, const std::string& field) {
-  if (!(std::abs(microseconds) < 9e18)) {  // NaN as well
+  // NaN as well; and the difference of two is to be a Utime.
+  if (!(std::abs(microseconds) < 4e18)) {
     throw InputError(where + ": " + field + " holds " + std::to_string(microseconds) +
                      " us; expected a time");
   }

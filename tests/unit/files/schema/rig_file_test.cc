@@ -248,6 +248,8 @@ TEST(RigFile, GivesBackEveryFieldBitForBit) {
   EXPECT_EQ(back.target.pattern_offset_m, rig.target.pattern_offset_m);
   EXPECT_EQ(PrintRig(back), PrintRig(rig));
   EXPECT_THAT(PrintRig(rig), HasSubstr("ticks_per_degree: 1400\n"));
+  rig.lidar.turned_scanner->ticks_per_rad = 1e-310;  // what std::stod throws for
+  EXPECT_NO_THROW(PrintRig(rig));
 }
 
 TEST(RigFile, HowFarTheMonitorIsFollowed) {

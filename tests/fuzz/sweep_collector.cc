@@ -1,0 +1,87 @@
+// Chunks of sweeps as they come over the bus, decoded, in any order: collected and joined. Of each
+// the input says all but its points.
+#include "calib/scan_assembly/sweep_collector.h"
+
+#include <algorithm>
+#include <map>
+
+#include "services/messages/limits.h"
+#include "tests/fuzz/sweep_check.h"
+
+namespace rgbdt {
+namespace {
+
+constexpr unsigned kSweeps = 4;  // their names
+enum Flag : unsigned { kOrganised = 4, kEnd = 8, kFar = 16, kLong = 32, kWide = 64 };
+constexpr std::size_t kMostPoints = 1'000'000;  // in all, so that an input takes less than a second
+
+int Count(unsigned value, bool large) {
+  return std::min(static_cast<int>(value) * (large ? 16 : 1), static_cast<int>(kMaxLines));
+}
+
+// As the codec lets one pass.
+CloudChunk TakeChunk(fuzz::Input* input) {
+  constexpr int kMostWide = 5000;
+  const unsigned flags = input->Byte(), vectors = input->Byte();
+  CloudChunk chunk;
+  Cloud& cloud = chunk.cloud;
+  cloud.sweep_utime = 1'700'000'000'000'000 + flags % kSweeps;
+  cloud.organised = (flags & kOrganised) != 0;
+  chunk.sweep_end = (flags & kEnd) != 0;
+  cloud.first_line = Count(input->Word(), (flags & kFar) != 0);
+  chunk.sweep_lines = Count(input->Word(), (flags & kLong) != 0);
+  cloud.lines = input->Byte() % (cloud.organised ? 8 : 2);
+  cloud.beams = Count(input->Word(), (flags & kWide) != 0);
+  if (cloud.lines > 0) cloud.beams = 1 + cloud.beams % kMostWide;
+  const std::size_t size =
+      static_cast<std::size_t>(cloud.lines) * static_cast<std::size_t>(cloud.beams);
+  cloud.points.assign(size, {1, 2, 3});
+  if ((vectors & 1) != 0) cloud.directions.assign(size, {1, 0, 0});
+  if ((vectors & 2) != 0) cloud.origins.resize(static_cast<std::size_t>(cloud.lines), {0, 0, 1});
+  if ((vectors & 4) != 0) cloud.intensity.assign(size, 0.5F);
+  if ((vectors & 8) != 0) cloud.utime.assign(size, cloud.sweep_utime);
+  if ((vectors & 16) != 0) cloud.ring.assign(size, 7);
+  return chunk;
+}
+
+void CheckEnded(const SweepCollector& sweeps, Utime name) {
+  try {
+    const std::optional<Cloud> cloud = sweeps.Complete(name);
+    fuzz::Require(cloud.has_value(), "a sweep that has ended");
+    fuzz::Require(cloud->size() <= SweepCollector::kMaxPoints, "no more points than are kept");
+    if (cloud->size() > 0) fuzz::RequireWhole(*cloud);
+    fuzz::Require(sweeps.WhyTorn(name).find('\n') == std::string::npos, "one line");
+  } catch (const InputError& error) {
+    fuzz::Require(false, std::string("what was taken to be joined; ") + error.what());
+  }
+}
+
+void TakeInput(fuzz::Input input) {
+  SweepCollector sweeps;
+  std::map<Utime, std::size_t> reach;  // points, at most
+  std::size_t points = 0;
+  while (!input.empty() && points < kMostPoints) {
+    const CloudChunk chunk = TakeChunk(&input);
+    points += chunk.cloud.size();
+    fuzz::Try([&] {
+      sweeps.Add(chunk);
+      const int lines = std::max(chunk.sweep_lines, chunk.cloud.first_line + chunk.cloud.lines);
+      std::size_t& of_sweep = reach[chunk.cloud.sweep_utime];
+      of_sweep = std::max(of_sweep, static_cast<std::size_t>(lines) * 5000);
+    });
+  }
+  bool large = false;
+  for (const auto& [name, most] : reach) {
+    if (!sweeps.Ended(name)) continue;
+    if (most > kMostPoints && std::exchange(large, true)) continue;  // one of these is enough
+    CheckEnded(sweeps, name);
+  }
+}
+
+}  // namespace
+}  // namespace rgbdt
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  rgbdt::TakeInput({data, size});
+  return 0;
+}
