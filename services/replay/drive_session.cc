@@ -148,9 +148,13 @@ class Cutter {
     poses_.Until(NewestOf(chunk.cloud), [&](const StampedPose& pose) { shots_.Add(pose); });
     if (!shots_.Add(chunk)) return;
     ++sweeps_;
-    if (last_ != 0 && name < last_ + options_.every) return;
+    if (due_ == 0) due_ = name;
+    if (name < due_) return;
     const std::optional<Cloud> sweep = shots_.Complete(name);
-    if (sweep && Write(*sweep)) last_ = name;
+    // While the rig moves a sweep with an image of its own time, unless none comes for as long
+    // again: what hides what is as the sweep has it.
+    const bool waits = shots_.has_poses() && name < due_ + options_.every;
+    if (sweep && Write(*sweep, waits)) due_ = name + options_.every;
     if (taken_.size() > options_.most_sweeps) Thin();
   }
 
@@ -166,23 +170,27 @@ class Cutter {
     return digits + ("-" + camera);
   }
 
-  bool Write(const Cloud& sweep) {
-    Taken taken;
-    taken.number = ++number_;
+  // `own_time`: only where an image was taken while it was swept.
+  bool Write(const Cloud& sweep, bool own_time) {
+    std::vector<std::pair<std::string, TakenShot>> shots;
+    bool of_own_time = false;
     for (const CameraSpec& camera : rig_->cameras) {
       std::optional<TakenShot> shot = shots_.ShotOf(sweep, camera, PoseOf(camera));
       if (!shot) continue;
-      View view;
-      view.name = NameOf(taken.number, camera.name);
-      view.heldout = taken.number % 3 == 0;
-      view.cloud = std::move(shot->cloud);
-      view.images.push_back(std::move(shot->image));
-      WriteView(dir_, view);
-      taken.cameras.push_back(camera.name);
+      of_own_time |= shot->taken >= sweep.sweep_utime && shot->taken <= NewestOf(sweep);
+      shots.emplace_back(camera.name, std::move(*shot));
     }
-    if (taken.cameras.empty()) {
-      --number_;
-      return false;
+    if (shots.empty() || (own_time && !of_own_time)) return false;
+    Taken taken;
+    taken.number = ++number_;
+    for (auto& [camera, shot] : shots) {
+      View view;
+      view.name = NameOf(taken.number, camera);
+      view.heldout = taken.number % 3 == 0;
+      view.cloud = std::move(shot.cloud);
+      view.images.push_back(std::move(shot.image));
+      WriteView(dir_, view);
+      taken.cameras.push_back(camera);
     }
     taken_.push_back(std::move(taken));
     return true;
@@ -212,7 +220,7 @@ class Cutter {
   ShotCollector shots_;
   Calibration calibration_;
   bool has_lines_ = false;
-  Utime last_ = 0;
+  Utime due_ = 0;  // name of the next sweep that is taken; 0: the first
   std::size_t sweeps_ = 0;
   int number_ = 0;
   std::deque<Taken> taken_;
