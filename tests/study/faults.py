@@ -63,8 +63,8 @@ def figures_of(rows):
     if of("ended_well", "kills"):
         planned = sum(of("kills_planned"))
         yield figure("kills_survived_share", sum(of("kills_survived")) / planned if planned else 0)
-        yield figure("calibration_identical_share",
-                     sum(of("calibration_identical")) / len(of("ended_well", "kills")))
+        identical = of("calibration_identical") or [0]
+        yield figure("calibration_identical_share", sum(identical) / len(identical))
         if of("views_lost"):
             yield figure("views_lost", sum(of("views_lost")))
 
