@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "services/messages/limits.h"
 #include "tests/fuzz/sweep_check.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr unsigned kSweeps = 4;  // their names
 enum Flag : unsigned { kOrganised = 4, kEnd = 8, kFar = 16, kLong = 32, kWide = 64 };
-constexpr std::size_t kMostPoints = 1'000'000;  // in all, so that an input takes less than a second
+constexpr int kMostPoints = 1'000'000;  // in all, so that an input takes less than a second
 
 int Count(unsigned value, bool large) {
   return std::min(static_cast<int>(value) * (large ? 16 : 1), static_cast<int>(kMaxLines));
@@ -58,22 +59,28 @@ void CheckEnded(const SweepCollector& sweeps, Utime name) {
 
 void TakeInput(fuzz::Input input) {
   SweepCollector sweeps;
-  std::map<Utime, std::size_t> reach;  // points, at most
-  std::size_t points = 0;
+  struct Reach {
+    int lines = 0, beams = 0;
+    bool IsLarge() const { return std::int64_t{lines} * beams > std::int64_t{kMostPoints}; }
+  };
+  std::map<Utime, Reach> reach;
+  int points = 0;
   while (!input.empty() && points < kMostPoints) {
     const CloudChunk chunk = TakeChunk(&input);
-    points += chunk.cloud.size();
+    points += static_cast<int>(chunk.cloud.size());
     fuzz::Try([&] {
       sweeps.Add(chunk);
-      const int lines = std::max(chunk.sweep_lines, chunk.cloud.first_line + chunk.cloud.lines);
-      std::size_t& of_sweep = reach[chunk.cloud.sweep_utime];
-      of_sweep = std::max(of_sweep, static_cast<std::size_t>(lines) * 5000);
+      const Cloud& cloud = chunk.cloud;
+      Reach& of_sweep = reach[cloud.sweep_utime];
+      of_sweep.lines =
+          std::max({of_sweep.lines, chunk.sweep_lines, cloud.first_line + cloud.lines});
+      of_sweep.beams = std::max(of_sweep.beams, cloud.size() > 0 ? cloud.beams : 0);
     });
   }
   bool large = false;
   for (const auto& [name, most] : reach) {
     if (!sweeps.Ended(name)) continue;
-    if (most > kMostPoints && std::exchange(large, true)) continue;  // one of these is enough
+    if (most.IsLarge() && std::exchange(large, true)) continue;  // one of these is enough
     CheckEnded(sweeps, name);
   }
 }
