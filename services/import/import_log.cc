@@ -105,7 +105,7 @@ class PartFile {
  public:
   explicit PartFile(const std::filesystem::path& path)
       : path_(path), part_(path.string() + ".part") {
-    std::error_code ignored;                  // what cannot be made is told where it is opened
+    std::error_code ignored;  // what cannot be made is told where it is opened
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
   }
   ~PartFile() {
