@@ -118,7 +118,7 @@ std::string Fused(testing::RandomMessages* random) {
     cloud.frame_utime = kBegin;
     cloud.whole_sweep = i == 2;
     const auto behind_all = static_cast<char>(random->OneOfEach().size());  // where sweeps are
-    sent += Sent(cloud.whole_sweep ? behind_all : kFused, cloud);
+    sent += Sent(cloud.whole_sweep ? behind_all : char{kFused}, cloud);
   }
   return sent + kLater;
 }
