@@ -45,6 +45,10 @@ Assembler::Chunks Assembler::Add(const LineScan& line) {
 void Assembler::CheckLine(const LineScan& line) const {
   const std::string of = "line of " + std::to_string(line.utime) + " us ";
   if (waiting_.count(line.utime) != 0) throw InputError(of + "came twice");
+  if (newest_ && line.seq > newest_->seq && line.utime <= newest_->utime) {
+    throw InputError(of + "was sent after that of " + std::to_string(newest_->utime) +
+                     " us: a clock was set back");
+  }
   if (track_.newest() == 0 || line.utime > track_.newest()) return;  // its sweep is not known yet
   if (line.utime < track_.newest() - kKept) {
     throw InputError(of + "is more than 1 s older than the newest encoder reading (" +

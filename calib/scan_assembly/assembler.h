@@ -22,8 +22,9 @@ namespace rgbdt {
 /// kMaxGap), are counted in `lines_lost`: those before its first, too, as where this was started in
 /// the midst of the sweep, by the time since the sweep's start and the numbers that are missing.
 /// Refused with an InputError, which changes nothing: a reading that is not after the one before
-/// it, a line seen before, one whose sweep has ended, one more than kKept older than the newest
-/// reading. Between sweeps (sweep_utime 0) lines make no cloud.
+/// it, a line seen before, one that by its number is after a line of a later time, one whose sweep
+/// has ended, one more than kKept older than the newest reading. Between sweeps (sweep_utime 0)
+/// lines make no cloud.
 ///
 /// A clock set back by more than kClockReset, or a log longer than that which is looped, begins
 /// anew. One set back by less is refused until it is again where it was, one set forward leaves a

@@ -95,8 +95,8 @@ std::string SweepCollector::WhyTorn(Utime sweep_utime) const {
   if (missing <= kMaxMissing * sweep.lines) return "";
   return "sweep " + std::to_string(sweep_utime) + " is not whole: " + std::to_string(missing) +
          " of its " + std::to_string(sweep.lines) +
-         " lines never came (rgbdt-assembler or this process was started anew, or messages were "
-         "lost: gaps in STATUS)";
+         " lines never came (rgbdt-assembler or this process was started anew, a clock was set, or "
+         "messages were lost: gaps in STATUS)";
 }
 
 }  // namespace rgbdt

@@ -231,6 +231,7 @@ Cloud Waving::Sweep(Utime utime) const {
           RotationAbout(Eigen::Vector3d::UnitZ(), std::atan2(direction.y(), direction.x()))
               .rotation;
       std::vector<Eigen::Vector3d> rays;
+      rays.reserve(sub_rays.size());
       for (const Eigen::Vector3d& ray : sub_rays) rays.push_back(turn * ray);
       const BeamReturn back = impl_->Cast(start, rays, impl_->At(cloud.utime[i]));
       const double range = back.range + (bias + RangeError(lidar, back)) +
@@ -257,6 +258,7 @@ Image Waving::TakeImage(const std::string& camera, Utime utime) {
                         impl_->options);
   }
   std::vector<const World*> bands;
+  bands.reserve(worlds.size());
   for (const World& world : worlds) bands.push_back(&world);
   if (!renderer.has_empty()) renderer.RenderEmpty(impl_->empty);
   renderer.RenderBands(bands);

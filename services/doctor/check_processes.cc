@@ -5,7 +5,6 @@
 #include "calib/model/text.h"
 #include "services/doctor/checks.h"
 #include "services/messages/check.h"
-#include "services/runtime/status_counters.h"
 
 namespace rgbdt {
 namespace {

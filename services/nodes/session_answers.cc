@@ -82,10 +82,7 @@ void SessionNode::OnStatus(const Status& status) {
   }
   if (anew && started_ && !finished_) OnStartedAnew(status.process);
   if (cut_off && started_ && !finished_) OnCutOff(status.process, silence);
-  if (const std::string clocks = ClockTrouble(); clocks != clock_told_) {
-    clock_told_ = clocks;
-    if (!clocks.empty()) Warn(clocks);
-  }
+  OnClocks();
   if (status.process == "solver" && solver_views_.LostBy(status)) {
     RestoreSolver("rgbdt-solver was started anew and has lost its views");
   }

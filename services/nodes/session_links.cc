@@ -53,6 +53,24 @@ std::string SessionNode::ClockTrouble() const {
   return {};
 }
 
+// A clock was set, or set right.
+void SessionNode::OnClocks() {
+  const std::string clocks = ClockTrouble();
+  if (clocks == clock_told_) return;
+  const bool set = clocks.empty() != clock_told_.empty();
+  clock_told_ = clocks;
+  if (!clocks.empty()) Warn(clocks);
+  if (!set || !HasDevices() || !started_ || finished_) return;
+  clocks_set_ = now_;
+  held_up_since_.reset();
+  if (!waiting_ || idle()) return;
+  const std::string why = "a machine's clock was set meanwhile";
+  if (step().kind == SessionStep::Kind::kSweep) spoiled_ = why;
+  if (step().kind == SessionStep::Kind::kCapture && !(has_view_ && IsDetected())) {
+    TakeAgain(why, &restarts_, kMaxRestarts);
+  }
+}
+
 // Simulated time is nobody's clock.
 bool SessionNode::HasDevices() const {
   const auto& scanner = rig_.lidar.turned_scanner;

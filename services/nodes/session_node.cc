@@ -177,6 +177,9 @@ bool SessionNode::IsHeldUp() {
   std::string who = step().kind == SessionStep::Kind::kSweep ? WhoIsNotReady() : "";
   if (step().kind == SessionStep::Kind::kSweep && who.empty()) {
     if (HasDevices()) who = ClockTrouble();
+    if (clocks_set_ && now_ - *clocks_set_ < kClocksSettle && who.empty()) {
+      who = "the sensors' times, as a clock was set";
+    }
     if (cut_off_ && now_ - *cut_off_ < kHeardAgain) who = "all that were cut off";
   }
   if (step().kind == SessionStep::Kind::kSweep && who.empty()) {

@@ -69,7 +69,9 @@ struct SessionProgress {
 /// got it answers once more what it answered (NodeRunner). A process whose STATUS was not heard for
 /// kCutOff and goes on with later numbers was cut off, and this one from it: what either said is
 /// lost. The view at hand is taken again, once all are heard, and the solver sent all it needs.
-/// Machines whose clocks are off, by anybody's STATUS, are named; no sweep of devices begins then.
+/// Machines whose clocks are off, by anybody's STATUS, are named; no sweep of devices begins then,
+/// nor in the next kClocksSettle (drivers take 2 s to see that a clock was set forward). A view
+/// that is being taken is taken again: its stamps are of before and after.
 ///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
@@ -81,6 +83,7 @@ class SessionNode : public Node {
   static constexpr int kMaxRetakes = 2;
   static constexpr int kMaxRestarts = 5;
   static constexpr Utime kCutOff = 3 * kMicrosecondsPerSecond;
+  static constexpr Utime kClocksSettle = 5 * kMicrosecondsPerSecond;
   static constexpr Utime kFirstRepeat = 3 * kMicrosecondsPerSecond;
   static constexpr Utime kLongestRepeat = 16 * kMicrosecondsPerSecond;
 
@@ -136,6 +139,7 @@ class SessionNode : public Node {
   void OnStatus(const Status& status);
   void OnStartedAnew(const std::string& process);
   void OnCutOff(const std::string& process, Utime silence);
+  void OnClocks();
   static bool HasPart(const std::string& process);
   Messages RepeatCommand();
   std::string ClockTrouble() const;
@@ -194,6 +198,7 @@ class SessionNode : public Node {
   Utime repeat_at_ = 0, repeat_pause_ = kFirstRepeat;  // of the newest command
   std::optional<Utime> cut_off_;                       // when somebody was heard again
   std::string clock_told_;
+  std::optional<Utime> clocks_set_;  // when they were found to disagree, or to agree again
   bool answered_ = false;
   int view_number_ = 0;
   std::string view_;

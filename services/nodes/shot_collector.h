@@ -38,6 +38,7 @@ class ShotCollector {
   /// `timing`: what the camera's calibration says of its clock.
   void Add(const Image& image, const std::optional<CameraTiming>& timing);
   PoseTrack::Added Add(const StampedPose& pose) { return poses_.Add(pose); }
+  bool has_poses() const { return !poses_.empty(); }
   /// Throws InputError for a chunk that cannot be joined to those of its sweep. True: it ends its
   /// sweep.
   bool Add(CloudChunk chunk);

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uintmax_t kMegabyte = 1'000'000;
 constexpr std::uintmax_t kPointBytes = 40;  // of cloud.pcd, at most
+constexpr char kWayOut[] = "; make room there, or the folder writable";
 
 // More than its files take, which are compressed.
 std::uintmax_t BytesOf(const View& view) {
@@ -77,7 +78,7 @@ std::string UnwrittenViews::What() const {
 
 std::string UnwrittenViews::Trouble() const {
   if (empty()) return {};
-  return What() + " is kept in memory: " + why_ + "; make room there, it is tried again every " +
+  return What() + " is kept in memory: " + why_ + kWayOut + "; it is tried again every " +
          std::to_string(kRetry / kMicrosecondsPerSecond) + " s";
 }
 
@@ -91,7 +92,7 @@ std::string UnwrittenViews::WhyNoRoom(const std::string& view) const {
            directory_.string() + ", a view may take " +
            std::to_string(view_bytes_ / kMegabyte + 1) + " MB; make room there";
   } catch (const std::exception& e) {
-    return std::string(e.what()) + "; make room there, or the folder writable";
+    return e.what() + std::string(kWayOut);
   }
 }
 

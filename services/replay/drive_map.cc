@@ -13,6 +13,7 @@
 #include "services/messages/image_channel.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/odometry_node.h"
+#include "services/replay/poses_ahead.h"
 
 namespace rgbdt {
 namespace {
@@ -120,29 +121,6 @@ std::optional<RigText> FindWay(const std::string& log, const DriveOptions& optio
   }
   return rig;
 }
-
-Utime NewestOf(const Cloud& cloud) {
-  return cloud.utime.empty() ? cloud.sweep_utime
-                             : *std::max_element(cloud.utime.begin(), cloud.utime.end());
-}
-
-/// Hands over poses in time for the points that need them: up to the first after them. Two at
-/// least, as a single one is that of a rig that stands.
-class PosesAhead {
- public:
-  explicit PosesAhead(const std::vector<StampedPose>& way) : way_(way) {}
-
-  template <typename Take>
-  void Until(Utime utime, const Take& take) {
-    while (next_ < way_.size() && (next_ < 2 || way_[next_ - 1].utime < utime)) {
-      take(way_[next_++]);
-    }
-  }
-
- private:
-  const std::vector<StampedPose>& way_;
-  std::size_t next_ = 0;
-};
 
 }  // namespace
 

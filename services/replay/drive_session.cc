@@ -14,15 +14,58 @@
 #include "services/messages/codec.h"
 #include "services/messages/image_channel.h"
 #include "services/nodes/assembler_node.h"
+#include "services/nodes/odometry_node.h"
 #include "services/nodes/shot_collector.h"
+#include "services/replay/poses_ahead.h"
 
 namespace rgbdt {
 namespace {
 
+double ShareRead(const LogReader& reader) {
+  return static_cast<double>(reader.position()) /
+         static_cast<double>(std::max<std::int64_t>(1, reader.size()));
+}
+
+// Whether a rig whose place is known to some millimetres was anywhere else than at its first pose.
+bool Moves(const std::vector<StampedPose>& way) {
+  constexpr double kPlace_m = 0.05, kTurn_rad = 0.01;
+  return std::any_of(way.begin(), way.end(), [&](const StampedPose& pose) {
+    const Rigid3& first = way.front().map_from_lidar;
+    return (pose.map_from_lidar.translation - first.translation).norm() > kPlace_m ||
+           RotationDistance(pose.map_from_lidar, first) > kTurn_rad;
+  });
+}
+
+// Where the rig was, by the sweeps of a spinning LIDAR; of a log that has POSE nothing. What cannot
+// be read is counted by who cuts.
+std::vector<StampedPose> WayOfSweeps(const std::string& log,
+                                     const std::function<void(double)>& progress) {
+  LogReader reader(log);
+  OdometryNode odometry;
+  std::vector<StampedPose> way;
+  while (const auto event = reader.Next()) {
+    if (progress) progress(ShareRead(reader));
+    if (event->channel == "POSE") return {};
+    if (event->channel != "CLOUD" && event->channel != "RIG") continue;
+    try {
+      const Message message = Decode(event->channel, event->bytes.data(), event->bytes.size());
+      const auto* rig = std::get_if<RigText>(&message);
+      if (rig != nullptr && ParseRig(rig->text, "RIG").lidar.turned_scanner) return {};
+      for (const Message& answer : odometry.Handle(message)) {
+        if (const auto* pose = std::get_if<StampedPose>(&answer)) way.push_back(*pose);
+      }
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  return Moves(way) ? way : std::vector<StampedPose>();
+}
+
 class Cutter {
  public:
-  Cutter(std::filesystem::path dir, const CutOptions& options)
-      : dir_(std::move(dir)), options_(options) {}
+  /// `way`: where the rig was, of a log without POSE; empty: not known, or at one place.
+  Cutter(std::filesystem::path dir, const CutOptions& options, const std::vector<StampedPose>& way)
+      : dir_(std::move(dir)), options_(options), poses_(way) {}
 
   void Take(const Message& message) {
     if (const auto* text = std::get_if<RigText>(&message)) {
@@ -102,11 +145,16 @@ class Cutter {
 
   void OnChunk(const CloudChunk& chunk) {
     const Utime name = chunk.cloud.sweep_utime;
+    poses_.Until(NewestOf(chunk.cloud), [&](const StampedPose& pose) { shots_.Add(pose); });
     if (!shots_.Add(chunk)) return;
     ++sweeps_;
-    if (last_ != 0 && name < last_ + options_.every) return;
+    if (due_ == 0) due_ = name;
+    if (name < due_) return;
     const std::optional<Cloud> sweep = shots_.Complete(name);
-    if (sweep && Write(*sweep)) last_ = name;
+    // While the rig moves a sweep with an image of its own time, unless none comes for as long
+    // again: what hides what is as the sweep has it.
+    const bool waits = shots_.has_poses() && name < due_ + options_.every;
+    if (sweep && Write(*sweep, waits)) due_ = name + options_.every;
     if (taken_.size() > options_.most_sweeps) Thin();
   }
 
@@ -122,23 +170,27 @@ class Cutter {
     return digits + ("-" + camera);
   }
 
-  bool Write(const Cloud& sweep) {
-    Taken taken;
-    taken.number = ++number_;
+  // `own_time`: only where an image was taken while it was swept.
+  bool Write(const Cloud& sweep, bool own_time) {
+    std::vector<std::pair<std::string, TakenShot>> shots;
+    bool of_own_time = false;
     for (const CameraSpec& camera : rig_->cameras) {
       std::optional<TakenShot> shot = shots_.ShotOf(sweep, camera, PoseOf(camera));
       if (!shot) continue;
-      View view;
-      view.name = NameOf(taken.number, camera.name);
-      view.heldout = taken.number % 3 == 0;
-      view.cloud = std::move(shot->cloud);
-      view.images.push_back(std::move(shot->image));
-      WriteView(dir_, view);
-      taken.cameras.push_back(camera.name);
+      of_own_time |= shot->taken >= sweep.sweep_utime && shot->taken <= NewestOf(sweep);
+      shots.emplace_back(camera.name, std::move(*shot));
     }
-    if (taken.cameras.empty()) {
-      --number_;
-      return false;
+    if (shots.empty() || (own_time && !of_own_time)) return false;
+    Taken taken;
+    taken.number = ++number_;
+    for (auto& [camera, shot] : shots) {
+      View view;
+      view.name = NameOf(taken.number, camera);
+      view.heldout = taken.number % 3 == 0;
+      view.cloud = std::move(shot.cloud);
+      view.images.push_back(std::move(shot.image));
+      WriteView(dir_, view);
+      taken.cameras.push_back(camera);
     }
     taken_.push_back(std::move(taken));
     return true;
@@ -162,12 +214,13 @@ class Cutter {
 
   std::filesystem::path dir_;
   CutOptions options_;
+  PosesAhead poses_;
   std::optional<Rig> rig_;
   AssemblerNode assembler_;
   ShotCollector shots_;
   Calibration calibration_;
   bool has_lines_ = false;
-  Utime last_ = 0;
+  Utime due_ = 0;  // name of the next sweep that is taken; 0: the first
   std::size_t sweeps_ = 0;
   int number_ = 0;
   std::deque<Taken> taken_;
@@ -182,8 +235,14 @@ bool IsOfUse(const std::string& channel) {
 
 CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir,
                         const CutOptions& options, const std::function<void(double)>& progress) {
+  const auto part = [&](double from) {
+    return [&progress, from](double share) {
+      if (progress) progress(from + 0.5 * share);
+    };
+  };
+  const std::vector<StampedPose> way = WayOfSweeps(log, part(0));
   LogReader reader(log);
-  Cutter cutter(dir, options);
+  Cutter cutter(dir, options, way);
   std::size_t dropped = 0;
   std::string last_problem;
   while (const auto event = reader.Next()) {
@@ -194,12 +253,10 @@ CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir
       ++dropped;
       last_problem = event->channel + ": " + error.what();
     }
-    if (progress) {
-      progress(static_cast<double>(reader.position()) /
-               static_cast<double>(std::max<std::int64_t>(1, reader.size())));
-    }
+    part(0.5)(ShareRead(reader));
   }
   CutDrive cut = cutter.Finish(log);
+  cut.by_odometry = !way.empty();
   if (dropped > 0) {
     cut.problems.push_back(std::to_string(dropped) +
                            " messages dropped; the last: " + last_problem);

@@ -97,6 +97,9 @@ Session SessionOf(const RefineFlags& flags) {
   for (const std::string& problem : cut.problems) {
     std::fprintf(stderr, "%s: %s\n", flags.dir.c_str(), problem.c_str());
   }
+  if (cut.by_odometry) {
+    PrintProgress("the log has no POSE: the rig's motion is that which the sweeps tell");
+  }
   PrintProgress(std::to_string(cut.sweeps) + " sweeps of the log, as a session: " + drive.string());
   return OpenSession(drive);
 }

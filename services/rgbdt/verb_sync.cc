@@ -102,7 +102,7 @@ Calibration WithTimings(const WavedLog& input, const SyncResult& result, bool re
 
 // Each camera's offset over time, as the picture has it.
 std::string OffsetsCsv(const SyncResult& result) {
-  std::string text = "camera,utime_us,offset_from_mean_s,sigma_s\n";
+  std::string text = "camera,utime_us,time_offset_s,sigma_s\n";
   for (const SyncedCamera& camera : result.cameras) {
     for (const OffsetAt& at : camera.offsets) {
       const auto utime = static_cast<long long>(result.start + FromSeconds(at.seconds));

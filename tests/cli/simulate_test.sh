@@ -51,6 +51,16 @@ for kind in "turned outdoor" "32 indoor"; do
   ! grep -rqE "^ *(lidar_from_target|picked) *\{" "$session" --include=*.textproto --exclude=rig.textproto ||
     complain "natural $scene: it has a board"
 done
+drive=$scratch/drive
+accepts "a drive" "$bin/rgbdt" simulate "$drive" --drive 1 --scene indoor --lidar vlp16
+grep -qF "next: rgbdt map $drive/drive.lcmlog" "$scratch/output" || complain "a drive names no next step"
+[ "$(grep -cv '^#' "$drive/truth.tum")" = 10 ] || complain "a drive's way has not a pose a sweep"
+accepts "a drive's map" "$bin/rgbdt" map "$drive/drive.lcmlog" --out "$scratch/map.ply"
+grep -qE '(^| )9 poses|10 sweeps' "$scratch/output" || complain "the map is not of ten sweeps"
+misuses "a drive and a wave" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --wave 1
+misuses "a natural drive" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --natural
+refuses "a board that is waved before a Livox" "$bin/rgbdt" simulate "$scratch/refused" --wave 1 --lidar avia
+refuses "a drive at night" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --scene night
 misuses "a natural night" "$bin/rgbdt" simulate "$scratch/refused" --natural --scene night
 misuses "--board alone" "$bin/rgbdt" simulate "$scratch/refused" --board
 

@@ -32,8 +32,8 @@ import csv, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
 assert len(rows) >= 3, rows
 for row in rows:
-    off, sigma = float(row["offset_from_mean_s"]), float(row["sigma_s"])
-    assert row["camera"] == "rgb" and 0 < sigma < 0.01 and abs(off) < 6 * sigma, row
+    offset, sigma = float(row["time_offset_s"]), float(row["sigma_s"])
+    assert row["camera"] == "rgb" and 0 < sigma < 0.01 and abs(offset - 0.25) < 6 * sigma, row
 END
 pose_of() { sed -n '/^  camera_from_lidar {/,/^  }/p' "$1"; }
 [ -n "$(pose_of "$scratch/calibration.textproto")" ] || complain "no pose to compare with"

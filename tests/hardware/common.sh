@@ -45,3 +45,21 @@ table inet loss {
 }
 END_OF_RULES
 }
+
+# A session's result against the truth beside it.
+is_what_it_says() {  # SESSION
+  "$bin/rgbdt" evaluate "$1" --out "$scratch/evaluated" >"$scratch/evaluate.log" 2>&1 ||
+    fail "it cannot be judged"
+  grep -E '^(result against truth|1 sigma, worst axis)' "$scratch/evaluate.log"
+  # "result against truth  0.014 deg 0.6 mm  0.014 deg 0.6 mm": both cameras, within four times what
+  # they say of themselves, which for five views is less than half of this.
+  awk '
+    /^result against truth/ { for (i = 4; i <= NF; i += 2) error[++n] = $i }
+    /^1 sigma, worst axis/ { for (i = 5; i <= NF; i += 2) sigma[++m] = $i }
+    END {
+      if (n != 4 || m != 4) exit 1
+      for (i = 1; i <= 4; ++i) {
+        if (error[i] > 4 * sigma[i] || error[i] > (i % 2 ? 0.1 : 5)) exit 1
+      }
+    }' "$scratch/evaluate.log" || fail "the result is not what it says it is"
+}

@@ -4,6 +4,7 @@
 : "${bin:?the folder of the programs}"
 
 namespaces=()
+driver_environment=()  # NAME=VALUE, of the drivers' processes alone
 
 unplug_all() {
   local name
@@ -48,8 +49,8 @@ start_hardware() {  # FOLDER RIG TRUTH [OPTION OF rig_world...]
     plug_in "$camera" "$number" 9000
     start "device_$camera" ip netns exec "rgbdt-$$-$camera" "$bin/fake_camera" \
       "10.77.$number.2" "$camera-1" "$folder/$camera.raw"
-    start "camera_$camera" "$bin/rgbdt-camera" --rig "$rig" --camera "$camera"
+    start "camera_$camera" "${driver_environment[@]}" "$bin/rgbdt-camera" --rig "$rig" --camera "$camera"
   done
-  start lidar "$bin/rgbdt-lidar" --rig "$rig"
-  start motor "$bin/rgbdt-motor" --rig "$rig"
+  start lidar "${driver_environment[@]}" "$bin/rgbdt-lidar" --rig "$rig"
+  start motor "${driver_environment[@]}" "$bin/rgbdt-motor" --rig "$rig"
 }

@@ -29,7 +29,9 @@ using test::Script;
 using test::TinyRig;
 using test::World;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 using Kind = SessionStep::Kind;
 
@@ -232,12 +234,51 @@ TEST_F(SessionNodeTest, NoSweepOfDevicesBeginsWhileClocksDisagree) {
       EXPECT_EQ(sweeps(AdvanceTo(9, &node)), 0);
       if (mended) {
         node.Handle(Ready("solver"));
-        EXPECT_EQ(sweeps(AdvanceTo(10, &node)), 1);
+        EXPECT_EQ(sweeps(AdvanceTo(13.9, &node)), 0) << "drivers have not seen it yet";
+        EXPECT_EQ(sweeps(AdvanceTo(14, &node)), 1);
       } else {
         AdvanceTo(12, &node);
         EXPECT_THAT(node.failure(), HasSubstr("that of host sensor (10.0.0.2) is 200 ms behind"));
       }
     }
+  }
+}
+
+TEST_F(SessionNodeTest, AViewInWhoseMidstAClockWasSetIsTakenAgain) {
+  Rig rig = TinyRig();
+  rig.cameras[0].device = CameraDevice();
+  Status off = Ready("solver");
+  off.counters = {{"clock ahead [ms] sensor (10.0.0.2)", 200}};
+  for (const bool in_sweep : {true, false}) {
+    SessionNode node(Script({Kind::kSweep, Kind::kCapture}), rig,
+                     dir_ / (in_sweep ? "sweep" : "capture"), {});
+    std::int64_t newest = 0;
+    const auto asked = [&](double seconds) {
+      std::vector<SessionVerb> verbs;
+      for (const auto& command : Only<SessionCommand>(AdvanceTo(seconds, &node))) {
+        verbs.push_back(command.verb);
+        newest = command.command;
+      }
+      return verbs;
+    };
+    AdvanceTo(0, &node);
+    for (const char* process : {"assembler", "detector", "fuser", "solver"}) {
+      node.Handle(Ready(process));
+    }
+    node.Handle(Ready("camera-" + rig.cameras[0].name));
+    EXPECT_THAT(asked(1), ElementsAre(SessionVerb::kReset, SessionVerb::kSweep));
+    if (in_sweep) node.Handle(off);
+    SessionEvent swept;
+    swept.command = newest;
+    swept.source = "motor";
+    swept.sweep_utime = kStart;
+    node.Handle(swept);
+    EXPECT_EQ(asked(2).size(), in_sweep ? 0U : 1U) << "the capture";
+    if (!in_sweep) node.Handle(off);
+    EXPECT_THAT(asked(3), IsEmpty());
+    node.Handle(Ready("solver"));
+    EXPECT_THAT(asked(8), ElementsAre(SessionVerb::kSweep));
+    EXPECT_EQ(node.failure(), "");
   }
 }
 

@@ -284,11 +284,9 @@ TEST_F(Invalid, Session) {
   EXPECT_THAT(driven([](auto& w) { w.velocity[5] = NAN; }), HasSubstr("velocity[5] is nan"));
   EXPECT_THAT(driven([](auto& w) { w.covariance[2][2] = -1; }), HasSubstr("covariance"));
   EXPECT_THAT(driven([](auto& w) { w.residual_m = -1; }), HasSubstr("residual_m is -1"));
-  EXPECT_THAT(driven([](auto& w) {
-                w.num_untold = 1;
-                w.untold.assign(1, std::string("a\0b", 3));
-              }),
-              HasSubstr("untold is"));
+  SweepOdometry odometry = random_.Odometry();
+  odometry.untold = {std::string("a\0b", 3)};
+  EXPECT_THAT(ErrorOf([&] { Encode(odometry); }), HasSubstr("untold is"));
   Status status = random_.Health();
   status.text = std::string("a\0b", 3);
   EXPECT_THAT(ErrorOf([&] { Encode(status); }), HasSubstr("text is"));

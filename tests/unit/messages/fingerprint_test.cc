@@ -41,7 +41,7 @@ const Fingerprint kFingerprints[] = {
     Of<left_out_views_t>(0x0212eab24ee5a3bbU),
     Of<line_scan_t>(0x62ff83194fdec7fcU),
     Of<mount_check_t>(0xd5aaa5bd02506231U),
-    Of<odometry_t>(0x0U),
+    Of<odometry_t>(0x01ea34d9ea8d22b6U),
     Of<point_group_t>(0xc71a49ecf463d9bbU),
     Of<pose_t>(0xfd782618dd276dcfU),
     Of<radiometry_t>(0x2570e4bcc16de0dbU),

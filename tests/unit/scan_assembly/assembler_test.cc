@@ -518,6 +518,20 @@ TEST_F(AssemblerTest, AClockSetInTheMidstOfASweepSpoilsNoLaterOne) {
   }
 }
 
+// They were sent after those whose times they bear once more: their angles are not known.
+TEST_F(AssemblerTest, LinesOfTimesThatHaveBeenAreMissingInTheSweep) {
+  Inputs set_back = SweepInOrder();
+  for (Input& input : set_back) {
+    if (UtimeOf(input) < kSweep + kLines / 2 * kLinePeriod) continue;
+    std::visit([&](auto& in) { in.utime -= 5 * kLinePeriod; }, input);
+  }
+  const auto chunks = Feed(set_back);
+  ASSERT_TRUE(chunks.back().sweep_end);
+  EXPECT_EQ(chunks.back().sweep_lines, kLines);
+  EXPECT_EQ(chunks.back().lines_lost, 5);
+  EXPECT_THAT(problems_, ::testing::Contains(HasSubstr("a clock was set back")));
+}
+
 TEST_F(AssemblerTest, AfterAClockThatIsSetBackItIsDeafUntilThatIsWhereItWas) {
   const auto chunks = Feed(SweepInOrder());
   ASSERT_EQ(chunks.size(), kLines + 1U);

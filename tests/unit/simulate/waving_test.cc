@@ -88,6 +88,20 @@ TEST(WavingTest, ACamerasClockIsOffDriftsAndJumps) {
   EXPECT_EQ(waving.CameraUtime("thermal", later), later - 130'000);
 }
 
+TEST(WavingTest, ClocksAreDrawnFromTheSeed) {
+  Options options = Small();
+  options.cameras = {DefaultColorCamera(), DefaultThermalCamera()};
+  const auto clocks = DrawClocks(options);
+  ASSERT_EQ(clocks.size(), 2U);
+  EXPECT_NE(clocks[0].offset_s, clocks[1].offset_s);
+  EXPECT_GE(clocks[0].rolling_s, 0.010);
+  EXPECT_EQ(clocks[1].rolling_s, 0) << "a thermal camera's are all at once";
+  EXPECT_EQ(DrawClocks(options)[0].offset_s, clocks[0].offset_s);
+  ++options.seed;
+  EXPECT_NE(DrawClocks(options)[0].offset_s, clocks[0].offset_s);
+  EXPECT_THAT(ClocksText(options, clocks), testing::HasSubstr("rgb: time_offset_s "));
+}
+
 TEST(WavingTest, RefusesATurnedScannerAndClocksThatAreMissing) {
   Options options = Small();
   EXPECT_THROW(Waving(options, {}, {}), InputError);
