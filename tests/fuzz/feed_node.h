@@ -31,10 +31,11 @@ inline void Feed(Input* input, Node* node) {
       advance();
       continue;
     }
-    const Channel& channel = channels[which % channels.size()];
+    constexpr unsigned kOther = 0x80;
+    const Channel& channel = channels[which % kOther % channels.size()];
     std::string name = channel.name;
     // One of the rig's, whatever the camera is called of which there is an image in `channels`.
-    if (IsImageChannel(name)) name = which < 0x80 ? "RGB_IMAGE" : "THERMAL_IMAGE";
+    if (IsImageChannel(name)) name = which < kOther ? "RGB_IMAGE" : "THERMAL_IMAGE";
     std::string bytes(channel.fingerprint.begin(), channel.fingerprint.end());
     bytes += input->Piece();
     Try([&] { publish(node->Handle(Decode(name, Data(bytes), bytes.size()))); });

@@ -1,10 +1,13 @@
 // Chunks of sweeps as they come over the bus, decoded, in any order: collected and joined. Of each
-// the input says all but its points.
+// the input says all but its points; and before them whether large sweeps are joined, too, which
+// takes its time.
 #include "calib/scan_assembly/sweep_collector.h"
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "calib/scan_assembly/sweep_chunks.h"
 #include "services/messages/limits.h"
 #include "tests/fuzz/sweep_check.h"
 
@@ -13,7 +16,10 @@ namespace {
 
 constexpr unsigned kSweeps = 4;  // their names
 enum Flag : unsigned { kOrganised = 4, kEnd = 8, kFar = 16, kLong = 32, kWide = 64 };
-constexpr std::size_t kMostPoints = 1'000'000;  // in all, so that an input takes less than a second
+constexpr unsigned kJoinsLarge = 0x7f;
+constexpr std::int64_t kLarge = 100'000;  // points
+constexpr int kMostPoints = 200'000;      // that come, of all sweeps
+constexpr std::size_t kSmall = 10'000;    // of a sweep that is sent on
 
 int Count(unsigned value, bool large) {
   return std::min(static_cast<int>(value) * (large ? 16 : 1), static_cast<int>(kMaxLines));
@@ -44,12 +50,22 @@ CloudChunk TakeChunk(fuzz::Input* input) {
   return chunk;
 }
 
+// What was joined is a sweep as a driver's: sent on, it is the same again.
+void SendOn(const Cloud& sweep) {
+  SweepCollector sweeps;
+  for (CloudChunk& chunk : SplitSweep(sweep)) sweeps.Add(std::move(chunk));
+  const std::optional<Cloud> again = sweeps.Complete(sweep.sweep_utime);
+  fuzz::Require(again.has_value() && again->lines == sweep.lines && again->beams == sweep.beams,
+                "a sweep of the same lines and beams");
+}
+
 void CheckEnded(const SweepCollector& sweeps, Utime name) {
   try {
     const std::optional<Cloud> cloud = sweeps.Complete(name);
     fuzz::Require(cloud.has_value(), "a sweep that has ended");
     fuzz::Require(cloud->size() <= SweepCollector::kMaxPoints, "no more points than are kept");
     if (cloud->size() > 0) fuzz::RequireWhole(*cloud);
+    if (cloud->size() > 0 && cloud->size() < kSmall) SendOn(*cloud);
     fuzz::Require(sweeps.WhyTorn(name).find('\n') == std::string::npos, "one line");
   } catch (const InputError& error) {
     fuzz::Require(false, std::string("what was taken to be joined; ") + error.what());
@@ -58,22 +74,28 @@ void CheckEnded(const SweepCollector& sweeps, Utime name) {
 
 void TakeInput(fuzz::Input input) {
   SweepCollector sweeps;
-  std::map<Utime, std::size_t> reach;  // points, at most
-  std::size_t points = 0;
+  struct Reach {
+    int lines = 0, beams = 0;
+    bool IsLarge() const { return std::int64_t{lines} * beams > kLarge; }
+  };
+  std::map<Utime, Reach> reach;
+  int points = 0;
+  const bool joins_large = input.Byte() == kJoinsLarge;
   while (!input.empty() && points < kMostPoints) {
     const CloudChunk chunk = TakeChunk(&input);
-    points += chunk.cloud.size();
+    points += static_cast<int>(chunk.cloud.size());
     fuzz::Try([&] {
       sweeps.Add(chunk);
-      const int lines = std::max(chunk.sweep_lines, chunk.cloud.first_line + chunk.cloud.lines);
-      std::size_t& of_sweep = reach[chunk.cloud.sweep_utime];
-      of_sweep = std::max(of_sweep, static_cast<std::size_t>(lines) * 5000);
+      const Cloud& cloud = chunk.cloud;
+      Reach& of_sweep = reach[cloud.sweep_utime];
+      of_sweep.lines =
+          std::max({of_sweep.lines, chunk.sweep_lines, cloud.first_line + cloud.lines});
+      of_sweep.beams = std::max(of_sweep.beams, cloud.size() > 0 ? cloud.beams : 0);
     });
   }
-  bool large = false;
   for (const auto& [name, most] : reach) {
     if (!sweeps.Ended(name)) continue;
-    if (most > kMostPoints && std::exchange(large, true)) continue;  // one of these is enough
+    if (most.IsLarge() && !joins_large) continue;
     CheckEnded(sweeps, name);
   }
 }

@@ -15,7 +15,7 @@ constexpr Utime kBegin = 1'700'000'000'000'000;
 constexpr Utime kPeriod = 100'000;  // of a sweep
 constexpr int kLines = 10;
 
-// Places in RandomMessages::OneOfEach, and the whole fused sweep's behind them.
+// Places in RandomMessages::OneOfEach.
 enum Place : char {
   kLine = 0,
   kEncoder = 1,
@@ -24,8 +24,7 @@ enum Place : char {
   kCalibration = 6,
   kFused = 7,
   kPose = 8,
-  kMountCheck = 15,
-  kSweep = 19
+  kMountCheck = 15
 };
 constexpr char kLater = '\xff';
 
@@ -118,7 +117,8 @@ std::string Fused(testing::RandomMessages* random) {
     cloud.map_from_lidar = Rigid3{Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}};
     cloud.frame_utime = kBegin;
     cloud.whole_sweep = i == 2;
-    sent += Sent(cloud.whole_sweep ? kSweep : kFused, cloud);
+    const auto behind_all = static_cast<char>(random->OneOfEach().size());  // where sweeps are
+    sent += Sent(cloud.whole_sweep ? behind_all : char{kFused}, cloud);
   }
   return sent + kLater;
 }
@@ -142,7 +142,7 @@ std::string Captured(testing::RandomMessages* random) {
   detection.images.clear();
   MountCheck check = random->Watched();
   check.camera = "rgb";
-  constexpr char kCommand = 10, kDetection = 5, kThermal = static_cast<char>(0x8e);
+  constexpr char kCommand = 10, kDetection = 5, kThermal = static_cast<char>(0x80 | kImage);
   return Sent(kCommand, command) + RoomSweep(0, 6) + Colour(random, command.utime) +
          Sent(kThermal, thermal) + Sent(kDetection, detection) + Calibrated(random) +
          Sent(kMountCheck, check) + kLater;
@@ -186,21 +186,26 @@ std::string Chunk(unsigned flags, unsigned vectors, unsigned first, unsigned tol
   return bytes;
 }
 
-// As sweep_collector.cc takes them.
+// As sweep_collector.cc takes them: a byte, by which large sweeps are joined, too, and chunks.
 void AddChunks(Inputs* seeds) {
   constexpr unsigned kOrganised = 4, kEnd = 8, kLong = 32;
+  constexpr char kSmall = 0, kLarge = 0x7f;
   for (const unsigned organised : {0U, kOrganised}) {
     const std::string name = organised != 0 ? "lines" : "stretches";
-    const std::string two = Chunk(organised, 31, 0, 0, 1, 9) + Chunk(organised, 31, 1, 0, 1, 9);
+    const std::string two =
+        kSmall + Chunk(organised, 31, 0, 0, 1, 9) + Chunk(organised, 31, 1, 0, 1, 9);
     (*seeds)[name] = two + Chunk(organised | kEnd, 31, 2, 3, 1, 9);
     (*seeds)[name + "_turned"] =
-        Chunk(organised | kEnd, 0, 0, 2, 0, 0) + Chunk(organised, 0, 1, 0, 1, 9);
+        kSmall + Chunk(organised | kEnd, 0, 0, 2, 0, 0) + Chunk(organised, 0, 1, 0, 1, 9);
     (*seeds)[name + "_told_more"] = two + Chunk(organised | kEnd, 31, 0, 90, 0, 0);
-    (*seeds)[name + "_far"] = two + Chunk(organised | kEnd | kLong, 31, 0, 60'000, 0, 0);
     (*seeds)[name + "_other"] = two + Chunk(organised, 1, 3, 0, 1, 9) +
                                 Chunk(organised, 31, 3, 0, 1, 8) +
                                 Chunk(organised | kEnd, 31, 0, 2, 0, 60'000);
   }
+  (*seeds)["lines_far"] =
+      kLarge + Chunk(kOrganised, 31, 0, 0, 1, 9) + Chunk(kOrganised | kEnd, 31, 0, 20'000, 0, 0);
+  (*seeds)["stretches_far"] =
+      kLarge + Chunk(0, 31, 0, 0, 1, 200) + Chunk(kEnd | kLong, 31, 0, 60'000, 0, 0);
 }
 
 }  // namespace
