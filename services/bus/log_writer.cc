@@ -15,9 +15,10 @@ namespace {
 
 // What lies there is not written through: it may be a stranger's link, or a pipe.
 lcm_eventlog_t* CreateAnew(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(std::filesystem::symlink_status(path, ignored))) {
-    std::filesystem::remove(path, ignored);
+  std::error_code error;
+  if (!std::filesystem::is_directory(std::filesystem::symlink_status(path, error))) {
+    std::filesystem::remove(path, error);
+    if (error) throw InputError("cannot remove " + path + ": " + error.message());
   }
   return lcm_eventlog_create(path.c_str(), "w");
 }

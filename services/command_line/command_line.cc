@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <utility>
 
 #include "calib/model/text.h"
@@ -97,16 +98,20 @@ std::string Explained(const std::string& help) {
 // Longer lines of an option's help are broken where a word ends.
 std::string Wrapped(const std::string& help) {
   constexpr std::size_t kLongest = 92;
+  std::istringstream lines(help);
   std::string text;
-  std::size_t begin = 0;
-  while (help.size() - begin > kLongest || help.find('\n', begin) != std::string::npos) {
-    std::size_t end = help.find('\n', begin);
-    if (end == std::string::npos || end - begin > kLongest) end = help.rfind(' ', begin + kLongest);
-    if (end == std::string::npos || end <= begin) break;
-    text += help.substr(begin, end - begin) + "\n";
-    begin = end + 1;
+  for (std::string line; std::getline(lines, line);) {
+    text += text.empty() ? "" : "\n";
+    while (line.size() > kLongest) {
+      std::size_t end = line.rfind(' ', kLongest);
+      if (end == std::string::npos) end = line.find(' ');  // a word that is longer
+      if (end == std::string::npos) break;
+      text += line.substr(0, end) + "\n";
+      line.erase(0, end + 1);
+    }
+    text += line;
   }
-  return text + help.substr(begin);
+  return text;
 }
 
 class HelpFormatter : public CLI::Formatter {

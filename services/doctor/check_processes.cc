@@ -73,9 +73,12 @@ Findings CheckSilent(const BusFacts& facts, const std::vector<std::string>& expe
     if (!speaks(name)) silent += (silent.empty() ? "" : ", ") + name;
   }
   if (silent.empty()) return {};
-  return {Warning("silent processes",
-                  "the rig's " + silent + " said nothing for " + Seconds(facts.seconds),
-                  "rgbdt up RIG  # runs all of them, and again where one dies")};
+  return {
+      Warning("silent processes",
+              "the rig's " + silent + " said nothing for " + Seconds(facts.seconds) +
+                  ": gone, not started, or at work",
+              "pgrep -af rgbdt  # on each machine; start what is missing: rgbdt-NAME, or, where "
+              "none runs, rgbdt up RIG")};
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ inline constexpr std::size_t kStampBytes = 24;
 
 /// Whether a process with a key signs what it sends on this channel, and takes nothing there that
 /// is not: what commands, decides and reports. Not what sensors measure and what is made of that
-/// alone (LINE_SCAN, ENCODER, CLOUD, images, RGBDT_CLOUD, RGBDT_SWEEP, POSE, TARGET_STATUS).
+/// alone (LINE_SCAN, ENCODER, CLOUD, images, RGBDT_CLOUD, RGBDT_SWEEP, POSE, ODOMETRY,
+/// TARGET_STATUS).
 bool IsSignedChannel(const std::string& channel);
 
 void AppendSignature(const Signature& signature, Bytes* message);

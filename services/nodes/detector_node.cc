@@ -128,9 +128,10 @@ Messages DetectorNode::Advance(Utime now) {
     looked_at_.reset();
   }
   if (now < look_from_) return {};
-  looked_at_ = now;
   try {
-    return LookAtNext();
+    Messages said = LookAtNext();
+    if (!said.empty()) looked_at_ = now;
+    return said;
   } catch (const std::exception& e) {
     Warn(std::string("looking for the board: ") + e.what());
     return {};

@@ -13,8 +13,8 @@ namespace {
 
 constexpr Utime kSilence = 5 * kMicrosecondsPerSecond;  // every STATUS comes at 1 Hz
 
-constexpr std::size_t kMostProcesses =
-    100;  // besides those that are needed: strangers make up names
+// Besides those that are needed: strangers make up names.
+constexpr std::size_t kMostProcesses = 100;
 
 constexpr std::int64_t kMissedWords = 3;  // of a process that was cut off, at 1 Hz
 

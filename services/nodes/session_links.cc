@@ -65,8 +65,10 @@ void SessionNode::OnClocks() {
   held_up_since_.reset();
   if (!waiting_ || idle()) return;
   const std::string why = "a machine's clock was set meanwhile";
-  if (step().kind == SessionStep::Kind::kSweep) spoiled_ = why;
-  if (step().kind == SessionStep::Kind::kCapture && !(has_view_ && IsDetected())) {
+  if (restarts_ == kMaxRestarts) return;
+  const SessionStep::Kind kind = step().kind;
+  if (kind == SessionStep::Kind::kSweep || kind == SessionStep::Kind::kWait) spoiled_ = why;
+  if (kind == SessionStep::Kind::kCapture && !(has_view_ && IsDetected()) && SweepBefore()) {
     TakeAgain(why, &restarts_, kMaxRestarts);
   }
 }

@@ -242,14 +242,21 @@ Messages SessionNode::Begin() {
 }
 
 // The sweep before the capture at hand, and the capture, once more.
-void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
-  collector_.GiveUp();
-  captures_.erase(command_);
+// The step before this one, waits aside; nothing: it is none that sweeps.
+std::optional<std::size_t> SessionNode::SweepBefore() const {
   std::size_t sweep = index_;
   while (sweep > 0 && (sweep == index_ || script_.steps[sweep].kind == SessionStep::Kind::kWait)) {
     --sweep;
   }
-  const bool can = script_.steps[sweep].kind == SessionStep::Kind::kSweep;
+  if (script_.steps[sweep].kind != SessionStep::Kind::kSweep) return std::nullopt;
+  return sweep;
+}
+
+void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
+  collector_.GiveUp();
+  captures_.erase(command_);
+  const std::optional<std::size_t> sweep = SweepBefore();
+  const bool can = sweep.has_value();
   if (!can || *tries == most) {
     Fail(why + (can ? "; given up after " + std::to_string(most + 1) + " sweeps"
                     : "; put sweep before capture, so that it can be taken again"));
@@ -263,7 +270,7 @@ void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
   unwritten_.Drop(view_);
   if (taken_.erase(view_) != 0) std::filesystem::remove_all(directory_ / "views" / view_, ignored);
   ++*tries;
-  index_ = sweep;
+  index_ = *sweep;
   waiting_ = false;
   Tell("view " + view_ + ": " + why + "; the sweep is taken again");
 }

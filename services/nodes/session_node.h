@@ -71,7 +71,9 @@ struct SessionProgress {
 /// lost. The view at hand is taken again, once all are heard, and the solver sent all it needs.
 /// Machines whose clocks are off, by anybody's STATUS, are named; no sweep of devices begins then,
 /// nor in the next kClocksSettle (drivers take 2 s to see that a clock was set forward). A view
-/// that is being taken is taken again: its stamps are of before and after.
+/// that is being taken when this is heard is taken again, as its stamps may be of before and after:
+/// a clock that went forward within two seconds, one that went back after five (LinkReport). One
+/// that swings is named, and ends no session.
 ///
 /// A solver that was started anew has no views. Where its STATUS counts fewer than it had, or its
 /// report was made without a view that was captured, it is sent all DETECTIONs and LEFT_OUT_VIEWS
@@ -155,6 +157,7 @@ class SessionNode : public Node {
   void SaveLeftOut(const LeftOutViews& left_out);
   void WriteToDisk();
   std::string NoRoom();
+  std::optional<std::size_t> SweepBefore() const;
   void TakeAgain(const std::string& why, int* tries, int most);
   void TakeTornAgain(const std::string& why) { TakeAgain(why, &retakes_, kMaxRetakes); }
   void Tell(const std::string& text);

@@ -36,13 +36,28 @@ bool Moves(const std::vector<StampedPose>& way) {
   });
 }
 
-// Where the rig was, by the sweeps of a spinning LIDAR; of a log that has POSE nothing. What cannot
-// be read is counted by who cuts.
-std::vector<StampedPose> WayOfSweeps(const std::string& log,
-                                     const std::function<void(double)>& progress) {
+// Between sweeps that lie farther apart nobody knows how the rig moved: it may have stood for each.
+bool IsDense(const std::vector<StampedPose>& way) {
+  constexpr Utime kApart = kMicrosecondsPerSecond / 4;
+  std::size_t near = 0;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    near += way[i].utime - way[i - 1].utime <= kApart ? 1 : 0;
+  }
+  return 2 * near > way.size();
+}
+
+struct WayOfSweeps {
+  std::vector<StampedPose> poses;     // empty: nothing tells, or it is one place
+  std::vector<std::string> problems;  // a line each
+};
+
+// Where the rig was, by the sweeps of a spinning LIDAR with times; of a log that has POSE nothing.
+// What cannot be read is counted by who cuts.
+WayOfSweeps FindWay(const std::string& log, const std::function<void(double)>& progress) {
   LogReader reader(log);
   OdometryNode odometry;
-  std::vector<StampedPose> way;
+  WayOfSweeps found;
+  std::vector<StampedPose>& way = found.poses;
   while (const auto event = reader.Next()) {
     if (progress) progress(ShareRead(reader));
     if (event->channel == "POSE") return {};
@@ -51,6 +66,8 @@ std::vector<StampedPose> WayOfSweeps(const std::string& log,
       const Message message = Decode(event->channel, event->bytes.data(), event->bytes.size());
       const auto* rig = std::get_if<RigText>(&message);
       if (rig != nullptr && ParseRig(rig->text, "RIG").lidar.turned_scanner) return {};
+      const auto* chunk = std::get_if<CloudChunk>(&message);
+      if (chunk != nullptr && chunk->cloud.utime.empty()) return {};
       for (const Message& answer : odometry.Handle(message)) {
         if (const auto* pose = std::get_if<StampedPose>(&answer)) way.push_back(*pose);
       }
@@ -58,7 +75,27 @@ std::vector<StampedPose> WayOfSweeps(const std::string& log,
       continue;
     }
   }
-  return Moves(way) ? way : std::vector<StampedPose>();
+  std::int64_t sweeps = 0;
+  for (const auto& [name, count] : odometry.GetStatus().counters) {
+    if (name == "sweeps") sweeps = count;
+    // The first sweep of each map has none.
+    if (count == 0 || (name == "without a place" && count < 2)) continue;
+    const bool tells =
+        name == "without a place" || name == "degenerate" || name == "maps begun anew";
+    if (tells) {
+      found.problems.push_back(
+          "the motion by the sweeps, as the log has no POSE: " + std::to_string(count) + " of " +
+          std::to_string(sweeps) + " " + name);
+    }
+  }
+  if (!way.empty() && !IsDense(way)) way.clear();
+  if (way.empty()) {
+    found.problems = {"neither POSE nor the sweeps tell how the rig moved: it is taken to stand"};
+  } else if (!Moves(way)) {
+    found = {};
+  }
+  if (sweeps < 2) found.problems.clear();
+  return found;
 }
 
 class Cutter {
@@ -153,8 +190,9 @@ class Cutter {
     const std::optional<Cloud> sweep = shots_.Complete(name);
     // While the rig moves a sweep with an image of its own time, unless none comes for as long
     // again: what hides what is as the sweep has it.
-    const bool waits = shots_.has_poses() && name < due_ + options_.every;
-    if (sweep && Write(*sweep, waits)) due_ = name + options_.every;
+    if (!sweep) return;
+    const bool waits = shots_.has_poses() && !sweep->utime.empty() && name < due_ + options_.every;
+    if (Write(*sweep, waits)) due_ = name + options_.every;
     if (taken_.size() > options_.most_sweeps) Thin();
   }
 
@@ -170,17 +208,16 @@ class Cutter {
     return digits + ("-" + camera);
   }
 
-  // `own_time`: only where an image was taken while it was swept.
+  // `own_time`: only of cameras whose image was taken while it was swept.
   bool Write(const Cloud& sweep, bool own_time) {
     std::vector<std::pair<std::string, TakenShot>> shots;
-    bool of_own_time = false;
     for (const CameraSpec& camera : rig_->cameras) {
       std::optional<TakenShot> shot = shots_.ShotOf(sweep, camera, PoseOf(camera));
       if (!shot) continue;
-      of_own_time |= shot->taken >= sweep.sweep_utime && shot->taken <= NewestOf(sweep);
+      if (own_time && (shot->taken < sweep.sweep_utime || shot->taken > NewestOf(sweep))) continue;
       shots.emplace_back(camera.name, std::move(*shot));
     }
-    if (shots.empty() || (own_time && !of_own_time)) return false;
+    if (shots.empty()) return false;
     Taken taken;
     taken.number = ++number_;
     for (auto& [camera, shot] : shots) {
@@ -240,9 +277,9 @@ CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir
       if (progress) progress(from + 0.5 * share);
     };
   };
-  const std::vector<StampedPose> way = WayOfSweeps(log, part(0));
+  const WayOfSweeps way = FindWay(log, part(0));
   LogReader reader(log);
-  Cutter cutter(dir, options, way);
+  Cutter cutter(dir, options, way.poses);
   std::size_t dropped = 0;
   std::string last_problem;
   while (const auto event = reader.Next()) {
@@ -256,7 +293,8 @@ CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir
     part(0.5)(ShareRead(reader));
   }
   CutDrive cut = cutter.Finish(log);
-  cut.by_odometry = !way.empty();
+  cut.by_odometry = !way.poses.empty();
+  cut.problems = way.problems;
   if (dropped > 0) {
     cut.problems.push_back(std::to_string(dropped) +
                            " messages dropped; the last: " + last_problem);

@@ -14,6 +14,7 @@
 #include "calib/model/text.h"
 #include "calib/scan_assembly/sweep_chunks.h"
 #include "calib/simulate/driving.h"
+#include "calib/simulate/imperfections.h"
 #include "calib/simulate/waving.h"
 #include "services/import/timed_log.h"
 #include "services/replay/drive_map.h"
@@ -119,7 +120,8 @@ void SimulateWave(const std::filesystem::path& dir, const simulate::Options& opt
   const auto clocks = simulate::DrawClocks(options);
   simulate::Waving waving(options, wave, clocks);
   const Rig rig = WrittenRig(dir, waving.rig());
-  WriteTruth(dir / "truth.textproto", waving.truth(), simulate::ClocksText(options, clocks));
+  WriteTruth(dir / "truth.textproto", waving.truth(),
+             simulate::ClocksText(options, clocks) + simulate::ImperfectionsText(options));
   RigLog log(dir / "wave.lcmlog", rig, std::nullopt, seconds);
   auto shutters = ShuttersOf(rig, kColor_hz, kThermal_hz, wave.start);
   const Utime revolution = FromSeconds(options.spinning->revolution_s);

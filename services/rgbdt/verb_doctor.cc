@@ -102,7 +102,7 @@ std::vector<std::string> ProgramsExpected(const std::string& file, const BusFact
     UpOptions options;
     if (speaks("monitor") || speaks("odometry") || speaks("mapper")) options.drive = "drive";
     for (const Program& program : ProgramsOf(rig, options)) {
-      if (program.speaks) names.push_back(program.name);
+      if (program.speaks && !program.ends) names.push_back(program.name);
     }
   } catch (const InputError&) {  // CheckRig tells
   }
@@ -120,11 +120,19 @@ Findings CheckSpeakers(const DoctorFlags& flags) {
   }
 }
 
+// Whether the bus can be opened, and what is sent there comes back.
+bool CanBeHeard(const Findings& findings) {
+  return std::none_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.level == Finding::Level::kProblem &&
+           (finding.check == "LCM URL" || finding.check == "multicast");
+  });
+}
+
 int RunDoctor(const DoctorFlags& flags) {
   const SystemRoots roots;
   const std::vector<NetworkInterface> interfaces = ListInterfaces();
   Findings findings = CheckMachine(roots, flags.url, interfaces);
-  if (flags.listen > 0) Append(CheckSpeakers(flags), &findings);
+  if (flags.listen > 0 && CanBeHeard(findings)) Append(CheckSpeakers(flags), &findings);
   if (!flags.rig.empty()) Append(CheckRig(roots, flags.rig, interfaces), &findings);
   std::fputs(FindingsText(findings).c_str(), stdout);
   return EndsWith(!HasProblem(findings));

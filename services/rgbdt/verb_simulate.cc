@@ -98,11 +98,15 @@ int RunLog(SimulateFlags flags) {
   if (flags.wave > 0 && flags.drive > 0) throw UsageError("--wave and --drive: one of them");
   const bool others = flags.options.natural.on || flags.board || flags.full_turn ||
                       flags.scanner_error || flags.options.scanner.encoder_delay_s != 0 ||
-                      !flags.further.empty() || (flags.drive > 0 && !flags.target.empty());
+                      !flags.further.empty() ||
+                      (flags.drive > 0 && (flags.imperfect || !flags.target.empty()));
   if (others) {
     throw UsageError(
         "a log is of one spinning LIDAR, of a board that is waved or of a drive without one; leave "
         "the other options out");
+  }
+  if (std::filesystem::exists(std::filesystem::path(flags.dir) / "views")) {
+    throw InputError(flags.dir + " is a session; a log wants a folder of its own");
   }
   SetTarget(flags.target, &flags.options.board);
   // By its rings; the turned scanner is the views' usual one.

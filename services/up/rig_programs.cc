@@ -107,7 +107,9 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
   const std::string file = options.rig.string();
   for (const CameraSpec& camera : rig.cameras) {
     if (!camera.device) continue;
-    add("camera-" + camera.name, "camera", {"--rig", file, "--camera", camera.name});
+    add("camera-" + camera.name, "camera",
+        {"--rig", file, "--camera", camera.name, "--captures",
+         (options.out / "").parent_path().string() + ".captures"});
   }
   if (rig.lidar.device.index() != 0) {
     add("lidar", "lidar", {"--rig", file});

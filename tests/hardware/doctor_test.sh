@@ -121,8 +121,9 @@ doctor
 grep -q '^WARNING  process fuser: waits for the rig (RIG)' "$scratch/output" ||
   fail_with_output "it does not say what the fuser waits for"
 doctor --rig "$scratch/rig.textproto"
-finds WARNING "silent processes" "detector" "viewer" "rgbdt up"
+finds WARNING "silent processes" "detector" "viewer" "pgrep"
 start second "$bin/rgbdt-fuser"
+listen=6
 doctor
 finds PROBLEM "process fuser" "two programs of this name"
 [ "$code" = 1 ] || fail "exit code $code with two fusers"

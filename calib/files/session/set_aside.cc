@@ -30,8 +30,7 @@ bool PreviousIsThere(const fs::path& dir) {
 }
 
 bool IsThatCamera(const Calibration& earlier, const CameraSpec& spec) {
-  if (!earlier.sensors) return true;
-  const CameraSpec* camera = earlier.sensors->FindCamera(spec.name);
+  const CameraSpec* camera = earlier.sensors ? earlier.sensors->FindCamera(spec.name) : nullptr;
   return camera != nullptr && camera->kind == spec.kind && camera->width == spec.width &&
          camera->height == spec.height;
 }

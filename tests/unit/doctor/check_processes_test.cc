@@ -35,8 +35,9 @@ TEST(DoctorProcesses, WhatEachDoesAndWhichIsSilent) {
   const BusFacts facts = Bus({Process("fuser", "20 clouds"), Process("solver", "3 views")});
   EXPECT_THAT(CheckProcesses(facts, {"fuser", "solver"}),
               ElementsAre(Says(kOk, "20 clouds", ""), Says(kOk, "3 views", "")));
-  EXPECT_THAT(CheckProcesses(facts, {"detector", "fuser", "viewer"}),
-              ElementsAre(Is(kOk), Is(kOk), Says(kWarning, "detector, viewer", "rgbdt up")));
+  EXPECT_THAT(
+      CheckProcesses(facts, {"detector", "fuser", "viewer"}),
+      ElementsAre(Is(kOk), Is(kOk), Says(kWarning, "detector, viewer", "start what is missing")));
 }
 
 TEST(DoctorProcesses, WhatWaits) {
