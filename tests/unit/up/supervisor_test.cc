@@ -176,8 +176,9 @@ TEST(RigPrograms, AreThoseOfItsDevicesAndTheSession) {
   EXPECT_THAT(names(), ElementsAre("camera-rgb", "lidar", "motor", "assembler", "detector",
                                    "solver", "fuser", "session", "viewer"));
   const std::vector<Program> all = ProgramsOf(rig, options);
-  EXPECT_THAT(all[0].arguments, ElementsAre("/bin/rgbdt-camera", "--rig", "rig.textproto",
-                                            "--camera", "rgb", "--lcm-url", "udpm://"));
+  EXPECT_THAT(all[0].arguments,
+              ElementsAre("/bin/rgbdt-camera", "--rig", "rig.textproto", "--camera", "rgb",
+                          "--captures", "out.captures", "--lcm-url", "udpm://"));
   EXPECT_THAT(all[7].arguments, ElementsAre("/bin/rgbdt-session", "--rig", "rig.textproto", "--out",
                                             "out", "--lcm-url", "udpm://"));
   EXPECT_TRUE(all[7].ends);
