@@ -8,6 +8,7 @@
 #include "calib/methods/gradient_orientation/by_gradient_orientation.h"
 #include "calib/methods/mutual_information/by_mutual_information.h"
 #include "calib/methods/natural/direction_words.h"
+#include "calib/methods/natural/shot_places.h"
 #include "calib/model/errors.h"
 #include "calib/model/stopwatch.h"
 #include "calib/solve/colouring.h"
@@ -31,18 +32,23 @@ std::vector<Shot> Spread(const std::vector<Shot>& shots, std::size_t most) {
 
 CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views, std::size_t most) {
   CameraShots shots;
+  bool places = true;
   for (const View& view : views) {
     const auto image = std::find_if(view.images.begin(), view.images.end(),
                                     [&](const Image& one) { return one.camera == camera; });
     if (image == view.images.end()) continue;
-    (view.heldout ? shots.heldout : shots.used).push_back({view.name, &view.cloud, &*image});
+    places &= view.map_from_lidar.has_value();
+    (view.heldout ? shots.heldout : shots.used)
+        .push_back({view.name, &view.cloud, &*image, {0, view.map_from_lidar.value_or(Rigid3())}});
   }
   // A result that nothing was left out to judge by may be worse than the start.
   if (shots.heldout.empty() && shots.used.size() > 1) {
     shots.heldout.push_back(shots.used.back());
     shots.used.pop_back();
   }
-  return {Spread(shots.used, most), Spread(shots.heldout, most)};
+  shots = {Spread(shots.used, most), Spread(shots.heldout, most)};
+  if (!places) FindPlaces(&shots.used);
+  return shots;
 }
 
 std::vector<std::string> NamesOf(const std::vector<Shot>& shots) {

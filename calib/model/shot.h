@@ -10,12 +10,20 @@
 
 namespace rgbdt {
 
+/// Where the LIDAR was, in axes that all shots of the same world have in common. How worlds lie to
+/// each other is not known. By default the rig stood for all shots.
+struct ShotPlace {
+  int world = 0;
+  Rigid3 world_from_lidar;
+};
+
 /// A sweep and one camera's image of the same moment: what methods without a target are made from.
 /// The rig stood still meanwhile, or motion was taken out. Both outlive the shot.
 struct Shot {
   std::string view;  ///< for messages
   const Cloud* cloud = nullptr;
   const Image* image = nullptr;
+  ShotPlace place{};
 };
 
 /// Parts of an image by which it is said where something was seen: so many columns and rows.

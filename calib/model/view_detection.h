@@ -207,6 +207,8 @@ struct View {
   std::vector<Image> images;  ///< one a camera
   std::vector<CornerSelection> picks;
   std::vector<LidarCloud> further_clouds{};  ///< of further LIDARs, those that there are
+  /// Where the LIDAR was, in axes common to the session's views; absent: not known.
+  std::optional<Rigid3> map_from_lidar{};
 };
 
 }  // namespace rgbdt

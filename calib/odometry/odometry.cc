@@ -335,4 +335,29 @@ void Odometry::CheckTimes(const Cloud& message) { odometry::CheckMessageTimes(me
 
 OdometryResult Odometry::Add(const Cloud& sweep) { return impl_->Add(sweep); }
 
+std::vector<StopPlace> Odometry::FindStops(const std::vector<const Cloud*>& sweeps,
+                                           const OdometryOptions& options) {
+  options.Check();
+  Impl impl(options);
+  std::vector<StopPlace> places;
+  int world = -1;
+  for (const Cloud* cloud : sweeps) {
+    Cloud standing = *cloud;
+    standing.utime.clear();
+    TimedSweep sweep = odometry::TimeSweep(standing, options);
+    sweep.turned = true;
+    impl.last = sweep.first + 1;  // nobody drives on from one to the next
+    OdometryResult found;
+    if (impl.begun) impl.FollowTurned(standing, sweep, &found);
+    if (!found.converged) {
+      ++world;
+      impl.motion.world_from_lidar = Rigid3();
+      impl.begun = sweep.points.size() >= kFewestPoints;
+      if (impl.begun) impl.Begin(sweep);
+    }
+    places.push_back({world, found.converged ? found.world_from_lidar : Rigid3()});
+  }
+  return places;
+}
+
 }  // namespace rgbdt

@@ -63,6 +63,13 @@ struct OdometryResult {
   int iterations = 0;
 };
 
+/// Where a LIDAR stood for a sweep, in the axes of all stops of the same world: those of the first
+/// one. How worlds lie to each other is not known.
+struct StopPlace {
+  int world = 0;
+  Rigid3 world_from_lidar;
+};
+
 /// Where a LIDAR is, from its sweeps alone: each is registered, points to planes, to a map of the
 /// sweeps before. A spinning LIDAR moves while it sweeps. The rig of a turned scanner, whose sweeps
 /// last longer than kMostSweep, stands for the first; then it either stands for each and goes on by
@@ -94,6 +101,13 @@ class Odometry {
   /// which is not newer than the one before (more than ten seconds older: the clock was set back,
   /// and the map is begun anew).
   OdometryResult Add(const Cloud& sweep);
+
+  /// Where a LIDAR of any kind stood for each of some sweeps, in the order in which it came by,
+  /// upright within some degrees: each is registered to the map of those before (README, "Stop and
+  /// scan"). One that fits nowhere, or has too few points, begins a world of its own. When they
+  /// were taken is not looked at.
+  static std::vector<StopPlace> FindStops(const std::vector<const Cloud*>& sweeps,
+                                          const OdometryOptions& options = {});
 
  private:
   struct Impl;

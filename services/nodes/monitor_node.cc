@@ -93,8 +93,10 @@ Messages MonitorNode::Look(const Cloud& sweep) {
       continue;
     }
     shot->image.utime = shot->taken;
-    const MountCheck check =
-        watch.Add({std::to_string(sweep.sweep_utime), &shot->cloud, &shot->image});
+    const MountCheck check = watch.Add({std::to_string(sweep.sweep_utime),
+                                        &shot->cloud,
+                                        &shot->image,
+                                        {0, shot->map_from_lidar.value_or(Rigid3())}});
     const auto before = newest_.find(camera);
     const bool is_alarm = check.state == MountState::kMoved || check.state == MountState::kLost;
     if (is_alarm && (before == newest_.end() || before->second.state != check.state)) {

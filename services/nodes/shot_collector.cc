@@ -80,7 +80,7 @@ std::optional<TakenShot> ShotCollector::ShotOf(const Cloud& sweep, const CameraS
   }
   std::optional<Cloud> still = AsSeenAt(sweep, poses_, nearest->taken);
   if (!still) return std::nullopt;
-  return TakenShot{std::move(*still), nearest->image, nearest->taken};
+  return TakenShot{std::move(*still), nearest->image, nearest->taken, poses_.At(nearest->taken)};
 }
 
 }  // namespace rgbdt

@@ -19,7 +19,8 @@ namespace rgbdt {
 struct TakenShot {
   Cloud cloud;
   Image image;
-  Utime taken = 0;  ///< the LIDAR's time of the image
+  Utime taken = 0;                         ///< the LIDAR's time of the image
+  std::optional<Rigid3> map_from_lidar{};  ///< then; absent: no pose tells
 };
 
 /// Sweeps and images of a rig that drives, put together as they come, without a capture. To a sweep

@@ -225,6 +225,7 @@ class Cutter {
       view.name = NameOf(taken.number, camera);
       view.heldout = taken.number % 3 == 0;
       view.cloud = std::move(shot.cloud);
+      view.map_from_lidar = shot.map_from_lidar;
       view.images.push_back(std::move(shot.image));
       WriteView(dir_, view);
       taken.cameras.push_back(camera);

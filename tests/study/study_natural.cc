@@ -14,6 +14,7 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/natural/by_scene.h"
+#include "calib/methods/natural/shot_places.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/model/stopwatch.h"
 #include "tests/study/starts.h"
@@ -63,6 +64,7 @@ void Run(const std::vector<std::string>& a) {
           }
         }
       }
+      FindPlaces(&shots);
       for (int i = 0; i < starts; ++i) {
         const Rigid3& right = truth.camera_from_lidar.at(camera.name);
         const Rigid3 start = OffBy(right, rotation, translation, &random);

@@ -248,6 +248,9 @@ View Read(const Session& session, const std::string& view, WithCloud with_cloud)
   View result;
   result.name = view;
   result.heldout = message.has_heldout() ? message.heldout() : file.index % 3 == 2;
+  if (message.has_map_from_lidar()) {
+    result.map_from_lidar = ToRigid3(message.map_from_lidar(), place.In("map_from_lidar"));
+  }
   for (int i = 0; i < message.image_size(); ++i) {
     const Place at = place.In("image", i);
     result.images.push_back(ReadImage(message.image(i), session.rig, file.folder, at));

@@ -16,9 +16,6 @@ constexpr double kCoarsestSigmaPx = 5;  // of a level's pixels
 constexpr int kFineReachPx = 8;
 // Sigma of an image edge about its rim: what lies outside of these is chance that was learned.
 constexpr double kLeastEdgePx = 0.6, kMostEdgePx = 2.5;
-// Share of the jackknife's variance that counts beside the information's: by poses in simulated
-// streets and rooms (`scripts/study natural`).
-constexpr double kOfJackknife = 0.5;
 constexpr double kLeastStepRad = 0.01, kMostStepRad = 0.035;  // between turned starts
 constexpr std::size_t kTried = 8, kKept = 4;  // of poses that are looked at side by side
 
@@ -272,7 +269,7 @@ SceneMatrix CovarianceOf(const SceneSums& sums, const SceneMatrix& information,
     expected += SolveSymmetric(with, own).trace();
   }
   *factor = expected > 0 ? std::max(1.0, squares / expected) : 1;
-  return kOfJackknife * jackknife + *factor * InverseOfSymmetric(told);
+  return jackknife + *factor * InverseOfSymmetric(told);
 }
 
 std::vector<SceneAlignment::Direction> DirectionsOf(const Matrix6d& covariance,

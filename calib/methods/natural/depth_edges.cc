@@ -275,6 +275,13 @@ std::vector<DepthEdge> FindDepthEdges(const Cloud& cloud, const DepthEdgeOptions
   const Rims rims(grid, found, options);
   const std::vector<int> things = rims.Numbers(false);
   const std::vector<int> numbers = rims.Numbers(true);
+  // How bright surfaces are changes less along a rim than single beams' intensities say: with those
+  // the beam's width, as a regression on what is noisy, would come out too small.
+  std::vector<double> reach(found.size(), 0), count(found.size(), 0);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    reach[static_cast<std::size_t>(numbers[i])] += found[i].edge.reach;
+    count[static_cast<std::size_t>(numbers[i])] += 1;
+  }
   std::vector<DepthEdge> edges;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const auto along = rims.Along(i);
@@ -283,6 +290,8 @@ std::vector<DepthEdge> FindDepthEdges(const Cloud& cloud, const DepthEdgeOptions
     edges.back().along = *along;
     edges.back().thing = things[i];
     edges.back().rim = numbers[i];
+    const auto rim = static_cast<std::size_t>(numbers[i]);
+    edges.back().reach = reach[rim] / count[rim];
   }
   return edges;
 }

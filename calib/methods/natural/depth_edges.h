@@ -22,7 +22,8 @@ struct DepthEdge {
   Eigen::Vector3d along =
       Eigen::Vector3d::Zero();  ///< unit, along the rim, as the neighbouring edges have it
   /// How far beyond the rim, in half-widths of the beam (-1 to 1), a beam's middle may point and
-  /// still return the nearer surface: where it meets both, the one that sends more light back.
+  /// still return the nearer surface: where it meets both, the one that sends more light back. On
+  /// average over the rim.
   double reach = 0;
   /// Column of the nearer beam of edges within a row, row of those across rows: edges of one rim in
   /// the same place have the same error within +-across.

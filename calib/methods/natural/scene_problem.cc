@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "calib/camera/camera.h"
@@ -67,65 +65,6 @@ std::vector<DepthEdge> Thinned(std::vector<DepthEdge> edges, std::size_t most) {
   return kept;
 }
 
-/// Rims by their numbers; a rig that stands still sees the same ones in all shots.
-class RimNumbers {
- public:
-  /// Of each edge of a shot.
-  std::vector<int> Of(const std::vector<DepthEdge>& edges) {
-    std::map<int, Sums> own;
-    for (const DepthEdge& edge : edges) own[edge.rim].Add(edge);
-    std::map<int, int> numbers, things;
-    const std::size_t before = known_.size();
-    for (const auto& [number, sums] : own) numbers[number] = Known(sums.Rim(), before);
-    // A thing is called as the first of its rims.
-    for (const DepthEdge& edge : edges) {
-      SceneRim& rim = known_[static_cast<std::size_t>(numbers[edge.rim])];
-      if (rim.thing < 0) rim.thing = things.emplace(edge.thing, numbers[edge.rim]).first->second;
-      things.emplace(edge.thing, rim.thing);
-    }
-    std::vector<int> out;
-    out.reserve(edges.size());
-    for (const DepthEdge& edge : edges) out.push_back(numbers[edge.rim]);
-    return out;
-  }
-  std::vector<SceneRim> Take() { return std::move(known_); }
-
- private:
-  struct Sums {
-    Vector3d middle = Vector3d::Zero(), across = Vector3d::Zero();
-    double aside_rad = 0, count = 0;
-    std::set<int> places;
-
-    void Add(const DepthEdge& edge) {
-      middle += edge.point;
-      across += edge.across;
-      const Vector3d aside = edge.across - edge.across.dot(edge.along) * edge.along;
-      aside_rad += aside.norm() / edge.point.norm();
-      places.insert(edge.place);
-      ++count;
-    }
-    // A rim that runs through many places between beams averages its edges' errors.
-    SceneRim Rim() const {
-      const double places_n = static_cast<double>(places.size());
-      return {middle / count, across / count, aside_rad / count / std::sqrt(3.0) / places_n, -1};
-    }
-  };
-
-  // Its number among those of earlier shots, or a new one.
-  int Known(const SceneRim& rim, std::size_t before) {
-    const double near = 0.05 + 0.02 * rim.middle.norm();
-    for (std::size_t i = 0; i < before; ++i) {
-      if ((known_[i].middle - rim.middle).norm() < near && known_[i].across.dot(rim.across) > 0) {
-        return static_cast<int>(i);
-      }
-    }
-    known_.push_back(rim);
-    return static_cast<int>(known_.size() - 1);
-  }
-
-  std::vector<SceneRim> known_;
-};
-
 /// What one rim adds: the equations with its own shift as a further unknown.
 struct RimSums {
   SceneMatrix information = SceneMatrix::Zero();
@@ -141,14 +80,6 @@ struct ThingSums {
   SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
   double shift_information = 0, shift_gradient = 0;
 };
-
-/// Part of the surroundings in which something lies. A thing is seen from view to view in about the
-/// same one, and what an image shows of it is wrong in all of them alike.
-std::pair<int, int> PlaceOf(const Vector3d& point) {
-  constexpr double kWideRad = 0.12;
-  return {static_cast<int>(std::floor(std::atan2(point.y(), point.x()) / kWideRad)),
-          static_cast<int>(std::floor(std::asin(point.z() / point.norm()) / kWideRad))};
-}
 
 /// The shifts eliminated (Schur): each rim's about its thing's, then each thing's.
 void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& known,
@@ -171,7 +102,6 @@ void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& kn
     thing.shown = true;
   }
   const double prior = 1 / std::pow(look.thing_sigma_rad, 2);
-  std::map<std::pair<int, int>, std::pair<SceneMatrix, SceneVector>> places;
   for (std::size_t i = 0; i < things.size(); ++i) {
     const ThingSums& thing = things[i];
     const double information = thing.shift_information + prior;
@@ -181,15 +111,10 @@ void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& kn
     const SceneMatrix own =
         thing.information - thing.with_shift * thing.with_shift.transpose() / information;
     sums->information += own;
-    auto& place =
-        places.try_emplace(PlaceOf(known[i].middle), SceneMatrix::Zero(), SceneVector::Zero())
-            .first->second;
-    place.first += own;
-    place.second += gradient;
     sums->gradient += gradient;
+    sums->parts.emplace_back(own, gradient);
     sums->things += thing.shift_information / information;
   }
-  for (auto& [where, part] : places) sums->parts.push_back(std::move(part));
 }
 
 class Summing {
@@ -290,6 +215,7 @@ std::shared_ptr<const SceneShot> PrepareShot(const CameraSpec& camera, const Sho
                                              int levels) {
   CheckImage(camera, *shot.image);
   auto ready = std::make_shared<SceneShot>();
+  ready->place = shot.place;
   ready->edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
   const cv::Mat grey = ToGrey(*shot.image);
   for (int level = 0; level < levels; ++level) {
@@ -318,12 +244,12 @@ std::vector<std::shared_ptr<const SceneShot>> Prepared(const CameraSpec& camera,
 SceneProblem::SceneProblem(const CameraSpec& camera,
                            const std::vector<std::shared_ptr<const SceneShot>>& shots)
     : spec_(camera) {
-  RimNumbers numbers;
+  KnownRims known;
   for (const auto& shot : shots) {
-    parts_.push_back({shot, numbers.Of(shot->edges)});
+    parts_.push_back({shot, known.Add(shot->edges, shot->place)});
     levels_ = static_cast<int>(shot->pictures.size());
   }
-  rims_ = numbers.Take();
+  rims_ = known.rims();
 }
 
 SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,

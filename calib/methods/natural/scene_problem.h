@@ -8,6 +8,7 @@
 
 #include "calib/methods/natural/depth_edges.h"
 #include "calib/methods/natural/image_rims.h"
+#include "calib/methods/natural/known_rims.h"
 #include "calib/model/lens.h"
 #include "calib/model/rig.h"
 #include "calib/model/rigid3.h"
@@ -64,21 +65,14 @@ struct SceneSums {
   double matched = 0;                       ///< of these, how many are shown, in expectation
   std::array<double, kImageParts> where{};  ///< of those that are shown, by part of the image
   double squares = 0;  ///< of their residuals, less what beams' spacing makes [px^2 of the level]
-  /// By place of the surroundings: its part of information and gradient.
+  /// By thing: its part of information and gradient.
   std::vector<std::pair<SceneMatrix, SceneVector>> parts;
   double things = 0;  ///< that tell, in expectation
 };
 
-/// A rim of a thing.
-struct SceneRim {
-  Eigen::Vector3d middle;  ///< of its edges, LIDAR frame [m]
-  Eigen::Vector3d across;  ///< of its edges, outwards [m]
-  double common_rad = 0;   ///< 1 sigma of what its edges' places between their beams have in common
-  int thing = 0;           ///< the same number for rims of the same thing
-};
-
 /// What of a shot does not depend on the pose: the cloud's depth edges and the image's, by level.
 struct SceneShot {
+  ShotPlace place;
   std::vector<DepthEdge> edges;
   std::vector<ImageRims> pictures;
 };

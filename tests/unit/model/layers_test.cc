@@ -38,7 +38,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"calib/methods/gradient_orientation",
        {"calib/camera", "calib/detect/cloud", "calib/methods/scene"}},
       {"calib/methods/edge_grid", {"calib/camera", "calib/detect/cloud", "calib/methods/scene"}},
-      {"calib/methods/natural", {"calib/camera", "calib/detect/cloud"}},
+      {"calib/methods/natural", {"calib/camera", "calib/detect/cloud", "calib/odometry"}},
       {"calib/methods",
        {"calib/camera", "calib/detect", "calib/detect/image", "calib/detect/cloud", "calib/solve",
         "calib/methods/paper", "calib/methods/plane", "calib/methods/line_scan",
