@@ -340,22 +340,27 @@ std::vector<StopPlace> Odometry::FindStops(const std::vector<const Cloud*>& swee
   options.Check();
   Impl impl(options);
   std::vector<StopPlace> places;
-  int world = -1;
+  int worlds = 0, world = 0;
+  std::size_t in_world = 0;
   for (const Cloud* cloud : sweeps) {
     Cloud standing = *cloud;
     standing.utime.clear();
     TimedSweep sweep = odometry::TimeSweep(standing, options);
     sweep.turned = true;
-    impl.last = sweep.first + 1;  // nobody drives on from one to the next
-    OdometryResult found;
-    if (impl.begun) impl.FollowTurned(standing, sweep, &found);
-    if (!found.converged) {
-      ++world;
-      impl.motion.world_from_lidar = Rigid3();
-      impl.begun = sweep.points.size() >= kFewestPoints;
-      if (impl.begun) impl.Begin(sweep);
+    if (impl.begun && impl.Found(sweep)) {
+      ++in_world;
+      places.push_back({world, impl.motion.world_from_lidar});
+      continue;
     }
-    places.push_back({world, found.converged ? found.world_from_lidar : Rigid3()});
+    places.push_back({worlds++, {}});
+    // Of two that do not fit neither is better than the other: the newer one leads on.
+    if (impl.begun && in_world > 1) continue;
+    impl.motion.world_from_lidar = Rigid3();
+    impl.begun = sweep.points.size() >= kFewestPoints;
+    if (!impl.begun) continue;
+    impl.Begin(sweep);
+    world = places.back().world;
+    in_world = 1;
   }
   return places;
 }

@@ -104,8 +104,8 @@ class Odometry {
 
   /// Where a LIDAR of any kind stood for each of some sweeps, in the order in which it came by,
   /// upright within some degrees: each is registered to the map of those before (README, "Stop and
-  /// scan"). One that fits nowhere, or has too few points, begins a world of its own. When they
-  /// were taken is not looked at.
+  /// scan"); where it fits two places about as well, the better one is taken. One that fits
+  /// nowhere, or has too few points, is a world of its own. When they were taken is not looked at.
   static std::vector<StopPlace> FindStops(const std::vector<const Cloud*>& sweeps,
                                           const OdometryOptions& options = {});
 

@@ -47,7 +47,8 @@ bool IsDense(const std::vector<StampedPose>& way) {
 }
 
 struct WayOfSweeps {
-  std::vector<StampedPose> poses;     // empty: nothing tells, or it is one place
+  std::vector<StampedPose> poses;  // empty: nothing tells, or it is one place
+  bool unknown = false;
   std::vector<std::string> problems;  // a line each
 };
 
@@ -89,12 +90,10 @@ WayOfSweeps FindWay(const std::string& log, const std::function<void(double)>& p
     }
   }
   if (!way.empty() && !IsDense(way)) way.clear();
-  if (way.empty()) {
-    found.problems = {"neither POSE nor the sweeps tell how the rig moved: it is taken to stand"};
-  } else if (!Moves(way)) {
-    found = {};
-  }
-  if (sweeps < 2) found.problems.clear();
+  if (sweeps < 2 || (!way.empty() && !Moves(way))) return {};
+  if (!way.empty()) return found;
+  found.unknown = true;
+  found.problems = {"neither POSE nor the sweeps tell how the rig moved: it is taken to stand"};
   return found;
 }
 
@@ -295,6 +294,7 @@ CutDrive CutIntoSession(const std::string& log, const std::filesystem::path& dir
   }
   CutDrive cut = cutter.Finish(log);
   cut.by_odometry = !way.poses.empty();
+  cut.motion_unknown = way.unknown;
   cut.problems = way.problems;
   if (dropped > 0) {
     cut.problems.push_back(std::to_string(dropped) +

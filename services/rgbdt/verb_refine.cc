@@ -76,9 +76,14 @@ std::vector<ViewDetection> WithoutBoards(const Report& report) {
   return detections;
 }
 
+struct Opened {
+  Session session;
+  std::string cannot_tell;  // what would bend the result, see CameraReport
+};
+
 // Of a log, the session that is cut out of it.
-Session SessionOf(const RefineFlags& flags) {
-  if (!std::filesystem::is_regular_file(flags.dir)) return OpenSession(flags.dir);
+Opened SessionOf(const RefineFlags& flags) {
+  if (!std::filesystem::is_regular_file(flags.dir)) return {OpenSession(flags.dir), ""};
   const std::filesystem::path drive = PathOr(flags.out, "out/refine") / "drive";
   if (std::filesystem::exists(drive)) {
     throw InputError(drive.string() +
@@ -101,7 +106,10 @@ Session SessionOf(const RefineFlags& flags) {
     PrintProgress("the log has no POSE: the rig's motion is that which the sweeps tell");
   }
   PrintProgress(std::to_string(cut.sweeps) + " sweeps of the log, as a session: " + drive.string());
-  return OpenSession(drive);
+  return {OpenSession(drive),
+          cut.motion_unknown ? "Nothing in the log tells how the rig moved; had it driven, the "
+                               "result would be wrong. Record sweeps without gaps, or POSE."
+                             : ""};
 }
 
 int RunRefine(RefineFlags flags) {
@@ -112,7 +120,7 @@ int RunRefine(RefineFlags flags) {
   }
   flags.options.join_start = !flags.prior.empty();
   flags.options.Check();
-  const Session session = SessionOf(flags);
+  const auto [session, cannot_tell] = SessionOf(flags);
   const bool is_log = std::filesystem::is_regular_file(flags.dir);
   const std::filesystem::path out = !flags.out.empty() ? std::filesystem::path(flags.out)
                                     : is_log           ? session.root.parent_path()
@@ -125,6 +133,7 @@ int RunRefine(RefineFlags flags) {
   std::filesystem::create_directories(out);
   SetAside(out);
   Report report = Refine(session.rig, read.views, start, flags.options);
+  for (CameraReport& camera : report.cameras) camera.cannot_tell = cannot_tell;
   const std::string wrote = WriteIfSolved(out, session.rig, report);
   const auto truth = TruthPath(flags.truth, session.root);
   if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));

@@ -66,6 +66,7 @@ struct Odometry::Impl {
 
   // Turned scanners.
   void FollowTurned(const Cloud& cloud, const odometry::TimedSweep& sweep, OdometryResult* result);
+  bool Found(const odometry::TimedSweep& stop);
   std::string WhyNotTurned(std::size_t selected, const odometry::Registration& found,
                            const odometry::Motion& before) const;
   bool Drive(const Cloud& cloud, const odometry::TimedSweep& sweep, double stood,

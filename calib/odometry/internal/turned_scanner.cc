@@ -59,6 +59,22 @@ std::string Odometry::Impl::WhyNotTurned(std::size_t selected, const Registratio
   return why;
 }
 
+// Whether it stood somewhere near the last stop; then the map has it. Where it fits two places
+// about as well, it is the better one.
+bool Odometry::Impl::Found(const TimedSweep& stop) {
+  const Motion before = odometry::AfterStop(motion, lost);
+  const Registration best = odometry::FindStop(stop, map, before, lost, options).best;
+  const std::size_t selected = stop.selected.size();
+  if (!WhyNotTurned(selected, best, before).empty()) {
+    Lose(stop, 0);
+    return false;
+  }
+  OdometryResult ignored;
+  Place(best, selected, &ignored);
+  Grow(stop);
+  return true;
+}
+
 // A rig that stood for the sweep, or one that drove on meanwhile.
 void Odometry::Impl::FollowTurned(const Cloud& cloud, const TimedSweep& sweep,
                                   OdometryResult* result) {

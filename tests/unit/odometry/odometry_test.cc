@@ -288,6 +288,41 @@ TEST(Odometry, ATurnedScannersSweepFromElsewhereIsSaidAndTheNextOneGoesOn) {
       0.01);
 }
 
+TEST(Odometry, StopsAreFoundWhateverTheyWereSweptWith) {
+  const study::Stops stops(5, study::QuickScanner(), 1.2), elsewhere(6, study::QuickScanner(), 1.2);
+  std::vector<Cloud> sweeps;
+  for (const int number : {0, 1, 2, 3}) sweeps.push_back(stops.Sweep(number));
+  sweeps.push_back(elsewhere.Sweep(0));
+  sweeps.emplace_back();  // no point
+  sweeps.push_back(stops.Sweep(4));
+  std::vector<const Cloud*> pointers;
+  for (Cloud& sweep : sweeps) {
+    sweep.utime.clear();  // as a view of a spinning LIDAR's has none
+    sweep.sweep_utime = 0;
+    pointers.push_back(&sweep);
+  }
+  const std::vector<StopPlace> places = Odometry::FindStops(pointers);
+  ASSERT_EQ(places.size(), 7U);
+  for (const auto& [i, number] :
+       std::vector<std::pair<std::size_t, int>>{{1, 1}, {2, 2}, {3, 3}, {6, 4}}) {
+    EXPECT_EQ(places[i].world, places[0].world) << number;
+    const Rigid3 off = (stops.At(0) * places[i].world_from_lidar).Inverse() * stops.At(number);
+    EXPECT_LT(off.translation.norm(), 0.01) << number;
+    EXPECT_LT(RotationDistance(off, {}), 0.2 * kDegree) << number;
+  }
+  EXPECT_NE(places[4].world, places[0].world);
+  EXPECT_NE(places[5].world, places[0].world);
+  EXPECT_NE(places[5].world, places[4].world);
+}
+
+TEST(Odometry, AStopThatNoneOfTheOthersFitsIsLeftBehind) {
+  const study::Stops stops(5, study::QuickScanner(), 1.2), elsewhere(6, study::QuickScanner(), 1.2);
+  const std::vector<Cloud> sweeps = {elsewhere.Sweep(0), stops.Sweep(0), stops.Sweep(1)};
+  const std::vector<StopPlace> places = Odometry::FindStops({&sweeps[0], &sweeps[1], &sweeps[2]});
+  EXPECT_NE(places[0].world, places[1].world);
+  EXPECT_EQ(places[1].world, places[2].world);
+}
+
 TEST(Odometry, ATurnedScannersRigDrivesWhileItSweeps) {
   study::TurningDrive drive(5, study::QuickScanner(), 0.5);
   Odometry odometry;

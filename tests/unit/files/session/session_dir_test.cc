@@ -85,8 +85,16 @@ TEST_F(SessionDir, GivesBackTheWholeView) {
   for (const bool heldout : {false, true}) {
     View written = view;
     written.heldout = heldout;
+    if (heldout) {
+      written.map_from_lidar.emplace(Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(7, -8, 9));
+    }
     WriteView(dir_.path(), written);
-    EXPECT_EQ(ReadView(session, "0001").heldout, heldout);
+    const View back = ReadView(session, "0001");
+    EXPECT_EQ(back.heldout, heldout);
+    ASSERT_EQ(back.map_from_lidar.has_value(), heldout);
+    if (!heldout) continue;
+    EXPECT_EQ(back.map_from_lidar->translation, Eigen::Vector3d(7, -8, 9));
+    EXPECT_NEAR(back.map_from_lidar->rotation.y(), 0.8, 1e-12);
   }
   // The random pixels of this very view.
   WriteView(dir_.path(), view);

@@ -152,6 +152,23 @@ TEST_F(SceneProblemTest, NewtonsStepsEndWhereTheRimIsPainted) {
   EXPECT_LT(RotationDistance(state_.camera_from_lidar, Rigid3()), 2e-3);
 }
 
+TEST_F(SceneProblemTest, ARimThatSeveralShotsShowCountsOnce) {
+  look_.thing_sigma_rad = look_.rim_sigma_rad = 0.5e-3;  // less than an image tells of a rim
+  const auto one = QuadrangleShot();
+  auto moved = std::make_shared<SceneShot>(*one);
+  moved->place.world = 1;
+  const SceneSums alone = problem_.SumsAt(state_, look_);
+  const SceneSums twice = SceneProblem(Spec(), {one, one}).SumsAt(state_, look_);
+  const SceneSums apart = SceneProblem(Spec(), {one, moved}).SumsAt(state_, look_);
+  EXPECT_EQ(twice.parts.size(), alone.parts.size());
+  EXPECT_EQ(apart.parts.size(), 2 * alone.parts.size());
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_NEAR(apart.information(k, k), 2 * alone.information(k, k),
+                1e-6 * apart.information(k, k));
+    EXPECT_LT(twice.information(k, k), 1.3 * alone.information(k, k)) << k;
+  }
+}
+
 TEST_F(SceneProblemTest, WhereSaysInWhichPartOfTheImage) {
   const SceneSums sums = problem_.SumsAt(state_, look_);
   double all = 0;
