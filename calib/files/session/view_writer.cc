@@ -121,7 +121,7 @@ void WriteView(const fs::path& session_dir, const View& view) {
   message.set_cloud("cloud.pcd");
   message.set_sweep_utime(view.cloud.sweep_utime);
   message.set_heldout(view.heldout);
-  if (view.map_from_lidar) FromRigid3(*view.map_from_lidar, message.mutable_map_from_lidar());
+  if (view.map_from_lidar) text::FromRigid3(*view.map_from_lidar, message.mutable_map_from_lidar());
   std::set<std::string> taken;
   for (const Image& image : view.images) {
     CheckName(image.camera, "view " + view.name + ": the camera's name");

@@ -316,8 +316,8 @@ TEST(Odometry, StopsAreFoundWhateverTheyWereSweptWith) {
 }
 
 TEST(Odometry, AStopThatNoneOfTheOthersFitsIsLeftBehind) {
-  const study::Stops stops(5, study::QuickScanner(), 1.2), elsewhere(6, study::QuickScanner(), 1.2);
-  const std::vector<Cloud> sweeps = {elsewhere.Sweep(0), stops.Sweep(0), stops.Sweep(1)};
+  const study::Stops stops(5, study::QuickScanner(), 1.2);
+  const std::vector<Cloud> sweeps = {Street().Sweep(0), stops.Sweep(0), stops.Sweep(1)};
   const std::vector<StopPlace> places = Odometry::FindStops({&sweeps[0], &sweeps[1], &sweeps[2]});
   EXPECT_NE(places[0].world, places[1].world);
   EXPECT_EQ(places[1].world, places[2].world);

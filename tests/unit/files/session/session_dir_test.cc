@@ -86,7 +86,8 @@ TEST_F(SessionDir, GivesBackTheWholeView) {
     View written = view;
     written.heldout = heldout;
     if (heldout) {
-      written.map_from_lidar.emplace(Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(7, -8, 9));
+      written.map_from_lidar =
+          Rigid3{Eigen::Quaterniond(0.6, 0, 0.8, 0), Eigen::Vector3d(7, -8, 9)};
     }
     WriteView(dir_.path(), written);
     const View back = ReadView(session, "0001");
