@@ -10,6 +10,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
+#include "services/messages/status_counters.h"
 #include "services/runtime/node.h"
 
 namespace rgbdt::test {
@@ -83,10 +84,7 @@ inline std::vector<Bytes> BytesOf(const Messages& messages) {
 
 /// A counter of a status; -1 where there is none of that name.
 inline std::int64_t Counter(const Status& status, const std::string& name) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return -1;
+  return CounterOf(status, name, -1);
 }
 
 }  // namespace rgbdt::test
