@@ -58,13 +58,9 @@ Finding CheckProcess(const ProcessFacts& process, double seconds) {
 }
 
 Findings CheckSilent(const BusFacts& facts, const std::vector<std::string>& expected) {
-  const auto speaks = [&](const std::string& name) {
-    return std::any_of(facts.processes.begin(), facts.processes.end(),
-                       [&](const ProcessFacts& process) { return process.last.process == name; });
-  };
   std::string silent;
   for (const std::string& name : expected) {
-    if (!speaks(name)) silent += (silent.empty() ? "" : ", ") + name;
+    if (!facts.Speaks(name)) silent += (silent.empty() ? "" : ", ") + name;
   }
   if (silent.empty()) return {};
   return {
