@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/camera/pixels.h"
+#include "calib/camera/packed.h"
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
@@ -23,17 +23,6 @@ namespace rgbdt {
 namespace {
 
 constexpr Utime kUnderWay = 20'000;  // from a sensor's last row or point until it is heard
-
-// As on a bus that leaves the machine.
-Image Packed(Image image) {
-  if (image.format == PixelFormat::kMono16) {
-    image.format = PixelFormat::kPng;
-  } else {
-    image.pixels = ToBgr(image);
-    image.format = PixelFormat::kJpeg;
-  }
-  return image;
-}
 
 /// What a log of the rig has in common: RIG once a second, sweeps one behind the other, images.
 class RigLog {
