@@ -97,17 +97,24 @@ std::vector<StampedPose> TrueWay(const simulate::Driving& driving, const LogOpti
   return way;
 }
 
-Calibration TrueCalibration(const Rig& rig, const Truth& truth) {
+// Nobody calibrated it: what is known exactly has some sigma all the same.
+Calibration TrueCalibration(const Rig& rig, const Truth& truth, const simulate::Options& options) {
+  constexpr double kVariance = 1e-10;
   Calibration calibration;
   calibration.method = "truth";
   calibration.rig_hash = rig.hash;
   calibration.sensors = SensorsOf(rig);
-  for (const auto& [name, pose] : truth.camera_from_lidar) {
+  for (const simulate::CameraOptions& from : options.cameras) {
     CameraCalibration& camera = calibration.cameras.emplace_back();
-    camera.camera = name;
-    camera.camera_from_lidar = pose;
+    camera.camera = from.name;
+    camera.camera_from_lidar = truth.camera_from_lidar.at(from.name);
     camera.status = SolveStatus::kConverged;
-    camera.covariance = Matrix6d(1e-10 * Matrix6d::Identity());
+    camera.covariance = Matrix6d(kVariance * Matrix6d::Identity());
+    if (from.lens_error.isZero(0)) continue;
+    SolvedLens& lens = camera.lens.emplace();
+    lens.lens = from.lens;
+    lens.covariance.setZero();
+    lens.covariance.rightCols<kLensNumbers>().diagonal().setConstant(kVariance);
   }
   return calibration;
 }
@@ -144,8 +151,8 @@ void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& op
   using simulate::Driving;
   Driving driving(options, options.scene == simulate::Scene::kIndoor ? kRoom_mps : kStreet_mps);
   const Rig rig = WrittenRig(dir, driving.rig());
-  WriteTruth(dir / "truth.textproto", driving.truth());
-  const Calibration calibration = TrueCalibration(rig, driving.truth());
+  WriteTruth(dir / "truth.textproto", driving.truth(), simulate::ImperfectionsText(options));
+  const Calibration calibration = TrueCalibration(rig, driving.truth(), options);
   WriteCalibration(dir / "calibration.textproto", calibration);
   const LogOptions what{dir / "drive.lcmlog",
                         Driving::kStart,

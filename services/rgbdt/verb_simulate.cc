@@ -98,8 +98,7 @@ int RunLog(SimulateFlags flags) {
   if (flags.wave > 0 && flags.drive > 0) throw UsageError("--wave and --drive: one of them");
   const bool others = flags.options.natural.on || flags.board || flags.full_turn ||
                       flags.scanner_error || flags.options.scanner.encoder_delay_s != 0 ||
-                      !flags.further.empty() ||
-                      (flags.drive > 0 && (flags.imperfect || !flags.target.empty()));
+                      !flags.further.empty() || (flags.drive > 0 && !flags.target.empty());
   if (others) {
     throw UsageError(
         "a log is of one spinning LIDAR, of a board that is waved or of a drive without one; leave "
@@ -113,6 +112,7 @@ int RunLog(SimulateFlags flags) {
   constexpr int kUsualRings = 32;
   simulate::UseLidar(flags.rings == 0 ? kUsualRings : flags.rings, &flags.options);
   if (flags.imperfect) simulate::MakeImperfect(&flags.options);
+  flags.options.natural.on = flags.drive > 0;
   if (flags.wave > 0) {
     SimulateWave(flags.dir, flags.options, flags.wave);
   } else {
@@ -199,7 +199,8 @@ void AddSimulate(CommandLine* program) {
                "the motor's encoder is stamped so many seconds late");
   verb->Flag("--imperfect", &flags->imperfect,
              "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
-             "ring, of dark surfaces), where beams meet, how wide they are");
+             "ring, of dark surfaces), where beams meet, how wide they are. A drive's "
+             "calibration.textproto has the true lenses");
   verb->Flag(
       "--natural", &flags->options.natural.on,
       "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "
