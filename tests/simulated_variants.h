@@ -1,6 +1,6 @@
 #pragma once
 
-// Clouds that tests and studies ask of the simulator besides its own.
+// Rigs and clouds that tests and studies ask of the simulator besides its own.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +23,22 @@ inline ScannerOptions DenseScanner() {
   o.angle_step_rad = fan / (o.beams - 1);
   o.beam_period_s = o.sweep_rad / o.motor_speed_rad_s / kLines / o.beams;
   return o;
+}
+
+/// One colour camera of 4:3 and about 75 degrees, its lens known, and a spinning LIDAR.
+inline Options OneCamera(std::uint64_t seed, int rings, int width) {
+  Options options;
+  options.seed = seed;
+  UseLidar(rings, &options);
+  CameraOptions camera = DefaultColorCamera();
+  camera.width = width;
+  camera.height = width * 3 / 4;
+  camera.lens.fx = camera.lens.fy = width * 21. / 32;
+  camera.lens.cx = width / 2.;
+  camera.lens.cy = camera.height / 2.;
+  options.cameras = {camera};
+  options.supersampling = 2;
+  return options;
 }
 
 /// Numbers 0 ... count - 1 in an order drawn from the seed (Fisher and Yates).

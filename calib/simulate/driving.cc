@@ -7,10 +7,11 @@
 
 #include "calib/model/errors.h"
 #include "calib/simulate/internal/camera_renderer.h"
-#include "calib/simulate/internal/driving_lidar.h"
 #include "calib/simulate/internal/natural_scene.h"
 #include "calib/simulate/internal/rig_defaults.h"
 #include "calib/simulate/internal/scanner.h"
+#include "calib/simulate/internal/spinning.h"
+#include "calib/simulate/internal/ways.h"
 #include "calib/simulate/internal/world.h"
 
 namespace rgbdt::simulate {
@@ -76,8 +77,9 @@ const Truth& Driving::truth() const { return impl_->truth; }
 Rigid3 Driving::WorldFromLidar(Utime utime) const { return impl_->At(utime); }
 
 Cloud Driving::Sweep(Utime utime) {
-  return MovingSweep(impl_->WorldAt(utime), *impl_->options.spinning, impl_->options.seed, utime,
-                     [this](Utime at) { return impl_->At(at); });
+  return MovingSweep(
+      impl_->WorldAt(utime), *impl_->options.spinning, impl_->options.seed, utime,
+      [this](Utime at) { return impl_->At(at); }, impl_->options.threads);
 }
 
 Image Driving::TakeImage(const std::string& camera, Utime utime) {

@@ -106,7 +106,8 @@ std::string ImperfectionsText(const Options& options) {
                  camera.name.c_str(), e[0], e[1], e[2], e[3], e[4]);
   }
   const Eigen::Vector2d& print = options.board.print_scale;
-  if (print != Eigen::Vector2d(1, 1)) {
+  const bool has_board = !options.natural.on || options.natural.board;
+  if (has_board && print != Eigen::Vector2d(1, 1)) {
     text +=
         Line("pattern: printed %.5f wide, %.5f high of what its squares say", print.x(), print.y());
   }

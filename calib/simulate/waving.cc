@@ -85,6 +85,8 @@ struct Waving::Impl {
   std::size_t IndexOf(const std::string& name) const;
   Rigid3 At(double seconds) const;
   Rigid3 At(Utime utime) const { return At(ToSeconds(utime - wave.start)); }
+  /// What a ring's beams meet in the revolution that begins at `utime`.
+  std::vector<BeamReturn> CastRing(const Ring& ring, Utime utime) const;
   /// What a beam meets of the scene and of the board where it is at that time.
   BeamReturn Cast(const Eigen::Vector3d& origin, const std::vector<Eigen::Vector3d>& rays,
                   const Rigid3& lidar_from_target) const;
@@ -97,8 +99,8 @@ struct Waving::Impl {
   HeatMap heat;
   Board at_origin;  ///< for its pattern
   std::vector<CameraRenderer> cameras;
-  std::vector<Swing> swings;  ///< along x, y, z; about x, y, z
-  Cloud still;                ///< a sweep of the scene alone, without noise
+  std::vector<Swing> swings;                   ///< along x, y, z; about x, y, z
+  std::vector<std::vector<BeamReturn>> still;  ///< by ring: of the scene alone
   Rig rig;
   Truth truth;
 };
@@ -119,10 +121,11 @@ Waving::Impl::Impl(const Options& o, const WaveOptions& w, std::vector<ClockOpti
     truth.camera_from_lidar[camera.name] = poses.back();
     cameras.emplace_back(camera, poses.back(), options.supersampling, options.threads);
   }
-  SpinningOptions exact = *options.spinning;
-  exact.range_sigma_m = 1e-9;
-  exact.intensity_sigma = 0;
-  still = SpinningSweep(empty, exact, options.seed, 0, options.threads);
+  still.resize(static_cast<std::size_t>(options.spinning->rings()));
+  ForEach(options.spinning->rings(), options.threads, [&](int index) {
+    still[static_cast<std::size_t>(index)] =
+        CastStanding(empty, *options.spinning, Ring(*options.spinning, index));
+  });
   rig = MakeRig(options, Scanner(options.scanner, options.seed), *scene, poses);
 }
 
@@ -158,6 +161,21 @@ Rigid3 Waving::Impl::At(double seconds) const {
   pose.rotation = pose.rotation * Eigen::Quaterniond(facing);
   pose.translation = Eigen::Vector3d(wave.range_m, 0, wave.height_m) + moved.head<3>();
   return pose;
+}
+
+std::vector<BeamReturn> Waving::Impl::CastRing(const Ring& ring, Utime utime) const {
+  // Of the board's whole way, seen from the LIDAR, no beam beyond this angle meets it.
+  const double aside = wave.reach_m.tail<2>().norm() + std::abs(wave.height_m) +
+                       0.5 * std::hypot(options.board.width_m, options.board.height_m);
+  const double widest = std::atan2(aside, std::max(0.1, wave.range_m - wave.reach_m.x() - 0.7));
+  const double least_x = std::cos(widest + 0.1);
+  std::vector<BeamReturn> returns = still[static_cast<std::size_t>(ring.index())];
+  for (int column = 0; column < ring.columns(); ++column) {
+    if (ring.Direction(column).x() < least_x) continue;
+    returns[static_cast<std::size_t>(column)] =
+        Cast(ring.start(), ring.SubRays(column), At(utime + ring.FiredAfter(column)));
+  }
+  return returns;
 }
 
 BeamReturn Waving::Impl::Cast(const Eigen::Vector3d& origin,
@@ -198,49 +216,9 @@ const Truth& Waving::truth() const { return impl_->truth; }
 Rigid3 Waving::LidarFromTarget(Utime utime) const { return impl_->At(utime); }
 
 Cloud Waving::Sweep(Utime utime) const {
-  const SpinningOptions& lidar = *impl_->options.spinning;
-  Cloud cloud = impl_->still;
-  cloud.sweep_utime = utime;
-  for (Utime& time : cloud.utime) time += utime;
-  const Noise noise(impl_->options.seed, utime, "waving lidar");
-  // Of the board's whole way, seen from the LIDAR, no beam beyond this angle meets it.
-  const WaveOptions& wave = impl_->wave;
-  const double aside =
-      wave.reach_m.tail<2>().norm() + std::abs(wave.height_m) +
-      0.5 * std::hypot(impl_->options.board.width_m, impl_->options.board.height_m);
-  const double widest = std::atan2(aside, std::max(0.1, wave.range_m - wave.reach_m.x() - 0.7));
-  ForEach(cloud.lines, impl_->options.threads, [&](int ring) {
-    const double elevation = lidar.elevations_rad[static_cast<std::size_t>(ring)];
-    const std::vector<Eigen::Vector3d> sub_rays = SubRays(lidar, elevation);
-    const Eigen::Vector3d start(0, 0, -lidar.beams_meet_m * std::tan(elevation));
-    const double bias = RingBias(lidar, impl_->options.seed, ring);
-    for (int column = 0; column < cloud.beams; ++column) {
-      const auto i = static_cast<std::size_t>(ring) * static_cast<std::size_t>(cloud.beams) +
-                     static_cast<std::size_t>(column);
-      const Eigen::Vector3d direction = cloud.directions[i].cast<double>().normalized();
-      const double error = lidar.range_sigma_m * noise.Normal(2 * i);
-      if (std::acos(std::clamp(direction.x(), -1.0, 1.0)) > widest + 0.1) {
-        cloud.points[i] += (error * direction).cast<float>();
-        const double intensity =
-            cloud.intensity[i] + lidar.intensity_sigma * noise.Normal(2 * i + 1);
-        if (cloud.IsHit(i))
-          cloud.intensity[i] = static_cast<float>(std::clamp(intensity, 0.0, 1.0));
-        continue;
-      }
-      const Eigen::Quaterniond turn =
-          RotationAbout(Eigen::Vector3d::UnitZ(), std::atan2(direction.y(), direction.x()))
-              .rotation;
-      std::vector<Eigen::Vector3d> rays;
-      rays.reserve(sub_rays.size());
-      for (const Eigen::Vector3d& ray : sub_rays) rays.push_back(turn * ray);
-      const BeamReturn back = impl_->Cast(start, rays, impl_->At(cloud.utime[i]));
-      const double range = back.range + (bias + RangeError(lidar, back)) +
-                           RangeSigma(lidar, back) * noise.Normal(2 * i);
-      cloud.points[i] = (range * direction).cast<float>();
-      cloud.intensity[i] = NoisyIntensity(lidar, back, noise.Normal(2 * i + 1));
-    }
-  });
-  return cloud;
+  const Options& options = impl_->options;
+  return SpinningSweep(*options.spinning, options.seed, utime, options.threads,
+                       [&](const Ring& ring) { return impl_->CastRing(ring, utime); });
 }
 
 Image Waving::TakeImage(const std::string& camera, Utime utime) {

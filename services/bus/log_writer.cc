@@ -13,12 +13,24 @@
 namespace rgbdt {
 namespace {
 
-// What lies there is not written through: it may be a stranger's link, or a pipe.
+// What lies there is not written through: it may be a stranger's link, or a pipe. A folder stays,
+// and so do devices: as root /dev/null would be gone.
 lcm_eventlog_t* CreateAnew(const std::string& path) {
+  using Type = std::filesystem::file_type;
   std::error_code error;
-  if (!std::filesystem::is_directory(std::filesystem::symlink_status(path, error))) {
-    std::filesystem::remove(path, error);
-    if (error) throw InputError("cannot remove " + path + ": " + error.message());
+  switch (std::filesystem::symlink_status(path, error).type()) {
+    case Type::regular:
+    case Type::symlink:
+    case Type::fifo:
+    case Type::socket:
+      std::filesystem::remove(path, error);
+      if (error) throw InputError("cannot remove " + path + ": " + error.message());
+      break;
+    case Type::block:
+    case Type::character:
+      throw InputError(path + " is a device; a log is written to a file: name another");
+    default:  // nothing, or what LCM cannot open
+      break;
   }
   return lcm_eventlog_create(path.c_str(), "w");
 }

@@ -12,8 +12,8 @@ namespace rgbdt {
 /// Writes a log as lcm-logger does, by LCM's own event log.
 class LogWriter {
  public:
-  /// It takes the place of what is called so, be that a link. Throws InputError where the file
-  /// cannot be made.
+  /// It takes the place of a file, link, pipe or socket that is called so. Throws InputError where
+  /// the file cannot be made, or a device is called so.
   explicit LogWriter(const std::string& path);
   ~LogWriter();
 

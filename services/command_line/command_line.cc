@@ -211,6 +211,8 @@ void CommandLine::ChoiceOf(const std::string& name, std::vector<std::string> nam
       ->default_str(usual);
 }
 
+bool CommandLine::Given(const std::string& name) const { return app_->count(name) > 0; }
+
 void CommandLine::Ends(ExitCode code, const std::string& when) {
   ends_[code] = when;
   app_->footer(Footer(ends_));

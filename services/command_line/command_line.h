@@ -72,6 +72,9 @@ class CommandLine {
   /// All from the first word on that is no option.
   void Rest(std::vector<std::string>* words);
 
+  /// Whether the user gave this option, be it its default.
+  bool Given(const std::string& name) const;
+
   /// When the program or verb ends with this code, for `--help`; in place of what is said there of
   /// every program.
   void Ends(ExitCode code, const std::string& when);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -20,6 +21,11 @@ struct Speaker {
 };
 
 }  // namespace
+
+bool BusFacts::Speaks(const std::string& process) const {
+  return std::any_of(processes.begin(), processes.end(),
+                     [&](const ProcessFacts& one) { return one.last.process == process; });
+}
 
 BusFacts GatherBus(const std::string& url, double seconds) {
   std::map<std::string, Speaker> speakers;

@@ -5,6 +5,7 @@
 #include "calib/model/text.h"
 #include "services/doctor/checks.h"
 #include "services/messages/check.h"
+#include "services/messages/status_counters.h"
 
 namespace rgbdt {
 namespace {
@@ -17,13 +18,6 @@ constexpr int kTwoSpeakers = 2;
 constexpr std::array<std::string_view, 5> kLosses{"dropped ", "gaps ", "malformed", "unsigned",
                                                   "messages given up"};
 
-std::int64_t Counter(const Status& status, const std::string& name) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return 0;
-}
-
 // "gaps CLOUD 12, dropped RIG 1": by how much they grew from one STATUS to another.
 std::string Grown(const Status& first, const Status& last) {
   std::string text;
@@ -31,7 +25,7 @@ std::string Grown(const Status& first, const Status& last) {
     const bool is_loss = std::any_of(
         kLosses.begin(), kLosses.end(),
         [&, &counter = name](std::string_view begin) { return counter.rfind(begin, 0) == 0; });
-    const std::int64_t grown = value - Counter(first, name);
+    const std::int64_t grown = value - CounterOf(first, name);
     if (is_loss && grown > 0)
       text += (text.empty() ? "" : ", ") + name + " " + std::to_string(grown);
   }
@@ -64,13 +58,9 @@ Finding CheckProcess(const ProcessFacts& process, double seconds) {
 }
 
 Findings CheckSilent(const BusFacts& facts, const std::vector<std::string>& expected) {
-  const auto speaks = [&](const std::string& name) {
-    return std::any_of(facts.processes.begin(), facts.processes.end(),
-                       [&](const ProcessFacts& process) { return process.last.process == name; });
-  };
   std::string silent;
   for (const std::string& name : expected) {
-    if (!speaks(name)) silent += (silent.empty() ? "" : ", ") + name;
+    if (!facts.Speaks(name)) silent += (silent.empty() ? "" : ", ") + name;
   }
   if (silent.empty()) return {};
   return {

@@ -58,6 +58,8 @@ struct BusFacts {
   std::vector<ProcessFacts> processes;  ///< by name
   Malformed malformed;
   LinkReport links;
+
+  bool Speaks(const std::string& process) const;
 };
 /// Listens for `seconds`. Throws InputError where the bus cannot be opened.
 BusFacts GatherBus(const std::string& url, double seconds);

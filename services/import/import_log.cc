@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/camera/pixels.h"
+#include "calib/camera/packed.h"
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
@@ -91,13 +91,7 @@ Image Packed(Image image, bool compressed) {
   const std::size_t bytes = image.pixels.total() * image.pixels.elemSize();
   constexpr std::size_t kHead = 1000;  // of the message
   if (!compressed && bytes + kHead < kMaxMessageBytes) return image;
-  if (image.format == PixelFormat::kMono8 || image.format == PixelFormat::kMono16) {
-    image.format = PixelFormat::kPng;
-  } else {
-    image.pixels = ToBgr(image);
-    image.format = PixelFormat::kJpeg;
-  }
-  return image;
+  return Packed(std::move(image));
 }
 
 // It has its name once it is whole.

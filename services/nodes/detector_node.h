@@ -50,8 +50,8 @@ class DetectorNode : public Node {
 
   std::string method_;
   Looks looks_;
-  std::optional<Utime>
-      looked_at_;  // when the newest look began; the next call says how long it took
+  // When the newest look began; the next call says how long it took.
+  std::optional<Utime> looked_at_;
   Utime look_from_ = 0;
   std::optional<Rig> rig_;
   ViewCollector view_;

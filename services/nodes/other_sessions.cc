@@ -1,6 +1,7 @@
 #include "services/nodes/other_sessions.h"
 
 #include "services/messages/check.h"
+#include "services/messages/status_counters.h"
 
 namespace rgbdt {
 namespace {
@@ -10,13 +11,6 @@ constexpr const char* kListens = "listens";
 constexpr const char* kEnded = "ended";
 
 // Of one that does not tell its id, as of an older version: -1.
-std::int64_t CounterOf(const Status& status, const std::string& name, std::int64_t otherwise) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return otherwise;
-}
-
 std::int64_t IdOf(const Status& status) { return CounterOf(status, kId, -1); }
 
 std::string Named(const Status& other) {
@@ -33,13 +27,12 @@ void OtherSessions::Tell(std::int64_t id, bool listens, bool ended, Status* stat
 }
 
 bool OtherSessions::IsAnother(const Status& status) const {
-  return status.process == "session" && IdOf(status) != own_id_ &&
-         CounterOf(status, kEnded, 0) == 0;
+  return status.process == "session" && IdOf(status) != own_id_ && CounterOf(status, kEnded) == 0;
 }
 
 std::optional<std::string> OtherSessions::WhyGiveWay(const Status& status) const {
   if (!IsAnother(status)) return std::nullopt;
-  if (CounterOf(status, kListens, 0) != 0 && IdOf(status) > own_id_) return std::nullopt;
+  if (CounterOf(status, kListens) != 0 && IdOf(status) > own_id_) return std::nullopt;
   return Named(status) +
          "; wait for its end or stop it, or give this one a bus of its own "
          "(--lcm-url)";

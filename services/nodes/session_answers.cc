@@ -4,6 +4,7 @@
 #include "calib/camera/pixels.h"
 #include "calib/files/schema/report_file.h"
 #include "calib/model/errors.h"
+#include "services/messages/status_counters.h"
 #include "services/nodes/internal/session_steps.h"
 #include "services/nodes/session_node.h"
 
@@ -18,16 +19,9 @@ constexpr std::size_t kMostProcesses = 100;
 
 constexpr std::int64_t kMissedWords = 3;  // of a process that was cut off, at 1 Hz
 
-std::int64_t Received(const Status& status) {
-  for (const auto& [name, value] : status.counters) {
-    if (name == "received") return value;
-  }
-  return 0;
-}
-
 // It counts from 0 again. A datagram may come twice.
 bool IsStartedAnew(const Status& before, const Status& now) {
-  return now.seq < before.seq || Received(now) < Received(before);
+  return now.seq < before.seq || CounterOf(now, "received") < CounterOf(before, "received");
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "services/messages/status_counters.h"
 #include "services/nodes/session_node.h"
-#include "services/runtime/status_counters.h"
 
 namespace rgbdt {
 

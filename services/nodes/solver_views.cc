@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "services/messages/status_counters.h"
+
 namespace rgbdt {
 namespace {
 
 std::size_t ViewsOf(const Status& status) {
-  for (const auto& [name, value] : status.counters) {
-    if (name == "views") return static_cast<std::size_t>(std::max<std::int64_t>(value, 0));
-  }
-  return 0;
+  return static_cast<std::size_t>(std::max<std::int64_t>(CounterOf(status, "views"), 0));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
 #include "services/messages/image_channel.h"
+#include "services/messages/status_counters.h"
 #include "services/nodes/fuser_node.h"
 #include "services/nodes/odometry_node.h"
 #include "services/replay/poses_ahead.h"
@@ -112,12 +113,11 @@ std::optional<RigText> FindWay(const std::string& log, const DriveOptions& optio
   drive->way = own.empty() ? std::move(found) : std::move(own);
   if (options.close_loops && !drive->way.empty()) Correct(keyframes, drive);
   if (drive->by_odometry) {
-    for (const auto& [name, count] : odometry.GetStatus().counters) {
-      if (name == "sweeps") drive->sweeps = count;
-      if (name == "without a place") drive->without_place = count;
-      if (name == "degenerate") drive->degenerate = count;
-      if (name == "maps begun anew") drive->restarts = count;
-    }
+    const Status status = odometry.GetStatus();
+    drive->sweeps = CounterOf(status, "sweeps");
+    drive->without_place = CounterOf(status, "without a place");
+    drive->degenerate = CounterOf(status, "degenerate");
+    drive->restarts = CounterOf(status, "maps begun anew");
   }
   return rig;
 }

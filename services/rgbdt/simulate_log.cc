@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/camera/pixels.h"
+#include "calib/camera/packed.h"
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
@@ -24,45 +24,12 @@ namespace {
 
 constexpr Utime kUnderWay = 20'000;  // from a sensor's last row or point until it is heard
 
-// As on a bus that leaves the machine.
-Image Packed(Image image) {
-  if (image.format == PixelFormat::kMono16) {
-    image.format = PixelFormat::kPng;
-  } else {
-    image.pixels = ToBgr(image);
-    image.format = PixelFormat::kJpeg;
-  }
-  return image;
-}
-
-/// What a log of the rig has in common: RIG once a second, sweeps one behind the other, images.
-class RigLog {
- public:
-  RigLog(const std::filesystem::path& path, const Rig& rig,
-         const std::optional<Calibration>& calibration, double seconds)
-      : log_(path.string()), rig_(rig), calibration_(calibration), seconds_(seconds) {}
-
-  void AddSweep(const Cloud& sweep, Utime end) {
-    for (CloudChunk& chunk : SplitSweep(sweep)) log_.Add(std::move(chunk), end + kUnderWay);
-  }
-  void AddImage(Image image, Utime utime) { log_.Add(Packed(std::move(image)), utime + kUnderWay); }
-  // Nothing that comes later was heard before. Once a second: RIG, and how far it is.
-  void Reached(Utime utime, Utime start) {
-    log_.WriteUntil(utime);
-    const auto second = static_cast<int>(ToSeconds(utime - start));
-    if (second == told_) return;
-    told_ = second;
-    log_.AddRig(rig_, calibration_, utime);
-    std::fprintf(stderr, "[%d/%.0f] seconds simulated\n", second, seconds_);
-  }
-  void Close() { log_.Close(); }
-
- private:
-  TimedLog log_;
-  Rig rig_;
-  std::optional<Calibration> calibration_;
-  double seconds_;
-  int told_ = -1;
+struct LogOptions {
+  std::filesystem::path log;
+  Utime start = 0;
+  double seconds = 0, revolution_s = 0;
+  double color_hz = 0, thermal_hz = 0;  // of images
+  std::optional<Calibration> calibration{};
 };
 
 // When images of a camera are taken: its n-th.
@@ -81,26 +48,73 @@ class Shutter {
   int taken_ = 0;
 };
 
-std::vector<Shutter> ShuttersOf(const Rig& rig, double color_hz, double thermal_hz, Utime start) {
+std::vector<Shutter> ShuttersOf(const Rig& rig, const LogOptions& what) {
   std::vector<Shutter> shutters;
   for (const CameraSpec& camera : rig.cameras) {
-    shutters.emplace_back(camera.name, camera.kind == CameraKind::kColor ? color_hz : thermal_hz,
-                          start);
+    const bool color = camera.kind == CameraKind::kColor;
+    shutters.emplace_back(camera.name, color ? what.color_hz : what.thermal_hz, what.start);
   }
   return shutters;
 }
 
-Calibration TrueCalibration(const Rig& rig, const Truth& truth) {
+// One sweep behind the other, images as on a bus that leaves the machine; once a second RIG, and
+// how far it is. `source`: Waving, or Driving.
+template <typename Source>
+void Record(const LogOptions& what, const Rig& rig, Source* source) {
+  TimedLog log(what.log.string());
+  std::vector<Shutter> shutters = ShuttersOf(rig, what);
+  const Utime revolution = FromSeconds(what.revolution_s);
+  const Utime end = what.start + FromSeconds(what.seconds);
+  int told = -1;
+  for (Utime utime = what.start; utime < end; utime += revolution) {
+    log.WriteUntil(utime);  // nothing that comes later was heard before
+    const auto second = static_cast<int>(ToSeconds(utime - what.start));
+    if (std::exchange(told, second) != second) {
+      log.AddRig(rig, what.calibration, utime);
+      std::fprintf(stderr, "[%d/%.0f] seconds simulated\n", second, what.seconds);
+    }
+    for (CloudChunk& chunk : SplitSweep(source->Sweep(utime))) {
+      log.Add(std::move(chunk), utime + revolution + kUnderWay);
+    }
+    for (Shutter& shutter : shutters) {
+      for (; shutter.Next() < utime + revolution; shutter.Taken()) {
+        log.Add(Packed(source->TakeImage(shutter.camera(), shutter.Next())),
+                shutter.Next() + kUnderWay);
+      }
+    }
+  }
+  log.Close();
+}
+
+// Where it is at the end of each sweep.
+std::vector<StampedPose> TrueWay(const simulate::Driving& driving, const LogOptions& what) {
+  const Utime revolution = FromSeconds(what.revolution_s);
+  const Utime end = what.start + FromSeconds(what.seconds);
+  std::vector<StampedPose> way;
+  for (Utime utime = what.start; utime < end; utime += revolution) {
+    way.push_back({0, utime + revolution, "truth", driving.WorldFromLidar(utime + revolution)});
+  }
+  return way;
+}
+
+// Nobody calibrated it: what is known exactly has some sigma all the same.
+Calibration TrueCalibration(const Rig& rig, const Truth& truth, const simulate::Options& options) {
+  constexpr double kVariance = 1e-10;
   Calibration calibration;
   calibration.method = "truth";
   calibration.rig_hash = rig.hash;
   calibration.sensors = SensorsOf(rig);
-  for (const auto& [name, pose] : truth.camera_from_lidar) {
+  for (const simulate::CameraOptions& from : options.cameras) {
     CameraCalibration& camera = calibration.cameras.emplace_back();
-    camera.camera = name;
-    camera.camera_from_lidar = pose;
+    camera.camera = from.name;
+    camera.camera_from_lidar = truth.camera_from_lidar.at(from.name);
     camera.status = SolveStatus::kConverged;
-    camera.covariance = Matrix6d(1e-10 * Matrix6d::Identity());
+    camera.covariance = Matrix6d(kVariance * Matrix6d::Identity());
+    if (from.lens_error.isZero(0)) continue;
+    SolvedLens& lens = camera.lens.emplace();
+    lens.lens = from.lens;
+    lens.covariance.setZero();
+    lens.covariance.rightCols<kLensNumbers>().diagonal().setConstant(kVariance);
   }
   return calibration;
 }
@@ -122,20 +136,9 @@ void SimulateWave(const std::filesystem::path& dir, const simulate::Options& opt
   const Rig rig = WrittenRig(dir, waving.rig());
   WriteTruth(dir / "truth.textproto", waving.truth(),
              simulate::ClocksText(options, clocks) + simulate::ImperfectionsText(options));
-  RigLog log(dir / "wave.lcmlog", rig, std::nullopt, seconds);
-  auto shutters = ShuttersOf(rig, kColor_hz, kThermal_hz, wave.start);
-  const Utime revolution = FromSeconds(options.spinning->revolution_s);
-  const Utime end = wave.start + FromSeconds(seconds);
-  for (Utime utime = wave.start; utime < end; utime += revolution) {
-    log.Reached(utime, wave.start);
-    log.AddSweep(waving.Sweep(utime), utime + revolution);
-    for (Shutter& shutter : shutters) {
-      for (; shutter.Next() < utime + revolution; shutter.Taken()) {
-        log.AddImage(waving.TakeImage(shutter.camera(), shutter.Next()), shutter.Next());
-      }
-    }
-  }
-  log.Close();
+  Record({dir / "wave.lcmlog", wave.start, seconds, options.spinning->revolution_s, kColor_hz,
+          kThermal_hz},
+         rig, &waving);
   std::printf(
       "wrote %s: rig.textproto, wave.lcmlog (%.0f s), truth.textproto (with what each clock is off "
       "by)\nnext: rgbdt sync %s\n",
@@ -148,26 +151,18 @@ void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& op
   using simulate::Driving;
   Driving driving(options, options.scene == simulate::Scene::kIndoor ? kRoom_mps : kStreet_mps);
   const Rig rig = WrittenRig(dir, driving.rig());
-  WriteTruth(dir / "truth.textproto", driving.truth());
-  const Calibration calibration = TrueCalibration(rig, driving.truth());
+  WriteTruth(dir / "truth.textproto", driving.truth(), simulate::ImperfectionsText(options));
+  const Calibration calibration = TrueCalibration(rig, driving.truth(), options);
   WriteCalibration(dir / "calibration.textproto", calibration);
-  RigLog log(dir / "drive.lcmlog", rig, calibration, seconds);
-  auto shutters = ShuttersOf(rig, kImage_hz, kImage_hz, Driving::kStart);
-  const Utime revolution = FromSeconds(options.spinning->revolution_s);
-  const Utime end = Driving::kStart + FromSeconds(seconds);
-  std::vector<StampedPose> way;
-  for (Utime utime = Driving::kStart; utime < end; utime += revolution) {
-    log.Reached(utime, Driving::kStart);
-    log.AddSweep(driving.Sweep(utime), utime + revolution);
-    way.push_back({0, utime + revolution, "truth", driving.WorldFromLidar(utime + revolution)});
-    for (Shutter& shutter : shutters) {
-      for (; shutter.Next() < utime + revolution; shutter.Taken()) {
-        log.AddImage(driving.TakeImage(shutter.camera(), shutter.Next()), shutter.Next());
-      }
-    }
-  }
-  log.Close();
-  WriteFileAtomically(dir / "truth.tum", TumText(way));
+  const LogOptions what{dir / "drive.lcmlog",
+                        Driving::kStart,
+                        seconds,
+                        options.spinning->revolution_s,
+                        kImage_hz,
+                        kImage_hz,
+                        calibration};
+  Record(what, rig, &driving);
+  WriteFileAtomically(dir / "truth.tum", TumText(TrueWay(driving, what)));
   std::printf(
       "wrote %s: rig.textproto, drive.lcmlog (%.0f s), calibration.textproto (the truth), "
       "truth.tum (where it was)\nnext: rgbdt map %s\n",

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
@@ -84,37 +85,31 @@ Findings CheckRig(const SystemRoots& roots, const std::string& file,
   }
 }
 
-// The programs of a session, or of a drive where one of those speaks. What is simulated has no
+// The processes of a session, or of a drive where one of those speaks. What is simulated has no
 // drivers.
-std::vector<std::string> ProgramsExpected(const std::string& file, const BusFacts& facts) {
-  const auto speaks = [&](const std::string& name) {
-    return std::any_of(facts.processes.begin(), facts.processes.end(),
-                       [&](const ProcessFacts& process) { return process.last.process == name; });
-  };
-  std::vector<std::string> names;
+std::vector<std::string> ExpectedOf(const Rig& rig, const BusFacts& facts) {
+  const std::vector<std::string> of_a_drive = SpeakersOf(rig, {Role::kDrive});
+  const bool drives = std::any_of(of_a_drive.begin(), of_a_drive.end(),
+                                  [&](const std::string& name) { return facts.Speaks(name); });
+  std::set<Role> roles{Role::kBoth, drives ? Role::kDrive : Role::kSession};
+  if (!facts.Speaks("simulator")) roles.insert(Role::kDriver);
+  return SpeakersOf(rig, roles);
+}
+
+std::vector<std::string> ExpectedOf(const std::string& rig_file, const BusFacts& facts) {
+  if (rig_file.empty()) return {};
   try {
-    Rig rig = ReadRig(file, LensNeed::kMayBeUnknown);
-    if (speaks("simulator")) {
-      for (CameraSpec& camera : rig.cameras) camera.device.reset();
-      rig.lidar.device = {};
-      if (rig.lidar.turned_scanner) rig.lidar.turned_scanner->motor.reset();
-    }
-    UpOptions options;
-    if (speaks("monitor") || speaks("odometry") || speaks("mapper")) options.drive = "drive";
-    for (const Program& program : ProgramsOf(rig, options)) {
-      if (program.speaks && !program.ends) names.push_back(program.name);
-    }
+    return ExpectedOf(ReadRig(rig_file, LensNeed::kMayBeUnknown), facts);
   } catch (const InputError&) {  // CheckRig tells
+    return {};
   }
-  return names;
 }
 
 // Who speaks on a bus that can be opened; where it cannot, CheckBus tells.
 Findings CheckSpeakers(const DoctorFlags& flags) {
   try {
     const BusFacts facts = GatherBus(flags.url, flags.listen);
-    return CheckProcesses(
-        facts, flags.rig.empty() ? std::vector<std::string>() : ProgramsExpected(flags.rig, facts));
+    return CheckProcesses(facts, ExpectedOf(flags.rig, facts));
   } catch (const InputError&) {
     return {};
   }

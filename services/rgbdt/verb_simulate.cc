@@ -20,6 +20,7 @@ namespace {
 using simulate::Simulator;
 
 struct SimulateFlags {
+  const CommandLine* verb = nullptr;  // what was given
   std::string dir;
   std::string target;
   int views = 12;
@@ -93,18 +94,26 @@ void AddFurtherLidars(const std::vector<std::string>& further, simulate::Options
   }
 }
 
+// Throws UsageError for what is of views alone.
+void RequireOfALog(const SimulateFlags& flags) {
+  if (flags.wave > 0 && flags.drive > 0) throw UsageError("--wave and --drive: one of them");
+  std::vector<const char*> others{"--views",         "--picked",        "--natural",
+                                  "--board",         "--further-lidar", "--full-turn",
+                                  "--scanner-error", "--encoder-delay"};
+  if (flags.drive > 0) others.push_back("--target");
+  for (const char* other : others) {
+    if (!flags.verb->Given(other)) continue;
+    throw UsageError(std::string(other) + " goes with views, not with the log of a " +
+                     (flags.drive > 0 ? "drive" : "waved board") + "; leave it out");
+  }
+  if (flags.verb->Given("--lidar") && flags.rings <= 0) {
+    throw UsageError("a log is of a spinning LIDAR: --lidar vlp16, 32, 64 or 128");
+  }
+}
+
 // A log in place of views.
 int RunLog(SimulateFlags flags) {
-  if (flags.wave > 0 && flags.drive > 0) throw UsageError("--wave and --drive: one of them");
-  const bool others = flags.options.natural.on || flags.board || flags.full_turn ||
-                      flags.scanner_error || flags.options.scanner.encoder_delay_s != 0 ||
-                      !flags.further.empty() ||
-                      (flags.drive > 0 && (flags.imperfect || !flags.target.empty()));
-  if (others) {
-    throw UsageError(
-        "a log is of one spinning LIDAR, of a board that is waved or of a drive without one; leave "
-        "the other options out");
-  }
+  RequireOfALog(flags);
   if (std::filesystem::exists(std::filesystem::path(flags.dir) / "views")) {
     throw InputError(flags.dir + " is a session; a log wants a folder of its own");
   }
@@ -113,6 +122,7 @@ int RunLog(SimulateFlags flags) {
   constexpr int kUsualRings = 32;
   simulate::UseLidar(flags.rings == 0 ? kUsualRings : flags.rings, &flags.options);
   if (flags.imperfect) simulate::MakeImperfect(&flags.options);
+  flags.options.natural.on = flags.drive > 0;
   if (flags.wave > 0) {
     SimulateWave(flags.dir, flags.options, flags.wave);
   } else {
@@ -181,6 +191,7 @@ void AddSimulate(CommandLine* program) {
       "Examples: rgbdt simulate out/synthetic --seed 7 --scene night\n"
       "          rgbdt simulate out/drive --drive 20 --scene outdoor",
       [flags] { return RunSimulate(*flags); });
+  flags->verb = verb;
   verb->Required("DIR", &flags->dir, "session directory to write");
   verb->Option("--views", &flags->views, "number of views");
   verb->Option("--seed", &flags->options.seed, "of all random numbers");
@@ -199,7 +210,8 @@ void AddSimulate(CommandLine* program) {
                "the motor's encoder is stamped so many seconds late");
   verb->Flag("--imperfect", &flags->imperfect,
              "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
-             "ring, of dark surfaces), where beams meet, how wide they are");
+             "ring, of dark surfaces), where beams meet, how wide they are. A drive's "
+             "calibration.textproto has the true lenses");
   verb->Flag(
       "--natural", &flags->options.natural.on,
       "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "

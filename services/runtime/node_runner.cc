@@ -6,7 +6,7 @@
 #include "services/messages/check.h"
 #include "services/messages/codec.h"
 #include "services/messages/limits.h"
-#include "services/runtime/status_counters.h"
+#include "services/messages/status_counters.h"
 
 namespace rgbdt {
 namespace {

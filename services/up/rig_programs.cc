@@ -83,14 +83,14 @@ std::string NamesOf(const std::vector<Program>& programs) {
   return Listed(names);
 }
 
-}  // namespace
-
-std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
+// Of sessions and drives, all but the logger.
+std::vector<Program> AllPrograms(const Rig& rig, const UpOptions& options) {
   std::vector<Program> all;
-  const auto add = [&](const std::string& name, const std::string& program,
+  const auto add = [&](Role role, const std::string& name, const std::string& program,
                        const std::vector<std::string>& arguments) {
     Program one;
     one.name = name;
+    one.role = role;
     one.arguments.push_back((options.programs / ("rgbdt-" + program)).string());
     one.arguments.insert(one.arguments.end(), arguments.begin(), arguments.end());
     if (!options.url.empty()) {
@@ -107,35 +107,52 @@ std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
   const std::string file = options.rig.string();
   for (const CameraSpec& camera : rig.cameras) {
     if (!camera.device) continue;
-    add("camera-" + camera.name, "camera",
+    add(Role::kDriver, "camera-" + camera.name, "camera",
         {"--rig", file, "--camera", camera.name, "--captures",
          (options.out / "").parent_path().string() + ".captures"});
   }
   if (rig.lidar.device.index() != 0) {
-    add("lidar", "lidar", {"--rig", file});
+    add(Role::kDriver, "lidar", "lidar", {"--rig", file});
     all.back().ends = true;  // a recording does; it is not to be played again
   }
   if (rig.lidar.turned_scanner && rig.lidar.turned_scanner->motor) {
-    add("motor", "motor", {"--rig", file});
+    add(Role::kDriver, "motor", "motor", {"--rig", file});
   }
-  if (rig.lidar.turned_scanner) add("assembler", "assembler", {});
-  if (options.drive.empty()) {
-    for (const char* name : {"detector", "solver", "fuser"}) add(name, name, {});
-    add("session", "session", {"--rig", file, "--out", options.out.string()});
-    all.back().ends = true;
-  } else {
-    add("monitor", "monitor", {options.drive.string()});
-    for (const char* name : {"fuser", "odometry"}) add(name, name, {});
-    add("mapper", "mapper", {"--out", (options.out / "map.ply").string()});
-  }
+  if (rig.lidar.turned_scanner) add(Role::kBoth, "assembler", "assembler", {});
+  for (const char* name : {"detector", "solver"}) add(Role::kSession, name, name, {});
+  add(Role::kDrive, "monitor", "monitor", {options.drive.string()});
+  add(Role::kBoth, "fuser", "fuser", {});
+  add(Role::kDrive, "odometry", "odometry", {});
+  add(Role::kDrive, "mapper", "mapper", {"--out", (options.out / "map.ply").string()});
+  add(Role::kSession, "session", "session", {"--rig", file, "--out", options.out.string()});
+  all.back().ends = true;
   std::vector<std::string> page;
   if (!options.listen.empty()) page = {"--listen", options.listen};
   if (!options.certificate.empty()) {
     page.insert(page.end(), {"--tls", options.certificate, options.tls_key});
   }
-  add("viewer", "viewer", page);
-  if (!options.log.empty() || HostsLog(rig)) all.push_back(Logger(options));
+  add(Role::kBoth, "viewer", "viewer", page);
   return all;
+}
+
+}  // namespace
+
+std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options) {
+  const Role other = options.drive.empty() ? Role::kDrive : Role::kSession;
+  std::vector<Program> programs = AllPrograms(rig, options);
+  programs.erase(std::remove_if(programs.begin(), programs.end(),
+                                [&](const Program& program) { return program.role == other; }),
+                 programs.end());
+  if (!options.log.empty() || HostsLog(rig)) programs.push_back(Logger(options));
+  return programs;
+}
+
+std::vector<std::string> SpeakersOf(const Rig& rig, const std::set<Role>& roles) {
+  std::vector<std::string> names;
+  for (const Program& program : AllPrograms(rig, {})) {
+    if (roles.count(program.role) > 0 && !program.ends) names.push_back(program.name);
+  }
+  return names;
 }
 
 std::vector<Program> ProgramsOn(const std::string& host, const Rig& rig, std::vector<Program> all) {

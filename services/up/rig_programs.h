@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,14 @@ namespace rgbdt {
 inline constexpr const char* kLogger = "logger";             ///< as a process
 inline constexpr const char* kLoggerProgram = "lcm-logger";  ///< what it runs: LCM's own
 
+/// What a process is there for.
+enum class Role {
+  kDriver,   ///< a device of the rig
+  kSession,  ///< the rig is calibrated
+  kDrive,    ///< it drives
+  kBoth,     ///< either
+};
+
 /// A program to be run.
 struct Program {
   std::string name;                    ///< as its STATUS calls it: "camera-rgb"
@@ -18,6 +27,7 @@ struct Program {
   std::filesystem::path log;           ///< what it prints is added to this file
   bool ends = false;                   ///< exit code 0 means that it is done, for good
   bool speaks = true;                  ///< it sends STATUS
+  Role role = Role::kBoth;
 };
 
 /// How a rig's processes are called.
@@ -42,6 +52,9 @@ struct UpOptions {
 /// leads, the viewer, and a logger where one is asked for. Of a drive monitor, fuser, odometry and
 /// mapper in place of detector, solver, fuser and session.
 std::vector<Program> ProgramsOf(const Rig& rig, const UpOptions& options);
+
+/// Names of a rig's processes of these roles that send STATUS for as long as the rig is up.
+std::vector<std::string> SpeakersOf(const Rig& rig, const std::set<Role>& roles);
 
 /// Those of all of a rig's programs that run on `host`, as the rig's hosts say; without any: all.
 /// What only a drive has runs beside the fuser where no host names it.

@@ -5,19 +5,13 @@
 #include <utility>
 
 #include "services/messages/check.h"
+#include "services/messages/status_counters.h"
 
 namespace rgbdt {
 namespace {
 
 constexpr Utime kSilent = 3 * kMicrosecondsPerSecond;
 constexpr std::size_t kMostText = 80;
-
-std::int64_t Counter(const Status& status, const std::string& name) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return 0;
-}
 
 std::string StateOf(const Supervisor::Child& child, Utime now) {
   if (child.pid != 0) return "runs";
@@ -42,7 +36,7 @@ Messages UpNode::Handle(const Message& message) {
   if (found == heard_.end()) return {};  // another machine's
   Heard& heard = found->second;
   const auto came =
-      static_cast<double>(Counter(*status, "received") - Counter(heard.status, "received"));
+      static_cast<double>(CounterOf(*status, "received") - CounterOf(heard.status, "received"));
   const double seconds = ToSeconds(now_ - heard.when);
   heard.rate = came >= 0 && heard.when != 0 && seconds > 0.1 ? came / seconds : 0;
   heard.status = *status;
@@ -68,7 +62,7 @@ std::string UpNode::Table() const {
     std::string text = speaks ? heard.status.text : child.how_it_ended;
     if (child.pid != 0 && !child.program.speaks) text.clear();  // nothing takes its last words back
     if (text.empty() && child.program.speaks) text = "starts";
-    const std::int64_t lost = Counter(heard.status, "gaps") + Counter(heard.status, "dropped");
+    const std::int64_t lost = CounterOf(heard.status, "gaps") + CounterOf(heard.status, "dropped");
     std::snprintf(line, sizeof(line), "%-16s %-7s %8.0f %8lld %8d  %s\n",
                   child.program.name.c_str(), StateOf(child, now_).c_str(),
                   speaks ? heard.rate : 0.0, static_cast<long long>(lost),

@@ -57,9 +57,22 @@ grep -qF "next: rgbdt map $drive/drive.lcmlog" "$scratch/output" || complain "a 
 [ "$(grep -cv '^#' "$drive/truth.tum")" = 10 ] || complain "a drive's way has not a pose a sweep"
 accepts "a drive's map" "$bin/rgbdt" map "$drive/drive.lcmlog" --out "$scratch/map.ply"
 grep -qE '(^| )9 poses|10 sweeps' "$scratch/output" || complain "the map is not of ten sweeps"
+drive=$scratch/imperfect_drive
+accepts "an imperfect drive" "$bin/rgbdt" simulate "$drive" --drive 0.2 --scene indoor --lidar vlp16 --imperfect
+holds "imperfect drive" "$drive/truth.textproto" "^# rings' ranges \[mm\], the lowest first:( [+-][0-9.]+){16}$"
+! grep -q "^# pattern" "$drive/truth.textproto" || complain "imperfect drive: a print, without a board"
+! grep -q "exact: true" "$drive/rig.textproto" || complain "imperfect drive: its lenses are exact"
+grep -q "lens {" "$drive/calibration.textproto" || complain "imperfect drive: the true lenses are not there"
 misuses "a drive and a wave" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --wave 1
 misuses "a natural drive" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --natural
-refuses "a board that is waved before a Livox" "$bin/rgbdt" simulate "$scratch/refused" --wave 1 --lidar avia
+for lidar in avia turned; do
+  misuses "a board that is waved before $lidar" "$bin/rgbdt" simulate "$scratch/refused" --wave 1 --lidar "$lidar"
+  grep -q "a spinning LIDAR: --lidar vlp16" "$scratch/output" || complain "who drives with $lidar is told nothing"
+done
+misuses "a drive in views" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --views 12
+grep -q -e "--views goes with views" "$scratch/output" || complain "a drive in views is told nothing"
+misuses "a wave with picked corners" "$bin/rgbdt" simulate "$scratch/refused" --wave 1 --picked rgb
+misuses "a drive with a board" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --target 8x6@0.095,0.85x0.61
 refuses "a drive at night" "$bin/rgbdt" simulate "$scratch/refused" --drive 1 --scene night
 misuses "a natural night" "$bin/rgbdt" simulate "$scratch/refused" --natural --scene night
 misuses "--board alone" "$bin/rgbdt" simulate "$scratch/refused" --board

@@ -6,25 +6,11 @@
 #include "calib/simulate/waving.h"
 #include "services/messages/codec.h"
 #include "tests/log_writer.h"
+#include "tests/simulated_variants.h"
 
 namespace {
 
 using rgbdt::Utime;
-
-rgbdt::simulate::Options SmallRig() {
-  rgbdt::simulate::Options options;
-  options.seed = 7;
-  rgbdt::simulate::UseLidar(32, &options);
-  rgbdt::simulate::CameraOptions camera = rgbdt::simulate::DefaultColorCamera();
-  camera.width = 640;
-  camera.height = 480;
-  camera.lens.fx = camera.lens.fy = 420;
-  camera.lens.cx = 318;
-  camera.lens.cy = 243;
-  options.cameras = {camera};
-  options.supersampling = 3;
-  return options;
-}
 
 void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message, Utime utime) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), utime);
@@ -53,7 +39,7 @@ int main(int argc, char** argv) {
   rgbdt::simulate::ClockOptions clock;
   clock.offset_s = 0.25;
   clock.rolling_s = 0.015;
-  rgbdt::simulate::Waving waving(SmallRig(), wave, {clock});
+  rgbdt::simulate::Waving waving(rgbdt::simulate::OneCamera(7, 32, 640), wave, {clock});
   const rgbdt::Rig rig = rgbdt::ParseRig(rgbdt::PrintRig(waving.rig()), "rig");
   WriteCalibrationOff(waving, rig, argv[3]);
   rgbdt::test::LogWriter log(argv[1]), other(argv[2]);

@@ -31,7 +31,7 @@ TEST(DeviceNodes, TakeAnyMessage) {
   Rig rig;
   rig.cameras = {camera};
   MotorNode motor(turned);
-  CameraNode camera_node(rig, "", dir / "captures");
+  CameraNode camera_node(rig, "", dir / "captures", false);
   LidarNode lidar_node(lidar);
   for (DeviceNode* node : std::vector<DeviceNode*>{&motor, &camera_node, &lidar_node}) {
     for (const SessionVerb verb : {SessionVerb::kReset, SessionVerb::kNextPose, SessionVerb::kSweep,
@@ -84,11 +84,11 @@ TEST(DeviceNodes, WithoutADeviceSayWhatToAdd) {
   rig.cameras.resize(2);
   rig.cameras[0].name = "rgb";
   rig.cameras[1].name = "thermal";
-  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "", ""); }), HasSubstr("no camera in"));
-  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "rgb", ""); }),
+  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "", "", false); }), HasSubstr("no camera in"));
+  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "rgb", "", false); }),
               HasSubstr("how to reach camera \"rgb\""));
   for (CameraSpec& camera : rig.cameras) camera.device.emplace();
-  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "", ""); }),
+  EXPECT_THAT(WordsOf([&] { CameraNode node(rig, "", "", false); }),
               HasSubstr("--camera rgb or --camera thermal"));
 }
 

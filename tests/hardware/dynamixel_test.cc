@@ -11,6 +11,7 @@
 
 #include "services/drivers/dynamixel/motor_node.h"
 #include "services/drivers/dynamixel/serial_port.h"
+#include "services/messages/status_counters.h"
 #include "tests/hardware/device_harness.h"
 #include "tests/hardware/dynamixel_peer.h"
 #include "tests/numbers.h"
@@ -97,10 +98,7 @@ class Listener {
     return WaitFor([&] { return readings_.size() >= wanted; });
   }
   std::int64_t Counter(const std::string& name) const {
-    for (const auto& [counter, value] : node_->GetStatus().counters) {
-      if (counter == name) return value;
-    }
-    return -1;
+    return CounterOf(node_->GetStatus(), name, -1);
   }
 
   const std::vector<EncoderReading>& readings() const { return readings_; }

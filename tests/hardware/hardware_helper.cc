@@ -15,6 +15,7 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/messages/codec.h"
+#include "services/messages/status_counters.h"
 #include "services/posix/clock.h"
 
 namespace rgbdt {
@@ -85,11 +86,7 @@ class Listener {
 
   std::int64_t Counter(const std::string& process, const std::string& name) const {
     const auto found = statuses.find(process);
-    if (found == statuses.end()) return -1;
-    for (const auto& [counter, value] : found->second.counters) {
-      if (counter == name) return value;
-    }
-    return -1;
+    return found == statuses.end() ? -1 : CounterOf(found->second, name, -1);
   }
 
   LcmBus bus{""};

@@ -22,6 +22,7 @@
 #include "services/bus/sequence.h"
 #include "services/messages/codec.h"
 #include "services/messages/signature.h"
+#include "services/messages/status_counters.h"
 #include "tests/datagrams.h"
 #include "tests/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
@@ -88,11 +89,7 @@ class Listener {
 
   std::int64_t Counter(const std::string& process, const std::string& name) const {
     const auto found = statuses.find(process);
-    if (found == statuses.end()) return -1;
-    for (const auto& [counter, value] : found->second.counters) {
-      if (counter == name) return value;
-    }
-    return 0;
+    return found == statuses.end() ? -1 : CounterOf(found->second, name);
   }
 
   LcmBus bus{""};

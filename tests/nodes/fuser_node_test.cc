@@ -17,17 +17,8 @@ namespace {
 using test::Counter;
 using test::ErrorOf;
 using test::Only;
+using test::TinyRig;
 using ::testing::HasSubstr;
-
-const simulate::Simulator& Simulator() {
-  static const simulate::Simulator simulator(test::TinyOptions());
-  return simulator;
-}
-
-const Rig& TinyRig() {
-  static const Rig rig = test::RigOf(Simulator());
-  return rig;
-}
 
 Image Plain(const std::string& name, Utime utime, int value) {
   const CameraSpec& camera = TinyRig().Camera(name);
@@ -47,7 +38,8 @@ CalibrationMessage Calibrated(const std::string& camera) {
   message.rig_hash = TinyRig().hash;
   message.method = "paper";
   message.calibration.camera = camera;
-  message.calibration.camera_from_lidar = Simulator().truth().camera_from_lidar.at(camera);
+  message.calibration.camera_from_lidar =
+      test::TinySimulator().truth().camera_from_lidar.at(camera);
   message.calibration.status = SolveStatus::kConverged;
   return message;
 }

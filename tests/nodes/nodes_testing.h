@@ -10,6 +10,7 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
+#include "services/messages/status_counters.h"
 #include "services/runtime/node.h"
 
 namespace rgbdt::test {
@@ -53,6 +54,29 @@ inline Rig RigOf(const simulate::Simulator& simulator) {
   return ParseRig(PrintRig(simulator.rig()), "synthetic rig");
 }
 
+inline const simulate::Simulator& TinySimulator() {
+  static const simulate::Simulator simulator(TinyOptions());
+  return simulator;
+}
+
+inline const Rig& TinyRig() {
+  static const Rig rig = RigOf(TinySimulator());
+  return rig;
+}
+
+/// A whole sweep of two points.
+inline CloudChunk SweepOfTwo(Utime sweep) {
+  CloudChunk chunk;
+  chunk.cloud.sweep_utime = sweep;
+  chunk.cloud.lines = 1;
+  chunk.cloud.beams = 2;
+  chunk.cloud.points = {{3, 0, 0}, {3, 1, 0}};
+  chunk.cloud.utime = {sweep, sweep + 1};
+  chunk.sweep_end = true;
+  chunk.sweep_lines = 1;
+  return chunk;
+}
+
 inline RigText TextOf(const Rig& rig) { return {0, rig.hash, rig.text}; }
 
 /// The messages of one type among many.
@@ -83,10 +107,7 @@ inline std::vector<Bytes> BytesOf(const Messages& messages) {
 
 /// A counter of a status; -1 where there is none of that name.
 inline std::int64_t Counter(const Status& status, const std::string& name) {
-  for (const auto& [counter, value] : status.counters) {
-    if (counter == name) return value;
-  }
-  return -1;
+  return CounterOf(status, name, -1);
 }
 
 }  // namespace rgbdt::test

@@ -13,11 +13,6 @@ namespace rgbdt::test {
 
 inline constexpr Utime kStart = 1'500'000'000'000'000;
 
-inline const Rig& TinyRig() {
-  static const Rig rig = RigOf(simulate::Simulator(TinyOptions()));
-  return rig;
-}
-
 inline SessionStep Step(SessionStep::Kind kind) {
   SessionStep step;
   step.kind = kind;
@@ -121,17 +116,9 @@ class World {
 
  private:
   Messages Sweep(const SessionCommand& command) const {
-    CloudChunk chunk;
-    chunk.cloud.sweep_utime = now;
-    chunk.cloud.lines = 1;
-    chunk.cloud.beams = 2;
-    chunk.cloud.points = {{1, 2, 3}, {4, 5, 6}};
-    chunk.cloud.utime = {now, now + 1};
-    chunk.sweep_end = true;
-    chunk.sweep_lines = 1;
     SessionEvent done = Event(command, "simulator");
     done.sweep_utime = now;
-    return {chunk, done};
+    return {SweepOfTwo(now), done};
   }
   Messages Capture(const SessionCommand& command) {
     Messages out;

@@ -10,6 +10,7 @@
 #include "calib/scan_assembly/sweep_chunks.h"
 #include "calib/simulate/driving.h"
 #include "services/import/timed_log.h"
+#include "tests/simulated_variants.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -19,21 +20,6 @@ using simulate::Driving;
 
 constexpr Utime kSweep = 100'000;
 constexpr int kSweeps = 16;
-
-simulate::Options SmallRig() {
-  simulate::Options options;
-  options.seed = 4;
-  simulate::UseLidar(16, &options);
-  simulate::CameraOptions camera = simulate::DefaultColorCamera();
-  camera.width = 160;
-  camera.height = 120;
-  camera.lens.fx = camera.lens.fy = 105;
-  camera.lens.cx = 80;
-  camera.lens.cy = 60;
-  options.cameras = {camera};
-  options.supersampling = 2;
-  return options;
-}
 
 // 3 m/s along a street, an image in every fifth sweep.
 std::filesystem::path LogOf(const std::filesystem::path& path, Driving* driving,
@@ -54,7 +40,7 @@ std::filesystem::path LogOf(const std::filesystem::path& path, Driving* driving,
 
 TEST(DriveSession, WithoutPosesTheSweepsTellTheMotion) {
   const test::TempDir dir;
-  Driving driving(SmallRig(), 3);
+  Driving driving(simulate::OneCamera(4, 16, 160), 3);
   const std::filesystem::path log = LogOf(dir / "drive.lcmlog", &driving);
   CutOptions options;
   options.every = 3 * kSweep;

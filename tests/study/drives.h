@@ -8,8 +8,9 @@
 
 #include "calib/model/cloud.h"
 #include "calib/model/rigid3.h"
-#include "calib/simulate/internal/driving_lidar.h"
 #include "calib/simulate/internal/scanner.h"
+#include "calib/simulate/internal/spinning.h"
+#include "calib/simulate/internal/ways.h"
 #include "calib/simulate/internal/world.h"
 #include "calib/simulate/options.h"
 

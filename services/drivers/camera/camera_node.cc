@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "calib/camera/packed.h"
 #include "calib/camera/pixels.h"
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
@@ -236,13 +237,9 @@ void CameraNode::KeepRaw(const Image& image) {
 
 // For the wire; the bus compresses.
 void CameraNode::Pack(Image* image) const {
-  if (wire_ == CameraDevice::Wire::kJpeg) {
-    image->pixels = ToBgr(*image);
-    image->format = PixelFormat::kJpeg;
-  } else if (wire_ == CameraDevice::Wire::kPng) {
-    if (spec_.kind == CameraKind::kColor) image->pixels = ToBgr(*image);
-    image->format = PixelFormat::kPng;
-  }
+  using Wire = CameraDevice::Wire;
+  if (wire_ == Wire::kRaw) return;
+  *image = Packed(std::move(*image), wire_ == Wire::kJpeg ? PixelFormat::kJpeg : PixelFormat::kPng);
 }
 
 Status CameraNode::GetStatus() const {

@@ -47,7 +47,7 @@ class CameraNode : public DeviceNode {
   /// bus does (WireOf). Throws InputError where the rig file has no device for it, or there is a
   /// choice.
   CameraNode(const Rig& rig, const std::string& camera, std::filesystem::path captures,
-             bool leaves_machine = false);
+             bool leaves_machine);
   ~CameraNode() override;
 
   std::string name() const override { return "camera-" + spec_.name; }

@@ -1,13 +1,17 @@
 #include "services/bus/log.h"
 
+#include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "calib/model/errors.h"
+#include "services/posix/descriptor.h"
 #include "tests/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
 
@@ -15,6 +19,8 @@ namespace rgbdt {
 namespace {
 
 using test::LogWriter;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 constexpr std::size_t kHeaderBytes = 28;
 
@@ -161,6 +167,15 @@ TEST_F(LogTest, NothingIsWrittenThroughALinkNorWaitedFor) {
   EXPECT_EQ(FileBytes(), before);
   EXPECT_THROW(LogWriter{directory_.string()}, InputError);
   EXPECT_TRUE(std::filesystem::is_directory(directory_));
+}
+
+TEST_F(LogTest, ADeviceStays) {
+  const Descriptor terminal(posix_openpt(O_RDWR | O_NOCTTY));
+  ASSERT_TRUE(terminal);
+  const std::string device = ptsname(terminal.get());
+  EXPECT_THAT([&] { LogWriter{device}; },
+              ThrowsMessage<InputError>(HasSubstr(device + " is a device")));
+  EXPECT_TRUE(std::filesystem::is_character_file(device));
 }
 
 TEST_F(LogTest, WhatIsNoLogIsSaid) {

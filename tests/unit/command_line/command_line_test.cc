@@ -192,6 +192,16 @@ TEST(CommandLine, RunsTheVerbThatIsNamed) {
             "program: DIR is required; not known: --dirr=here; see program work --help\n");
 }
 
+TEST(CommandLine, TellsWhatWasGivenBeItTheDefault) {
+  CommandLine line("example", "Does nothing.");
+  std::string rig = "here", camera = "rgb";
+  line.Option("--rig", &rig, "a rig");
+  line.Option("--camera", &camera, "one of its");
+  EXPECT_EQ(RunWith(&line, {"--rig", "here"},
+                    [&] { return line.Given("--rig") && !line.Given("--camera") ? 5 : 6; }),
+            5);
+}
+
 TEST(CommandLine, AVectorWithoutDashesTakesAllWords) {
   CommandLine line("example", "Does nothing.");
   std::vector<std::string> files;

@@ -9,6 +9,7 @@
 #include "calib/model/errors.h"
 #include "services/messages/codec.h"
 #include "services/messages/limits.h"
+#include "services/messages/status_counters.h"
 
 namespace rgbdt {
 namespace {
@@ -87,10 +88,7 @@ class NodeRunnerTest : public ::testing::Test {
     Send(EncoderReading{1000 + seq, seq, ticks, 0});
   }
   std::int64_t Counter(const std::string& name) const {
-    for (const auto& [key, value] : runner_.GetStatus().counters) {
-      if (key == name) return value;
-    }
-    return -1;
+    return CounterOf(runner_.GetStatus(), name, -1);
   }
 
   MemoryBus bus_;

@@ -10,23 +10,14 @@
 #include "calib/simulate/internal/natural_scene.h"
 #include "calib/simulate/internal/spinning.h"
 #include "calib/simulate/internal/world.h"
+#include "tests/simulated_variants.h"
 
 namespace rgbdt::simulate {
 namespace {
 
 Options SmallRig(Scene scene) {
-  Options options;
-  options.seed = 3;
+  Options options = OneCamera(3, 16, 160);
   options.scene = scene;
-  UseLidar(16, &options);
-  CameraOptions camera = DefaultColorCamera();
-  camera.width = 160;
-  camera.height = 120;
-  camera.lens.fx = camera.lens.fy = 105;
-  camera.lens.cx = 80;
-  camera.lens.cy = 60;
-  options.cameras = {camera};
-  options.supersampling = 2;
   return options;
 }
 

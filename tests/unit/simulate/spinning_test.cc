@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "calib/model/errors.h"
+#include "calib/simulate/imperfections.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "tests/simulated_variants.h"
 #include "tests/unit/simulate/simulate_testing.h"
@@ -243,6 +244,54 @@ TEST(SpinningSweep, IsTheSameEachTimeOnAnyNumberOfThreads) {
   EXPECT_EQ(one.intensity, three.intensity);
   EXPECT_FALSE(Same(one.points, SpinningSweep(world, options, 1, 6).points));
   EXPECT_FALSE(Same(one.points, SpinningSweep(world, options, 2, 5).points));
+}
+
+// A rig that is off in all ways that are drawn.
+SpinningOptions Imperfect(double firing_share) {
+  Options options;
+  options.seed = 4;
+  UseLidar(16, &options);
+  MakeImperfect(&options);
+  options.spinning->firing_share = firing_share;
+  return *options.spinning;
+}
+
+TEST(MovingSweep, IsThatOfAStandingOneWhereItStands) {
+  const World world = WallWorld();
+  Rigid3 pose = RotationAbout(Vector3d::UnitZ(), 0.3) * RotationAbout(Vector3d::UnitY(), 0.1);
+  pose.translation = {-1, 2, 0.5};
+  for (const double share : {0.0, 0.9}) {
+    const SpinningOptions options = Imperfect(share);
+    const Cloud still = SpinningSweep(world, options, 4, 7, 1, pose);
+    const Cloud moving = MovingSweep(
+        world, options, 4, 7, [&](Utime) { return pose; }, 2);
+    EXPECT_TRUE(Same(still.points, moving.points));
+    EXPECT_TRUE(Same(still.directions, moving.directions));
+    EXPECT_EQ(still.intensity, moving.intensity);
+    EXPECT_EQ(still.utime, moving.utime);
+    EXPECT_EQ(still.ring, moving.ring);
+  }
+}
+
+TEST(MovingSweep, EachBeamIsFiredFromWhereTheLidarIsThen) {
+  const World world = WallWorld();
+  SpinningOptions options = Quiet(16);
+  options.firing_share = 0.9;
+  // At the wall by 10 m/s.
+  const auto at = [](Utime utime) {
+    Rigid3 pose;
+    pose.translation.x() = 10 * ToSeconds(utime);
+    return pose;
+  };
+  const Cloud cloud = MovingSweep(world, options, 1, 0, at);
+  int hits = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    // What is seen under a flat angle goes over the edges of the beam's sub-rays.
+    if (!cloud.IsHit(i) || cloud.directions[i].x() < 0.8F) continue;
+    ++hits;
+    ASSERT_NEAR(cloud.points[i].x(), 5 - 10 * ToSeconds(cloud.utime[i]), 1e-4) << i;
+  }
+  EXPECT_GT(hits, 3000);
 }
 
 TEST(Unorganised, KeepsTheHitsAndNothingElse) {

@@ -68,6 +68,20 @@ TEST(RigPrograms, ADriveIsWatchedAndMappedByTheRigOfASession) {
   EXPECT_THAT(NamesOn("desk", rig), ElementsAre("solver", "session", "viewer", "logger"));
 }
 
+TEST(RigPrograms, SpeakersAreListedByTheirRoles) {
+  Rig rig;
+  rig.cameras.resize(2);
+  rig.cameras[0].name = "rgb";
+  rig.cameras[1].name = "simulated";
+  rig.cameras[0].device = CameraDevice();
+  EXPECT_THAT(SpeakersOf(rig, {Role::kDriver}), ElementsAre("camera-rgb"));
+  EXPECT_THAT(SpeakersOf(rig, {Role::kDrive}), ElementsAre("monitor", "odometry", "mapper"));
+  // A session ends by itself.
+  EXPECT_THAT(SpeakersOf(rig, {Role::kSession}), ElementsAre("detector", "solver"));
+  rig.lidar.turned_scanner = TurnedScanner();
+  EXPECT_THAT(SpeakersOf(rig, {Role::kBoth}), ElementsAre("assembler", "fuser", "viewer"));
+}
+
 TEST(RigPrograms, HostsThatDoNotFitTheRigAreNamed) {
   EXPECT_THAT(InputErrorOf([] { NamesOn("laptop", OnTwoHosts()); }),
               AllOf(HasSubstr("\"laptop\""), HasSubstr("sensor, desk"), HasSubstr("--host")));

@@ -10,6 +10,7 @@
 namespace rgbdt::viewer {
 namespace {
 
+using test::SweepOfTwo;
 using test::TinyRig;
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -47,18 +48,6 @@ class FoxgloveFeedTest : public ::testing::Test {
   Published out_;
   FoxgloveFeed feed_{&out_};
 };
-
-CloudChunk SweepOfTwo(Utime sweep) {
-  CloudChunk chunk;
-  chunk.cloud.sweep_utime = sweep;
-  chunk.cloud.lines = 1;
-  chunk.cloud.beams = 2;
-  chunk.cloud.points = {{3, 0, 0}, {3, 1, 0}};
-  chunk.cloud.utime = {sweep, sweep + 1};
-  chunk.sweep_end = true;
-  chunk.sweep_lines = 1;
-  return chunk;
-}
 
 TEST_F(FoxgloveFeedTest, MessagesGoOnWithTheTimeOfTheirArrival) {
   Take(SweepOfTwo(5000));

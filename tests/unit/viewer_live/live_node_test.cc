@@ -76,15 +76,7 @@ class LiveNodeTest : public ::testing::Test {
   }
   // All that a view is made of.
   void TakeView(const std::string& view, Utime sweep) {
-    CloudChunk chunk;
-    chunk.cloud.sweep_utime = sweep;
-    chunk.cloud.lines = 1;
-    chunk.cloud.beams = 2;
-    chunk.cloud.points = {{3, 0, 0}, {3, 1, 0}};
-    chunk.cloud.utime = {sweep, sweep + 1};
-    chunk.sweep_end = true;
-    chunk.sweep_lines = 1;
-    node_.Handle(chunk);
+    node_.Handle(test::SweepOfTwo(sweep));
     node_.Handle(Capture(view, sweep));
     for (const CameraSpec& camera : TinyRig().cameras) {
       node_.Handle(test::Blank(camera, sweep + kMicrosecondsPerSecond));

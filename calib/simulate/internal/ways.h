@@ -3,10 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "calib/model/cloud.h"
 #include "calib/model/rigid3.h"
-#include "calib/simulate/internal/world.h"
-#include "calib/simulate/lidar_options.h"
 
 namespace rgbdt::simulate {
 
@@ -20,10 +17,5 @@ using Way = std::function<Rigid3(double seconds)>;
 Way StreetWay(std::uint64_t seed, double speed_mps, double aside_m = 0.7, double at_rest_s = 0);
 /// Round the free middle of the room, looking about.
 Way RoomWay(std::uint64_t seed, double speed_mps);
-
-/// A sweep of a spinning LIDAR that moves while it turns: each column of beams starts from where
-/// the LIDAR is at its time. Ring x azimuth, each point with its time, as the LIDAR saw it then.
-Cloud MovingSweep(const World& world, const SpinningOptions& lidar, std::uint64_t seed, Utime utime,
-                  const std::function<Rigid3(Utime)>& world_from_lidar);
 
 }  // namespace rgbdt::simulate
