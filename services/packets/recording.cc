@@ -107,7 +107,6 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
   ForEach(path, [&](const PcapReader::Datagram& datagram) { finder.Look(datagram); });
   Recording recording;
   const std::unique_ptr<PacketSweeps> sweeps = finder.Found(path, &recording.sender);
-  recording.sensor = sweeps->name();
   recording.others = finder.all();
   recording.others.erase(recording.sender);
   const auto give = [&](const Cloud& sweep) {
@@ -131,6 +130,7 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
     for (const Cloud& sweep : done) give(sweep);
   });
   if (const auto sweep = sweeps->Finish()) give(*sweep);
+  recording.sensor = sweeps->name();
   recording.lost = sweeps->Lost();
   return recording;
 }

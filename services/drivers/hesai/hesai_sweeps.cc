@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "calib/model/errors.h"
+
 namespace rgbdt {
 namespace {
 
@@ -23,9 +25,8 @@ hesai::Return Brighter(const hesai::Return& a, const hesai::Return& b) {
 
 }  // namespace
 
-HesaiSweeps::HesaiSweeps(hesai::Angles angles)
-    : angles_(std::move(angles)), sensor_(hesai::SensorOf(angles_.elevation_rad.size())) {
-  std::vector<std::size_t> order(sensor_.channels);
+HesaiSweeps::HesaiSweeps(hesai::Angles angles) : angles_(std::move(angles)) {
+  std::vector<std::size_t> order(channels());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return angles_.elevation_rad[a] < angles_.elevation_rad[b];
@@ -64,6 +65,10 @@ void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
 
 std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) {
   std::vector<Cloud> done;
+  if (!packet.columns.empty() && packet.columns.front().returns.size() != channels()) {
+    throw InputError("a packet of " + std::to_string(packet.columns.front().returns.size()) +
+                     " channels; the angles are of " + std::to_string(channels()));
+  }
   const auto utime = static_cast<double>(packet.utime.value_or(arrival));
   CountLost(packet, utime);
   for (const hesai::Column& column : packet.columns) {
@@ -91,13 +96,13 @@ Utime HesaiSweeps::begun() const {
 }
 
 Cloud HesaiSweeps::Revolution() const {
-  const std::size_t beams = columns_.size(), size = sensor_.channels * beams;
+  const std::size_t beams = columns_.size(), size = channels() * beams;
   Cloud cloud;
   cloud.sweep_utime = begun();
-  cloud.lines = static_cast<int>(sensor_.channels);
+  cloud.lines = static_cast<int>(channels());
   cloud.beams = static_cast<int>(beams);
   cloud.points.assign(size, {kNan, kNan, kNan});
-  cloud.directions.resize(size);
+  cloud.directions.assign(size, {kNan, kNan, kNan});
   cloud.intensity.resize(size);
   cloud.utime.resize(size);
   cloud.ring.resize(size);
@@ -105,7 +110,7 @@ Cloud HesaiSweeps::Revolution() const {
       (FromSeam(columns_.back().azimuth_rad) - FromSeam(columns_.front().azimuth_rad)) /
       static_cast<double>(beams - 1);
   const auto n = static_cast<std::int64_t>(beams);
-  for (std::size_t channel = 0; channel < sensor_.channels; ++channel) {
+  for (std::size_t channel = 0; channel < channels(); ++channel) {
     const double cos = std::cos(angles_.elevation_rad[channel]);
     const double sin = std::sin(angles_.elevation_rad[channel]);
     const std::int64_t aside = step > 0 ? std::llround(angles_.azimuth_rad[channel] / step) : 0;
@@ -117,7 +122,9 @@ Cloud HesaiSweeps::Revolution() const {
       const Eigen::Vector3d direction(cos * std::cos(azimuth), -cos * std::sin(azimuth), sin);
       const hesai::Return& back = column.returns[channel];
       cloud.ring[i] = static_cast<std::uint16_t>(ring_[channel]);
-      cloud.utime[i] = std::llround(column.utime + sensor_.channel_us[channel]);
+      const bool fired = std::isfinite(back.after_us);
+      cloud.utime[i] = std::llround(column.utime + (fired ? back.after_us : 0));
+      if (!fired) continue;
       cloud.directions[i] = direction.cast<float>();
       cloud.intensity[i] = static_cast<float>(back.reflectivity) / 255;
       if (back.range_m > 0) cloud.points[i] = (back.range_m * direction).cast<float>();

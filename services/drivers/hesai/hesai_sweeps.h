@@ -12,23 +12,24 @@ namespace rgbdt {
 /// points backwards, the next ones as they were fired, clockwise from above. LIDAR frame: x forward
 /// at azimuth 0, y left, z up (the manuals have y forward and x right). A beam that returned
 /// nothing is NaN and keeps its direction. Rings whose channels look aside are shifted by whole
-/// columns. Of two returns of a beam the one of the higher reflectivity counts. Columns of lost
-/// packets are left out: their neighbours stand side by side, and how many are missing is counted.
-/// A revolution in which half a turn or more is missing, or whose clock jumps, is left out.
+/// columns. Of a beam that was not fired in a column (high resolution, sensors whose channels take
+/// turns) not even the direction is known. Of two returns of a beam the one of the higher
+/// reflectivity counts. Columns of lost packets are left out: their neighbours stand side by side,
+/// and how many are missing is counted. A revolution in which half a turn or more is missing, or
+/// whose clock jumps, is left out.
 ///
 /// Times: the packets' own date and time; where the sensor's clock was never set, their arrival.
 class HesaiSweeps {
  public:
-  /// Throws InputError for angles of a number of channels that no known sensor has.
   explicit HesaiSweeps(hesai::Angles angles);
 
   /// The revolutions that a packet, which arrived at `arrival` [us, UTC], completed. The first, cut
-  /// off one never comes.
+  /// off one never comes. Throws InputError for one of a sensor of another number of channels.
   std::vector<Cloud> Add(const hesai::Packet& packet, Utime arrival);
 
   /// Name of the revolution that has begun; 0: none.
   Utime begun() const;
-  const hesai::Sensor& sensor() const { return sensor_; }
+  std::size_t channels() const { return angles_.elevation_rad.size(); }
   /// Columns that never came, by the azimuths of those about them; but for `left_out`.
   std::int64_t lost_columns() const { return lost_columns_; }
   std::int64_t left_out() const { return left_out_; }  ///< revolutions
@@ -44,7 +45,6 @@ class HesaiSweeps {
   Cloud Revolution() const;
 
   hesai::Angles angles_;
-  const hesai::Sensor& sensor_;
   std::vector<std::size_t> ring_;  // by channel
   std::vector<Fired> columns_;
   double last_from_seam_ = -1;  // of the column before; -1: there is none

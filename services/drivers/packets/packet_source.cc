@@ -153,7 +153,6 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
                         Utime utime) {
   if (!sweeps_) {
     sweeps_ = LivoxPackets(payload);
-    if (sweeps_) name_ = sweeps_->name();
   }
   if (!sweeps_ || !sweeps_->IsOurs(payload)) {
     other_bytes_ = payload.size();
@@ -171,6 +170,7 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
   report_.SetSweepBegun(sweeps_->begun());
   report_.Count("packets");
   const std::int64_t lost = ReportLosses(thread);
+  name_ = sweeps_->name();
   if (!done.empty()) LookAt(thread, done.back(), lost, utime);
   for (const Cloud& sweep : done) Publish(thread, sweep);
 }

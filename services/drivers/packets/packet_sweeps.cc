@@ -41,13 +41,21 @@ class Hesai : public PacketSweeps {
  public:
   explicit Hesai(hesai::Angles angles) : sweeps_(std::move(angles)) {}
 
-  std::string name() const override { return sweeps_.sensor().name; }
+  // Of several sensors that have so many channels a packet tells which it is.
+  std::string name() const override {
+    return sensor_ != nullptr ? sensor_->name
+                              : "Hesai of " + std::to_string(sweeps_.channels()) + " channels";
+  }
   std::optional<Make> make() const override { return Make::kHesai; }
   bool IsOurs(const Payload& payload) const override {
-    return hesai::IsPacket(sweeps_.sensor(), payload.data(), payload.size());
+    const hesai::Sensor* sensor = hesai::SensorOf(payload.data(), payload.size());
+    return sensor != nullptr && sensor->channels == sweeps_.channels() &&
+           (sensor_ == nullptr || sensor == sensor_);
   }
   std::vector<Cloud> Add(const Payload& payload, Utime arrival) override {
-    return sweeps_.Add(hesai::Decode(sweeps_.sensor(), payload.data(), payload.size()), arrival);
+    if (sensor_ == nullptr) sensor_ = hesai::SensorOf(payload.data(), payload.size());
+    if (sensor_ == nullptr) throw InputError("is no packet of a " + name());
+    return sweeps_.Add(hesai::Decode(*sensor_, payload.data(), payload.size()), arrival);
   }
   std::optional<Cloud> Finish() override { return std::nullopt; }
   Utime begun() const override { return sweeps_.begun(); }
@@ -59,6 +67,7 @@ class Hesai : public PacketSweeps {
 
  private:
   HesaiSweeps sweeps_;
+  const hesai::Sensor* sensor_ = nullptr;
 };
 
 class Velodyne : public PacketSweeps {
@@ -150,7 +159,14 @@ std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata) {
 }
 
 std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles) {
-  return std::make_unique<Hesai>(std::move(angles));
+  const std::size_t channels = angles.elevation_rad.size();
+  std::string known;
+  for (const hesai::Sensor& sensor : hesai::Sensors()) {
+    if (sensor.channels == channels) return std::make_unique<Hesai>(std::move(angles));
+    known += (known.empty() ? "" : ", ") + sensor.name;
+  }
+  throw InputError("no Hesai of " + std::to_string(channels) +
+                   " channels is known; those that are: " + known);
 }
 
 std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const std::string& where) {

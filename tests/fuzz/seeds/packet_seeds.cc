@@ -86,25 +86,27 @@ Payloads HesaiTurns(const HesaiEncoder& encoder) {
 
 void AddHesai(Inputs* seeds) {
   char kind = 0;
-  for (const int channels : {40, 32, 16}) {
-    HesaiEncoder encoder;
-    encoder.channels = channels;
-    encoder.is_40p = channels == 40;
-    const std::string name = std::to_string(channels);
+  for (const HesaiEncoder::Model model : HesaiEncoder::kAll) {
+    HesaiEncoder encoder{model};
+    const std::string name = std::to_string(kind);
     (*seeds)[name] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     (*seeds)[name + "_one"] = std::string(1, kind) + InLine({encoder.Packet(0, 7)});
-    (*seeds)[name + "_mended"] = static_cast<char>(kind | 4) + InLine(HesaiTurns(encoder));
-    (*seeds)[name + "_own"] = static_cast<char>(kind | 8) + Piece(encoder.Angles()) +
+    (*seeds)[name + "_mended"] = static_cast<char>(kind | 0x10) + InLine(HesaiTurns(encoder));
+    (*seeds)[name + "_own"] = static_cast<char>(kind | 0x20) + Piece(encoder.Angles()) +
                               InLine({encoder.Packet(17900, 0), encoder.Packet(18700, 400)});
+    encoder.high_resolution = true;
+    encoder.near = 100;
+    (*seeds)[name + "_fine"] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     encoder.has_date = false;
     encoder.dual = true;
     (*seeds)[name + "_dual"] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     ++kind;
   }
-  const std::string own = "\x08";
+  const std::string own = "\x20";
   (*seeds)["twice"] = own + Piece("1,2,3\n1,2,3\n");
   (*seeds)["missing"] = own + Piece("Channel,Elevation,Azimuth\r\n1,2,3\n3,1,3\n");
   (*seeds)["large"] = own + Piece("4000000000,2,3\n");
+  (*seeds)["sum"] = own + Piece("1,2,3\n" + std::string(64, '7'));
   (*seeds)["none"] = own + Piece("");
 }
 
@@ -135,11 +137,9 @@ void AddRecordings(Inputs* seeds) {
   (*seeds)["hesai"] = "\x02" + Recorded(HesaiTurns(HesaiEncoder()));
   OusterEncoder small = SmallOuster();
   (*seeds)["own"] = "\x03" + Piece(small.Metadata()) + Recorded(OusterTurns(small, 5));
-  HesaiEncoder hesai;
-  hesai.channels = 32;
+  const HesaiEncoder hesai{HesaiEncoder::Model::kXt32};
   (*seeds)["own_angles"] = "\x03" + Piece(hesai.Angles()) + Recorded({hesai.Packet(0, 0)});
-  hesai.channels = 7;
-  (*seeds)["unknown"] = "\x03" + Piece(hesai.Angles()) + Recorded({packets[0]});
+  (*seeds)["unknown"] = "\x03" + Piece(HesaiEncoder::Angles(7)) + Recorded({packets[0]});
 }
 
 // As bag_packets.cc takes them: whose metadata, of which type, and packets.
@@ -171,8 +171,7 @@ void AddBagPackets(Inputs* seeds) {
   (*seeds)["ouster_own"] =
       InBag(kRos2 | 3, kOuster, SmallOuster().Metadata(), OusterTurns(SmallOuster(), 9));
   (*seeds)["hesai"] = InBag(2, kPandar, "", HesaiTurns(HesaiEncoder()));
-  HesaiEncoder hesai;
-  hesai.channels = 32;
+  const HesaiEncoder hesai{HesaiEncoder::Model::kXt32};
   (*seeds)["hesai_own"] = InBag(3, kUdpFrame, hesai.Angles(), HesaiTurns(hesai));
   (*seeds)["whose"] = InBag(0, kNebula, "", {{1, 2, 3}, packets[0], {4}});
   (*seeds)["none"] = InBag(1, kOuster, "", {});

@@ -170,7 +170,7 @@ TEST_F(BagPacketsTest, AnOustersAreTheSameByTheBagsMetadata) {
 }
 
 TEST_F(BagPacketsTest, AHesaisAreTheSameByItsAngles) {
-  const test::HesaiEncoder encoder{false, 32};
+  const test::HesaiEncoder encoder{test::HesaiEncoder::Model::kXt32};
   metadata_ = encoder.Angles();
   std::vector<Sent> sent;
   for (int i = 0; i < 3 * 360 / encoder.blocks() + 10; ++i) {
