@@ -2,7 +2,7 @@
 // tells a packet is put right, whether the angle correction file comes first in the input.
 #include <iterator>
 
-#include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/drivers/hesai/hesai_packets.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/sweep_check.h"
 #include "tests/unit/packets/hesai_encoder.h"
@@ -37,7 +37,7 @@ void Mend(const HesaiEncoder& encoder, const std::string& whole, std::string* pa
 
 void Drive(const hesai::Angles& angles, const HesaiEncoder& encoder, bool mended,
            fuzz::Input* input) {
-  HesaiSweeps sweeps(angles);
+  SpinningSweeps sweeps(angles);
   const std::vector<std::uint8_t> made_up = encoder.Packet(0, 0);
   const std::string whole(made_up.begin(), made_up.end());
   Utime arrival = 1'700'000'000'000'000;

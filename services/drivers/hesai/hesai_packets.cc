@@ -164,7 +164,7 @@ Angles ParseAngles(const std::string& csv, const std::string& where) {
   }
   if (have.empty()) {
     throw InputError(where +
-                     ": has no channels; expected the angle correction file of a Hesai "
+                     ": has no channels; expected the angles of a Hesai or RoboSense "
                      "(CSV), or the metadata of an Ouster (JSON)");
   }
   return angles;

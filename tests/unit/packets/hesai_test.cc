@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/drivers/hesai/hesai_packets.h"
 #include "services/drivers/packets/packet_sweeps.h"
 #include "tests/numbers.h"
 #include "tests/unit/files/test_data.h"
@@ -44,7 +44,7 @@ const hesai::Sensor& SensorFor(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::vector<Cloud> Turns(const HesaiEncoder& encoder, Utime arrival = 0) {
-  HesaiSweeps sweeps(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
+  SpinningSweeps sweeps(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
   std::vector<Cloud> done;
   const int step = 100 * encoder.blocks() / (encoder.dual ? 2 : 1);
   for (int azimuth = 0; azimuth <= 36000 + 18000 + step; azimuth += step) {

@@ -1,4 +1,4 @@
-#include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/drivers/spinning/spinning_sweeps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,14 +18,15 @@ constexpr double kMostPassed_us = 5e5;        // from packet to packet
 // From the back on, 0 to a full turn.
 double FromSeam(double azimuth_rad) { return std::fmod(azimuth_rad + 3 * M_PI, 2 * M_PI); }
 
-hesai::Return Brighter(const hesai::Return& a, const hesai::Return& b) {
+spinning::Return Brighter(const spinning::Return& a, const spinning::Return& b) {
   if (a.range_m == 0 || b.range_m == 0) return a.range_m == 0 ? b : a;
   return b.reflectivity > a.reflectivity ? b : a;
 }
 
 }  // namespace
 
-HesaiSweeps::HesaiSweeps(hesai::Angles angles) : angles_(std::move(angles)) {
+SpinningSweeps::SpinningSweeps(spinning::Angles angles, spinning::Lens lens)
+    : angles_(std::move(angles)), lens_(lens) {
   std::vector<std::size_t> order(channels());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -36,7 +37,7 @@ HesaiSweeps::HesaiSweeps(hesai::Angles angles) : angles_(std::move(angles)) {
 }
 
 // Of the revolution under way; the next one begins at the seam.
-void HesaiSweeps::Leave() {
+void SpinningSweeps::Leave() {
   left_out_ += whole_ ? 1 : 0;
   columns_.clear();
   whole_ = false;
@@ -45,10 +46,10 @@ void HesaiSweeps::Leave() {
 
 // What never came between the packet before and this one. Azimuths tell it within a turn, whatever
 // the clock; of longer gaps only the time does.
-void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
+void SpinningSweeps::CountLost(const spinning::Packet& packet, double utime) {
   const double passed_us = utime - std::exchange(last_utime_, utime);
   if (last_from_seam_ < 0 || packet.columns.size() < 2) return;
-  const hesai::Column &first = packet.columns.front(), &last = packet.columns.back();
+  const spinning::Column &first = packet.columns.front(), &last = packet.columns.back();
   const auto steps = static_cast<double>(packet.columns.size() - 1);
   const double from_seam = FromSeam(first.azimuth_rad);
   const double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) / steps;
@@ -63,7 +64,7 @@ void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
   }
 }
 
-std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) {
+std::vector<Cloud> SpinningSweeps::Add(const spinning::Packet& packet, Utime arrival) {
   std::vector<Cloud> done;
   if (!packet.columns.empty() && packet.columns.front().returns.size() != channels()) {
     throw InputError("a packet of " + std::to_string(packet.columns.front().returns.size()) +
@@ -71,7 +72,7 @@ std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) 
   }
   const auto utime = static_cast<double>(packet.utime.value_or(arrival));
   CountLost(packet, utime);
-  for (const hesai::Column& column : packet.columns) {
+  for (const spinning::Column& column : packet.columns) {
     Fired fired{column.azimuth_rad, utime + column.time_us, column.returns};
     for (std::size_t i = 0; i < column.second_returns.size(); ++i) {
       fired.returns[i] = Brighter(fired.returns[i], column.second_returns[i]);
@@ -91,11 +92,11 @@ std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) 
   return done;
 }
 
-Utime HesaiSweeps::begun() const {
+Utime SpinningSweeps::begun() const {
   return columns_.empty() ? 0 : static_cast<Utime>(std::llround(columns_.front().utime));
 }
 
-Cloud HesaiSweeps::Revolution() const {
+Cloud SpinningSweeps::Revolution() const {
   const std::size_t beams = columns_.size(), size = channels() * beams;
   Cloud cloud;
   cloud.sweep_utime = begun();
@@ -106,6 +107,9 @@ Cloud HesaiSweeps::Revolution() const {
   cloud.intensity.resize(size);
   cloud.utime.resize(size);
   cloud.ring.resize(size);
+  if (lens_.up_m != 0) {
+    cloud.origins.assign(channels(), {0, 0, static_cast<float>(lens_.up_m)});
+  }
   const double step =
       (FromSeam(columns_.back().azimuth_rad) - FromSeam(columns_.front().azimuth_rad)) /
       static_cast<double>(beams - 1);
@@ -118,16 +122,19 @@ Cloud HesaiSweeps::Revolution() const {
       const std::int64_t place = ((static_cast<std::int64_t>(c) + aside) % n + n) % n;
       const std::size_t i = ring_[channel] * beams + static_cast<std::size_t>(place);
       const Fired& column = columns_[c];
-      const double azimuth = column.azimuth_rad + angles_.azimuth_rad[channel];
+      const spinning::Return& back = column.returns[channel];
+      const double head = column.azimuth_rad + back.turned_rad;
+      const double azimuth = head + angles_.azimuth_rad[channel];
       const Eigen::Vector3d direction(cos * std::cos(azimuth), -cos * std::sin(azimuth), sin);
-      const hesai::Return& back = column.returns[channel];
+      const Eigen::Vector3d lens(lens_.outward_m * std::cos(head),
+                                 -lens_.outward_m * std::sin(head), lens_.up_m);
       cloud.ring[i] = static_cast<std::uint16_t>(ring_[channel]);
       const bool fired = std::isfinite(back.after_us);
       cloud.utime[i] = std::llround(column.utime + (fired ? back.after_us : 0));
       if (!fired) continue;
       cloud.directions[i] = direction.cast<float>();
       cloud.intensity[i] = static_cast<float>(back.reflectivity) / 255;
-      if (back.range_m > 0) cloud.points[i] = (back.range_m * direction).cast<float>();
+      if (back.range_m > 0) cloud.points[i] = (lens + back.range_m * direction).cast<float>();
     }
   }
   return cloud;
