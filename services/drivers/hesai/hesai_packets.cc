@@ -190,6 +190,7 @@ Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size) 
   const double block_us = sensor.block_us * (high_resolution ? 0.5 : 1);
   Packet packet;
   packet.utime = UtimeOf(sensor, tail);
+  packet.column_us = block_us;
   for (std::size_t block = 0; block < sensor.blocks; block += returns) {
     const std::uint8_t* at = data + sensor.head_bytes + block * parts.block_bytes;
     const std::uint8_t* beams = at + sensor.block_head_bytes;

@@ -48,15 +48,22 @@ void SpinningSweeps::Leave() {
 // the clock; of longer gaps only the time does.
 void SpinningSweeps::CountLost(const spinning::Packet& packet, double utime) {
   const double passed_us = utime - std::exchange(last_utime_, utime);
-  if (last_from_seam_ < 0 || packet.columns.size() < 2) return;
+  if (last_from_seam_ < 0 || packet.columns.empty()) return;
   const spinning::Column &first = packet.columns.front(), &last = packet.columns.back();
-  const auto steps = static_cast<double>(packet.columns.size() - 1);
   const double from_seam = FromSeam(first.azimuth_rad);
-  const double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) / steps;
-  const double column_us = (last.time_us - first.time_us) / steps;
+  const double gap = std::remainder(from_seam - last_from_seam_, 2 * M_PI);
+  double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) /
+                static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
+  double column_us = (last.time_us - first.time_us) /
+                     static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
+  if (packet.columns.size() == 1) {        // about the step before, unless something was lost
+    constexpr double kRounded_rad = 2e-4;  // azimuths are of 0.01 degrees
+    if (gap > 0 && gap < 1.5 * last_step_ + kRounded_rad) last_step_ = gap;
+    step = last_step_;
+    column_us = packet.column_us;
+  }
   if (step <= 0) return;  // the head stands
   const double half_turn_us = M_PI / step * column_us;
-  const double gap = std::remainder(from_seam - last_from_seam_, 2 * M_PI);
   if (passed_us < 0 || passed_us > std::min(half_turn_us, kMostPassed_us) || gap < -step) {
     Leave();
   } else if (whole_ && gap > 1.5 * step) {

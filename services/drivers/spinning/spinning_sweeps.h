@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -34,6 +35,7 @@ struct Column {
 struct Packet {
   std::optional<Utime> utime;  ///< the packet's stamp; absent: its clock was never set
   std::vector<Column> columns;
+  double column_us = 0;  ///< from column to column
 };
 
 /// Where ranges count from: a lens that turns with the head.
@@ -85,8 +87,9 @@ class SpinningSweeps {
   spinning::Lens lens_;
   std::vector<std::size_t> ring_;  // by channel
   std::vector<Fired> columns_;
-  double last_from_seam_ = -1;  // of the column before; -1: there is none
-  double last_utime_ = 0;       // of its packet
+  double last_from_seam_ = -1;   // of the column before; -1: there is none
+  double last_utime_ = 0;        // of its packet
+  double last_step_ = 2 * M_PI;  // between packets of one column, of which none was lost
   std::int64_t lost_columns_ = 0, left_out_ = 0;
   bool whole_ = false;  // `columns_` begin at the seam
 };

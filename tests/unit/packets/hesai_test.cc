@@ -181,6 +181,25 @@ TEST(HesaiSweeps, WhatNeverCameIsCounted) {
   }
 }
 
+// Packets of one column: 360 a turn, the seams are between packets 179 and 180, 539 and 540, ...
+TEST(HesaiSweeps, WhatNeverCameIsCountedOfPacketsOfOneColumn) {
+  const HesaiEncoder encoder{Model::kOt128, true};
+  const auto drive = [&](int first_lost, int end_lost) {
+    auto sweeps = HesaiPackets(hesai::ParseAngles(encoder.Angles(), "angles.csv"));
+    std::size_t done = 0;
+    for (int i = 0; i < 3 * 360 + 200; ++i) {
+      if (i >= first_lost && i < end_lost) continue;
+      const int us = 56 * i;
+      done += sweeps->Add(encoder.Packet(100 * i % 36000, us), kHesaiSecond + us).size();
+    }
+    return std::to_string(done) + " " + sweeps->Lost();
+  };
+  EXPECT_EQ(drive(0, 0), "3 ");
+  EXPECT_EQ(drive(600, 605), "3 5 columns never came");
+  EXPECT_EQ(drive(600, 800), "2 1 revolutions left out, as half a turn or more never came");
+  EXPECT_EQ(drive(600, 960), "1 1 revolutions left out, as half a turn or more never came");
+}
+
 TEST(HesaiSweeps, ARevolutionOfTwoIsLeftOut) {
   for (const bool has_date : {true, false}) {
     for (const int lost : {25, 40, 45, 50}) {  // a turn: the azimuths go on as if nothing was
