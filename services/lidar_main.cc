@@ -6,12 +6,14 @@
 int main(int argc, char** argv) {
   rgbdt::CommandLine line(
       "rgbdt-lidar",
-      "A LIDAR on the bus: a Hokuyo scanner over TCP (LINE_SCAN), or a Velodyne, Ouster, Hesai or\n"
-      "Livox over UDP, a recording of its packets or a folder of PCD files (CLOUD). Which one, "
+      "A LIDAR on the bus: a Hokuyo scanner over TCP (LINE_SCAN), or a Velodyne, Ouster, Hesai,\n"
+      "Livox or RoboSense over UDP, a recording of its packets or a folder of PCD files (CLOUD). "
+      "Which one, "
       "and\n"
       "where, stands in the rig file: lidar { hokuyo { address: \"192.168.0.10\" } }, or\n"
       "velodyne { ... }, ouster { metadata: \"os1.json\" }, hesai { ... }, livox { },\n"
-      "pcd_folder { ... }. A device that goes away is waited for; a recording's end ends it.\n"
+      "robosense { }, pcd_folder { ... }. A device that goes away is waited for; a recording's end "
+      "ends it.\n"
       "Example: rgbdt-lidar --rig rig.textproto");
   rgbdt::BusFlags bus;
   std::string rig_file;

@@ -41,23 +41,25 @@ struct VelodyneDevice {
   std::string pcap;  ///< a file instead of the network; empty: none
 };
 
-/// An Ouster, Hesai or Livox over UDP, or a recording of its packets.
+/// An Ouster, Hesai, Livox or RoboSense over UDP, or a recording of its packets.
 struct PacketLidarDevice {
-  enum class Make { kOuster, kHesai, kLivox };
+  enum class Make { kOuster, kHesai, kLivox, kRobosense };
   Make make = Make::kOuster;
-  std::string metadata;  ///< a file: an Ouster's JSON, a Hesai's angles (CSV); a Livox: none
+  /// A file: an Ouster's JSON, a Hesai's angles (CSV); a Livox: none; a RoboSense: its angles
+  /// (CSV), or none, as its packets tell them, too.
+  std::string metadata;
   int port = 0;
   std::string pcap;  ///< a file instead of the network; empty: none
 };
 
 /// The name of its maker: "Ouster".
 inline const char* MakerOf(PacketLidarDevice::Make make) {
-  const char* const names[] = {"Ouster", "Hesai", "Livox"};
+  const char* const names[] = {"Ouster", "Hesai", "Livox", "RoboSense"};
   return names[static_cast<int>(make)];
 }
 /// The port that such a LIDAR sends to unless it is told otherwise.
 inline int DefaultPort(PacketLidarDevice::Make make) {
-  const int ports[] = {7502, 2368, 56301};
+  const int ports[] = {7502, 2368, 56301, 6699};
   return ports[static_cast<int>(make)];
 }
 

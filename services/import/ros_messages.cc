@@ -155,6 +155,7 @@ struct PacketLayout {
   bool many = true;       // an array; otherwise the message is one packet, without a time
   std::size_t fixed = 0;  // bytes of an array of fixed size; 0: it tells how many
   bool size_after = false;
+  std::size_t flags = 0;  // bytes before a packet's
 };
 
 const std::map<std::string, PacketLayout>& PacketLayouts() {
@@ -166,6 +167,9 @@ const std::map<std::string, PacketLayout>& PacketLayouts() {
       {"ouster_sensor_msgs/PacketMsg", {false, false, 0, false}},
       {"ouster_msgs/PacketMsg", {false, false, 0, false}},
       {"ouster_ros/PacketMsg", {false, false, 0, false}},
+      {"robosense_msgs/RobosenseScan", {true, true, 1248, false}},
+      {"rslidar_msgs/rslidarScan", {true, true, 1248, false}},
+      {"rslidar_msg/RslidarPacket", {true, false, 0, false, 2}},
   };
   return layouts;
 }
@@ -180,6 +184,7 @@ template <typename C>
 Packets::Packet TakePacket(C* in, const PacketLayout& layout) {
   Packets::Packet packet;
   if (layout.many) packet.utime = TakeTime(in);
+  in->Bytes(layout.flags);  // whether it is of data, and begins a sweep
   packet.size = layout.fixed != 0 ? layout.fixed : in->template Number<std::uint32_t>();
   packet.data = in->Bytes(packet.size);
   if (!layout.size_after) return packet;

@@ -104,7 +104,8 @@ PointCloud DecodeLivoxCloud(const BagMessage& message, BagEncoding encoding);
 PointCloud DecodeCloud(const BagMessage& message, const BagTopic& topic);
 bool IsLivoxCloud(const std::string& type);
 /// velodyne_msgs/VelodyneScan, ouster_sensor_msgs/PacketMsg (ouster_ros, ouster_msgs),
-/// pandar_msgs/PandarScan, nebula_msgs/NebulaPackets, hesai_ros_driver/UdpFrame
+/// pandar_msgs/PandarScan, nebula_msgs/NebulaPackets, hesai_ros_driver/UdpFrame,
+/// robosense_msgs/RobosenseScan, rslidar_msgs/rslidarScan, rslidar_msg/RslidarPacket
 Packets DecodePackets(const BagMessage& message, const BagTopic& topic);
 bool IsPackets(const std::string& type);
 /// std_msgs/String

@@ -90,11 +90,12 @@ std::vector<Stamped> BagPackets::Find(const std::function<void(double)>& progres
   if (found.empty()) {
     throw InputError(
         options_.topic + ": " +
-        (packets_ == 0
-             ? "has no packets of " +
-                   (sweeps_ ? "the " + sweeps_->name() + " of " + options_.metadata_name
-                            : std::string(kSelfTellingLidars))
-             : "holds no whole sweep" + (bad_ > 0 ? "; the last packet: " + last_problem_ : "")));
+        (packets_ == 0 ? "has no packets of " +
+                             (sweeps_ ? "the " + sweeps_->name() + " of " + options_.metadata_name
+                                      : std::string(kSelfTellingLidars))
+                       : "holds no whole sweep" +
+                             (sweeps_->Lost().empty() ? "" : "; lost: " + sweeps_->Lost()) +
+                             (bad_ > 0 ? "; the last packet: " + last_problem_ : "")));
   }
   lines_ = {options_.topic + ": " + std::to_string(packets_) + " packets of a " + sweeps_->name() +
             ", " + std::to_string(found.size()) + " sweeps"};

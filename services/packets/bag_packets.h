@@ -16,7 +16,7 @@ namespace rgbdt {
 struct BagPacketsOptions {
   std::string topic;  ///< of the packets
   std::string
-      metadata;  ///< an Ouster's JSON or a Hesai's CSV, its text; empty: a Velodyne, a Livox
+      metadata;  ///< an Ouster's JSON, a Hesai's or RoboSense's CSV, its text; empty: none needed
   std::string metadata_name;  ///< file or topic, for messages
 };
 

@@ -107,17 +107,19 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
   ForEach(path, [&](const PcapReader::Datagram& datagram) { finder.Look(datagram); });
   Recording recording;
   const std::unique_ptr<PacketSweeps> sweeps = finder.Found(path, &recording.sender);
-  recording.sensor = sweeps->name();
   recording.others = finder.all();
   recording.others.erase(recording.sender);
+  recording.others.erase({sweeps->information_port(), recording.sender.from});
   const auto give = [&](const Cloud& sweep) {
     if (recording.sweeps++ == 0) recording.first = sweep.sweep_utime;
     recording.last = sweep.sweep_utime;
     take(sweep);
   };
   recording.cut_off = ForEach(path, [&](const PcapReader::Datagram& datagram) {
-    const bool is_its =
-        datagram.port == recording.sender.port && datagram.from == recording.sender.from;
+    const bool to_its_ports =
+        datagram.port == recording.sender.port ||
+        (sweeps->information_port() != 0 && datagram.port == sweeps->information_port());
+    const bool is_its = to_its_ports && datagram.from == recording.sender.from;
     if (!is_its || !sweeps->IsOurs(datagram.payload)) return;
     ++recording.packets;
     std::vector<Cloud> done;
@@ -131,6 +133,7 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
     for (const Cloud& sweep : done) give(sweep);
   });
   if (const auto sweep = sweeps->Finish()) give(*sweep);
+  recording.sensor = sweeps->name();
   recording.lost = sweeps->Lost();
   return recording;
 }

@@ -13,7 +13,7 @@ namespace rgbdt {
 
 struct RecordingOptions {
   std::filesystem::path
-      metadata;  ///< an Ouster's JSON, a Hesai's angles (CSV); empty: a Velodyne, a Livox
+      metadata;  ///< an Ouster's JSON, a Hesai's or RoboSense's angles (CSV); empty: none needed
   int port = 0;  ///< that the LIDAR sends to; 0: where its packets are most
 };
 

@@ -320,7 +320,8 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "board\n"
       "stands still for a second, spread over the image. Exit code 1: also where a lens was to be\n"
       "found from the images and was not.\n"
-      "A LIDAR's packets in the bag are decoded: Velodyne, Livox, Ouster and Hesai (with the "
+      "A LIDAR's packets in the bag are decoded: Velodyne, Livox, RoboSense, Ouster and Hesai "
+      "(with the "
       "bag's\n"
       "topic `metadata`, or --metadata).\n"
       "Of a recording of such packets (.pcap, .pcapng) it writes each sweep as a PCD into --out, "
@@ -362,9 +363,9 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
   verb->Option("--views", &flags->views, "of moments in which the board stands still: at most");
   verb->Within("--max-apart", &flags->max_apart_s, 0, 60,
                "how far an image and its cloud may be apart, by their headers [s]");
-  verb->Option(
-      "--metadata", &flags->metadata,
-      "of packets: what an Ouster says of itself (JSON), or a Hesai's angle correction (CSV)");
+  verb->Option("--metadata", &flags->metadata,
+               "of packets: what an Ouster says of itself (JSON), or the angles of a Hesai or "
+               "RoboSense (CSV)");
   verb->Option("--port", &flags->port,
                "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }

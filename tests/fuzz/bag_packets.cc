@@ -18,9 +18,10 @@ namespace {
 
 constexpr unsigned kRos2 = 0x10, kWholeMessages = 0x20;
 constexpr const char* kTopic = "/lidar/packets";
-constexpr const char* kTypes[] = {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan",
-                                  "nebula_msgs/NebulaPackets", "hesai_ros_driver/UdpFrame",
-                                  "ouster_ros/PacketMsg"};
+constexpr const char* kTypes[] = {"velodyne_msgs/VelodyneScan",  "pandar_msgs/PandarScan",
+                                  "nebula_msgs/NebulaPackets",   "hesai_ros_driver/UdpFrame",
+                                  "ouster_ros/PacketMsg",        "rslidar_msg/RslidarPacket",
+                                  "robosense_msgs/RobosenseScan"};
 
 // One topic, what is left of the input as its messages.
 std::string BagOf(unsigned kind, const std::string& type, fuzz::Input* input) {

@@ -43,7 +43,8 @@ services/bus/internal/reassembly.cc services/bus/internal/repair_message.cc
 services/bus/internal/repaired_streams.cc services/bus/internal/sent_messages.cc
 services/drivers/camera/gvcp_message.cc services/drivers/camera/internal/frame_format.cc
 services/drivers/dynamixel/dynamixel_protocol.cc
-services/drivers/hesai/hesai_packets.cc services/drivers/hesai/hesai_sweeps.cc
+services/drivers/hesai/hesai_packets.cc services/drivers/hesai/hesai_sensors.cc
+services/drivers/spinning/spinning_sweeps.cc services/drivers/robosense/robosense_packets.cc
 services/drivers/hokuyo/scip_protocol.cc
 services/drivers/livox/livox_packets.cc services/drivers/livox/livox_sweeps.cc
 services/drivers/ouster/ouster_metadata.cc services/drivers/ouster/ouster_packets.cc

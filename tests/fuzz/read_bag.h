@@ -34,7 +34,8 @@ inline void Convert(const BagMessage& message, BagData kind, BagEncoding encodin
     case BagData::kPackets:
       for (const char* type :
            {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan", "nebula_msgs/NebulaPackets",
-            "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg"}) {
+            "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg", "rslidar_msg/RslidarPacket",
+            "robosense_msgs/RobosenseScan"}) {
         try {
           ros::DecodePackets(message, {"/packets", type, encoding});
         } catch (const InputError&) {  // it may be another's

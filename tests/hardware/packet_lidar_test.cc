@@ -18,6 +18,7 @@
 #include "tests/unit/packets/hesai_encoder.h"
 #include "tests/unit/packets/livox_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
+#include "tests/unit/packets/robosense_encoder.h"
 
 namespace rgbdt {
 namespace {
@@ -25,6 +26,7 @@ namespace {
 using test::HesaiEncoder;
 using test::LivoxEncoder;
 using test::OusterEncoder;
+using test::RobosenseEncoder;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
@@ -56,6 +58,15 @@ std::vector<Sent> Packets(const OusterEncoder& encoder, int turns) {
   for (int i = 0; i < turns * in_turn; ++i) {
     sent.push_back(
         {97 * encoder.columns_per_packet * (i + 1), encoder.Packet(i / in_turn, i % in_turn)});
+  }
+  return sent;
+}
+
+std::vector<Sent> Packets(const RobosenseEncoder& encoder, int turns) {
+  std::vector<Sent> sent;
+  for (int i = 0; i < turns * 30 + 20; ++i) {
+    const int us = static_cast<int>(encoder.packet_us() * i);
+    sent.push_back({us, encoder.Packet(1200 * i % 36000, us)});
   }
   return sent;
 }
@@ -166,6 +177,12 @@ TEST_F(PacketLidar, RecordingsAreWhatTheirDecodersGive) {
   device.metadata = "";
   const std::vector<Sent> sent = Packets(livox);
   ExpectAsDecoded(device, sent, LivoxPackets(sent.front().payload).get(), 1);
+
+  const RobosenseEncoder robosense;
+  device.make = Make::kRobosense;
+  device.metadata = Write("angle.csv", robosense.Angles());
+  ExpectAsDecoded(device, Packets(robosense, 3),
+                  PacketsByMetadata(robosense.Angles(), "angle.csv").get(), 3);
 }
 
 TEST_F(PacketLidar, LivePacketsOfManyKilobytesBecomeSweeps) {
@@ -195,6 +212,35 @@ TEST_F(PacketLidar, LivePacketsOfManyKilobytesBecomeSweeps) {
   EXPECT_EQ(source.report().count("lost columns"), 0);
   EXPECT_GT(source.report().sweep_begun(), sweep.sweep_utime);
   EXPECT_THAT(source.report().GetStatus().text, HasSubstr("OS-0-4"));
+}
+
+TEST_F(PacketLidar, ARobosenseTellsItsAnglesOnAPortOfTheirOwn) {
+  const RobosenseEncoder encoder{RobosenseEncoder::Model::kHelios};
+  PacketLidarDevice device;
+  device.make = Make::kRobosense;
+  PacketSource source(device);  // port 0: any
+  DeviceThread thread([&](DeviceThread& self) { source.Serve(self); });
+  for (int i = 0; i < 5000 && source.port() == 0; ++i) usleep(1000);
+  ASSERT_NE(source.port(), 0);
+  UdpSender(7788).Send(encoder.Information());
+  Collected collected;
+  ASSERT_TRUE(Collect(&thread, &collected,
+                      [&](const Collected&) { return source.report().count("packets") == 1; }));
+  const UdpSender sender(source.port());
+  const std::vector<Sent> sent = Packets(encoder, 3);
+  const Utime start = HostUtime();
+  for (const Sent& packet : sent) {
+    while (HostUtime() < start + packet.after_us) usleep(100);
+    sender.Send(packet.payload);
+  }
+  ASSERT_TRUE(Collect(&thread, &collected, [&](const Collected& t) {
+    return Joined(t).size() == 3 &&
+           source.report().count("packets") == static_cast<int>(sent.size()) + 1;
+  }));
+  EXPECT_EQ(Joined(collected).back().lines, 32);
+  EXPECT_EQ(source.report().count("lost columns"), 0);
+  EXPECT_EQ(source.report().count("packets before angles"), 0);
+  EXPECT_THAT(source.report().GetStatus().text, HasSubstr("RS-Helios-5515"));
 }
 
 // What comes, for a little more than the two seconds after which silence is told.

@@ -125,6 +125,8 @@ LidarSpec ToLidar(const proto::Lidar& lidar, const Place& place) {
     spec.device = text::ToDevice(lidar.hesai(), Make::kHesai, place.In("hesai"));
   } else if (lidar.has_livox()) {
     spec.device = text::ToDevice(lidar.livox(), Make::kLivox, place.In("livox"));
+  } else if (lidar.has_robosense()) {
+    spec.device = text::ToDevice(lidar.robosense(), Make::kRobosense, place.In("robosense"));
   } else if (lidar.has_pcd_folder()) {
     spec.device = text::ToDevice(lidar.pcd_folder(), place.In("pcd_folder"));
   }
@@ -208,7 +210,8 @@ void FromLidar(const LidarSpec& spec, proto::Lidar* out) {
 }
 
 bool SaysWhich(const proto::Lidar& lidar) {
-  return lidar.has_velodyne() || lidar.has_ouster() || lidar.has_hesai() || lidar.has_livox();
+  return lidar.has_velodyne() || lidar.has_ouster() || lidar.has_hesai() || lidar.has_livox() ||
+         lidar.has_robosense();
 }
 
 // Of devices only which LIDAR it is counts, and only where both say it; the motor does not.
@@ -226,6 +229,8 @@ void KeepModels(proto::Lidar* a, proto::Lidar* b) {
       lidar->mutable_hesai()->Clear();
     } else if (lidar->has_livox()) {
       lidar->mutable_livox()->Clear();
+    } else if (lidar->has_robosense()) {
+      lidar->mutable_robosense()->Clear();
     }
     lidar->mutable_turned_scanner()->clear_dynamixel();
   }

@@ -1,6 +1,7 @@
 #include "services/drivers/hesai/hesai_packets.h"
 
-#include <array>
+#include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <ctime>
 #include <sstream>
@@ -17,61 +18,15 @@ std::size_t Word(const std::uint8_t* bytes) {
   return static_cast<std::size_t>(bytes[0] | bytes[1] << 8);
 }
 
-// Pandar40P user manual, appendix on absolute time: offsets of channels 1 to 40 [ns].
-Sensor Pandar40P() {
-  Sensor s;
-  s.name = "Pandar40P";
-  s.channels = 40;
-  s.blocks = 10;
-  s.block_head_bytes = 4;
-  s.beam_bytes = 3;
-  s.stamp_at = 10;
-  s.mode_at = 14;
-  s.date_at = 16;
-  s.first_year = 2000;
-  s.tail_bytes = 22;
-  s.block_us = 55.56;
-  s.last_block_us = -28.58;
-  for (const int ns :
-       {-42220, -28470, -16040, -3620,  -45490, -31740, -47460, -54670, -20620, -33710,
-        -40910, -8190,  -20620, -27160, -50730, -8190,  -14740, -36980, -45490, -52700,
-        -23890, -31740, -38950, -11470, -18650, -25190, -48760, -6230,  -12770, -35010,
-        -21920, -9500,  -43520, -29770, -17350, -4920,  -42220, -28470, -16040, -3620}) {
-    s.channel_us.push_back(1e-3 * ns);
+// Of a date as the sensor keeps it, UTC, or, where its year is 0, of seconds since 1970, most
+// significant byte first; absent: it was never set.
+std::optional<Utime> SecondOf(const Sensor& sensor, const std::uint8_t* date) {
+  constexpr Utime k2010 = 1'262'304'000;
+  if (sensor.version != 0 && date[0] == 0) {
+    const Utime second =
+        Utime{date[2]} << 24 | Utime{date[3]} << 16 | Utime{date[4]} << 8 | Utime{date[5]};
+    if (second >= k2010) return second;
   }
-  return s;
-}
-
-// PandarXT manual, appendix on absolute time.
-Sensor PandarXt(std::size_t channels) {
-  Sensor s;
-  s.name = "PandarXT-" + std::to_string(channels);
-  s.channels = channels;
-  s.blocks = 8;
-  s.head_bytes = 12;
-  s.block_head_bytes = 2;
-  s.beam_bytes = 4;
-  s.mode_at = 10;
-  s.date_at = 13;
-  s.stamp_at = 19;
-  s.tail_bytes = 24;
-  s.block_us = 50;
-  s.last_block_us = 5.632;
-  for (std::size_t i = 0; i < channels; ++i) {
-    const std::size_t slot = i * 32 / channels;  // of those that the larger one has
-    s.channel_us.push_back(0.368 + 1.512 * static_cast<double>(slot));
-  }
-  return s;
-}
-
-const std::array<Sensor, 3>& Sensors() {
-  static const std::array<Sensor, 3> sensors = {Pandar40P(), PandarXt(32), PandarXt(16)};
-  return sensors;
-}
-
-// Of a date as the sensor keeps it, UTC; absent: it was never set.
-std::optional<Utime> UtimeOf(const Sensor& sensor, const std::uint8_t* tail) {
-  const std::uint8_t* date = tail + sensor.date_at;
   const bool is_date = date[1] >= 1 && date[1] <= 12 && date[2] >= 1 && date[2] <= 31 &&
                        date[3] < 24 && date[4] < 60 && date[5] <= 60;
   constexpr int kFirst = 2010;  // a clock that was not set counts from its maker's begin
@@ -83,9 +38,15 @@ std::optional<Utime> UtimeOf(const Sensor& sensor, const std::uint8_t* tail) {
   tm.tm_hour = date[3];
   tm.tm_min = date[4];
   tm.tm_sec = date[5];
+  return Utime{timegm(&tm)};
+}
+
+std::optional<Utime> UtimeOf(const Sensor& sensor, const std::uint8_t* tail) {
+  const std::optional<Utime> second = SecondOf(sensor, tail + sensor.date_at);
+  if (!second) return std::nullopt;
   const std::uint8_t* stamp = tail + sensor.stamp_at;
   const auto us = static_cast<Utime>(Word(stamp) + (Word(stamp + 2) << 16));
-  return Utime{timegm(&tm)} * kMicrosecondsPerSecond + us;
+  return *second * kMicrosecondsPerSecond + us;
 }
 
 std::size_t ReturnsOf(const Sensor& sensor, std::uint8_t mode) {
@@ -95,25 +56,79 @@ std::size_t ReturnsOf(const Sensor& sensor, std::uint8_t mode) {
                    "; expected one or two returns");
 }
 
-std::vector<Return> ReadBlock(const Sensor& sensor, const std::uint8_t* block, double unit_m) {
+// Where a packet's parts lie, by its head.
+struct Parts {
+  std::size_t beam_bytes = 0, block_bytes = 0, tail_at = 0, size = 0;
+};
+
+Parts PartsOf(const Sensor& sensor, const std::uint8_t* data) {
+  constexpr std::size_t kSumBytes = 4, kSafetyBytes = 17;
+  constexpr unsigned kHasSafety = 0x04;
+  const unsigned flags = sensor.version == 0 ? 0 : data[sensor.head_bytes - 1];
+  Parts parts;
+  parts.beam_bytes = sensor.beam_bytes + std::bitset<8>(flags & sensor.beam_flags).count();
+  parts.block_bytes = sensor.block_head_bytes + sensor.channels * parts.beam_bytes;
+  parts.tail_at = sensor.head_bytes + sensor.blocks * parts.block_bytes;
+  if (sensor.checked) parts.tail_at += kSumBytes + ((flags & kHasSafety) != 0 ? kSafetyBytes : 0);
+  parts.size = parts.tail_at + sensor.tail_bytes;
+  return parts;
+}
+
+bool IsOf(const Sensor& sensor, const std::uint8_t* data, std::size_t size) {
+  if (size < sensor.head_bytes + 2) return false;
+  if (sensor.head_bytes == 0 && (data[0] != 0xff || data[1] != 0xee)) return false;
+  if (sensor.head_bytes != 0) {
+    const std::uint8_t* counts = data + (sensor.version == 0 ? 2 : 6);
+    if (data[0] != 0xee || data[1] != 0xff || counts[0] != sensor.channels ||
+        counts[1] != sensor.blocks) {
+      return false;
+    }
+  }
+  if (sensor.version != 0 && ((data[2] << 8 | data[3]) != sensor.version ||
+                              data[4] < sensor.first_kind || data[4] > sensor.last_kind)) {
+    return false;
+  }
+  const std::size_t least = PartsOf(sensor, data).size;
+  return size >= least && size <= least + sensor.more_bytes;
+}
+
+// Which of its firing times a block has.
+std::size_t TurnOf(const Sensor& sensor, const std::uint8_t* tail, std::size_t block,
+                   std::size_t returns) {
+  if (sensor.slots != nullptr) {  // two bits a block, from the highest ones on
+    return Word(tail + sensor.turn_at) >> (14 - 2 * block) & 3;
+  }
+  // An odd flag: the first column is of the first loop, the next one of the other.
+  return sensor.turn_at == 0 ? 0 : (tail[sensor.turn_at] + block / returns + 1) % 2;
+}
+
+double UnitOf(const Sensor& sensor, const std::uint8_t* data) {
+  constexpr double kUnit40P_m = 0.004;
+  if (sensor.head_bytes == 0) return kUnit40P_m;
+  return 1e-3 * data[sensor.version == 0 ? 5 : 9];
+}
+
+std::vector<Return> ReadBlock(const Sensor& sensor, const std::uint8_t* beam,
+                              std::size_t beam_bytes, double unit_m, const Firing& firing) {
   std::vector<Return> returns(sensor.channels);
-  const std::uint8_t* beam = block + sensor.block_head_bytes;
-  for (Return& back : returns) {
-    back = {static_cast<double>(Word(beam)) * unit_m, beam[2]};
-    beam += sensor.beam_bytes;
+  for (std::size_t channel = 0; channel < sensor.channels; ++channel, beam += beam_bytes) {
+    const std::size_t distance = Word(beam);
+    Return& back = returns[channel];
+    back.range_m = distance <= sensor.no_return ? 0 : static_cast<double>(distance) * unit_m;
+    back.reflectivity = beam[2];
+    const bool near = back.range_m > 0 && back.range_m < firing.near_m;
+    back.after_us = static_cast<float>((near ? firing.near_us : firing.us)[channel]);
   }
   return returns;
 }
 
-}  // namespace
-
-const Sensor& SensorOf(std::size_t channels) {
-  for (const Sensor& sensor : Sensors()) {
-    if (sensor.channels == channels) return sensor;
-  }
-  throw InputError("no Hesai of " + std::to_string(channels) +
-                   " channels is known; those that are: Pandar40P, PandarXT-32, PandarXT-16");
+// Which some sensors hand out behind the angles: SHA-256, in hexadecimal digits.
+bool IsSum(const std::string& line) {
+  const std::size_t digits = line.find_first_not_of("0123456789abcdefABCDEF");
+  return std::min(digits, line.size()) == 64;
 }
+
+}  // namespace
 
 Angles ParseAngles(const std::string& csv, const std::string& where) {
   constexpr std::size_t kMost = 256;
@@ -128,6 +143,7 @@ Angles ParseAngles(const std::string& csv, const std::string& where) {
     char comma = 0;
     double elevation = 0, azimuth = 0;
     if (!(fields >> channel)) continue;  // a heading
+    if (IsSum(line)) continue;
     const bool good = fields >> comma >> elevation >> comma >> azimuth && channel >= 1 &&
                       channel <= kMost && std::abs(elevation) <= 90 && std::abs(azimuth) <= 180;
     if (good && have.size() < channel) {
@@ -148,45 +164,52 @@ Angles ParseAngles(const std::string& csv, const std::string& where) {
   }
   if (have.empty()) {
     throw InputError(where +
-                     ": has no channels; expected the angle correction file of a Hesai "
+                     ": has no channels; expected the angles of a Hesai or RoboSense "
                      "(CSV), or the metadata of an Ouster (JSON)");
   }
   return angles;
 }
 
-bool IsPacket(const Sensor& sensor, const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kNumber = 4;  // that may follow
-  if (size != sensor.PacketBytes() && size != sensor.PacketBytes() + kNumber) return false;
-  if (sensor.head_bytes == 0) return data[0] == 0xff && data[1] == 0xee;
-  return data[0] == 0xee && data[1] == 0xff && data[6] == sensor.channels &&
-         data[7] == sensor.blocks;
+const Sensor* SensorOf(const std::uint8_t* data, std::size_t size) {
+  for (const Sensor& sensor : Sensors()) {
+    if (IsOf(sensor, data, size)) return &sensor;
+  }
+  return nullptr;
 }
 
 Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size) {
-  if (!IsPacket(sensor, data, size)) {
+  if (!IsOf(sensor, data, size)) {
     throw InputError("a datagram of " + std::to_string(size) + " bytes is no packet of a " +
                      sensor.name);
   }
-  constexpr double kUnit40P_m = 0.004;
-  const double unit_m = sensor.head_bytes == 0 ? kUnit40P_m : 1e-3 * data[9];
-  const std::uint8_t* blocks = data + sensor.head_bytes;
-  const std::uint8_t* tail = blocks + sensor.blocks * sensor.BlockBytes();
+  const Parts parts = PartsOf(sensor, data);
+  const std::uint8_t* tail = data + parts.tail_at;
+  const double unit_m = UnitOf(sensor, data);
   const std::size_t returns = ReturnsOf(sensor, tail[sensor.mode_at]);
+  const bool high_resolution = sensor.slots != nullptr && tail[sensor.turn_at + 2] == 0;
+  const double block_us = sensor.block_us * (high_resolution ? 0.5 : 1);
   Packet packet;
   packet.utime = UtimeOf(sensor, tail);
+  packet.column_us = block_us;
   for (std::size_t block = 0; block < sensor.blocks; block += returns) {
-    const std::uint8_t* at = blocks + block * sensor.BlockBytes();
-    const std::size_t azimuth = Word(at + sensor.block_head_bytes - 2);
+    const std::uint8_t* at = data + sensor.head_bytes + block * parts.block_bytes;
+    const std::uint8_t* beams = at + sensor.block_head_bytes;
+    const std::size_t azimuth = Word(beams - 2);
     if (azimuth >= kFullTurn) {
       throw InputError(sensor.name + " packet: has an azimuth of " + std::to_string(azimuth) +
                        " hundredths of a degree");
     }
+    const Firing firing = FiringOf(sensor, TurnOf(sensor, tail, block, returns), high_resolution);
     Column column;
     column.azimuth_rad = static_cast<double>(azimuth) / 100 * kDegree;
-    const std::size_t before_last = (sensor.blocks - block - 1) / returns;
-    column.time_us = sensor.last_block_us - sensor.block_us * static_cast<double>(before_last);
-    column.returns = ReadBlock(sensor, at, unit_m);
-    if (returns == 2) column.second_returns = ReadBlock(sensor, at + sensor.BlockBytes(), unit_m);
+    const auto passed = static_cast<double>(
+        sensor.from_first ? block / returns : (sensor.blocks - block - 1) / returns);
+    column.time_us = sensor.last_block_us + block_us * (sensor.from_first ? passed : -passed);
+    column.returns = ReadBlock(sensor, beams, parts.beam_bytes, unit_m, firing);
+    if (returns == 2) {
+      column.second_returns =
+          ReadBlock(sensor, beams + parts.block_bytes, parts.beam_bytes, unit_m, firing);
+    }
     packet.columns.push_back(std::move(column));
   }
   return packet;

@@ -47,6 +47,7 @@ std::unique_ptr<LidarNode::Source> MakeSource(const LidarSpec& lidar) {
       "  ouster { metadata: \"os1.json\" }\n"
       "  hesai { metadata: \"angles.csv\" }\n"
       "  livox { }\n"
+      "  robosense { }\n"
       "  pcd_folder { folder: \"clouds\" }\n"
       "or publish LINE_SCAN or CLOUD from a program of your own (scripts/examples/README.md)");
 }

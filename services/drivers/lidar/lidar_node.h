@@ -14,8 +14,8 @@ namespace rgbdt {
 
 /// A real LIDAR, or a recording of one: what the rig's lidar.device names.
 ///  - Hokuyo -> LINE_SCAN. Answers nothing: the motor sweeps.
-///  - Velodyne, Ouster, Hesai, Livox or a folder of PCD files -> CLOUD, each sweep when it is
-///  complete. Hears
+///  - Velodyne, Ouster, Hesai, Livox, RoboSense or a folder of PCD files -> CLOUD, each sweep when
+///  it is complete. Hears
 ///    SESSION_COMMAND: a sweep command is done with the first whole sweep that began after the
 ///    command came.
 class LidarNode : public DeviceNode {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "calib/files/atomic_file.h"
@@ -28,10 +29,13 @@ constexpr char kNominal[] =
 
 std::unique_ptr<PacketSweeps> SweepsOf(const PacketLidarDevice& device) {
   if (device.make == Make::kLivox) return nullptr;
+  if (device.make == Make::kRobosense && device.metadata.empty()) return RobosensePackets();
   const bool is_ouster = device.make == Make::kOuster;
-  const std::string file = is_ouster ? "the sensor's metadata (JSON; http://SENSOR/api/v1/sensor/"
-                                       "metadata has it)"
-                                     : "the angle correction file that came with it (CSV)";
+  const std::string file =
+      is_ouster ? "the sensor's metadata (JSON; http://SENSOR/api/v1/sensor/metadata has it)"
+      : device.make == Make::kHesai
+          ? "the angle correction file that came with it (CSV)"
+          : "its angles (CSV: elevation, azimuth [degrees], a line a channel)";
   if (device.metadata.empty()) {
     throw InputError(std::string("the rig's lidar: ") + (is_ouster ? "ouster" : "hesai") +
                      " needs metadata: \"FILE\", " + file);
@@ -70,6 +74,11 @@ void PacketSource::Serve(DeviceThread& thread) {
   }
 }
 
+// Where a file says how to decode, nobody needs to listen there.
+int PacketSource::InformationPort() const {
+  return sweeps_ && link_.metadata.empty() ? sweeps_->information_port() : 0;
+}
+
 std::string PacketSource::OthersText() const {
   return Format("packets come, the last one of %zu bytes, but none with sweeps of a %s; ",
                 other_bytes_, name_.c_str()) +
@@ -80,6 +89,8 @@ std::string PacketSource::OthersText() const {
 
 void PacketSource::Listen(DeviceThread& thread) {
   UdpPort udp(link_.port);
+  std::optional<UdpPort> information;
+  if (InformationPort() != 0) information.emplace(InformationPort());
   port_ = udp.port();
   const std::string where = "UDP port " + std::to_string(udp.port());
   report_.Set("waits for packets at " + where, false);
@@ -89,6 +100,11 @@ void PacketSource::Listen(DeviceThread& thread) {
   while (!thread.Stopping()) {
     if (const auto datagram = udp.Receive(kSliceMs)) {
       Take(thread, datagram->payload, datagram->utime);
+    }
+    if (information) {
+      if (const auto datagram = information->Receive(0)) {
+        Take(thread, datagram->payload, datagram->utime);
+      }
     }
     if (report_.count("packets") != packets) {
       packets = report_.count("packets");
@@ -120,7 +136,8 @@ void PacketSource::Play(DeviceThread& thread) {
   std::int64_t to_port = 0, to_others = 0;
   try {
     while (const auto datagram = recording.Next()) {
-      if (datagram->port != link_.port) {
+      if (datagram->port != link_.port &&
+          (InformationPort() == 0 || datagram->port != InformationPort())) {
         ++to_others;
         continue;
       }
@@ -153,7 +170,6 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
                         Utime utime) {
   if (!sweeps_) {
     sweeps_ = LivoxPackets(payload);
-    if (sweeps_) name_ = sweeps_->name();
   }
   if (!sweeps_ || !sweeps_->IsOurs(payload)) {
     other_bytes_ = payload.size();
@@ -171,6 +187,7 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
   report_.SetSweepBegun(sweeps_->begun());
   report_.Count("packets");
   const std::int64_t lost = ReportLosses(thread);
+  name_ = sweeps_->name();
   if (!done.empty()) LookAt(thread, done.back(), lost, utime);
   for (const Cloud& sweep : done) Publish(thread, sweep);
 }

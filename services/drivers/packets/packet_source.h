@@ -44,6 +44,7 @@ class PacketSource {
   void LookAt(DeviceThread& thread, const Cloud& sweep, std::int64_t lost, Utime arrival) const;
   void Publish(DeviceThread& thread, const Cloud& sweep);
   std::string OthersText() const;
+  int InformationPort() const;  // 0: none
 
   Link link_;
   std::unique_ptr<PacketSweeps> sweeps_;  // of a Livox none until a packet tells which

@@ -42,6 +42,8 @@ class PacketSweeps {
   virtual std::vector<Loss> Losses() const = 0;
   /// The same in words; empty: all came.
   std::string Lost() const;
+  /// Another port to which the LIDAR sends what tells how to decode; 0: none.
+  virtual int information_port() const { return 0; }
   /// How often somebody set the sensor's clock or the host's, where that is known.
   virtual std::int64_t clock_steps() const { return 0; }
 };
@@ -52,17 +54,21 @@ std::unique_ptr<PacketSweeps> OusterPackets(ouster::Metadata metadata);
 /// Of the model that has so many channels. Throws InputError where none has.
 std::unique_ptr<PacketSweeps> HesaiPackets(hesai::Angles angles);
 
-/// What a file says of a sensor: an Ouster's metadata (JSON) or a Hesai's angles (CSV). Throws
-/// InputError, which begins with `where`, for neither.
+/// What a file says of a sensor: an Ouster's metadata (JSON), a Hesai's angles (CSV of three
+/// columns) or a RoboSense's (of two). Throws InputError, which begins with `where`, for none of
+/// them.
 std::unique_ptr<PacketSweeps> PacketsByMetadata(const std::string& text, const std::string& where);
 
 /// Of the Livox (Mid-360, Avia) that a packet tells of by itself; none: it is no such packet.
 std::unique_ptr<PacketSweeps> LivoxPackets(const PacketSweeps::Payload& payload);
-/// The same, or a Velodyne (VLP-16, VLP-32C, HDL-32E).
+/// A RoboSense by its own packets. Those of before one that tells the angles are passed over.
+std::unique_ptr<PacketSweeps> RobosensePackets();
+/// Of a Livox, a Velodyne (VLP-16, VLP-32C, HDL-32E) or a RoboSense.
 std::unique_ptr<PacketSweeps> PacketsByThemselves(const PacketSweeps::Payload& payload);
 
 /// Those of PacketsByThemselves, and what to do about others, for a message.
 inline constexpr const char* kSelfTellingLidars =
-    "a VLP-16, VLP-32C, HDL-32E, Livox Mid-360 or Avia; of an Ouster or a Hesai, give --metadata";
+    "a VLP-16, VLP-32C, HDL-32E, Livox Mid-360 or Avia, or a RoboSense; of an Ouster or a Hesai, "
+    "give --metadata";
 
 }  // namespace rgbdt

@@ -3,6 +3,7 @@
 #include "tests/unit/packets/hesai_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
 #include "tests/unit/packets/packet_message.h"
+#include "tests/unit/packets/robosense_encoder.h"
 
 namespace rgbdt::fuzz {
 namespace {
@@ -11,6 +12,7 @@ using Inputs = std::map<std::string, std::string>;
 using Payloads = std::vector<std::vector<std::uint8_t>>;
 using test::HesaiEncoder;
 using test::OusterEncoder;
+using test::RobosenseEncoder;
 
 // Before each packet a word of the time since the one before [64 us].
 std::string InLine(const Payloads& packets) {
@@ -86,25 +88,58 @@ Payloads HesaiTurns(const HesaiEncoder& encoder) {
 
 void AddHesai(Inputs* seeds) {
   char kind = 0;
-  for (const int channels : {40, 32, 16}) {
-    HesaiEncoder encoder;
-    encoder.channels = channels;
-    encoder.is_40p = channels == 40;
-    const std::string name = std::to_string(channels);
+  for (const HesaiEncoder::Model model : HesaiEncoder::kAll) {
+    HesaiEncoder encoder{model};
+    const std::string name = std::to_string(kind);
     (*seeds)[name] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     (*seeds)[name + "_one"] = std::string(1, kind) + InLine({encoder.Packet(0, 7)});
-    (*seeds)[name + "_mended"] = static_cast<char>(kind | 4) + InLine(HesaiTurns(encoder));
-    (*seeds)[name + "_own"] = static_cast<char>(kind | 8) + Piece(encoder.Angles()) +
+    (*seeds)[name + "_mended"] = static_cast<char>(kind | 0x10) + InLine(HesaiTurns(encoder));
+    (*seeds)[name + "_own"] = static_cast<char>(kind | 0x20) + Piece(encoder.Angles()) +
                               InLine({encoder.Packet(17900, 0), encoder.Packet(18700, 400)});
+    encoder.high_resolution = true;
+    encoder.near = 100;
+    (*seeds)[name + "_fine"] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     encoder.has_date = false;
     encoder.dual = true;
     (*seeds)[name + "_dual"] = std::string(1, kind) + InLine(HesaiTurns(encoder));
     ++kind;
   }
-  const std::string own = "\x08";
+  const std::string own = "\x20";
   (*seeds)["twice"] = own + Piece("1,2,3\n1,2,3\n");
   (*seeds)["missing"] = own + Piece("Channel,Elevation,Azimuth\r\n1,2,3\n3,1,3\n");
   (*seeds)["large"] = own + Piece("4000000000,2,3\n");
+  (*seeds)["sum"] = own + Piece("1,2,3\n" + std::string(64, '7'));
+  (*seeds)["none"] = own + Piece("");
+}
+
+// Half a turn apart at most, as above.
+Payloads RobosenseTurns(const RobosenseEncoder& encoder) {
+  Payloads all = {encoder.Information()};
+  int us = 0;
+  for (const int azimuth : {17600, 26000, 34000, 6000, 14000, 17600, 26000, 34000}) {
+    all.push_back(encoder.Packet(azimuth, us));
+    us += 4200;
+  }
+  return all;
+}
+
+void AddRobosense(Inputs* seeds) {
+  char kind = 0;
+  for (const RobosenseEncoder::Model model : RobosenseEncoder::kAll) {
+    RobosenseEncoder encoder{model};
+    const std::string name = std::to_string(kind);
+    (*seeds)[name] = std::string(1, kind) + InLine(RobosenseTurns(encoder));
+    (*seeds)[name + "_mended"] = static_cast<char>(kind | 0x08) + InLine(RobosenseTurns(encoder));
+    (*seeds)[name + "_own"] =
+        static_cast<char>(kind | 0x10) + Piece(encoder.Angles()) + InLine(RobosenseTurns(encoder));
+    (*seeds)[name + "_told"] = static_cast<char>(kind | 0x20) + InLine(RobosenseTurns(encoder));
+    encoder.has_date = false;
+    encoder.dual = true;
+    (*seeds)[name + "_dual"] = static_cast<char>(kind | 0x20) + InLine(RobosenseTurns(encoder));
+    ++kind;
+  }
+  const std::string own = "\x10";
+  (*seeds)["steep"] = own + Piece("1,2\n100,2\n");
   (*seeds)["none"] = own + Piece("");
 }
 
@@ -135,11 +170,9 @@ void AddRecordings(Inputs* seeds) {
   (*seeds)["hesai"] = "\x02" + Recorded(HesaiTurns(HesaiEncoder()));
   OusterEncoder small = SmallOuster();
   (*seeds)["own"] = "\x03" + Piece(small.Metadata()) + Recorded(OusterTurns(small, 5));
-  HesaiEncoder hesai;
-  hesai.channels = 32;
+  const HesaiEncoder hesai{HesaiEncoder::Model::kXt32};
   (*seeds)["own_angles"] = "\x03" + Piece(hesai.Angles()) + Recorded({hesai.Packet(0, 0)});
-  hesai.channels = 7;
-  (*seeds)["unknown"] = "\x03" + Piece(hesai.Angles()) + Recorded({packets[0]});
+  (*seeds)["unknown"] = "\x03" + Piece(HesaiEncoder::Angles(7)) + Recorded({packets[0]});
 }
 
 // As bag_packets.cc takes them: whose metadata, of which type, and packets.
@@ -152,7 +185,7 @@ std::string InBag(int kind, int type, const std::string& metadata, const Payload
 
 void AddBagPackets(Inputs* seeds) {
   constexpr int kRos2 = 0x10, kWholeMessages = 0x20;
-  constexpr int kVelodyne = 0, kPandar = 1, kNebula = 2, kUdpFrame = 3, kOuster = 4;
+  constexpr int kVelodyne = 0, kPandar = 1, kNebula = 2, kUdpFrame = 3, kOuster = 4, kRslidar = 5;
   VelodyneEncoder velodyne = MadeUpVelodyne(VelodyneEncoder::Model::kVlp16);
   velodyne.block_turn = 2900;
   Payloads packets;
@@ -171,8 +204,9 @@ void AddBagPackets(Inputs* seeds) {
   (*seeds)["ouster_own"] =
       InBag(kRos2 | 3, kOuster, SmallOuster().Metadata(), OusterTurns(SmallOuster(), 9));
   (*seeds)["hesai"] = InBag(2, kPandar, "", HesaiTurns(HesaiEncoder()));
-  HesaiEncoder hesai;
-  hesai.channels = 32;
+  (*seeds)["robosense"] =
+      InBag(kRos2, kRslidar, "", RobosenseTurns({RobosenseEncoder::Model::kHelios}));
+  const HesaiEncoder hesai{HesaiEncoder::Model::kXt32};
   (*seeds)["hesai_own"] = InBag(3, kUdpFrame, hesai.Angles(), HesaiTurns(hesai));
   (*seeds)["whose"] = InBag(0, kNebula, "", {{1, 2, 3}, packets[0], {4}});
   (*seeds)["none"] = InBag(1, kOuster, "", {});
@@ -183,6 +217,7 @@ void AddBagPackets(Inputs* seeds) {
 void AddPacketSeeds(Seeds* seeds) {
   AddOuster(&(*seeds)["ouster"]);
   AddHesai(&(*seeds)["hesai"]);
+  AddRobosense(&(*seeds)["robosense"]);
   AddRecordings(&(*seeds)["recording"]);
   AddBagPackets(&(*seeds)["bag_packets"]);
 }

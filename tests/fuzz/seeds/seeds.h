@@ -14,7 +14,7 @@ void AddFileSeeds(Seeds* seeds);      ///< text files, lenses, clouds, images
 void AddBagSeeds(Seeds* seeds);       ///< bag, bag_sqlite, ros_message, bag_import
 void AddFoxgloveSeeds(Seeds* seeds);  ///< more of bag and ros_message
 void AddDeviceSeeds(Seeds* seeds);    ///< scip, velodyne, livox, pcap_file, dynamixel, camera
-void AddPacketSeeds(Seeds* seeds);    ///< ouster, hesai, recording, bag_packets
+void AddPacketSeeds(Seeds* seeds);    ///< ouster, hesai, robosense, recording, bag_packets
 void AddViewerSeeds(Seeds* seeds);    ///< viewer_message, viewer_http, viewer_socket
 
 /// The length as a big-endian word, and the bytes: Input::Piece.

@@ -16,6 +16,7 @@
 #include "tests/unit/packets/livox_encoder.h"
 #include "tests/unit/packets/ouster_encoder.h"
 #include "tests/unit/packets/packet_message.h"
+#include "tests/unit/packets/robosense_encoder.h"
 
 namespace rgbdt {
 namespace {
@@ -170,7 +171,7 @@ TEST_F(BagPacketsTest, AnOustersAreTheSameByTheBagsMetadata) {
 }
 
 TEST_F(BagPacketsTest, AHesaisAreTheSameByItsAngles) {
-  const test::HesaiEncoder encoder{false, 32};
+  const test::HesaiEncoder encoder{test::HesaiEncoder::Model::kXt32};
   metadata_ = encoder.Angles();
   std::vector<Sent> sent;
   for (int i = 0; i < 3 * 360 / encoder.blocks() + 10; ++i) {
@@ -199,6 +200,29 @@ TEST_F(BagPacketsTest, ALivoxsAreTheSame) {
   ExpectSame();
 }
 
+TEST_F(BagPacketsTest, ARobosensesAreTheSameByItsAnglesAndByItsPackets) {
+  const test::RobosenseEncoder encoder{test::RobosenseEncoder::Model::kHelios};
+  std::vector<Sent> sent;
+  for (int i = 0; i < 3 * 30 + 10; ++i) {
+    const int us = static_cast<int>(encoder.packet_us() * i);
+    sent.push_back({test::RobosenseEncoder::kSecond + us, encoder.Packet(1200 * i % 36000, us)});
+  }
+  for (const std::string& angles : {encoder.Angles(), std::string()}) {
+    metadata_ = angles;
+    if (angles.empty()) {
+      sent.insert(sent.begin(), {test::RobosenseEncoder::kSecond - 5, encoder.Information()});
+    }
+    for (const BagEncoding encoding : {BagEncoding::kRos1, BagEncoding::kCdr}) {
+      Record("rslidar_msg/RslidarPacket", encoding, sent, 1);
+      ExpectSame();
+      for (const char* type : {"robosense_msgs/RobosenseScan", "rslidar_msgs/rslidarScan"}) {
+        Record(type, encoding, sent, 20);
+        ExpectSame();
+      }
+    }
+  }
+}
+
 TEST_F(BagPacketsTest, WhatIsWrongIsSaid) {
   test::OusterEncoder encoder;
   Record("ouster_ros/PacketMsg", BagEncoding::kRos1, {{kBegin, encoder.Packet(0, 0)}}, 1);
@@ -223,8 +247,10 @@ TEST(PacketMessages, CutShortOrTooLongTheyAreRefused) {
   for (const BagEncoding encoding : {BagEncoding::kRos1, BagEncoding::kCdr}) {
     for (const char* type :
          {"velodyne_msgs/VelodyneScan", "pandar_msgs/PandarScan", "nebula_msgs/NebulaPackets",
-          "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg"}) {
+          "hesai_ros_driver/UdpFrame", "ouster_ros/PacketMsg", "robosense_msgs/RobosenseScan",
+          "rslidar_msg/RslidarPacket"}) {
       Sent sent = one;
+      if (std::string(type) == "robosense_msgs/RobosenseScan") sent.bytes.resize(1248);
       if (std::string(type) == "velodyne_msgs/VelodyneScan") sent.bytes.resize(1206);
       const std::string whole = PacketMessage(type, encoding, &sent, &sent + 1, false);
       const BagTopic topic{"/x", type, encoding};

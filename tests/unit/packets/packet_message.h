@@ -28,6 +28,10 @@ inline std::string PacketMessage(const std::string& type, BagEncoding encoding, 
   if (type != "hesai_ros_driver/UdpFrame" || frame_header) {
     m.Header(static_cast<std::uint32_t>(first->utime / 1'000'000), 0, "lidar");
   }
+  if (type == "rslidar_msg/RslidarPacket") {
+    for (const std::uint8_t flag : {0, 1}) m.Add(flag);  // of information; begins a sweep
+    return m.Blob(text(*first)).Bytes();
+  }
   m.Add(static_cast<std::uint32_t>(last - first));
   for (const Sent* sent = first; sent != last; ++sent) {
     m.Add(static_cast<std::uint32_t>(sent->utime / 1'000'000));
@@ -35,7 +39,8 @@ inline std::string PacketMessage(const std::string& type, BagEncoding encoding, 
     std::string bytes = text(*sent);
     const auto size = static_cast<std::uint32_t>(bytes.size());
     const bool padded = type == "pandar_msgs/PandarScan",
-               fixed = type == "velodyne_msgs/VelodyneScan";
+               fixed = type == "velodyne_msgs/VelodyneScan" ||
+                       type == "robosense_msgs/RobosenseScan" || type == "rslidar_msgs/rslidarScan";
     if (padded) bytes.resize(1500);
     if (padded || fixed) {
       for (const char c : bytes) m.Add(c);

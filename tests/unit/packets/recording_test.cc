@@ -13,6 +13,7 @@
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 #include "tests/unit/packets/ouster_encoder.h"
+#include "tests/unit/packets/robosense_encoder.h"
 
 namespace rgbdt {
 namespace {
@@ -182,6 +183,28 @@ TEST_F(Recordings, AVelodyneIsKnownByItsPackets) {
   EXPECT_EQ(recording.sender.port, 2368);
   EXPECT_GE(recording.sweeps, 1);
   EXPECT_EQ(sweeps_.at(0).lines, 16);
+}
+
+// The angles come a while after the first packets.
+TEST_F(Recordings, ARobosenseTellsItsAnglesOnAPortOfTheirOwn) {
+  const test::RobosenseEncoder encoder{test::RobosenseEncoder::Model::kHelios};
+  PcapWriter writer;
+  writer.Begin();
+  for (int i = 0; i < 4 * 30; ++i) {
+    const auto us = static_cast<int>(encoder.packet_us() * i);
+    writer.port = 7788;
+    if (i == 5) writer.Add(kRecorded + us - 1, encoder.Information());
+    writer.port = 6699;
+    writer.Add(kRecorded + us, encoder.Packet(1200 * i % 36000, us));
+  }
+  const Recording recording = Read(Save(writer));
+  EXPECT_EQ(recording.sensor, "RS-Helios-5515");
+  EXPECT_EQ(recording.sender.port, 6699);
+  EXPECT_THAT(recording.others, IsEmpty());
+  EXPECT_EQ(recording.packets, 4 * 30 + 1);
+  EXPECT_EQ(recording.lost, "5 packets came before one that told the angles");
+  ASSERT_THAT(sweeps_, SizeIs(3));
+  EXPECT_EQ(sweeps_[0].beams, 360);
 }
 
 TEST_F(Recordings, OfTwoLidarsOnOnePortTheOneOfMorePacketsIsTaken) {

@@ -157,6 +157,8 @@ proto::PacketLidar* PacketLidarIn(PacketLidarDevice::Make make, proto::Lidar* li
       return lidar->mutable_hesai();
     case PacketLidarDevice::Make::kLivox:
       return lidar->mutable_livox();
+    case PacketLidarDevice::Make::kRobosense:
+      return lidar->mutable_robosense();
   }
   return nullptr;
 }

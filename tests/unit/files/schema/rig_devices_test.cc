@@ -70,6 +70,10 @@ TEST(RigDevices, EachLidarComesBack) {
   const PacketLidarDevice livox = packets("livox { }");
   EXPECT_EQ(livox.make, PacketLidarDevice::Make::kLivox);
   EXPECT_EQ(livox.port, 56301);
+  const PacketLidarDevice robosense = packets("robosense { metadata: \"angle.csv\" }");
+  EXPECT_EQ(robosense.make, PacketLidarDevice::Make::kRobosense);
+  EXPECT_EQ(robosense.metadata, "angle.csv");
+  EXPECT_EQ(robosense.port, 6699);
   const Rig folder = Again("pcd_folder { folder: \"room\" period_s: 0.5 }", "");
   EXPECT_EQ(std::get<PcdFolderDevice>(folder.lidar.device).folder, "room");
   EXPECT_EQ(std::get<PcdFolderDevice>(folder.lidar.device).period_s, 0.5);

@@ -1,10 +1,12 @@
-#include "services/drivers/hesai/hesai_sweeps.h"
+#include "services/drivers/spinning/spinning_sweeps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
+
+#include "calib/model/errors.h"
 
 namespace rgbdt {
 namespace {
@@ -16,16 +18,16 @@ constexpr double kMostPassed_us = 5e5;        // from packet to packet
 // From the back on, 0 to a full turn.
 double FromSeam(double azimuth_rad) { return std::fmod(azimuth_rad + 3 * M_PI, 2 * M_PI); }
 
-hesai::Return Brighter(const hesai::Return& a, const hesai::Return& b) {
+spinning::Return Brighter(const spinning::Return& a, const spinning::Return& b) {
   if (a.range_m == 0 || b.range_m == 0) return a.range_m == 0 ? b : a;
   return b.reflectivity > a.reflectivity ? b : a;
 }
 
 }  // namespace
 
-HesaiSweeps::HesaiSweeps(hesai::Angles angles)
-    : angles_(std::move(angles)), sensor_(hesai::SensorOf(angles_.elevation_rad.size())) {
-  std::vector<std::size_t> order(sensor_.channels);
+SpinningSweeps::SpinningSweeps(spinning::Angles angles, spinning::Lens lens)
+    : angles_(std::move(angles)), lens_(lens) {
+  std::vector<std::size_t> order(channels());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return angles_.elevation_rad[a] < angles_.elevation_rad[b];
@@ -35,7 +37,7 @@ HesaiSweeps::HesaiSweeps(hesai::Angles angles)
 }
 
 // Of the revolution under way; the next one begins at the seam.
-void HesaiSweeps::Leave() {
+void SpinningSweeps::Leave() {
   left_out_ += whole_ ? 1 : 0;
   columns_.clear();
   whole_ = false;
@@ -44,17 +46,24 @@ void HesaiSweeps::Leave() {
 
 // What never came between the packet before and this one. Azimuths tell it within a turn, whatever
 // the clock; of longer gaps only the time does.
-void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
+void SpinningSweeps::CountLost(const spinning::Packet& packet, double utime) {
   const double passed_us = utime - std::exchange(last_utime_, utime);
-  if (last_from_seam_ < 0 || packet.columns.size() < 2) return;
-  const hesai::Column &first = packet.columns.front(), &last = packet.columns.back();
-  const auto steps = static_cast<double>(packet.columns.size() - 1);
+  if (last_from_seam_ < 0 || packet.columns.empty()) return;
+  const spinning::Column &first = packet.columns.front(), &last = packet.columns.back();
   const double from_seam = FromSeam(first.azimuth_rad);
-  const double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) / steps;
-  const double column_us = (last.time_us - first.time_us) / steps;
+  const double gap = std::remainder(from_seam - last_from_seam_, 2 * M_PI);
+  double step = std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * M_PI) /
+                static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
+  double column_us = (last.time_us - first.time_us) /
+                     static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
+  if (packet.columns.size() == 1) {        // about the step before, unless something was lost
+    constexpr double kRounded_rad = 2e-4;  // azimuths are of 0.01 degrees
+    if (gap > 0 && gap < 1.5 * last_step_ + kRounded_rad) last_step_ = gap;
+    step = last_step_;
+    column_us = packet.column_us;
+  }
   if (step <= 0) return;  // the head stands
   const double half_turn_us = M_PI / step * column_us;
-  const double gap = std::remainder(from_seam - last_from_seam_, 2 * M_PI);
   if (passed_us < 0 || passed_us > std::min(half_turn_us, kMostPassed_us) || gap < -step) {
     Leave();
   } else if (whole_ && gap > 1.5 * step) {
@@ -62,11 +71,15 @@ void HesaiSweeps::CountLost(const hesai::Packet& packet, double utime) {
   }
 }
 
-std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) {
+std::vector<Cloud> SpinningSweeps::Add(const spinning::Packet& packet, Utime arrival) {
   std::vector<Cloud> done;
+  if (!packet.columns.empty() && packet.columns.front().returns.size() != channels()) {
+    throw InputError("a packet of " + std::to_string(packet.columns.front().returns.size()) +
+                     " channels; the angles are of " + std::to_string(channels()));
+  }
   const auto utime = static_cast<double>(packet.utime.value_or(arrival));
   CountLost(packet, utime);
-  for (const hesai::Column& column : packet.columns) {
+  for (const spinning::Column& column : packet.columns) {
     Fired fired{column.azimuth_rad, utime + column.time_us, column.returns};
     for (std::size_t i = 0; i < column.second_returns.size(); ++i) {
       fired.returns[i] = Brighter(fired.returns[i], column.second_returns[i]);
@@ -86,26 +99,29 @@ std::vector<Cloud> HesaiSweeps::Add(const hesai::Packet& packet, Utime arrival) 
   return done;
 }
 
-Utime HesaiSweeps::begun() const {
+Utime SpinningSweeps::begun() const {
   return columns_.empty() ? 0 : static_cast<Utime>(std::llround(columns_.front().utime));
 }
 
-Cloud HesaiSweeps::Revolution() const {
-  const std::size_t beams = columns_.size(), size = sensor_.channels * beams;
+Cloud SpinningSweeps::Revolution() const {
+  const std::size_t beams = columns_.size(), size = channels() * beams;
   Cloud cloud;
   cloud.sweep_utime = begun();
-  cloud.lines = static_cast<int>(sensor_.channels);
+  cloud.lines = static_cast<int>(channels());
   cloud.beams = static_cast<int>(beams);
   cloud.points.assign(size, {kNan, kNan, kNan});
-  cloud.directions.resize(size);
+  cloud.directions.assign(size, {kNan, kNan, kNan});
   cloud.intensity.resize(size);
   cloud.utime.resize(size);
   cloud.ring.resize(size);
+  if (lens_.up_m != 0) {
+    cloud.origins.assign(channels(), {0, 0, static_cast<float>(lens_.up_m)});
+  }
   const double step =
       (FromSeam(columns_.back().azimuth_rad) - FromSeam(columns_.front().azimuth_rad)) /
       static_cast<double>(beams - 1);
   const auto n = static_cast<std::int64_t>(beams);
-  for (std::size_t channel = 0; channel < sensor_.channels; ++channel) {
+  for (std::size_t channel = 0; channel < channels(); ++channel) {
     const double cos = std::cos(angles_.elevation_rad[channel]);
     const double sin = std::sin(angles_.elevation_rad[channel]);
     const std::int64_t aside = step > 0 ? std::llround(angles_.azimuth_rad[channel] / step) : 0;
@@ -113,14 +129,19 @@ Cloud HesaiSweeps::Revolution() const {
       const std::int64_t place = ((static_cast<std::int64_t>(c) + aside) % n + n) % n;
       const std::size_t i = ring_[channel] * beams + static_cast<std::size_t>(place);
       const Fired& column = columns_[c];
-      const double azimuth = column.azimuth_rad + angles_.azimuth_rad[channel];
+      const spinning::Return& back = column.returns[channel];
+      const double head = column.azimuth_rad + back.turned_rad;
+      const double azimuth = head + angles_.azimuth_rad[channel];
       const Eigen::Vector3d direction(cos * std::cos(azimuth), -cos * std::sin(azimuth), sin);
-      const hesai::Return& back = column.returns[channel];
+      const Eigen::Vector3d lens(lens_.outward_m * std::cos(head),
+                                 -lens_.outward_m * std::sin(head), lens_.up_m);
       cloud.ring[i] = static_cast<std::uint16_t>(ring_[channel]);
-      cloud.utime[i] = std::llround(column.utime + sensor_.channel_us[channel]);
+      const bool fired = std::isfinite(back.after_us);
+      cloud.utime[i] = std::llround(column.utime + (fired ? back.after_us : 0));
+      if (!fired) continue;
       cloud.directions[i] = direction.cast<float>();
       cloud.intensity[i] = static_cast<float>(back.reflectivity) / 255;
-      if (back.range_m > 0) cloud.points[i] = (back.range_m * direction).cast<float>();
+      if (back.range_m > 0) cloud.points[i] = (lens + back.range_m * direction).cast<float>();
     }
   }
   return cloud;
