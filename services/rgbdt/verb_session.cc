@@ -20,20 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FolderFlags {
-  std::vector<std::string> images, lenses;
-  std::string clouds, board, out;
+  std::vector<std::string> images, clouds, lenses;
+  std::string board, out;
   bool pinhole = false, fisheye = false;
   PairOptions pairing;
 };
-
-// "NAME=PATH", or a path alone.
-std::pair<std::string, std::string> SplitName(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const bool named = equals != std::string::npos && !fs::exists(text) &&
-                     text.substr(0, equals).find('/') == std::string::npos;
-  if (!named) return {"", text};
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
 
 Folders FoldersOf(const FolderFlags& flags) {
   if (flags.pinhole && flags.fisheye) {
@@ -46,7 +37,10 @@ Folders FoldersOf(const FolderFlags& flags) {
     folders.cameras.push_back({name, path});
   }
   for (const std::string& text : flags.lenses) folders.lenses.push_back(LensFileOf(text));
-  folders.clouds = flags.clouds;
+  for (const std::string& text : flags.clouds) {
+    const auto [name, path] = SplitName(text);
+    folders.lidars.push_back({name, path});
+  }
   if (flags.pinhole) folders.model = Lens::Model::kPinhole;
   if (flags.fisheye) folders.model = Lens::Model::kFisheye;
   folders.pairing = flags.pairing;
@@ -71,6 +65,12 @@ void PrintViews(const FolderSession& session) {
                        [&](const auto& image) { return image.camera == camera.name; });
       line += "  " + camera.name + ": " +
               (found == view.images.end() ? "none" : ImageText(*found, view.sweep_utime));
+    }
+    for (const LidarSpec& lidar : session.rig.further_lidars) {
+      const auto found = std::find_if(view.further_clouds.begin(), view.further_clouds.end(),
+                                      [&](const auto& cloud) { return cloud.lidar == lidar.name; });
+      line += "  " + lidar.name + ": " +
+              (found == view.further_clouds.end() ? "none" : found->file.filename().string());
     }
     std::printf("  %s\n", line.c_str());
   }
@@ -122,6 +122,10 @@ int RunSession(const FolderFlags& flags) {
   const FolderSession session = ReadFolders(folders);
   CheckBoardIsSeen(session);
   for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());
+  if (!session.rig.further_lidars.empty()) {
+    std::printf("lidar %s: the reference, in whose frame all poses are\n",
+                session.rig.lidar.name.c_str());
+  }
   std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
   PrintViews(session);
   WriteSession(flags.out, session);
@@ -132,6 +136,14 @@ int RunSession(const FolderFlags& flags) {
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> SplitName(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool named = equals != std::string::npos && !fs::exists(text) &&
+                     text.substr(0, equals).find('/') == std::string::npos;
+  if (!named) return {"", text};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
 
 Folders::LensFile LensFileOf(const std::string& text) {
   const auto [name, path] = SplitName(text);
@@ -164,12 +176,17 @@ void AddSession(CommandLine* program) {
       "Examples: rgbdt session --images images --clouds clouds --lens camera_info.yaml \\\n"
       "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt session --images rgb=left --images thermal=ir --lens camchain.yaml \\\n"
-      "            --clouds pcd --board 11x8@0.1,1.2192x0.9144 --out out/session",
+      "            --clouds pcd --board 11x8@0.1,1.2192x0.9144 --out out/session\n"
+      "          rgbdt session --images images --lens camera_info.yaml --clouds front=pcd_front "
+      "\\\n"
+      "            --clouds rear=pcd_rear --board 8x6@0.095,0.85x0.61 --out out/session",
       [flags] { return RunSession(*flags); });
   verb->Required("--images", &flags->images,
                  "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
                  "name it is rgb, or thermal where images have 16 bits or the folder says so");
-  verb->Required("--clouds", &flags->clouds, "the folder of PCD files");
+  verb->Required("--clouds", &flags->clouds,
+                 "[NAME=]DIR, the folder of PCD files; given again for each LIDAR, the reference\n"
+                 "first: the poses of the others are found from their clouds of the same boards");
   verb->Required(
       "--board", &flags->board,
       "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"

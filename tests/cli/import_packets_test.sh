@@ -38,6 +38,19 @@ for bag in drive.mcap drive.bag; do
     done
   done
 done
+# Two LIDARs' packets are each decoded by what is said of that one.
+python3 "$(dirname "${BASH_SOURCE[0]}")/make_packet_bag.py" "$scratch/drive.pcap" "$scratch/os.json" "$scratch/two.mcap" front rear
+two=("$bin/rgbdt" import "$scratch/two.mcap" --board "$board" --every 0.1)
+accepts "two LIDARs' packets" "${two[@]}" --metadata "rear=$scratch/os.json" --out "$scratch/two"
+says_all "two LIDARs' packets" "lidar front (the reference): /front/lidar_packets" \
+  "/rear/lidar_packets: 96 packets of a OS-1-16, 3 sweeps"
+for i in 1 2 3; do
+  cmp "$scratch/session/views/000$i/cloud.pcd" "$scratch/two/views/000$i/cloud_rear.pcd" ||
+    complain "two LIDARs' packets: view $i has another cloud"
+done
+says=("NAME=FILE" "front, rear")
+refuses "metadata of which LIDAR" "${two[@]}" --metadata "$scratch/os.json" --out "$scratch/kept/new"
+
 says=("drive.pcap" "CSV" "JSON")
 refuses "a bag with wrong metadata" "$bin/rgbdt" import "$scratch/drive.bag" --metadata "$scratch/drive.pcap" \
   --board "$board" --every 0.1 --out "$scratch/kept/new"

@@ -22,18 +22,7 @@ for i in 1 2 3 4 5 6 7 8; do
   ln -s "$view/thermal.png" "$scratch/folders/thermal/$time.020000.png"
   ln -s "$view/cloud.pcd" "$scratch/folders/pcd/$time.000000.pcd"
 done
-for camera in rgb thermal; do
-  sed -n "/name: \"$camera\"/,/^}/s/^ *\(fx\|fy\|cx\|cy\|width\|height\|distortion\): //p" "$good/rig.textproto" |
-    tr '\n' ' ' >"$scratch/numbers"
-  read -r width height fx fy cx cy distortion <<<"$(cat "$scratch/numbers")"
-  cat >"$scratch/$camera.yaml" <<TEXT
-image_width: $width
-image_height: $height
-distortion_model: plumb_bob
-K: [$fx, 0, $cx, 0, $fy, $cy, 0, 0, 1]
-D: $distortion
-TEXT
-done
+for camera in rgb thermal; do lens_of "$good/rig.textproto" "$camera" >"$scratch/$camera.yaml"; done
 accepts "folders" "$bin/rgbdt" session --images "$scratch/folders/rgb" \
   --images "$scratch/folders/thermal" --clouds "$scratch/folders/pcd" --lens "$scratch/rgb.yaml" \
   --lens "$scratch/thermal.yaml" --board "$board" --out "$scratch/session"

@@ -23,9 +23,13 @@ struct Folders {
     std::filesystem::path file;
     std::string entry;  ///< the part of the file; empty: it tells itself
   };
+  struct Lidar {
+    std::string name;  ///< empty: "lidar", "lidar_2"
+    std::filesystem::path clouds;
+  };
   std::vector<Camera> cameras;
   std::vector<LensFile> lenses;
-  std::filesystem::path clouds;
+  std::vector<Lidar> lidars;  ///< the reference, to whose clouds all else is paired, and others
   Target board;
   std::optional<Lens::Model> model;  ///< of the lenses that no file says
   PairOptions pairing;
