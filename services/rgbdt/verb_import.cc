@@ -12,6 +12,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/import/import_bag.h"
+#include "services/rgbdt/folder_flags.h"
 #include "services/rgbdt/import_flags.h"
 #include "services/rgbdt/import_to_log.h"
 #include "services/rgbdt/import_views.h"
@@ -95,16 +96,21 @@ void CheckFlags(const ImportFlags& flags) {
   }
 }
 
-// A recording holds no images: what is of these makes no sense with it.
+// A recording holds no images; those of a session are in folders.
 int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
-  const bool of_bags = !flags.board.empty() || !flags.log.empty() || !flags.session.empty() ||
-                       !flags.clouds.empty() || !flags.images.empty() || !flags.lenses.empty() ||
-                       !flags.at.empty() || flags.every_s > 0 || flags.pinhole || flags.fisheye;
+  const bool of_bags = !flags.log.empty() || !flags.session.empty() || !flags.clouds.empty() ||
+                       !flags.images.empty() || !flags.at.empty() || flags.every_s > 0;
   if (of_bags) {
-    throw UsageError(
-        flags.bag +
-        ": is a recording of packets, without images, so no --board and the like; expected --out, "
-        "--metadata and --port alone, then rgbdt session --clouds with the images");
+    throw UsageError(flags.bag +
+                     ": is a recording of packets, without images or topics; expected --images "
+                     "DIR, --lens, --board and --out for a session, or --out alone for PCD files");
+  }
+  const bool of_session = !flags.board.empty() || !flags.lenses.empty() || flags.pinhole ||
+                          flags.fisheye || flags.in_order;
+  if (flags.image_folders.empty() && of_session) {
+    throw UsageError(flags.bag +
+                     ": is a recording of packets; a session of it needs the cameras' "
+                     "folders, too: --images DIR");
   }
   if (packets == nullptr) {
     throw InputError(flags.bag + ": is a recording of packets; this build is without drivers");
@@ -112,8 +118,22 @@ int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
   if (flags.metadata.size() > 1) {
     throw UsageError("--metadata is given twice; a recording is read for one LIDAR");
   }
-  return packets->recording(
-      {flags.bag, flags.metadata.empty() ? "" : flags.metadata[0], flags.out, flags.port});
+  const PacketsToImport what{flags.bag, flags.metadata.empty() ? "" : flags.metadata[0], flags.out,
+                             flags.port};
+  if (flags.image_folders.empty()) return packets->recording(what);
+  if (flags.out.empty() || flags.board.empty()) {
+    throw UsageError("--images is given without --board and --out; a session needs all three");
+  }
+  RequireRoomForSession(flags.out);
+  const PairOptions pairing{flags.in_order, flags.max_apart_s};
+  return packets->as_session(what, FoldersOf({flags.image_folders,
+                                              {},
+                                              flags.lenses,
+                                              flags.board,
+                                              flags.out,
+                                              flags.pinhole,
+                                              flags.fisheye,
+                                              pairing}));
 }
 
 bool IsPacketFile(const std::string& path) {
@@ -193,8 +213,12 @@ void PrintLidars(const TopicChoice& choice) {
 
 int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   if (IsPacketFile(flags.bag)) return RunPackets(flags, packets);
-  if (flags.port != 0) {
-    throw UsageError("--port is of a recording of packets (.pcap, .pcapng)");
+  for (const auto& [given, option] :
+       {std::pair(flags.port != 0, "--port"), std::pair(flags.in_order, "--in-order"),
+        std::pair(!flags.image_folders.empty(), "--images")}) {
+    if (given) {
+      throw UsageError(std::string(option) + " is of a recording of packets (.pcap, .pcapng)");
+    }
   }
   CheckFlags(flags);
   const bool writes = !flags.out.empty();
@@ -259,9 +283,10 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "A LIDAR's packets in the bag are decoded: Velodyne, Livox, Ouster and Hesai (with the "
       "bag's\n"
       "topic `metadata`, or --metadata).\n"
-      "Of a recording of such packets (.pcap, .pcapng) it writes each sweep as a PCD into --out, "
-      "named by its time, for\n"
-      "`rgbdt session --clouds`.\n"
+      "Of a recording of such packets (.pcap, .pcapng) and folders of images (--images) it makes\n"
+      "a session as `rgbdt session` does; without images it writes each sweep as a PCD into "
+      "--out,\n"
+      "named by its time.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "
@@ -272,6 +297,9 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "\\\n"
       "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.mcap --log drive.lcmlog --session out/session\n"
+      "          rgbdt import drive.pcap --metadata os1.json --images images --lens "
+      "camera_info.yaml \\\n"
+      "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.pcap --metadata os1.json --out out/clouds",
       [flags, packets] { return RunImport(*flags, packets); });
   verb->Required("FILE", &flags->bag,
@@ -289,6 +317,9 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "--image", &flags->images,
       "[NAME=]TOPIC, a camera's images; given again for each camera. Without: every camera\n"
       "that is in the bag");
+  verb->Option("--images", &flags->image_folders,
+               "[NAME=]DIR of a recording of packets: a camera's folder of images, as for\n"
+               "`rgbdt session`; given again for each camera");
   verb->Option(
       "--cloud", &flags->clouds,
       "[NAME=]TOPIC, a LIDAR's clouds or packets; given again for each LIDAR, the reference\n"
@@ -304,10 +335,12 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
                "a view at this time [s], since the bag's start or 1970; may be given again");
   verb->Option("--views", &flags->views, "of moments in which the board stands still: at most");
   verb->Within("--max-apart", &flags->max_apart_s, 0, 60,
-               "how far an image and its cloud may be apart, by their headers [s]");
+               "how far an image and its cloud may be apart, by their headers or names [s]");
   verb->Option("--metadata", &flags->metadata,
                "[NAME=]FILE of packets: what an Ouster says of itself (JSON), or a Hesai's angle\n"
                "correction (CSV); with its name for each of several LIDARs");
+  verb->Flag("--in-order", &flags->in_order,
+             "of a recording: the first image belongs to the first sweep and so on");
   verb->Option("--port", &flags->port,
                "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }

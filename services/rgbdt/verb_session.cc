@@ -12,40 +12,13 @@
 #include "calib/methods/board_check.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/rgbdt/folder_flags.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct FolderFlags {
-  std::vector<std::string> images, clouds, lenses;
-  std::string board, out;
-  bool pinhole = false, fisheye = false;
-  PairOptions pairing;
-};
-
-Folders FoldersOf(const FolderFlags& flags) {
-  if (flags.pinhole && flags.fisheye) {
-    throw InputError("--pinhole and --fisheye are both given; a lens is one of the two");
-  }
-  Folders folders;
-  folders.board = ParseBoard(flags.board);
-  for (const std::string& text : flags.images) {
-    const auto [name, path] = SplitName(text);
-    folders.cameras.push_back({name, path});
-  }
-  for (const std::string& text : flags.lenses) folders.lenses.push_back(LensFileOf(text));
-  for (const std::string& text : flags.clouds) {
-    const auto [name, path] = SplitName(text);
-    folders.lidars.push_back({name, path});
-  }
-  if (flags.pinhole) folders.model = Lens::Model::kPinhole;
-  if (flags.fisheye) folders.model = Lens::Model::kFisheye;
-  folders.pairing = flags.pairing;
-  return folders;
-}
 
 // "pose7.png", and with times how far it is from the cloud: "1700000000.25.png (+12 ms)".
 std::string ImageText(const ViewFiles::OfCamera& image, Utime sweep_utime) {
@@ -119,20 +92,7 @@ void CheckBoardIsSeen(const FolderSession& session) {
 int RunSession(const FolderFlags& flags) {
   const Folders folders = FoldersOf(flags);
   RequireRoomForSession(flags.out);
-  const FolderSession session = ReadFolders(folders);
-  CheckBoardIsSeen(session);
-  for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());
-  if (!session.rig.further_lidars.empty()) {
-    std::printf("lidar %s: the reference, in whose frame all poses are\n",
-                session.rig.lidar.name.c_str());
-  }
-  std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
-  PrintViews(session);
-  WriteSession(flags.out, session);
-  std::printf("wrote %s: rig.textproto, %zu %s; images and clouds stay where they are\n",
-              flags.out.c_str(), session.views.size(),
-              session.views.size() == 1 ? "view" : "views");
-  return FinishSession(flags.out, session.WithoutLens());
+  return MakeSession(folders, flags.out);
 }
 
 }  // namespace
@@ -143,6 +103,43 @@ std::pair<std::string, std::string> SplitName(const std::string& text) {
                      text.substr(0, equals).find('/') == std::string::npos;
   if (!named) return {"", text};
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+Folders FoldersOf(const FolderFlags& flags) {
+  if (flags.pinhole && flags.fisheye) {
+    throw InputError("--pinhole and --fisheye are both given; a lens is one of the two");
+  }
+  Folders folders;
+  folders.board = ParseBoard(flags.board);
+  for (const std::string& text : flags.images) {
+    const auto [name, path] = SplitName(text);
+    folders.cameras.push_back({name, path});
+  }
+  for (const std::string& text : flags.lenses) folders.lenses.push_back(LensFileOf(text));
+  for (const std::string& text : flags.clouds) {
+    const auto [name, path] = SplitName(text);
+    folders.lidars.push_back({name, path});
+  }
+  if (flags.pinhole) folders.model = Lens::Model::kPinhole;
+  if (flags.fisheye) folders.model = Lens::Model::kFisheye;
+  folders.pairing = flags.pairing;
+  return folders;
+}
+
+int MakeSession(const Folders& folders, const std::string& out) {
+  const FolderSession session = ReadFolders(folders);
+  CheckBoardIsSeen(session);
+  for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());
+  if (!session.rig.further_lidars.empty()) {
+    std::printf("lidar %s: the reference, in whose frame all poses are\n",
+                session.rig.lidar.name.c_str());
+  }
+  std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
+  PrintViews(session);
+  WriteSession(out, session);
+  std::printf("wrote %s: rig.textproto, %zu %s; images and clouds stay where they are\n",
+              out.c_str(), session.views.size(), session.views.size() == 1 ? "view" : "views");
+  return FinishSession(out, session.WithoutLens());
 }
 
 Folders::LensFile LensFileOf(const std::string& text) {

@@ -199,7 +199,24 @@ std::string ViewName(const std::string& file, std::set<std::string>* taken) {
   return name;
 }
 
-std::vector<ViewFiles> MakeViews(const FileList& clouds, const std::vector<ReadCamera>& cameras,
+FileList CloudsOf(const Folders::Lidar& lidar) {
+  if (lidar.names.empty()) return ListClouds(lidar.clouds);
+  return {lidar.clouds, lidar.names, "cloud"};
+}
+
+// Why each of these clouds cannot be used, once they are there.
+std::vector<std::string> LookAtClouds(const Folders::Lidar& lidar, const FileList& clouds,
+                                      const std::vector<std::size_t>& used) {
+  if (lidar.make) {
+    std::vector<std::string> names;
+    for (const std::size_t i : used) names.push_back(clouds.names[i]);
+    lidar.make(names);
+  }
+  return LookAtClouds(clouds, used);
+}
+
+std::vector<ViewFiles> MakeViews(const Folders::Lidar& lidar, const FileList& clouds,
+                                 const std::vector<ReadCamera>& cameras,
                                  std::vector<std::string>* left_over) {
   std::map<std::size_t, ViewFiles> of_cloud;
   for (const ReadCamera& camera : cameras) {
@@ -215,7 +232,7 @@ std::vector<ViewFiles> MakeViews(const FileList& clouds, const std::vector<ReadC
   std::vector<std::size_t> used;
   used.reserve(of_cloud.size());
   for (const auto& [cloud, view] : of_cloud) used.push_back(cloud);
-  const std::vector<std::string> problems = LookAtClouds(clouds, used);
+  const std::vector<std::string> problems = LookAtClouds(lidar, clouds, used);
   std::vector<ViewFiles> views;
   std::set<std::string> taken;
   for (std::size_t k = 0; k < used.size(); ++k) {
@@ -269,9 +286,10 @@ void AddAlone(const FileList& clouds, const std::vector<ReadCamera>& cameras,
 }
 
 // Of a further LIDAR what belongs to the reference's clouds, to the views that have those.
-void AddFurtherClouds(const fs::path& folder, const std::string& lidar, const FileList& reference,
-                      const PairOptions& pairing, FolderSession* session) {
-  const FileList clouds = ListClouds(folder);
+void AddFurtherClouds(const Folders::Lidar& from, const std::string& lidar,
+                      const FileList& reference, const PairOptions& pairing,
+                      FolderSession* session) {
+  const FileList clouds = CloudsOf(from);
   const Pairs pairs = PairFiles(clouds, reference, pairing);
   std::map<fs::path, ViewFiles*> view_of;
   for (ViewFiles& view : session->views) view_of[view.cloud] = &view;
@@ -291,16 +309,16 @@ void AddFurtherClouds(const fs::path& folder, const std::string& lidar, const Fi
   std::string why =
       "none of them belongs to a cloud of " + session->rig.lidar.name + " that has an image";
   bool any = false;
-  const std::vector<std::string> problems = LookAtClouds(clouds, used);
+  const std::vector<std::string> problems = LookAtClouds(from, clouds, used);
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (problems[k].empty()) {
-      views[k]->further_clouds.push_back({lidar, folder / clouds.names[used[k]]});
+      views[k]->further_clouds.push_back({lidar, clouds.folder / clouds.names[used[k]]});
       any = true;
     } else {
       session->left_over.push_back(why = problems[k]);
     }
   }
-  if (!any) throw InputError("no cloud of " + folder.string() + " can be used: " + why);
+  if (!any) throw InputError("no cloud of " + clouds.folder.string() + " can be used: " + why);
   if (alone.empty()) return;
   session->left_over.push_back(Counted(alone.size(), "cloud") + " of " + lidar +
                                " without a cloud of " + session->rig.lidar.name + " " +
@@ -336,7 +354,7 @@ std::vector<std::string> FolderSession::WithoutLens() const {
 
 FolderSession ReadFolders(const Folders& folders) {
   CheckFolders(folders);
-  const FileList clouds = ListClouds(folders.lidars.at(0).clouds);
+  const FileList clouds = CloudsOf(folders.lidars.at(0));
   FolderSession session;
   std::set<std::string> names;
   std::vector<ReadCamera> cameras;
@@ -347,9 +365,9 @@ FolderSession ReadFolders(const Folders& folders) {
   session.paired_by = cameras.at(0).pairs.by;
   session.rig = MakeRig(folders, cameras);
   AddAlone(clouds, cameras, &session.left_over);
-  session.views = MakeViews(clouds, cameras, &session.left_over);
+  session.views = MakeViews(folders.lidars[0], clouds, cameras, &session.left_over);
   for (std::size_t i = 1; i < folders.lidars.size(); ++i) {
-    AddFurtherClouds(folders.lidars[i].clouds, session.rig.further_lidars[i - 1].name, clouds,
+    AddFurtherClouds(folders.lidars[i], session.rig.further_lidars[i - 1].name, clouds,
                      folders.pairing, &session);
   }
   return session;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct Folders {
   struct Lidar {
     std::string name;  ///< empty: "lidar", "lidar_2"
     std::filesystem::path clouds;
+    /// Not empty: what the folder is to hold, of which `make` writes those that are in a view.
+    std::vector<std::string> names{};
+    std::function<void(const std::vector<std::string>&)> make{};
   };
   std::vector<Camera> cameras;
   std::vector<LensFile> lenses;
