@@ -68,9 +68,15 @@ same "ROS 1 by bz2" "$scratch/o.bag:bz2"
 mkdir "$scratch/split"
 accepts "making split bags" python3 "$make_bag" "$good" --views 1 "$scratch/split/b_0.mcap"
 cp "$scratch/split/b_0.mcap" "$scratch/split/b_10.mcap"
-accepts "making split bags" python3 "$make_bag" "$good" --views 1 "$scratch/split/b_9.db3"
+cp "$scratch/split/b_0.mcap" "$scratch/split/b_9.mcap"
 imports "split" "$scratch/split" --at 0
 says_all "split" "/lidar/points  sensor_msgs/PointCloud2  3 messages" "1 view"
+accepts "making another kind" python3 "$make_bag" "$good" --views 1 "$scratch/split/b.db3"
+says=("several kinds (1 .db3, 3 .mcap)" "name one of the files")
+refuses "a folder of two kinds" "$bin/rgbdt" import "$scratch/split"
+printf 'relative_file_paths:\n  - b.db3\n' >"$scratch/split/metadata.yaml"
+imports "the kind that metadata.yaml lists" "$scratch/split" --at 0
+says_all "the kind that metadata.yaml lists" "ROS 2 bag (sqlite)" "/lidar/points  sensor_msgs/PointCloud2  1 messages"
 
 # Where the board stands still, and only there; and what tf_static says.
 accepts "making a slow bag" python3 "$make_bag" "$good" --views 3 --seconds 3 --rate 2 --mosaic --tf \
