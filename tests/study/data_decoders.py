@@ -7,6 +7,7 @@ from trials import figure
 
 SENSORS = ("ouster", "hesai", "velodyne")
 TARGETS = {f"{sensor}_agree": (">=", 0.9999) for sensor in SENSORS}
+TARGETS.update(ouster_direction_agree=(">=", 0.9999), ouster_time_us=("<=", 1))
 NEEDS = "no such recordings (ouster, nebula) in RGBDT_REAL_DATA"
 
 
