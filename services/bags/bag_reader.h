@@ -75,9 +75,11 @@ class BagReader {
 };
 
 /// Opens a bag by what its first bytes say: MCAP, ROS 2's sqlite (.db3), or ROS 1's (version 2.0).
-/// A folder, as ROS 2 records it, stands for the bags in it, in the order of their names. Throws
-/// InputError naming the file, and what to do about it: not there, no regular file, none of these,
-/// packed as a whole.
+/// A folder, as ROS 2 records it, stands for the bags in it, in the order of their names; of
+/// several kinds for those that its metadata.yaml lists. What tools left of an earlier state
+/// (NAME.zstd beside NAME, NAME.orig.bag beside NAME.bag) does not count. Throws InputError naming
+/// the file, and what to do about it: not there, no regular file, none of these, packed as a whole,
+/// a folder of several kinds.
 std::unique_ptr<BagReader> OpenBag(const std::filesystem::path& path);
 
 }  // namespace rgbdt

@@ -1,5 +1,6 @@
-#include <algorithm>
+#include <map>
 #include <set>
+#include <sstream>
 #include <string_view>
 #include <tuple>
 
@@ -13,6 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using bags::BagFile;
+
+// b_9 before b_10.
+struct NaturalOrder {
+  bool operator()(const std::string& a, const std::string& b) const { return NaturalLess(a, b); }
+};
 
 bool EndsIn(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -38,22 +44,87 @@ std::unique_ptr<BagReader> OpenFile(const fs::path& path) {
                    ": is no bag; expected MCAP, a ROS 2 bag (.db3) or a ROS 1 bag (.bag)");
 }
 
+const std::vector<std::string> kEndings = {".mcap", ".db3", ".bag"};
+
+// Of a bag's name, packed as a whole or not; empty: it is none's.
+std::string EndingOf(const std::string& name) {
+  for (const std::string& ending : kEndings) {
+    if (EndsIn(name, ending) || (ending != ".bag" && EndsIn(name, ending + ".zstd"))) return ending;
+  }
+  return "";
+}
+
+// Takes out what a tool left of a bag that is there, too: unzstd the packed one, `rosbag fix` and
+// `reindex` the one before.
+void DropEarlier(std::set<std::string, NaturalOrder>* names) {
+  for (const std::string& ending : {std::string(".orig.bag"), std::string(".zstd")}) {
+    for (auto it = names->begin(); it != names->end();) {
+      const std::string whole = EndsIn(*it, ending) ? it->substr(0, it->size() - ending.size()) +
+                                                          (ending == ".zstd" ? "" : ".bag")
+                                                    : "";
+      it = names->count(whole) != 0 ? names->erase(it) : std::next(it);
+    }
+  }
+}
+
+// The names that ROS 2's metadata.yaml beside them lists as the recording's.
+std::set<std::string> Listed(const fs::path& folder) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+  std::set<std::string> names;
+  std::error_code ignored;
+  if (!fs::exists(folder / "metadata.yaml", ignored)) return names;
+  const BagFile file(folder / "metadata.yaml");
+  std::string text(kMostBytes, '\0');
+  text.resize(file.Read(0, text.data(), text.size()));
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find_first_not_of(" -\"'"),
+                      end = line.find_last_not_of(" \"'\r");
+    if (begin != std::string::npos) {
+      names.insert(fs::path(line.substr(begin, end + 1 - begin)).filename().string());
+    }
+  }
+  return names;
+}
+
+// Several kinds are one recording twice, as after a conversion, or no recording: metadata.yaml may
+// say which is.
+void RequireOneKind(const fs::path& folder, std::set<std::string, NaturalOrder>* names) {
+  const auto kinds = [&] {
+    std::map<std::string, int> counts;
+    for (const std::string& name : *names) ++counts[EndingOf(name)];
+    return counts;
+  };
+  if (kinds().size() == 1) return;
+  std::string found;
+  for (const auto& [ending, count] : kinds()) {
+    found += (found.empty() ? "" : ", ") + std::to_string(count) + " " + ending;
+  }
+  const std::set<std::string> listed = Listed(folder);
+  for (auto it = names->begin(); it != names->end();) {
+    it = listed.count(*it) == 0 ? names->erase(it) : std::next(it);
+  }
+  if (kinds().size() == 1) return;
+  throw InputError(folder.string() + ": holds bags of several kinds (" + found +
+                   "), which may be one recording twice; name one of the files, or move those of "
+                   "one kind into a folder of their own");
+}
+
 // A folder's bags, as ROS 2 records one: NAME_0.mcap, NAME_1.mcap, ...
 std::vector<fs::path> FilesOf(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return {path};
-  std::vector<std::string> names;
+  std::set<std::string, NaturalOrder> names;
   for (fs::directory_iterator it(path, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    const bool is_bag = EndsIn(name, ".mcap") || EndsIn(name, ".db3") || EndsIn(name, ".bag") ||
-                        EndsIn(name, ".mcap.zstd") || EndsIn(name, ".db3.zstd");
-    if (is_bag) names.push_back(name);
+    if (!EndingOf(name).empty()) names.insert(name);
   }
   if (error) throw InputError("cannot read " + path.string() + ": " + error.message());
   if (names.empty()) {
     throw InputError(path.string() + ": holds no bag; expected .mcap, .db3 or .bag files");
   }
-  std::sort(names.begin(), names.end(), NaturalLess);
+  DropEarlier(&names);
+  RequireOneKind(path, &names);
   std::vector<fs::path> files;
   files.reserve(names.size());
   for (const std::string& name : names) files.push_back(path / name);

@@ -146,7 +146,7 @@ std::string SetLens(const TopicChoice& choice, const RigWishes& wishes, std::siz
 std::string SetGuess(const BagSurvey& survey, const TopicChoice& choice,
                      const TopicChoice::Camera& camera, CameraSpec* spec) {
   const std::string& optical = camera.images->frame;
-  const std::string& lidar = choice.cloud->frame;
+  const std::string& lidar = choice.lidar.clouds->frame;
   spec->camera_from_lidar_guess = FindTransform(survey.transforms, optical, lidar);
   if (!spec->camera_from_lidar_guess) return "";
   const Eigen::Vector3d centre =
@@ -157,13 +157,36 @@ std::string SetGuess(const BagSurvey& survey, const TopicChoice& choice,
          Format("%.3f %.3f %.3f m in the LIDAR frame", centre.x(), centre.y(), centre.z());
 }
 
+// Of further LIDARs those that there are; what there is to say of them.
+std::string AddFurtherClouds(const Rig& rig, const Moment& moment,
+                             const std::vector<CloudReader>& read_clouds, View* view,
+                             std::vector<std::string>* left_over) {
+  std::string line;
+  for (std::size_t i = 0; i < moment.further_clouds.size(); ++i) {
+    const std::string& lidar = rig.further_lidars[i].name;
+    const auto& stamped = moment.further_clouds[i];
+    if (!stamped) {
+      line += "  " + lidar + ": none";
+      continue;
+    }
+    try {
+      view->further_clouds.push_back({lidar, read_clouds[i + 1](*stamped)});
+      line += "  " + lidar + ": " +
+              Format("%+.0f ms", 1e3 * ToSeconds(stamped->utime - moment.cloud.utime));
+    } catch (const InputError& error) {
+      left_over->push_back(error.what());
+    }
+  }
+  return line;
+}
+
 }  // namespace
 
 BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choice,
                const RigWishes& wishes) {
   CheckLensFiles(wishes.lenses, NamesOf(choice));
   BagRig out;
-  out.rig.lidar.name = "lidar";
+  out.rig.lidar.name = choice.lidar.name;
   out.rig.target = wishes.board;
   for (std::size_t i = 0; i < choice.cameras.size(); ++i) {
     const TopicChoice::Camera& camera = choice.cameras[i];
@@ -183,7 +206,15 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
     if (!guess.empty()) out.lines.push_back(guess);
     out.rig.cameras.push_back(spec);
   }
-  out.lines.push_back("lidar: " + choice.cloud->topic.name + ", " + choice.cloud->what);
+  out.lines.push_back((choice.further_lidars.empty()
+                           ? "lidar: "
+                           : "lidar " + choice.lidar.name + " (the reference): ") +
+                      choice.lidar.clouds->topic.name + ", " + choice.lidar.clouds->what);
+  for (const TopicChoice::Lidar& lidar : choice.further_lidars) {
+    out.rig.further_lidars.emplace_back().name = lidar.name;
+    out.lines.push_back("lidar " + lidar.name + ": " + lidar.clouds->topic.name + ", " +
+                        lidar.clouds->what);
+  }
   out.rig.Check(LensNeed::kMayBeUnknown);
   return out;
 }
@@ -235,7 +266,8 @@ Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraS
 }
 
 std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                         const std::vector<Moment>& moments, const CloudReader& read_cloud,
+                         const std::vector<Moment>& moments,
+                         const std::vector<CloudReader>& read_clouds,
                          const std::filesystem::path& dir,
                          const std::function<void(const std::string&)>& progress,
                          std::vector<std::string>* left_over) {
@@ -246,7 +278,7 @@ std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& r
     view.name = Format("%04zu", views + 1);
     view.heldout = views % 3 == 2;
     try {
-      view.cloud = read_cloud(moment.cloud);
+      view.cloud = read_clouds[0](moment.cloud);
     } catch (const InputError& error) {
       left_over->push_back(error.what());
       continue;
@@ -268,6 +300,7 @@ std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& r
       }
     }
     if (view.images.empty()) continue;
+    line += AddFurtherClouds(rig, moment, read_clouds, &view, left_over);
     WriteView(dir, view);
     ++views;
     if (progress) progress(line);

@@ -53,10 +53,12 @@ using CloudReader = std::function<Cloud(const Stamped&)>;
 CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic);
 
 /// Reads the moments and writes them as views 0001, 0002, ... and last the rig; what cannot be read
-/// is told in `left_over`. Every third view is held out. Gives how many views there are. Throws
-/// InputError where there is none, and what WriteView throws.
+/// is told in `left_over`. Every third view is held out. `read_clouds` are the LIDARs', the
+/// reference's first. Gives how many views there are. Throws InputError where there is none, and
+/// what WriteView throws.
 std::size_t WriteMoments(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                         const std::vector<Moment>& moments, const CloudReader& read_cloud,
+                         const std::vector<Moment>& moments,
+                         const std::vector<CloudReader>& read_clouds,
                          const std::filesystem::path& dir,
                          const std::function<void(const std::string&)>& progress,
                          std::vector<std::string>* left_over);

@@ -49,7 +49,7 @@ const CameraSpec* CameraOf(const std::optional<LogRig>& rig, const std::string& 
 
 // By their times.
 std::vector<Source> SourcesOf(const TopicChoice& choice, const std::optional<LogRig>& rig) {
-  std::vector<Source> sources = CloudsOf(*choice.cloud);
+  std::vector<Source> sources = CloudsOf(*choice.lidar.clouds);
   for (const TopicChoice::Camera& camera : choice.cameras) {
     const CameraSpec* spec = CameraOf(rig, camera.name);
     if (spec == nullptr) continue;

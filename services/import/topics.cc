@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/model/errors.h"
+#include "services/bags/printable.h"
 #include "services/messages/limits.h"
 
 namespace rgbdt {
@@ -47,6 +48,11 @@ Parts Split(const Topic& topic) {
   return {name.substr(0, slash), name.substr(slash + 1)};
 }
 
+std::string Lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 // By image_proc: its CameraInfo is of the images before.
 bool IsRectified(const Topic& topic) {
   const std::string& name = topic.topic.name;
@@ -55,8 +61,7 @@ bool IsRectified(const Topic& topic) {
 
 // Why these are not taken for a camera's images; empty: they may be.
 std::string WhyNoCamera(const Topic& topic) {
-  std::string name = topic.topic.name;
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = Lower(topic.topic.name);
   const auto says = [&](const char* word) { return name.find(word) != std::string::npos; };
   if (topic.stamped.empty()) {
     return topic.problem.empty() ? "no messages" : "cannot be read: " + topic.problem;
@@ -80,7 +85,7 @@ int Rank(const Topic& topic) {
 }
 
 // 1 to 32 of a-z, 0-9 and _, as the rig file has it.
-std::string CameraName(const Topic& topic, const std::set<std::string>& taken) {
+std::string SensorName(const Topic& topic, const std::set<std::string>& taken) {
   const Parts parts = Split(topic);
   const std::string whole = parts.camera.empty() ? parts.images : parts.camera;
   std::string name;
@@ -89,7 +94,7 @@ std::string CameraName(const Topic& topic, const std::set<std::string>& taken) {
     name += std::isalnum(u) != 0 ? static_cast<char>(std::tolower(u)) : '_';
   }
   name = name.substr(0, 28);
-  if (name.empty()) name = "camera";
+  if (name.empty()) name = "sensor";
   std::string free = name;
   for (int i = 2; taken.count(free) != 0; ++i) free = name + "_" + std::to_string(i);
   return free;
@@ -154,28 +159,66 @@ bool IsColoured(const Topic& topic) {
   return names.count("rgb") + names.count("rgba") + names.count("red") != 0;
 }
 
-const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish,
-                         std::vector<std::string>* left_out) {
-  if (!wish.empty()) return Wanted(survey, wish, IsCloud, "--cloud");
-  std::vector<const Topic*> found, coloured, packets;
-  for (const Topic& topic : survey.topics) {
-    if (!IsCloud(topic) || !HasMessages(topic)) continue;
-    const bool of_packets = topic.data == BagData::kPackets;
-    (of_packets ? packets : IsColoured(topic) ? coloured : found).push_back(&topic);
+// What programs make of LIDARs' clouds, and what depth cameras tell.
+std::string MadeWord(const Topic& topic) {
+  const std::string name = Lower(topic.topic.name);
+  for (const char* word :
+       {"depth", "disparity", "concat", "merge", "fused", "filter", "crop", "downsample", "voxel",
+        "ground", "obstacle", "segment", "cluster", "map", "debug"}) {
+    if (name.find(word) != std::string::npos) return word;
   }
-  if (found.empty() && !packets.empty()) {
-    found.swap(packets);
-  } else if (found.empty()) {
-    found.swap(coloured);
-  }
-  if (found.size() > 1) {
-    throw InputError("several topics hold clouds; say which by --cloud: " +
-                     NamesOf(survey, IsCloud));
-  }
+  return "";
+}
+
+// The frame, which each LIDAR has of its own. An Ouster's packets have none.
+bool OfOneFrame(const Topic& a, const Topic& b) {
+  const bool unknown = a.frame.empty() && b.frame.empty();
+  if (unknown && a.data == BagData::kPackets && b.data == BagData::kPackets) return false;
+  return a.frame == b.frame;
+}
+
+// Of several topics one a LIDAR.
+void RequireLidars(const BagSurvey& survey, const std::vector<const Topic*>& found,
+                   bool one_lidar) {
   if (found.empty()) {
     throw InputError(
         "the bag holds no clouds; expected a topic of sensor_msgs/PointCloud2, "
         "foxglove.PointCloud, a Livox's CustomMsg, or of packets");
+  }
+  const std::string which = "say which by --cloud: " + NamesOf(survey, IsCloud);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!OfOneFrame(*found[i], *found[j])) continue;
+      throw InputError("several topics hold clouds of one frame, \"" + Printable(found[i]->frame) +
+                       "\": they may be one LIDAR's; " + which);
+    }
+  }
+  if (one_lidar && found.size() > 1) {
+    throw InputError("the bag has several LIDARs, and a log carries the clouds of one (CLOUD); " +
+                     which);
+  }
+}
+
+std::vector<const Topic*> SeenLidars(const BagSurvey& survey, bool one_lidar,
+                                     std::vector<std::string>* left_out) {
+  std::vector<const Topic*> measured, made, coloured, packets;
+  for (const Topic& topic : survey.topics) {
+    if (!IsCloud(topic) || !HasMessages(topic)) continue;
+    const bool of_packets = topic.data == BagData::kPackets;
+    (of_packets                 ? packets
+     : IsColoured(topic)        ? coloured
+     : !MadeWord(topic).empty() ? made
+                                : measured)
+        .push_back(&topic);
+  }
+  std::vector<const Topic*> found;
+  for (auto* of_kind : {&measured, &made, &packets, &coloured}) {
+    if (found.empty()) found.swap(*of_kind);
+  }
+  RequireLidars(survey, found, one_lidar);
+  for (const Topic* topic : made) {
+    left_out->push_back(topic->topic.name + ": named \"" + MadeWord(*topic) +
+                        "\"; --cloud takes it");
   }
   for (const Topic* topic : packets) {
     left_out->push_back(topic->topic.name + ": packets, and " + found[0]->topic.name +
@@ -184,7 +227,35 @@ const Topic& ChooseCloud(const BagSurvey& survey, const std::string& wish,
   for (const Topic* topic : coloured) {
     left_out->push_back(topic->topic.name + ": coloured by cameras; --cloud takes it");
   }
-  return *found[0];
+  return found;
+}
+
+void ChooseLidars(const BagSurvey& survey, const TopicWishes& wishes, TopicChoice* choice) {
+  std::vector<TopicChoice::Lidar> lidars;
+  for (const auto& [name, topic] : wishes.clouds) {
+    lidars.push_back({name, &Wanted(survey, topic, IsCloud, "--cloud")});
+  }
+  if (lidars.empty()) {
+    for (const Topic* topic : SeenLidars(survey, wishes.one_lidar, &choice->left_out)) {
+      lidars.push_back({"", topic});
+    }
+  }
+  std::set<std::string> names;
+  std::set<const Topic*> topics;
+  for (TopicChoice::Lidar& lidar : lidars) {
+    if (lidar.name.empty()) {
+      lidar.name = lidars.size() == 1 ? "lidar" : SensorName(*lidar.clouds, names);
+    }
+    if (!names.insert(lidar.name).second) {
+      throw InputError("two LIDARs are called \"" + lidar.name + "\"; expected a name for each");
+    }
+    if (!topics.insert(lidar.clouds).second) {
+      throw InputError("--cloud " + lidar.clouds->topic.name +
+                       " is given for two LIDARs; expected one topic for each");
+    }
+  }
+  choice->lidar = lidars[0];
+  choice->further_lidars.assign(lidars.begin() + 1, lidars.end());
 }
 
 }  // namespace
@@ -212,7 +283,7 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
                        " cameras; say by --image which are to be taken");
     }
     TopicChoice::Camera camera;
-    camera.name = wish.empty() ? CameraName(topic, names) : wish;
+    camera.name = wish.empty() ? SensorName(topic, names) : wish;
     if (!names.insert(camera.name).second) {
       throw InputError("two cameras are called \"" + camera.name + "\"; expected a name for each");
     }
@@ -230,7 +301,7 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
     throw InputError("the bag holds no camera's images; topics of images: " +
                      NamesOf(survey, IsImages));
   }
-  choice.cloud = &ChooseCloud(survey, wishes.cloud, &choice.left_out);
+  ChooseLidars(survey, wishes, &choice);
   return choice;
 }
 

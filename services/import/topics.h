@@ -11,8 +11,9 @@ namespace rgbdt {
 /// What a person asks for; what is empty is seen from the bag.
 struct TopicWishes {
   std::vector<std::pair<std::string, std::string>> images;  ///< name (or empty), topic
-  std::string cloud;
+  std::vector<std::pair<std::string, std::string>> clouds;  ///< likewise; the reference first
   bool clouds_alone = false;  ///< no camera is needed, and none is chosen
+  bool one_lidar = false;     ///< of several LIDARs none is chosen unless it is asked for
 };
 
 struct TopicChoice {
@@ -21,16 +22,22 @@ struct TopicChoice {
     const BagSurvey::Topic* images = nullptr;
     const BagSurvey::Topic* info = nullptr;  ///< its CameraInfo; none: it has none
   };
+  struct Lidar {
+    std::string name;  ///< "lidar", or of several from the topic as a camera's: "front"
+    const BagSurvey::Topic* clouds = nullptr;  ///< or packets
+  };
   std::vector<Camera> cameras;
-  const BagSurvey::Topic* cloud = nullptr;
+  Lidar lidar;  ///< the reference, in whose frame poses are
+  std::vector<Lidar> further_lidars;
   std::vector<std::string>
       left_out;  ///< a line for each topic of images or clouds that is not taken: why
 };
 
-/// Which topics are cameras and which is the LIDAR. Of what one camera publishes several times, the
+/// Which topics are cameras and which are LIDARs. Of what one camera publishes several times, the
 /// raw images are taken, or else the least changed ones. Depth and rectified images are none unless
-/// asked for, nor is a cloud with colours the LIDAR's where there is another. Points into `survey`.
-/// Throws InputError: no images, no clouds or several topics of them, a wish for what is not there.
+/// asked for, nor are clouds with colours or of a depth camera, what is computed of others' clouds,
+/// and packets, where there are other clouds. Each frame is a LIDAR. Points into `survey`. Throws
+/// InputError: no images, no clouds or several topics of one frame, a wish for what is not there.
 TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes);
 
 /// What the LIDAR of these packets says of itself: the topic `metadata` beside them, or else the

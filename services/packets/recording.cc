@@ -94,11 +94,6 @@ void RequireEmpty(const fs::path& dir) {
   }
 }
 
-std::string NameOf(Utime utime) {
-  return Format("%lld.%06lld.pcd", static_cast<long long>(utime / kMicrosecondsPerSecond),
-                static_cast<long long>(utime % kMicrosecondsPerSecond));
-}
-
 }  // namespace
 
 Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
@@ -138,11 +133,17 @@ Recording ReadRecording(const fs::path& path, const RecordingOptions& options,
   return recording;
 }
 
+std::string PcdName(Utime utime) {
+  return Format("%lld.%06lld.pcd", static_cast<long long>(utime / kMicrosecondsPerSecond),
+                static_cast<long long>(utime % kMicrosecondsPerSecond));
+}
+
 Recording WriteRecordingAsPcds(const fs::path& path, const RecordingOptions& options,
                                const fs::path& dir) {
   RequireEmpty(dir);
-  return ReadRecording(
-      path, options, [&](const Cloud& sweep) { WritePcd(dir / NameOf(sweep.sweep_utime), sweep); });
+  return ReadRecording(path, options, [&](const Cloud& sweep) {
+    WritePcd(dir / PcdName(sweep.sweep_utime), sweep);
+  });
 }
 
 }  // namespace rgbdt

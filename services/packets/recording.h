@@ -46,6 +46,9 @@ struct Recording {
 Recording ReadRecording(const std::filesystem::path& path, const RecordingOptions& options,
                         const std::function<void(const Cloud&)>& take);
 
+/// What a sweep's file is called, by its time: SECONDS.MICROSECONDS.pcd.
+std::string PcdName(Utime sweep_utime);
+
 /// The sweeps as PCD files into `dir`, which is new or empty, named by their times as `rgbdt
 /// session
 /// --clouds` pairs them with images: SECONDS.MICROSECONDS.pcd.

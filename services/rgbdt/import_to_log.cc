@@ -60,7 +60,8 @@ std::optional<LogRig> LogRigOf(const std::string& session) {
 int ImportLog(const std::string& path, const std::optional<LogRig>& rig, const TopicChoice& choice,
               const CloudReader& read_cloud, BagReader* bag) {
   if (rig) TellCameras(rig->rig, choice);
-  std::printf("lidar: %s, %s\n", choice.cloud->topic.name.c_str(), choice.cloud->what.c_str());
+  std::printf("lidar: %s, %s\n", choice.lidar.clouds->topic.name.c_str(),
+              choice.lidar.clouds->what.c_str());
   const WrittenLog written =
       WriteLog(bag, choice, rig, read_cloud, path, Tenths("writing the log"));
   if (written.unreadable > 0) {

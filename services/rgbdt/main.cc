@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
   rgbdt::AddVerdictEnds(&line, "calibrate, evaluate, refine, replay: ");
   rgbdt::AddSession(&line);
 #ifdef RGBDT_HAS_DRIVERS
-  const rgbdt::PacketImport packets{rgbdt::ImportPackets, rgbdt::ReadPacketsInBag};
+  const rgbdt::PacketImport packets{rgbdt::ImportPackets, rgbdt::ImportPacketsAsSession,
+                                    rgbdt::ReadPacketsInBag};
   rgbdt::AddImport(&line, &packets);
 #else
   rgbdt::AddImport(&line, nullptr);

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "calib/files/import/folders.h"
 #include "services/import/import_bag.h"
 
 namespace rgbdt {
@@ -12,6 +13,9 @@ struct PacketsToImport {
   int port = 0;
 };
 int ImportPackets(const PacketsToImport& packets);
+/// Of a recording and the cameras' images a session directory, `out`; the sweeps that belong to
+/// images lie in its folder `clouds`.
+int ImportPacketsAsSession(const PacketsToImport& packets, Folders folders);
 
 /// A LIDAR's packets in a bag.
 struct PacketsInBag {
@@ -26,6 +30,7 @@ CloudReader ReadPacketsInBag(const PacketsInBag& packets);
 /// What `import` does with packets.
 struct PacketImport {
   int (*recording)(const PacketsToImport&) = nullptr;
+  int (*as_session)(const PacketsToImport&, Folders) = nullptr;
   CloudReader (*in_bag)(const PacketsInBag&) = nullptr;
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,26 +9,18 @@
 
 #include "calib/files/check_writable.h"
 #include "calib/files/import/board_text.h"
-#include "calib/files/import/folders.h"
-#include "calib/methods/board_check.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/import/import_bag.h"
-#include "services/import/still.h"
+#include "services/rgbdt/folder_flags.h"
+#include "services/rgbdt/import_flags.h"
 #include "services/rgbdt/import_to_log.h"
+#include "services/rgbdt/import_views.h"
 #include "services/rgbdt/packet_import.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
 namespace {
-
-struct ImportFlags {
-  std::string bag, board, out, log, session, cloud, metadata;
-  std::vector<std::string> images, lenses, at;
-  bool pinhole = false, fisheye = false;
-  double every_s = 0, max_apart_s = 0.1;
-  int views = 24, port = 0;
-};
 
 // A small bag is read at once.
 std::function<void(double)> ReadingProgress(const BagReader& bag) {
@@ -55,130 +48,18 @@ void PrintTopics(const BagReader& bag, const BagSurvey& survey) {
 }
 
 // "NAME=TOPIC", or a topic alone.
-TopicWishes WishesOf(const ImportFlags& flags) {
-  TopicWishes wishes;
-  wishes.cloud = flags.cloud;
-  for (const std::string& text : flags.images) {
+std::vector<std::pair<std::string, std::string>> NamedTopics(
+    const std::vector<std::string>& texts) {
+  std::vector<std::pair<std::string, std::string>> topics;
+  for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) {
-      wishes.images.emplace_back("", text);
+      topics.emplace_back("", text);
     } else {
-      wishes.images.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+      topics.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     }
   }
-  return wishes;
-}
-
-RigWishes RigWishesOf(const ImportFlags& flags) {
-  RigWishes wishes;
-  wishes.board = ParseBoard(flags.board);
-  for (const std::string& text : flags.lenses) wishes.lenses.push_back(LensFileOf(text));
-  if (flags.pinhole) wishes.model = Lens::Model::kPinhole;
-  if (flags.fisheye) wishes.model = Lens::Model::kFisheye;
-  return wishes;
-}
-
-// Seconds since the bag's start, or since 1970.
-std::vector<Utime> TimesOf(const std::vector<std::string>& texts, Utime start) {
-  constexpr double kSince1970 = 1e8;
-  std::vector<Utime> times;
-  for (const std::string& text : texts) {
-    std::size_t read = 0;
-    double seconds = -1;
-    try {
-      seconds = std::stod(text, &read);
-    } catch (const std::exception&) {
-      read = 0;
-    }
-    if (read == 0 || read != text.size() || !(seconds >= 0 && seconds < 1e11)) {
-      throw UsageError("--at is \"" + text + "\"; expected seconds since the bag's start, or 1970");
-    }
-    times.push_back(FromSeconds(seconds) + (seconds < kSince1970 ? start : 0));
-  }
-  return times;
-}
-
-std::vector<std::string> WithoutLens(const Rig& rig) {
-  std::vector<std::string> names;
-  for (const CameraSpec& camera : rig.cameras) {
-    if (!camera.lens.known()) names.push_back(camera.name);
-  }
-  return names;
-}
-
-std::size_t ReferenceCamera(const Rig& rig) {
-  const auto colour =
-      std::find_if(rig.cameras.begin(), rig.cameras.end(),
-                   [](const CameraSpec& camera) { return camera.kind == CameraKind::kColor; });
-  return colour == rig.cameras.end() ? 0 : static_cast<std::size_t>(colour - rig.cameras.begin());
-}
-
-// Counts that are of inner corners are told; why else the board is in none of some images.
-std::string WhyNotSeen(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                       const std::vector<Stamped>& stamped) {
-  constexpr std::size_t kImages = 3;
-  const std::size_t camera = ReferenceCamera(rig);
-  std::vector<Image> images;
-  for (std::size_t i = 0; i < std::min(kImages, stamped.size()); ++i) {
-    const std::size_t at = (2 * i + 1) * stamped.size() / (2 * std::min(kImages, stamped.size()));
-    try {
-      images.push_back(ReadImage(bag, choice.cameras[camera], rig.cameras[camera], stamped[at]));
-    } catch (const InputError&) {  // told where it is to be written
-    }
-  }
-  const BoardCheck check = CheckBoard(rig.cameras[camera], rig.target, images);
-  if (check.instead) {
-    throw InputError("--board: " + rig.cameras[camera].name + ": " + OtherBoard(rig.target, check));
-  }
-  return check.found ? "" : check.why;
-}
-
-// When the board stands still.
-std::vector<Utime> StillTimes(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                              const ImportFlags& flags) {
-  if (!rig.target.HasPattern()) {
-    throw InputError("a plain board is not looked for in the images: say --every or --at");
-  }
-  const std::size_t camera = ReferenceCamera(rig);
-  const std::string& name = rig.cameras[camera].name;
-  const StillMoments still = FindStillMoments(bag, choice.cameras[camera], rig.cameras[camera],
-                                              rig.target, static_cast<std::size_t>(flags.views),
-                                              Tenths("looking for the board in " + name));
-  if (still.found == 0) {
-    const std::string why = WhyNotSeen(bag, choice, rig, choice.cameras[camera].images->stamped);
-    throw InputError("the board is in none of " + std::to_string(still.looks) + " images of " +
-                     name + (why.empty() ? "" : ": " + why) +
-                     "; --every or --at takes views anyway");
-  }
-  std::printf("board found in %zu of %zu images of %s; it stood still %zu times, %zu are taken\n",
-              still.found, still.looks, name.c_str(), still.stands, still.times.size());
-  if (still.times.empty()) {
-    throw InputError("the board never stood still for a second (less than " +
-                     Fixed(kStillForSecondPx, 1) + " px in " + name +
-                     "); --every or --at takes views anyway");
-  }
-  return still.times;
-}
-
-std::vector<Moment> MomentsOf(BagReader* bag, const TopicChoice& choice, const Rig& rig,
-                              const ImportFlags& flags, std::vector<std::string>* left_over) {
-  const bool told = flags.every_s > 0 || !flags.at.empty();
-  const std::vector<Utime> times = !flags.at.empty()   ? TimesOf(flags.at, StartOf(choice))
-                                   : flags.every_s > 0 ? EverySeconds(choice, flags.every_s)
-                                                       : StillTimes(bag, choice, rig, flags);
-  std::vector<Moment> moments = PairAt(choice, times, flags.max_apart_s, left_over);
-  if (!told || !rig.target.HasPattern()) return moments;
-  std::vector<Stamped> images;
-  for (const Moment& moment : moments) {
-    const auto& image = moment.images[ReferenceCamera(rig)];
-    if (image) images.push_back(*image);
-  }
-  const std::string why = images.empty() ? "" : WhyNotSeen(bag, choice, rig, images);
-  if (!why.empty()) {
-    std::printf("warning: the board is in none of the images of %s looked at: %s\n",
-                rig.cameras[ReferenceCamera(rig)].name.c_str(), why.c_str());
-  }
-  return moments;
+  return topics;
 }
 
 void CheckFlags(const ImportFlags& flags) {
@@ -201,6 +82,9 @@ void CheckFlags(const ImportFlags& flags) {
         "--log takes all clouds and images, and the lenses of --session; expected no "
         "--every, --at, --lens, --pinhole or --fisheye");
   }
+  if (!flags.log.empty() && flags.clouds.size() > 1) {
+    throw UsageError("--log: a log carries the clouds of one LIDAR (CLOUD); expected one --cloud");
+  }
   if (!flags.log.empty() && flags.session.empty() && !flags.images.empty()) {
     throw UsageError("--image: a log of images needs --session, their calibrated rig");
   }
@@ -212,21 +96,44 @@ void CheckFlags(const ImportFlags& flags) {
   }
 }
 
-// A recording holds no images: what is of these makes no sense with it.
+// A recording holds no images; those of a session are in folders.
 int RunPackets(const ImportFlags& flags, const PacketImport* packets) {
-  const bool of_bags = !flags.board.empty() || !flags.log.empty() || !flags.session.empty() ||
-                       !flags.cloud.empty() || !flags.images.empty() || !flags.lenses.empty() ||
-                       !flags.at.empty() || flags.every_s > 0 || flags.pinhole || flags.fisheye;
+  const bool of_bags = !flags.log.empty() || !flags.session.empty() || !flags.clouds.empty() ||
+                       !flags.images.empty() || !flags.at.empty() || flags.every_s > 0;
   if (of_bags) {
-    throw UsageError(
-        flags.bag +
-        ": is a recording of packets, without images, so no --board and the like; expected --out, "
-        "--metadata and --port alone, then rgbdt session --clouds with the images");
+    throw UsageError(flags.bag +
+                     ": is a recording of packets, without images or topics; expected --images "
+                     "DIR, --lens, --board and --out for a session, or --out alone for PCD files");
+  }
+  const bool of_session = !flags.board.empty() || !flags.lenses.empty() || flags.pinhole ||
+                          flags.fisheye || flags.in_order;
+  if (flags.image_folders.empty() && of_session) {
+    throw UsageError(flags.bag +
+                     ": is a recording of packets; a session of it needs the cameras' "
+                     "folders, too: --images DIR");
   }
   if (packets == nullptr) {
     throw InputError(flags.bag + ": is a recording of packets; this build is without drivers");
   }
-  return packets->recording({flags.bag, flags.metadata, flags.out, flags.port});
+  if (flags.metadata.size() > 1) {
+    throw UsageError("--metadata is given twice; a recording is read for one LIDAR");
+  }
+  const PacketsToImport what{flags.bag, flags.metadata.empty() ? "" : flags.metadata[0], flags.out,
+                             flags.port};
+  if (flags.image_folders.empty()) return packets->recording(what);
+  if (flags.out.empty() || flags.board.empty()) {
+    throw UsageError("--images is given without --board and --out; a session needs all three");
+  }
+  RequireRoomForSession(flags.out);
+  const PairOptions pairing{flags.in_order, flags.max_apart_s};
+  return packets->as_session(what, FoldersOf({flags.image_folders,
+                                              {},
+                                              flags.lenses,
+                                              flags.board,
+                                              flags.out,
+                                              flags.pinhole,
+                                              flags.fisheye,
+                                              pairing}));
 }
 
 bool IsPacketFile(const std::string& path) {
@@ -234,18 +141,54 @@ bool IsPacketFile(const std::string& path) {
   return end == ".pcap" || end == ".pcapng";
 }
 
-// Messages, or packets, of which then the sweeps are known.
-CloudReader CloudsOf(const ImportFlags& flags, const PacketImport* packets,
-                     const TopicChoice& choice, BagReader* bag, BagSurvey* survey) {
-  const std::string& name = choice.cloud->topic.name;
-  if (choice.cloud->data != BagData::kPackets) {
-    if (flags.metadata.empty()) return CloudMessages(bag, *choice.cloud);
-    throw UsageError("--metadata is of packets; " + name + " holds clouds");
+bool HasPackets(const TopicChoice::Lidar& lidar) { return lidar.clouds->data == BagData::kPackets; }
+
+// Of each LIDAR with packets its --metadata; one without a name is the only one's.
+std::map<std::string, std::string> MetadataFiles(const ImportFlags& flags,
+                                                 const std::vector<TopicChoice::Lidar>& lidars) {
+  std::vector<std::string> names;
+  for (const TopicChoice::Lidar& lidar : lidars) {
+    if (HasPackets(lidar)) names.push_back(lidar.name);
   }
-  if (packets == nullptr) {
-    throw InputError(name + ": holds a LIDAR's packets; this build is without drivers");
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  std::map<std::string, std::string> files;
+  for (const std::string& text : flags.metadata) {
+    if (names.empty()) {
+      throw UsageError("--metadata is of packets; " + lidars[0].clouds->topic.name +
+                       " holds clouds");
+    }
+    auto [name, file] = SplitName(text);
+    if (name.empty() && names.size() == 1) name = names[0];
+    if (std::count(names.begin(), names.end(), name) == 1 && files.emplace(name, file).second) {
+      continue;
+    }
+    throw UsageError("--metadata " + text +
+                     ": expected NAME=FILE, once for a LIDAR with packets: " + list);
   }
-  return packets->in_bag({flags.bag, flags.metadata, survey, survey->Find(name)});
+  return files;
+}
+
+// Messages, or packets, of which then the sweeps are known; the reference's first.
+std::vector<CloudReader> CloudsOf(const ImportFlags& flags, const PacketImport* packets,
+                                  const TopicChoice& choice, BagReader* bag, BagSurvey* survey) {
+  std::vector<TopicChoice::Lidar> lidars = choice.further_lidars;
+  lidars.insert(lidars.begin(), choice.lidar);
+  std::map<std::string, std::string> metadata = MetadataFiles(flags, lidars);
+  std::vector<CloudReader> readers;
+  for (const TopicChoice::Lidar& lidar : lidars) {
+    if (!HasPackets(lidar)) {
+      readers.push_back(CloudMessages(bag, *lidar.clouds));
+      continue;
+    }
+    const std::string& topic = lidar.clouds->topic.name;
+    if (packets == nullptr) {
+      throw InputError(topic + ": holds a LIDAR's packets; this build is without drivers");
+    }
+    readers.push_back(
+        packets->in_bag({flags.bag, metadata[lidar.name], survey, survey->Find(topic)}));
+  }
+  return readers;
 }
 
 // A log may be an hour's drive, or the bag itself.
@@ -256,10 +199,26 @@ void RequireNew(const std::filesystem::path& log) {
   CheckWritable(log);
 }
 
+void PrintLidars(const TopicChoice& choice) {
+  if (choice.further_lidars.empty()) {
+    std::printf("would take: lidar: %s\n", choice.lidar.clouds->topic.name.c_str());
+    return;
+  }
+  std::printf("would take: lidar %s (the reference; another by --cloud): %s\n",
+              choice.lidar.name.c_str(), choice.lidar.clouds->topic.name.c_str());
+  for (const TopicChoice::Lidar& lidar : choice.further_lidars) {
+    std::printf("would take: lidar %s: %s\n", lidar.name.c_str(), lidar.clouds->topic.name.c_str());
+  }
+}
+
 int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   if (IsPacketFile(flags.bag)) return RunPackets(flags, packets);
-  if (flags.port != 0) {
-    throw UsageError("--port is of a recording of packets (.pcap, .pcapng)");
+  for (const auto& [given, option] :
+       {std::pair(flags.port != 0, "--port"), std::pair(flags.in_order, "--in-order"),
+        std::pair(!flags.image_folders.empty(), "--images")}) {
+    if (given) {
+      throw UsageError(std::string(option) + " is of a recording of packets (.pcap, .pcapng)");
+    }
   }
   CheckFlags(flags);
   const bool writes = !flags.out.empty();
@@ -270,14 +229,15 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
   const std::unique_ptr<BagReader> bag = OpenBag(flags.bag);
   BagSurvey survey = SurveyBag(bag.get(), ReadingProgress(*bag));
   PrintTopics(*bag, survey);
-  TopicWishes topics = WishesOf(flags);
-  topics.clouds_alone = !flags.log.empty() && !log_rig;
+  TopicWishes topics{NamedTopics(flags.images), NamedTopics(flags.clouds)};
+  topics.one_lidar = !flags.log.empty();
+  topics.clouds_alone = topics.one_lidar && !log_rig;
   const TopicChoice choice = ChooseTopics(survey, topics);
   for (const std::string& line : choice.left_out) {
     std::printf("left out: %s\n", line.c_str());
   }
   if (!flags.log.empty()) {
-    const CloudReader read_cloud = CloudsOf(flags, packets, choice, bag.get(), &survey);
+    const CloudReader read_cloud = CloudsOf(flags, packets, choice, bag.get(), &survey)[0];
     return ImportLog(flags.log, log_rig, choice, read_cloud, bag.get());
   }
   if (!writes) {
@@ -286,18 +246,18 @@ int RunImport(const ImportFlags& flags, const PacketImport* packets) {
                   camera.images->topic.name.c_str(),
                   camera.info != nullptr ? camera.info->topic.name.c_str() : "none");
     }
-    std::printf("would take: lidar: %s\nnext: add --board and --out, or --log\n",
-                choice.cloud->topic.name.c_str());
+    PrintLidars(choice);
+    std::printf("next: add --board and --out, or --log\n");
     return EndsWith(true);
   }
-  const CloudReader read_cloud = CloudsOf(flags, packets, choice, bag.get(), &survey);
+  const std::vector<CloudReader> read_clouds = CloudsOf(flags, packets, choice, bag.get(), &survey);
   const BagRig rig = ReadRig(bag.get(), survey, choice, wishes);
   for (const std::string& line : rig.lines) std::printf("%s\n", line.c_str());
   std::printf("board: %s\n", DescribeBoard(rig.rig.target).c_str());
   std::vector<std::string> left_over;
   const std::vector<Moment> moments = MomentsOf(bag.get(), choice, rig.rig, flags, &left_over);
-  const std::size_t views = WriteMoments(bag.get(), choice, rig.rig, moments, read_cloud, flags.out,
-                                         PrintProgress, &left_over);
+  const std::size_t views = WriteMoments(bag.get(), choice, rig.rig, moments, read_clouds,
+                                         flags.out, PrintProgress, &left_over);
   for (const std::string& line : left_over) std::printf("left over: %s\n", line.c_str());
   std::printf("wrote %s: rig.textproto, %zu %s\n", flags.out.c_str(), views,
               views == 1 ? "view" : "views");
@@ -324,15 +284,23 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "(with the "
       "bag's\n"
       "topic `metadata`, or --metadata).\n"
-      "Of a recording of such packets (.pcap, .pcapng) it writes each sweep as a PCD into --out, "
-      "named by its time, for\n"
-      "`rgbdt session --clouds`.\n"
+      "Of a recording of such packets (.pcap, .pcapng) and folders of images (--images) it makes\n"
+      "a session as `rgbdt session` does; without images it writes each sweep as a PCD into "
+      "--out,\n"
+      "named by its time.\n"
       "Examples: rgbdt import drive.mcap\n"
       "          rgbdt import drive.mcap --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.bag --board 11x8@0.1,1.2192x0.9144 --image rgb=/cam0/image_raw "
       "\\\n"
       "            --cloud /velodyne_points --every 5 --out out/session\n"
+      "          rgbdt import two_lidars.mcap --cloud front=/front/points --cloud "
+      "rear=/rear/points "
+      "\\\n"
+      "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.mcap --log drive.lcmlog --session out/session\n"
+      "          rgbdt import drive.pcap --metadata os1.json --images images --lens "
+      "camera_info.yaml \\\n"
+      "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt import drive.pcap --metadata os1.json --out out/clouds",
       [flags, packets] { return RunImport(*flags, packets); });
   verb->Required("FILE", &flags->bag,
@@ -350,7 +318,13 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
       "--image", &flags->images,
       "[NAME=]TOPIC, a camera's images; given again for each camera. Without: every camera\n"
       "that is in the bag");
-  verb->Option("--cloud", &flags->cloud, "topic of the clouds, where there are several");
+  verb->Option("--images", &flags->image_folders,
+               "[NAME=]DIR of a recording of packets: a camera's folder of images, as for\n"
+               "`rgbdt session`; given again for each camera");
+  verb->Option(
+      "--cloud", &flags->clouds,
+      "[NAME=]TOPIC, a LIDAR's clouds or packets; given again for each LIDAR, the reference\n"
+      "first. Without: every LIDAR that is in the bag; each frame is one");
   verb->Option("--lens", &flags->lenses,
                "[NAME=]FILE[:PART], in the order of the cameras, in place of the bag's CameraInfo");
   verb->Flag("--pinhole", &flags->pinhole,
@@ -362,10 +336,12 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
                "a view at this time [s], since the bag's start or 1970; may be given again");
   verb->Option("--views", &flags->views, "of moments in which the board stands still: at most");
   verb->Within("--max-apart", &flags->max_apart_s, 0, 60,
-               "how far an image and its cloud may be apart, by their headers [s]");
+               "how far an image and its cloud may be apart, by their headers or names [s]");
   verb->Option("--metadata", &flags->metadata,
-               "of packets: what an Ouster says of itself (JSON), or the angles of a Hesai or "
-               "RoboSense (CSV)");
+               "[NAME=]FILE of packets: what an Ouster says of itself (JSON), or the angles of a\n"
+               "Hesai or RoboSense (CSV); with its name for each of several LIDARs");
+  verb->Flag("--in-order", &flags->in_order,
+             "of a recording: the first image belongs to the first sweep and so on");
   verb->Option("--port", &flags->port,
                "of a recording: the UDP port of the LIDAR; 0: where its packets are most");
 }

@@ -12,46 +12,13 @@
 #include "calib/methods/board_check.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "services/rgbdt/folder_flags.h"
 #include "services/rgbdt/verbs.h"
 
 namespace rgbdt {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct FolderFlags {
-  std::vector<std::string> images, lenses;
-  std::string clouds, board, out;
-  bool pinhole = false, fisheye = false;
-  PairOptions pairing;
-};
-
-// "NAME=PATH", or a path alone.
-std::pair<std::string, std::string> SplitName(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const bool named = equals != std::string::npos && !fs::exists(text) &&
-                     text.substr(0, equals).find('/') == std::string::npos;
-  if (!named) return {"", text};
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-Folders FoldersOf(const FolderFlags& flags) {
-  if (flags.pinhole && flags.fisheye) {
-    throw InputError("--pinhole and --fisheye are both given; a lens is one of the two");
-  }
-  Folders folders;
-  folders.board = ParseBoard(flags.board);
-  for (const std::string& text : flags.images) {
-    const auto [name, path] = SplitName(text);
-    folders.cameras.push_back({name, path});
-  }
-  for (const std::string& text : flags.lenses) folders.lenses.push_back(LensFileOf(text));
-  folders.clouds = flags.clouds;
-  if (flags.pinhole) folders.model = Lens::Model::kPinhole;
-  if (flags.fisheye) folders.model = Lens::Model::kFisheye;
-  folders.pairing = flags.pairing;
-  return folders;
-}
 
 // "pose7.png", and with times how far it is from the cloud: "1700000000.25.png (+12 ms)".
 std::string ImageText(const ViewFiles::OfCamera& image, Utime sweep_utime) {
@@ -71,6 +38,12 @@ void PrintViews(const FolderSession& session) {
                        [&](const auto& image) { return image.camera == camera.name; });
       line += "  " + camera.name + ": " +
               (found == view.images.end() ? "none" : ImageText(*found, view.sweep_utime));
+    }
+    for (const LidarSpec& lidar : session.rig.further_lidars) {
+      const auto found = std::find_if(view.further_clouds.begin(), view.further_clouds.end(),
+                                      [&](const auto& cloud) { return cloud.lidar == lidar.name; });
+      line += "  " + lidar.name + ": " +
+              (found == view.further_clouds.end() ? "none" : found->file.filename().string());
     }
     std::printf("  %s\n", line.c_str());
   }
@@ -119,19 +92,55 @@ void CheckBoardIsSeen(const FolderSession& session) {
 int RunSession(const FolderFlags& flags) {
   const Folders folders = FoldersOf(flags);
   RequireRoomForSession(flags.out);
-  const FolderSession session = ReadFolders(folders);
-  CheckBoardIsSeen(session);
-  for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());
-  std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
-  PrintViews(session);
-  WriteSession(flags.out, session);
-  std::printf("wrote %s: rig.textproto, %zu %s; images and clouds stay where they are\n",
-              flags.out.c_str(), session.views.size(),
-              session.views.size() == 1 ? "view" : "views");
-  return FinishSession(flags.out, session.WithoutLens());
+  return MakeSession(folders, flags.out);
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> SplitName(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool named = equals != std::string::npos && !fs::exists(text) &&
+                     text.substr(0, equals).find('/') == std::string::npos;
+  if (!named) return {"", text};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+Folders FoldersOf(const FolderFlags& flags) {
+  if (flags.pinhole && flags.fisheye) {
+    throw InputError("--pinhole and --fisheye are both given; a lens is one of the two");
+  }
+  Folders folders;
+  folders.board = ParseBoard(flags.board);
+  for (const std::string& text : flags.images) {
+    const auto [name, path] = SplitName(text);
+    folders.cameras.push_back({name, path});
+  }
+  for (const std::string& text : flags.lenses) folders.lenses.push_back(LensFileOf(text));
+  for (const std::string& text : flags.clouds) {
+    const auto [name, path] = SplitName(text);
+    folders.lidars.push_back({name, path});
+  }
+  if (flags.pinhole) folders.model = Lens::Model::kPinhole;
+  if (flags.fisheye) folders.model = Lens::Model::kFisheye;
+  folders.pairing = flags.pairing;
+  return folders;
+}
+
+int MakeSession(const Folders& folders, const std::string& out) {
+  const FolderSession session = ReadFolders(folders);
+  CheckBoardIsSeen(session);
+  for (const std::string& line : session.cameras) std::printf("%s\n", line.c_str());
+  if (!session.rig.further_lidars.empty()) {
+    std::printf("lidar %s: the reference, in whose frame all poses are\n",
+                session.rig.lidar.name.c_str());
+  }
+  std::printf("board: %s\n", DescribeBoard(session.rig.target).c_str());
+  PrintViews(session);
+  WriteSession(out, session);
+  std::printf("wrote %s: rig.textproto, %zu %s; images and clouds stay where they are\n",
+              out.c_str(), session.views.size(), session.views.size() == 1 ? "view" : "views");
+  return FinishSession(out, session.WithoutLens());
+}
 
 Folders::LensFile LensFileOf(const std::string& text) {
   const auto [name, path] = SplitName(text);
@@ -164,12 +173,17 @@ void AddSession(CommandLine* program) {
       "Examples: rgbdt session --images images --clouds clouds --lens camera_info.yaml \\\n"
       "            --board 8x6@0.095,0.85x0.61 --out out/session\n"
       "          rgbdt session --images rgb=left --images thermal=ir --lens camchain.yaml \\\n"
-      "            --clouds pcd --board 11x8@0.1,1.2192x0.9144 --out out/session",
+      "            --clouds pcd --board 11x8@0.1,1.2192x0.9144 --out out/session\n"
+      "          rgbdt session --images images --lens camera_info.yaml --clouds front=pcd_front "
+      "\\\n"
+      "            --clouds rear=pcd_rear --board 8x6@0.095,0.85x0.61 --out out/session",
       [flags] { return RunSession(*flags); });
   verb->Required("--images", &flags->images,
                  "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
                  "name it is rgb, or thermal where images have 16 bits or the folder says so");
-  verb->Required("--clouds", &flags->clouds, "the folder of PCD files");
+  verb->Required("--clouds", &flags->clouds,
+                 "[NAME=]DIR, the folder of PCD files; given again for each LIDAR, the reference\n"
+                 "first: the poses of the others are found from their clouds of the same boards");
   verb->Required(
       "--board", &flags->board,
       "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/files/import/folders.h"
@@ -95,6 +96,9 @@ inline void AddAnyway(CommandLine* verb, bool* anyway, const std::string& althou
 /// What `rgbdt intrinsics` does for these cameras of a session, into the rig file that is in use.
 /// False: a lens was not found.
 bool FindLenses(const std::string& session_dir, const std::vector<std::string>& cameras);
+
+/// "NAME=PATH", or a path alone, without a name.
+std::pair<std::string, std::string> SplitName(const std::string& text);
 
 /// "[NAME=]FILE[:PART]" of `--lens`.
 Folders::LensFile LensFileOf(const std::string& text);

@@ -58,6 +58,20 @@ says_all() {  # WHAT WORD...
   done
 }
 
+lens_of() {  # RIG CAMERA: as a person writes it down
+  local width height fx fy cx cy distortion
+  read -r width height fx fy cx cy distortion <<<"$(
+    sed -n "/name: \"$2\"/,/^}/s/^ *\(fx\|fy\|cx\|cy\|width\|height\|distortion\): //p" "$1" | tr '\n' ' '
+  )"
+  cat <<TEXT
+image_width: $width
+image_height: $height
+distortion_model: plumb_bob
+K: [$fx, 0, $cx, 0, $fy, $cy, 0, 0, 1]
+D: $distortion
+TEXT
+}
+
 fingerprint() {
   { [ ! -d "$scratch/kept" ] || find "$scratch/kept" -type f -exec md5sum {} +; } | sort | md5sum
 }

@@ -11,7 +11,7 @@ says_line() {  # WHAT LINE
 
 accepts "a list" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}"
 says_line "a list" "OS-1-16 at UDP port 7502: 96 packets, 3 sweeps, 10 Hz"
-says_line "a list" "next: add --out"
+says_line "a list" "next: add --images, --lens, --board and --out, or --out alone for PCD files"
 accepts "sweeps" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --out "$scratch/clouds"
 says_line "sweeps" "wrote 3 PCD files to $scratch/clouds"
 [ "$(find "$scratch/clouds" -name '[0-9]*.[0-9]*.pcd' | wc -l)" = 3 ] || complain "sweeps: not three files"
@@ -38,6 +38,19 @@ for bag in drive.mcap drive.bag; do
     done
   done
 done
+# Two LIDARs' packets are each decoded by what is said of that one.
+python3 "$(dirname "${BASH_SOURCE[0]}")/make_packet_bag.py" "$scratch/drive.pcap" "$scratch/os.json" "$scratch/two.mcap" front rear
+two=("$bin/rgbdt" import "$scratch/two.mcap" --board "$board" --every 0.1)
+accepts "two LIDARs' packets" "${two[@]}" --metadata "rear=$scratch/os.json" --out "$scratch/two"
+says_all "two LIDARs' packets" "lidar front (the reference): /front/lidar_packets" \
+  "/rear/lidar_packets: 96 packets of a OS-1-16, 3 sweeps"
+for i in 1 2 3; do
+  cmp "$scratch/session/views/000$i/cloud.pcd" "$scratch/two/views/000$i/cloud_rear.pcd" ||
+    complain "two LIDARs' packets: view $i has another cloud"
+done
+says=("NAME=FILE" "front, rear")
+refuses "metadata of which LIDAR" "${two[@]}" --metadata "$scratch/os.json" --out "$scratch/kept/new"
+
 says=("drive.pcap" "CSV" "JSON")
 refuses "a bag with wrong metadata" "$bin/rgbdt" import "$scratch/drive.bag" --metadata "$scratch/drive.pcap" \
   --board "$board" --every 0.1 --out "$scratch/kept/new"
@@ -64,7 +77,45 @@ refuses "a pipe" "$bin/rgbdt" import "$scratch/pipe.pcap"
 cp "$scratch/os.json" "$scratch/text.pcap"
 says=("text.pcap" "pcap")
 refuses "no recording" "$bin/rgbdt" import "$scratch/text.pcap"
-says=("--board" "session --clouds")
-misuses "with a board" "$bin/rgbdt" import "$scratch/drive.pcap" --board 8x6@0.1,0.8x0.6 --out "$scratch/kept/new"
+says=("--images DIR")
+misuses "a board without images" "$bin/rgbdt" import "$scratch/drive.pcap" --board 8x6@0.1,0.8x0.6 --out "$scratch/kept/new"
+says=("--images" "--out")
+misuses "images without a board" "$bin/rgbdt" import "$scratch/drive.pcap" --images "$scratch" --out "$scratch/kept/new"
+says=("--images DIR")
+misuses "a topic" "$bin/rgbdt" import "$scratch/drive.pcap" --cloud /points
+says=("--images" ".pcap")
+misuses "images beside a bag" "$bin/rgbdt" import "$scratch/drive.mcap" --images "$scratch"
+
+# With images, called by their times, a session at once: of the sweeps that have one.
+mkdir "$scratch/images"
+for i in 0 2; do
+  name=$(basename "${clouds[$i]}" .pcd)
+  cp "$scratch/session/views/0001/cam.png" "$scratch/images/$name.png"
+done
+lens_of "$scratch/session/rig.textproto" cam >"$scratch/lens.yaml"
+session=("$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --images left="$scratch/images"
+  --lens "$scratch/lens.yaml" --board "$board")
+accepts "a session" "${session[@]}" --out "$scratch/made"
+says_line "a session" "OS-1-16 at UDP port 7502: 96 packets, 3 sweeps, 10 Hz"
+says_all "a session" "2 views, paired by time" "camera left: colour" "1 cloud without an image" "next: rgbdt calibrate"
+[ "$(ls "$scratch/made/clouds")" = "$(basename "${clouds[0]}"; basename "${clouds[2]}")" ] ||
+  complain "a session: not the clouds of its two views"
+for cloud in "$scratch"/made/clouds/*; do
+  cmp "$cloud" "$scratch/clouds/$(basename "$cloud")" || complain "a session: another sweep"
+done
+grep -qF "made/clouds/$(basename "${clouds[2]}")" "$scratch/made/views/$(basename "${clouds[2]}" .pcd)/view.textproto" ||
+  complain "a session: its view names another cloud"
+says=("earlier session")
+refuses "a session that is there" "${session[@]}" --out "$scratch/made"
+says=("2 images" "3 clouds" "--in-order")
+refuses "counts that differ" "${session[@]}" --in-order --out "$scratch/kept/new"
+says=("--lens" "--pinhole")
+refuses "no lens" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --images "$scratch/images" --board "$board" \
+  --out "$scratch/kept/new"
+sed 's/^image_width: .*/image_width: 99/' "$scratch/lens.yaml" >"$scratch/small.yaml"
+says=("small.yaml" "99x")
+refuses "another lens" "$bin/rgbdt" import "$scratch/drive.pcap" "${os[@]}" --images "$scratch/images" --board "$board" \
+  --lens "$scratch/small.yaml" --out "$scratch/kept/new"
+[ ! -e "$scratch/kept/new" ] || complain "another lens: something was written"
 
 verdict

@@ -22,18 +22,7 @@ for i in 1 2 3 4 5 6 7 8; do
   ln -s "$view/thermal.png" "$scratch/folders/thermal/$time.020000.png"
   ln -s "$view/cloud.pcd" "$scratch/folders/pcd/$time.000000.pcd"
 done
-for camera in rgb thermal; do
-  sed -n "/name: \"$camera\"/,/^}/s/^ *\(fx\|fy\|cx\|cy\|width\|height\|distortion\): //p" "$good/rig.textproto" |
-    tr '\n' ' ' >"$scratch/numbers"
-  read -r width height fx fy cx cy distortion <<<"$(cat "$scratch/numbers")"
-  cat >"$scratch/$camera.yaml" <<TEXT
-image_width: $width
-image_height: $height
-distortion_model: plumb_bob
-K: [$fx, 0, $cx, 0, $fy, $cy, 0, 0, 1]
-D: $distortion
-TEXT
-done
+for camera in rgb thermal; do lens_of "$good/rig.textproto" "$camera" >"$scratch/$camera.yaml"; done
 accepts "folders" "$bin/rgbdt" session --images "$scratch/folders/rgb" \
   --images "$scratch/folders/thermal" --clouds "$scratch/folders/pcd" --lens "$scratch/rgb.yaml" \
   --lens "$scratch/thermal.yaml" --board "$board" --out "$scratch/session"
@@ -79,9 +68,15 @@ same "ROS 1 by bz2" "$scratch/o.bag:bz2"
 mkdir "$scratch/split"
 accepts "making split bags" python3 "$make_bag" "$good" --views 1 "$scratch/split/b_0.mcap"
 cp "$scratch/split/b_0.mcap" "$scratch/split/b_10.mcap"
-accepts "making split bags" python3 "$make_bag" "$good" --views 1 "$scratch/split/b_9.db3"
+cp "$scratch/split/b_0.mcap" "$scratch/split/b_9.mcap"
 imports "split" "$scratch/split" --at 0
 says_all "split" "/lidar/points  sensor_msgs/PointCloud2  3 messages" "1 view"
+accepts "making another kind" python3 "$make_bag" "$good" --views 1 "$scratch/split/b.db3"
+says=("several kinds (1 .db3, 3 .mcap)" "name one of the files")
+refuses "a folder of two kinds" "$bin/rgbdt" import "$scratch/split"
+printf 'relative_file_paths:\n  - b.db3\n' >"$scratch/split/metadata.yaml"
+imports "the kind that metadata.yaml lists" "$scratch/split" --at 0
+says_all "the kind that metadata.yaml lists" "ROS 2 bag (sqlite)" "/lidar/points  sensor_msgs/PointCloud2  1 messages"
 
 # Where the board stands still, and only there; and what tf_static says.
 accepts "making a slow bag" python3 "$make_bag" "$good" --views 3 --seconds 3 --rate 2 --mosaic --tf \

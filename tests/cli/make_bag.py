@@ -370,6 +370,13 @@ def read_session(session):
     return lenses, [os.path.join(session, "views", view) for view in views]
 
 
+def clouds_of(view):
+    """(name, file) of the view's LIDARs, the reference first"""
+    names = sorted(name for name in os.listdir(view) if re.fullmatch(r"cloud_\w+\.pcd", name))
+    return [("lidar", os.path.join(view, "cloud.pcd"))] + [
+        (name[6:-4], os.path.join(view, name)) for name in names]
+
+
 def write_views(bag, args, ros1, lenses, views):
     new = Ros1 if ros1 else (lambda: Cdr(args.big_endian))
     name = lambda type_: type_ if ros1 else type_.replace("/", "/msg/")
@@ -381,8 +388,9 @@ def write_views(bag, args, ros1, lenses, views):
     bag.write("/chatter", name("std_msgs/String"), EPOCH_NS, b"whatever")
     for second in range(args.seconds * len(views)):
         view, at = views[second // args.seconds], EPOCH_NS + second * 10**9
-        bag.write("/lidar/points", name("sensor_msgs/PointCloud2"), at + 150_000_000,
-                  point_cloud(new, at, "lidar", os.path.join(view, "cloud.pcd")))
+        for lidar, path in clouds_of(view):
+            bag.write(f"/{lidar}/points", name("sensor_msgs/PointCloud2"), at + 150_000_000,
+                      point_cloud(new, at, lidar, path))
         for frame, (camera, lens) in itertools.product(range(args.rate), lenses.items()):
             optical, path = camera + "_optical", os.path.join(view, camera + ".png")
             stamp = at + 20_000_000 + frame * 10**9 // args.rate

@@ -1,5 +1,6 @@
 """A recording of a LIDAR's packets (pcap, IPv4 without a link layer) as a bag, with a camera's images
-beside. Usage: make_packet_bag.py IN.pcap METADATA.json OUT.mcap|OUT.bag"""
+beside. Usage: make_packet_bag.py IN.pcap METADATA.json OUT.mcap|OUT.bag [NAMESPACE...], each of which
+publishes the same packets (ouster); the metadata are the first one's."""
 
 import argparse
 import os
@@ -34,6 +35,7 @@ def grey_png(path, width, height):
 
 def main():
     pcap, metadata, out = sys.argv[1:4]
+    lidars = sys.argv[4:] or ["ouster"]
     ros1 = out.endswith(".bag")
     new = make_bag.Ros1 if ros1 else make_bag.Cdr
     args = argparse.Namespace(no_chunks=False, no_summary=False)
@@ -51,8 +53,9 @@ def main():
         for i, (utime, payload) in enumerate(packets):
             m = new()
             m.blob(payload)
-            write("/ouster/lidar_packets", "ouster_ros" if ros1 else "ouster_sensor_msgs", "PacketMsg", utime,
-                  m.done())
+            for lidar in lidars:
+                write(f"/{lidar}/lidar_packets", "ouster_ros" if ros1 else "ouster_sensor_msgs", "PacketMsg",
+                      utime, m.done())
             if i % 8 == 0:
                 write("/cam/image_raw", "sensor_msgs", "Image", utime,
                       make_bag.image(new, utime * NS, "cam", png, False))
@@ -60,7 +63,7 @@ def main():
                       make_bag.camera_info(new, utime * NS, "cam", lens))
     m = new()
     m.text(open(metadata, encoding="utf-8").read())
-    write("/ouster/metadata", "std_msgs", "String", packets[-1][0], m.done())
+    write(f"/{lidars[0]}/metadata", "std_msgs", "String", packets[-1][0], m.done())
     bag.close()
 
 

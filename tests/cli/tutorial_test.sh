@@ -21,5 +21,13 @@ accepts "its packets" python3 "$here/make_session_pcap.py" "$scratch/session" "$
 rm -r "$scratch/session"
 python3 "$here/check_page.py" "$here/../../scripts/examples/pcap/README.md" "$bin" "$scratch" \
   >"$scratch/output" 2>&1 || complain "the tutorial of packets"
+# The same by folders: sweep by sweep, then paired.
+monday=$scratch/monday
+accepts "its sweeps" "$bin/rgbdt" import "$monday/monday.pcap" --metadata "$monday/os.json" --out "$scratch/clouds"
+accepts "its folders" "$bin/rgbdt" session --images "$monday/images" --clouds "$scratch/clouds" \
+  --lens "$monday/camera_info.yaml" --board 11x8@0.1,1.2192x0.9144 --out "$scratch/folders"
+accepts "its folders, calibrated" "$bin/rgbdt" calibrate "$scratch/folders"
+cmp "$scratch/folders/calibration.textproto" "$scratch/out/monday/calibration.textproto" >>"$scratch/output" ||
+  complain "the tutorial of packets: another calibration than of folders"
 
 verdict

@@ -39,8 +39,8 @@ void CheckLog(const fs::path& path, const WrittenLog& written) {
 }
 
 void MakeLog(BagReader* bag, const TopicChoice& choice, unsigned makes, const fs::path& path) {
-  const auto written = WriteLog(bag, choice, RigOf(makes), CloudMessages(bag, *choice.cloud), path,
-                                [](double share) { fuzz::Require(share <= 1, "a share"); });
+  const auto written = WriteLog(bag, choice, RigOf(makes), CloudMessages(bag, *choice.lidar.clouds),
+                                path, [](double share) { fuzz::Require(share <= 1, "a share"); });
   try {
     CheckLog(path, written);
   } catch (const InputError& error) {
@@ -59,8 +59,11 @@ void MakeSession(BagReader* bag, const BagSurvey& survey, const TopicChoice& cho
   times.resize(std::min(kMost, times.size()));
   std::vector<std::string> left_over;
   const auto moments = PairAt(choice, times, 1, &left_over);
-  WriteMoments(bag, choice, rig.rig, moments, CloudMessages(bag, *choice.cloud), dir, {},
-               &left_over);
+  std::vector<CloudReader> read_clouds = {CloudMessages(bag, *choice.lidar.clouds)};
+  for (const TopicChoice::Lidar& lidar : choice.further_lidars) {
+    read_clouds.push_back(CloudMessages(bag, *lidar.clouds));
+  }
+  WriteMoments(bag, choice, rig.rig, moments, read_clouds, dir, {}, &left_over);
   try {
     const Session session = OpenSession(dir, LensNeed::kMayBeUnknown);
     for (const std::string& view : session.views) ReadView(session, view);
@@ -79,8 +82,9 @@ void TakeInput(fuzz::Input input) {
     const BagSurvey survey = SurveyBag(bag.get(), {});
     TopicWishes wishes;
     wishes.clouds_alone = makes == kLog;
+    wishes.one_lidar = makes != kSession;
     const TopicChoice choice = ChooseTopics(survey, wishes);
-    if (choice.cloud->data == BagData::kPackets) return;  // bag_packets reads them
+    if (choice.lidar.clouds->data == BagData::kPackets) return;  // bag_packets reads them
     if (makes == kSession) {
       MakeSession(bag.get(), survey, choice, out);
     } else {

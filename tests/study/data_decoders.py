@@ -6,7 +6,8 @@ import trials
 from trials import figure
 
 SENSORS = ("ouster", "hesai", "robosense", "velodyne")
-TARGETS = {f"{sensor}_agree": (">=", 0.9999) for sensor in SENSORS} | {"hesai_times_agree": (">=", 0.9999)}
+TARGETS = {f"{sensor}_agree": (">=", 0.9999) for sensor in SENSORS}
+TARGETS.update(hesai_times_agree=(">=", 0.9999), ouster_direction_agree=(">=", 0.9999), ouster_time_us=("<=", 1))
 NEEDS = "no such recordings (ouster, nebula, hesai) in RGBDT_REAL_DATA"
 
 

@@ -118,27 +118,6 @@ std::string FreeName(const std::string& wanted, const std::set<std::string>& tak
   return name;
 }
 
-// The file for camera `index` of those that are called `names`; none: it has none.
-const Folders::LensFile* LensFor(const std::vector<Folders::LensFile>& lenses,
-                                 const std::vector<std::string>& names, std::size_t index) {
-  const auto by_name = [&](const std::string& name) -> const Folders::LensFile* {
-    for (const Folders::LensFile& lens : lenses) {
-      if (lens.camera == name) return &lens;
-    }
-    return nullptr;
-  };
-  if (const Folders::LensFile* lens = by_name(names[index])) return lens;
-  std::vector<const Folders::LensFile*> in_order;
-  for (const Folders::LensFile& lens : lenses) {
-    if (lens.camera.empty()) in_order.push_back(&lens);
-  }
-  const auto before = static_cast<std::size_t>(
-      std::count_if(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(index),
-                    [&](const std::string& name) { return by_name(name) == nullptr; }));
-  if (before < in_order.size()) return in_order[before];
-  return in_order.size() == 1 ? in_order[0] : nullptr;  // one file may be all cameras'
-}
-
 [[noreturn]] void RefuseWithoutLens(const std::string& camera) {
   throw InputError("camera \"" + camera +
                    "\" has no lens: give --lens FILE, or say --pinhole or --fisheye and it is "
@@ -198,7 +177,12 @@ std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamer
 
 Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
   Rig rig;
-  rig.lidar.name = "lidar";
+  std::set<std::string> names;
+  for (const Folders::Lidar& lidar : folders.lidars) {
+    LidarSpec& spec = names.empty() ? rig.lidar : rig.further_lidars.emplace_back();
+    spec.name = lidar.name.empty() ? FreeName("lidar", names) : lidar.name;
+    names.insert(spec.name);
+  }
   rig.target = folders.board;
   for (const ReadCamera& camera : cameras) rig.cameras.push_back(camera.spec);
   rig.Check(LensNeed::kMayBeUnknown);
@@ -215,7 +199,24 @@ std::string ViewName(const std::string& file, std::set<std::string>* taken) {
   return name;
 }
 
-std::vector<ViewFiles> MakeViews(const FileList& clouds, const std::vector<ReadCamera>& cameras,
+FileList CloudsOf(const Folders::Lidar& lidar) {
+  if (lidar.names.empty()) return ListClouds(lidar.clouds);
+  return {lidar.clouds, lidar.names, "cloud"};
+}
+
+// Why each of these clouds cannot be used, once they are there.
+std::vector<std::string> LookAtClouds(const Folders::Lidar& lidar, const FileList& clouds,
+                                      const std::vector<std::size_t>& used) {
+  if (lidar.make) {
+    std::vector<std::string> names;
+    for (const std::size_t i : used) names.push_back(clouds.names[i]);
+    lidar.make(names);
+  }
+  return LookAtClouds(clouds, used);
+}
+
+std::vector<ViewFiles> MakeViews(const Folders::Lidar& lidar, const FileList& clouds,
+                                 const std::vector<ReadCamera>& cameras,
                                  std::vector<std::string>* left_over) {
   std::map<std::size_t, ViewFiles> of_cloud;
   for (const ReadCamera& camera : cameras) {
@@ -231,7 +232,7 @@ std::vector<ViewFiles> MakeViews(const FileList& clouds, const std::vector<ReadC
   std::vector<std::size_t> used;
   used.reserve(of_cloud.size());
   for (const auto& [cloud, view] : of_cloud) used.push_back(cloud);
-  const std::vector<std::string> problems = LookAtClouds(clouds, used);
+  const std::vector<std::string> problems = LookAtClouds(lidar, clouds, used);
   std::vector<ViewFiles> views;
   std::set<std::string> taken;
   for (std::size_t k = 0; k < used.size(); ++k) {
@@ -284,6 +285,46 @@ void AddAlone(const FileList& clouds, const std::vector<ReadCamera>& cameras,
                        cameras[0].pairs.why_not + ": " + Some(alone));
 }
 
+// Of a further LIDAR what belongs to the reference's clouds, to the views that have those.
+void AddFurtherClouds(const Folders::Lidar& from, const std::string& lidar,
+                      const FileList& reference, const PairOptions& pairing,
+                      FolderSession* session) {
+  const FileList clouds = CloudsOf(from);
+  const Pairs pairs = PairFiles(clouds, reference, pairing);
+  std::map<fs::path, ViewFiles*> view_of;
+  for (ViewFiles& view : session->views) view_of[view.cloud] = &view;
+  std::vector<std::size_t> used;
+  std::vector<ViewFiles*> views;
+  std::vector<std::string> alone;
+  for (std::size_t i = 0; i < clouds.names.size(); ++i) {
+    if (!pairs.cloud_of[i]) {
+      alone.push_back(clouds.names[i]);
+      continue;
+    }
+    const auto view = view_of.find(reference.folder / reference.names[*pairs.cloud_of[i]]);
+    if (view == view_of.end()) continue;
+    used.push_back(i);
+    views.push_back(view->second);
+  }
+  std::string why =
+      "none of them belongs to a cloud of " + session->rig.lidar.name + " that has an image";
+  bool any = false;
+  const std::vector<std::string> problems = LookAtClouds(from, clouds, used);
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    if (problems[k].empty()) {
+      views[k]->further_clouds.push_back({lidar, clouds.folder / clouds.names[used[k]]});
+      any = true;
+    } else {
+      session->left_over.push_back(why = problems[k]);
+    }
+  }
+  if (!any) throw InputError("no cloud of " + clouds.folder.string() + " can be used: " + why);
+  if (alone.empty()) return;
+  session->left_over.push_back(Counted(alone.size(), "cloud") + " of " + lidar +
+                               " without a cloud of " + session->rig.lidar.name + " " +
+                               pairs.why_not + ": " + Some(alone));
+}
+
 void CheckFolders(const Folders& folders) {
   std::set<fs::path> seen;
   for (const Folders::Camera& camera : folders.cameras) {
@@ -292,40 +333,16 @@ void CheckFolders(const Folders& folders) {
                        " is given for two cameras; expected one for each");
     }
   }
+  seen.clear();
+  for (const Folders::Lidar& lidar : folders.lidars) {
+    if (!seen.insert(fs::weakly_canonical(lidar.clouds)).second) {
+      throw InputError("the folder " + lidar.clouds.string() +
+                       " is given for two LIDARs; expected one for each");
+    }
+  }
 }
 
 }  // namespace
-
-std::string NameOf(Lens::Model model) {
-  return model == Lens::Model::kFisheye ? "fisheye" : "pinhole";
-}
-
-std::optional<FileLens> LensOf(const std::vector<Folders::LensFile>& lenses,
-                               const std::vector<std::string>& names, std::size_t index,
-                               std::optional<Lens::Model> model) {
-  const Folders::LensFile* file = LensFor(lenses, names, index);
-  if (file == nullptr) return std::nullopt;
-  FileLens found = ReadLensFile({file->file, file->entry, names[index], static_cast<int>(index),
-                                 static_cast<int>(names.size()), model});
-  const bool first_ones =
-      file->camera.empty() && lenses.size() < names.size() && index > 0 && found.parts == 1;
-  if (first_ones) return std::nullopt;
-  return found;
-}
-
-void CheckLensFiles(const std::vector<Folders::LensFile>& lenses,
-                    const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  for (const Folders::LensFile& lens : lenses) {
-    if (lens.camera.empty() || std::count(names.begin(), names.end(), lens.camera) > 0) continue;
-    throw InputError("--lens is given for camera \"" + lens.camera + "\"; the cameras are " + list);
-  }
-  if (lenses.size() > names.size()) {
-    throw InputError(std::to_string(lenses.size()) + " lens files are given for " +
-                     Counted(names.size(), "camera") + " (" + list + "); expected one for each");
-  }
-}
 
 std::vector<std::string> FolderSession::WithoutLens() const {
   std::vector<std::string> names;
@@ -337,7 +354,7 @@ std::vector<std::string> FolderSession::WithoutLens() const {
 
 FolderSession ReadFolders(const Folders& folders) {
   CheckFolders(folders);
-  const FileList clouds = ListClouds(folders.clouds);
+  const FileList clouds = CloudsOf(folders.lidars.at(0));
   FolderSession session;
   std::set<std::string> names;
   std::vector<ReadCamera> cameras;
@@ -348,7 +365,11 @@ FolderSession ReadFolders(const Folders& folders) {
   session.paired_by = cameras.at(0).pairs.by;
   session.rig = MakeRig(folders, cameras);
   AddAlone(clouds, cameras, &session.left_over);
-  session.views = MakeViews(clouds, cameras, &session.left_over);
+  session.views = MakeViews(folders.lidars[0], clouds, cameras, &session.left_over);
+  for (std::size_t i = 1; i < folders.lidars.size(); ++i) {
+    AddFurtherClouds(folders.lidars[i], session.rig.further_lidars[i - 1].name, clouds,
+                     folders.pairing, &session);
+  }
   return session;
 }
 

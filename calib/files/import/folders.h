@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,16 @@ struct Folders {
     std::filesystem::path file;
     std::string entry;  ///< the part of the file; empty: it tells itself
   };
+  struct Lidar {
+    std::string name;  ///< empty: "lidar", "lidar_2"
+    std::filesystem::path clouds;
+    /// Not empty: what the folder is to hold, of which `make` writes those that are in a view.
+    std::vector<std::string> names{};
+    std::function<void(const std::vector<std::string>&)> make{};
+  };
   std::vector<Camera> cameras;
   std::vector<LensFile> lenses;
-  std::filesystem::path clouds;
+  std::vector<Lidar> lidars;  ///< the reference, to whose clouds all else is paired, and others
   Target board;
   std::optional<Lens::Model> model;  ///< of the lenses that no file says
   PairOptions pairing;

@@ -62,8 +62,8 @@ Pairs PairByNumber(const FileList& images, const FileList& clouds) {
 Pairs PairInOrder(const FileList& images, const FileList& clouds) {
   if (images.names.size() != clouds.names.size()) {
     throw InputError("--in-order: " + images.folder.string() + " holds " +
-                     std::to_string(images.names.size()) + " images and " + clouds.folder.string() +
-                     " " + std::to_string(clouds.names.size()) +
+                     std::to_string(images.names.size()) + " " + images.what + "s and " +
+                     clouds.folder.string() + " " + std::to_string(clouds.names.size()) +
                      " clouds; expected as many of both: take out those that have no partner");
   }
   Pairs pairs = NoPairs(PairedBy::kOrder, images, clouds);
@@ -133,21 +133,22 @@ ByTime PairByTime(const FileList& images, const FileList& clouds, double max_apa
   return result;
 }
 
-std::string Described(const FileList& files, const char* what) {
-  return std::to_string(files.names.size()) + " " + what + " of " + files.folder.string() + " (" +
-         files.names.front() + (files.names.size() > 1 ? ", ..." : "") + ")";
+std::string Described(const FileList& files) {
+  return std::to_string(files.names.size()) + " " + files.what + "s of " + files.folder.string() +
+         " (" + files.names.front() + (files.names.size() > 1 ? ", ..." : "") + ")";
 }
 
 [[noreturn]] void RefuseAll(const FileList& images, const FileList& clouds, const ByTime& by_time) {
-  const std::string what = "none of the " + Described(images, "images") +
-                           " belongs to one of the " + Described(clouds, "clouds") + ": ";
+  const std::string what =
+      "none of the " + Described(images) + " belongs to one of the " + Described(clouds) + ": ";
   if (by_time.are_times) {
     throw InputError(what + "their names are times, of which the nearest two are " +
                      Format("%.3g", ToSeconds(*by_time.apart)) +
                      " s apart; let --max-apart be more, or set the clocks right");
   }
-  throw InputError(what +
-                   "give an image and its cloud the same name or number, or say --in-order where "
+  throw InputError(what + "give " +
+                   (images.what == "image" ? "an image and its cloud" : "clouds of one moment") +
+                   " the same name or number, or say --in-order where "
                    "the first belongs to the first and so on");
 }
 

@@ -14,6 +14,7 @@ namespace rgbdt {
 struct FileList {
   std::filesystem::path folder;
   std::vector<std::string> names;
+  std::string what = "image";  ///< each of them is, for messages: "image" or "cloud"
 };
 
 struct PairOptions {
@@ -24,7 +25,7 @@ struct PairOptions {
 /// How files of two folders were paired.
 enum class PairedBy { kName, kNumber, kTime, kOrder };
 
-/// Which cloud belongs to which image.
+/// Which cloud belongs to which image, or to which cloud of a further LIDAR.
 struct Pairs {
   PairedBy by = PairedBy::kName;
   std::vector<std::optional<std::size_t>> cloud_of;  ///< of each image

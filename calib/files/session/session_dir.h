@@ -91,6 +91,11 @@ struct ViewFiles {
   std::filesystem::path cloud;
   Utime sweep_utime = 0;  ///< 0: unknown
   std::vector<OfCamera> images;
+  struct OfLidar {
+    std::string lidar;
+    std::filesystem::path file;
+  };
+  std::vector<OfLidar> further_clouds{};
 };
 
 /// Writes views/NAME/view.textproto, which names the files by their whole paths; nothing is copied.

@@ -111,6 +111,11 @@ void WriteView(const fs::path& session_dir, const ViewFiles& view) {
     out->set_file(WholePath(image.file));
     out->set_utime(image.utime);
   }
+  for (const ViewFiles::OfLidar& further : view.further_clouds) {
+    proto::FurtherCloud* const out = message.add_further_cloud();
+    out->set_lidar(ValidUtf8(further.lidar));
+    out->set_file(WholePath(further.file));
+  }
   WriteViewFile(OwnFolder(OwnFolder(session_dir, "views"), view.name), message);
 }
 

@@ -45,7 +45,9 @@ void OusterSweeps::FollowClock(const ouster::Packet& packet, Utime arrival) {
                                  [](const ouster::Column& column) { return column.valid; });
   if (last == packet.columns.rend()) return;
   if (last->time_ns < kSince1970_ns) {
-    fit_.Add(last->time_ns, arrival);
+    const bool stepped = !fit_.Add(last->time_ns, arrival);
+    if (stepped || !turn_has_fit_) fit_of_turn_ = fit_;
+    turn_has_fit_ = true;
   } else if (const auto utc = PtpToUtc(last->time_ns / 1000, arrival)) {
     ahead_ = last->time_ns / 1000 - *utc;
   }
@@ -53,12 +55,13 @@ void OusterSweeps::FollowClock(const ouster::Packet& packet, Utime arrival) {
 
 Utime OusterSweeps::TimeOf(std::int64_t time_ns) const {
   if (time_ns >= kSince1970_ns) return time_ns / 1000 - ahead_;
-  return fit_.ToHost(static_cast<double>(time_ns)).value_or(time_ns / 1000);
+  return fit_of_turn_.ToHost(static_cast<double>(time_ns)).value_or(time_ns / 1000);
 }
 
 void OusterSweeps::Begin(int frame) {
   first_ = !frame_.has_value();
   frame_ = frame;
+  turn_has_fit_ = false;
   const auto columns = static_cast<std::size_t>(metadata_.columns_per_frame);
   const std::size_t size = static_cast<std::size_t>(metadata_.rows) * columns;
   came_.assign(columns, false);

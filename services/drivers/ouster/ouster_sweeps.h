@@ -19,7 +19,7 @@ namespace rgbdt {
 ///
 /// Times: a clock that counts from 1970 (PTP, GPS) is taken as it is, less the whole seconds that
 /// PTP is ahead of UTC (PtpToUtc); another is laid on the host's by when its packets arrive
-/// (ClockFit).
+/// (ClockFit), each turn as it is known at its begin: within a turn times are the sensor's.
 class OusterSweeps {
  public:
   explicit OusterSweeps(ouster::Metadata metadata);
@@ -48,6 +48,8 @@ class OusterSweeps {
   std::vector<ouster::Beam> beams_;  // row by row
   std::vector<Eigen::Vector3f> origins_;
   ClockFit fit_{ClockFitOptions{1e-3}};
+  ClockFit fit_of_turn_{ClockFitOptions{1e-3}};
+  bool turn_has_fit_ = false;
   Utime ahead_ = 0;  // whole seconds that the sensor's clock is ahead of UTC
   std::optional<int> frame_;
   bool first_ = true;         // the turn under way is the first

@@ -319,8 +319,38 @@ TEST_F(Bags, AFolderIsTheBagsInItInOrder) {
   WriteFileAtomically(dir_ / "b/b_9.mcap", begin + test::McapMessage(1, 2000, "two"));
   WriteFileAtomically(dir_ / "b/metadata.yaml", "of no use");
   EXPECT_THAT(ReadAll(dir_ / "b").messages, ElementsAre("/a 2 two", "/a 3 three"));
+  // What unzstd and `rosbag fix` leave.
+  WriteFileAtomically(dir_ / "b/b_9.mcap.zstd", "\x28\xb5\x2f\xfd");
+  EXPECT_THAT(ReadAll(dir_ / "b").messages, ElementsAre("/a 2 two", "/a 3 three"));
+  WriteFileAtomically(dir_ / "b/b_11.mcap.zstd", "\x28\xb5\x2f\xfd");
+  EXPECT_THAT(test::ErrorOf([&] { OpenBag(dir_ / "b"); }), HasSubstr("unzstd"));
   std::filesystem::create_directory(dir_ / "empty");
   EXPECT_THAT(test::ErrorOf([&] { OpenBag(dir_ / "empty"); }), HasSubstr("holds no bag"));
+}
+
+TEST_F(Bags, AFolderOfSeveralKindsIsTheOneThatItsMetadataLists) {
+  const std::string begin = test::kMcapMagic + test::McapChannels();
+  WriteFileAtomically(dir_ / "b/b_1.mcap", begin + test::McapMessage(1, 3000, "three"));
+  WriteFileAtomically(dir_ / "b/b_0.mcap", begin + test::McapMessage(1, 2000, "two"));
+  WriteFileAtomically(dir_ / "b/b_0.db3", "SQLite format 3");
+  WriteFileAtomically(dir_ / "b/old.bag", "#ROSBAG V2.0\n");
+  const auto error = [&] { return test::ErrorOf([&] { OpenBag(dir_ / "b"); }); };
+  EXPECT_THAT(error(), HasSubstr("several kinds (1 .bag, 1 .db3, 2 .mcap)"));
+  WriteFileAtomically(dir_ / "b/metadata.yaml",
+                      "rosbag2_bagfile_information:\n  storage_identifier: mcap\n"
+                      "  relative_file_paths:\n    - b_0.mcap\n    - \"b/b_1.mcap\"\n");
+  EXPECT_THAT(ReadAll(dir_ / "b").messages, ElementsAre("/a 2 two", "/a 3 three"));
+  WriteFileAtomically(dir_ / "b/metadata.yaml", "- b_0.mcap\n- b_0.db3\n");
+  EXPECT_THAT(error(), HasSubstr("several kinds"));
+  WriteFileAtomically(dir_ / "b/metadata.yaml", "- other.mcap\n");
+  EXPECT_THAT(error(), HasSubstr("several kinds"));
+}
+
+TEST_F(Bags, WhatRosbagFixLeftDoesNotCount) {
+  WriteFileAtomically(dir_ / "b/b.orig.bag", "#ROSBAG V1.2\n");
+  EXPECT_THAT(test::ErrorOf([&] { OpenBag(dir_ / "b"); }), HasSubstr("older version"));
+  WriteFileAtomically(dir_ / "b/b.bag", "#ROSBAG V2.0\n");
+  EXPECT_EQ(OpenBag(dir_ / "b")->format(), "ROS 1 bag");
 }
 
 }  // namespace

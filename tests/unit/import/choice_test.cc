@@ -47,7 +47,7 @@ TEST(ChooseTopics, OfEachCameraTheRawest) {
                                  "rgb_2 /c/rgb/image_raw/compressed"));
   EXPECT_EQ(choice.cameras[0].info, nullptr);
   EXPECT_EQ(choice.cameras[1].info->topic.name, "/a/rgb/camera_info");
-  EXPECT_EQ(choice.cloud->topic.name, "/points");
+  EXPECT_EQ(choice.lidar.clouds->topic.name, "/points");
   EXPECT_THAT(choice.left_out, SizeIs(5));
 }
 
@@ -71,15 +71,16 @@ TEST(ChooseTopics, PacketsAreTakenWhereThereAreNoClouds) {
   EXPECT_THAT(test::ErrorOf([&] { ChooseTopics(survey, {}); }), HasSubstr("holds no clouds"))
       << "none of its messages was read";
   survey.topics[1].what = "packets of 1206 bytes, 1 a message";
-  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/os/packets");
+  EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/os/packets");
   survey.topics[3].text = "other";
   EXPECT_EQ(MetadataOf(survey, survey.topics[1])->text, "other") << "the only one";
   survey.topics[2].text = "os";
   EXPECT_EQ(MetadataOf(survey, survey.topics[1])->text, "os") << "the one beside";
   survey.topics.push_back(Topic("/points", BagData::kCloud, {0}));
-  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/points");
+  EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/points");
   EXPECT_THAT(ChooseTopics(survey, {}).left_out, ElementsAre(HasSubstr("/os/packets: packets")));
-  EXPECT_EQ(ChooseTopics(survey, {{}, "/os/packets"}).cloud->topic.name, "/os/packets");
+  EXPECT_EQ(ChooseTopics(survey, {{}, {{"", "/os/packets"}}}).lidar.clouds->topic.name,
+            "/os/packets");
 }
 
 TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
@@ -88,11 +89,11 @@ TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
                    Topic("/lidar", BagData::kCloud, {0})};
   survey.topics[1].what = "5x1 x y z red green blue";
   survey.topics[2].what = "5x1 x y z intensity";
-  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/lidar");
+  EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/lidar");
   EXPECT_THAT(ChooseTopics(survey, {}).left_out, ElementsAre(HasSubstr("/fused: coloured")));
-  EXPECT_EQ(ChooseTopics(survey, {{}, "/fused"}).cloud->topic.name, "/fused");
+  EXPECT_EQ(ChooseTopics(survey, {{}, {{"", "/fused"}}}).lidar.clouds->topic.name, "/fused");
   survey.topics.pop_back();
-  EXPECT_EQ(ChooseTopics(survey, {}).cloud->topic.name, "/fused");
+  EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/fused");
 }
 
 TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {
@@ -103,11 +104,64 @@ TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {
     return test::ErrorOf([&] { ChooseTopics(survey, wishes); });
   };
   EXPECT_THAT(error({}), HasSubstr("no camera's images"));
-  EXPECT_THAT(error({{{"rgb", "/b/image_rect"}}, ""}), HasSubstr("--cloud: /one, /two"));
-  EXPECT_THAT(error({{{"rgb", "/one"}}, "/one"}), HasSubstr("--image /one"));
-  const TopicChoice choice = ChooseTopics(survey, {{{"rgb", "/b/image_rect"}}, "/two"});
+  EXPECT_THAT(error({{{"rgb", "/b/image_rect"}}, {}}), HasSubstr("--cloud: /one, /two"));
+  EXPECT_THAT(error({{{"rgb", "/one"}}, {{"", "/one"}}}), HasSubstr("--image /one"));
+  const TopicChoice choice = ChooseTopics(survey, {{{"rgb", "/b/image_rect"}}, {{"", "/two"}}});
   EXPECT_EQ(choice.cameras.at(0).name, "rgb");
-  EXPECT_EQ(choice.cloud->topic.name, "/two");
+  EXPECT_EQ(choice.lidar.clouds->topic.name, "/two");
+}
+
+std::vector<std::string> LidarsOf(const TopicChoice& choice) {
+  std::vector<std::string> lidars = {choice.lidar.name + " " + choice.lidar.clouds->topic.name};
+  for (const TopicChoice::Lidar& lidar : choice.further_lidars) {
+    lidars.push_back(lidar.name + " " + lidar.clouds->topic.name);
+  }
+  return lidars;
+}
+
+TEST(ChooseTopics, EachFrameIsALidar) {
+  BagSurvey survey;
+  survey.topics = {Topic("/cam/depth/points", BagData::kCloud, {0}),
+                   Topic("/cam/image", BagData::kImage, {0}),
+                   Topic("/front/points", BagData::kCloud, {0}),
+                   Topic("/front/points_filtered", BagData::kCloud, {0}),
+                   Topic("/rear/packets", BagData::kPackets, {}),
+                   Topic("/rear/points", BagData::kCloud, {0})};
+  survey.topics[2].frame = survey.topics[3].frame = "front";
+  survey.topics[4].frame = survey.topics[5].frame = "rear";
+  survey.topics[4].what = "packets of 1206 bytes, 1 a message";
+  const TopicChoice choice = ChooseTopics(survey, {});
+  EXPECT_THAT(LidarsOf(choice), ElementsAre("front /front/points", "rear /rear/points"));
+  EXPECT_THAT(choice.left_out, ElementsAre(HasSubstr("/cam/depth/points: named \"depth\""),
+                                           HasSubstr("/front/points_filtered: named \"filter\""),
+                                           HasSubstr("/rear/packets: packets")));
+  TopicWishes wishes{{}, {{"back", "/rear/packets"}, {"", "/front/points_filtered"}}};
+  EXPECT_THAT(LidarsOf(ChooseTopics(survey, wishes)),
+              ElementsAre("back /rear/packets", "front /front/points_filtered"))
+      << "as they were asked for";
+  const auto error = [&](const TopicWishes& of) {
+    return test::ErrorOf([&] { ChooseTopics(survey, of); });
+  };
+  wishes.clouds = {{"a", "/rear/points"}, {"a", "/front/points"}};
+  EXPECT_THAT(error(wishes), HasSubstr("two LIDARs are called \"a\""));
+  wishes.clouds[1] = {"b", "/rear/points"};
+  EXPECT_THAT(error(wishes), HasSubstr("/rear/points is given for two LIDARs"));
+  wishes.clouds.clear();
+  wishes.one_lidar = true;
+  EXPECT_THAT(error(wishes), HasSubstr("a log carries the clouds of one (CLOUD); say which by "
+                                       "--cloud: /cam/depth/points, /front/points"));
+  survey.topics[5].frame = "front";
+  EXPECT_THAT(error({}), HasSubstr("clouds of one frame, \"front\""));
+}
+
+TEST(ChooseTopics, PacketsThatTellNoFrameAreEachALidars) {
+  BagSurvey survey;
+  survey.topics = {Topic("/a/image", BagData::kImage, {0}),
+                   Topic("/left/packets", BagData::kPackets, {}),
+                   Topic("/right/packets", BagData::kPackets, {})};
+  for (BagSurvey::Topic& topic : survey.topics) topic.what = "packets of 1206 bytes, 1 a message";
+  EXPECT_THAT(LidarsOf(ChooseTopics(survey, {})),
+              ElementsAre("left /left/packets", "right /right/packets"));
 }
 
 TEST(FindTransform, AlongAChainBothWays) {
@@ -131,7 +185,8 @@ struct Paired {
   BagSurvey::Topic cloud = Topic("/points", BagData::kCloud, {10, 11, 12, 13}),
                    rgb = Topic("/rgb", BagData::kImage, {9.98, 10.03, 11.9, 12.05}),
                    thermal = Topic("/thermal", BagData::kImage, {10.05});
-  TopicChoice choice{{{"rgb", &rgb, nullptr}, {"thermal", &thermal, nullptr}}, &cloud, {}};
+  TopicChoice choice{
+      {{"rgb", &rgb, nullptr}, {"thermal", &thermal, nullptr}}, {"lidar", &cloud}, {}, {}};
 };
 
 TEST(Moments, EachCloudWithTheNearestImages) {
@@ -145,6 +200,23 @@ TEST(Moments, EachCloudWithTheNearestImages) {
   EXPECT_EQ(moments[1].images[0]->utime, FromSeconds(12.05));
   EXPECT_FALSE(moments[1].images[1]);
   EXPECT_THAT(left_over, ElementsAre(HasSubstr("1.02 s, 3.02 s")));
+}
+
+TEST(Moments, FurtherLidarsCloudsAreTheNearest) {
+  Paired paired;
+  const BagSurvey::Topic rear = Topic("/rear", BagData::kCloud, {9.5, 9.94, 10.04, 12.2});
+  paired.choice.further_lidars = {{"rear", &rear}};
+  std::vector<std::string> left_over;
+  const auto moments = PairAt(paired.choice, EverySeconds(paired.choice, 1), 0.1, &left_over);
+  EXPECT_EQ(StartOf(paired.choice), FromSeconds(9.5));
+  ASSERT_THAT(moments, SizeIs(2));
+  ASSERT_THAT(moments[0].further_clouds, SizeIs(1));
+  EXPECT_EQ(moments[0].further_clouds[0]->utime, FromSeconds(10.04));
+  ASSERT_THAT(moments[1].further_clouds, SizeIs(1));
+  EXPECT_FALSE(moments[1].further_clouds[0]);
+  EXPECT_THAT(test::ErrorOf([&] { PairAt(paired.choice, {FromSeconds(12)}, 0.1, &left_over); }),
+              HasSubstr("no view has a cloud of LIDAR rear within 0.100 s of its cloud of lidar; "
+                        "the nearest is 0.2 s away"));
 }
 
 TEST(Moments, AtTimesEachCloudOnce) {

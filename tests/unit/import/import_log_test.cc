@@ -39,8 +39,9 @@ TEST(WriteLog, ALivoxsSecondsAreNotCountedOneByOne) {
   wishes.clouds_alone = true;
   const TopicChoice choice = ChooseTopics(survey, wishes);
   const std::clock_t begin = std::clock();
-  const WrittenLog written = WriteLog(bag.get(), choice, std::nullopt,
-                                      CloudMessages(bag.get(), *choice.cloud), dir / "log", {});
+  const WrittenLog written =
+      WriteLog(bag.get(), choice, std::nullopt, CloudMessages(bag.get(), *choice.lidar.clouds),
+               dir / "log", {});
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1);
   EXPECT_EQ(written.clouds, 3) << written.last_problem;
   LogReader log(dir / "log");

@@ -6,7 +6,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
-#include "services/drivers/ouster/ouster_sweeps.h"
+#include "services/drivers/ouster/ouster_packets.h"
 #include "services/drivers/pcap/pcap_reader.h"
 #include "tests/hardware/velodyne_encoder.h"
 #include "tests/numbers.h"
@@ -153,22 +153,6 @@ TEST_F(Recordings, AClockOfPtpIsLaidOnUtc) {
   ASSERT_THAT(sweeps_, SizeIs(3));
   EXPECT_EQ(sweeps_[0].sweep_utime, kRecorded);
   EXPECT_EQ(sweeps_[2].sweep_utime, kRecorded + 2 * 32 * 97);
-}
-
-TEST_F(Recordings, AnOustersLatePacketKeepsItsTime) {
-  OusterEncoder encoder;
-  encoder.first_ns = (kRecorded + 37'000'000) * 1000;
-  OusterSweeps sweeps(ouster::ParseMetadata(encoder.Metadata(), "os.json"));
-  std::vector<Cloud> done;
-  for (int i = 0; i < 6; ++i) {
-    const auto bytes = encoder.Packet(i / 2, i % 2);
-    const Utime late = i == 2 ? 500'000 : 0;
-    const auto packet = ouster::Decode(sweeps.metadata(), bytes.data(), bytes.size());
-    if (auto sweep = sweeps.Add(packet, kRecorded + 1600 * i + late))
-      done.push_back(std::move(*sweep));
-  }
-  ASSERT_THAT(done, SizeIs(2));
-  EXPECT_EQ(done[1].sweep_utime, kRecorded + 32 * 97);
 }
 
 TEST_F(Recordings, AVelodyneIsKnownByItsPackets) {

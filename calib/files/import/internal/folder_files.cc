@@ -46,9 +46,10 @@ std::string Described(const Others& others) {
   return text.empty() && folders.empty() ? "nothing" : text + folders;
 }
 
-FileList List(const fs::path& folder, const std::set<std::string>& endings, const char* wanted) {
+FileList List(const fs::path& folder, const std::set<std::string>& endings, const char* what,
+              const char* wanted) {
   if (!fs::is_directory(folder)) throw InputError("there is no folder " + folder.string());
-  FileList files{folder, {}};
+  FileList files{folder, {}, what};
   Others others;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
@@ -110,12 +111,12 @@ CloudFacts LookAtCloud(const fs::path& path) {
 }  // namespace
 
 FileList ListImages(const fs::path& folder) {
-  return List(folder, {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm"},
+  return List(folder, {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm"}, "image",
               "image (png, jpg, tif, bmp, pgm, ppm)");
 }
 
 FileList ListClouds(const fs::path& folder) {
-  return List(folder, {".pcd"}, "cloud; expected PCD files");
+  return List(folder, {".pcd"}, "cloud", "cloud; expected PCD files");
 }
 
 std::vector<ImageFacts> LookAtImages(const FileList& files, const std::vector<std::size_t>& which) {

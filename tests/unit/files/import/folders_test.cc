@@ -25,7 +25,7 @@ class FoldersTest : public ::testing::Test {
       WritePcd(dir_ / ("clouds/" + std::string(name) + ".pcd"), test::MakeCloud());
     }
     folders_.cameras = {{"", dir_ / "a"}};
-    folders_.clouds = dir_ / "clouds";
+    folders_.lidars = {{"", dir_ / "clouds"}};
     folders_.board.squares_x = 8;
     folders_.board.squares_y = 6;
     folders_.board.square_m = 0.1;
@@ -179,13 +179,13 @@ TEST_F(FoldersTest, LensesBelongToTheirCameras) {
 }
 
 TEST_F(FoldersTest, FoldersThatMakeNoSenseAreRefused) {
-  folders_.clouds = dir_ / "nowhere";
+  folders_.lidars[0].clouds = dir_ / "nowhere";
   EXPECT_THAT(Error(), AllOf(HasSubstr("no folder"), HasSubstr("nowhere")));
-  folders_.clouds = dir_ / "a";
+  folders_.lidars[0].clouds = dir_ / "a";
   EXPECT_THAT(Error(), AllOf(HasSubstr("holds no cloud"), HasSubstr("3 .png")));
-  folders_.clouds = dir_.path();
+  folders_.lidars[0].clouds = dir_.path();
   EXPECT_THAT(Error(), HasSubstr("it has a/, b/, clouds/"));
-  folders_.clouds = dir_ / "clouds";
+  folders_.lidars = {{"", dir_ / "clouds"}};
   folders_.cameras = {{"", dir_ / "clouds"}};
   EXPECT_THAT(Error(), AllOf(HasSubstr("holds no image"), HasSubstr("3 .pcd")));
   folders_.cameras = {{"", dir_ / "a"}, {"x", dir_ / "b/../a"}};
@@ -197,11 +197,55 @@ TEST_F(FoldersTest, FoldersThatMakeNoSenseAreRefused) {
   EXPECT_THAT(Error(), HasSubstr("8 bits and 16"));
 }
 
+TEST_F(FoldersTest, CloudsOfFurtherLidarsJoinTheReferences) {
+  for (const char* name : {"q1", "q3", "q7"}) {
+    WritePcd(dir_ / ("rear/" + std::string(name) + ".pcd"), test::MakeCloud());
+  }
+  folders_.lidars = {{"front", dir_ / "clouds"}, {"rear", dir_ / "rear"}};
+  Lens("a.yaml", 40, 30);
+  folders_.lenses = {{"", dir_ / "a.yaml", ""}};
+  const FolderSession made = ReadFolders(folders_);
+  EXPECT_THAT(made.left_over, ElementsAre(HasSubstr("1 cloud of rear without a cloud of "
+                                                    "front of the same number: q7.pcd")));
+  WriteSession(dir_ / "out", made);
+  const Session session = OpenSession(dir_ / "out");
+  EXPECT_EQ(session.rig.lidar.name, "front");
+  ASSERT_EQ(session.rig.further_lidars.size(), 1u);
+  EXPECT_EQ(session.rig.further_lidars[0].name, "rear");
+  EXPECT_THAT(ReadWholeFile(dir_ / "out/views/p3/view.textproto"),
+              AllOf(HasSubstr("lidar: \"rear\""), HasSubstr("rear/q3.pcd")));
+  EXPECT_THAT(ReadWholeFile(dir_ / "out/views/p2/view.textproto"),
+              ::testing::Not(HasSubstr("rear")));
+}
+
+TEST_F(FoldersTest, FurtherLidarsThatMakeNoSenseAreRefused) {
+  const auto error = [&](const std::vector<Folders::Lidar>& lidars) {
+    folders_.lidars = lidars;
+    return Error();
+  };
+  EXPECT_THAT(error({{"", dir_ / "clouds"}, {"", dir_ / "rear/../clouds"}}),
+              HasSubstr("two LIDARs"));
+  WritePcd(dir_ / "rear/late.pcd", test::MakeCloud());
+  EXPECT_THAT(error({{"", dir_ / "clouds"}, {"", dir_ / "rear"}}),
+              AllOf(HasSubstr("none of the 1 clouds of"), HasSubstr("give clouds of one moment")));
+  folders_.pairing.in_order = true;
+  EXPECT_THAT(error({{"", dir_ / "clouds"}, {"", dir_ / "rear"}}),
+              HasSubstr("rear holds 1 clouds and"));
+  folders_.pairing.in_order = false;
+  fs::rename(dir_ / "rear/late.pcd", dir_ / "rear/p2.pcd");
+  folders_.lidars = {{"", dir_ / "clouds"}, {"", dir_ / "rear"}};
+  EXPECT_EQ(ReadFolders(folders_).rig.further_lidars.at(0).name, "lidar_2");
+  EXPECT_THAT(error({{"rear", dir_ / "clouds"}, {"rear", dir_ / "rear"}}), HasSubstr("twice"));
+  test::WriteQuickly(dir_ / "rear/p2.pcd", "no cloud");
+  EXPECT_THAT(error({{"", dir_ / "clouds"}, {"", dir_ / "rear"}}),
+              AllOf(HasSubstr("no cloud of"), HasSubstr("p2.pcd")));
+}
+
 TEST_F(FoldersTest, RealFolders) {
   const char* data = std::getenv("RGBDT_REAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "RGBDT_REAL_DATA is not set: no folders of real files";
   folders_.cameras = {{"", fs::path(data) / "acfr_vlp16/images"}};
-  folders_.clouds = fs::path(data) / "acfr_vlp16/clouds";
+  folders_.lidars[0].clouds = fs::path(data) / "acfr_vlp16/clouds";
   const FolderSession made = ReadFolders(folders_);
   EXPECT_THAT(made.left_over, IsEmpty());
   ASSERT_EQ(made.views.size(), 14u);
