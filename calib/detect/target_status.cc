@@ -91,9 +91,7 @@ TargetStatus LookForTarget(const Rig& rig, const Image& image) {
 TargetStatus LookForTarget(const Rig& rig, const Cloud& cloud) {
   TargetStatus status;
   status.utime = cloud.sweep_utime;
-  BoardInCloudOptions options;
-  options.range_sigma_m = rig.lidar.range_sigma_m;
-  const BoardsInCloud boards = FindBoards(cloud, rig.target, options);
+  const BoardsInCloud boards = FindBoards(cloud, rig.target, OptionsFor(rig.lidar));
   status.text = boards.why;
   if (boards.candidates.empty()) return status;
   status.seen = true;

@@ -124,9 +124,7 @@ void DetectCloudByGuesses(const Rig& rig, const Cloud& cloud,
 }
 
 void DetectCloudAnywhere(const Rig& rig, const Cloud& cloud, CloudDetection* detection) {
-  BoardInCloudOptions options;
-  options.range_sigma_m = rig.lidar.range_sigma_m;
-  BoardsInCloud boards = FindBoards(cloud, rig.target, options);
+  BoardsInCloud boards = FindBoards(cloud, rig.target, OptionsFor(rig.lidar));
   detection->candidates = std::move(boards.candidates);
   if (detection->candidates.empty()) detection->why_not = boards.why;
 }

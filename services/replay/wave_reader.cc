@@ -79,8 +79,7 @@ void WaveReader::TakeChunk(const CloudChunk& chunk) {
 }
 
 void WaveReader::FindIn(const Cloud& sweep, WavedSweep* waved) const {
-  BoardInCloudOptions options;
-  options.range_sigma_m = read_.rig.lidar.range_sigma_m;
+  BoardInCloudOptions options = OptionsFor(read_.rig.lidar);
   options.max_range_m = options_.most_range_m;
   for (const CloudEdges& board : FindBoards(sweep, read_.rig.target, options).candidates) {
     if (!board.pose) continue;

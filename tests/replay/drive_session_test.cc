@@ -85,7 +85,7 @@ TEST(DriveSession, WithoutPosesTheSweepsTellTheMotion) {
 
 TEST(DriveSession, SweepsFarApartTellNoMotionAndThatIsSaid) {
   const test::TempDir dir;
-  Driving driving(SmallRig(), 3);
+  Driving driving(simulate::OneCamera(4, 16, 160), 3);
   const std::filesystem::path log = LogOf(dir / "drive.lcmlog", &driving, 8 * kSweep);
   const CutDrive cut = CutIntoSession(log, dir / "session");
   EXPECT_FALSE(cut.by_odometry);

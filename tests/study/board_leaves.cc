@@ -11,7 +11,7 @@ namespace {
 
 /// The side between two places on the board's plane, one on the board and one beyond: that which
 /// both face most plainly. Nothing at the board's corners, where it may be either.
-std::optional<int> SideBetween(const Target& target, const Eigen::Vector2d& in,
+std::optional<int> SideBetween(const TrueBoard& board, const Eigen::Vector2d& in,
                                const Eigen::Vector2d& out) {
   const Eigen::Vector2d middle = 0.5 * (in + out);
   const Eigen::Vector2d step = out - in;
@@ -21,10 +21,10 @@ std::optional<int> SideBetween(const Target& target, const Eigen::Vector2d& in,
     const Eigen::Vector2d normal = SideNormal(side);
     if (normal.dot(step) < 0.25 * step.norm()) continue;
     const Eigen::Vector2d along(-normal.y(), normal.x());
-    if (std::abs(along.dot(middle)) > SideDistance(target, (side + 1) % 4) - 0.25 * step.norm()) {
+    if (std::abs(along.dot(middle)) > SideDistance(board, (side + 1) % 4) - 0.25 * step.norm()) {
       continue;
     }
-    const double off = std::abs(normal.dot(middle) - SideDistance(target, side));
+    const double off = std::abs(normal.dot(middle) - SideDistance(board, side));
     if (off > nearest) continue;
     nearest = off;
     best = side;
@@ -66,7 +66,7 @@ class ViewCrossings {
   void Add(std::size_t in, std::size_t out, bool along_row) {
     const Eigen::Vector2d a = Place(in);
     const Eigen::Vector2d b = Place(out);
-    const auto side = SideBetween(board_.target, a, b);
+    const auto side = SideBetween(board_, a, b);
     if (!side) return;
     const auto columns = static_cast<std::size_t>(view_.beams.columns);
     Leave leave;

@@ -23,7 +23,8 @@ using Eigen::VectorXd;
 // after what all views share.
 constexpr Index kClasses = 3, kThickness = kClasses, kRangeOffset = kThickness + 1;
 constexpr Index kDark = kRangeOffset + 1, kBeamsMeet = kDark + 1;
-constexpr Index kPrint = kBeamsMeet + 1, kBow = kPrint + 2, kRings = kBow + 3;
+constexpr Index kPrint = kBeamsMeet + 1, kBow = kPrint + 2, kOutline = kBow + 3;
+constexpr Index kRings = kOutline + 4;
 constexpr double kExactM = 1e-9;        // sigma of what is known
 constexpr Index kSides = 6, kOwn = 10;  // of a view: pose, then sides
 
@@ -113,6 +114,7 @@ class Bound {
     AddPrior(kRangeOffset, 1, std::max(kExactM, model.range_offset_sigma_m), &information_);
     AddPrior(kDark, 1, std::max(kExactM, model.dark_range_sigma_m), &information_);
     AddPrior(kBeamsMeet, 1, std::max(kExactM, model.beams_meet_sigma_m), &information_);
+    AddPrior(kOutline, 4, std::max(kExactM, model.outline_sigma_m), &information_);
     AddPrior(kRings, rings_, std::max(kExactM, model.ring_offset_sigma_m), &information_);
     const double print_sigma = session.rig.target.print_sigma;
     AddPrior(kPrint, 2, std::max(kExactM, print_sigma), &information_);
@@ -236,7 +238,7 @@ class Bound {
       bool within = true;
       for (int side = 0; side < 4; ++side) {
         within &= SideNormal(side).dot(place) <
-                  SideDistance(session_.rig.target, side) - session_.model.rim_m;
+                  SideDistance(session_.true_board, side) - session_.model.rim_m;
       }
       if (within) inner.push_back(i);
     }
@@ -289,6 +291,7 @@ class Bound {
       j(i, static_cast<Index>(view.behind[side]) - 1) = -per_radian;
       j(i, shared_ + kSides + leave.side) = -per_radian;
       j(i, kThickness) = -PerThickness(beam, leave.side);
+      j(i, kOutline + leave.side) = -1;
       const double blur = session_.model.blur_rad * per_radian;
       const double variance =
           leave.of_beam * (leave.in_gap * leave.width_m * leave.width_m / 12 + blur * blur);

@@ -100,12 +100,11 @@ class Maker {
 
   bool LookAt(const CloudWorld& world, int index) {
     const Cloud cloud = world.Sweep(kJune2015 + index);
-    BoardInCloudOptions options;
-    options.range_sigma_m = session_.rig.lidar.range_sigma_m;
     ViewDetection by_boards;
     by_boards.view = (index < 9 ? "000" : "00") + std::to_string(index + 1);
     by_boards.sweep_utime = kJune2015 + index;
-    by_boards.cloud.candidates = FindBoards(cloud, session_.rig.target, options).candidates;
+    by_boards.cloud.candidates =
+        FindBoards(cloud, session_.rig.target, OptionsFor(session_.rig.lidar)).candidates;
     if (by_boards.cloud.candidates.empty()) return false;
     for (std::size_t c = 0; c < session_.rig.cameras.size(); ++c) {
       const std::string& camera = session_.rig.cameras[c].name;

@@ -200,7 +200,7 @@ class CloudSampler {
 
   // How far a beam lies beyond a side that seems displaced.
   double Beyond(const PlanePlace& beam, int side, double blur) const {
-    return SideNormal(side).dot(beam.place) - SideDistance(board_.target, side) -
+    return SideNormal(side).dot(beam.place) - SideDistance(board_, side) -
            PerRadian(beam, side) * (shift_[static_cast<std::size_t>(side)] + blur) -
            PerThickness(beam, side) * model_.thickness_m;
   }
@@ -248,8 +248,9 @@ Eigen::Vector2d SideNormal(int side) {
   return {kX[side], kY[side]};
 }
 
-double SideDistance(const Target& target, int side) {
-  return 0.5 * (side % 2 == 1 ? target.width_m : target.height_m);
+double SideDistance(const TrueBoard& board, int side) {
+  return 0.5 * (side % 2 == 1 ? board.target.width_m : board.target.height_m) +
+         board.beyond_m[static_cast<std::size_t>(side)];
 }
 
 double PerRadian(const PlanePlace& beam, int side) {

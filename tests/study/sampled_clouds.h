@@ -27,6 +27,7 @@ struct BeamModel {
   double beams_meet_m = 0;  ///< radius at which a spinning LIDAR's beams have one height
   /// What is known of each of these beforehand, about zero; 0: exact. For the bound.
   double ring_offset_sigma_m = 0, dark_range_sigma_m = 0, beams_meet_sigma_m = 0;
+  double outline_sigma_m = 0;       ///< of each of the board's sides' places against the pattern
   double class_sigma_rad = 0.6e-3;  ///< each class of crossing's shift, drawn once a session
   double class_prior_rad = 0.6e-3;  ///< what is known of it beforehand: for the bound
   double side_sigma_rad = 0.3e-3;   ///< each side's own shift, drawn for every view
@@ -66,7 +67,7 @@ bool IsBlack(const Target& target, const Eigen::Vector2d& place);
 
 /// Outward normal of side 0 to 3 (top, right, bottom, left) and its distance from the centre.
 Eigen::Vector2d SideNormal(int side);
-double SideDistance(const Target& target, int side);
+double SideDistance(const TrueBoard& board, int side);
 
 /// How far out a side seems [m]: for each radian of a beam's shift, which a slant draws out on the
 /// plane; and for each metre of thickness, where the rim faces the LIDAR.

@@ -108,6 +108,10 @@ class SessionSampler {
       session_.true_board.bow_m =
           kBowSigmaM * Eigen::Vector3d(print.Normal(2), print.Normal(3), print.Normal(4));
     }
+    const double outline = session_.model.outline_sigma_m;
+    for (std::size_t side = 0; side < 4; ++side) {
+      session_.true_board.beyond_m[side] = outline * print.Normal(5 + side);
+    }
     if (sampled.lenses_off) {
       for (CameraSpec& camera : session_.rig.cameras) camera = WithLensOff(camera, seed);
     }
@@ -157,9 +161,8 @@ class SessionSampler {
                     Noise(options_.seed, pose + 1, "sampled cloud"));
     view.beams = std::move(cloud.beams);
     view.behind = cloud.behind;
-    BoardInCloudOptions detector;
-    detector.range_sigma_m = session_.rig.lidar.range_sigma_m;
-    BoardsInCloud boards = FindBoards(cloud.cloud, session_.rig.target, detector);
+    BoardsInCloud boards =
+        FindBoards(cloud.cloud, session_.rig.target, OptionsFor(session_.rig.lidar));
     if (boards.candidates.empty()) return;
     view.cloud = std::move(cloud.cloud);
     ViewDetection detection;
@@ -215,6 +218,7 @@ void DrawBeamPhysics(int rings, std::uint64_t seed, BeamModel* model) {
   model->dark_range_sigma_m = 0.02;
   model->class_sigma_rad = noise.Uniform(2, 0.6e-3, 1.5e-3);
   model->class_prior_rad = 1.5e-3;
+  model->outline_sigma_m = kOutlineSigmaM;
   if (rings == 0) return;
   model->beams_meet_m = noise.Uniform(3, 0, 0.045);
   model->beams_meet_sigma_m = 0.04;

@@ -148,6 +148,7 @@ class SessionMaker {
     BoardInCloudOptions options;
     options.range_sigma_m =
         options_.spinning ? options_.spinning->range_sigma_m : options_.scanner.range_sigma_m;
+    options.one_laser = !options_.spinning;
     BoardsInCloud boards = FindBoards(cloud, world.target(), options);
     const std::string why_not = boards.candidates.empty() ? boards.why : "";
     return {std::move(boards.candidates), why_not, 0};

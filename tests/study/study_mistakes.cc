@@ -58,9 +58,7 @@ ViewDetection SeenBy(const Rig& rig, const Cloud* cloud, const CloudDetection& r
   }
   view.cloud = right;
   if (cloud == nullptr) return view;
-  BoardInCloudOptions detector;
-  detector.range_sigma_m = rig.lidar.range_sigma_m;
-  BoardsInCloud boards = FindBoards(*cloud, rig.target, detector);
+  BoardsInCloud boards = FindBoards(*cloud, rig.target, OptionsFor(rig.lidar));
   view.cloud = {std::move(boards.candidates), std::move(boards.why), 0};
   return view;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace rgbdt::study {
 /// it lies behind its mean plane by a bulge along its width, a twist, and a bulge along its height.
 struct TrueBoard {
   Target target;
-  Eigen::Vector3d bow_m{0, 0, 0};  ///< along the width, twist, along the height
+  Eigen::Vector3d bow_m{0, 0, 0};    ///< along the width, twist, along the height
+  std::array<double, 4> beyond_m{};  ///< sides 0 to 3 lie so much farther out than the target's
 
   TrueBoard() = default;
   TrueBoard(Target flat) : target(std::move(flat)) {}  // NOLINT(google-explicit-constructor)

@@ -238,7 +238,7 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
   out.edges.scatter = scatter;
   out.edges.raw_scatter = points.RawScatter(pose.translation);
   out.edges.scatter_sigma_m = points.sigma_m();
-  auto groups = points.GroupsAbout(pose.translation, cloud);
+  auto groups = points.GroupsAbout(pose.translation, cloud, options.one_laser);
   out.edges.groups = std::move(groups.groups);
   out.edges.group_sigma_m = groups.sigma_m;
   const Matrix6d to_lidar = Adjoint(pose);
@@ -428,6 +428,13 @@ BoardsInCloud FindAtNoise(const RangeGrid& grid, const Target& target,
 }
 
 }  // namespace
+
+BoardInCloudOptions OptionsFor(const LidarSpec& lidar) {
+  BoardInCloudOptions options;
+  options.range_sigma_m = lidar.range_sigma_m;
+  options.one_laser = lidar.turned_scanner.has_value();
+  return options;
+}
 
 void BoardInCloudOptions::Check() const {
   const OptionCheck check("board in cloud");

@@ -13,11 +13,16 @@ struct BoardInCloudOptions {
   double range_sigma_m = 0.01;  ///< noise of a range (the rig file's); up to 45 mm is tried, too
   double max_range_m = 12;      ///< boards farther away are not looked for
   int max_candidates = 4;       ///< the likeliest are kept
+  /// A turned scanner's cloud, all of one laser: its rings are the beams' numbers, not lasers.
+  bool one_laser = false;
   BeamEdgeOptions edge;
 
   /// Throws InputError naming the field and its value.
   void Check() const;
 };
+
+/// As the rig file describes the LIDAR.
+BoardInCloudOptions OptionsFor(const LidarSpec& lidar);
 
 /// Boards, likeliest first, or the reason why there are none.
 struct BoardsInCloud {

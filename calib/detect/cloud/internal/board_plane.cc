@@ -250,9 +250,9 @@ Eigen::Matrix4d BoardPlane::RawScatter(const Eigen::Vector3d& centre) const {
       [&](std::size_t i) -> Eigen::Vector3d { return points_.points[i] - centre; });
 }
 
-BoardPlane::Groups BoardPlane::GroupsAbout(const Eigen::Vector3d& centre,
-                                           const Cloud& cloud) const {
-  const bool lasers = NamesLasers(cloud);
+BoardPlane::Groups BoardPlane::GroupsAbout(const Eigen::Vector3d& centre, const Cloud& cloud,
+                                           bool one_laser) const {
+  const bool lasers = !one_laser && NamesLasers(cloud);
   std::map<std::pair<int, double>, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < points_.points.size(); ++i) {
     const int ring = lasers ? cloud.ring[points_.index[i]] : -1;

@@ -43,11 +43,12 @@ class BoardPlane {
   double sigma_m() const { return noise_.within_m; }
 
   /// CloudEdges::groups about a centre, and the sigma within them of a point of weight one.
+  /// `one_laser`: see BoardInCloudOptions.
   struct Groups {
     std::vector<PointGroup> groups;
     double sigma_m = 0;
   };
-  Groups GroupsAbout(const Eigen::Vector3d& centre, const Cloud& cloud) const;
+  Groups GroupsAbout(const Eigen::Vector3d& centre, const Cloud& cloud, bool one_laser) const;
 
   /// CloudEdges::scatter and raw_scatter about a centre.
   Eigen::Matrix4d Scatter(const Eigen::Vector3d& centre) const;

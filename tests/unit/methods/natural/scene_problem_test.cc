@@ -153,7 +153,7 @@ TEST_F(SceneProblemTest, NewtonsStepsEndWhereTheRimIsPainted) {
 }
 
 TEST_F(SceneProblemTest, ARimThatSeveralShotsShowCountsOnce) {
-  look_.thing_sigma_rad = look_.rim_sigma_rad = 0.5e-3;  // less than an image tells of a rim
+  look_.thing_sigma_rad = look_.rim_sigma_rad = 2e-3;  // more than what an image tells of a rim
   const auto one = QuadrangleShot();
   auto moved = std::make_shared<SceneShot>(*one);
   moved->place.world = 1;
