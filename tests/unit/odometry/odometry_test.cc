@@ -30,8 +30,8 @@ simulate::SpinningOptions Lidar(int rings = 32, int share = 2) {
   return lidar;
 }
 
-Drive Street(double speed_mps = 5, int share = 2) {
-  return {DriveScene::kStreet, 4, Lidar(32, share), study::StreetWay(4, speed_mps)};
+Drive Street(double speed_mps = 5, int share = 2, std::uint64_t seed = 4) {
+  return {DriveScene::kStreet, seed, Lidar(32, share), study::StreetWay(seed, speed_mps)};
 }
 
 Drive Corridor(std::uint64_t seed) {
@@ -50,18 +50,24 @@ Vector6d ErrorAfter(int last, Drive* drive, OdometryResult* result) {
   return Log((truth_from_world * result->world_from_lidar).Inverse() * drive->At(result->utime));
 }
 
+// Of several drives: one alone is a matter of luck.
+constexpr std::uint64_t kDrives = 3;
+
 TEST(Odometry, FollowsADriveWhoseSweepsAreSkewedByTheMotion) {
-  Drive drive = Street(8, 1);
-  OdometryResult result;
-  const Vector6d off = ErrorAfter(30, &drive, &result);
-  const double way = (drive.At(result.utime).translation - drive.At(0).translation).x();
-  EXPECT_GT(way, 15);
-  EXPECT_LT(off.tail<3>().norm(), 0.03);
-  EXPECT_LT(off.head<3>().norm(), 0.1 * kDegree);
-  EXPECT_THAT(result.degenerate, IsEmpty());
-  EXPECT_NEAR(result.velocity[3], 8, 2);
-  EXPECT_GT(result.matched, 1000U);
-  EXPECT_LT(std::sqrt(result.covariance.diagonal().maxCoeff()), 0.01);
+  Vector6d squares = Vector6d::Zero();
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    Drive drive = Street(8, 1, seed);
+    OdometryResult result;
+    squares += ErrorAfter(30, &drive, &result).cwiseAbs2() / kDrives;
+    const double way = (drive.At(result.utime).translation - drive.At(0).translation).x();
+    EXPECT_GT(way, 15);
+    EXPECT_THAT(result.degenerate, IsEmpty());
+    EXPECT_NEAR(result.velocity[3], 8, 2);
+    EXPECT_GT(result.matched, 1000U);
+    EXPECT_LT(std::sqrt(result.covariance.diagonal().maxCoeff()), 0.01);
+  }
+  EXPECT_LT(std::sqrt(squares.tail<3>().sum()), 0.03);
+  EXPECT_LT(std::sqrt(squares.head<3>().sum()), 0.1 * kDegree);
 }
 
 TEST(Odometry, AFullMapKeepsWhatIsNear) {
@@ -82,11 +88,14 @@ TEST(Odometry, AFullMapKeepsWhatIsNear) {
 }
 
 TEST(Odometry, SixteenRingsInARoom) {
-  Drive drive(DriveScene::kRoom, 1, Lidar(16, 1), study::RoomWay(1, 0.8));
-  OdometryResult result;
-  const Vector6d off = ErrorAfter(20, &drive, &result);
-  EXPECT_LT(off.tail<3>().norm(), 0.03);
-  EXPECT_LT(off.head<3>().norm(), 0.5 * kDegree);
+  Vector6d squares = Vector6d::Zero();
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    Drive drive(DriveScene::kRoom, seed, Lidar(16, 1), study::RoomWay(seed, 0.8));
+    OdometryResult result;
+    squares += ErrorAfter(20, &drive, &result).cwiseAbs2() / kDrives;
+  }
+  EXPECT_LT(std::sqrt(squares.tail<3>().sum()), 0.03);
+  EXPECT_LT(std::sqrt(squares.head<3>().sum()), 0.5 * kDegree);
 }
 
 TEST(Odometry, ACorridorDoesNotTellTheWayAlongIt) {
