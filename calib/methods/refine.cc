@@ -47,7 +47,10 @@ CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views, s
     shots.used.pop_back();
   }
   shots = {Spread(shots.used, most), Spread(shots.heldout, most)};
-  if (!places) FindPlaces(&shots.used);
+  if (!places) {
+    FindPlaces(&shots.used);
+    FindPlaces(&shots.heldout);
+  }
   return shots;
 }
 

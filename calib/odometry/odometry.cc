@@ -354,10 +354,8 @@ std::vector<StopPlace> Odometry::FindStops(const std::vector<const Cloud*>& swee
     }
     places.push_back({worlds++, {}});
     // Of two that do not fit neither is better than the other: the newer one leads on.
-    if (impl.begun && in_world > 1) continue;
+    if ((impl.begun && in_world > 1) || sweep.points.size() < kFewestPoints) continue;
     impl.motion.world_from_lidar = Rigid3();
-    impl.begun = sweep.points.size() >= kFewestPoints;
-    if (!impl.begun) continue;
     impl.Begin(sweep);
     world = places.back().world;
     in_world = 1;

@@ -240,14 +240,16 @@ void ChooseLidars(const BagSurvey& survey, const TopicWishes& wishes, TopicChoic
       lidars.push_back({"", topic});
     }
   }
+  // A camera may look the same way.
   std::set<std::string> names;
+  for (const TopicChoice::Camera& camera : choice->cameras) names.insert(camera.name);
   std::set<const Topic*> topics;
   for (TopicChoice::Lidar& lidar : lidars) {
     if (lidar.name.empty()) {
       lidar.name = lidars.size() == 1 ? "lidar" : SensorName(*lidar.clouds, names);
     }
     if (!names.insert(lidar.name).second) {
-      throw InputError("two LIDARs are called \"" + lidar.name + "\"; expected a name for each");
+      throw InputError("two sensors are called \"" + lidar.name + "\"; expected a name for each");
     }
     if (!topics.insert(lidar.clouds).second) {
       throw InputError("--cloud " + lidar.clouds->topic.name +

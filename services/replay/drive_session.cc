@@ -58,6 +58,7 @@ WayOfSweeps FindWay(const std::string& log, const std::function<void(double)>& p
   LogReader reader(log);
   OdometryNode odometry;
   WayOfSweeps found;
+  bool timeless = false;  // sweeps whose points have no times
   std::vector<StampedPose>& way = found.poses;
   while (const auto event = reader.Next()) {
     if (progress) progress(ShareRead(reader));
@@ -68,7 +69,8 @@ WayOfSweeps FindWay(const std::string& log, const std::function<void(double)>& p
       const auto* rig = std::get_if<RigText>(&message);
       if (rig != nullptr && ParseRig(rig->text, "RIG").lidar.turned_scanner) return {};
       const auto* chunk = std::get_if<CloudChunk>(&message);
-      if (chunk != nullptr && chunk->cloud.utime.empty()) return {};
+      timeless |= chunk != nullptr && chunk->cloud.size() > 0 && chunk->cloud.utime.empty();
+      if (timeless) continue;  // is there POSE?
       for (const Message& answer : odometry.Handle(message)) {
         if (const auto* pose = std::get_if<StampedPose>(&answer)) way.push_back(*pose);
       }
@@ -89,8 +91,8 @@ WayOfSweeps FindWay(const std::string& log, const std::function<void(double)>& p
           std::to_string(sweeps) + " " + name);
     }
   }
-  if (!way.empty() && !IsDense(way)) way.clear();
-  if (sweeps < 2 || (!way.empty() && !Moves(way))) return {};
+  if (timeless || (!way.empty() && !IsDense(way))) way.clear();
+  if ((sweeps < 2 && !timeless) || (!way.empty() && !Moves(way))) return {};
   if (!way.empty()) return found;
   found.unknown = true;
   found.problems = {"neither POSE nor the sweeps tell how the rig moved: it is taken to stand"};

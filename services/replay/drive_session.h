@@ -19,7 +19,8 @@ struct CutOptions {
 struct CutDrive {
   std::size_t sweeps = 0, views = 0;
   bool by_odometry = false;  ///< the log has no POSE: motion is taken out by that of the sweeps
-  /// Neither POSE nor the sweeps tell how the rig moved: it was taken to stand.
+  /// Neither POSE nor the sweeps tell how the rig moved: it was taken to stand. (As that of a
+  /// turned scanner is, for each sweep.)
   bool motion_unknown = false;
   std::vector<std::string> problems;  ///< of what could not be used, a line each
 };

@@ -324,7 +324,8 @@ void AddImport(CommandLine* program, const PacketImport* packets) {
   verb->Option(
       "--cloud", &flags->clouds,
       "[NAME=]TOPIC, a LIDAR's clouds or packets; given again for each LIDAR, the reference\n"
-      "first. Without: every LIDAR that is in the bag; each frame is one");
+      "first. Without: every LIDAR whose clouds are in the bag or, without any, whose packets;\n"
+      "each frame is one");
   verb->Option("--lens", &flags->lenses,
                "[NAME=]FILE[:PART], in the order of the cameras, in place of the bag's CameraInfo");
   verb->Flag("--pinhole", &flags->pinhole,

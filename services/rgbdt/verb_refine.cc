@@ -87,8 +87,7 @@ Opened SessionOf(const RefineFlags& flags) {
   const std::filesystem::path drive = PathOr(flags.out, "out/refine") / "drive";
   if (std::filesystem::exists(drive)) {
     throw InputError(drive.string() +
-                     " is there already, of an earlier run: refine that folder, remove it, or "
-                     "choose another --out");
+                     " is there already, of an earlier run: remove it, or choose another --out");
   }
   CheckWritable(drive);
   CutOptions options;

@@ -122,6 +122,7 @@ TEST(HesaiReal, ChannelsFireWhenTheMakersFilesSay) {
   CompareQt128(&all);
   TellShare("hesai_times_agree", all.agree, all.times);
   TellFigure("hesai_times", static_cast<double>(all.times));
+  EXPECT_EQ(all.times, 2744U);
   EXPECT_EQ(all.agree, all.times);
 }
 

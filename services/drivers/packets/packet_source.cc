@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -48,6 +49,10 @@ std::unique_ptr<PacketSweeps> SweepsOf(const PacketLidarDevice& device) {
   return sweeps;
 }
 
+// Counters of the report.
+constexpr const char* kPackets = "packets";
+constexpr const char* kInformation = "information packets";
+
 }  // namespace
 
 PacketSource::PacketSource(const VelodyneDevice& device)
@@ -74,10 +79,7 @@ void PacketSource::Serve(DeviceThread& thread) {
   }
 }
 
-// Where a file says how to decode, nobody needs to listen there.
-int PacketSource::InformationPort() const {
-  return sweeps_ && link_.metadata.empty() ? sweeps_->information_port() : 0;
-}
+int PacketSource::InformationPort() const { return sweeps_ ? sweeps_->information_port() : 0; }
 
 std::string PacketSource::OthersText() const {
   return Format("packets come, the last one of %zu bytes, but none with sweeps of a %s; ",
@@ -95,15 +97,24 @@ void PacketSource::Listen(DeviceThread& thread) {
   const std::string where = "UDP port " + std::to_string(udp.port());
   report_.Set("waits for packets at " + where, false);
   auto last = Clock::now();
+  // What LIDARs tell of themselves, by sender: of others on this network, too.
+  constexpr std::size_t kMostTold = 16;
+  std::map<std::uint32_t, UdpPort::Datagram> told;
   std::int64_t packets = report_.count("packets"), bad = report_.count("bad packets"),
                others = report_.count("other packets");
   while (!thread.Stopping()) {
     if (const auto datagram = udp.Receive(kSliceMs)) {
-      Take(thread, datagram->payload, datagram->utime);
+      const auto own = told.find(datagram->sender);
+      if (own != told.end()) {
+        Take(thread, own->second.payload, own->second.utime, kInformation);
+        told.erase(own);
+      }
+      Take(thread, datagram->payload, datagram->utime, kPackets);
     }
     if (information) {
-      if (const auto datagram = information->Receive(0)) {
-        Take(thread, datagram->payload, datagram->utime);
+      auto datagram = information->Receive(0);
+      if (datagram && (told.size() < kMostTold || told.count(datagram->sender) != 0)) {
+        told[datagram->sender] = std::move(*datagram);
       }
     }
     if (report_.count("packets") != packets) {
@@ -136,19 +147,20 @@ void PacketSource::Play(DeviceThread& thread) {
   std::int64_t to_port = 0, to_others = 0;
   try {
     while (const auto datagram = recording.Next()) {
-      if (datagram->port != link_.port &&
-          (InformationPort() == 0 || datagram->port != InformationPort())) {
+      const bool tells = InformationPort() != 0 && datagram->port == InformationPort();
+      if (datagram->port != link_.port && !tells) {
         ++to_others;
         continue;
       }
-      ++to_port;
+      if (datagram->port == link_.port) ++to_port;
       if (!thread.Sleep(pacer.WaitFor(datagram->utime, SteadyUtime()))) return;
       if (datagram->cut) {
         report_.Count("bad packets");
         thread.Warn(link_.pcap + ": was recorded with packets cut short; record them whole");
         continue;
       }
-      Take(thread, datagram->payload, datagram->utime);
+      Take(thread, datagram->payload, datagram->utime,
+           datagram->port == link_.port ? kPackets : kInformation);
     }
   } catch (const InputError& e) {
     thread.Warn(e.what());
@@ -166,8 +178,8 @@ void PacketSource::Play(DeviceThread& thread) {
   report_.Set(link_.pcap + " has ended", true);
 }
 
-void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& payload,
-                        Utime utime) {
+void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& payload, Utime utime,
+                        const char* counter) {
   if (!sweeps_) {
     sweeps_ = LivoxPackets(payload);
   }
@@ -185,7 +197,7 @@ void PacketSource::Take(DeviceThread& thread, const std::vector<std::uint8_t>& p
     return;
   }
   report_.SetSweepBegun(sweeps_->begun());
-  report_.Count("packets");
+  report_.Count(counter);
   const std::int64_t lost = ReportLosses(thread);
   name_ = sweeps_->name();
   if (!done.empty()) LookAt(thread, done.back(), lost, utime);

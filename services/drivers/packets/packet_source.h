@@ -39,7 +39,9 @@ class PacketSource {
 
   void Listen(DeviceThread& thread);
   void Play(DeviceThread& thread);
-  void Take(DeviceThread& thread, const std::vector<std::uint8_t>& payload, Utime utime);
+  /// `counter`: of the report, what it counts as.
+  void Take(DeviceThread& thread, const std::vector<std::uint8_t>& payload, Utime utime,
+            const char* counter);
   std::int64_t ReportLosses(DeviceThread& thread);
   void LookAt(DeviceThread& thread, const Cloud& sweep, std::int64_t lost, Utime arrival) const;
   void Publish(DeviceThread& thread, const Cloud& sweep);

@@ -66,14 +66,18 @@ std::optional<UdpPort::Datagram> UdpPort::Receive(int timeout_ms) {
   if (poll(&waiting, 1, timeout_ms) <= 0) return std::nullopt;
   alignas(cmsghdr) char control[256];
   iovec part{bytes_.data(), bytes_.size()};
+  sockaddr_in sender{};
   msghdr message{};
+  message.msg_name = &sender;
+  message.msg_namelen = sizeof(sender);
   message.msg_iov = &part;
   message.msg_iovlen = 1;
   message.msg_control = control;
   message.msg_controllen = sizeof(control);
   const ssize_t size = recvmsg(socket_, &message, 0);
   if (size < 0) return std::nullopt;
-  return Datagram{ArrivalOf(&message), {bytes_.begin(), bytes_.begin() + size}};
+  return Datagram{
+      ArrivalOf(&message), {bytes_.begin(), bytes_.begin() + size}, sender.sin_addr.s_addr};
 }
 
 }  // namespace rgbdt

@@ -21,6 +21,7 @@ class UdpPort {
   struct Datagram {
     Utime utime = 0;  ///< when the kernel had it
     std::vector<std::uint8_t> payload;
+    std::uint32_t sender = 0;  ///< its IPv4 address, as on the wire
   };
   /// The next datagram, at most after `timeout_ms`; nothing: none came.
   std::optional<Datagram> Receive(int timeout_ms);

@@ -135,6 +135,11 @@ TEST(ChooseTopics, EachFrameIsALidar) {
   EXPECT_THAT(choice.left_out, ElementsAre(HasSubstr("/cam/depth/points: named \"depth\""),
                                            HasSubstr("/front/points_filtered: named \"filter\""),
                                            HasSubstr("/rear/packets: packets")));
+  survey.topics.push_back(Topic("/rear/image", BagData::kImage, {0}));
+  const TopicChoice beside = ChooseTopics(survey, {});
+  EXPECT_EQ(beside.cameras.back().name, "rear");
+  EXPECT_NE(beside.further_lidars.at(0).name, "rear") << "a rig's sensors have names of their own";
+  survey.topics.pop_back();
   TopicWishes wishes{{}, {{"back", "/rear/packets"}, {"", "/front/points_filtered"}}};
   EXPECT_THAT(LidarsOf(ChooseTopics(survey, wishes)),
               ElementsAre("back /rear/packets", "front /front/points_filtered"))
@@ -143,7 +148,7 @@ TEST(ChooseTopics, EachFrameIsALidar) {
     return test::ErrorOf([&] { ChooseTopics(survey, of); });
   };
   wishes.clouds = {{"a", "/rear/points"}, {"a", "/front/points"}};
-  EXPECT_THAT(error(wishes), HasSubstr("two LIDARs are called \"a\""));
+  EXPECT_THAT(error(wishes), HasSubstr("two sensors are called \"a\""));
   wishes.clouds[1] = {"b", "/rear/points"};
   EXPECT_THAT(error(wishes), HasSubstr("/rear/points is given for two LIDARs"));
   wishes.clouds.clear();

@@ -243,6 +243,26 @@ TEST(BoardInCloud, WhatLooksAlikeIsNoBoard) {
   }
 }
 
+TEST(BoardInCloud, OfOneLaserNoRingIsTold) {
+  const CloudWorld world(Physics(0, 4), 0);
+  Cloud cloud = world.Sweep(kSweepTime);
+  ASSERT_EQ(cloud.ring.size(), cloud.size());
+  for (std::uint16_t& ring : cloud.ring) ring = static_cast<std::uint16_t>(ring / 8);  // few beams
+  BoardInCloudOptions options = Detection(0);
+  for (const bool one_laser : {false, true}) {
+    options.one_laser = one_laser;
+    const auto boards = FindBoards(cloud, world.target(), options);
+    ASSERT_FALSE(boards.candidates.empty()) << boards.why;
+    for (const PointGroup& group : boards.candidates[0].groups) {
+      EXPECT_EQ(group.ring < 0, one_laser);
+    }
+  }
+  LidarSpec lidar;
+  EXPECT_FALSE(OptionsFor(lidar).one_laser);
+  lidar.turned_scanner.emplace();
+  EXPECT_TRUE(OptionsFor(lidar).one_laser);
+}
+
 TEST(BoardInCloud, ASecondBoardIsACandidateToo) {
   simulate::Options options = Physics(0, 4);
   options.clutter.second_board = true;
