@@ -34,8 +34,8 @@ rm "$scratch/room/calibration.textproto"
 accepts "a log without a calibration" "$bin/rgbdt" import "$scratch/room.mcap" \
   --log "$scratch/logs/guess.lcmlog" --session "$scratch/room"
 says_all "a log without a calibration" "is not calibrated: the log has no calibration"
-accepts "refining by the log" "$bin/rgbdt" refine "$scratch/logs/guess.lcmlog" --out "$scratch/refined" \
-  --truth "$scratch/room/truth.textproto"
+accepts "refining by the log" "$bin/rgbdt" refine "$scratch/logs/guess.lcmlog" --every 1 \
+  --out "$scratch/refined" --truth "$scratch/room/truth.textproto"
 python3 - "$scratch/refined/report.json" <<'END' || complain "the log's calibration is not near the truth"
 import json, sys
 for name, camera in json.load(open(sys.argv[1]))["cameras"].items():

@@ -103,19 +103,20 @@ void PacketSource::Listen(DeviceThread& thread) {
   std::int64_t packets = report_.count("packets"), bad = report_.count("bad packets"),
                others = report_.count("other packets");
   while (!thread.Stopping()) {
-    if (const auto datagram = udp.Receive(kSliceMs)) {
+    const auto datagram = udp.Receive(kSliceMs);
+    if (information) {
+      auto tells = information->Receive(0);
+      if (tells && (told.size() < kMostTold || told.count(tells->sender) != 0)) {
+        told[tells->sender] = std::move(*tells);
+      }
+    }
+    if (datagram) {
       const auto own = told.find(datagram->sender);
       if (own != told.end()) {
         Take(thread, own->second.payload, own->second.utime, kInformation);
         told.erase(own);
       }
       Take(thread, datagram->payload, datagram->utime, kPackets);
-    }
-    if (information) {
-      auto datagram = information->Receive(0);
-      if (datagram && (told.size() < kMostTold || told.count(datagram->sender) != 0)) {
-        told[datagram->sender] = std::move(*datagram);
-      }
     }
     if (report_.count("packets") != packets) {
       packets = report_.count("packets");

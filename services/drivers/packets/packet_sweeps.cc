@@ -77,8 +77,6 @@ class Hesai : public PacketSweeps {
 };
 
 class Robosense : public PacketSweeps {
-  static constexpr std::int64_t kMany = 3000;  // packets: some four seconds
-
  public:
   // Without angles it takes those that its packets tell.
   explicit Robosense(std::optional<robosense::Angles> angles) : angles_(std::move(angles)) {}
@@ -101,7 +99,7 @@ class Robosense : public PacketSweeps {
     }
     if (sensor_ != nullptr && !information_.empty()) Learn();
     if (robosense::IsInformation(payload.data(), payload.size())) return {};
-    if (sensor_ != nullptr && Waits()) return Wait();
+    if (sensor_ != nullptr && !sweeps_) return Wait();
     if (sensor_ == nullptr) throw InputError("is no packet of a RoboSense");
     return sweeps_->Add(robosense::Decode(*sensor_, dual_, payload.data(), payload.size()),
                         arrival);
@@ -123,13 +121,12 @@ class Robosense : public PacketSweeps {
     const robosense::Information told =
         robosense::ParseInformation(*sensor_, payload.data(), payload.size());
     dual_ = told.dual;
-    told_ = true;
     if (!sweeps_) sweeps_.emplace(told.angles, sensor_->lens);
   }
-  // It tells its angles once a second; one of 16 lasers nowhere else how many returns it gives.
-  bool Waits() const { return !sweeps_ || (sensor_->channels == 16 && !told_ && waited_ < kMany); }
+  // It tells its angles once a second.
   std::vector<Cloud> Wait() {
-    if (++waited_ % kMany != 0 || sweeps_) return {};
+    constexpr std::int64_t kMany = 3000;
+    if (++waited_ % kMany != 0) return {};
     throw InputError(name() + ": no packet tells its angles (DIFOP, to UDP port " +
                      std::to_string(robosense::kInformationPort) +
                      "); let it send them, or give its angle.csv as metadata");
@@ -139,7 +136,7 @@ class Robosense : public PacketSweeps {
   const robosense::Sensor* sensor_ = nullptr;
   std::optional<SpinningSweeps> sweeps_;
   Payload information_;  // not read yet
-  bool told_ = false, dual_ = false;
+  bool dual_ = false;
   std::int64_t waited_ = 0;
 };
 

@@ -165,6 +165,7 @@ TEST_F(SceneProblemTest, ARimThatSeveralShotsShowCountsOnce) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(apart.information(k, k), 2 * alone.information(k, k),
                 1e-6 * apart.information(k, k));
+    if (k == 2) continue;  // a turn about the view is no shift of a rim
     EXPECT_LT(twice.information(k, k), 1.3 * alone.information(k, k)) << k;
   }
 }
