@@ -82,8 +82,24 @@ void KnownRims::Keep(int world, const Seen& edge) {
   if (!known) cell.push_back(edge);
 }
 
+// From one place the same beams meet a rim time and again: their error is one and the same.
+int KnownRims::StationOf(const ShotPlace& place) {
+  constexpr double kSameM = 0.02, kSameRad = 2e-3;
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    const Rigid3& known = stations_[i].world_from_lidar;
+    if (stations_[i].world == place.world &&
+        (known.translation - place.world_from_lidar.translation).norm() < kSameM &&
+        RotationDistance(known, place.world_from_lidar) < kSameRad) {
+      return static_cast<int>(i);
+    }
+  }
+  stations_.push_back(place);
+  return static_cast<int>(stations_.size() - 1);
+}
+
 std::vector<int> KnownRims::Add(const std::vector<DepthEdge>& edges, const ShotPlace& taken_at) {
   const Rigid3& world_from_lidar = taken_at.world_from_lidar;
+  const int station = StationOf(taken_at);
   std::map<int, std::vector<const DepthEdge*>> own;
   for (const DepthEdge& edge : edges) own[edge.rim].push_back(&edge);
   std::map<int, int> numbers, things;
@@ -96,13 +112,15 @@ std::vector<int> KnownRims::Add(const std::vector<DepthEdge>& edges, const ShotP
                       world_from_lidar.rotation * Outwards(*edge).normalized(),
                       0.05 + 0.02 * edge->point.norm(), -1});
     }
-    int found = Find(taken_at.world, seen);
-    if (found < 0) {
-      found = static_cast<int>(rims_.size());
-      rims_.push_back({CommonRad(of_rim), -1});
+    int rim = Find(taken_at.world, seen);
+    if (rim < 0) {
+      rim = static_cast<int>(thing_of_.size());
+      thing_of_.push_back(-1);
     }
-    numbers[number] = found;
-    for (Seen& edge : seen) edge.rim = found;
+    const auto [met, is_new] = met_.try_emplace({station, rim}, static_cast<int>(rims_.size()));
+    if (is_new) rims_.push_back({CommonRad(of_rim), rim, -1});
+    numbers[number] = met->second;
+    for (Seen& edge : seen) edge.rim = rim;
     all.insert(all.end(), seen.begin(), seen.end());
   }
   for (const Seen& edge : all) Keep(taken_at.world, edge);
@@ -110,11 +128,12 @@ std::vector<int> KnownRims::Add(const std::vector<DepthEdge>& edges, const ShotP
   std::vector<int> out;
   out.reserve(edges.size());
   for (const DepthEdge& edge : edges) {
-    const int number = numbers[edge.rim];
-    SceneRim& rim = rims_[static_cast<std::size_t>(number)];
-    if (rim.thing < 0) rim.thing = things.emplace(edge.thing, number).first->second;
-    things.emplace(edge.thing, rim.thing);
-    out.push_back(number);
+    SceneRim& met = rims_[static_cast<std::size_t>(numbers[edge.rim])];
+    int& thing = thing_of_[static_cast<std::size_t>(met.rim)];
+    if (thing < 0) thing = things.emplace(edge.thing, met.rim).first->second;
+    things.emplace(edge.thing, thing);
+    met.thing = thing;
+    out.push_back(numbers[edge.rim]);
   }
   return out;
 }

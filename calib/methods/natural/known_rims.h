@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "calib/methods/natural/depth_edges.h"
@@ -11,9 +12,10 @@
 
 namespace rgbdt {
 
-/// A rim of a thing, in all shots that show it.
+/// A rim as it was met from one place.
 struct SceneRim {
   double common_rad = 0;  ///< 1 sigma of what its edges' places between their beams have in common
+  int rim = 0;            ///< the same number for the same rim, met from wherever
   int thing = 0;          ///< the same number for rims of the same thing
 };
 
@@ -22,8 +24,7 @@ struct SceneRim {
 /// in the world and the side to which it ends.
 class KnownRims {
  public:
-  /// The number of each edge's rim (an index of rims()); those of the next shot, which was taken
-  /// there.
+  /// Of each edge of the next shot, which was taken there, an index of rims().
   std::vector<int> Add(const std::vector<DepthEdge>& edges, const ShotPlace& taken_at);
   const std::vector<SceneRim>& rims() const { return rims_; }
 
@@ -38,8 +39,12 @@ class KnownRims {
   static Cell CellOf(int world, const Eigen::Vector3d& point);
   int Find(int world, const std::vector<Seen>& edges) const;
   void Keep(int world, const Seen& edge);
+  int StationOf(const ShotPlace& place);
 
   std::vector<SceneRim> rims_;
+  std::vector<int> thing_of_;               // by rim
+  std::vector<ShotPlace> stations_;         // from which the same beams meet a rim
+  std::map<std::pair<int, int>, int> met_;  // by station and rim: an index of rims_
   std::map<Cell, std::vector<Seen>> seen_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -65,55 +66,52 @@ std::vector<DepthEdge> Thinned(std::vector<DepthEdge> edges, std::size_t most) {
   return kept;
 }
 
-/// What one rim adds: the equations with its own shift as a further unknown.
-struct RimSums {
+/// What some edges add that have a shift in common: the equations with it as a further unknown.
+struct ShiftSums {
   SceneMatrix information = SceneMatrix::Zero();
   SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
   double shift_information = 0, shift_gradient = 0;
-  bool shown = false;  ///< the image may show some of it
-};
+  bool shown = false;  ///< the image may show some of them
 
-/// What a thing's rims add: the equations with the thing's shift as a further unknown.
-struct ThingSums {
-  bool shown = false;
-  SceneMatrix information = SceneMatrix::Zero();
-  SceneVector gradient = SceneVector::Zero(), with_shift = SceneVector::Zero();
-  double shift_information = 0, shift_gradient = 0;
-};
-
-/// The shifts eliminated (Schur): each rim's about its thing's, then each thing's.
-void Eliminate(const std::vector<RimSums>& rims, const std::vector<SceneRim>& known,
-               const SceneLook& look, SceneSums* sums) {
-  std::vector<ThingSums> things(known.size());
-  for (std::size_t i = 0; i < rims.size(); ++i) {
-    const RimSums& rim = rims[i];
-    if (!rim.shown) continue;
-    const double own = std::pow(known[i].common_rad, 2) + std::pow(look.rim_sigma_rad, 2);
-    const double information = rim.shift_information + 1 / own;
-    if (!(information > 0)) continue;
-    const double kept = 1 / own / information;
-    ThingSums& thing = things[static_cast<std::size_t>(known[i].thing)];
-    thing.information +=
-        rim.information - rim.with_shift * rim.with_shift.transpose() / information;
-    thing.gradient += rim.gradient - rim.with_shift * (rim.shift_gradient / information);
-    thing.with_shift += kept * rim.with_shift;
-    thing.shift_information += kept * rim.shift_information;
-    thing.shift_gradient += kept * rim.shift_gradient;
-    thing.shown = true;
+  /// Adds a part of them, whose shift is this one's and one of its own (`variance`), which is
+  /// eliminated (Schur).
+  void Add(const ShiftSums& part, double variance) {
+    if (!part.shown) return;
+    const double prior = 1 / std::max(variance, 1e-18);
+    const double all = part.shift_information + prior;
+    if (!(all > 0)) return;
+    const double kept = prior / all;
+    information += part.information - part.with_shift * part.with_shift.transpose() / all;
+    gradient += part.gradient - part.with_shift * (part.shift_gradient / all);
+    with_shift += kept * part.with_shift;
+    shift_information += kept * part.shift_information;
+    shift_gradient += kept * part.shift_gradient;
+    shown = true;
   }
+};
+
+/// The shifts eliminated: a rim's as it was met from one place about that which it has from
+/// wherever, each rim's about its thing's, then each thing's.
+void Eliminate(const std::vector<ShiftSums>& met, const std::vector<SceneRim>& known,
+               const SceneLook& look, SceneSums* sums) {
+  std::map<int, ShiftSums> rims, things;
+  std::map<int, int> thing_of;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    if (!met[i].shown) continue;
+    rims[known[i].rim].Add(met[i], std::pow(known[i].common_rad, 2));
+    thing_of[known[i].rim] = known[i].thing;
+  }
+  for (const auto& [rim, own] : rims)
+    things[thing_of[rim]].Add(own, std::pow(look.rim_sigma_rad, 2));
   const double prior = 1 / std::pow(look.thing_sigma_rad, 2);
-  for (std::size_t i = 0; i < things.size(); ++i) {
-    const ThingSums& thing = things[i];
-    const double information = thing.shift_information + prior;
-    if (!thing.shown || !(information > 0)) continue;
-    const SceneVector gradient =
-        thing.gradient - thing.with_shift * (thing.shift_gradient / information);
-    const SceneMatrix own =
-        thing.information - thing.with_shift * thing.with_shift.transpose() / information;
-    sums->information += own;
-    sums->gradient += gradient;
-    sums->parts.emplace_back(own, gradient);
-    sums->things += thing.shift_information / information;
+  for (const auto& [number, thing] : things) {
+    ShiftSums whole;
+    whole.Add(thing, 1 / prior);
+    if (!whole.shown) continue;
+    sums->information += whole.information;
+    sums->gradient += whole.gradient;
+    sums->parts.emplace_back(whole.information, whole.gradient);
+    sums->things += thing.shift_information / (thing.shift_information + prior);
   }
 }
 
@@ -122,7 +120,7 @@ class Summing {
   Summing(const SceneLook& look, double pixels, const CameraSpec& spec)
       : look_(look), pixels_(pixels), columns_(spec.width), rows_(spec.height) {}
 
-  void Add(const Projected& seen, const std::vector<ImageRim>& met, int reach, RimSums* own,
+  void Add(const Projected& seen, const std::vector<ImageRim>& met, int reach, ShiftSums* own,
            SceneSums* sums) const {
     // Densities over the line that was looked along [1/px of the level].
     const double nothing = (1 - look_.matched) / (2 * reach);
@@ -268,7 +266,7 @@ SceneSums SceneProblem::SumsAt(const SceneState& state, const SceneLook& look) c
   spec.lens = state.lens;
   const Camera camera(spec);
   SceneSums sums;
-  std::vector<RimSums> rims(rims_.size());
+  std::vector<ShiftSums> rims(rims_.size());
   std::vector<ImageRim> met;
   for (const Part& part : parts_) {
     const ImageRims& picture = part.shot->pictures[static_cast<std::size_t>(look.level)];
