@@ -7,12 +7,12 @@ make_bag=$(dirname "${BASH_SOURCE[0]}")/make_bag.py
 mkdir "$scratch/kept"
 
 # All of its clouds and images, by a calibrated session's rig.
-accepts "a room" "$bin/rgbdt" simulate "$scratch/room" --natural --scene indoor --views 3 --seed 12 --lidar 32
+accepts "a room" "$bin/rgbdt" simulate "$scratch/room" --natural --scene indoor --views 5 --seed 12 --lidar 32
 "$bin/drive_test_log" "$scratch/room" 1 "$scratch/ignored.lcmlog" "$scratch/room/calibration.textproto"
 accepts "making a bag of it" python3 "$make_bag" "$scratch/room" --mosaic --seconds 3 --rate 2 "$scratch/room.mcap"
 accepts "a log" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/room.lcmlog" --session "$scratch/room"
-says_all "a log" "camera thermal: /thermal/image_raw" "9 clouds: their points' times are of another clock" \
-  "9 clouds, 36 images" "rgbdt refine $scratch/logs/room.lcmlog"
+says_all "a log" "camera thermal: /thermal/image_raw" "15 clouds: their points' times are of another clock" \
+  "15 clouds, 60 images" "rgbdt refine $scratch/logs/room.lcmlog"
 [ "$(ls "$scratch/logs")" = room.lcmlog ] || complain "a log: left beside it: $(ls "$scratch/logs")"
 python3 - "$scratch/logs/room.lcmlog" <<'END' || complain "what is in the log"
 import collections, struct, sys
@@ -23,8 +23,8 @@ while at < len(data):
     events.append((utime, data[at + 28:at + 28 + name].decode()))
     at += 28 + name + size
 count = collections.Counter(channel for _, channel in events)
-assert count["RGB_IMAGE"] == count["THERMAL_IMAGE"] == 18 and count["CLOUD"] >= 9, count
-assert count["RIG"] == 9 and count["CALIBRATION"] == 18, count
+assert count["RGB_IMAGE"] == count["THERMAL_IMAGE"] == 30 and count["CLOUD"] >= 15, count
+assert count["RIG"] == 15 and count["CALIBRATION"] == 30, count
 times = [utime for utime, _ in events]
 assert times == sorted(times), "not in the order of time"
 assert [channel for _, channel in events[:3]] == ["RIG", "CALIBRATION", "CALIBRATION"], events[:3]
@@ -44,7 +44,7 @@ for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
     assert before > 0.5 and after < 0.1, (name, before, after)
 END
 accepts "a log of clouds alone" "$bin/rgbdt" import "$scratch/room.mcap" --log "$scratch/logs/clouds.lcmlog"
-says_all "a log of clouds alone" "9 clouds, 0 images" "rgbdt map"
+says_all "a log of clouds alone" "15 clouds, 0 images" "rgbdt map"
 # What lies under the name that it is written as, as a stranger's folder may have it, is not written through.
 echo precious >"$scratch/kept/precious"
 ln -s "$scratch/kept/precious" "$scratch/logs/linked.lcmlog.part"

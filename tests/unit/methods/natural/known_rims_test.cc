@@ -28,15 +28,28 @@ std::vector<DepthEdge> Rim(const Rigid3& world_from_lidar, const Vector3d& foot,
   return edges;
 }
 
+// Of each edge, which rim of the world it is of.
+std::vector<int> RimsOf(KnownRims* known, const std::vector<DepthEdge>& edges,
+                        const ShotPlace& place) {
+  std::vector<int> rims;
+  for (const int met : known->Add(edges, place)) {
+    rims.push_back(known->rims().at(static_cast<std::size_t>(met)).rim);
+  }
+  return rims;
+}
+
 const Vector3d kFoot(6, 1, -1);
 const Rigid3 kElsewhere = Rigid3{Eigen::Quaterniond::Identity(), Vector3d(2, -1, 0)} *
                           RotationAbout(Vector3d::UnitZ(), 0.4);
 
 TEST(KnownRims, OneIsKnownAgainFromElsewhere) {
   KnownRims known;
-  EXPECT_THAT(known.Add(Rim({}, kFoot, 1), {}), Each(0));
-  EXPECT_THAT(known.Add(Rim(kElsewhere, kFoot, 1), {0, kElsewhere}), Each(0));
-  EXPECT_EQ(known.rims().size(), 1U);
+  EXPECT_THAT(RimsOf(&known, Rim({}, kFoot, 1), {}), Each(0));
+  EXPECT_THAT(RimsOf(&known, Rim({}, kFoot, 1), {}), Each(0));
+  EXPECT_EQ(known.rims().size(), 1U) << "the same beams, with the same error";
+  EXPECT_THAT(RimsOf(&known, Rim(kElsewhere, kFoot, 1), {0, kElsewhere}), Each(0));
+  EXPECT_EQ(known.rims().size(), 2U) << "other beams";
+  EXPECT_EQ(known.rims()[0].thing, known.rims()[1].thing);
   // Its edges lie in one place between beams: their error is one and the same.
   EXPECT_NEAR(known.rims()[0].common_rad, 0.01 / kFoot.norm() / std::sqrt(3.0), 1e-4);
 }
@@ -44,9 +57,9 @@ TEST(KnownRims, OneIsKnownAgainFromElsewhere) {
 TEST(KnownRims, AlsoWhereAPartOfItIsSeen) {
   KnownRims known;
   known.Add(Rim({}, kFoot, 1, 0, 1.2), {});
-  EXPECT_THAT(known.Add(Rim(kElsewhere, kFoot, 1, 0.6, 2), {0, kElsewhere}), Each(0));
+  EXPECT_THAT(RimsOf(&known, Rim(kElsewhere, kFoot, 1, 0.6, 2), {0, kElsewhere}), Each(0));
   // What lies far from what was seen is another one, although a line of it goes on.
-  EXPECT_THAT(known.Add(Rim({}, kFoot, 1, 3, 5), {}), Each(1));
+  EXPECT_THAT(RimsOf(&known, Rim({}, kFoot, 1, 3, 5), {}), Each(1));
 }
 
 TEST(KnownRims, AThingsOtherSideIsAnotherRimOfIt) {
@@ -64,8 +77,8 @@ TEST(KnownRims, AThingsOtherSideIsAnotherRimOfIt) {
 
 TEST(KnownRims, OfAnotherWorldNothingIsKnown) {
   KnownRims known;
-  EXPECT_THAT(known.Add(Rim({}, kFoot, 1), {}), Each(0));
-  EXPECT_THAT(known.Add(Rim({}, kFoot, 1), {1, {}}), Each(1));
+  EXPECT_THAT(RimsOf(&known, Rim({}, kFoot, 1), {}), Each(0));
+  EXPECT_THAT(RimsOf(&known, Rim({}, kFoot, 1), {1, {}}), Each(1));
   EXPECT_NE(known.rims()[0].thing, known.rims()[1].thing);
 }
 
