@@ -30,28 +30,34 @@ std::vector<Shot> Spread(const std::vector<Shot>& shots, std::size_t most) {
   return kept;
 }
 
-CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views, std::size_t most) {
-  CameraShots shots;
-  bool places = true;
+// By the poses that a drive's views keep, or else by the sweeps.
+std::vector<ShotPlace> PlacesOf(const std::vector<View>& views) {
+  std::vector<ShotPlace> places;
+  std::vector<const Cloud*> sweeps;
   for (const View& view : views) {
+    if (view.map_from_lidar) places.push_back({0, *view.map_from_lidar});
+    sweeps.push_back(&view.cloud);
+  }
+  return places.size() == views.size() ? places : FindPlaces(sweeps);
+}
+
+CameraShots ShotsOf(const std::string& camera, const std::vector<View>& views,
+                    const std::vector<ShotPlace>& places, std::size_t most) {
+  CameraShots shots;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const View& view = views[i];
     const auto image = std::find_if(view.images.begin(), view.images.end(),
                                     [&](const Image& one) { return one.camera == camera; });
     if (image == view.images.end()) continue;
-    places &= view.map_from_lidar.has_value();
     (view.heldout ? shots.heldout : shots.used)
-        .push_back({view.name, &view.cloud, &*image, {0, view.map_from_lidar.value_or(Rigid3())}});
+        .push_back({view.name, &view.cloud, &*image, places[i]});
   }
   // A result that nothing was left out to judge by may be worse than the start.
   if (shots.heldout.empty() && shots.used.size() > 1) {
     shots.heldout.push_back(shots.used.back());
     shots.used.pop_back();
   }
-  shots = {Spread(shots.used, most), Spread(shots.heldout, most)};
-  if (!places) {
-    FindPlaces(&shots.used);
-    FindPlaces(&shots.heldout);
-  }
-  return shots;
+  return {Spread(shots.used, most), Spread(shots.heldout, most)};
 }
 
 std::vector<std::string> NamesOf(const std::vector<Shot>& shots) {
@@ -124,7 +130,8 @@ bool IsWorse(const SceneCheck& check) {
 }
 
 CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& views,
-                          const Calibration& start, const RefineOptions& options) {
+                          const std::vector<ShotPlace>& places, const Calibration& start,
+                          const RefineOptions& options) {
   CameraReport report;
   report.calibration.camera = rig_spec.name;
   const CameraCalibration* given = start.Find(rig_spec.name);
@@ -132,7 +139,7 @@ CameraReport RefineCamera(const CameraSpec& rig_spec, const std::vector<View>& v
                                          ? std::optional(given->camera_from_lidar)
                                          : rig_spec.camera_from_lidar_guess;
   const CameraSpec spec = start.WithSolvedLens(rig_spec);
-  const CameraShots shots = ShotsOf(spec.name, views, options.most_sweeps);
+  const CameraShots shots = ShotsOf(spec.name, views, places, options.most_sweeps);
   report.used = NamesOf(shots.used);
   report.heldout = NamesOf(shots.heldout);
   if (!pose) {
@@ -212,6 +219,7 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
     }
     seen.cloud_why_not = "not looked for";
   }
+  const std::vector<ShotPlace> places = PlacesOf(views);
   for (const CameraSpec& camera : rig.cameras) {
     RefineOptions own = options;
     const CameraCalibration* given = start.Find(camera.name);
@@ -223,7 +231,7 @@ Report Refine(const Rig& rig, const std::vector<View>& views, const Calibration&
       }
       own.natural.start_covariance = given->PoseAndLens();
     }
-    report.cameras.push_back(RefineCamera(camera, views, start, own));
+    report.cameras.push_back(RefineCamera(camera, views, places, start, own));
   }
   return report;
 }

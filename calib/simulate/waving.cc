@@ -230,8 +230,9 @@ Image Waving::TakeImage(const std::string& camera, Utime utime) {
   std::vector<World> worlds;
   worlds.reserve(static_cast<std::size_t>(count));
   for (int band = 0; band < count; ++band) {
-    const double middle = count == 1 ? 0 : (band + 0.5) / count - 0.5;
-    const double seconds = ToSeconds(utime - impl_->wave.start) + rolling_s * middle;
+    const double row = (band + 0.5) * height / count - 0.5;  // the band's middle
+    const double later = rolling_s * (row / (height - 1) - 0.5);
+    const double seconds = ToSeconds(utime - impl_->wave.start) + later;
     worlds.emplace_back(impl_->scene, Board(impl_->options.board, impl_->At(seconds), impl_->heat),
                         impl_->options);
   }

@@ -52,6 +52,12 @@ void Run(const std::vector<std::string>& a) {
          "sigma_mm,chi2,converged,edges,shown,solve_s\n";
   std::vector<View> views;
   for (const std::string& name : session.views) views.push_back(ReadView(session, name));
+  std::vector<ShotPlace> places;  // of a group without the others
+  for (std::size_t first = 0; first + per_group <= views.size(); first += per_group) {
+    std::vector<const Cloud*> sweeps;
+    for (std::size_t v = first; v < first + per_group; ++v) sweeps.push_back(&views[v].cloud);
+    for (const ShotPlace& place : FindPlaces(sweeps)) places.push_back(place);
+  }
   for (const CameraSpec& given : session.rig.cameras) {
     const CameraSpec camera = right_one.WithSolvedLens(given);
     for (std::size_t first = 0; first + per_group <= views.size(); first += per_group) {
@@ -59,12 +65,11 @@ void Run(const std::vector<std::string>& a) {
       for (std::size_t v = first; v < first + per_group; ++v) {
         for (const Image& image : views[v].images) {
           if (image.camera == camera.name) {
-            shots.push_back({views[v].name, &views[v].cloud, &image});
+            shots.push_back({views[v].name, &views[v].cloud, &image, places[v]});
             break;
           }
         }
       }
-      FindPlaces(&shots);
       for (int i = 0; i < starts; ++i) {
         const Rigid3& right = truth.camera_from_lidar.at(camera.name);
         const Rigid3 start = OffBy(right, rotation, translation, &random);

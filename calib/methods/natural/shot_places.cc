@@ -4,14 +4,12 @@
 
 namespace rgbdt {
 
-void FindPlaces(std::vector<Shot>* shots) {
-  std::vector<const Cloud*> sweeps;
-  sweeps.reserve(shots->size());
-  for (const Shot& shot : *shots) sweeps.push_back(shot.cloud);
-  const std::vector<StopPlace> places = Odometry::FindStops(sweeps);
-  for (std::size_t i = 0; i < shots->size(); ++i) {
-    (*shots)[i].place = {places[i].world, places[i].world_from_lidar};
+std::vector<ShotPlace> FindPlaces(const std::vector<const Cloud*>& sweeps) {
+  std::vector<ShotPlace> places;
+  for (const StopPlace& stop : Odometry::FindStops(sweeps)) {
+    places.push_back({stop.world, stop.world_from_lidar});
   }
+  return places;
 }
 
 }  // namespace rgbdt

@@ -51,7 +51,7 @@ Vector6d ErrorAfter(int last, Drive* drive, OdometryResult* result) {
 }
 
 // Of several drives: one alone is a matter of luck.
-constexpr std::uint64_t kDrives = 3;
+constexpr std::uint64_t kDrives = 8;
 
 TEST(Odometry, FollowsADriveWhoseSweepsAreSkewedByTheMotion) {
   Vector6d squares = Vector6d::Zero();
