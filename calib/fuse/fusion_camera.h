@@ -40,8 +40,12 @@ class FusionCamera {
 
   explicit FusionCamera(const CameraSpec& spec);
 
-  /// Keeps images in the order of their times, however they arrive; the oldest go first.
-  void AddImage(PreparedImage image);
+  /// Which of more than kMaxImages goes: kThin where clouds wait for their poses, so that all of
+  /// the time since then keeps images.
+  enum class Full { kDropOldest, kThin };
+
+  /// Keeps images in the order of their times, however they arrive.
+  void AddImage(PreparedImage image, Full full = Full::kDropOldest);
 
   /// The LIDAR's time of an image's middle row: its utime and what the calibration's timing says.
   Utime TakenAt(const PreparedImage& image) const { return image.utime + offset_; }
@@ -74,6 +78,7 @@ class FusionCamera {
 
  private:
   Utime ServesFrom(const PreparedImage& image) const;
+  void Thin();
 
   CameraSpec spec_;
   Lens given_;  // by the rig

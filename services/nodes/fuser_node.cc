@@ -39,8 +39,14 @@ Messages FuserNode::Handle(const Message& message) {
     OnImage(*image);
   } else if (const auto* pose = std::get_if<StampedPose>(&message)) {
     OnPose(*pose);
+    return FuseDue();
   }
   return {};
+}
+
+Messages FuserNode::Advance(Utime now) {
+  chunks_.Advance(now);
+  return FuseDue();
 }
 
 void FuserNode::OnRig(const RigText& text) {
@@ -50,6 +56,7 @@ void FuserNode::OnRig(const RigText& text) {
   rig_before_ = std::exchange(rig_, std::move(rig));
   against_.clear();
   follower_.Clear();
+  chunks_.Clear();
   UpdateRangeCorrection();
   newest_image_.clear();
 }
@@ -72,10 +79,12 @@ void FuserNode::OnImage(const Image& image) {
     newest = 0;
   }
   newest = std::max(newest, image.utime);
-  camera.AddImage(std::move(prepared));
+  camera.AddImage(std::move(prepared),
+                  chunks_.empty() ? FusionCamera::Full::kDropOldest : FusionCamera::Full::kThin);
 }
 
 void FuserNode::OnPose(const StampedPose& pose) {
+  chunks_.OnPose(pose);
   switch (fuser_->AddPose(pose)) {
     case PoseTrack::Added::kYes:
       break;
@@ -173,6 +182,18 @@ RgbdtCloud FuserNode::Fuse(const Cloud& cloud) {
 }
 
 Messages FuserNode::OnChunk(const CloudChunk& chunk) {
+  return chunks_.Keep(chunk) ? FuseDue() : FuseChunk(chunk);
+}
+
+Messages FuserNode::FuseDue() {
+  Messages messages;
+  while (const auto chunk = chunks_.Next()) {
+    for (Message& part : FuseChunk(*chunk)) messages.push_back(std::move(part));
+  }
+  return messages;
+}
+
+Messages FuserNode::FuseChunk(const CloudChunk& chunk) {
   RgbdtCloud fused = Fuse(chunk.cloud);
   fused.sweep_end = chunk.sweep_end;
   // What served only points well before this chunk serves no more. A cloud from the future does not
@@ -200,6 +221,7 @@ Status FuserNode::GetStatus() const {
   if (const std::string followed = follower_.Text(); !followed.empty()) {
     status.text += "; " + followed;
   }
+  if (!chunks_.empty()) status.text += "; clouds wait for their POSE, which odometry tells later";
   const FusionCounts counts = fuser_ ? fuser_->counts() : FusionCounts();
   status.counters = {{"points", counts.points},
                      {"coloured", counts.coloured},
@@ -207,6 +229,7 @@ Status FuserNode::GetStatus() const {
                      {"without an image of their time", counts.without_image},
                      {"without a pose", counts.without_pose},
                      {"shutter frames", shutter_frames_},
+                     {"chunks that wait for a pose", static_cast<std::int64_t>(chunks_.size())},
                      {"pose jumps", pose_jumps_},
                      {"old poses", old_poses_}};
   return status;

@@ -9,6 +9,7 @@
 #include "calib/fuse/range_correction.h"
 #include "calib/fuse/sweep_fuser.h"
 #include "calib/model/rig.h"
+#include "services/nodes/chunk_queue.h"
 #include "services/nodes/mount_follower.h"
 #include "services/runtime/node.h"
 
@@ -18,9 +19,11 @@ namespace rgbdt {
 /// for one of more than SweepFuser::kPartPoints), at once, and RGBDT_SWEEP, each sweep once more at
 /// its end, tested for occlusion as a whole. Nothing waits for the future: a point is coloured by
 /// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
-/// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
-/// one holds from the next chunk on. An image older than the camera's newest by more than
-/// kClockReset means that the clock was set back: the camera's images go. Memory is bounded.
+/// is not below the true delay. Only clouds whose way rgbdt-odometry tells after them (a turned
+/// scanner's) wait for it (ChunkQueue); of their images fewer are kept, evenly over time. Before a
+/// calibration comes the cloud goes out without colour; a new one holds from the next chunk on. An
+/// image older than the camera's newest by more than kClockReset means that the clock was set back:
+/// the camera's images go. Memory is bounded.
 ///
 /// A calibration of another rig is refused (calibration_use.h); the rig heard before this one may
 /// have been the same in all that counts. One that is not to be used is not taken, either: what
@@ -46,6 +49,7 @@ class FuserNode : public Node {
   std::string name() const override { return "fuser"; }
   std::vector<std::string> Subscriptions() const override;
   Messages Handle(const Message& message) override;
+  Messages Advance(Utime now) override;
   Status GetStatus() const override;
 
   /// Each camera that has a calibration has its newest, and one has.
@@ -59,6 +63,8 @@ class FuserNode : public Node {
   void OnImage(const Image& image);
   void OnPose(const StampedPose& pose);
   Messages OnChunk(const CloudChunk& chunk);
+  Messages FuseDue();
+  Messages FuseChunk(const CloudChunk& chunk);
   RgbdtCloud Fuse(const Cloud& cloud);
   void UpdateRangeCorrection();
   void WarnOfRanges();
@@ -72,7 +78,8 @@ class FuserNode : public Node {
   std::optional<Rig> rig_, rig_before_;
   // What speaks against a camera's newest calibration, by camera.
   std::map<std::string, std::string> against_;
-  std::optional<SweepFuser> fuser_;            // while there is a rig
+  std::optional<SweepFuser> fuser_;  // while there is a rig
+  ChunkQueue chunks_;
   RangeCorrection range_correction_;           // none where ranges stay as measured
   std::string ranges_warning_;                 // the last, until all is well again
   std::map<std::string, Utime> newest_image_;  // by camera

@@ -39,6 +39,23 @@ TEST_F(ServingTest, AnImageServesFromItsTimePlusReadoutUntilTheNextOnes) {
   EXPECT_EQ(ServedBy(camera_, 1'500'000 + kReadout), 1'500'000);
 }
 
+TEST_F(ServingTest, ThinnedImagesServeAllOfTheTime) {
+  constexpr Utime kSpan = 12'000'000;
+  for (Utime utime = 0; utime <= kSpan; utime += 50'000) {
+    camera_.AddImage(At(utime), FusionCamera::Full::kThin);
+  }
+  EXPECT_EQ(ServedBy(camera_, kReadout), 0);
+  EXPECT_EQ(ServedBy(camera_, kSpan + kReadout), kSpan);
+  for (Utime utime = 0; utime <= kSpan; utime += 50'000) {
+    EXPECT_LE(utime - ServedBy(camera_, utime + kReadout), 2 * kSpan / 15) << utime;
+  }
+  camera_.ForgetBefore(kSpan);
+  EXPECT_EQ(ServedBy(camera_, kReadout), -1);
+  for (Utime utime = kSpan; utime <= 2 * kSpan; utime += 50'000) camera_.AddImage(At(utime));
+  EXPECT_EQ(ServedBy(camera_, 2 * kSpan - 700'000 + kReadout), 2 * kSpan - 700'000)
+      << "without thinning the last 16 stay";
+}
+
 TEST_F(ServingTest, ATimeOffsetMovesWhatAnImageServes) {
   camera_.AddImage(At(1'000'000));
   CameraCalibration calibration;

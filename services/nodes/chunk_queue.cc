@@ -1,0 +1,49 @@
+#include "services/nodes/chunk_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib/model/pose_track.h"
+#include "services/nodes/odometry_node.h"
+
+namespace rgbdt {
+
+void ChunkQueue::OnPose(const StampedPose& pose) {
+  newest_pose_ = pose.source == OdometryNode::kSource ? std::optional(pose.utime) : std::nullopt;
+  heard_ = true;
+}
+
+bool ChunkQueue::Keep(const CloudChunk& chunk) {
+  const Cloud& cloud = chunk.cloud;
+  Utime last = cloud.sweep_utime;
+  for (const Utime utime : cloud.utime) last = std::max(last, utime);
+  longest_sweep_ = std::max(longest_sweep_, std::min(last - cloud.sweep_utime, kLongestSweep));
+  if (!newest_pose_) return false;  // and so all that was kept before is due, and gone
+  points_ += cloud.size();
+  chunks_.push_back({chunk, last});
+  heard_ = true;
+  return true;
+}
+
+bool ChunkQueue::IsDue(const Waiting& waiting) const {
+  if (!newest_pose_ || given_up_ || points_ > kMostPoints) return true;
+  const Utime ahead = waiting.last - *newest_pose_;
+  return ahead <= PoseTrack::kAhead || chunks_.back().last - *newest_pose_ > MostWait();
+}
+
+std::optional<CloudChunk> ChunkQueue::Next() {
+  if (chunks_.empty() || !IsDue(chunks_.front())) return std::nullopt;
+  CloudChunk chunk = std::move(chunks_.front().chunk);
+  chunks_.pop_front();
+  points_ -= chunk.cloud.size();
+  return chunk;
+}
+
+void ChunkQueue::Advance(Utime now) {
+  if (std::exchange(heard_, false) || chunks_.empty()) heard_at_ = now;
+  given_up_ = now - heard_at_ > MostWait();
+}
+
+void ChunkQueue::Clear() { *this = ChunkQueue(); }
+
+}  // namespace rgbdt
