@@ -31,13 +31,18 @@ ClosedWay AsItWas(const std::vector<Keyframe>& frames, const FoundLoops& found) 
   return way;
 }
 
-void Take(const SolvedGraph& graph, const std::vector<PoseEdge>& loops, ClosedWay* way) {
+ClosedLoop LoopOf(const PoseEdge& edge, const LoopColours& colours, const ClosedWay& way) {
+  ClosedLoop loop{way.utimes[edge.from], way.utimes[edge.to], edge.from_from_to, {}};
+  loop.colours = colours.Compare({loop.old_utime, loop.new_utime, way.before[edge.from],
+                                  way.before[edge.to], loop.old_from_new});
+  loop.sigma_factor = LoopColours::SigmaFactor(loop.colours);
+  return loop;
+}
+
+void Take(const SolvedGraph& graph, const std::vector<ClosedLoop>& loops, ClosedWay* way) {
   way->contradict = loops.size() - graph.kept.size();
   way->after = graph.poses;
-  for (const std::size_t i : graph.kept) {
-    const PoseEdge& loop = loops[i];
-    way->loops.push_back({way->utimes[loop.from], way->utimes[loop.to], loop.from_from_to});
-  }
+  for (const std::size_t i : graph.kept) way->loops.push_back(loops[i]);
   for (std::size_t i = 0; i < way->after.size(); ++i) {
     way->end_moved_m = (way->after[i].translation - way->before[i].translation).norm();
     way->most_moved_m = std::max(way->most_moved_m, way->end_moved_m);
@@ -81,15 +86,20 @@ void Keyframes::Add(const Cloud& sweep, const OdometryResult& found) {
 
 std::size_t Keyframes::size() const { return impl_->store.frames().size(); }
 
-ClosedWay CloseLoops(const Keyframes& keyframes) {
+ClosedWay CloseLoops(const Keyframes& keyframes, const LoopColours& colours) {
   const KeyframeStore& store = keyframes.impl_->store;
-  const FoundLoops found = odometry::FindLoops(store);
+  FoundLoops found = odometry::FindLoops(store);
   ClosedWay way = AsItWas(store.frames(), found);
   if (found.loops.empty()) return way;
+  std::vector<ClosedLoop> loops;
+  for (PoseEdge& edge : found.loops) {
+    loops.push_back(LoopOf(edge, colours, way));
+    edge.covariance *= loops.back().sigma_factor * loops.back().sigma_factor;
+  }
   const auto graph = odometry::SolveGraph(way.before, store.chain(), found.loops);
   way.solved = graph.has_value();
   if (graph && !graph->kept.empty()) {
-    Take(*graph, found.loops, &way);
+    Take(*graph, loops, &way);
   } else {
     way.contradict = found.loops.size();
   }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "calib/odometry/loop_colours.h"
 #include "calib/odometry/odometry.h"
 
 namespace rgbdt {
@@ -40,7 +41,7 @@ class Keyframes {
   std::size_t size() const;
 
  private:
-  friend struct ClosedWay CloseLoops(const Keyframes& keyframes);
+  friend struct ClosedWay CloseLoops(const Keyframes& keyframes, const LoopColours& colours);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -49,6 +50,8 @@ class Keyframes {
 struct ClosedLoop {
   Utime old_utime = 0, new_utime = 0;  ///< middles of the two sweeps
   Rigid3 old_from_new;                 ///< LIDAR frames at these times, by registration
+  ColoursAlike colours;                ///< of both places
+  double sigma_factor = 1;             ///< by which its sigma was enlarged, as these differ
 };
 
 /// A drive's way after its loops were closed.
@@ -82,9 +85,10 @@ struct ClosedWay {
 /// Grisetti et al. 2010), by Ceres. A wrong loop does more harm than one that is missed: a loop is
 /// refused where the sweep does not lie on the map as it did on that of its own time, where
 /// odometry cannot be off by so much, where loops nearby do not agree with it (as pairwise
-/// consistency: Mangelson et al. 2018), and where the solved way contradicts it (chi-square).
+/// consistency: Mangelson et al. 2018), and where the solved way contradicts it (chi-square). What
+/// cameras saw of both places weighs a loop (LoopColours::SigmaFactor); without it all weigh alike.
 ///
 /// The first keyframe stays where it was. The same sweeps give the same way, bit for bit. One core.
-ClosedWay CloseLoops(const Keyframes& keyframes);
+ClosedWay CloseLoops(const Keyframes& keyframes, const LoopColours& colours = {});
 
 }  // namespace rgbdt

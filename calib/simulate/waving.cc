@@ -42,6 +42,8 @@ void WaveOptions::Check() const {
   kCheck.Between(reach_m.x(), 0, range_m - 0.2, "wave.reach_m along x");
   kCheck.Between(turn_rad.minCoeff(), 0, 1.2, "least of wave.turn_rad");
   kCheck.Between(turn_rad.maxCoeff(), 0, 1.2, "most of wave.turn_rad");
+  kCheck.Between(rig_turn_rad.minCoeff(), 0, 0.5, "least of wave.rig_turn_rad");
+  kCheck.Between(rig_turn_rad.maxCoeff(), 0, 0.5, "most of wave.rig_turn_rad");
   kCheck.Between(slowest_hz, 0.01, 10, "wave.slowest_hz");
   kCheck.Between(fastest_hz, slowest_hz, 10, "wave.fastest_hz");
 }
@@ -99,7 +101,7 @@ struct Waving::Impl {
   HeatMap heat;
   Board at_origin;  ///< for its pattern
   std::vector<CameraRenderer> cameras;
-  std::vector<Swing> swings;                   ///< along x, y, z; about x, y, z
+  std::vector<Swing> swings;  ///< along x, y, z; about x, y, z; the rig's about x, y, z
   std::vector<std::vector<BeamReturn>> still;  ///< by ring: of the scene alone
   Rig rig;
   Truth truth;
@@ -114,7 +116,7 @@ Waving::Impl::Impl(const Options& o, const WaveOptions& w, std::vector<ClockOpti
       heat(DrawHeat(options.board, scene->board_heat, options.seed, 0)),
       at_origin(options.board, {}, heat) {
   Dice draw(options.seed, 0, "waving");
-  for (int axis = 0; axis < 6; ++axis) swings.push_back(DrawSwing(wave, &draw));
+  for (int axis = 0; axis < 9; ++axis) swings.push_back(DrawSwing(wave, &draw));
   std::vector<Rigid3> poses;
   for (const CameraOptions& camera : options.cameras) {
     poses.push_back(DrawCameraFromLidar(camera, options.seed));
@@ -148,26 +150,32 @@ std::size_t Waving::Impl::IndexOf(const std::string& name) const {
 }
 
 Rigid3 Waving::Impl::At(double seconds) const {
-  Vector6d moved;  // along, then about
-  for (int axis = 0; axis < 6; ++axis) {
-    const double most = axis < 3 ? wave.reach_m[axis] : wave.turn_rad[axis - 3];
-    moved[axis] = most * swings[static_cast<std::size_t>(axis)].At(seconds);
-  }
-  Rigid3 pose = RotationAbout(Eigen::Vector3d::UnitZ(), moved[5]) *
-                RotationAbout(Eigen::Vector3d::UnitY(), moved[4]) *
-                RotationAbout(Eigen::Vector3d::UnitX(), moved[3]);
+  const auto moved = [&](const Eigen::Vector3d& most, std::size_t first) {
+    Eigen::Vector3d by;
+    for (int axis = 0; axis < 3; ++axis) {
+      by[axis] = most[axis] * swings[first + static_cast<std::size_t>(axis)].At(seconds);
+    }
+    return by;
+  };
+  const auto turned = [](const Eigen::Vector3d& about) {
+    return RotationAbout(Eigen::Vector3d::UnitZ(), about.z()) *
+           RotationAbout(Eigen::Vector3d::UnitY(), about.y()) *
+           RotationAbout(Eigen::Vector3d::UnitX(), about.x());
+  };
+  Rigid3 pose = turned(moved(wave.turn_rad, 3));
   Eigen::Matrix3d facing;  // the target's x to the right, y down, z away
   facing << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   pose.rotation = pose.rotation * Eigen::Quaterniond(facing);
-  pose.translation = Eigen::Vector3d(wave.range_m, 0, wave.height_m) + moved.head<3>();
-  return pose;
+  pose.translation = Eigen::Vector3d(wave.range_m, 0, wave.height_m) + moved(wave.reach_m, 0);
+  return turned(moved(wave.rig_turn_rad, 6)).Inverse() * pose;
 }
 
 std::vector<BeamReturn> Waving::Impl::CastRing(const Ring& ring, Utime utime) const {
   // Of the board's whole way, seen from the LIDAR, no beam beyond this angle meets it.
   const double aside = wave.reach_m.tail<2>().norm() + std::abs(wave.height_m) +
                        0.5 * std::hypot(options.board.width_m, options.board.height_m);
-  const double widest = std::atan2(aside, std::max(0.1, wave.range_m - wave.reach_m.x() - 0.7));
+  const double widest = std::atan2(aside, std::max(0.1, wave.range_m - wave.reach_m.x() - 0.7)) +
+                        wave.rig_turn_rad.sum();
   const double least_x = std::cos(widest + 0.1);
   std::vector<BeamReturn> returns = still[static_cast<std::size_t>(ring.index())];
   for (int column = 0; column < ring.columns(); ++column) {

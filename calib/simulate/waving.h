@@ -20,6 +20,9 @@ struct WaveOptions {
   double height_m = -0.3;                      ///< of the middle, over the LIDAR
   Eigen::Vector3d reach_m{0.4, 0.4, 0.2};      ///< most along x, y, z
   Eigen::Vector3d turn_rad = {0.4, 0.4, 0.4};  ///< most about x, y, z
+  /// Most that the rig turns about its own x, y, z meanwhile, in the same way. The board moves as
+  /// this looks from the rig; what stands about does not.
+  Eigen::Vector3d rig_turn_rad = {0, 0, 0};
   double slowest_hz = 0.25, fastest_hz = 0.7;  ///< of what is drawn
   Utime start = 1'700'000'000 * kMicrosecondsPerSecond;
 

@@ -342,13 +342,12 @@ void SessionNode::Save() {
     Fail("the newest report lacks view " + missing + "; put solve after the last capture");
     return;
   }
-  Calibration calibration = JudgedCalibration(*report_, rig_);
+  const std::string kept = KeepTimings(directory_, rig_, &*report_);
+  const Calibration calibration = JudgedCalibration(*report_, rig_);
   if (calibration.cameras.empty()) {
     SetEarlierResultsAside();
   } else {
-    if (const std::string kept = KeepTimings(directory_, rig_, &calibration); !kept.empty()) {
-      Warn(kept);
-    }
+    if (!kept.empty()) Warn(kept);
     WriteCalibration(directory_ / "calibration.textproto", calibration);
   }
   WriteReport(directory_ / "report.json", WithVerdicts(*report_));

@@ -69,8 +69,8 @@ bool IsOnePlace(const StampedPose& a, const StampedPose& b) {
          a.map_from_lidar.rotation.coeffs() == b.map_from_lidar.rotation.coeffs();
 }
 
-void Correct(const Keyframes& keyframes, MappedDrive* drive) {
-  drive->closed = CloseLoops(keyframes);
+void Correct(const Keyframes& keyframes, const LoopColours& colours, MappedDrive* drive) {
+  drive->closed = CloseLoops(keyframes, colours);
   const std::vector<StampedPose> found = drive->way;
   for (std::size_t i = 0; i < found.size(); ++i) {
     // A stop's poses are one place, corrected as of its middle.
@@ -83,18 +83,44 @@ void Correct(const Keyframes& keyframes, MappedDrive* drive) {
   }
 }
 
+/// What the cameras saw along the way that odometry finds; what is broken is told by the second
+/// reading.
+class WayColours {
+ public:
+  void Take(const Message& message) {
+    try {
+      for (const Message& fused : fuser_.Handle(message)) {
+        if (const auto* cloud = std::get_if<RgbdtCloud>(&fused)) colours_.Add(*cloud);
+      }
+    } catch (const std::exception&) {  // nothing is seen by it
+    }
+  }
+  const LoopColours& colours() const { return colours_; }
+
+ private:
+  FuserNode fuser_;
+  LoopColours colours_;
+};
+
+bool IsOfColours(const std::string& channel) {
+  return channel == "CALIBRATION" || IsImageChannel(channel);
+}
+
 // The log's own poses, or else those of the sweeps; the log's first rig, if it has one.
 std::optional<RigText> FindWay(const std::string& log, const DriveOptions& options,
                                MappedDrive* drive, const std::function<void(double)>& progress) {
   Keyframes keyframes;
+  WayColours colours;
   OdometryNode odometry({}, [&](const Cloud& sweep, const OdometryResult& found_there) {
     if (options.close_loops) keyframes.Add(sweep, found_there);
   });
   std::vector<StampedPose> own, found;
   std::optional<RigText> rig;
-  Reader(log, drive, [](const std::string&) { return false; })
+  Reader(log, drive, IsOfColours)
       .Each(
-          IsOfWay,
+          [&](const std::string& channel) {
+            return IsOfWay(channel) || (options.close_loops && IsOfColours(channel));
+          },
           [&](const Message& message) {
             if (const auto* text = std::get_if<RigText>(&message); text != nullptr && !rig) {
               rig = *text;
@@ -105,13 +131,19 @@ std::optional<RigText> FindWay(const std::string& log, const DriveOptions& optio
             }
             if (!own.empty()) return;
             for (const Message& answer : odometry.Handle(message)) {
-              if (const auto* pose = std::get_if<StampedPose>(&answer)) found.push_back(*pose);
+              const auto* pose = std::get_if<StampedPose>(&answer);
+              if (pose == nullptr) continue;
+              found.push_back(*pose);
+              if (options.close_loops) colours.Take(*pose);
             }
+            // By odometry's poses alone.
+            const bool pose = std::holds_alternative<StampedPose>(message);
+            if (options.close_loops && !pose) colours.Take(message);
           },
           progress);
   drive->by_odometry = own.empty();
   drive->way = own.empty() ? std::move(found) : std::move(own);
-  if (options.close_loops && !drive->way.empty()) Correct(keyframes, drive);
+  if (options.close_loops && !drive->way.empty()) Correct(keyframes, colours.colours(), drive);
   if (drive->by_odometry) {
     const Status status = odometry.GetStatus();
     drive->sweeps = CounterOf(status, "sweeps");
@@ -161,7 +193,7 @@ MappedDrive MapDrive(const std::string& log, MapperNode* mapper, const DriveOpti
             if (const auto* chunk = std::get_if<CloudChunk>(&message)) {
               poses.Until(NewestOf(chunk->cloud), [&](const StampedPose& pose) {
                 if (has_rig) {
-                  fuser.Handle(pose);
+                  for (const Message& fused : fuser.Handle(pose)) map(fused);
                 } else {
                   plain.AddPose(pose);
                 }

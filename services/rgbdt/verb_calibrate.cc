@@ -60,7 +60,7 @@ std::set<std::string> LeftOutOf(const CalibrateFlags& flags, const Session& sess
 ExitCode Finish(const Place& place, const Session& session, const SessionDetection& detection,
                 Report report, const std::set<std::string>& left_out = {}) {
   report = WithUnlisted(std::move(report), session, detection.views);
-  const std::string wrote = WriteIfSolved(place.out, session.rig, report);
+  const std::string wrote = WriteIfSolved(place.out, session.rig, &report);
   if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);

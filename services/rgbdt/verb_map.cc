@@ -150,6 +150,22 @@ void TellRefused(const ClosedWay& closed) {
       closed.contradict);
 }
 
+// What cameras had to say of the loops.
+void TellColours(const ClosedWay& closed) {
+  std::size_t seen = 0, unlike = 0;
+  for (const ClosedLoop& loop : closed.loops) {
+    if (loop.colours.cells > 0) ++seen;
+    if (loop.sigma_factor > 3) ++unlike;
+  }
+  if (seen == 0) return;
+  std::printf("cameras saw both places of %zu of them: ", seen);
+  if (unlike == 0) {
+    std::printf("they look the same\n");
+  } else {
+    std::printf("%zu look different and hardly count (another light, or another place)\n", unlike);
+  }
+}
+
 void TellLoops(const ClosedWay& closed) {
   if (!closed.solved) {
     std::printf("loops: the poses have no solution; the way is as odometry found it\n");
@@ -162,6 +178,7 @@ void TellLoops(const ClosedWay& closed) {
     std::printf(
         "%zu loops closed: the end of the way moved by %.2f m, no place by more than %.2f\n",
         closed.loops.size(), closed.end_moved_m, closed.most_moved_m);
+    TellColours(closed);
   }
   TellRefused(closed);
 }

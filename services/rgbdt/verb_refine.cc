@@ -133,7 +133,7 @@ int RunRefine(RefineFlags flags) {
   SetAside(out);
   Report report = Refine(session.rig, read.views, start, flags.options);
   for (CameraReport& camera : report.cameras) camera.cannot_tell = cannot_tell;
-  const std::string wrote = WriteIfSolved(out, session.rig, report);
+  const std::string wrote = WriteIfSolved(out, session.rig, &report);
   const auto truth = TruthPath(flags.truth, session.root);
   if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
   WriteReportFiles(out, {session, WithoutBoards(report), {report}});

@@ -72,7 +72,7 @@ int RunReplay(const ReplayFlags& flags) {
   SetAsideWithTheFirstView(flags.out, &replay);
   const std::int64_t events = ReplayLog(flags.log, &replay);
   const auto [assembler, detector, solver, fuser] = replay.runners();
-  const std::optional<Report>& report = replay.solver().report();
+  std::optional<Report> report = replay.solver().report();
   if (!report && replay.took_calibration()) {
     PrintFused(fuser->GetStatus());
     return EndsWith(flags.anyway || replay.fuser().HasCalibrations());
@@ -84,7 +84,7 @@ int RunReplay(const ReplayFlags& flags) {
         solver->GetStatus().text + "; detector: " + detector->GetStatus().text);
   }
   const std::filesystem::path out = flags.out;
-  const std::string written = WriteIfSolved(out, *replay.solver().rig(), *report);
+  const std::string written = WriteIfSolved(out, *replay.solver().rig(), &*report);
   WriteReport(out / "report.json", WithVerdicts(*report));
   std::fputs(Summary(*report).FullReport().c_str(), stdout);
   PrintFused(fuser->GetStatus());

@@ -30,32 +30,6 @@ constexpr char kLidars[] =
     "\nOf LIDARs beside the reference, whose frame the LIDAR frame is, reference_from_lidar:\n"
     "  point_in_reference = R(quaternion_wxyz) * point_in_lidar + translation_m";
 
-// A minute is no offset of a clock, a second no read-out.
-constexpr double kMostOffset = 60, kMostRolling = 1;
-
-Estimate ToEstimate(const proto::Estimate& estimate, const Place& place, const std::string& field,
-                    double most) {
-  const Place at = place.In(field);
-  text::RequireFinite(estimate.value(), at, "value");
-  text::RequireFinite(estimate.sigma(), at, "sigma");
-  if (std::abs(estimate.value()) > most || estimate.sigma() < 0) {
-    place.Fail(field, "is " + std::to_string(estimate.value()) + " +- " +
-                          std::to_string(estimate.sigma()) + "; expected seconds within " +
-                          std::to_string(most) + ", and a sigma of 0 or more");
-  }
-  return {estimate.value(), estimate.sigma()};
-}
-
-void FromEstimate(const Estimate& estimate, proto::Estimate* out) {
-  out->set_value(estimate.value);
-  out->set_sigma(estimate.sigma);
-}
-
-CameraTiming ToTiming(const proto::CameraTiming& timing, const Place& place) {
-  return {ToEstimate(timing.time_offset_s(), place, "time_offset_s", kMostOffset),
-          ToEstimate(timing.rolling_s(), place, "rolling_s", kMostRolling)};
-}
-
 CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& place) {
   if (camera.camera().empty()) place.Fail("camera", "is missing; expected the camera's name");
   CameraCalibration out;
@@ -68,7 +42,7 @@ CameraCalibration ToCamera(const proto::CameraCalibration& camera, const Place& 
   if (camera.has_range_errors()) {
     out.range_errors = text::ToRangeErrors(camera.range_errors(), place.In("range_errors"));
   }
-  if (camera.has_timing()) out.timing = ToTiming(camera.timing(), place.In("timing"));
+  if (camera.has_timing()) out.timing = text::ToTiming(camera.timing(), place.In("timing"));
   out.status = text::ToStatus(camera.status(), place);
   out.detail = camera.detail();
   return out;
@@ -84,10 +58,7 @@ void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) 
   if (camera.range_errors) {
     text::FromRangeErrors(*camera.range_errors, out->mutable_range_errors());
   }
-  if (camera.timing) {
-    FromEstimate(camera.timing->time_offset_s, out->mutable_timing()->mutable_time_offset_s());
-    FromEstimate(camera.timing->rolling_s, out->mutable_timing()->mutable_rolling_s());
-  }
+  if (camera.timing) text::FromTiming(*camera.timing, out->mutable_timing());
   out->set_status(text::FromStatus(camera.status));
   out->set_detail(ValidUtf8(camera.detail));
 }

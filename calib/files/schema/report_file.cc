@@ -168,6 +168,7 @@ void FromCamera(const CameraReport& camera, proto::CameraReport* out) {
   if (calibration.range_errors) {
     text::FromRangeErrors(*calibration.range_errors, out->mutable_range_errors());
   }
+  if (calibration.timing) text::FromTiming(*calibration.timing, out->mutable_timing());
   out->set_contradiction(ValidUtf8(camera.contradiction));
   out->set_cannot_tell(ValidUtf8(camera.cannot_tell));
   for (const Cause& cause : camera.causes) FromCause(cause, out->add_causes());
@@ -210,6 +211,9 @@ CameraReport ToCamera(const std::string& name, const proto::CameraReport& messag
   if (message.has_range_errors()) {
     camera.calibration.range_errors =
         text::ToRangeErrors(message.range_errors(), place.In("range_errors"));
+  }
+  if (message.has_timing()) {
+    camera.calibration.timing = text::ToTiming(message.timing(), place.In("timing"));
   }
   if (message.has_view_scatter()) {
     camera.view_scatter =

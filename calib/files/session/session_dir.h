@@ -66,7 +66,7 @@ std::string SetResultsAside(const std::filesystem::path& dir);
 /// Gives the cameras that have no timing that of the calibration which SetResultsAside moved away
 /// in `dir`, where they are the same cameras: views of a board that stands tell nothing of clocks.
 /// Says in words whose; empty: nobody's.
-std::string KeepTimings(const std::filesystem::path& dir, const Rig& rig, Calibration* calibration);
+std::string KeepTimings(const std::filesystem::path& dir, const Rig& rig, Report* report);
 
 /// Renames views/VIEW so that no one takes it for a view: nothing is lost, and its name is free.
 /// Returns what it is called now. Throws InputError where it cannot be renamed.

@@ -62,14 +62,15 @@ std::string SetResultsAside(const fs::path& dir) {
                       : "results of an earlier run are kept in " + dir.string() + " as " + kept;
 }
 
-std::string KeepTimings(const fs::path& dir, const Rig& rig, Calibration* calibration) {
+std::string KeepTimings(const fs::path& dir, const Rig& rig, Report* report) {
   const fs::path path = dir / PreviousOf(kResults[0]);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return "";
   std::string kept;
   try {
     const Calibration earlier = ReadCalibration(path);
-    for (CameraCalibration& camera : calibration->cameras) {
+    for (CameraReport& of : report->cameras) {
+      CameraCalibration& camera = of.calibration;
       const CameraCalibration* before = earlier.Find(camera.camera);
       if (camera.timing || before == nullptr || !before->timing) continue;
       if (!IsThatCamera(earlier, rig.Camera(camera.camera))) continue;

@@ -203,6 +203,17 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
     row("range offset, by intensity [mm]",
         [](const CameraReport& c) { return Spread(RangeErrorsOf(c).intensities); });
   }
+  if (any([](const CameraReport& c) { return c.calibration.timing.has_value(); })) {
+    const auto cell = [](const CameraReport& c, Estimate CameraTiming::*time) {
+      if (!c.calibration.timing) return std::string("-");
+      const Estimate& estimate = (*c.calibration.timing).*time;
+      return fmt::format("{:.3f} +- {:.3f}", 1e3 * estimate.value, 1e3 * estimate.sigma);
+    };
+    row("time offset, by rgbdt sync [ms]",
+        [&](const CameraReport& c) { return cell(c, &CameraTiming::time_offset_s); });
+    row("read-out, by rgbdt sync [ms]",
+        [&](const CameraReport& c) { return cell(c, &CameraTiming::rolling_s); });
+  }
   if (any([](const CameraReport& c) { return !c.other_starts.empty(); })) {
     row("result from a far start differs by", [](const CameraReport& c) {
       return c.other_starts.empty() ? std::string("-") : Error(c.other_starts[0].from_result);

@@ -41,13 +41,13 @@ std::string PageOf(const FinishedSession& finished) {
 
 }  // namespace
 
-std::string WriteIfSolved(const std::filesystem::path& dir, const Rig& rig, const Report& report) {
+std::string WriteIfSolved(const std::filesystem::path& dir, const Rig& rig, Report* report) {
   const std::filesystem::path path = dir / "calibration.textproto";
-  Calibration calibration = JudgedCalibration(report, rig);
+  const std::string kept = KeepTimings(dir, rig, report);
+  const Calibration calibration = JudgedCalibration(*report, rig);
   if (calibration.cameras.empty()) {
     return "no camera was solved, so " + path.string() + " was not written; wrote";
   }
-  const std::string kept = KeepTimings(dir, rig, &calibration);
   WriteCalibration(path, calibration);
   return (kept.empty() ? "" : kept + "\n") + "wrote " + path.string() + ",";
 }

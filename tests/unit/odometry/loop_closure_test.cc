@@ -54,10 +54,35 @@ struct DriftedWay {
   std::vector<Rigid3> truth;
 };
 
+enum class Cameras { kNone, kSee, kSeeOthersOnTheWayBack };
+
+// What cameras would make of a sweep: a beam's return is the brightness; `other`: of another place.
+RgbdtCloud Coloured(const Cloud& sweep, const Rigid3& pose, bool other) {
+  RgbdtCloud fused;
+  fused.whole_sweep = true;
+  fused.sweep_utime = sweep.sweep_utime;
+  fused.frame_utime = sweep.utime.front();
+  fused.map_from_lidar = pose;
+  for (std::size_t i = 0; i < sweep.size(); ++i) {
+    if (!(sweep.points[i].norm() < 100)) continue;
+    // Stripes a metre wide, which lie where they lie by luck.
+    const Eigen::Vector3d at = pose * sweep.points[i].cast<double>();
+    const double stripes = std::sin(2.1 * at.x() + 1.3 * at.y() + (other ? 5 * at.x() : 0));
+    const double bright = (0.3 + 0.7 * sweep.intensity[i]) * (1.2 + stripes);
+    const auto grey = static_cast<std::uint8_t>(1 + std::min(250.0, 100 * bright));
+    fused.points.push_back(sweep.points[i]);
+    fused.rgb.push_back({grey, grey, grey});
+    fused.temperature_k.push_back(NAN);
+  }
+  return fused;
+}
+
 // `back`: the street of the way back.
-DriftedWay DriveBackBy(std::uint64_t there, std::uint64_t back, const Vector6d& drift) {
+DriftedWay DriveBackBy(std::uint64_t there, std::uint64_t back, const Vector6d& drift,
+                       Cameras cameras = Cameras::kNone) {
   study::Drive first = Street(there), second = Street(back);
   Keyframes keyframes;
+  LoopColours colours;
   DriftedWay drifted;
   Rigid3 found;
   for (int i = 0; i < 2 * kThere; ++i) {
@@ -71,8 +96,15 @@ DriftedWay DriveBackBy(std::uint64_t there, std::uint64_t back, const Vector6d& 
     }
     const Cloud sweep = (i > kThere ? second : first).Sweep(i);
     keyframes.Add(sweep, Said(found, (sweep.utime.front() + sweep.utime.back()) / 2));
+    if (cameras == Cameras::kNone) continue;
+    // Stripes stand still in the world: painted where the LIDAR truly is, told where it seems to
+    // be.
+    RgbdtCloud fused = Coloured(sweep, drifted.truth.back(),
+                                i > kThere && cameras == Cameras::kSeeOthersOnTheWayBack);
+    fused.map_from_lidar = found;
+    colours.Add(fused);
   }
-  drifted.closed = CloseLoops(keyframes);
+  drifted.closed = CloseLoops(keyframes, colours);
   return drifted;
 }
 
@@ -116,6 +148,37 @@ TEST(LoopClosure, TheWayBackOtherWayAboutTakesTheDriftOut) {
   const Rigid3 step = closed.after.front().Inverse() * closed.after.back();
   const Rigid3 true_step = drifted.truth.front().Inverse() * drifted.truth.back();
   EXPECT_LT((step.translation - true_step.translation).norm(), 0.05);
+}
+
+TEST(LoopClosure, ColoursThatAgreeChangeNothing) {
+  const ClosedWay without = DriveBackBy(4, 4, Drift()).closed;
+  const ClosedWay with = DriveBackBy(4, 4, Drift(), Cameras::kSee).closed;
+  ASSERT_THAT(with.loops, SizeIs(without.loops.size()));
+  std::size_t agree = 0;
+  for (const ClosedLoop& loop : with.loops) {
+    EXPECT_GT(loop.colours.cells, 500U);
+    EXPECT_GT(loop.colours.correlation, 0.4);
+    EXPECT_LT(loop.sigma_factor, 4);
+    if (loop.sigma_factor == 1) ++agree;
+  }
+  EXPECT_GT(agree, with.loops.size() / 2);
+  EXPECT_NEAR(with.end_moved_m, without.end_moved_m, 0.05 * without.end_moved_m);
+  for (const ClosedLoop& loop : without.loops) {
+    EXPECT_EQ(loop.colours.cells, 0U);
+    EXPECT_EQ(loop.sigma_factor, 1);
+  }
+}
+
+// To the LIDAR it is the same street, to a camera another one.
+TEST(LoopClosure, WhereCamerasSeeAnotherPlaceALoopHardlyBendsTheWay) {
+  const ClosedWay without = DriveBackBy(4, 4, Drift()).closed;
+  const ClosedWay with = DriveBackBy(4, 4, Drift(), Cameras::kSeeOthersOnTheWayBack).closed;
+  for (const ClosedLoop& loop : with.loops) {
+    EXPECT_GT(loop.colours.cells, 500U);
+    EXPECT_LT(loop.colours.correlation, 0.3);
+    EXPECT_GT(loop.sigma_factor, 8);
+  }
+  EXPECT_LT(with.most_moved_m, 0.3 * without.most_moved_m);
 }
 
 TEST(LoopClosure, AnotherStreetClosesNoLoop) {

@@ -59,6 +59,23 @@ TEST(SyncTest, FindsOffsetsAndReadOutsOfTwoCameras) {
   EXPECT_GT(result.sweeps, 80);
 }
 
+TEST(SyncTest, TheRigMayTurnBeforeABoardThatStands) {
+  WavedScene scene = Short(study::TwoCameras(15));
+  scene.wave.reach_m = scene.wave.turn_rad = {0, 0, 0};
+  scene.wave.rig_turn_rad = {0.05, 0.15, 0.2};
+  scene.clocks[kColor].offset_s = 0.21;
+  scene.clocks[kColor].rolling_s = 0.02;
+  scene.clocks[kThermal].offset_s = -0.37;
+  const SyncResult result = SolveNearTruth(scene);
+  for (const std::size_t i : {kColor, kThermal}) {
+    const SyncedCamera& camera = result.cameras[i];
+    EXPECT_EQ(camera.why_not, "");
+    ExpectNear(camera.time_offset_s, scene.clocks[i].offset_s, 1e-3);  // moves by a third of a wave
+    ExpectNear(camera.rolling_s, scene.clocks[i].rolling_s, 5e-4);
+  }
+  EXPECT_GT(result.turn_speed, 0.2);
+}
+
 TEST(SyncTest, NeedsNoPoseToBeginFrom) {
   WavedScene scene = Short(study::ColorCamera(12));
   scene.clocks[0].offset_s = -0.62;

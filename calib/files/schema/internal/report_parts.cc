@@ -156,6 +156,28 @@ Estimate ToEstimate(const proto::Estimate& estimate) {
           OrNan(estimate.has_sigma(), estimate.sigma())};
 }
 
+void FromTiming(const CameraTiming& timing, proto::CameraTiming* out) {
+  FromEstimate(timing.time_offset_s, out->mutable_time_offset_s());
+  FromEstimate(timing.rolling_s, out->mutable_rolling_s());
+}
+
+CameraTiming ToTiming(const proto::CameraTiming& timing, const Place& place) {
+  const auto seconds = [&](const proto::Estimate& message, const char* field, double most) {
+    const Place at = place.In(field);
+    RequireFinite(message.value(), at, "value");
+    RequireFinite(message.sigma(), at, "sigma");
+    if (std::abs(message.value()) > most || message.sigma() < 0) {
+      place.Fail(field, "is " + std::to_string(message.value()) + " +- " +
+                            std::to_string(message.sigma()) + "; expected seconds within " +
+                            std::to_string(most) + ", and a sigma of 0 or more");
+    }
+    return Estimate{message.value(), message.sigma()};
+  };
+  // A minute is no offset of a clock, a second no read-out.
+  return {seconds(timing.time_offset_s(), "time_offset_s", 60),
+          seconds(timing.rolling_s(), "rolling_s", 1)};
+}
+
 void FromRangeErrors(const RangeErrors& errors, proto::RangeErrors* out) {
   FromEstimate(errors.offset_m, out->mutable_offset_m());
   for (const auto& [ring, offset_m] : errors.rings) {

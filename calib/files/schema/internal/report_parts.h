@@ -22,6 +22,10 @@ PoseError ToPoseError(const proto::PoseError& error);
 
 void FromEstimate(const Estimate& estimate, proto::Estimate* out);
 Estimate ToEstimate(const proto::Estimate& estimate);
+
+void FromTiming(const CameraTiming& timing, proto::CameraTiming* out);
+/// Throws InputError for numbers that no clock and no shutter has.
+CameraTiming ToTiming(const proto::CameraTiming& timing, const Place& place);
 void FromRangeErrors(const RangeErrors& errors, proto::RangeErrors* out);
 /// Throws InputError for rings and intensities that do not rise, and numbers that are not finite.
 RangeErrors ToRangeErrors(const proto::RangeErrors& errors, const Place& place);

@@ -13,6 +13,7 @@ TEST(ReportFile, GivesBackEveryFigure) {
   const test::TempDir dir;
   Report report = test::MakeReport();
   report.cameras[1].calibration.range_errors = test::MakeRangeErrors();
+  report.cameras[1].calibration.timing = CameraTiming{{0.0125, 1e-5}, {-0.02, 2e-5}};
   WriteReport(dir / "report.json", report);
   const Report back = ReadReport(dir / "report.json");
   ASSERT_EQ(back.cameras.size(), 2u);
@@ -23,6 +24,7 @@ TEST(ReportFile, GivesBackEveryFigure) {
     test::ExpectSame(b.calibration.camera_from_lidar, a.calibration.camera_from_lidar);
     EXPECT_EQ(b.calibration.covariance, a.calibration.covariance);
     EXPECT_TRUE(b.calibration.range_errors == a.calibration.range_errors);
+    EXPECT_EQ(b.calibration.timing, a.calibration.timing);
     ASSERT_EQ(b.first_guess.has_value(), a.first_guess.has_value());
     if (a.first_guess) test::ExpectSame(*b.first_guess, *a.first_guess);
     EXPECT_EQ(b.used, a.used);

@@ -53,21 +53,24 @@ TEST_F(SetAside, TimingsOfTheSameCamerasAreHandedOn) {
   }
   WriteCalibration(dir_ / "calibration.textproto", earlier);
   SetResultsAside(dir_.path());
-  Calibration solved = earlier;
-  for (CameraCalibration& camera : solved.cameras) camera.timing.reset();
+  Report solved;
+  for (const CameraCalibration& camera : earlier.cameras) {
+    solved.cameras.emplace_back().calibration.camera = camera.camera;
+  }
   const CameraTiming own{{0.5, 0.001}, {0, 0.002}};
-  solved.cameras.back().timing = own;
+  CameraCalibration& first = solved.cameras.front().calibration;
+  solved.cameras.back().calibration.timing = own;
   const std::string said = KeepTimings(dir_.path(), rig, &solved);
-  EXPECT_THAT(said, AllOf(HasSubstr("`timing` of " + solved.cameras.front().camera),
+  EXPECT_THAT(said, AllOf(HasSubstr("`timing` of " + first.camera),
                           HasSubstr("calibration.previous.textproto"), Not(HasSubstr("\n"))));
-  EXPECT_EQ(solved.cameras.front().timing, earlier.cameras.front().timing);
-  EXPECT_EQ(solved.cameras.back().timing, own) << "its own is newer";
+  EXPECT_EQ(first.timing, earlier.cameras.front().timing);
+  EXPECT_EQ(solved.cameras.back().calibration.timing, own) << "its own is newer";
 
   Rig other = rig;
   other.cameras.front().width *= 2;
-  solved.cameras.front().timing.reset();
+  first.timing.reset();
   EXPECT_EQ(KeepTimings(dir_.path(), other, &solved), "");
-  EXPECT_FALSE(solved.cameras.front().timing);
+  EXPECT_FALSE(first.timing);
   EXPECT_EQ(KeepTimings(dir_ / "nowhere", rig, &solved), "");
 }
 

@@ -55,6 +55,15 @@ TEST(Summary, HasTheUncertaintyOfThePoseAndOfTheProjection) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88U) << line;
 }
 
+TEST(Summary, HasWhenACameraSeesWhereThatIsKnown) {
+  Report report = MakeReport();
+  EXPECT_EQ(LineOf(FullReport(report), "time offset"), "");
+  report.cameras[1].calibration.timing = CameraTiming{{-0.0123, 5e-5}, {0.02, 1.4e-5}};
+  const std::string table = FullReport(report);
+  EXPECT_THAT(LineOf(table, "time offset"), HasSubstr(" -    -12.300 +- 0.050"));
+  EXPECT_THAT(LineOf(table, "read-out"), HasSubstr(" 20.000 +- 0.014"));
+}
+
 TEST(Summary, HasALineForEachLidarBesideTheReference) {
   Report report = MakeReport();
   LidarReport& lidar = report.lidars.emplace_back();
