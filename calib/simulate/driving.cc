@@ -32,12 +32,13 @@ Options Checked(Options options) {
 }  // namespace
 
 struct Driving::Impl {
-  Impl(const Options& o, double speed_mps);
+  Impl(const Options& o, double speed_mps, std::vector<ClockOptions> c);
 
   Rigid3 At(Utime utime) const { return way(ToSeconds(utime - kStart)); }
   const World& WorldAt(Utime utime);
 
   Options options;
+  std::vector<ClockOptions> clocks;
   Way way;
   Rig rig;
   Truth truth;
@@ -45,10 +46,16 @@ struct Driving::Impl {
   double world_x = 0;
 };
 
-Driving::Impl::Impl(const Options& o, double speed_mps)
+Driving::Impl::Impl(const Options& o, double speed_mps, std::vector<ClockOptions> c)
     : options(Checked(o)),
+      clocks(std::move(c)),
       way(options.scene == Scene::kIndoor ? RoomWay(options.seed, speed_mps)
                                           : StreetWay(options.seed, speed_mps)) {
+  if (clocks.empty()) clocks.resize(options.cameras.size());
+  if (clocks.size() != options.cameras.size()) {
+    throw InputError("simulator: " + std::to_string(clocks.size()) + " clocks for " +
+                     std::to_string(options.cameras.size()) + " cameras; expected one each");
+  }
   std::vector<Rigid3> poses;
   for (const CameraOptions& camera : options.cameras) {
     poses.push_back(DrawCameraFromLidar(camera, options.seed));
@@ -68,8 +75,8 @@ const World& Driving::Impl::WorldAt(Utime utime) {
   return *world;
 }
 
-Driving::Driving(const Options& options, double speed_mps)
-    : impl_(std::make_unique<Impl>(options, speed_mps)) {}
+Driving::Driving(const Options& options, double speed_mps, std::vector<ClockOptions> clocks)
+    : impl_(std::make_unique<Impl>(options, speed_mps, std::move(clocks))) {}
 Driving::~Driving() = default;
 
 const Rig& Driving::rig() const { return impl_->rig; }
@@ -86,14 +93,23 @@ Image Driving::TakeImage(const std::string& camera, Utime utime) {
   const CameraSpec& spec = impl_->rig.Camera(camera);
   const auto index = static_cast<std::size_t>(&spec - impl_->rig.cameras.data());
   const World& world = impl_->WorldAt(utime);
-  CameraRenderer renderer(impl_->options.cameras[index],
-                          impl_->truth.camera_from_lidar.at(camera) * impl_->At(utime).Inverse(),
+  const ClockOptions& clock = impl_->clocks[index];
+  const auto camera_from_world = [&](Utime at) {
+    return impl_->truth.camera_from_lidar.at(camera) * impl_->At(at).Inverse();
+  };
+  CameraRenderer renderer(impl_->options.cameras[index], camera_from_world(utime),
                           impl_->options.supersampling, impl_->options.threads);
+  if (clock.rolling_s != 0) {
+    renderer.Roll([&](int row) {
+      return camera_from_world(utime + FromSeconds(clock.RowAfterMiddle(row, spec.height)));
+    });
+  }
   renderer.RenderEmpty(world);
   renderer.ShowEmpty(world);
-  Image image = renderer.Take(impl_->options.seed, utime);
+  const Utime by_camera = utime - FromSeconds(clock.OffsetAt(ToSeconds(utime - kStart)));
+  Image image = renderer.Take(impl_->options.seed, by_camera);
   image.radiometry = spec.radiometry;
-  image.frame_number = utime / 1000;
+  image.frame_number = by_camera / 1000;
   return image;
 }
 

@@ -7,7 +7,6 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/parallel.h"
-#include "calib/model/text.h"
 #include "calib/simulate/internal/beam.h"
 #include "calib/simulate/internal/camera_renderer.h"
 #include "calib/simulate/internal/dice.h"
@@ -46,28 +45,6 @@ void WaveOptions::Check() const {
   kCheck.Between(rig_turn_rad.maxCoeff(), 0, 0.5, "most of wave.rig_turn_rad");
   kCheck.Between(slowest_hz, 0.01, 10, "wave.slowest_hz");
   kCheck.Between(fastest_hz, slowest_hz, 10, "wave.fastest_hz");
-}
-
-std::vector<ClockOptions> DrawClocks(const Options& options) {
-  std::vector<ClockOptions> clocks;
-  for (const CameraOptions& camera : options.cameras) {
-    Dice draw(options.seed, 0, "clock of " + camera.name);
-    ClockOptions& clock = clocks.emplace_back();
-    clock.offset_s = draw.Between(-0.1, 0.1);
-    clock.drift = draw.Between(-2e-5, 2e-5);
-    if (camera.kind == CameraKind::kColor) clock.rolling_s = draw.Between(0.010, 0.025);
-  }
-  return clocks;
-}
-
-std::string ClocksText(const Options& options, const std::vector<ClockOptions>& clocks) {
-  std::string text;
-  for (std::size_t i = 0; i < clocks.size(); ++i) {
-    text += options.cameras[i].name +
-            Format(": time_offset_s %.6f, drifts by %.1f us/s, rolling_s %.6f\n",
-                   clocks[i].offset_s, 1e6 * clocks[i].drift, clocks[i].rolling_s);
-  }
-  return text;
 }
 
 struct Waving::Impl {
@@ -232,15 +209,14 @@ Cloud Waving::Sweep(Utime utime) const {
 Image Waving::TakeImage(const std::string& camera, Utime utime) {
   const std::size_t index = impl_->IndexOf(camera);
   CameraRenderer& renderer = impl_->cameras[index];
-  const double rolling_s = impl_->clocks[index].rolling_s;
+  const ClockOptions& clock = impl_->clocks[index];
   const int height = renderer.options().height;
-  const int count = rolling_s == 0 ? 1 : (height + kBandRows - 1) / kBandRows;
+  const int count = clock.rolling_s == 0 ? 1 : (height + kBandRows - 1) / kBandRows;
   std::vector<World> worlds;
   worlds.reserve(static_cast<std::size_t>(count));
   for (int band = 0; band < count; ++band) {
     const double row = (band + 0.5) * height / count - 0.5;  // the band's middle
-    const double later = rolling_s * (row / (height - 1) - 0.5);
-    const double seconds = ToSeconds(utime - impl_->wave.start) + later;
+    const double seconds = ToSeconds(utime - impl_->wave.start) + clock.RowAfterMiddle(row, height);
     worlds.emplace_back(impl_->scene, Board(impl_->options.board, impl_->At(seconds), impl_->heat),
                         impl_->options);
   }
@@ -259,7 +235,7 @@ std::vector<Eigen::Vector2d> Waving::Corners(const std::string& camera, Utime ut
   const std::size_t index = impl_->IndexOf(camera);
   const CameraRenderer& renderer = impl_->cameras[index];
   const CameraOptions& options = renderer.options();
-  const double rolling_s = impl_->clocks[index].rolling_s;
+  const ClockOptions& clock = impl_->clocks[index];
   const double seconds = ToSeconds(utime - impl_->wave.start);
   std::vector<Eigen::Vector2d> corners;
   for (const Eigen::Vector3d& corner : impl_->rig.target.InnerCorners()) {
@@ -267,7 +243,7 @@ std::vector<Eigen::Vector2d> Waving::Corners(const std::string& camera, Utime ut
     std::optional<Eigen::Vector2d> pixel;
     double row = 0.5 * (options.height - 1);
     for (int round = 0; round < 5; ++round) {
-      const double later = rolling_s * (row / (options.height - 1) - 0.5);
+      const double later = clock.RowAfterMiddle(row, options.height);
       pixel = renderer.lens().Project(renderer.camera_from_lidar() *
                                       (impl_->At(seconds + later) * corner));
       if (!pixel) return {};

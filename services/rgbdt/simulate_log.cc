@@ -98,14 +98,21 @@ std::vector<StampedPose> TrueWay(const simulate::Driving& driving, const LogOpti
 }
 
 // Nobody calibrated it: what is known exactly has some sigma all the same.
-Calibration TrueCalibration(const Rig& rig, const Truth& truth, const simulate::Options& options) {
+Calibration TrueCalibration(const Rig& rig, const Truth& truth, const simulate::Options& options,
+                            const std::vector<simulate::ClockOptions>& clocks, double seconds) {
   constexpr double kVariance = 1e-10;
   Calibration calibration;
   calibration.method = "truth";
   calibration.rig_hash = rig.hash;
   calibration.sensors = SensorsOf(rig);
-  for (const simulate::CameraOptions& from : options.cameras) {
+  for (std::size_t i = 0; i < options.cameras.size(); ++i) {
+    const simulate::CameraOptions& from = options.cameras[i];
     CameraCalibration& camera = calibration.cameras.emplace_back();
+    if (!clocks.empty()) {  // of a clock that drifts the mean, as sync has it
+      const double half_drift = 0.5 * seconds * clocks[i].drift;
+      camera.timing = CameraTiming{{clocks[i].offset_s + half_drift, std::abs(half_drift) + 1e-6},
+                                   {clocks[i].rolling_s, 1e-6}};
+    }
     camera.camera = from.name;
     camera.camera_from_lidar = truth.camera_from_lidar.at(from.name);
     camera.status = SolveStatus::kConverged;
@@ -146,13 +153,18 @@ void SimulateWave(const std::filesystem::path& dir, const simulate::Options& opt
 }
 
 void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& options,
-                   double seconds) {
+                   double seconds, Clocks of_cameras) {
   constexpr double kImage_hz = 2, kStreet_mps = 3, kRoom_mps = 0.5;
   using simulate::Driving;
-  Driving driving(options, options.scene == simulate::Scene::kIndoor ? kRoom_mps : kStreet_mps);
+  const auto clocks = of_cameras == Clocks::kOff ? simulate::DrawClocks(options)
+                                                 : std::vector<simulate::ClockOptions>();
+  Driving driving(options, options.scene == simulate::Scene::kIndoor ? kRoom_mps : kStreet_mps,
+                  clocks);
   const Rig rig = WrittenRig(dir, driving.rig());
-  WriteTruth(dir / "truth.textproto", driving.truth(), simulate::ImperfectionsText(options));
-  const Calibration calibration = TrueCalibration(rig, driving.truth(), options);
+  WriteTruth(dir / "truth.textproto", driving.truth(),
+             (clocks.empty() ? "" : simulate::ClocksText(options, clocks)) +
+                 simulate::ImperfectionsText(options));
+  const Calibration calibration = TrueCalibration(rig, driving.truth(), options, clocks, seconds);
   WriteCalibration(dir / "calibration.textproto", calibration);
   const LogOptions what{dir / "drive.lcmlog",
                         Driving::kStart,

@@ -13,8 +13,10 @@ void SimulateWave(const std::filesystem::path& dir, const simulate::Options& opt
 
 /// A log of a rig that drives, for `rgbdt map` and `rgbdt refine`: drive.lcmlog in `dir`, with
 /// rig.textproto, truth.textproto, truth.tum (where it was) and calibration.textproto (the truth,
-/// which the log has, too).
+/// which the log has, too). Clocks::kOff: cameras' clocks and shutters as DrawClocks has them,
+/// which the calibration knows.
+enum class Clocks { kExact, kOff };
 void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& options,
-                   double seconds);
+                   double seconds, Clocks of_cameras);
 
 }  // namespace rgbdt

@@ -127,7 +127,8 @@ int RunLog(SimulateFlags flags) {
     SimulateWave(flags.dir, flags.options, flags.wave);
   } else {
     flags.options.supersampling = 4;  // as SetScene has it
-    SimulateDrive(flags.dir, flags.options, flags.drive);
+    SimulateDrive(flags.dir, flags.options, flags.drive,
+                  flags.imperfect ? Clocks::kOff : Clocks::kExact);
   }
   return EndsWith(true);
 }
@@ -210,8 +211,9 @@ void AddSimulate(CommandLine* program) {
                "the motor's encoder is stamped so many seconds late");
   verb->Flag("--imperfect", &flags->imperfect,
              "what real rigs are off by, drawn from the seed: lenses, print, ranges (all, of each "
-             "ring, of dark surfaces), where beams meet, how wide they are. A drive's "
-             "calibration.textproto has the true lenses");
+             "ring, of dark surfaces), where beams meet, how wide they are. Of a drive "
+             "the cameras' clocks and shutters, too; its calibration.textproto has these and the "
+             "true lenses");
   verb->Flag(
       "--natural", &flags->options.natural.on,
       "no board: a street (outdoor) or a room (indoor) as the seed lays it out, with people; "

@@ -60,6 +60,8 @@ grep -qE '(^| )9 poses|10 sweeps' "$scratch/output" || complain "the map is not 
 drive=$scratch/imperfect_drive
 accepts "an imperfect drive" "$bin/rgbdt" simulate "$drive" --drive 0.2 --scene indoor --lidar vlp16 --imperfect
 holds "imperfect drive" "$drive/truth.textproto" "^# rings' ranges \[mm\], the lowest first:( [+-][0-9.]+){16}$"
+holds "imperfect drive" "$drive/truth.textproto" "^# rgb: time_offset_s -?[0-9.]+, drifts by .*, rolling_s 0.0[12]"
+holds "imperfect drive" "$drive/calibration.textproto" "timing {"
 ! grep -q "^# pattern" "$drive/truth.textproto" || complain "imperfect drive: a print, without a board"
 ! grep -q "exact: true" "$drive/rig.textproto" || complain "imperfect drive: its lenses are exact"
 grep -q "lens {" "$drive/calibration.textproto" || complain "imperfect drive: the true lenses are not there"

@@ -49,26 +49,34 @@ CameraRenderer::CameraRenderer(const CameraOptions& camera, const Rigid3& camera
                                int supersampling, int threads)
     : camera_(camera),
       camera_from_lidar_(camera_from_lidar),
-      lidar_from_camera_(camera_from_lidar.Inverse()),
-      rotation_(lidar_from_camera_.rotation.toRotationMatrix()),
+      eye_(camera_from_lidar),
       lens_(camera.lens, camera.width, camera.height),
       supersampling_(supersampling),
       threads_(threads),
       pixel_rad_(1 / std::max(camera.lens.fx, camera.lens.fy)) {}
 
-Eigen::Vector3d CameraRenderer::Direction(const Eigen::Vector2d& normalised) const {
-  return (rotation_ * normalised.homogeneous()).normalized();
+CameraRenderer::Eye::Eye(const Rigid3& camera_from_lidar)
+    : origin(camera_from_lidar.Inverse().translation),
+      rotation(camera_from_lidar.Inverse().rotation.toRotationMatrix()) {}
+
+Eigen::Vector3d CameraRenderer::Eye::Direction(const Eigen::Vector2d& normalised) const {
+  return (rotation * normalised.homogeneous()).normalized();
+}
+
+void CameraRenderer::Roll(const std::function<Rigid3(int row)>& camera_from_lidar) {
+  rows_.clear();
+  for (int row = 0; row < camera_.height; ++row) rows_.emplace_back(camera_from_lidar(row));
 }
 
 void CameraRenderer::MarkMoving(const World& world, int row,
                                 std::vector<std::uint8_t>* moving) const {
-  const Eigen::Vector3d origin = CentreInLidar();
+  const Eye& eye = EyeOf(row);
   for (int column = 0; column < camera_.width; ++column) {
-    const Eigen::Vector3d direction = Direction(lens_.At(column, row));
+    const Eigen::Vector3d direction = eye.Direction(lens_.At(column, row));
     const std::size_t i = Index(column, row);
-    bool may = world.MayMeetMoving(origin, direction);
+    bool may = world.MayMeetMoving(eye.origin, direction);
     if (!may && color() && std::isfinite(empty_ranges_[i])) {
-      may = MayBeShadedByMoving(world, origin + empty_ranges_[i] * direction);
+      may = MayBeShadedByMoving(world, eye.origin + empty_ranges_[i] * direction);
     }
     (*moving)[i] = may ? 1 : 0;
   }
@@ -77,13 +85,13 @@ void CameraRenderer::MarkMoving(const World& world, int row,
 void CameraRenderer::ShadeRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                               cv::Mat* values, std::vector<std::uint64_t>* patches,
                               std::vector<float>* ranges) const {
-  const Eigen::Vector3d origin = CentreInLidar();
+  const Eye& eye = EyeOf(row);
   for (int column = 0; column < camera_.width; ++column) {
     const std::size_t i = Index(column, row);
     if (moving != nullptr && (*moving)[i] == 0) continue;
-    const Eigen::Vector3d direction = Direction(lens_.At(column, row));
-    const Seen seen = color() ? SeeColor(world, origin, direction, pixel_rad_)
-                              : SeeHeat(world, origin, direction, pixel_rad_);
+    const Eigen::Vector3d direction = eye.Direction(lens_.At(column, row));
+    const Seen seen = color() ? SeeColor(world, eye.origin, direction, pixel_rad_)
+                              : SeeHeat(world, eye.origin, direction, pixel_rad_);
     Store(seen.value, row, column, values);
     (*patches)[i] = seen.patch;
     if (ranges != nullptr) (*ranges)[i] = static_cast<float>(seen.range);
@@ -91,7 +99,7 @@ void CameraRenderer::ShadeRow(const World& world, int row, const std::vector<std
 }
 
 Eigen::Vector3d CameraRenderer::Refined(const World& world, int column, int row, int n) const {
-  const Eigen::Vector3d origin = CentreInLidar();
+  const Eye& eye = EyeOf(row);
   const bool few_first = world.scene().many_edges;
   Eigen::Vector3d sum(0, 0, 0);
   std::uint64_t patch = 0;
@@ -104,9 +112,9 @@ Eigen::Vector3d CameraRenderer::Refined(const World& world, int column, int row,
     // arrangement), so an upright edge is placed to 1/n^2 of a pixel.
     const Eigen::Vector2d pixel(column - 0.5 + (i + (j + 0.5) / n) / n,
                                 row - 0.5 + (j + (i + 0.5) / n) / n);
-    const Eigen::Vector3d direction = Direction(lens_.Undistort(pixel, lens_.At(column, row)));
-    const Seen seen = color() ? SeeColor(world, origin, direction, pixel_rad_)
-                              : SeeHeat(world, origin, direction, pixel_rad_);
+    const Eigen::Vector3d direction = eye.Direction(lens_.Undistort(pixel, lens_.At(column, row)));
+    const Seen seen = color() ? SeeColor(world, eye.origin, direction, pixel_rad_)
+                              : SeeHeat(world, eye.origin, direction, pixel_rad_);
     sum += seen.value;
     edge |= k > 0 && seen.patch != patch;
     patch = seen.patch;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -21,8 +22,10 @@ class CameraRenderer {
 
   const CameraOptions& options() const { return camera_; }
   const Rigid3& camera_from_lidar() const { return camera_from_lidar_; }
+  Eigen::Vector3d CentreInLidar() const { return eye_.origin; }
+  /// From now on each row is exposed from where the camera is then: camera_from_lidar by the row.
+  void Roll(const std::function<Rigid3(int row)>& camera_from_lidar);
   const LensTable& lens() const { return lens_; }
-  Eigen::Vector3d CentreInLidar() const { return lidar_from_camera_.translation; }
 
   /// The scene without the board.
   void RenderEmpty(const World& empty);
@@ -42,7 +45,16 @@ class CameraRenderer {
   Image Take(std::uint64_t seed, Utime utime) const;
 
  private:
-  Eigen::Vector3d Direction(const Eigen::Vector2d& normalised) const;
+  /// Where a row's rays start, and how the camera is turned then.
+  struct Eye {
+    explicit Eye(const Rigid3& camera_from_lidar);
+    Eigen::Vector3d Direction(const Eigen::Vector2d& normalised) const;
+    Eigen::Vector3d origin;
+    Eigen::Matrix3d rotation;  ///< lidar_from_camera
+  };
+  const Eye& EyeOf(int row) const {
+    return rows_.empty() ? eye_ : rows_[static_cast<std::size_t>(row)];
+  }
   void ShadeRow(const World& world, int row, const std::vector<std::uint8_t>* moving,
                 cv::Mat* values, std::vector<std::uint64_t>* patches,
                 std::vector<float>* ranges) const;
@@ -61,8 +73,9 @@ class CameraRenderer {
   }
 
   CameraOptions camera_;
-  Rigid3 camera_from_lidar_, lidar_from_camera_;
-  Eigen::Matrix3d rotation_;  ///< lidar_from_camera
+  Rigid3 camera_from_lidar_;
+  Eye eye_;
+  std::vector<Eye> rows_;  ///< of a camera that moves while its shutter rolls
   LensTable lens_;
   int supersampling_, threads_;
   double pixel_rad_;

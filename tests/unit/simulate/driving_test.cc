@@ -67,6 +67,31 @@ TEST(DrivingTest, ImagesAreTakenOnTheWay) {
   EXPECT_EQ(driving.truth().camera_from_lidar.count("rgb"), 1U);
 }
 
+// Each row is that of an image which was all taken then.
+TEST(DrivingTest, RowsOfARollingShutterAreSeenFromWhereTheRigIsThen) {
+  const Options options = SmallRig(Scene::kIndoor);
+  ClockOptions clock;
+  clock.offset_s = 0.04;
+  clock.rolling_s = 0.4;
+  Driving driving(options, 1), rolling(options, 1, {clock});
+  const Utime utime = Driving::kStart + 2 * kMicrosecondsPerSecond;
+  const Image rolled = rolling.TakeImage("rgb", utime);
+  EXPECT_EQ(rolled.utime, utime - 40'000);
+  const int height = rolled.pixels.rows;
+  for (const int row : {0, height / 2, height - 1}) {
+    const double later = 0.4 * (static_cast<double>(row) / (height - 1) - 0.5);
+    const auto apart = [&](Utime at) {
+      return cv::norm(rolled.pixels.row(row), driving.TakeImage("rgb", at).pixels.row(row),
+                      cv::NORM_L1) /
+             rolled.pixels.cols;
+    };
+    const double then = apart(utime + FromSeconds(later));
+    EXPECT_LT(then, 4) << row << ": but for noise, and edges of the rows beside it";
+    if (row == height / 2) continue;
+    EXPECT_GT(apart(utime), 2 * then) << row;
+  }
+}
+
 TEST(DrivingTest, RefusesATurnedScannerAndTheNight) {
   Options turned = SmallRig(Scene::kOutdoor);
   turned.spinning.reset();
