@@ -371,6 +371,12 @@ WavedSweep TakeWavedSweep(const Cloud& cloud, double most_range_m) {
                      std::to_string(cloud.utime.size()) +
                      " times; the LIDAR's driver must publish each point's");
   }
+  const auto [first, last] = std::minmax_element(cloud.utime.begin(), cloud.utime.end());
+  if (cloud.size() > 1 && *first == *last) {
+    throw InputError("all " + std::to_string(cloud.size()) +
+                     " points of a sweep bear one time; the LIDAR's driver must publish each "
+                     "point's");
+  }
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (cloud.IsHit(i) && cloud.points[i].norm() < most_range_m && cloud.points[i].norm() > 0.1) {

@@ -128,7 +128,11 @@ std::string SetLens(const TopicChoice& choice, const RigWishes& wishes, std::siz
   if (found) {
     CheckLensSize(*found, spec->name, spec->width, spec->height);
     spec->lens = found->lens;
-    return NameOf(spec->lens.model) + " lens of " + found->where;
+    const BagSurvey::Topic* info = choice.cameras[index].info;
+    const bool changes = info != nullptr && info->info_changes && found->where == info->topic.name;
+    return NameOf(spec->lens.model) + " lens of " + found->where +
+           (changes ? ", which changes within the bag: its first; give --lens FILE if it is another"
+                    : "");
   }
   if (!wishes.model || !wishes.board.HasPattern()) {
     throw InputError("camera \"" + spec->name + "\" has no lens: the bag has no CameraInfo of it" +

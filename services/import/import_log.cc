@@ -138,6 +138,7 @@ WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::option
     try {
       if (source.camera == nullptr) {
         Cloud cloud = read_cloud(source.stamped);
+        written.untimed += cloud.utime.empty() ? 1 : 0;
         written.other_clock += ByHeadersClock(&cloud) ? 1 : 0;
         AddCloud(cloud, source.until, &log);
         ++written.clouds;

@@ -20,6 +20,7 @@ struct LogRig {
 
 struct WrittenLog {
   std::int64_t clouds = 0, images = 0;
+  std::int64_t untimed = 0;      ///< clouds whose points had no times that could be a sweep's
   std::int64_t other_clock = 0;  ///< clouds whose points had the times of another clock
   std::int64_t unreadable = 0;   ///< of either
   std::string last_problem;      ///< of those

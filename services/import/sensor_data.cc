@@ -169,8 +169,9 @@ class PcdFields {
         break;
       }
     }
-    if (Take("timestamp", "timestamp") || Take("time", "time") || Take("t", "t")) return;
-    Take("offset_time", "t");
+    for (const char* name : {"timestamp", "time_stamp", "time", "t", "offset_time"}) {
+      if (Take(name, name)) return;
+    }
   }
 
   bool Take(const std::string& name, const std::string& as) {
@@ -198,21 +199,11 @@ std::string PcdHeader(const std::vector<PcdField>& fields, const ros::PointCloud
          "\nDATA binary\n";
 }
 
-// Some drivers (Livox) count in nanoseconds in a field of floating point, where others have
-// seconds: no sensor's clock is at 1e11 s.
-void NanosecondsToSeconds(const std::vector<PcdField>& fields, std::size_t point_bytes,
-                          char* points, std::size_t count) {
-  for (const PcdField& field : fields) {
-    const bool time = field.name == "timestamp" || field.name == "time" || field.name == "t";
-    if (!time || field.type != 'F' || field.size != 8) continue;
-    for (std::size_t i = 0; i < count; ++i) {
-      double value;
-      std::memcpy(&value, points + i * point_bytes + field.offset, sizeof(value));
-      if (!(std::abs(value) > 1e11)) continue;
-      value *= 1e-9;
-      std::memcpy(points + i * point_bytes + field.offset, &value, sizeof(value));
-    }
-  }
+// How far rows lie apart [B]. Where they fill the message without gaps nothing else is meant: some
+// drivers leave row_step at 0, or give the bytes of all rows.
+std::uint64_t RowStep(const ros::PointCloud& cloud) {
+  const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
+  return cloud.height <= 1 || cloud.size == row * cloud.height ? row : cloud.row_step;
 }
 
 void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
@@ -221,13 +212,14 @@ void CheckShape(const ros::PointCloud& cloud, const std::string& where) {
   if (cloud.width == 0 || cloud.height == 0 || cloud.point_step == 0) {
     throw InputError(where + ": holds no points");
   }
-  const std::uint64_t step = cloud.height == 1 ? row : cloud.row_step;
+  const std::uint64_t step = RowStep(cloud);
   if (step < row || cloud.size < row ||
       (cloud.height > 1 && (cloud.size - row) / step < cloud.height - 1)) {
     throw InputError(where + ": is cut short: " + std::to_string(cloud.width) + " x " +
                      std::to_string(cloud.height) + " points of " +
-                     std::to_string(cloud.point_step) + " bytes are announced, " +
-                     std::to_string(cloud.size) + " bytes are there");
+                     std::to_string(cloud.point_step) + " bytes, rows " + std::to_string(step) +
+                     " bytes apart, are announced, " + std::to_string(cloud.size) +
+                     " bytes are there");
   }
   if (std::uint64_t{cloud.width} * cloud.height > kMostSweepPoints) {
     throw InputError(where + ": has " + std::to_string(cloud.width) + " x " +
@@ -332,7 +324,7 @@ Cloud ToCloud(const ros::PointCloud& cloud, const std::string& where) {
   std::string points;
   points.reserve(row * cloud.height);
   for (std::size_t y = 0; y < cloud.height; ++y) {
-    points.append(reinterpret_cast<const char*>(cloud.data) + y * cloud.row_step, row);
+    points.append(reinterpret_cast<const char*>(cloud.data) + y * RowStep(cloud), row);
   }
   ros::PointCloud head = cloud;
   if (IsLivox(cloud)) {
@@ -340,7 +332,6 @@ Cloud ToCloud(const ros::PointCloud& cloud, const std::string& where) {
     head.width = static_cast<std::uint32_t>(points.size() / cloud.point_step);
     if (head.width == 0) throw InputError(where + ": holds no points that its tags call normal");
   }
-  NanosecondsToSeconds(fields, cloud.point_step, points.data(), points.size() / cloud.point_step);
   return ParsePcd(PcdHeader(fields, head) + points, where, cloud.header.utime);
 }
 
@@ -355,11 +346,14 @@ std::optional<FileLens> ToLens(const ros::CameraInfo& info, const LensWanted& wa
                      ": its K is of images that are larger; give the lens by --lens");
   }
   // One reader judges both, the topic and the file that camera_calibration writes.
-  std::string text = "width: " + std::to_string(info.width) +
-                     "\nheight: " + std::to_string(info.height) + "\nK: " + YamlList(info.k) +
-                     "\nD: " + YamlList(info.d) +
-                     "\nroi:\n  x_offset: " + std::to_string(info.roi_x) +
-                     "\n  y_offset: " + std::to_string(info.roi_y) + "\n";
+  std::string text;
+  if (info.width != 0 || info.height != 0) {  // some drivers leave both at 0
+    text =
+        "width: " + std::to_string(info.width) + "\nheight: " + std::to_string(info.height) + "\n";
+  }
+  text += "K: " + YamlList(info.k) + "\nD: " + YamlList(info.d) +
+          "\nroi:\n  x_offset: " + std::to_string(info.roi_x) +
+          "\n  y_offset: " + std::to_string(info.roi_y) + "\n";
   std::string model = info.distortion_model.substr(0, 40);
   model.erase(std::remove_if(model.begin(), model.end(),
                              [](unsigned char c) { return std::isalnum(c) == 0 && c != '_'; }),

@@ -136,8 +136,12 @@ class Surveyor {
         if (seen->text.empty()) seen->text = ros::DecodeText(message, encoding);
         return;
       case BagData::kCameraInfo: {
-        if (seen->info && seen->info->k[0] != 0) return;
-        seen->info = ros::DecodeCameraInfo(message, encoding);
+        ros::CameraInfo info = ros::DecodeCameraInfo(message, encoding);
+        if (!seen->info || seen->info->k[0] == 0) {
+          seen->info = std::move(info);
+        } else if (info.k[0] != 0) {
+          seen->info_changes |= info.k != seen->info->k || info.d != seen->info->d;
+        }
         return;
       }
       case BagData::kOther:

@@ -31,6 +31,7 @@ struct BagSurvey {
     std::string frame;                    ///< of the first message
     std::string what;                     ///< of the first: "640x480 mono16", "2048x64 x y z ring"
     std::optional<ros::CameraInfo> info;  ///< the first that is calibrated, or else the first
+    bool info_changes = false;            ///< a later one has another lens
     bool livox = false;                   ///< clouds of which those of a second are one (IsLivox)
     std::string text;                     ///< of a topic "metadata": what the LIDAR says of itself
     std::string problem;                  ///< the last message that could not be read, and why

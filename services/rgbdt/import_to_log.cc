@@ -68,6 +68,12 @@ int ImportLog(const std::string& path, const std::optional<LogRig>& rig, const T
     std::printf("left over: %lld messages that cannot be read; the last: %s\n",
                 static_cast<long long>(written.unreadable), written.last_problem.c_str());
   }
+  if (written.untimed > 0) {
+    std::printf(
+        "%lld clouds: their points have no times, or none that are a sweep's in ns, us, ms or s; "
+        "rgbdt sync, and the way of a rig that moves, need them\n",
+        static_cast<long long>(written.untimed));
+  }
   if (written.other_clock > 0) {
     std::printf(
         "%lld clouds: their points' times are of another clock than their headers'; the first "

@@ -173,6 +173,7 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
 
 int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
+  if (!flags.truth.empty()) ReadTruth(flags.truth);  // before the work
   if (!flags.without.empty() && flags.dirs.size() > 1) {
     throw UsageError("--without is for one session; each has its own views");
   }

@@ -125,6 +125,7 @@ int RunRefine(RefineFlags flags) {
                                     : is_log           ? session.root.parent_path()
                                                        : OwnFolder(session.root, "refined");
   CheckWritable(out / "report.json");
+  if (!flags.truth.empty()) ReadTruth(flags.truth);  // before the work
   const Calibration start = StartOf(flags, session);
   const ReadViews read = ReadAll(session);
   RequireReadable(session, read.unreadable);

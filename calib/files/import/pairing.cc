@@ -54,7 +54,14 @@ Pairs PairByName(const FileList& images, const FileList& clouds) {
 
 Pairs PairByNumber(const FileList& images, const FileList& clouds) {
   Pairs pairs = NoPairs(PairedBy::kNumber, images, clouds);
-  PairByKeys(NumbersInNames(StemsOf(images)), NumbersInNames(StemsOf(clouds)), &pairs);
+  const NameNumbers of_images = NumbersInNames(StemsOf(images));
+  const NameNumbers of_clouds = NumbersInNames(StemsOf(clouds));
+  PairByKeys(of_images.numbers, of_clouds.numbers, &pairs);
+  // Where several numbers change, as hour and minute do, few that agree do so by chance.
+  const std::size_t fewer = std::min(images.names.size(), clouds.names.size());
+  if (!(of_images.sole && of_clouds.sole) && 2 * pairs.count < fewer) {
+    pairs = NoPairs(PairedBy::kNumber, images, clouds);
+  }
   pairs.why_not = "of the same number";
   return pairs;
 }

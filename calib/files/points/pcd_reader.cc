@@ -29,13 +29,17 @@ void MarkMisses(std::vector<Eigen::Vector3f>* points, const std::string& where) 
   }
 }
 
-std::vector<std::uint16_t> ReadRing(const records::Table& table, const std::string& where) {
+// A miss may have none.
+std::vector<std::uint16_t> ReadRing(const records::Table& table,
+                                    const std::vector<Eigen::Vector3f>& points,
+                                    const std::string& where) {
   std::vector<std::uint16_t> ring;
   for (const double value : table.Column("ring")) {
-    if (!(value >= 0 && value <= 65535)) {
+    const bool missed = std::isnan(value) && !points[ring.size()].allFinite();
+    if (!missed && !(value >= 0 && value <= 65535)) {
       throw InputError(where + ": ring holds " + std::to_string(value) + "; expected 0 to 65535");
     }
-    ring.push_back(static_cast<std::uint16_t>(value));
+    ring.push_back(missed ? 0 : static_cast<std::uint16_t>(value));
   }
   return ring;
 }
@@ -120,7 +124,7 @@ Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_u
   cloud.sweep_utime = sweep_utime;
   cloud.points = ReadVectors(table, "x", "y", "z");
   MarkMisses(&cloud.points, where);
-  if (table.Has("ring")) cloud.ring = ReadRing(table, where);
+  if (table.Has("ring")) cloud.ring = ReadRing(table, cloud.points, where);
   Organise(file, &cloud);
   if (HasVector(table, "dir_")) cloud.directions = ReadVectors(table, "dir_x", "dir_y", "dir_z");
   if (HasVector(table, "origin_")) cloud.origins = ReadOrigins(table, cloud);

@@ -220,6 +220,16 @@ TEST(RosClouds, ReflectivityStandsForIntensity) {
   EXPECT_THAT(cloud.Read().intensity, ElementsAre(0, 1));
 }
 
+TEST(RosClouds, RowsThatFillTheMessageAreWhereTheyAre) {
+  for (const std::uint32_t row_step : {0U, 48U, 24U}) {
+    RosCloud cloud(2, 2, 12);
+    cloud.AddXyz({1, 2, 3, 4}).Get().row_step = row_step;
+    const Cloud read = cloud.Read();
+    EXPECT_EQ(read.lines, 2);
+    EXPECT_EQ(read.points[3].x(), 4) << row_step;
+  }
+}
+
 TEST(RosClouds, WhatCannotBeIsRefused) {
   EXPECT_THAT(RosCloud(0, 1, 12).AddXyz({}).Error(), HasSubstr("no points"));
   EXPECT_THAT(RosCloud(1, 1, 12).AddXyz({0}).Add<float>("t", 9, 7, {}).Error(),
@@ -268,6 +278,12 @@ TEST(RosLenses, CameraInfoIsReadAsItsFileIs) {
   fisheye.distortion_model = "equidistant";
   fisheye.d.resize(4);
   EXPECT_EQ(ToLens(fisheye, Wanted("/i"))->lens.model, Lens::Model::kFisheye);
+}
+
+TEST(RosLenses, ASizeOfZeroIsNone) {
+  ros::CameraInfo info = Info();
+  info.width = info.height = 0;
+  EXPECT_EQ(ToLens(info, Wanted("/i"))->width, 0);
 }
 
 TEST(RosLenses, WhatIsNoLensIsNone) {

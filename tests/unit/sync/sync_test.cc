@@ -256,6 +256,12 @@ TEST(SyncTest, RefusesWhatMakesNoSense) {
   cloud.beams = 1;
   cloud.points = {{1, 0, 0}};
   EXPECT_THROW(TakeWavedSweep(cloud, 8), InputError);  // no times
+  cloud.beams = 2;
+  cloud.points.emplace_back(2, 0, 0);
+  cloud.utime = {5, 5};
+  EXPECT_THROW(TakeWavedSweep(cloud, 8), InputError);  // one of the sweep's
+  cloud.utime = {5, 6};
+  EXPECT_EQ(TakeWavedSweep(cloud, 8).points.size(), 2U);
   WavedBoard board;
   EXPECT_THROW(Synchronise(board), InputError);  // a plain target
   SyncOptions options;

@@ -138,9 +138,10 @@ std::vector<std::string> LookAtClouds(const FileList& files,
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < facts.size(); ++i) {
     if (facts[i].median_m > kFarthestM) {
-      throw InputError((files.folder / files.names[which[i]]).string() +
-                       ": half of its points lie " + Format("%.0f", facts[i].median_m) +
-                       " m away or more, which looks like millimetres; expected metres");
+      throw InputError(
+          (files.folder / files.names[which[i]]).string() + ": half of its points lie " +
+          Format("%.0f", facts[i].median_m) +
+          " m away or more, which looks like millimetres or centimetres; expected metres");
     }
     problems.push_back(facts[i].problem);
   }

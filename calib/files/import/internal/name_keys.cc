@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <ctime>
 #include <map>
 #include <set>
 
@@ -67,41 +68,94 @@ std::optional<Utime> TimeAt(const std::string& stem, const Parts& parts, std::si
   return Microseconds(fraction ? run + next : run);
 }
 
+// Year, month, day, hour, minute, second as runs of digits from `i` on, together or apart, and the
+// fraction that may follow them.
+std::optional<Utime> DateAt(const std::string& stem, const Parts& parts, std::size_t i) {
+  constexpr std::size_t kDigits = 14;
+  std::string date, fraction;
+  std::size_t run = i;
+  for (; run < parts.digits.size() && date.size() < kDigits; ++run) {
+    const std::string& digits = parts.digits[run];
+    const bool first = run == i;
+    const bool fits = first ? digits.size() == 4 || digits.size() == 8 || digits.size() >= kDigits
+                            : digits.size() == 2 || date.size() + digits.size() >= kDigits;
+    // One letter or sign between them: 2023-05-14T10_15_23.
+    const bool joined =
+        first || parts.begins[run] == parts.begins[run - 1] + parts.digits[run - 1].size() + 1;
+    if (!fits || !joined) return std::nullopt;
+    date += digits;
+  }
+  if (date.size() < kDigits) return std::nullopt;
+  fraction = date.substr(kDigits);
+  date.resize(kDigits);
+  if (fraction.empty() && run < parts.digits.size()) {
+    const std::size_t end = parts.begins[run - 1] + parts.digits[run - 1].size();
+    const bool point = parts.begins[run] == end + 1 && stem[end] == '.';
+    if (point) fraction = parts.digits[run];
+  }
+  if (fraction.size() > 9) return std::nullopt;
+  fraction.resize(6, '0');
+  const auto number = [&](std::size_t at, std::size_t count) {
+    return std::stoi(date.substr(at, count));
+  };
+  std::tm when{};
+  when.tm_year = number(0, 4) - 1900;
+  when.tm_mon = number(4, 2) - 1;
+  when.tm_mday = number(6, 2);
+  when.tm_hour = number(8, 2);
+  when.tm_min = number(10, 2);
+  when.tm_sec = number(12, 2);
+  const bool good = when.tm_year > 100 && when.tm_year < 200 && when.tm_mon >= 0 &&
+                    when.tm_mon < 12 && when.tm_mday >= 1 && when.tm_mday <= 31 &&
+                    when.tm_hour < 24 && when.tm_min < 60 && when.tm_sec < 61;
+  if (!good) return std::nullopt;
+  return static_cast<Utime>(timegm(&when)) * kMicrosecondsPerSecond + std::stoll(fraction);
+}
+
 }  // namespace
 
 std::optional<Utime> TimeInName(const std::string& stem) {
   const Parts parts = Divide(stem);
   for (std::size_t i = 0; i < parts.digits.size(); ++i) {
     if (const std::optional<Utime> time = TimeAt(stem, parts, i)) return time;
+    if (const std::optional<Utime> date = DateAt(stem, parts, i)) return date;
   }
   return std::nullopt;
 }
 
-std::vector<std::string> NumbersInNames(const std::vector<std::string>& stems) {
+NameNumbers NumbersInNames(const std::vector<std::string>& stems) {
   std::vector<Parts> names;
   std::map<std::string, int> shapes;
   for (const std::string& stem : stems) {
     names.push_back(Divide(stem));
     if (!names.back().digits.empty()) ++shapes[names.back().shape];
   }
-  std::vector<std::string> numbers(stems.size());
-  if (shapes.empty()) return numbers;
+  NameNumbers found;
+  found.numbers.resize(stems.size());
+  if (shapes.empty()) return found;
   const auto usual =
       std::max_element(shapes.begin(), shapes.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::size_t runs =
       static_cast<std::size_t>(std::count(usual->first.begin(), usual->first.end(), '#'));
   // The first run of digits that is another one in each name.
+  bool chosen = false;
+  int changing = 0;
   for (std::size_t run = 0; run < runs; ++run) {
+    std::vector<std::string> numbers(stems.size());
     std::set<std::string> seen;
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const bool counts = names[i].shape == usual->first && run < names[i].digits.size();
-      numbers[i] = counts ? WithoutZeros(names[i].digits[run]) : "";
-      if (counts) seen.insert(numbers[i]);
+      if (names[i].shape != usual->first) continue;
+      numbers[i] = WithoutZeros(names[i].digits[run]);
+      seen.insert(numbers[i]);
     }
-    if (seen.size() == static_cast<std::size_t>(usual->second)) return numbers;
+    if (seen.size() > 1) ++changing;
+    if (chosen || seen.size() != static_cast<std::size_t>(usual->second)) continue;
+    found.numbers = std::move(numbers);
+    chosen = true;
   }
-  return std::vector<std::string>(stems.size());
+  found.sole = changing <= 1;
+  return found;
 }
 
 }  // namespace rgbdt

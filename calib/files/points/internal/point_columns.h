@@ -18,7 +18,11 @@ std::vector<Eigen::Vector3f> ReadVectors(const records::Table& table, const std:
 /// The field intensity, brought to 0 to 1.
 std::vector<float> ReadIntensity(const records::Table& table);
 
-/// The field utime, timestamp, time or t [us, UTC]; empty where there is none.
+/// The field utime, timestamp, time_stamp, time, t or offset_time [us, UTC]; empty where there is
+/// none, and where nobody's sweep lasts as long, in whatever unit. Drivers count in seconds where
+/// numbers are of floating point and in nanoseconds where they are whole; where these would make no
+/// sweep (0.4 ms to 20 s, of a hundred points or more), in what makes one. Times since 1970 are
+/// those after 1973.
 std::vector<Utime> ReadUtime(const records::Table& table, Utime sweep_utime,
                              const std::string& where);
 

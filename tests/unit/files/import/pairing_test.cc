@@ -17,6 +17,22 @@ Pairs PairNames(const std::vector<std::string>& images, const std::vector<std::s
   return PairFiles({"images", images}, {"clouds", clouds}, options);
 }
 
+std::vector<std::string> Numbers(const std::vector<std::string>& stems) {
+  return NumbersInNames(stems).numbers;
+}
+
+TEST(NameKeys, DatesAreTimes) {
+  constexpr Utime kTime = 1'684'059'323'000'000;
+  for (const char* name : {"2023-05-14-10-15-23", "20230514_101523", "2023-05-14T10_15_23",
+                           "20230514101523", "cam_2023-05-14_10-15-23_rgb", "7_20230514-101523"}) {
+    EXPECT_EQ(TimeInName(name), kTime) << name;
+  }
+  for (const char* name : {"2023-05-14-10-15-23.25", "20230514_101523.250000", "20230514101523250",
+                           "20230514_101523250"}) {
+    EXPECT_EQ(TimeInName(name), kTime + 250'000) << name;
+  }
+}
+
 TEST(NameKeys, TimesAreThoseSince1970) {
   EXPECT_EQ(TimeInName("1700000000"), 1'700'000'000'000'000);
   EXPECT_EQ(TimeInName("1700000000.25"), 1'700'000'000'250'000);
@@ -27,19 +43,20 @@ TEST(NameKeys, TimesAreThoseSince1970) {
   EXPECT_EQ(TimeInName("1700000000123"), 1'700'000'000'123'000);
   EXPECT_EQ(TimeInName("1700000000123456"), 1'700'000'000'123'456);
   EXPECT_EQ(TimeInName("0007_1700000000123456789"), 1'700'000'000'123'456);
-  for (const char* none : {"", "pose7", "0000000012", "9999999999", "20231114_101500",
-                           "17000000001", "9999999999999999999999999"}) {
+  for (const char* none :
+       {"", "pose7", "0000000012", "9999999999", "17000000001", "20231314_101500", "2023-05-14",
+        "20231114_1015", "1999-05-14-10-15-23", "9999999999999999999999999"}) {
     EXPECT_EQ(TimeInName(none), kNone) << none;
   }
 }
 
 TEST(NameKeys, NumbersAreThoseThatTellNamesApart) {
-  EXPECT_THAT(NumbersInNames({"run3_0009_rgb8", "run3_0010_rgb8", "run3_0011_rgb8"}),
+  EXPECT_THAT(Numbers({"run3_0009_rgb8", "run3_0010_rgb8", "run3_0011_rgb8"}),
               ElementsAre("9", "10", "11"));
-  EXPECT_THAT(NumbersInNames({"pose1", "pose02", "background"}), ElementsAre("1", "2", ""));
-  EXPECT_THAT(NumbersInNames({"a1_1", "a1_2", "a2_3"}), ElementsAre("1", "2", "3"));
-  EXPECT_THAT(NumbersInNames({"a1", "a01"}), ElementsAre("", ""));  // one number twice
-  EXPECT_THAT(NumbersInNames({"a", "b"}), ElementsAre("", ""));
+  EXPECT_THAT(Numbers({"pose1", "pose02", "background"}), ElementsAre("1", "2", ""));
+  EXPECT_THAT(Numbers({"a1_1", "a1_2", "a2_3"}), ElementsAre("1", "2", "3"));
+  EXPECT_THAT(Numbers({"a1", "a01"}), ElementsAre("", ""));  // one number twice
+  EXPECT_THAT(Numbers({"a", "b"}), ElementsAre("", ""));
 }
 
 TEST(Pairing, ByName) {
@@ -62,6 +79,27 @@ TEST(Pairing, ByNumber) {
   EXPECT_EQ(pairs.by, PairedBy::kNumber);
   EXPECT_THAT(pairs.cloud_of, ElementsAre(0, 1, kNone));
   EXPECT_THAT(pairs.image_utime, ElementsAre(0, 0, 0));
+}
+
+// Minutes of some that are seconds of others are no numbers to pair by.
+TEST(Pairing, NumbersThatAgreeByChancePairNothing) {
+  std::vector<std::string> images, clouds, numbered;
+  for (int i = 0; i < 9; ++i) {
+    const std::string minute = std::to_string(20 + 3 * i), second = std::to_string(23 + 4 * i);
+    images.push_back("im_10-" + minute + "-" + second + ".png");
+    clouds.push_back("scan_10-" + second + "_7.pcd");
+    numbered.push_back("scan_10-" + std::to_string(11 + i / 2) + "_" + std::to_string(i) + ".pcd");
+  }
+  EXPECT_THAT(test::ErrorOf([&] { PairNames(images, clouds); }), HasSubstr("--in-order"));
+  for (std::size_t i = 0; i < images.size(); ++i) images[i] = "im_1_" + std::to_string(i) + ".png";
+  EXPECT_EQ(PairNames(images, numbered).count, 9u) << "most agree";
+}
+
+TEST(Pairing, ByDatesOfTheSameMoment) {
+  const Pairs pairs = PairNames({"2023-05-14-10-16-42.png", "2023-05-14-10-42-44.png"},
+                                {"2023-05-14-10-16-42.pcd", "2023-05-14-10-42-46.pcd"});
+  EXPECT_EQ(pairs.by, PairedBy::kTime);
+  EXPECT_THAT(pairs.cloud_of, ElementsAre(0, kNone));
 }
 
 TEST(Pairing, ByTimeEachTheOthersNearest) {

@@ -5,6 +5,8 @@
 #include <pcl/io/pcd_io.h>
 
 #include <cmath>
+#include <cstdio>
+#include <tuple>
 
 #include "calib/files/atomic_file.h"
 #include "tests/unit/files/test_data.h"
@@ -14,6 +16,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::NanSensitiveFloatEq;
 
 std::string Ascii(const std::string& fields, const std::string& types, int width, int height,
@@ -133,6 +136,58 @@ TEST(CloudFiles, TimesCountFromTheSweepOrFrom1970) {
   EXPECT_THAT(read("t", "U", "99000000"), ElementsAre(1'000'099'000));
   EXPECT_THAT(read("timestamp", "D", "1700000000.5"), ElementsAre(1'700'000'000'500'000));
   EXPECT_THAT(test::ErrorOf([&] { read("time", "F", "nan"); }), HasSubstr("time"));
+}
+
+// Of a sweep of 0.1 s, whatever the driver counts in.
+TEST(CloudFiles, TheUnitOfTimesIsThatOfASweep) {
+  const auto read = [](const std::string& field, const std::string& type, double unit, double from,
+                       double seconds = 0.1) {
+    std::string points;
+    for (int i = 0; i < 400; ++i) {
+      char text[100];
+      const double time = (from + seconds * i / 400) / unit;
+      std::snprintf(text, sizeof text, type == "F" || type == "D" ? "1 2 3 %.9f\n" : "1 2 3 %.0f\n",
+                    time);
+      points += text;
+    }
+    return ParsePcd(Ascii("x y z " + field, "F F F " + type, 400, 1, points), "a.pcd",
+                    1'700'000'000'000'000)
+        .utime;
+  };
+  for (const auto& [field, type, unit] :
+       std::vector<std::tuple<std::string, std::string, double>>{{"t", "U", 1e-9},
+                                                                 {"t", "U", 1e-6},
+                                                                 {"time", "F", 1},
+                                                                 {"time", "F", 1e-6},
+                                                                 {"time", "F", 1e-3},
+                                                                 {"time_stamp", "U", 1e-9},
+                                                                 {"offset_time", "U", 1e-6}}) {
+    const std::vector<Utime> utime = read(field, type, unit, 0);
+    ASSERT_EQ(utime.size(), 400u) << field << type << unit;
+    EXPECT_NEAR(static_cast<double>(utime[200] - 1'700'000'000'000'000), 50'000, 2)
+        << field << unit;
+  }
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
+    const std::vector<Utime> utime = read("timestamp", "D", unit, 1'699'999'999);
+    ASSERT_EQ(utime.size(), 400u) << unit;
+    EXPECT_NEAR(static_cast<double>(utime[200] - 1'699'999'999'050'000), 0, 2) << unit;
+  }
+  // A turned scanner's, and a packet's of a millisecond.
+  EXPECT_EQ(read("time", "F", 1, 0, 8)[200], 1'700'000'004'000'000);
+  EXPECT_NEAR(static_cast<double>(read("t", "U", 1e-9, 0, 1.3e-3)[200]), 1'700'000'000'000'650, 2);
+  // Nobody's.
+  EXPECT_THAT(read("time", "F", 1, 5, 0), IsEmpty());
+  EXPECT_THAT(read("time", "F", 1, 0, 3e10), IsEmpty());
+}
+
+TEST(CloudFiles, AMissNeedsNoRing) {
+  const Cloud cloud =
+      ParsePcd(Ascii("x y z ring", "F F F F", 2, 1, "nan nan nan nan\n1 2 3 5\n"), "a.pcd");
+  EXPECT_THAT(cloud.ring, ElementsAre(0, 5));
+  const auto bad = [] {
+    ParsePcd(Ascii("x y z ring", "F F F F", 2, 1, "1 1 1 nan\n1 2 3 5\n"), "a.pcd");
+  };
+  EXPECT_THAT(test::ErrorOf(bad), HasSubstr("ring"));
 }
 
 TEST(CloudFiles, AFileOfManyLinesIsOrganised) {
