@@ -167,6 +167,38 @@ std::optional<ImageSize> StatedSize(const void* data, std::size_t size) {
   return std::nullopt;
 }
 
+bool IsTurnedByExif(const void* data, std::size_t size) {
+  using namespace std::string_view_literals;
+  const std::string_view bytes(static_cast<const char*>(data), size);
+  const std::string_view head = bytes.substr(0, 20);
+  if (size < 20 || head.substr(0, 2) != "\xFF\xD8"sv) return false;
+  // APP1 comes first, or behind APP0 (Exif 2.3, 4.5.4; its TIFF head 12 bytes behind the marker).
+  for (std::size_t at = 2; at + 12 < size;) {
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (bytes[at] != '\xFF' || (marker != 0xE0 && marker != 0xE1)) return false;
+    const std::size_t length = Unsigned(bytes, at + 2, 2, Order::kBig);
+    if (marker == 0xE1 && bytes.substr(at + 4, 6) == "Exif\0\0"sv && at + 2 + length <= size &&
+        length > 16) {
+      const std::string_view tiff = bytes.substr(at + 10, length - 8);
+      const Order order = tiff.substr(0, 2) == "MM" ? Order::kBig : Order::kLittle;
+      const std::size_t directory = Unsigned(tiff, 4, 4, order);
+      if (directory > tiff.size() - 2) return false;
+      const std::size_t count = Unsigned(tiff, directory, 2, order);
+      constexpr std::size_t kEntry = 12;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t entry = directory + 2 + i * kEntry;
+        if (entry + kEntry > tiff.size()) return false;
+        if (Unsigned(tiff, entry, 2, order) != 274) continue;
+        const std::uint32_t orientation = Unsigned(tiff, entry + 8, 2, order);
+        return orientation > 1 && orientation <= 8;
+      }
+      return false;
+    }
+    at += 2 + length;
+  }
+  return false;
+}
+
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where) {
   if (size == 0) throw InputError(where + " is empty; expected an image");
   const auto said = StatedSize(bytes, size);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "calib/files/check_writable.h"
 #include "calib/files/import/internal/folder_files.h"
@@ -23,6 +25,7 @@ struct ReadCamera {
   Pairs pairs;
   std::set<std::size_t> unreadable, without;  // images, and the clouds that had them
   CameraSpec spec;
+  bool turned_by_exif = false;
 };
 
 std::string SizeOf(int width, int height) {
@@ -44,13 +47,37 @@ std::string Counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// Takes the pairs apart whose image cannot be read; gives the others' facts.
+// The size that most of those that can be read have, if three in four have it.
+std::optional<std::pair<int, int>> UsualSize(const std::vector<ImageFacts>& facts) {
+  std::map<std::pair<int, int>, std::size_t> counts;
+  std::size_t all = 0;
+  for (const ImageFacts& one : facts) {
+    if (!one.problem.empty()) continue;
+    ++counts[{one.width, one.height}];
+    ++all;
+  }
+  for (const auto& [size, count] : counts) {
+    if (4 * count >= 3 * all) return size;
+  }
+  return std::nullopt;
+}
+
+// Takes the pairs apart whose image cannot be read, or is of another size than the rest; gives the
+// others' facts.
 std::vector<ImageFacts> DropUnreadable(ReadCamera* camera, std::vector<std::string>* left_over) {
   std::vector<std::size_t> paired;
   for (std::size_t i = 0; i < camera->images.names.size(); ++i) {
     if (camera->pairs.cloud_of[i]) paired.push_back(i);
   }
-  const std::vector<ImageFacts> facts = LookAtImages(camera->images, paired);
+  std::vector<ImageFacts> facts = LookAtImages(camera->images, paired);
+  const auto usual = UsualSize(facts);
+  for (std::size_t k = 0; usual && k < facts.size(); ++k) {
+    ImageFacts& one = facts[k];
+    if (!one.problem.empty() || std::pair(one.width, one.height) == *usual) continue;
+    one.problem = (camera->images.folder / camera->images.names[paired[k]]).string() + " is " +
+                  SizeOf(one.width, one.height) + ", where the others are " +
+                  SizeOf(usual->first, usual->second);
+  }
   std::vector<ImageFacts> good;
   std::string problem;
   for (std::size_t k = 0; k < facts.size(); ++k) {
@@ -157,6 +184,8 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
   spec.width = facts[0].width;
   spec.height = facts[0].height;
   spec.format = facts[0].format;
+  read.turned_by_exif = std::any_of(facts.begin(), facts.end(),
+                                    [](const ImageFacts& one) { return one.turned_by_exif; });
   return read;
 }
 
@@ -170,7 +199,11 @@ std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamer
     const std::string lens = SetLens(folders, names, i, &spec);
     lines.push_back("camera " + spec.name + ": " +
                     (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
-                    SizeOf(spec.width, spec.height) + ", " + lens);
+                    SizeOf(spec.width, spec.height) + ", " + lens +
+                    ((*cameras)[i].turned_by_exif
+                         ? "; EXIF says that they are to be turned: they are taken as they are "
+                           "stored, and the lens must be of that"
+                         : ""));
   }
   return lines;
 }

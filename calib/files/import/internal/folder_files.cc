@@ -6,9 +6,11 @@
 #include <set>
 #include <utility>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
+#include "calib/model/image_codec.h"
 #include "calib/model/parallel.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
@@ -74,6 +76,9 @@ FileList List(const fs::path& folder, const std::set<std::string>& endings, cons
 ImageFacts LookAt(const fs::path& path) {
   ImageFacts facts;
   try {
+    constexpr std::size_t kHeadBytes = 64 * 1024;
+    const std::string head = ReadFileHead(path, kHeadBytes);
+    facts.turned_by_exif = IsTurnedByExif(head.data(), head.size());
     cv::Mat pixels = DecodeImageFile(path);
     facts.width = pixels.cols;
     facts.height = pixels.rows;

@@ -10,9 +10,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// Folders "a" (colour), "b" (16 bits) and "clouds" of three views each, and what they are read
 /// with.
@@ -110,6 +112,41 @@ TEST_F(FoldersTest, WhatCannotBeUsedIsLeftOver) {
   EXPECT_THAT(made.left_over, ElementsAre(HasSubstr("p1.png"),
                                           AllOf(HasSubstr("1 image of rgb"), HasSubstr("p7.png")),
                                           HasSubstr("p2.pcd")));
+}
+
+TEST_F(FoldersTest, OneImageOfAnotherSizeIsLeftOver) {
+  for (const char* name : {"p4", "p5"}) {
+    Image("a", name, CV_8UC3, name[1] == '5' ? cv::Size(44, 30) : cv::Size(40, 30));
+    WritePcd(dir_ / ("clouds/" + std::string(name) + ".pcd"), test::MakeCloud());
+  }
+  const FolderSession made = ReadFolders(folders_);
+  EXPECT_EQ(made.views.size(), 4u);
+  EXPECT_THAT(made.left_over,
+              Contains(AllOf(HasSubstr("p5.png is 44x30"), HasSubstr("the others are 40x30"))));
+}
+
+TEST_F(FoldersTest, WhatExifSaysIsToldAndLeftAside) {
+  // An EXIF of one tag, the orientation, after a JPEG's begin.
+  const std::string exif(
+      "\xFF\xE1\x00\x22"
+      "Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0",
+      36);
+  const std::string plain = EncodeJpeg(cv::Mat(30, 40, CV_8UC3, cv::Scalar::all(7)), 90);
+  const auto said = [&](const std::string& more) {
+    for (const char* name : {"p1", "p2", "p3"}) {
+      fs::remove(dir_ / ("a/" + std::string(name) + ".png"));
+      test::WriteQuickly(dir_ / ("a/" + std::string(name) + ".jpg"),
+                         plain.substr(0, 2) + more + plain.substr(2));
+    }
+    const FolderSession made = ReadFolders(folders_);
+    EXPECT_EQ(made.rig.cameras[0].width, 40);
+    return made.cameras[0];
+  };
+  EXPECT_THAT(said(exif), HasSubstr("EXIF says that they are to be turned"));
+  EXPECT_THAT(said(""), Not(HasSubstr("EXIF")));
+  std::string upright = exif;
+  upright[29] = 1;
+  EXPECT_THAT(said(upright), Not(HasSubstr("EXIF")));
 }
 
 TEST_F(FoldersTest, OtherNumbersButAsManyAreTold) {
