@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace rgbdt {
 namespace {
@@ -66,9 +67,24 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& ca
   const auto far = [&](const Eigen::Vector3f& point) {
     return PixelOf(camera_from_lidar * point.cast<double>());
   };
+  const auto beams = static_cast<std::size_t>(cloud.beams);
+  const auto fired = [&](std::size_t i) {
+    return cloud.directions.size() != cloud.size() || cloud.IsHit(i) ||
+           cloud.directions[i].allFinite();
+  };
+  // What the next beam of a line met that was fired there: rings may take turns.
+  const auto next = [&](std::size_t line, std::size_t beam, int step) {
+    constexpr int kMostTurns = 4;
+    for (int k = 1; k <= kMostTurns; ++k) {
+      const std::int64_t at = static_cast<std::int64_t>(beam) + k * step;
+      if (at < 0 || at >= cloud.beams) break;
+      const std::size_t i = line * beams + static_cast<std::size_t>(at);
+      if (fired(i)) return far(cloud.points[i]);
+    }
+    return std::optional<Eigen::Vector2d>();
+  };
   // Some 40 lines of a cloud, every seventh beam.
   constexpr std::size_t kEvery = 7;
-  const auto beams = static_cast<std::size_t>(cloud.beams);
   const auto lines = static_cast<std::size_t>(cloud.lines);
   const std::size_t step = std::max<std::size_t>(1, lines / 40);
   const bool follows = line_before_.size() == beams && line_before_number_ + 1 == cloud.first_line;
@@ -80,11 +96,12 @@ void PointSpacing::AddOrganised(const Cloud& cloud, const Eigen::Quaterniond& ca
     for (std::size_t beam = 1; beam < beams; beam += kEvery) {
       const auto here = far(points[beam]);
       if (!here) continue;
-      auto beside = far(points[beam - 1]);
-      if (!beside && beam + 1 < beams) beside = far(points[beam + 1]);
+      auto beside = next(line, beam, -1);
+      if (!beside) beside = next(line, beam, 1);
       if (!beside) continue;
       Eigen::Vector2d along = *here - *beside;
-      const auto other = before != nullptr ? far(before[beam]) : std::nullopt;
+      auto other = before != nullptr ? far(before[beam]) : std::nullopt;
+      if (line > 0 && !fired((line - 1) * beams + beam)) other = next(line - 1, beam, -1);
       if (other) {
         Eigen::Vector2d across = *here - *other;
         Shorten(&along, &across);

@@ -12,9 +12,10 @@
 namespace rgbdt {
 
 /// How far apart a LIDAR's neighbouring points lie in a camera's image: medians over beams of a
-/// line and over lines, staggered or not, of organised clouds by their directions alone (as if all
-/// were far away), so that neither the scene nor how the rig moves has a say. Takes clouds line by
-/// line or as a whole and looks at a sample of their points; bounded in memory.
+/// line and over lines, staggered or not, whether all rings fire at a time or in turn, of organised
+/// clouds by their directions alone (as if all were far away), so that neither the scene nor how
+/// the rig moves has a say. Takes clouds line by line or as a whole and looks at a sample of their
+/// points; bounded in memory.
 class PointSpacing {
  public:
   explicit PointSpacing(const Camera& camera) : camera_(camera) {}

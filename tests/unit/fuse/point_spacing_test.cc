@@ -79,5 +79,21 @@ TEST(PointSpacing, StaggeredLinesHaveTheCellsOfOnesThatAreNot) {
   }
 }
 
+TEST(PointSpacing, OfRingsThatFireInTurnIsThatOfTheBeamsThatWereFired) {
+  const Eigen::Vector2d all = CellsOf(Lines(0));
+  for (const bool by_line : {false, true}) {
+    Cloud cloud = Lines(0);
+    cloud.directions = cloud.points;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const std::size_t line = i / 180, beam = i % 180;
+      if ((beam + (by_line ? line : 0)) % 2 == 0) continue;
+      cloud.points[i] = cloud.directions[i] = Eigen::Vector3f::Constant(NAN);
+    }
+    const Eigen::Vector2d cell = CellsOf(cloud);
+    EXPECT_NEAR(cell.x(), 2 * all.x(), 0.25 * all.x()) << by_line;
+    EXPECT_NEAR(cell.y(), all.y(), 0.25 * all.y()) << by_line;
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt
