@@ -40,6 +40,14 @@ const std::map<std::string, Encoding>& Encodings() {
       {"bgra8", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
       {"8UC4", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
       {"rgba8", {CV_8UC4, F::kBgr8, cv::COLOR_RGBA2BGR}},
+      {"RGB8", {CV_8UC3, F::kBgr8, cv::COLOR_RGB2BGR}},  // GenICam's names, as some drivers send
+      {"BGR8", {CV_8UC3, F::kBgr8}},
+      {"Mono8", {CV_8UC1, F::kMono8}},
+      {"Mono16", {CV_16UC1, F::kMono16}},
+      {"BayerRG8", {CV_8UC1, F::kBayerRg8}},
+      {"BayerGR8", {CV_8UC1, F::kBayerGr8}},
+      {"BayerGB8", {CV_8UC1, F::kBayerGb8}},
+      {"BayerBG8", {CV_8UC1, F::kBayerBg8}},
       {"bayer_rggb8", {CV_8UC1, F::kBayerRg8}},
       {"bayer_grbg8", {CV_8UC1, F::kBayerGr8}},
       {"bayer_gbrg8", {CV_8UC1, F::kBayerGb8}},
@@ -319,6 +327,12 @@ bool IsLivox(const ros::PointCloud& cloud) {
 Cloud ToCloud(const ros::PointCloud& cloud, const std::string& where) {
   CheckShape(cloud, where);
   const PcdFields known(cloud, where);
+  for (const char* name : {"x", "y", "z"}) {
+    if (known.Find(name) != nullptr) continue;
+    std::string names;
+    for (const ros::PointCloud::Field& field : cloud.fields) names += " " + Printable(field.name);
+    throw InputError(where + ": has no field " + name + "; its fields are:" + names);
+  }
   const std::vector<PcdField> fields = known.WithGaps(cloud.point_step, where);
   const std::size_t row = std::size_t{cloud.width} * cloud.point_step;
   std::string points;

@@ -67,7 +67,8 @@ std::string WhyNoCamera(const Topic& topic) {
     return topic.problem.empty() ? "no messages" : "cannot be read: " + topic.problem;
   }
   if (says("depth") || says("disparity") || topic.what.find("32FC1") != std::string::npos) {
-    return "depth, no picture";
+    return says("therm") ? "numbers of floating point (32FC1); expected raw counts, mono16 or mono8"
+                         : "depth, no picture";
   }
   if (IsRectified(topic)) return "rectified: another lens; --image takes it, with --lens";
   for (const char* word : {"mask", "label", "segment", "debug", "overlay"}) {
@@ -300,8 +301,10 @@ TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
     for (const Topic* topic : SeenCameras(survey, &choice.left_out)) add("", *topic);
   }
   if (choice.cameras.empty() && !wishes.clouds_alone) {
-    throw InputError("the bag holds no camera's images; topics of images: " +
-                     NamesOf(survey, IsImages));
+    std::string why;
+    for (const std::string& line : choice.left_out) why += "; " + line;
+    throw InputError(
+        "the bag holds no camera's images; topics of images: " + NamesOf(survey, IsImages) + why);
   }
   ChooseLidars(survey, wishes, &choice);
   return choice;

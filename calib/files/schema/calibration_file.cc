@@ -65,7 +65,10 @@ void FromCamera(const CameraCalibration& camera, proto::CameraCalibration* out) 
 
 }  // namespace
 
-Calibration ReadCalibration(const std::filesystem::path& path) {
+Calibration ReadCalibration(const std::filesystem::path& given) {
+  std::error_code none;
+  const std::filesystem::path path =
+      std::filesystem::is_directory(given, none) ? given / "calibration.textproto" : given;
   proto::Calibration message;
   Place::Tree tree;
   const Place place = text::ParseText(ReadWholeFile(path), path.string(), &message, &tree);

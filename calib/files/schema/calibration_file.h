@@ -7,9 +7,9 @@
 
 namespace rgbdt {
 
-/// Reads a calibration.textproto (schema: calib/files/schema/report.proto). Throws InputError with
-/// file, line and key.
-Calibration ReadCalibration(const std::filesystem::path& path);
+/// Reads a calibration.textproto (schema: calib/files/schema/report.proto), or that of a directory.
+/// Throws InputError with file, line and key.
+Calibration ReadCalibration(const std::filesystem::path& given);
 
 /// The calibration as text; the same calibration gives the same bytes. A comment on top says which
 /// way the transforms go.

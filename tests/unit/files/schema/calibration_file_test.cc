@@ -22,6 +22,7 @@ TEST(CalibrationFile, GivesBackEveryBit) {
   calibration.cameras[1].timing = CameraTiming{{-0.0123, 1e-4}, {0.021, 2e-5}};
   WriteCalibration(dir / "calibration.textproto", calibration);
   const Calibration back = ReadCalibration(dir / "calibration.textproto");
+  EXPECT_EQ(ReadCalibration(dir.path()).cameras.size(), back.cameras.size()) << "its directory's";
   EXPECT_EQ(back.method, calibration.method);
   EXPECT_EQ(back.rig_hash, calibration.rig_hash);
   EXPECT_EQ(back.utime, calibration.utime);
