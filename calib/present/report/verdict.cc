@@ -27,6 +27,12 @@ std::string Moves(const Cause& cause) {
   return " Put right, it moves the result by " + Number(*cause.moves_sigma, 1) + " sigma.";
 }
 
+// May be chance, but for what hangs on it: the pose is as sure as stated only if what was given is.
+bool IsFeared(const Cause& cause) {
+  return cause.Sigmas() < kGivenWrongSigmas && cause.Sigmas() >= kLeastNamedWhereUsable &&
+         cause.moves_sigma && *cause.moves_sigma > kMovesMuch;
+}
+
 // What was given wrong, by how much the result moves where it is put right.
 Grade GradeOf(const Cause& cause) {
   if (!cause.moves_sigma) return Grade::kDoubtful;
@@ -44,7 +50,7 @@ std::vector<const Cause*> CausesToName(const CameraReport& camera, Grade grade) 
                        : ViewsDisagree(camera)   ? kLeastNamedWhereUsable
                                                  : kGivenWrongSigmas;
   for (const Cause& cause : camera.causes) {
-    if (cause.Sigmas() >= least) named.push_back(&cause);
+    if (cause.Sigmas() >= least || IsFeared(cause)) named.push_back(&cause);
   }
   std::stable_sort(named.begin(), named.end(), [&](const Cause* a, const Cause* b) {
     if (wrong(*a) != wrong(*b)) return wrong(*a);
@@ -64,6 +70,9 @@ void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
     prefix = "Second likeliest: ";
     if (cause->Sigmas() >= kGivenWrongSigmas) {
       judgement->Cause(solved ? GradeOf(*cause) : Grade::kBad, sentence);
+    } else if (IsFeared(*cause)) {
+      judgement->Cause(Grade::kDoubtful, sentence + " These views alone are not sure of it (" +
+                                             Number(cause->Sigmas(), 1) + " sigma): measure it.");
     } else {
       judgement->AddReason(sentence);
     }

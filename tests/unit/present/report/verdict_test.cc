@@ -221,7 +221,10 @@ TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
     camera.causes = {Wrong(chi2, moves_sigma)};
     return Judge(camera).grade;
   };
-  EXPECT_EQ(grade(12.2, 10), Grade::kGood);  // by chance once in 2,000 times
+  EXPECT_EQ(grade(12.2, 3.9), Grade::kGood);  // by chance once in 2,000 times
+  EXPECT_EQ(grade(6.2, 10), Grade::kGood);
+  EXPECT_EQ(grade(6.3, 10), Grade::kDoubtful) << "chance, or a result that is far off";
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("not sure of it (2.5 sigma): measure it"));
   EXPECT_EQ(grade(12.3, 0.9), Grade::kUsable);
   EXPECT_EQ(grade(12.3, 1.1), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, std::nullopt), Grade::kDoubtful);
