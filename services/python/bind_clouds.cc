@@ -68,7 +68,7 @@ void BindCloud(py::module_* module) {
       .def_property_readonly("ring", Column(&Cloud::ring))
       .def("__len__", &Cloud::size);
   module->def(
-      "read_cloud", [](const std::filesystem::path& path) { return ReadPcd(path); },
+      "read_cloud", [](const std::filesystem::path& path) { return ReadSweep(path); },
       py::arg("path"), py::call_guard<py::gil_scoped_release>());
 }
 

@@ -165,7 +165,7 @@ void AddSession(CommandLine* program) {
   auto flags = std::make_shared<FolderFlags>();
   CommandLine* verb = program->Verb(
       "session",
-      "Makes a session directory of folders of images and of PCD clouds, ready for `rgbdt\n"
+      "Makes a session directory of folders of images and of clouds, ready for `rgbdt\n"
       "calibrate`. Nothing is copied: it names the files. An image and its cloud belong together\n"
       "by their names, the numbers in them, or the times that they are. A lens that no file says\n"
       "is found from the images, as by `rgbdt intrinsics`. Exit code 1: it was not found.\n"
@@ -182,8 +182,9 @@ void AddSession(CommandLine* program) {
                  "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
                  "name it is rgb, or thermal where images have 16 bits or the folder says so");
   verb->Required("--clouds", &flags->clouds,
-                 "[NAME=]DIR, the folder of PCD files; given again for each LIDAR, the reference\n"
-                 "first: the poses of the others are found from their clouds of the same boards");
+                 "[NAME=]DIR, the folder of clouds: PCD, PLY, or .bin as KITTI and nuScenes have them;\n"
+                 "given again for each LIDAR, the reference first: the poses of the others are found\n"
+                 "from their clouds of the same boards");
   verb->Required(
       "--board", &flags->board,
       "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"

@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes = fuzz::Input(data, size).Rest();
   file.Write(bytes);
   fuzz::Try([&] {
-    const Cloud cloud = ReadPcd(file.path(), 1'700'000'000'000'000);
+    const Cloud cloud = ReadSweep(file.path(), 1'700'000'000'000'000);
     fuzz::Require(cloud.points.size() ==
                       static_cast<std::size_t>(cloud.lines) * static_cast<std::size_t>(cloud.beams),
                   "lines x beams points");

@@ -204,7 +204,7 @@ void RequireCloud(const ViewFile& file, const Place& place) {
 
 Cloud ReadCloudOf(const ViewFile& file, const Place& place) {
   const fs::path cloud = FileOf(file.folder, file.message.cloud(), place, "cloud");
-  return ReadFor(place, "cloud", [&] { return ReadPcd(cloud, file.message.sweep_utime()); });
+  return ReadFor(place, "cloud", [&] { return ReadSweep(cloud, file.message.sweep_utime()); });
 }
 
 // Of LIDARs beside the rig's reference; a view need not have one of each.
@@ -225,7 +225,7 @@ std::vector<LidarCloud> ReadFurtherClouds(const ViewFile& file, const Rig& rig,
     if (message.file().empty()) at.Fail("file", "is missing; expected the PCD file's path");
     const fs::path path = FileOf(file.folder, message.file(), at, "file");
     clouds.push_back({message.lidar(), ReadFor(at, "file", [&] {
-                        return ReadPcd(path, file.message.sweep_utime());
+                        return ReadSweep(path, file.message.sweep_utime());
                       })});
   }
   return clouds;

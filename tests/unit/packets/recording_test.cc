@@ -231,7 +231,7 @@ TEST_F(Recordings, BecomePcdFilesNamedByTheirTimes) {
   }
   std::sort(names.begin(), names.end());
   EXPECT_THAT(names, ElementsAre("1700000000.000000.pcd", "1700000000.003104.pcd"));
-  EXPECT_EQ(ReadPcd(dir_ / "out" / names[0]).beams, 32);
+  EXPECT_EQ(ReadSweep(dir_ / "out" / names[0]).beams, 32);
   EXPECT_THAT(test::ErrorOf([&] {
                 WriteRecordingAsPcds(path, {dir_ / "os.json", 0}, dir_ / "out");
               }),

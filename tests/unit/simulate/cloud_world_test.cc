@@ -140,7 +140,7 @@ TEST(CloudWorld, SweepsSurviveTheirFile) {
       std::filesystem::temp_directory_path() / ("rgbdt-sweep-" + std::to_string(getpid()) + ".pcd");
   for (const Cloud& cloud : {sweep, Unorganised(sweep, true), Unorganised(sweep, false, 1)}) {
     WritePcd(path, cloud);
-    const Cloud read = ReadPcd(path, sweep.sweep_utime);
+    const Cloud read = ReadSweep(path, sweep.sweep_utime);
     EXPECT_EQ(read.organised, cloud.organised);
     EXPECT_EQ(read.lines, cloud.lines);
     EXPECT_EQ(read.beams, cloud.beams);

@@ -101,7 +101,7 @@ struct CloudFacts {
 CloudFacts LookAtCloud(const fs::path& path) {
   CloudFacts facts;
   try {
-    const Cloud cloud = ReadPcd(path);
+    const Cloud cloud = ReadSweep(path);
     std::vector<float> ranges;
     for (const Eigen::Vector3f& point : cloud.points) {
       if (point.allFinite()) ranges.push_back(point.norm());
@@ -121,7 +121,8 @@ FileList ListImages(const fs::path& folder) {
 }
 
 FileList ListClouds(const fs::path& folder) {
-  return List(folder, {".pcd"}, "cloud", "cloud; expected PCD files");
+  return List(folder, {".pcd", ".ply", ".bin"}, "cloud",
+              "cloud; expected PCD or PLY files, or .bin as KITTI's");
 }
 
 std::vector<ImageFacts> LookAtImages(const FileList& files, const std::vector<std::size_t>& which) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt::ply {
@@ -118,6 +119,15 @@ class HeaderParser {
 };
 
 }  // namespace
+
+void CheckSweepHead(std::string_view head, const std::string& where) {
+  HeaderParser header(head, where);
+  header.Parse();
+  const std::size_t points = header.source().count;
+  if (points <= kMostSweepPoints) return;
+  throw InputError(where + ": PLY header: a sweep of " + std::to_string(points) +
+                   " points; expected at most " + std::to_string(kMostSweepPoints));
+}
 
 File Parse(std::string_view bytes, const std::string& where) {
   HeaderParser header(bytes, where);

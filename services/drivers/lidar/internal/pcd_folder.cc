@@ -48,7 +48,7 @@ std::optional<Cloud> PcdFolder::Read(DeviceThread& thread, const fs::path& file)
   const Utime next =
       last_ == 0 ? HostUtime() : last_ + std::max<Utime>(1, FromSeconds(device_.period_s));
   try {
-    Cloud cloud = ReadPcd(file, UtimeOfName(file.stem().string()).value_or(next));
+    Cloud cloud = ReadSweep(file, UtimeOfName(file.stem().string()).value_or(next));
     if (!cloud.utime.empty()) {
       cloud.sweep_utime = *std::min_element(cloud.utime.begin(), cloud.utime.end());
     }

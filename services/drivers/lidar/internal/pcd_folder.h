@@ -15,7 +15,7 @@ namespace rgbdt {
 std::optional<Utime> UtimeOfName(const std::string& name);
 
 /// A folder of PCD files, in the order of their names -> CLOUD, one sweep a file, at the pace of
-/// their times. A sweep's time is that of its first point, where the points have times (ReadPcd);
+/// their times. A sweep's time is that of its first point, where the points have times (ReadSweep);
 /// else what the file's name tells; else period_s after the one before, the first one's being the
 /// host's. A file that cannot be read, or whose time is not after the one before, is named and
 /// passed over.

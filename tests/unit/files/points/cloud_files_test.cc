@@ -39,7 +39,7 @@ TEST(CloudFiles, PcdGivesBackEveryBit) {
   const test::TempDir dir;
   const Cloud cloud = test::MakeCloud();
   WritePcd(dir / "cloud.pcd", cloud);
-  test::ExpectSame(ReadPcd(dir / "cloud.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "cloud.pcd", cloud.sweep_utime), cloud);
 }
 
 TEST(CloudFiles, PcdGivesBackOneOrganisedLineAndACloudWithoutOrder) {
@@ -49,12 +49,12 @@ TEST(CloudFiles, PcdGivesBackOneOrganisedLineAndACloudWithoutOrder) {
   cloud.beams = 20;
   cloud.origins.resize(1);
   WritePcd(dir / "cloud.pcd", cloud);
-  test::ExpectSame(ReadPcd(dir / "cloud.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "cloud.pcd", cloud.sweep_utime), cloud);
 
   cloud.organised = false;
   cloud.first_line = 0;
   WritePcd(dir / "cloud.pcd", cloud);
-  test::ExpectSame(ReadPcd(dir / "cloud.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "cloud.pcd", cloud.sweep_utime), cloud);
 
   Cloud bare;
   bare.lines = 1;
@@ -62,7 +62,7 @@ TEST(CloudFiles, PcdGivesBackOneOrganisedLineAndACloudWithoutOrder) {
   bare.organised = false;
   bare.points = {{1, 2, 3}, {4, 5, 6}};
   WritePcd(dir / "cloud.pcd", bare);
-  test::ExpectSame(ReadPcd(dir / "cloud.pcd"), bare);
+  test::ExpectSame(ReadSweep(dir / "cloud.pcd"), bare);
 }
 
 TEST(CloudFiles, PclReadsWhatIsWritten) {
@@ -89,11 +89,11 @@ TEST(CloudFiles, ReadsEveryKindThatPclWrites) {
   const Eigen::Vector4f origin = Eigen::Vector4f::Zero();
   const Eigen::Quaternionf none = Eigen::Quaternionf::Identity();
   writer.writeBinaryCompressed((dir / "compressed.pcd").string(), read, origin, none);
-  test::ExpectSame(ReadPcd(dir / "compressed.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "compressed.pcd", cloud.sweep_utime), cloud);
   writer.writeBinary((dir / "binary.pcd").string(), read, origin, none);
-  test::ExpectSame(ReadPcd(dir / "binary.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "binary.pcd", cloud.sweep_utime), cloud);
   writer.writeASCII((dir / "ascii.pcd").string(), read, origin, none, 17);
-  test::ExpectSame(ReadPcd(dir / "ascii.pcd", cloud.sweep_utime), cloud);
+  test::ExpectSame(ReadSweep(dir / "ascii.pcd", cloud.sweep_utime), cloud);
   // The compressed file, cut short and damaged.
   const std::string bytes = ReadWholeFile(dir / "compressed.pcd");
   const auto parse = [](const std::string& b) { ParsePcd(b, "c.pcd"); };
@@ -136,6 +136,47 @@ TEST(CloudFiles, TimesCountFromTheSweepOrFrom1970) {
   EXPECT_THAT(read("t", "U", "99000000"), ElementsAre(1'000'099'000));
   EXPECT_THAT(read("timestamp", "D", "1700000000.5"), ElementsAre(1'700'000'000'500'000));
   EXPECT_THAT(test::ErrorOf([&] { read("time", "F", "nan"); }), HasSubstr("time"));
+}
+
+TEST(CloudFiles, APlyIsASweep) {
+  const test::TempDir dir;
+  test::WriteQuickly(dir / "s.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                     "property double z\nproperty uchar intensity\nproperty ushort ring\n"
+                     "end_header\n1 2 3 51 4\n0 0 0 0 0\n4 5 6 255 1\n");
+  const Cloud cloud = ReadSweep(dir / "s.ply");
+  ASSERT_EQ(cloud.size(), 3u);
+  EXPECT_FALSE(cloud.organised);
+  EXPECT_EQ(cloud.points[2], Eigen::Vector3f(4, 5, 6));
+  EXPECT_FALSE(cloud.IsHit(1));
+  EXPECT_THAT(cloud.ring, ElementsAre(4, 0, 1));
+  EXPECT_FLOAT_EQ(cloud.intensity[0], 0.2f);
+  test::WriteQuickly(dir / "huge.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 30000000\n"
+                     "property float x\nend_header\n");
+  EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "huge.ply"); }), HasSubstr("30000000 points"));
+}
+
+TEST(CloudFiles, FloatsWithoutAHeadAreKittisOrNuScenes) {
+  const test::TempDir dir;
+  const auto write = [&](const std::string& name, const std::vector<float>& numbers) {
+    test::WriteQuickly(dir / name, std::string(reinterpret_cast<const char*>(numbers.data()),
+                                               sizeof(float) * numbers.size()));
+  };
+  write("000001.bin", {1, 2, 3, 0.5F, 4, 5, 6, 1});
+  const Cloud kitti = ReadSweep(dir / "000001.bin");
+  ASSERT_EQ(kitti.size(), 2u);
+  EXPECT_EQ(kitti.points[1], Eigen::Vector3f(4, 5, 6));
+  EXPECT_THAT(kitti.intensity, ElementsAre(0.5F, 1.F));
+  EXPECT_TRUE(kitti.ring.empty());
+  write("a.pcd.bin", {1, 2, 3, 51, 7, 4, 5, 6, 255, 31});
+  const Cloud nuscenes = ReadSweep(dir / "a.pcd.bin");
+  EXPECT_THAT(nuscenes.ring, ElementsAre(7, 31));
+  EXPECT_THAT(nuscenes.intensity, ElementsAre(0.2F, 1.F));
+  write("b.bin", {1, 2, 3});
+  EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "b.bin"); }), HasSubstr("points of 16"));
+  write("c.bin", {});
+  EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "c.bin"); }), HasSubstr("0 bytes"));
 }
 
 // Of a sweep of 0.1 s, whatever the driver counts in.
@@ -356,7 +397,7 @@ TEST(CloudFiles, PlyHasItsHeaderAndAllItsBytes) {
 TEST(CloudFiles, RealClouds) {
   const char* data = std::getenv("RGBDT_REAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "RGBDT_REAL_DATA is not set: real clouds not read";
-  const Cloud cloud = ReadPcd(std::filesystem::path(data) / "acfr_vlp16/clouds/pose3.pcd");
+  const Cloud cloud = ReadSweep(std::filesystem::path(data) / "acfr_vlp16/clouds/pose3.pcd");
   EXPECT_EQ(cloud.size(), 24262u);
   EXPECT_FLOAT_EQ(cloud.points[0].x(), 0.38285658f);
   EXPECT_EQ(*std::max_element(cloud.ring.begin(), cloud.ring.end()), 15);
@@ -370,7 +411,7 @@ TEST(CloudFiles, ASweepThatCannotBeOneIsRefusedByItsHeader) {
   pcd.replace(pcd.find("ascii"), 5, "binary");
   WriteFileAtomically(dir / "forged.pcd", pcd);
   std::filesystem::resize_file(dir / "forged.pcd", pcd.size() + std::size_t{12} * 200'000'000);
-  EXPECT_THAT(test::ErrorOf([&] { ReadPcd(dir / "forged.pcd", 0); }),
+  EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "forged.pcd", 0); }),
               AllOf(HasSubstr("forged.pcd"), HasSubstr("200000000 points; expected at most")));
 }
 

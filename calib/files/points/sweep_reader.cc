@@ -5,6 +5,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/files/points/internal/pcd_table.h"
+#include "calib/files/points/internal/ply_table.h"
 #include "calib/files/points/internal/point_columns.h"
 #include "calib/model/errors.h"
 
@@ -85,12 +86,13 @@ bool OrganiseByRings(Cloud* cloud) {
   return true;
 }
 
-void Organise(const pcd::File& file, Cloud* cloud) {
+// Rows of the header; 1: it knows none.
+void Organise(const records::Table& table, std::size_t rows, Cloud* cloud) {
   cloud->organised = true;
-  if (OrganiseByFields(file.table, cloud)) return;
-  if (file.header.height > 1 && OrganiseByRings(cloud)) return;
-  cloud->lines = static_cast<int>(file.header.height);
-  cloud->beams = static_cast<int>(file.header.width);
+  if (OrganiseByFields(table, cloud)) return;
+  if (rows > 1 && OrganiseByRings(cloud)) return;
+  cloud->lines = static_cast<int>(rows);
+  cloud->beams = static_cast<int>(table.size() / rows);
   cloud->organised = cloud->lines > 1;
 }
 
@@ -109,28 +111,62 @@ bool HasVector(const records::Table& table, const std::string& prefix) {
   return table.Has(prefix + "x") && table.Has(prefix + "y") && table.Has(prefix + "z");
 }
 
-}  // namespace
-
-Cloud ReadPcd(const std::filesystem::path& path, Utime sweep_utime) {
-  constexpr std::size_t kHeadBytes = 64 * 1024;
-  pcd::CheckSweepHead(ReadFileHead(path, kHeadBytes), path.string());
-  return ParsePcd(ReadWholeFile(path, kMostPointsBytes), path.string(), sweep_utime);
-}
-
-Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_utime) {
-  const pcd::File file = pcd::Parse(bytes, where);
-  const records::Table& table = file.table;
+Cloud FromTable(const records::Table& table, std::size_t rows, const std::string& where,
+                Utime sweep_utime) {
   Cloud cloud;
   cloud.sweep_utime = sweep_utime;
   cloud.points = ReadVectors(table, "x", "y", "z");
   MarkMisses(&cloud.points, where);
   if (table.Has("ring")) cloud.ring = ReadRing(table, cloud.points, where);
-  Organise(file, &cloud);
+  Organise(table, rows, &cloud);
   if (HasVector(table, "dir_")) cloud.directions = ReadVectors(table, "dir_x", "dir_y", "dir_z");
   if (HasVector(table, "origin_")) cloud.origins = ReadOrigins(table, cloud);
   if (table.Has("intensity")) cloud.intensity = ReadIntensity(table);
   cloud.utime = ReadUtime(table, sweep_utime, where);
   return cloud;
+}
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Floats without a head, as data sets have them: KITTI's x y z intensity, nuScenes' with the ring.
+Cloud ReadBare(const std::string& name, Utime sweep_utime) {
+  records::Source source;
+  source.where = name;
+  for (const char* field : {"x", "y", "z", "intensity"}) source.fields.push_back({field});
+  if (EndsWith(name, ".pcd.bin")) source.fields.push_back({"ring"});
+  const std::size_t record = source.RecordBytes();
+  const std::string bytes = ReadWholeFile(name, kMostSweepPoints * record);
+  if (bytes.empty() || bytes.size() % record != 0) {
+    throw InputError(name + ": is " + std::to_string(bytes.size()) + " bytes; expected points of " +
+                     std::to_string(record) + ": x y z intensity" +
+                     (source.fields.size() > 4 ? " ring" : "") + ", each a float of 4 bytes");
+  }
+  source.bytes = bytes;
+  source.data_begin = 0;
+  source.count = bytes.size() / record;
+  return FromTable(records::Table::FromBinary(std::move(source)), 1, name, sweep_utime);
+}
+
+}  // namespace
+
+Cloud ReadSweep(const std::filesystem::path& path, Utime sweep_utime) {
+  constexpr std::size_t kHeadBytes = 64 * 1024;
+  if (EndsWith(path.string(), ".bin")) return ReadBare(path.string(), sweep_utime);
+  const std::string head = ReadFileHead(path, kHeadBytes);
+  if (head.compare(0, 3, "ply") != 0) {
+    pcd::CheckSweepHead(head, path.string());
+    return ParsePcd(ReadWholeFile(path, kMostPointsBytes), path.string(), sweep_utime);
+  }
+  ply::CheckSweepHead(head, path.string());
+  const std::string bytes = ReadWholeFile(path, kMostPointsBytes);
+  return FromTable(ply::Parse(bytes, path.string()).table, 1, path.string(), sweep_utime);
+}
+
+Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_utime) {
+  const pcd::File file = pcd::Parse(bytes, where);
+  return FromTable(file.table, file.header.height, where, sweep_utime);
 }
 
 }  // namespace rgbdt
