@@ -33,8 +33,9 @@ Cloud ReadSweep(const std::filesystem::path& path, Utime sweep_utime = 0);
 /// The same from bytes of a PCD; `where` stands for the file in error messages.
 Cloud ParsePcd(const std::string& bytes, const std::string& where, Utime sweep_utime = 0);
 
-/// Writes a binary PCD with the fields above, bit for bit what ReadSweep gives back; only those that
-/// the cloud has. Throws InputError for a cloud that is empty or whose vectors differ in length.
+/// Writes a binary PCD with the fields above, bit for bit what ReadSweep gives back; only those
+/// that the cloud has. Throws InputError for a cloud that is empty or whose vectors differ in
+/// length.
 void WritePcd(const std::filesystem::path& path, const Cloud& cloud);
 
 /// Writes a binary PCD: x y z [m], rgb (packed as PCL does), intensity, utime [us, UTC],
