@@ -75,6 +75,11 @@ class LcmBus : public Bus {
   Malformed malformed() const override;
   LinkReport links() const override;
   Utime arrived() const override;
+  /// Who subscribes from now on wants what is new rather than all: images that have waited for 125
+  /// ms and clouds that have waited for 250 ms for their handler go when newer ones come.
+  void WantNewest();
+  /// Whether a message waits for its handler.
+  bool waits() const;
   /// Waits up to `timeout_ms` for messages and delivers what is there, but for no longer than some
   /// 100 ms, so that the caller's clock keeps running under load. False: none came.
   bool Run(int timeout_ms);

@@ -20,18 +20,31 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kMaxDelivery = std::chrono::milliseconds(100);
 
-// LCM's queues count messages, not bytes, and a full one drops the newest. While a node computes,
-// these wait: 64 images are 16 s of the demo's two cameras and 192 MB at worst; 4096 of anything
-// else are 40 s of scan lines (13 MB), and more clouds than a sensor sends in minutes. All that
-// wait have 256 MiB at most (Inbox), however large each is.
+// While a node computes, these wait: 64 images are 16 s of the demo's two cameras and 192 MB at
+// worst, and then the oldest gives way to the newest; 4096 of anything else are 40 s of scan lines
+// (13 MB), and more clouds than a sensor sends in minutes. All that wait have 256 MiB at most
+// (Inbox), however large each is.
 constexpr int kImageQueue = 64;
 // Who hears everything has a few seconds of all of it, images among them.
 constexpr int kQueue = 4096;
 constexpr int kEverythingQueue = 512;
+// Where only the newest is wanted, what waited for so long is stale; images go before clouds. A
+// fuser that is behind has it all to do beside what comes meanwhile, for which it needs half of its
+// time under the load of a large rig: it is back within about as long as clouds may wait.
+constexpr Utime kStaleImage = kMicrosecondsPerSecond / 8, kStaleCloud = 2 * kStaleImage;
+
+bool IsOfImages(const std::string& channel_regex) {
+  return channel_regex.find("IMAGE") != std::string::npos;
+}
 
 int QueueFor(const std::string& channel_regex) {
   if (channel_regex == ".*") return kEverythingQueue;
-  return channel_regex.find("IMAGE") != std::string::npos ? kImageQueue : kQueue;
+  return IsOfImages(channel_regex) ? kImageQueue : kQueue;
+}
+
+Utime StaleFor(const std::string& channel_regex) {
+  if (IsOfImages(channel_regex)) return kStaleImage;
+  return channel_regex == "CLOUD" ? kStaleCloud : 0;
 }
 
 }  // namespace
@@ -87,6 +100,7 @@ struct LcmBus::Impl {
   std::unique_ptr<Source> source;
   std::string url;
   bool ended = false;
+  bool wants_newest = false;
   std::int64_t handler_failures = 0;
 };
 
@@ -127,8 +141,12 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
       ++bus->handler_failures;
     }
   };
-  impl_->source->Subscribe(channel_regex, QueueFor(channel_regex), guarded);
+  const Utime stale = impl_->wants_newest ? StaleFor(channel_regex) : 0;
+  impl_->source->Subscribe(channel_regex, QueueFor(channel_regex), stale, guarded);
 }
+
+void LcmBus::WantNewest() { impl_->wants_newest = true; }
+bool LcmBus::waits() const { return impl_->Readable(0); }
 
 Malformed LcmBus::malformed() const { return impl_->source->malformed(); }
 

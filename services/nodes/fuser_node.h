@@ -20,7 +20,9 @@ namespace rgbdt {
 /// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
 /// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
 /// one holds from the next chunk on. An image older than the camera's newest by more than
-/// kClockReset means that the clock was set back: the camera's images go. Memory is bounded.
+/// kClockReset means that the clock was set back: the camera's images go. Memory is bounded. Where
+/// it has too little time it leaves out what waits for too long (WantsNewest), so that what goes
+/// out is of now; STATUS counts that as gaps.
 ///
 /// A calibration of another rig is refused (calibration_use.h); the rig heard before this one may
 /// have been the same in all that counts. One that is not to be used is not taken, either: what
@@ -45,6 +47,7 @@ class FuserNode : public Node {
 
   std::string name() const override { return "fuser"; }
   std::vector<std::string> Subscriptions() const override;
+  bool WantsNewest() const override { return true; }
   Messages Handle(const Message& message) override;
   Status GetStatus() const override;
 

@@ -2,7 +2,10 @@
 
 #include <sys/eventfd.h>
 
+#include <algorithm>
+
 #include "calib/model/errors.h"
+#include "services/messages/image_channel.h"
 #include "services/posix/clock.h"
 
 namespace rgbdt {
@@ -35,21 +38,100 @@ bool Inbox::IsWanted(const std::string& channel) {
   return !Hearing(channel).empty();
 }
 
-void Inbox::Add(WholeMessage message) {
+void Inbox::Add(WholeMessage message, Utime came) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  const std::vector<Subscriber*>& hearing = Hearing(message.channel);
+  if (hearing.empty()) return;
+  for (Subscriber* subscriber : hearing) LeaveOutStale(message.channel, subscriber, came);
   const std::size_t size = message.bytes.size();
-  if (size + bytes_ + (size > kSmall ? kForSmall : 0) > max_bytes_) return;
-  Waiting waiting;
-  for (Subscriber* subscriber : Hearing(message.channel)) {
-    if (subscriber->waiting < subscriber->capacity) waiting.to.push_back(subscriber);
+  if (MakeRoom(size)) {
+    Waiting waiting;
+    for (Subscriber* subscriber : hearing) {
+      if (MakeRoom(subscriber)) waiting.to.push_back(subscriber);
+    }
+    if (!waiting.to.empty()) {
+      for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
+      bytes_ += size;
+      images_ += IsImageChannel(message.channel) ? 1 : 0;
+      waiting.message = std::move(message);
+      waiting.arrived = HostUtime();
+      waiting.came = came;
+      waiting_.push_back(std::move(waiting));
+    }
   }
-  if (waiting.to.empty()) return;
-  for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
-  bytes_ += size;
-  waiting.message = std::move(message);
-  waiting.arrived = HostUtime();
-  waiting_.push_back(std::move(waiting));
-  if (waiting_.size() == 1) eventfd_write(waits_.get(), 1);
+  Signal();
+}
+
+// The descriptor is readable while a message waits.
+void Inbox::Signal() {
+  if (signalled_ == !waiting_.empty()) return;
+  signalled_ = !waiting_.empty();
+  eventfd_t count = 0;
+  if (signalled_) {
+    eventfd_write(waits_.get(), 1);
+  } else {
+    eventfd_read(waits_.get(), &count);
+  }
+}
+
+// That waits for a subscriber, or for anybody.
+Inbox::Queue::iterator Inbox::OldestImage(const Subscriber* of) {
+  if (images_ == 0) return waiting_.end();
+  return std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& waiting) {
+    const auto& to = waiting.to;
+    return IsImageChannel(waiting.message.channel) &&
+           (of == nullptr || std::find(to.begin(), to.end(), of) != to.end());
+  });
+}
+
+// For one more in its queue.
+bool Inbox::MakeRoom(Subscriber* subscriber) {
+  if (subscriber->waiting < subscriber->capacity) return true;
+  const auto image = OldestImage(subscriber);
+  if (image == waiting_.end()) return false;
+  LeaveOut(image, subscriber);
+  return true;
+}
+
+bool Inbox::MakeRoom(std::size_t bytes) {
+  const std::size_t needed = bytes + (bytes > kSmall ? kForSmall : 0);
+  if (needed > max_bytes_) return false;
+  while (needed + bytes_ > max_bytes_) {
+    const auto image = OldestImage(nullptr);
+    if (image == waiting_.end()) return false;
+    const std::vector<Subscriber*> to = image->to;
+    for (Subscriber* subscriber : to) LeaveOut(image, subscriber);
+  }
+  return true;
+}
+
+void Inbox::LeaveOutStale(const std::string& channel, Subscriber* subscriber, Utime now) {
+  if (subscriber->stale == 0) return;
+  auto waiting = waiting_.begin();
+  while (waiting != waiting_.end() && waiting->came < now - subscriber->stale) {
+    waiting =
+        waiting->message.channel == channel ? LeaveOut(waiting, subscriber) : std::next(waiting);
+  }
+}
+
+// One that a subscriber does not get; the next one.
+Inbox::Queue::iterator Inbox::LeaveOut(Queue::iterator waiting, Subscriber* subscriber) {
+  auto& to = waiting->to;
+  const auto found = std::find(to.begin(), to.end(), subscriber);
+  if (found == to.end()) return std::next(waiting);
+  to.erase(found);
+  --subscriber->waiting;
+  const auto next = std::next(waiting);
+  if (to.empty()) Remove(waiting);
+  return next;
+}
+
+Inbox::Queue Inbox::Remove(Queue::iterator waiting) {
+  bytes_ -= waiting->message.bytes.size();
+  images_ -= IsImageChannel(waiting->message.channel) ? 1 : 0;
+  Queue removed;
+  removed.splice(removed.end(), waiting_, waiting);
+  return removed;
 }
 
 void Inbox::AddMalformed(const std::string& what) {
@@ -63,12 +145,12 @@ Malformed Inbox::malformed() const {
   return malformed_;
 }
 
-void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity,
+void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity, Utime stale,
                       Bus::Handler handler) {
   try {
     std::regex regex(channel_regex);
     const std::lock_guard<std::mutex> lock(mutex_);
-    subscribers_.push_back({std::move(regex), capacity, std::move(handler), 0});
+    subscribers_.push_back({std::move(regex), capacity, stale, std::move(handler)});
     hearing_.clear();
   } catch (const std::regex_error& e) {
     throw InputError("\"" + channel_regex + "\" is no regular expression: " + e.what());
@@ -76,20 +158,18 @@ void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity,
 }
 
 void Inbox::DeliverOne() {
-  Waiting next;
+  Queue next;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (waiting_.empty()) return;
-    next = std::move(waiting_.front());
-    waiting_.pop_front();
-    bytes_ -= next.message.bytes.size();
-    for (Subscriber* subscriber : next.to) --subscriber->waiting;
-    eventfd_t count = 0;
-    if (waiting_.empty()) eventfd_read(waits_.get(), &count);
+    for (Subscriber* subscriber : waiting_.front().to) --subscriber->waiting;
+    next = Remove(waiting_.begin());
+    Signal();
   }
-  arrived_ = next.arrived;
-  for (const Subscriber* subscriber : next.to) {
-    subscriber->handler(next.message.channel, next.message.bytes.data(), next.message.bytes.size());
+  const Waiting& one = next.front();
+  arrived_ = one.arrived;
+  for (const Subscriber* subscriber : one.to) {
+    subscriber->handler(one.message.channel, one.message.bytes.data(), one.message.bytes.size());
   }
 }
 

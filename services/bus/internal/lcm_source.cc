@@ -10,7 +10,9 @@ class LcmSource : public Source {
  public:
   explicit LcmSource(lcm_t* lcm) : lcm_(lcm) {}
 
-  void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) override {
+  // A log's messages wait in their file: none is stale.
+  void Subscribe(const std::string& channel_regex, int capacity, Utime /*stale*/,
+                 Bus::Handler handler) override {
     auto subscriber = std::make_unique<Bus::Handler>(std::move(handler));
     // LCM puts ^ and $ around what it gets, so "A|B" alone would hear "A2" and "2B".
     lcm_subscription_t* subscription =

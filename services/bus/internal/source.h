@@ -18,8 +18,10 @@ inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
 class Source {
  public:
   virtual ~Source() = default;
-  /// At most `capacity` messages wait for it. Throws InputError where `channel_regex` is none.
-  virtual void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) = 0;
+  /// At most `capacity` messages wait for it, and what is stale does not (Inbox). Throws InputError
+  /// where `channel_regex` is none.
+  virtual void Subscribe(const std::string& channel_regex, int capacity, Utime stale,
+                         Bus::Handler handler) = 0;
   /// Readable while a message waits.
   virtual int descriptor() const = 0;
   /// Hands on the message that waits. False: nothing will come any more.
