@@ -75,8 +75,8 @@ class LcmBus : public Bus {
   Malformed malformed() const override;
   LinkReport links() const override;
   Utime arrived() const override;
-  /// Who subscribes from now on wants what is new rather than all: images that have waited for 125
-  /// ms and clouds that have waited for 250 ms for their handler go when newer ones come.
+  /// Who subscribes from now on wants what is new rather than all: of images more than 20 MiB and
+  /// of clouds more than 8 MiB do not wait for their handlers, the oldest go.
   void WantNewest();
   /// Whether a message waits for its handler.
   bool waits() const;

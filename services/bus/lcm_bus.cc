@@ -21,30 +21,22 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kMaxDelivery = std::chrono::milliseconds(100);
 
 // While a node computes, these wait: 64 images are 16 s of the demo's two cameras and 192 MB at
-// worst, and then the oldest gives way to the newest; 4096 of anything else are 40 s of scan lines
-// (13 MB), and more clouds than a sensor sends in minutes. All that wait have 256 MiB at most
-// (Inbox), however large each is.
-constexpr int kImageQueue = 64;
+// worst; 4096 of anything else are 40 s of scan lines (13 MB), and more clouds than a sensor sends
+// in minutes. All that wait have 256 MiB at most (Inbox), however large each is.
+constexpr std::size_t kImageQueue = 64;
 // Who hears everything has a few seconds of all of it, images among them.
-constexpr int kQueue = 4096;
-constexpr int kEverythingQueue = 512;
-// Where only the newest is wanted, what waited for so long is stale; images go before clouds. A
-// fuser that is behind has it all to do beside what comes meanwhile, for which it needs half of its
-// time under the load of a large rig: it is back within about as long as clouds may wait.
-constexpr Utime kStaleImage = kMicrosecondsPerSecond / 8, kStaleCloud = 2 * kStaleImage;
+constexpr std::size_t kQueue = 4096;
+constexpr std::size_t kEverythingQueue = 512;
+// Of who wants the newest: some 0.2 s of what a large rig sends, images less than clouds, which a
+// fuser handles in 0.1 s; and seconds of a turned scanner's lines, as a long sweep's end takes
+// long.
+constexpr std::size_t kNewestImages = std::size_t{20} << 20, kNewestClouds = std::size_t{8} << 20;
 
-bool IsOfImages(const std::string& channel_regex) {
-  return channel_regex.find("IMAGE") != std::string::npos;
-}
-
-int QueueFor(const std::string& channel_regex) {
-  if (channel_regex == ".*") return kEverythingQueue;
-  return IsOfImages(channel_regex) ? kImageQueue : kQueue;
-}
-
-Utime StaleFor(const std::string& channel_regex) {
-  if (IsOfImages(channel_regex)) return kStaleImage;
-  return channel_regex == "CLOUD" ? kStaleCloud : 0;
+Room RoomFor(const std::string& channel_regex, bool wants_newest) {
+  if (channel_regex == ".*") return {kEverythingQueue};
+  const bool images = channel_regex.find("IMAGE") != std::string::npos;
+  const std::size_t newest = images ? kNewestImages : channel_regex == "CLOUD" ? kNewestClouds : 0;
+  return {images ? kImageQueue : kQueue, wants_newest ? newest : 0};
 }
 
 }  // namespace
@@ -141,8 +133,7 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
       ++bus->handler_failures;
     }
   };
-  const Utime stale = impl_->wants_newest ? StaleFor(channel_regex) : 0;
-  impl_->source->Subscribe(channel_regex, QueueFor(channel_regex), stale, guarded);
+  impl_->source->Subscribe(channel_regex, RoomFor(channel_regex, impl_->wants_newest), guarded);
 }
 
 void LcmBus::WantNewest() { impl_->wants_newest = true; }

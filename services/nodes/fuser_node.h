@@ -21,8 +21,8 @@ namespace rgbdt {
 /// is not below the true delay. Before a calibration comes the cloud goes out without colour; a new
 /// one holds from the next chunk on. An image older than the camera's newest by more than
 /// kClockReset means that the clock was set back: the camera's images go. Memory is bounded. Where
-/// it has too little time it leaves out what waits for too long (WantsNewest), so that what goes
-/// out is of now; STATUS counts that as gaps.
+/// it has too little time the oldest images and clouds that wait for it go (WantsNewest), so that
+/// what it says is of now; STATUS counts them as gaps.
 ///
 /// A calibration of another rig is refused (calibration_use.h); the rig heard before this one may
 /// have been the same in all that counts. One that is not to be used is not taken, either: what

@@ -173,9 +173,9 @@ def figures_of_overloads(run):
     yield "commands_lost", run.missed_by_all("SESSION_COMMAND", 0, stopped), "1"
     yield "held_s", released - held, "s"
     yield "held_images_dropped", run.missed_by_all("_IMAGE", held, stopped), "1"
-    # The detector needs every cloud; the fuser leaves out what is stale.
+    # The detector needs every cloud; the fuser wants the newest.
     yield "held_clouds_dropped", run.missed("detector", "CLOUD", held, stopped), "1"
-    yield "held_stale_clouds", run.missed("fuser", "CLOUD", held, stopped), "1"
+    yield "held_old_clouds", run.missed("fuser", "CLOUD", held, stopped), "1"
     kinds = ("_IMAGE", "CLOUD", "SESSION_COMMAND", "RIG", "CALIBRATION")
     yield "stopped_s", run.overloads["process"][1] - stopped, "s"
     yield "stopped_messages_dropped", sum(run.missed_by_all(k, stopped) for k in kinds), "1"

@@ -38,26 +38,25 @@ bool Inbox::IsWanted(const std::string& channel) {
   return !Hearing(channel).empty();
 }
 
-void Inbox::Add(WholeMessage message, Utime came) {
+void Inbox::Add(WholeMessage message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::vector<Subscriber*>& hearing = Hearing(message.channel);
-  if (hearing.empty()) return;
-  for (Subscriber* subscriber : hearing) LeaveOutStale(message.channel, subscriber, came);
   const std::size_t size = message.bytes.size();
-  if (MakeRoom(size)) {
-    Waiting waiting;
-    for (Subscriber* subscriber : hearing) {
-      if (MakeRoom(subscriber)) waiting.to.push_back(subscriber);
+  if (hearing.empty() || !MakeRoom(size)) return Signal();
+  Waiting waiting;
+  for (Subscriber* subscriber : hearing) {
+    if (MakeRoom(size, subscriber)) waiting.to.push_back(subscriber);
+  }
+  if (!waiting.to.empty()) {
+    for (Subscriber* subscriber : waiting.to) {
+      ++subscriber->waiting;
+      subscriber->bytes += size;
     }
-    if (!waiting.to.empty()) {
-      for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
-      bytes_ += size;
-      images_ += IsImageChannel(message.channel) ? 1 : 0;
-      waiting.message = std::move(message);
-      waiting.arrived = HostUtime();
-      waiting.came = came;
-      waiting_.push_back(std::move(waiting));
-    }
+    bytes_ += size;
+    images_ += IsImageChannel(message.channel) ? 1 : 0;
+    waiting.message = std::move(message);
+    waiting.arrived = HostUtime();
+    waiting_.push_back(std::move(waiting));
   }
   Signal();
 }
@@ -74,60 +73,60 @@ void Inbox::Signal() {
   }
 }
 
-// That waits for a subscriber, or for anybody.
-Inbox::Queue::iterator Inbox::OldestImage(const Subscriber* of) {
-  if (images_ == 0) return waiting_.end();
+// That waits for a subscriber.
+Inbox::Queue::iterator Inbox::Oldest(const Subscriber& of, bool image) {
+  if (of.waiting == 0 || (image && images_ == 0)) return waiting_.end();
   return std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& waiting) {
     const auto& to = waiting.to;
-    return IsImageChannel(waiting.message.channel) &&
-           (of == nullptr || std::find(to.begin(), to.end(), of) != to.end());
+    return (!image || IsImageChannel(waiting.message.channel)) &&
+           std::find(to.begin(), to.end(), &of) != to.end();
   });
 }
 
 // For one more in its queue.
-bool Inbox::MakeRoom(Subscriber* subscriber) {
-  if (subscriber->waiting < subscriber->capacity) return true;
-  const auto image = OldestImage(subscriber);
-  if (image == waiting_.end()) return false;
-  LeaveOut(image, subscriber);
+bool Inbox::MakeRoom(std::size_t bytes, Subscriber* subscriber) {
+  const Room& room = subscriber->room;
+  const bool wants_newest = room.newest_bytes != 0;
+  while (subscriber->waiting >= room.messages ||
+         (wants_newest && subscriber->bytes + bytes > room.newest_bytes)) {
+    const auto oldest = Oldest(*subscriber, !wants_newest);
+    if (oldest == waiting_.end()) return subscriber->waiting < room.messages;
+    LeaveOut(oldest, subscriber);
+  }
   return true;
 }
 
+// For one more of all.
 bool Inbox::MakeRoom(std::size_t bytes) {
   const std::size_t needed = bytes + (bytes > kSmall ? kForSmall : 0);
   if (needed > max_bytes_) return false;
-  while (needed + bytes_ > max_bytes_) {
-    const auto image = OldestImage(nullptr);
-    if (image == waiting_.end()) return false;
-    const std::vector<Subscriber*> to = image->to;
-    for (Subscriber* subscriber : to) LeaveOut(image, subscriber);
+  while (needed + bytes_ > max_bytes_ && images_ > 0) {
+    Remove(std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& waiting) {
+      return IsImageChannel(waiting.message.channel);
+    }));
   }
-  return true;
+  return needed + bytes_ <= max_bytes_;
 }
 
-void Inbox::LeaveOutStale(const std::string& channel, Subscriber* subscriber, Utime now) {
-  if (subscriber->stale == 0) return;
-  auto waiting = waiting_.begin();
-  while (waiting != waiting_.end() && waiting->came < now - subscriber->stale) {
-    waiting =
-        waiting->message.channel == channel ? LeaveOut(waiting, subscriber) : std::next(waiting);
-  }
-}
-
-// One that a subscriber does not get; the next one.
-Inbox::Queue::iterator Inbox::LeaveOut(Queue::iterator waiting, Subscriber* subscriber) {
+// That a subscriber does not get.
+void Inbox::LeaveOut(Queue::iterator waiting, Subscriber* subscriber) {
   auto& to = waiting->to;
-  const auto found = std::find(to.begin(), to.end(), subscriber);
-  if (found == to.end()) return std::next(waiting);
-  to.erase(found);
+  if (to.size() == 1) {
+    Remove(waiting);
+    return;
+  }
+  to.erase(std::find(to.begin(), to.end(), subscriber));
   --subscriber->waiting;
-  const auto next = std::next(waiting);
-  if (to.empty()) Remove(waiting);
-  return next;
+  subscriber->bytes -= waiting->message.bytes.size();
 }
 
 Inbox::Queue Inbox::Remove(Queue::iterator waiting) {
-  bytes_ -= waiting->message.bytes.size();
+  const std::size_t size = waiting->message.bytes.size();
+  for (Subscriber* subscriber : waiting->to) {
+    --subscriber->waiting;
+    subscriber->bytes -= size;
+  }
+  bytes_ -= size;
   images_ -= IsImageChannel(waiting->message.channel) ? 1 : 0;
   Queue removed;
   removed.splice(removed.end(), waiting_, waiting);
@@ -145,12 +144,11 @@ Malformed Inbox::malformed() const {
   return malformed_;
 }
 
-void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity, Utime stale,
-                      Bus::Handler handler) {
+void Inbox::Subscribe(const std::string& channel_regex, const Room& room, Bus::Handler handler) {
   try {
     std::regex regex(channel_regex);
     const std::lock_guard<std::mutex> lock(mutex_);
-    subscribers_.push_back({std::move(regex), capacity, stale, std::move(handler)});
+    subscribers_.push_back({std::move(regex), room, std::move(handler)});
     hearing_.clear();
   } catch (const std::regex_error& e) {
     throw InputError("\"" + channel_regex + "\" is no regular expression: " + e.what());
@@ -162,7 +160,6 @@ void Inbox::DeliverOne() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (waiting_.empty()) return;
-    for (Subscriber* subscriber : waiting_.front().to) --subscriber->waiting;
     next = Remove(waiting_.begin());
     Signal();
   }

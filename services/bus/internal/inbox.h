@@ -11,6 +11,7 @@
 
 #include "services/bus/bus.h"
 #include "services/bus/internal/reassembly.h"
+#include "services/bus/internal/source.h"
 #include "services/posix/descriptor.h"
 
 namespace rgbdt {
@@ -19,8 +20,9 @@ namespace rgbdt {
 /// order in which they came. Where there is no room for one, the oldest image that waits gives way;
 /// where none waits, the new message is missed: of a subscriber's queue, or, where so many bytes
 /// wait that another message would make them more than `max_bytes`, of all. The last kForSmall
-/// bytes are for messages of at most kSmall, so that images and clouds leave room for commands. And
-/// what a subscriber calls stale goes. Each leaves a gap in its sender's numbers.
+/// bytes are for messages of at most kSmall, so that images and clouds leave room for commands.
+/// Where a subscriber wants the newest, the oldest of its queue give way, whatever they are. Each
+/// leaves a gap in its sender's numbers.
 class Inbox {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
@@ -31,16 +33,13 @@ class Inbox {
 
   // Of any thread.
   bool IsWanted(const std::string& channel);
-  /// It `came` to this machine then [us, steady clock].
-  void Add(WholeMessage message, Utime came);
+  void Add(WholeMessage message);
   void AddMalformed(const std::string& what);
   Malformed malformed() const;
 
   // Of the thread that handles.
-  /// Of a channel what has waited for longer than `stale` [us] goes when a newer message comes; 0:
-  /// nothing is stale. Throws InputError where `channel_regex` is none.
-  void Subscribe(const std::string& channel_regex, std::size_t capacity, Utime stale,
-                 Bus::Handler handler);
+  /// Throws InputError where `channel_regex` is none.
+  void Subscribe(const std::string& channel_regex, const Room& room, Bus::Handler handler);
   int descriptor() const { return waits_.get(); }  ///< readable while a message waits
   void DeliverOne();
   Utime arrived() const { return arrived_; }  ///< when the newest delivered one was added
@@ -48,25 +47,22 @@ class Inbox {
  private:
   struct Subscriber {
     std::regex regex;
-    std::size_t capacity;
-    Utime stale;
+    Room room;
     Bus::Handler handler;
-    std::size_t waiting = 0;
+    std::size_t waiting = 0, bytes = 0;
   };
   struct Waiting {
     WholeMessage message;
     std::vector<Subscriber*> to;
-    Utime arrived = 0;  // wall clock
-    Utime came = 0;     // steady clock
+    Utime arrived = 0;
   };
   using Queue = std::list<Waiting>;
 
   const std::vector<Subscriber*>& Hearing(const std::string& channel);
-  Queue::iterator OldestImage(const Subscriber* of);
-  bool MakeRoom(Subscriber* subscriber);
+  Queue::iterator Oldest(const Subscriber& of, bool image);
+  bool MakeRoom(std::size_t bytes, Subscriber* subscriber);
   bool MakeRoom(std::size_t bytes);
-  void LeaveOutStale(const std::string& channel, Subscriber* subscriber, Utime now);
-  Queue::iterator LeaveOut(Queue::iterator waiting, Subscriber* subscriber);
+  void LeaveOut(Queue::iterator waiting, Subscriber* subscriber);
   Queue Remove(Queue::iterator waiting);
   void Signal();
 

@@ -19,40 +19,42 @@ std::size_t BlockFor(std::size_t bytes) {
 }  // namespace
 
 MessageMemory::~MessageMemory() {
-  for (const Block& block : kept_) munmap(block.data, block.bytes);
+  for (const Block& block : spare_) munmap(block.data, block.bytes);
+}
+
+std::uint8_t* MessageMemory::Map(std::size_t bytes, int flags) {
+  flags |= MAP_PRIVATE | MAP_ANONYMOUS;
+  void* data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, flags, -1, 0);
+  if (data == MAP_FAILED) throw std::bad_alloc();
+  mapped_ += bytes;
+  return static_cast<std::uint8_t*>(data);
 }
 
 std::uint8_t* MessageMemory::Take(std::size_t bytes) {
   const std::size_t size = BlockFor(bytes);
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const auto block = std::find_if(kept_.rbegin(), kept_.rend(),
-                                    [&](const Block& other) { return other.bytes == size; });
-    if (block != kept_.rend()) {
-      std::uint8_t* data = block->data;
-      kept_.erase(std::next(block).base());
-      return data;
-    }
-  }
-  void* data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (data == MAP_FAILED) throw std::bad_alloc();
-  return static_cast<std::uint8_t*>(data);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  while (mapped_ + size <= held_) spare_.push_front({Map(size, MAP_POPULATE), size, 0});
+  const auto block = std::find_if(spare_.rbegin(), spare_.rend(),
+                                  [&](const Block& other) { return other.bytes == size; });
+  if (block == spare_.rend()) return Map(size, 0);
+  std::uint8_t* data = block->data;
+  spare_.erase(std::next(block).base());
+  return data;
 }
 
 void MessageMemory::GiveBack(std::uint8_t* data, std::size_t bytes, Utime now) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  kept_.push_back({data, BlockFor(bytes), now});
-  while (kept_.front().since < now - kKept) {
-    munmap(kept_.front().data, kept_.front().bytes);
-    kept_.pop_front();
+  spare_.push_back({data, BlockFor(bytes), now});
+  while (spare_.front().since < now - kSpare && mapped_ - spare_.front().bytes >= held_) {
+    mapped_ -= spare_.front().bytes;
+    munmap(spare_.front().data, spare_.front().bytes);
+    spare_.pop_front();
   }
 }
 
-std::size_t MessageMemory::bytes_kept() const {
+std::size_t MessageMemory::bytes() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  std::size_t bytes = 0;
-  for (const Block& block : kept_) bytes += block.bytes;
-  return bytes;
+  return mapped_;
 }
 
 // Never destroyed: buses may outlive it.

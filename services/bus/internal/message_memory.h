@@ -10,15 +10,18 @@
 
 namespace rgbdt {
 
-/// Memory of large messages that arrive, apart from malloc's: what one was in serves the next, and
-/// what none needed for kKept goes back to the system. So a process takes what its queues have held
-/// of late, not what they once held at worst. Of any thread. Give back all before its end.
+/// Memory of large messages that arrive, apart from malloc's. With the first of them it takes
+/// `held` bytes for good, which serve one message after the other; what more is in use at once goes
+/// back to the system when it was spare for kSpare. So how much memory a process has does not
+/// depend on the longest queue that chance has made so far. Of any thread. Give back all before its
+/// end.
 class MessageMemory {
  public:
   static constexpr std::size_t kLarge = std::size_t{64} << 10;  ///< smaller ones are malloc's
-  static constexpr Utime kKept = 10 * kMicrosecondsPerSecond;
+  static constexpr std::size_t kHeld = std::size_t{32} << 20;
+  static constexpr Utime kSpare = kMicrosecondsPerSecond;
 
-  MessageMemory() = default;
+  explicit MessageMemory(std::size_t held = kHeld) : held_(held) {}
   ~MessageMemory();
   MessageMemory(const MessageMemory&) = delete;
   MessageMemory& operator=(const MessageMemory&) = delete;
@@ -28,8 +31,8 @@ class MessageMemory {
   /// What Take gave for as many bytes, at `now` [us] of a steady clock.
   void GiveBack(std::uint8_t* data, std::size_t bytes, Utime now);
 
-  /// That wait for the next message.
-  std::size_t bytes_kept() const;
+  /// In use and spare.
+  std::size_t bytes() const;
 
   /// The process's.
   static MessageMemory& OfProcess();
@@ -40,9 +43,12 @@ class MessageMemory {
     std::size_t bytes;
     Utime since;
   };
+  std::uint8_t* Map(std::size_t bytes, int flags);
 
+  const std::size_t held_;
   mutable std::mutex mutex_;
-  std::deque<Block> kept_;  // in the order in which they came back; the newest serves first
+  std::size_t mapped_ = 0;
+  std::deque<Block> spare_;  // in the order in which they came back; the newest serves first
 };
 
 /// A standard allocator of the process's MessageMemory.

@@ -32,7 +32,6 @@ constexpr auto kTestPatience = std::chrono::seconds(10);
 constexpr int kTestPeriodMs = 100;
 
 constexpr Utime kLongestWaitMs = 1000;
-constexpr Utime kOldest = 10 * kMicrosecondsPerSecond;  // a wall clock that was set tells no age
 
 std::string Text(const sockaddr_in& address) {
   std::array<char, INET_ADDRSTRLEN> text{};
@@ -49,7 +48,7 @@ class UdpSource : public Source {
         sender_(sender) {
     if (!stop_) throw InputError("too many files are open");
     const int on = 1;
-    setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
+    if (sender_ != nullptr) setsockopt(socket_.get(), SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
   }
 
   ~UdpSource() override {
@@ -83,9 +82,9 @@ class UdpSource : public Source {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
-  void Subscribe(const std::string& channel_regex, int capacity, Utime stale,
+  void Subscribe(const std::string& channel_regex, const Room& room,
                  Bus::Handler handler) override {
-    inbox_.Subscribe(channel_regex, static_cast<std::size_t>(capacity), stale, std::move(handler));
+    inbox_.Subscribe(channel_regex, room, std::move(handler));
   }
   int descriptor() const override { return inbox_.descriptor(); }
   bool Deliver() override {
@@ -116,7 +115,7 @@ class UdpSource : public Source {
     message.msg_controllen = control.size();
     const ssize_t got = recvmsg(socket_.get(), &message, 0);
     size_ = got < 0 ? 0 : static_cast<std::size_t>(got);
-    came_ = got < 0 ? 0 : ArrivalOf(&message);
+    came_ = sender_ == nullptr || got < 0 ? 0 : ArrivalOf(&message);
     return got >= 0;
   }
 
@@ -128,9 +127,6 @@ class UdpSource : public Source {
     std::memcpy(&time, CMSG_DATA(stamp), sizeof time);
     return time.tv_sec * kMicrosecondsPerSecond + time.tv_usec;
   }
-
-  // On the steady clock: what waited in the kernel's buffer, as this process had no time, is old.
-  Utime Came() const { return SteadyUtime() - std::clamp<Utime>(HostUtime() - came_, 0, kOldest); }
 
   void Take() {
     const char* why = nullptr;
@@ -153,7 +149,7 @@ class UdpSource : public Source {
       if (taken) return DeliverStreams();
     }
     auto message = reassembly_.Add(From(), datagram, why);
-    if (message) inbox_.Add(std::move(*message), Came());
+    if (message) inbox_.Add(std::move(*message));
   }
 
   // Senders and receivers of what is lost. Not for a bus that stays on its machine.
@@ -176,7 +172,7 @@ class UdpSource : public Source {
   }
 
   void DeliverStreams() {
-    for (WholeMessage& message : streams_.Take()) inbox_.Add(std::move(message), SteadyUtime());
+    for (WholeMessage& message : streams_.Take()) inbox_.Add(std::move(message));
   }
 
   // What is due by time. Until when there is nothing more [ms]; below 0: until something comes.
@@ -216,7 +212,7 @@ class UdpSource : public Source {
   Bytes buffer_;
   std::size_t size_ = 0;
   sockaddr_in from_{};
-  Utime came_ = 0;  // wall clock
+  Utime came_ = 0;
   Inbox inbox_;
   Reassembly reassembly_{[this](const std::string& channel) { return inbox_.IsWanted(channel); }};
   // Of a bus that leaves its machine.
