@@ -32,6 +32,7 @@ BOUNDS = {
     "commands_lost": ("<=", 0),
     "held_images_dropped": (">=", 1),  # or it was no overload
     "held_clouds_dropped": ("<=", 0),
+    "held_old_clouds": (">=", 1),
     "stopped_messages_dropped": (">=", 1),
     "dropped_counted_share": (">=", 0.999),
     "recovery_s": ("<=", 1),
