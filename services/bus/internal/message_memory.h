@@ -18,7 +18,7 @@ namespace rgbdt {
 class MessageMemory {
  public:
   static constexpr std::size_t kLarge = std::size_t{64} << 10;  ///< smaller ones are malloc's
-  static constexpr std::size_t kHeld = std::size_t{32} << 20;
+  static constexpr std::size_t kHeld = std::size_t{48} << 20;
   static constexpr Utime kSpare = kMicrosecondsPerSecond;
 
   explicit MessageMemory(std::size_t held = kHeld) : held_(held) {}
