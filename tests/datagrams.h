@@ -3,9 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "services/bus/internal/message_memory.h"
 #include "services/messages/bytes.h"
 
 namespace rgbdt::test {
+
+/// Bytes that have arrived, to compare them.
+inline Bytes Arrived(const MessageBytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
 inline void AddBigEndian(std::uint32_t value, int bytes, Bytes* to) {
   while (bytes-- > 0) to->push_back(static_cast<std::uint8_t>(value >> 8 * bytes));

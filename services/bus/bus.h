@@ -75,6 +75,11 @@ class LcmBus : public Bus {
   Malformed malformed() const override;
   LinkReport links() const override;
   Utime arrived() const override;
+  /// Who subscribes from now on wants what is new rather than all: of images more than 20 MiB and
+  /// of clouds more than 8 MiB do not wait for their handlers, the oldest go.
+  void WantNewest();
+  /// Whether a message waits for its handler.
+  bool waits() const;
   /// Waits up to `timeout_ms` for messages and delivers what is there, but for no longer than some
   /// 100 ms, so that the caller's clock keeps running under load. False: none came.
   bool Run(int timeout_ms);

@@ -20,18 +20,23 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kMaxDelivery = std::chrono::milliseconds(100);
 
-// LCM's queues count messages, not bytes, and a full one drops the newest. While a node computes,
-// these wait: 64 images are 16 s of the demo's two cameras and 192 MB at worst; 4096 of anything
-// else are 40 s of scan lines (13 MB), and more clouds than a sensor sends in minutes. All that
-// wait have 256 MiB at most (Inbox), however large each is.
-constexpr int kImageQueue = 64;
+// While a node computes, these wait: 64 images are 16 s of the demo's two cameras and 192 MB at
+// worst; 4096 of anything else are 40 s of scan lines (13 MB), and more clouds than a sensor sends
+// in minutes. All that wait have 256 MiB at most (Inbox), however large each is.
+constexpr std::size_t kImageQueue = 64;
 // Who hears everything has a few seconds of all of it, images among them.
-constexpr int kQueue = 4096;
-constexpr int kEverythingQueue = 512;
+constexpr std::size_t kQueue = 4096;
+constexpr std::size_t kEverythingQueue = 512;
+// Of who wants the newest: some 0.2 s of what a large rig sends, images less than clouds, which a
+// fuser handles in 0.1 s; and seconds of a turned scanner's lines, as a long sweep's end takes
+// long.
+constexpr std::size_t kNewestImages = std::size_t{20} << 20, kNewestClouds = std::size_t{8} << 20;
 
-int QueueFor(const std::string& channel_regex) {
-  if (channel_regex == ".*") return kEverythingQueue;
-  return channel_regex.find("IMAGE") != std::string::npos ? kImageQueue : kQueue;
+Room RoomFor(const std::string& channel_regex, bool wants_newest) {
+  if (channel_regex == ".*") return {kEverythingQueue};
+  const bool images = channel_regex.find("IMAGE") != std::string::npos;
+  const std::size_t newest = images ? kNewestImages : channel_regex == "CLOUD" ? kNewestClouds : 0;
+  return {images ? kImageQueue : kQueue, wants_newest ? newest : 0};
 }
 
 }  // namespace
@@ -87,6 +92,7 @@ struct LcmBus::Impl {
   std::unique_ptr<Source> source;
   std::string url;
   bool ended = false;
+  bool wants_newest = false;
   std::int64_t handler_failures = 0;
 };
 
@@ -127,8 +133,11 @@ void LcmBus::Subscribe(const std::string& channel_regex, Handler handler) {
       ++bus->handler_failures;
     }
   };
-  impl_->source->Subscribe(channel_regex, QueueFor(channel_regex), guarded);
+  impl_->source->Subscribe(channel_regex, RoomFor(channel_regex, impl_->wants_newest), guarded);
 }
+
+void LcmBus::WantNewest() { impl_->wants_newest = true; }
+bool LcmBus::waits() const { return impl_->Readable(0); }
 
 Malformed LcmBus::malformed() const { return impl_->source->malformed(); }
 

@@ -16,8 +16,7 @@ constexpr Utime kLookShare = 4;  // of the time one look takes
 
 }  // namespace
 
-DetectorNode::DetectorNode(std::string method, Looks looks)
-    : method_(std::move(method)), looks_(looks) {
+DetectorNode::DetectorNode(std::string method) : method_(std::move(method)) {
   RequireMethod(method_);
 }
 
@@ -121,12 +120,14 @@ Messages DetectorNode::Detect(const View& view, SessionEvent event) {
 }
 
 Messages DetectorNode::Advance(Utime now) {
-  if (looks_ == Looks::kNo) return {};
-  if (looked_at_) {
-    const Utime took = now - *looked_at_;
-    look_from_ = *looked_at_ + std::clamp(kLookShare * took, kLookEvery, kMicrosecondsPerSecond);
-    looked_at_.reset();
-  }
+  if (!looked_at_) return {};
+  const Utime took = now - *looked_at_;
+  look_from_ = *looked_at_ + std::clamp(kLookShare * took, kLookEvery, kMicrosecondsPerSecond);
+  looked_at_.reset();
+  return {};
+}
+
+Messages DetectorNode::UseSpareTime(Utime now) {
   if (now < look_from_) return {};
   try {
     Messages said = LookAtNext();

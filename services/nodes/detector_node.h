@@ -18,25 +18,23 @@ namespace rgbdt {
 /// view that never becomes complete is dropped when the next capture or a reset comes; the status
 /// says what it waits for. Another rig forgets everything. Corners that a person picks in an image
 /// of one of the newest kKeptViews views have that view detected once more, with them: its
-/// DETECTION comes again, and the event of its capture. Where it `looks`, it sends whether a
-/// sensor sees the board now (TARGET_STATUS): one sensor at a time, the next in turn that has
-/// something new; ten times a second, or as often as takes a quarter of a core, once a second at
-/// least.
+/// DETECTION comes again, and the event of its capture. In spare time, so not in a replay, it
+/// looks whether a sensor sees the board now, and says so (TARGET_STATUS): one sensor at a time,
+/// the next in turn that has something new; ten times a second, or as often as takes a quarter of a
+/// core, once a second at least; less often where messages wait (NodeRunner::UseSpareTime).
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;
 
-  /// Whether somebody watches; nobody does in a replay, and a look takes as long as a detection.
-  enum class Looks { kYes, kNo };
-
   /// Throws InputError for an unknown method.
-  explicit DetectorNode(std::string method = kAutoMethod, Looks looks = Looks::kYes);
+  explicit DetectorNode(std::string method = kAutoMethod);
   std::string name() const override { return "detector"; }
   std::vector<std::string> Subscriptions() const override {
     return {"RIG", "CLOUD", ".*_IMAGE", "CORNER_SELECTION", "SESSION_COMMAND"};
   }
   Messages Handle(const Message& message) override;
   Messages Advance(Utime now) override;
+  Messages UseSpareTime(Utime now) override;
   Status GetStatus() const override;
 
  private:
@@ -49,8 +47,7 @@ class DetectorNode : public Node {
   Messages Detect(const View& view, SessionEvent event);
 
   std::string method_;
-  Looks looks_;
-  // When the newest look began; the next call says how long it took.
+  // When the newest look began; the next Advance says how long it took.
   std::optional<Utime> looked_at_;
   Utime look_from_ = 0;
   std::optional<Rig> rig_;

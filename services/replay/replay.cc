@@ -23,7 +23,7 @@ bool IsInput(const std::string& channel) {
 }  // namespace
 
 Replay::Replay(const std::string& method, Use use)
-    : detector_(method, DetectorNode::Looks::kNo),
+    : detector_(method),
       solver_(OptionsOf(method)),
       fuser_(FuserNode::Ranges::kAsMeasured, use),
       assembler_runner_(&assembler_, &bus_),

@@ -28,6 +28,10 @@ class Node {
   /// with its sender's number, so that it is nobody's gap.
   virtual std::vector<std::string> Repeats() const { return {}; }
 
+  /// Whether it would rather lose images and clouds than be late with the newest, where it gets
+  /// less time than it needs (LcmBus::WantNewest).
+  virtual bool WantsNewest() const { return false; }
+
   /// Takes one message. Throws InputError for one that cannot be used: the caller drops it, counts
   /// it and names it in the status. The node is then as if the message had never come. What follows
   /// from a message and is not its sender's fault is a warning.
@@ -39,6 +43,11 @@ class Node {
   /// LongestWait() at least; `rgbdt replay` hands in the newest time in a message. What goes wrong
   /// is a warning.
   virtual Messages Advance(Utime /*now*/) { return {}; }
+
+  /// What the node does beside its role, and can wait: called by a process where no message waits
+  /// to be handled, and where that does not come, now and then all the same (NodeRunner); Advance
+  /// follows. `now` is Advance's. What goes wrong is a warning.
+  virtual Messages UseSpareTime(Utime /*now*/) { return {}; }
 
   /// The longest time between two calls of Advance [us] where no message comes.
   virtual Utime LongestWait() const { return 50'000; }

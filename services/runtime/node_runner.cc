@@ -142,6 +142,13 @@ void NodeRunner::Advance(Utime now) {
   Guard("status", [&] { PublishOne(GetStatus()); });
 }
 
+void NodeRunner::UseSpareTime(Utime now, bool messages_wait) {
+  if (!spared_) spared_ = now;
+  if (messages_wait && now - *spared_ < kLongestBusy) return;
+  spared_ = now;
+  Guard("spare time", [&] { Publish(node_->UseSpareTime(now)); });
+}
+
 Status NodeRunner::GetStatus() const {
   Status status = node_->GetStatus();
   status.process = node_->name();

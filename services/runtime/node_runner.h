@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -39,6 +40,11 @@ class NodeRunner {
   /// once a second its status.
   void Advance(Utime now);
 
+  /// Node::UseSpareTime: at once where no message waits, else once kLongestBusy after the last
+  /// time, so that it has a turn under any load. `now` is Advance's.
+  void UseSpareTime(Utime now, bool messages_wait);
+  static constexpr Utime kLongestBusy = 5 * kMicrosecondsPerSecond;
+
   /// The node's own, with the runner's name, time, newest problem and counters: "received",
   /// "dropped", "gaps", then, where not zero, "late", "duplicates", "restarts", "malformed" (what
   /// reached the bus and was no message), "unsigned" (what a process with a key did not take),
@@ -75,6 +81,7 @@ class NodeRunner {
   std::set<std::string> repeats_;  // Node::Repeats
   ProblemHandler problem_handler_;
   Periodic status_{kMicrosecondsPerSecond};
+  std::optional<Utime> spared_;  // when it had spare time last
   Periodic links_{10 * kMicrosecondsPerSecond};
   AnsweredCommands commands_;
   std::map<std::string, std::int64_t> next_seq_;      // of what is published, by sequence

@@ -69,6 +69,7 @@ std::unique_ptr<SignedBus> WithKey(Bus* bus, const std::string& given) {
 
 void Loop(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
   LcmBus bus(flags.url);
+  if (node.WantsNewest()) bus.WantNewest();
   const std::unique_ptr<SignedBus> signed_bus = WithKey(&bus, flags.key);
   if (overhear) bus.Subscribe(".*", overhear);
   NodeRunner runner(&node, signed_bus ? static_cast<Bus*>(signed_bus.get()) : &bus);
@@ -76,6 +77,7 @@ void Loop(Node& node, const BusFlags& flags, const Bus::Handler& overhear) {
   runner.SetProblemHandler(
       [&](const std::string& problem) { problems.Add(problem, SteadyUtime()); });
   while (stop_requested == 0 && !bus.ended()) {
+    runner.UseSpareTime(SteadyUtime(), bus.waits());
     runner.Advance(SteadyUtime());
     problems.Advance(SteadyUtime());
     if (node.finished()) break;

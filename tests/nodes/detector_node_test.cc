@@ -178,16 +178,22 @@ TEST_F(DetectorNodeTest, AViewWhoseSweepLacksItsFirstLinesHasFailed) {
   EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is not kept";
 }
 
+// As a process calls it that has nothing to handle.
+Messages Spare(DetectorNode* node, Utime now) {
+  Messages said = node->UseSpareTime(now);
+  node->Advance(now);
+  return said;
+}
+
 TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
-  EXPECT_TRUE(node_.Advance(0).empty());
+  EXPECT_TRUE(Spare(&node_, 0).empty());
   test::HandleAll(&node_, EmptySweep());
   node_.Handle(Blank("thermal"));
   Messages said;
   for (Utime now = 1; now < 10; ++now) {
-    for (Message& message : node_.Advance(now * kMicrosecondsPerSecond)) {
+    for (Message& message : Spare(&node_, now * kMicrosecondsPerSecond)) {
       said.push_back(std::move(message));
     }
-    EXPECT_TRUE(node_.Advance(now * kMicrosecondsPerSecond + 900'000).empty());
   }
   const auto statuses = Only<TargetStatus>(said);
   ASSERT_EQ(statuses.size(), 2U);
@@ -199,17 +205,18 @@ TEST_F(DetectorNodeTest, SaysOncePerImageAndSweepWhoSeesTheBoard) {
   }
   node_.Handle(Capture());
   node_.Handle(Blank("rgb", kCommand - 1));
-  EXPECT_TRUE(node_.Advance(100 * kMicrosecondsPerSecond).empty()) << "a capture comes first";
+  EXPECT_TRUE(Spare(&node_, 100 * kMicrosecondsPerSecond).empty()) << "a capture comes first";
 }
 
 TEST_F(DetectorNodeTest, LooksAsOftenAsItHasTimeFor) {
-  // Its Advance is called so often, with a new image each time, and a look takes that long.
+  // It is called so often, with a new image each time, and a look takes that long.
   Utime begin = 0;
   const auto looks_in_ten_seconds = [&](Utime every) {
     std::size_t looks = 0;
     for (Utime now = every; now <= 10 * kMicrosecondsPerSecond; now += every) {
       node_.Handle(Blank("thermal", kCommand + begin + now));
-      looks += Only<TargetStatus>(node_.Advance(begin + now)).size();
+      node_.Advance(begin + now);
+      looks += Only<TargetStatus>(node_.UseSpareTime(begin + now)).size();
     }
     begin += 11 * kMicrosecondsPerSecond;
     return looks;
@@ -219,11 +226,10 @@ TEST_F(DetectorNodeTest, LooksAsOftenAsItHasTimeFor) {
   EXPECT_NEAR(static_cast<double>(looks_in_ten_seconds(500'000)), 10, 1) << "once a second";
 }
 
-TEST(DetectorNodeReplayTest, WhereNobodyWatchesItDoesNotLook) {
-  DetectorNode node(kAutoMethod, DetectorNode::Looks::kNo);
-  node.Handle(test::TextOf(SmallRig()));
-  node.Handle(Blank("thermal"));
-  EXPECT_TRUE(node.Advance(kMicrosecondsPerSecond).empty());
+TEST_F(DetectorNodeTest, WithoutSpareTimeItDoesNotLook) {
+  node_.Handle(Blank("thermal"));
+  EXPECT_TRUE(node_.Advance(kMicrosecondsPerSecond).empty());
+  EXPECT_FALSE(node_.UseSpareTime(kMicrosecondsPerSecond).empty());
 }
 
 TEST_F(DetectorNodeTest, ResetForgetsTheCapture) {
@@ -313,7 +319,7 @@ TEST(DetectorNodeViewTest, FindsTheBoardInWhateverOrderTheViewComes) {
   test::HandleAll(&watching, cloud);
   test::HandleAll(&watching, images);
   for (Utime now = 0; now < 3; ++now) {
-    const Messages said = watching.Advance(now * kMicrosecondsPerSecond);
+    const Messages said = Spare(&watching, now * kMicrosecondsPerSecond);
     const TargetStatus status = Only<TargetStatus>(said).at(0);
     EXPECT_TRUE(status.seen) << status.camera << ": " << status.text;
     if (status.camera.empty()) {

@@ -62,7 +62,7 @@ start viewer "$bin/rgbdt-viewer" --listen 127.0.0.1:0
 # Longer than needed: it is told when to end. It gives the processes a minute to come up.
 start rig "$bin/soak_rig" $((steady + held + stopped + 2 * settle + 600)) "$load" "$out" "${processes[@]}"
 waited=0
-until grep -qx begun "$scratch/rig.log"; do
+until grep -qsx begun "$scratch/rig.log"; do
   kill -0 "${pids[rig]}" 2>/dev/null || fail "no load: $(tail -n 1 "$scratch/rig.log")"
   waited=$((waited + 1))
   [ "$waited" -lt 1800 ] || fail "no load within 90 s"

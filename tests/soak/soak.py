@@ -32,6 +32,7 @@ BOUNDS = {
     "commands_lost": ("<=", 0),
     "held_images_dropped": (">=", 1),  # or it was no overload
     "held_clouds_dropped": ("<=", 0),
+    "held_old_clouds": (">=", 1),
     "stopped_messages_dropped": (">=", 1),
     "dropped_counted_share": (">=", 0.999),
     "recovery_s": ("<=", 1),
@@ -82,12 +83,14 @@ class Run:
     def missed_by_all(self, kind, begin=0.0, end=float("inf")):
         return sum(self.missed(p, kind, begin, end) for p, kinds in HEARS.items() if kind in kinds)
 
+    def sent_of(self, *kinds):
+        return sum(n for c, n in self.sent.items() if any(of_kind(c, k) for k in kinds))
+
     def counted_share(self):
         """Of what was sent and did not arrive, what STATUS counts; the worst process."""
         shares = []
         for process, kinds in HEARS.items():
-            sent = sum(n for c, n in self.sent.items() if any(of_kind(c, k) for k in kinds))
-            lost = sent - self.counter(process, "received")
+            lost = self.sent_of(*kinds) - self.counter(process, "received")
             counted = self.counter(process, "gaps")
             shares.append(1 - abs(lost - counted) / max(lost, counted, 1))
         return min(shares)
@@ -160,7 +163,7 @@ def figures_of(run, default):
     if default:
         for kind, name in (("_IMAGE", "images"), ("CLOUD", "clouds"), ("SESSION_COMMAND", "commands")):
             heard = [p for p, kinds in HEARS.items() if kind in kinds]
-            sent = sum(n for c, n in default.sent.items() if of_kind(c, kind)) * len(heard)
+            sent = default.sent_of(kind) * len(heard)
             yield f"default_{name}_missed_share", default.missed_by_all(kind) / sent, "1"
 
 
@@ -171,7 +174,9 @@ def figures_of_overloads(run):
     yield "commands_lost", run.missed_by_all("SESSION_COMMAND", 0, stopped), "1"
     yield "held_s", released - held, "s"
     yield "held_images_dropped", run.missed_by_all("_IMAGE", held, stopped), "1"
-    yield "held_clouds_dropped", run.missed_by_all("CLOUD", held, stopped), "1"
+    # The detector needs every cloud; the fuser wants the newest.
+    yield "held_clouds_dropped", run.missed("detector", "CLOUD", held, stopped), "1"
+    yield "held_old_clouds", run.missed("fuser", "CLOUD", held, stopped), "1"
     kinds = ("_IMAGE", "CLOUD", "SESSION_COMMAND", "RIG", "CALIBRATION")
     yield "stopped_s", run.overloads["process"][1] - stopped, "s"
     yield "stopped_messages_dropped", sum(run.missed_by_all(k, stopped) for k in kinds), "1"

@@ -2,7 +2,10 @@
 
 #include <sys/eventfd.h>
 
+#include <algorithm>
+
 #include "calib/model/errors.h"
+#include "services/messages/image_channel.h"
 #include "services/posix/clock.h"
 
 namespace rgbdt {
@@ -37,19 +40,97 @@ bool Inbox::IsWanted(const std::string& channel) {
 
 void Inbox::Add(WholeMessage message) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  const std::vector<Subscriber*>& hearing = Hearing(message.channel);
   const std::size_t size = message.bytes.size();
-  if (size + bytes_ + (size > kSmall ? kForSmall : 0) > max_bytes_) return;
+  if (hearing.empty() || !MakeRoom(size)) return Signal();
   Waiting waiting;
-  for (Subscriber* subscriber : Hearing(message.channel)) {
-    if (subscriber->waiting < subscriber->capacity) waiting.to.push_back(subscriber);
+  for (Subscriber* subscriber : hearing) {
+    if (MakeRoom(size, subscriber)) waiting.to.push_back(subscriber);
   }
-  if (waiting.to.empty()) return;
-  for (Subscriber* subscriber : waiting.to) ++subscriber->waiting;
-  bytes_ += size;
-  waiting.message = std::move(message);
-  waiting.arrived = HostUtime();
-  waiting_.push_back(std::move(waiting));
-  if (waiting_.size() == 1) eventfd_write(waits_.get(), 1);
+  if (!waiting.to.empty()) {
+    for (Subscriber* subscriber : waiting.to) {
+      ++subscriber->waiting;
+      subscriber->bytes += size;
+    }
+    bytes_ += size;
+    images_ += IsImageChannel(message.channel) ? 1 : 0;
+    waiting.message = std::move(message);
+    waiting.arrived = HostUtime();
+    waiting_.push_back(std::move(waiting));
+  }
+  Signal();
+}
+
+// The descriptor is readable while a message waits.
+void Inbox::Signal() {
+  if (signalled_ == !waiting_.empty()) return;
+  signalled_ = !waiting_.empty();
+  eventfd_t count = 0;
+  if (signalled_) {
+    eventfd_write(waits_.get(), 1);
+  } else {
+    eventfd_read(waits_.get(), &count);
+  }
+}
+
+// That waits for a subscriber.
+Inbox::Queue::iterator Inbox::Oldest(const Subscriber& of, bool image) {
+  if (of.waiting == 0 || (image && images_ == 0)) return waiting_.end();
+  return std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& waiting) {
+    const auto& to = waiting.to;
+    return (!image || IsImageChannel(waiting.message.channel)) &&
+           std::find(to.begin(), to.end(), &of) != to.end();
+  });
+}
+
+// For one more in its queue.
+bool Inbox::MakeRoom(std::size_t bytes, Subscriber* subscriber) {
+  const Room& room = subscriber->room;
+  const bool wants_newest = room.newest_bytes != 0;
+  while (subscriber->waiting >= room.messages ||
+         (wants_newest && subscriber->bytes + bytes > room.newest_bytes)) {
+    const auto oldest = Oldest(*subscriber, !wants_newest);
+    if (oldest == waiting_.end()) return subscriber->waiting < room.messages;
+    LeaveOut(oldest, subscriber);
+  }
+  return true;
+}
+
+// For one more of all.
+bool Inbox::MakeRoom(std::size_t bytes) {
+  const std::size_t needed = bytes + (bytes > kSmall ? kForSmall : 0);
+  if (needed > max_bytes_) return false;
+  while (needed + bytes_ > max_bytes_ && images_ > 0) {
+    Remove(std::find_if(waiting_.begin(), waiting_.end(), [](const Waiting& waiting) {
+      return IsImageChannel(waiting.message.channel);
+    }));
+  }
+  return needed + bytes_ <= max_bytes_;
+}
+
+// That a subscriber does not get.
+void Inbox::LeaveOut(Queue::iterator waiting, Subscriber* subscriber) {
+  auto& to = waiting->to;
+  if (to.size() == 1) {
+    Remove(waiting);
+    return;
+  }
+  to.erase(std::find(to.begin(), to.end(), subscriber));
+  --subscriber->waiting;
+  subscriber->bytes -= waiting->message.bytes.size();
+}
+
+Inbox::Queue Inbox::Remove(Queue::iterator waiting) {
+  const std::size_t size = waiting->message.bytes.size();
+  for (Subscriber* subscriber : waiting->to) {
+    --subscriber->waiting;
+    subscriber->bytes -= size;
+  }
+  bytes_ -= size;
+  images_ -= IsImageChannel(waiting->message.channel) ? 1 : 0;
+  Queue removed;
+  removed.splice(removed.end(), waiting_, waiting);
+  return removed;
 }
 
 void Inbox::AddMalformed(const std::string& what) {
@@ -63,12 +144,11 @@ Malformed Inbox::malformed() const {
   return malformed_;
 }
 
-void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity,
-                      Bus::Handler handler) {
+void Inbox::Subscribe(const std::string& channel_regex, const Room& room, Bus::Handler handler) {
   try {
     std::regex regex(channel_regex);
     const std::lock_guard<std::mutex> lock(mutex_);
-    subscribers_.push_back({std::move(regex), capacity, std::move(handler), 0});
+    subscribers_.push_back({std::move(regex), room, std::move(handler)});
     hearing_.clear();
   } catch (const std::regex_error& e) {
     throw InputError("\"" + channel_regex + "\" is no regular expression: " + e.what());
@@ -76,20 +156,17 @@ void Inbox::Subscribe(const std::string& channel_regex, std::size_t capacity,
 }
 
 void Inbox::DeliverOne() {
-  Waiting next;
+  Queue next;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (waiting_.empty()) return;
-    next = std::move(waiting_.front());
-    waiting_.pop_front();
-    bytes_ -= next.message.bytes.size();
-    for (Subscriber* subscriber : next.to) --subscriber->waiting;
-    eventfd_t count = 0;
-    if (waiting_.empty()) eventfd_read(waits_.get(), &count);
+    next = Remove(waiting_.begin());
+    Signal();
   }
-  arrived_ = next.arrived;
-  for (const Subscriber* subscriber : next.to) {
-    subscriber->handler(next.message.channel, next.message.bytes.data(), next.message.bytes.size());
+  const Waiting& one = next.front();
+  arrived_ = one.arrived;
+  for (const Subscriber* subscriber : one.to) {
+    subscriber->handler(one.message.channel, one.message.bytes.data(), one.message.bytes.size());
   }
 }
 

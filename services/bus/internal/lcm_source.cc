@@ -10,7 +10,8 @@ class LcmSource : public Source {
  public:
   explicit LcmSource(lcm_t* lcm) : lcm_(lcm) {}
 
-  void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) override {
+  void Subscribe(const std::string& channel_regex, const Room& room,
+                 Bus::Handler handler) override {
     auto subscriber = std::make_unique<Bus::Handler>(std::move(handler));
     // LCM puts ^ and $ around what it gets, so "A|B" alone would hear "A2" and "2B".
     lcm_subscription_t* subscription =
@@ -18,7 +19,7 @@ class LcmSource : public Source {
     if (subscription == nullptr) {
       throw InputError("\"" + channel_regex + "\" is no regular expression");
     }
-    lcm_subscription_set_queue_capacity(subscription, capacity);
+    lcm_subscription_set_queue_capacity(subscription, static_cast<int>(room.messages));
     subscribers_.push_back(std::move(subscriber));
   }
 

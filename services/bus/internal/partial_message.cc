@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMaxFragments = 4096;
 
 // Puts `data` at `begin`. In order, as they come as a rule, bytes are written once.
-void Put(const std::uint8_t* data, std::size_t size, std::size_t begin, Bytes* bytes) {
+void Put(const std::uint8_t* data, std::size_t size, std::size_t begin, MessageBytes* bytes) {
   if (bytes->size() < begin) bytes->resize(begin);
   const std::size_t over = std::min(size, bytes->size() - begin);
   std::copy(data, data + over, bytes->begin() + static_cast<std::ptrdiff_t>(begin));

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "services/bus/internal/datagram.h"
-#include "services/messages/bytes.h"
+#include "services/bus/internal/message_memory.h"
 
 namespace rgbdt {
 
 /// A message as it was sent.
 struct WholeMessage {
   std::string channel;
-  Bytes bytes;
+  MessageBytes bytes;
 };
 
 /// A long message of which fragments have come, in any order. Bytes take memory when they come, not
@@ -55,7 +55,7 @@ class PartialMessage {
   std::uint32_t message_bytes_;
   std::vector<Range> fragments_;
   std::size_t missing_;
-  Bytes bytes_;
+  MessageBytes bytes_;
 };
 
 }  // namespace rgbdt

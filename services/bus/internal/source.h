@@ -14,12 +14,20 @@ namespace rgbdt {
 /// What LCM sends to itself to see whether a bus works.
 inline constexpr char kSelfTestChannel[] = "LCM_SELF_TEST";
 
+/// How much may wait for a subscriber.
+struct Room {
+  std::size_t messages = 0;
+  /// Who wants the newest rather than all: beyond so many bytes the oldest go. 0: it wants all.
+  std::size_t newest_bytes = 0;
+};
+
 /// Where an LcmBus hears from. Handlers throw nothing.
 class Source {
  public:
   virtual ~Source() = default;
-  /// At most `capacity` messages wait for it. Throws InputError where `channel_regex` is none.
-  virtual void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) = 0;
+  /// Throws InputError where `channel_regex` is none.
+  virtual void Subscribe(const std::string& channel_regex, const Room& room,
+                         Bus::Handler handler) = 0;
   /// Readable while a message waits.
   virtual int descriptor() const = 0;
   /// Hands on the message that waits. False: nothing will come any more.

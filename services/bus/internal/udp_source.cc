@@ -82,8 +82,9 @@ class UdpSource : public Source {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
-  void Subscribe(const std::string& channel_regex, int capacity, Bus::Handler handler) override {
-    inbox_.Subscribe(channel_regex, static_cast<std::size_t>(capacity), std::move(handler));
+  void Subscribe(const std::string& channel_regex, const Room& room,
+                 Bus::Handler handler) override {
+    inbox_.Subscribe(channel_regex, room, std::move(handler));
   }
   int descriptor() const override { return inbox_.descriptor(); }
   bool Deliver() override {

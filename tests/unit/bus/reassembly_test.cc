@@ -58,7 +58,7 @@ TEST_F(ReassemblyTest, ShortMessages) {
   const auto message = Add(test::ShortDatagram(1, std::string("A\0", 2), {1, 2}));
   ASSERT_TRUE(message);
   EXPECT_EQ(message->channel, "A");
-  EXPECT_EQ(message->bytes, Bytes({1, 2}));
+  EXPECT_EQ(test::Arrived(message->bytes), Bytes({1, 2}));
   EXPECT_FALSE(Add(test::ShortDatagram(2, std::string("B\0", 2), {1})));
   EXPECT_EQ(why_, "");
   const auto empty = Add(test::ShortDatagram(3, std::string("A\0", 2), {}));
@@ -79,7 +79,7 @@ TEST_F(ReassemblyTest, FragmentsBehindTheFirstInAnyOrderAndTwice) {
       ASSERT_EQ(why_, "");
     }
     ASSERT_TRUE(came);
-    EXPECT_EQ(came->bytes, message);
+    EXPECT_EQ(test::Arrived(came->bytes), message);
     EXPECT_EQ(reassembly_.bytes_held(), 0U);
   }
 }
@@ -129,7 +129,7 @@ TEST_F(ReassemblyTest, WhateverComesOutWasSent) {
     Bytes bytes = fragment.Datagram();
     if (below(10) == 0) bytes.resize(below(static_cast<std::uint32_t>(bytes.size())));
     if (const auto message = Add(bytes)) {
-      EXPECT_EQ(message->bytes, Bytes(message->bytes.size(), 7));
+      EXPECT_EQ(message->bytes, MessageBytes(message->bytes.size(), 7));
       ++came;
     }
   }

@@ -42,6 +42,11 @@ class ScriptedNode : public Node {
     Warn("it is " + std::to_string(now));
     return {RigText{0, "hash", "text"}};
   }
+  Messages UseSpareTime(Utime now) override {
+    if (advance_throws) throw std::runtime_error("no time");
+    spared.push_back(now);
+    return {Pose(1)};
+  }
   Status GetStatus() const override {
     Status status;
     status.ready = true;
@@ -67,6 +72,7 @@ class ScriptedNode : public Node {
 
   std::vector<std::string> handled;
   std::vector<std::pair<std::string, std::int64_t>> counters;
+  std::vector<Utime> spared;
   bool advance_throws = false;
 };
 
@@ -217,6 +223,31 @@ TEST_F(NodeRunnerTest, AdvancePublishesWhatTheNodeSaysAndOnceASecondItsStatus) {
   EXPECT_EQ(status.last_problem, "it is 0");
   EXPECT_EQ(runner_.dropped(), 0) << "a warning costs no message";
   EXPECT_EQ(status.counters[0], (std::pair<std::string, std::int64_t>("received", 1)));
+}
+
+TEST_F(NodeRunnerTest, MessagesComeBeforeWhatCanWait) {
+  constexpr Utime kBusy = NodeRunner::kLongestBusy;
+  for (const Utime now : {0, 1}) runner_.UseSpareTime(now, false);
+  for (const Utime now : {Utime{2}, Utime{3}, kBusy}) runner_.UseSpareTime(now, true);
+  EXPECT_THAT(node_.spared, ElementsAre(0, 1));
+  runner_.UseSpareTime(kBusy + 1, true);  // under any load it has a turn
+  runner_.UseSpareTime(kBusy + 2, true);
+  EXPECT_THAT(node_.spared, ElementsAre(0, 1, kBusy + 1));
+  bus_.Run();
+  EXPECT_EQ(published_.size(), 3U);
+}
+
+TEST_F(NodeRunnerTest, ItsFirstTurnWaitsAsLong) {
+  runner_.UseSpareTime(7, true);
+  EXPECT_TRUE(node_.spared.empty());
+  runner_.UseSpareTime(7 + NodeRunner::kLongestBusy, true);
+  EXPECT_EQ(node_.spared.size(), 1U);
+}
+
+TEST_F(NodeRunnerTest, SpareTimeSurvivesTheNode) {
+  node_.advance_throws = true;
+  runner_.UseSpareTime(0, false);
+  EXPECT_EQ(runner_.GetStatus().last_problem, "spare time: no time");
 }
 
 TEST_F(NodeRunnerTest, AdvanceSurvivesTheNode) {
