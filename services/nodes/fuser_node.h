@@ -23,9 +23,9 @@ namespace rgbdt {
 /// scanner's) wait for it (ChunkQueue); of their images fewer are kept, evenly over time. Before a
 /// calibration comes the cloud goes out without colour; a new one holds from the next chunk on. An
 /// image older than the camera's newest by more than kClockReset means that the clock was set back:
-/// the camera's images go. Memory is bounded. Where it has too little time
-/// the oldest images and clouds that wait for it go (WantsNewest), so that what it says is of now;
-/// STATUS counts them as gaps.
+/// the camera's images go. Memory is bounded. Where it has too little time the oldest images and
+/// clouds that wait for it go (WantsNewest), so that what it says is of now; STATUS counts them as
+/// gaps.
 ///
 /// A calibration of another rig is refused (calibration_use.h); the rig heard before this one may
 /// have been the same in all that counts. One that is not to be used is not taken, either: what
