@@ -83,6 +83,17 @@ std::string NamesOf(const std::vector<Program>& programs) {
   return Listed(names);
 }
 
+// That has an end, after which it is not to be played again.
+bool IsRecording(const LidarSpec& lidar) {
+  if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
+    return !velodyne->pcap.empty();
+  }
+  if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
+    return !packets->pcap.empty();
+  }
+  return std::holds_alternative<PcdFolderDevice>(lidar.device);
+}
+
 // Of sessions and drives, all but the logger.
 std::vector<Program> AllPrograms(const Rig& rig, const UpOptions& options) {
   std::vector<Program> all;
@@ -113,7 +124,7 @@ std::vector<Program> AllPrograms(const Rig& rig, const UpOptions& options) {
   }
   if (rig.lidar.device.index() != 0) {
     add(Role::kDriver, "lidar", "lidar", {"--rig", file});
-    all.back().ends = true;  // a recording does; it is not to be played again
+    all.back().ends = IsRecording(rig.lidar);
   }
   if (rig.lidar.turned_scanner && rig.lidar.turned_scanner->motor) {
     add(Role::kDriver, "motor", "motor", {"--rig", file});

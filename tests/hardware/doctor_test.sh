@@ -122,6 +122,10 @@ grep -q '^WARNING  process fuser: waits for the rig (RIG)' "$scratch/output" ||
   fail_with_output "it does not say what the fuser waits for"
 doctor --rig "$scratch/rig.textproto"
 finds WARNING "silent processes" "detector" "viewer" "pgrep"
+lidar='velodyne { model: VLP16 }' rig
+doctor --rig "$scratch/rig.textproto"
+finds WARNING "silent processes" "lidar"
+rig
 start second "$bin/rgbdt-fuser"
 listen=6
 doctor

@@ -272,6 +272,41 @@ TEST(VelodyneSweeps, AClockThatStandsStillLeavesTheArrivals) {
   EXPECT_NEAR(static_cast<double>(clouds[1].sweep_utime - clouds[0].sweep_utime), 75 * 1327.104, 5);
 }
 
+// The sensor's clock is 50 ppm slow, packets arrive late by chance.
+TEST(VelodyneSweeps, WithinARevolutionTimesAreTheSensorsHoweverPacketsArrive) {
+  constexpr double kDrift = 50e-6;
+  constexpr int kTurns = 80;  // 8 s: a rate is fitted after 5
+  const VelodyneEncoder encoder = Encoder(Model::kVlp16);
+  std::mt19937 random(7);
+  std::exponential_distribution<double> late_us(1 / 400.0);
+  VelodyneSweeps sweeps(Model::kVlp16);
+  std::vector<Cloud> clouds;
+  for (int i = 0; i < kTurns * encoder.PacketsPerTurn(); ++i) {
+    if (i % 50 == 20) continue;  // lost
+    const auto bytes = encoder.Packet(i);
+    const auto packet =
+        velodyne::Decode(velodyne::SensorOf(Model::kVlp16), bytes.data(), bytes.size());
+    const double sent_us = (i + 1) * encoder.PacketDuration_us() * (1 + kDrift);
+    for (Cloud& c : sweeps.Add(packet, kJune2015 + std::llround(sent_us + late_us(random)))) {
+      clouds.push_back(std::move(c));
+    }
+  }
+  EXPECT_EQ(sweeps.clock_steps(), 0);
+  ASSERT_GT(clouds.size(), kTurns - 3u);
+  const double column_us = encoder.PacketDuration_us() / 24;
+  for (const Cloud& cloud : clouds) {
+    const auto beams = static_cast<std::size_t>(cloud.beams);
+    const auto passed = static_cast<double>(cloud.utime[beams - 1] - cloud.utime[0]);
+    const auto columns = static_cast<double>(beams - 1);
+    EXPECT_NEAR(passed, columns * column_us, 2 + 500e-6 * passed);
+    for (std::size_t c = 0; c < beams; ++c) {
+      // To the microsecond that times and stamps are rounded to.
+      ASSERT_NEAR(static_cast<double>(cloud.utime[c] - cloud.utime[0]),
+                  passed * static_cast<double>(c) / columns, 2.5);
+    }
+  }
+}
+
 TEST(VelodyneSweeps, PacketsThatComeTwiceOrLateArePassedOver) {
   const VelodyneEncoder encoder = Encoder(Model::kVlp16);
   const Turned whole = Revolve(Model::kVlp16, encoder, 230);

@@ -3,15 +3,20 @@
 // and, of a Hesai, NAME.csv, its angles.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <random>
 
+#include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/cloud/range_grid.h"
 #include "calib/files/atomic_file.h"
 #include "services/bags/bag_reader.h"
 #include "services/drivers/hesai/hesai_packets.h"
+#include "services/drivers/spinning/spinning_sweeps.h"
 #include "services/drivers/velodyne/velodyne_packets.h"
 #include "tests/figures.h"
 
@@ -205,6 +210,90 @@ TEST(NebulaReal, AHesaisPointsAreThoseOfNebula) {
   if (points == 0) GTEST_SKIP() << "no nebula in RGBDT_REAL_DATA: packets not compared";
   TellShare("hesai_agree", agree, points);
   TellFigure("hesai_points", static_cast<double>(points));
+}
+
+// Its rings below 8 degrees fire in turn.
+std::vector<Cloud> SweepsOfQt128(const fs::path& folder) {
+  SpinningSweeps sweeps(hesai::ParseAngles(ReadWholeFile(folder / "qt128.csv"), "qt128.csv"));
+  std::vector<Cloud> clouds;
+  const auto bag = OpenBag(folder / "qt128.db3");
+  BagMessage message;
+  while (bag->Next(&message)) {
+    for (const std::string& bytes : PacketsOf(message, 1500, true)) {
+      const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+      const hesai::Packet packet =
+          hesai::Decode(*hesai::SensorOf(data, bytes.size()), data, bytes.size());
+      for (Cloud& cloud : sweeps.Add(packet, 0)) clouds.push_back(std::move(cloud));
+    }
+  }
+  return clouds;
+}
+
+constexpr double kImplantSigmaM = 0.008;
+
+// The sweep as if a board stood there, and nothing before it, touching it or beside it.
+Cloud WithBoard(Cloud cloud, const Target& target, const Rigid3& lidar_from_target,
+                std::mt19937* random) {
+  constexpr double kClear = 0.3, kMargin = 0.2;
+  std::normal_distribution<double> noise(0, kImplantSigmaM);
+  const Rigid3 target_from_lidar = lidar_from_target.Inverse();
+  const Eigen::Vector3d eye = target_from_lidar.translation;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.directions[i].allFinite()) continue;
+    const Eigen::Vector3d ray = cloud.directions[i].cast<double>();
+    const double range = -eye.z() / (target_from_lidar.rotation * ray).z();
+    if (!(range > 0)) continue;
+    const Eigen::Vector3d on = target_from_lidar * Eigen::Vector3d(range * ray);
+    const double beyond =
+        std::max(std::abs(on.x()) - target.width_m / 2, std::abs(on.y()) - target.height_m / 2);
+    if (beyond > kMargin) continue;
+    if (cloud.points[i].norm() < range + kClear) cloud.points[i].setConstant(NAN);
+    if (beyond < 0) cloud.points[i] = ((range + noise(*random)) * ray).cast<float>();
+  }
+  return cloud;
+}
+
+TEST(NebulaReal, ABoardAmongTheRingsOfAQt128ThatFireInTurnIsFound) {
+  const fs::path folder = DataFolder();
+  if (!fs::exists(folder / "qt128.db3")) GTEST_SKIP() << "no nebula's qt128 in RGBDT_REAL_DATA";
+  const std::vector<Cloud> clouds = SweepsOfQt128(folder);
+  ASSERT_FALSE(clouds.empty());
+  const RangeGrid grid(clouds[0]);
+  EXPECT_EQ(grid.firing_columns(), 2);
+  const Target target{9, 6, 0.1, 1.2, 0.9, {0, 0}, {}};
+  BoardInCloudOptions options;
+  options.range_sigma_m = kImplantSigmaM;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> lean(-0.4, 0.4);
+  constexpr int kBoards = 60;
+  int found = 0;
+  double chi2 = 0;
+  for (int k = 0; k < kBoards; ++k) {
+    const double azimuth = 0.1 * k, elevation = (k % 5 - 3) * 0.17, range = 2 + k % 3;
+    Eigen::Matrix3d facing;  // x to the right, y down, z away from the LIDAR
+    facing << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+    const Rigid3 there = RotationAbout({0, 0, 1}, azimuth) * RotationAbout({0, 1, 0}, -elevation);
+    const Rigid3 board = there * Rigid3{Eigen::Quaterniond(facing), {range, 0, 0}} *
+                         RotationAbout({1, 0, 0}, lean(random)) *
+                         RotationAbout({0, 1, 0}, lean(random)) *
+                         RotationAbout({0, 0, 1}, 4 * lean(random));
+    const BoardsInCloud boards =
+        FindBoards(WithBoard(clouds[0], target, board, &random), target, options);
+    if (boards.candidates.empty()) continue;
+    const TargetPose& pose = *boards.candidates[0].pose;
+    if ((pose.sensor_from_target.translation - board.translation).norm() > 0.1) continue;
+    ++found;
+    const Rigid3 turned = board * RotationAbout({0, 0, 1}, M_PI);
+    const bool half = RotationDistance(pose.sensor_from_target, turned) <
+                      RotationDistance(pose.sensor_from_target, board);
+    const Vector6d error = Log((half ? turned : board) * pose.sensor_from_target.Inverse());
+    chi2 += error.dot(pose.covariance.ldlt().solve(error));
+  }
+  TellShare("qt128_boards_found", static_cast<std::size_t>(found), kBoards);
+  TellFigure("qt128_boards_chi2", chi2 / found);
+  EXPECT_GE(found, kBoards - 1);
+  // Six degrees of freedom; the mean of 60 has sigma sqrt(12 / 60) = 0.45.
+  EXPECT_LT(chi2 / found, 6 + 3 * 0.45);
 }
 
 }  // namespace

@@ -105,20 +105,30 @@ class MemberFinder {
     });
   }
 
-  void Spacings(PlaneMembers* members) const {
-    std::vector<double> along;
-    std::vector<double> across;
+  void Spacings(PlaneMembers* members) {
+    std::vector<double> along, across, column, row;
+    double columns = 0;
+    const auto measure = [&](std::size_t i, std::size_t next, double cells,
+                             std::vector<double>* apart, std::vector<double>* cell) {
+      if (next == i || beams_[next] != Beam::kOn) return 0.0;
+      apart->push_back((flat_[next] - flat_[i]).norm());
+      cell->push_back(apart->back() / cells);
+      return cells;
+    };
     for (std::size_t i = 0; i < beams_.size(); ++i) {
       if (beams_[i] != Beam::kOn) continue;
-      if ((i + 1) % width_ != 0 && beams_[i + 1] == Beam::kOn) {
-        along.push_back((flat_[i + 1] - flat_[i]).norm());
-      }
-      if (i + width_ < beams_.size() && beams_[i + width_] == Beam::kOn) {
-        across.push_back((flat_[i + width_] - flat_[i]).norm());
-      }
+      const std::size_t right = Next(i, 1, width_ - 1 - i % width_);
+      columns += measure(i, right, static_cast<double>(right - i), &along, &column);
+      const std::size_t above =
+          Next(i, static_cast<std::ptrdiff_t>(width_), (beams_.size() - 1 - i) / width_);
+      measure(i, above, static_cast<double>((above - i) / width_), &across, &row);
     }
+    const auto pairs = static_cast<double>(std::max<std::size_t>(1, along.size()));
     members->column_spacing_m = Median(std::move(along));
     members->row_spacing_m = Median(std::move(across));
+    column_m_ = Median(std::move(column));
+    row_m_ = Median(std::move(row));
+    members->beam_m2 = row_m_ * column_m_ * columns / pairs;
   }
 
   // Crossings along rows (or along columns), with what each stands for of a side across it.
@@ -127,10 +137,9 @@ class MemberFinder {
     const std::size_t lines = along_rows ? height : width_;
     const std::size_t length = along_rows ? width_ : height;
     const std::size_t step = along_rows ? 1 : width_;
-    const double stands_for = along_rows ? members->row_spacing_m : members->column_spacing_m;
     for (std::size_t line = 0; line < lines; ++line) {
       const std::size_t start = line * (along_rows ? width_ : 1);
-      CrossLine(start, step, length, stands_for, along_rows, members);
+      CrossLine(start, step, length, along_rows, members);
     }
   }
 
@@ -143,14 +152,24 @@ class MemberFinder {
       }
     }
   }
+  // The next beam, past cells in which none was fired, among `cells` that lie `step` apart; the
+  // same one: there is none.
+  std::size_t Next(std::size_t i, std::ptrdiff_t step, std::size_t cells) const {
+    for (std::size_t k = 1; k <= std::min<std::size_t>(cells, kMostTurns); ++k) {
+      const auto next = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
+                                                 static_cast<std::ptrdiff_t>(k) * step);
+      if (beams_[next] != Beam::kUnknown) return next;
+    }
+    return i;
+  }
   std::size_t At(int row, int column) const {
     return static_cast<std::size_t>(row - window_.first_row) * width_ +
            static_cast<std::size_t>(column - window_.first_column);
   }
 
   // Runs of beams on the plane; a hole does not end one.
-  void CrossLine(std::size_t start, std::size_t step, std::size_t length, double stands_for,
-                 bool along_row, PlaneMembers* members) const {
+  void CrossLine(std::size_t start, std::size_t step, std::size_t length, bool along_row,
+                 PlaneMembers* members) const {
     std::size_t k = 0;
     while (k < length) {
       if (beams_[start + k * step] != Beam::kOn) {
@@ -171,20 +190,41 @@ class MemberFinder {
         }
       }
       if (count < 2) continue;
-      if (first > 0) {
-        AddCrossing(start + first * step, start + (first - 1) * step, stands_for, along_row,
-                    members);
-      }
-      if (last + 1 < length) {
-        AddCrossing(start + last * step, start + (last + 1) * step, stands_for, along_row, members);
-      }
+      const auto onwards = static_cast<std::ptrdiff_t>(step);
+      const std::size_t low = start + first * step, high = start + last * step;
+      AddCrossing(low, Next(low, -onwards, first), along_row, members);
+      AddCrossing(high, Next(high, onwards, length - 1 - last), along_row, members);
     }
   }
 
-  void AddCrossing(std::size_t in, std::size_t out, double stands_for, bool along_row,
-                   PlaneMembers* members) const {
+  // How much of a side a crossing at a beam stands for: up to the next row (column) that has beams
+  // there; those of rings that fire in turn lie beside it.
+  double StandsFor(std::size_t i, bool along_row) const {
+    const auto holds_beams = [&](std::ptrdiff_t line, std::ptrdiff_t place) {
+      const auto width = static_cast<std::ptrdiff_t>(width_);
+      const auto height = static_cast<std::ptrdiff_t>(beams_.size()) / width;
+      for (std::ptrdiff_t p = place - 1; p <= place + 1; ++p) {
+        const std::ptrdiff_t row = along_row ? line : p, column = along_row ? p : line;
+        if (row < 0 || row >= height || column < 0 || column >= width) continue;
+        if (beams_[static_cast<std::size_t>(row * width + column)] != Beam::kUnknown) return true;
+      }
+      return false;
+    };
+    const auto row = static_cast<std::ptrdiff_t>(i / width_);
+    const auto column = static_cast<std::ptrdiff_t>(i % width_);
+    const std::ptrdiff_t line = along_row ? row : column, place = along_row ? column : row;
+    const double cell_m = along_row ? row_m_ : column_m_;
+    for (std::ptrdiff_t k = 1; k <= kMostTurns; ++k) {
+      if (holds_beams(line - k, place) || holds_beams(line + k, place)) {
+        return static_cast<double>(k) * cell_m;
+      }
+    }
+    return cell_m;
+  }
+
+  void AddCrossing(std::size_t in, std::size_t out, bool along_row, PlaneMembers* members) const {
     const Beam beam = beams_[out];
-    if (beam == Beam::kUnknown || beam == Beam::kBefore || beam == Beam::kOn) return;
+    if (in == out || beam == Beam::kUnknown || beam == Beam::kBefore || beam == Beam::kOn) return;
     FlatCrossing crossing;
     const Eigen::Vector2d across = flat_[out] - flat_[in];
     const double length = across.norm();
@@ -192,7 +232,7 @@ class MemberFinder {
     crossing.middle = 0.5 * (flat_[in] + flat_[out]);
     crossing.outward = across / length;
     crossing.half_m = 0.5 * length;
-    crossing.length_m = stands_for;
+    crossing.length_m = StandsFor(in, along_row);
     crossing.range_m = range_[in];
     crossing.slope = slope_[in];
     crossing.kind = beam == Beam::kNothing ? CrossingKind::kNoReturn
@@ -207,6 +247,7 @@ class MemberFinder {
   const RangeGrid& grid_;
   Window window_;
   std::size_t width_ = 0;
+  double row_m_ = 0, column_m_ = 0;  // from cell to cell on the plane
   std::vector<Beam> beams_;
   std::vector<Eigen::Vector2d> flat_;
   std::vector<double> range_;

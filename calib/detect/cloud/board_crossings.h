@@ -22,7 +22,7 @@ struct PlaneFrame {
 };
 
 /// Where a row or column of beams leaves the plane: the truth lies between the last beam on it and
-/// the first beyond. Places in the plane's frame [m].
+/// the first beyond, cells in which none was fired left out. Places in the plane's frame [m].
 struct FlatCrossing {
   Eigen::Vector2d middle{0, 0};   ///< of the two beams
   Eigen::Vector2d outward{0, 0};  ///< unit, from the last beam on the plane to the first beyond
@@ -47,6 +47,7 @@ struct PlaneMembers {
   std::vector<Eigen::Vector2d> through;  ///< where beams went through the plane and hit beyond
   std::vector<FlatCrossing> crossings;
   double row_spacing_m = 0, column_spacing_m = 0;  ///< between neighbouring beams on the plane
+  double beam_m2 = 0;                              ///< of the plane, that one beam stands for
 };
 
 struct MemberOptions {

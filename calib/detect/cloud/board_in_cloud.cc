@@ -125,9 +125,8 @@ Filling Fill(const Cloud& cloud, const PlaneMembers& members, const FlatRectangl
   const auto circles = [&](double r) { return static_cast<double>(holes.size()) * M_PI * r * r; };
   const double inner_area =
       (target.width_m - 2 * kMargin) * (target.height_m - 2 * kMargin) - circles(radius + kMargin);
-  const double cell = members.row_spacing_m * members.column_spacing_m;
-  filling.seen = on * cell / inner_area;
-  if (radius > kMargin) filling.closed = in_holes * cell / circles(radius - kMargin);
+  filling.seen = on * members.beam_m2 / inner_area;
+  if (radius > kMargin) filling.closed = in_holes * members.beam_m2 / circles(radius - kMargin);
   filling.beyond = on == 0 ? 1 : std::min(1.0, band / band_area / (on / inner_area));
   return filling;
 }
@@ -323,8 +322,7 @@ class Likeness {
     for (const FlatCrossing& c : members.crossings) around += c.length_m;
     // Wholly outlined, and filled like a rectangle.
     const double outlined = around / (2 * (size.longer + size.shorter));
-    const double area =
-        static_cast<double>(members.flat.size()) * members.row_spacing_m * members.column_spacing_m;
+    const double area = static_cast<double>(members.flat.size()) * members.beam_m2;
     const double filled = area / (size.longer * size.shorter);
     const double likeness = std::min(outlined, 1.0) * std::min(filled, 1.0);
     if (likeness < 0.6 || likeness <= best_) return;

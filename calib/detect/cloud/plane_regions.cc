@@ -35,7 +35,7 @@ class RegionFinder {
     // Twelve cells across the board's shorter side at the farthest range.
     const double cell = options.smallest_m / options.finest_range_m / 12;
     row_stride_ = Stride(cell, grid.row_step());
-    column_stride_ = Stride(cell, grid.column_step());
+    column_stride_ = std::max(Stride(cell, grid.column_step()), grid.firing_columns());
     rows_ = (grid.rows() + row_stride_ - 1) / row_stride_;
     columns_ = grid.columns() / column_stride_;
     seen_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), 0);
@@ -65,9 +65,14 @@ class RegionFinder {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(column);
   }
+  // Of rings that fire in turn the next cell in which a beam was fired.
   std::size_t Cell(int row, int column) const {
     if (grid_.wraps()) column = ((column % columns_) + columns_) % columns_;
-    return grid_.Cell(row * row_stride_, column * column_stride_);
+    const std::size_t cell = grid_.Cell(row * row_stride_, column * column_stride_);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(grid_.firing_columns()); ++k) {
+      if (grid_.WasFired(cell + k)) return cell + k;
+    }
+    return cell;
   }
   bool Contains(int row, int column) const {
     return row >= 0 && row < rows_ && (grid_.wraps() || (column >= 0 && column < columns_));
@@ -81,7 +86,8 @@ class RegionFinder {
                       most);
   }
 
-  // Whether the patch round a cell is plane, filled and not yet part of a region.
+  // Whether the patch round a cell is plane, filled and not yet part of a region. Where no beam was
+  // fired there is nothing to be filled.
   bool Seed(int row, int column, PlaneSums* sums) const {
     const double range = grid_.Point(Cell(row, column)).norm();
     if (!(range > 0.3) || range > options_.max_range_m) return false;
@@ -94,10 +100,11 @@ class RegionFinder {
     for (int r = row - half_rows; r <= row + half_rows; ++r) {
       int hits = 0;
       for (int c = column - half_columns; c <= column + half_columns; c += column_step) {
+        const bool contained = Contains(r, c);
+        const std::size_t cell = contained ? Cell(r, c) : 0;
+        if (contained && !grid_.WasFired(cell)) continue;
         ++looked;
-        if (!Contains(r, c)) continue;
-        const std::size_t cell = Cell(r, c);
-        if (!grid_.IsHit(cell) || seen_[Index(r, c)] != 0) continue;
+        if (!contained || !grid_.IsHit(cell) || seen_[Index(r, c)] != 0) continue;
         const Eigen::Vector3d p = grid_.Point(cell).cast<double>();
         points[static_cast<std::size_t>(sums->count())] = p;
         sums->Add(p);

@@ -1,6 +1,7 @@
 #include "calib/detect/cloud/range_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -168,11 +169,55 @@ void RangeGrid::TakeAsItIs() {
   columns_ = cloud_->beams;
   for (std::size_t i = 0; i < cloud_->size(); ++i) hits_ += cloud_->IsHit(i) ? 1 : 0;
   MeasureSteps();
-  const std::size_t middle = Cell(rows_ / 2, 0);
-  const auto first = Direction(middle);
-  const auto last = Direction(middle + static_cast<std::size_t>(columns_) - 1);
-  wraps_ = first && last && columns_ > 100 &&
-           std::acos(std::clamp(first->dot(*last), -1.0, 1.0)) < 2.5 * column_step_;
+  MeasureTurns();
+  std::size_t first = Cell(rows_ / 2, 0);
+  std::size_t last = Cell(rows_ / 2, columns_ - 1);
+  int skipped = 0;
+  for (; skipped + 1 < firing_columns_ && !WasFired(first); ++skipped) ++first;
+  for (; skipped + 1 < firing_columns_ && !WasFired(last); ++skipped) --last;
+  const auto from = Direction(first);
+  const auto to = Direction(last);
+  wraps_ = from && to && columns_ > 100 &&
+           std::acos(std::clamp(from->dot(*to), -1.0, 1.0)) < (skipped + 2.5) * column_step_;
+}
+
+// Of each row the shortest way from beam to beam that is no exception. Of a grid that was put back
+// together only hits are known.
+void RangeGrid::MeasureTurns() {
+  constexpr int kEnough = 20;
+  std::vector<int> turns(static_cast<std::size_t>(rows_), 1);
+  for (int row = 0; row < rows_; ++row) {
+    std::array<int, kMostTurns + 1> ways{};
+    int count = 0;
+    int last = -kMostTurns - 1;
+    for (int column = 0; column < columns_; ++column) {
+      const std::size_t cell = Cell(row, column);
+      if (place_.empty() ? !WasFired(cell) : !IsHit(cell)) continue;
+      if (column - last <= kMostTurns) {
+        ++ways[static_cast<std::size_t>(column - last)];
+        ++count;
+      }
+      last = column;
+    }
+    int& turn = turns[static_cast<std::size_t>(row)];
+    while (count >= kEnough && 10 * ways[static_cast<std::size_t>(turn)] < count) ++turn;
+    firing_columns_ = std::max(firing_columns_, turn);
+  }
+  row_turns_ = std::move(turns);
+}
+
+bool RangeGrid::WasFired(std::size_t cell) const {
+  if (IsHit(cell)) return true;
+  if (place_.empty()) return cloud_->directions[cell].allFinite();
+  if (row_turns_.empty()) return true;
+  const auto columns = static_cast<std::size_t>(columns_);
+  const auto row = static_cast<int>(cell / columns), column = static_cast<int>(cell % columns);
+  for (int k = 1; k < row_turns_[static_cast<std::size_t>(row)]; ++k) {
+    for (const int beside : {column - k, column + k}) {
+      if (Contains(row, beside) && IsHit(Cell(row, beside))) return false;
+    }
+  }
+  return true;
 }
 
 void RangeGrid::MeasureSteps() {
@@ -183,16 +228,20 @@ void RangeGrid::MeasureSteps() {
   const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::asin(std::min(1.0, a.cross(b).norm()));
   };
+  // To the next beam that was fired, as often a step as it is cells away.
+  const auto measure = [&](std::size_t cell, std::size_t step, std::size_t cells,
+                           std::vector<double>* steps) {
+    for (std::size_t k = 1; k <= std::min<std::size_t>(cells, kMostTurns); ++k) {
+      if (const auto next = Direction(cell + k * step)) {
+        return steps->push_back(angle(*Direction(cell), *next) / static_cast<double>(k));
+      }
+    }
+  };
+  const auto columns = static_cast<std::size_t>(columns_);
   for (std::size_t cell = 0; cell < n; cell += stride) {
-    const auto here = Direction(cell);
-    if (!here) continue;
-    const std::size_t beyond = cell + static_cast<std::size_t>(columns_);
-    if ((cell + 1) % static_cast<std::size_t>(columns_) != 0) {
-      if (const auto next = Direction(cell + 1)) along.push_back(angle(*here, *next));
-    }
-    if (beyond < n) {
-      if (const auto next = Direction(beyond)) across.push_back(angle(*here, *next));
-    }
+    if (!WasFired(cell)) continue;
+    measure(cell, 1, columns - 1 - cell % columns, &along);
+    measure(cell, columns, (n - 1 - cell) / columns, &across);
   }
   column_step_ = Median(std::move(along));
   row_step_ = Median(std::move(across));
@@ -217,7 +266,7 @@ void RangeGrid::Rebuild(double coarser) {
   constexpr std::size_t kMostRings = 200;
   if (rows.size() >= 2 && rows.size() <= kMostRings) {
     const auto crowded = Place(rows, AzimuthStep(rows), false);
-    if (crowded && *crowded * 50 < hits_) return;
+    if (crowded && *crowded * 50 < hits_) return MeasureTurns();
   }
   scattered_ = true;
   double step = coarser * CellStep(angles);
@@ -285,6 +334,7 @@ std::optional<Eigen::Vector3d> RangeGrid::Direction(std::size_t cell) const {
     if (!d.allFinite()) return std::nullopt;
     return d.cast<double>().normalized();
   }
+  if (!WasFired(cell)) return std::nullopt;
   const std::size_t row = cell / static_cast<std::size_t>(columns_);
   const double azimuth =
       row_azimuth_[row] +

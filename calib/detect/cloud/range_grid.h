@@ -9,11 +9,15 @@
 
 namespace rgbdt {
 
+/// Rings that fire in turn fire again after so many columns at most.
+inline constexpr int kMostTurns = 4;
+
 /// A cloud as the sensor saw it: beams in rows and columns, neighbours in the grid being neighbours
 /// in angle. An organised cloud that tells the directions of its misses is taken as it is (line x
 /// beam). Any other is put back into ring x azimuth: by its rings where it has them, by the
 /// elevations that its points keep to, or, where they keep to none, in even cells of angle. There
-/// an empty cell is a beam that returned nothing. LIDAR frame, metres.
+/// an empty cell is a beam that returned nothing, but for those between the hits of a row that has
+/// one in every second column or fewer: its ring fired in turn. LIDAR frame, metres.
 class RangeGrid {
  public:
   /// `cloud` outlives the grid. Cells that the points keep to no rows in are so many times wider.
@@ -24,14 +28,16 @@ class RangeGrid {
   int columns() const { return columns_; }
   /// The cells are even ones of angle, as the points keep to no rows.
   bool scattered() const { return scattered_; }
+  /// From a beam of a row to the next one that was fired, in columns, of the row where that is
+  /// farthest: 1, or, where rings fire in turn, up to kMostTurns.
+  int firing_columns() const { return firing_columns_; }
   /// Columns go round: column -1 is the last one.
   bool wraps() const { return wraps_; }
   /// Median angle between neighbours [rad]; 0: fewer than two rows (columns).
   double row_step() const { return row_step_; }
   double column_step() const { return column_step_; }
 
-  /// Whether a beam was fired there as far as one knows. The column may lie beyond the grid's
-  /// limits where it wraps.
+  /// Whether there is such a cell. The column may lie beyond the grid's limits where it wraps.
   bool Contains(int row, int column) const {
     return row >= 0 && row < rows_ && (wraps_ || (column >= 0 && column < columns_));
   }
@@ -45,6 +51,10 @@ class RangeGrid {
     const std::int64_t i = PointOf(cell);
     return i >= 0 && std::isfinite(cloud_->points[static_cast<std::size_t>(i)].x());
   }
+  /// Whether a beam was fired there as far as one knows: one that returned nothing says that
+  /// nothing is there, one that was not fired (rings that fire in turn, a lost packet) says
+  /// nothing.
+  bool WasFired(std::size_t cell) const;
   /// The point of a hit.
   const Eigen::Vector3f& Point(std::size_t cell) const {
     return cloud_->points[static_cast<std::size_t>(PointOf(cell))];
@@ -86,9 +96,12 @@ class RangeGrid {
   // would have far more cells than the cloud has points.
   std::optional<int> Place(const Rows& rows, double step, bool even);
   void MeasureSteps();
+  void MeasureTurns();
 
   const Cloud* cloud_;
   int rows_ = 0, columns_ = 0;
+  int firing_columns_ = 1;
+  std::vector<int> row_turns_;  // by row: columns from a beam to the next; empty: 1
   bool wraps_ = false;
   bool scattered_ = false;
   double row_step_ = 0, column_step_ = 0;

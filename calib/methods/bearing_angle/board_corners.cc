@@ -29,7 +29,9 @@ class Edges {
 
  private:
   bool IsMiss(int row, int column) const {
-    return !grid_.Contains(row, column) || !grid_.IsHit(grid_.Cell(row, column));
+    if (!grid_.Contains(row, column)) return true;
+    const std::size_t cell = grid_.Cell(row, column);
+    return grid_.WasFired(cell) && !grid_.IsHit(cell);
   }
   // Seen from the point before, which lies behind: 180 degrees.
   bool BeforeThePrevious(const cv::Mat& angles, int row, int column, int row_before,

@@ -14,26 +14,36 @@ constexpr Utime kMostAway_us = 10'000'000;  // farther: somebody set a clock
 // Of a cloud. None sends a quarter of it in a second (Avia: 240,000 beams): the clock stands still.
 constexpr std::size_t kMostPoints = 1'000'000;
 
-}  // namespace
-
-// A packet arrives once its last beam was measured.
-Utime LivoxSweeps::TimeOf(const livox::Packet& packet, Utime arrival) {
-  const auto duration = static_cast<Utime>(packet.duration_us);
+// What its own clock says, where that follows the world's.
+std::optional<Utime> Utc(const livox::Packet& packet, Utime arrival) {
   switch (packet.clock) {
     case livox::Clock::kUtc:
       return packet.stamp_ns / 1000;
     case livox::Clock::kPtp:
-      if (const auto utc = PtpToUtc(packet.stamp_ns / 1000, arrival)) return *utc;
-      break;
+      return PtpToUtc(packet.stamp_ns / 1000, arrival);
     case livox::Clock::kSinceStart:
       break;
   }
-  fit_.Add(packet.stamp_ns, arrival, duration);
-  return fit_.ToHost(static_cast<double>(packet.stamp_ns)).value_or(arrival - duration);
+  return std::nullopt;
+}
+
+}  // namespace
+
+// A packet arrives once its last beam was measured.
+void LivoxSweeps::FollowClock(const livox::Packet& packet, Utime arrival) {
+  if (Utc(packet, arrival)) return;
+  const bool stepped = !fit_.Add(packet.stamp_ns, arrival, static_cast<Utime>(packet.duration_us));
+  if (stepped || fit_of_cloud_.size() == 0) fit_of_cloud_ = fit_;
+}
+
+Utime LivoxSweeps::TimeOf(const livox::Packet& packet, Utime arrival) const {
+  if (const auto utc = Utc(packet, arrival)) return *utc;
+  return fit_of_cloud_.ToHost(static_cast<double>(packet.stamp_ns)).value();
 }
 
 std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival) {
-  const Utime utime = TimeOf(packet, arrival);
+  FollowClock(packet, arrival);
+  Utime utime = TimeOf(packet, arrival);
   std::optional<Cloud> done;
   const Utime gap = utime - next_;
   const bool full = cloud_.points.size() + packet.points.size() > kMostPoints;
@@ -54,7 +64,8 @@ std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival
   }
   if (!any_) {
     any_ = true;
-    begun_ = utime;
+    fit_of_cloud_ = fit_;
+    begun_ = utime = TimeOf(packet, arrival);
     cloud_lost_us_ = 0;
   }
   for (const livox::Point& point : packet.points) {

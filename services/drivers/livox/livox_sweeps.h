@@ -16,7 +16,8 @@ namespace rgbdt {
 /// left out, and so are a million points that came while the sensor's clock stood still.
 ///
 /// Times: the packets' own where the sensor follows PTP or GPS; otherwise mapped to the host's
-/// clock from when they arrive (ClockFit).
+/// clock from when they arrive (ClockFit), each cloud as the clock is known at its begin: within a
+/// cloud times are the sensor's.
 class LivoxSweeps {
  public:
   /// The cloud that a packet, which arrived at `arrival` [us, UTC], completed. Packets that come
@@ -32,10 +33,12 @@ class LivoxSweeps {
   std::int64_t left_out() const { return left_out_; }       ///< clouds
 
  private:
-  Utime TimeOf(const livox::Packet& packet, Utime arrival);
+  void FollowClock(const livox::Packet& packet, Utime arrival);
+  Utime TimeOf(const livox::Packet& packet, Utime arrival) const;
   std::optional<Cloud> Take();
 
   ClockFit fit_{ClockFitOptions{1e-3}};
+  ClockFit fit_of_cloud_{ClockFitOptions{1e-3}};
   Cloud cloud_;
   Utime begun_ = 0, next_ = 0;  // of the cloud; when the next packet is due
   Utime cloud_lost_us_ = 0;

@@ -43,35 +43,41 @@ bool VelodyneSweeps::IsOldNews(std::int64_t stamp) {
   return stamp < *last_stamp_ && stamp > *last_stamp_ - kMostLate_us;
 }
 
-// Of the packet's first firing.
-Utime VelodyneSweeps::TimeOf(const Packet& packet, std::int64_t stamp, Utime arrival) {
+// The stamp is of the packet's first firing.
+void VelodyneSweeps::FollowClock(const Packet& packet, std::int64_t stamp, Utime arrival) {
   const auto duration = static_cast<Utime>(PacketDuration_us(packet));
-  if (same_stamps_ >= kStandsStill) return arrival - duration;
-  if (!fit_.Add(stamp, arrival, duration)) {
+  standing_.reset();
+  if (same_stamps_ >= kStandsStill) {
+    standing_ = arrival - duration - stamp;
+  } else if (!fit_.Add(stamp, arrival, duration)) {
     ++clock_steps_;
     last_stamp_.reset();
+    fit_of_turn_ = fit_;
   }
-  return fit_.ToHost(static_cast<double>(stamp)).value();
+}
+
+Utime VelodyneSweeps::TimeOf(double stamp_us) const {
+  if (standing_) return *standing_ + std::llround(stamp_us);
+  return fit_of_turn_.ToHost(stamp_us).value();
 }
 
 std::vector<Cloud> VelodyneSweeps::Add(const Packet& packet, Utime arrival) {
   std::vector<Cloud> done;
   const std::int64_t stamp = counter_.Unwrap(packet.stamp_us);
   if (IsOldNews(stamp)) return done;
-  const Utime utime = TimeOf(packet, stamp, arrival);
-  FillGap(packet, stamp, utime, &done);
+  FollowClock(packet, stamp, arrival);
+  FillGap(packet, stamp, &done);
   last_stamp_ = stamp;
   for (const velodyne::Column& column : packet.columns) {
-    Push({column.azimuth_deg, column.step_deg,
-          utime + static_cast<Utime>(std::llround(column.time_us)), column.returns},
+    Push({column.azimuth_deg, column.step_deg, static_cast<double>(stamp) + column.time_us, 0,
+          column.returns},
          &done);
   }
   return done;
 }
 
 // Columns of packets that were lost, from the sensor's own times: they keep their places.
-void VelodyneSweeps::FillGap(const Packet& packet, std::int64_t stamp, Utime utime,
-                             std::vector<Cloud>* done) {
+void VelodyneSweeps::FillGap(const Packet& packet, std::int64_t stamp, std::vector<Cloud>* done) {
   if (!last_stamp_ || !last_column_ || packet.columns.empty()) return;
   const double duration = PacketDuration_us(packet);
   const auto passed = static_cast<double>(stamp - *last_stamp_);
@@ -96,8 +102,7 @@ void VelodyneSweeps::FillGap(const Packet& packet, std::int64_t stamp, Utime uti
     FiredColumn column;
     column.azimuth_deg = std::fmod(last.azimuth_deg + step * static_cast<double>(i) + 720, 360);
     column.step_deg = step;
-    column.utime = last.utime + static_cast<Utime>(
-                                    std::llround(share * static_cast<double>(utime - last.utime)));
+    column.stamp_us = last.stamp_us + share * (static_cast<double>(stamp) - last.stamp_us);
     Push(std::move(column), done);
   }
 }
@@ -109,14 +114,17 @@ void VelodyneSweeps::Push(FiredColumn column, std::vector<Cloud>* done) {
     if (whole_ && columns_.size() > 1) done->push_back(Revolution());
     columns_.clear();
     whole_ = true;
-    begun_ = column.utime;
+    fit_of_turn_ = fit_;
+    begun_ = TimeOf(column.stamp_us);
   } else if (columns_.size() >= kMaxColumns) {
     columns_.clear();
     whole_ = false;
   }
   last_column_ = column;
   last_column_->returns.clear();
-  if (whole_) columns_.push_back(std::move(column));
+  if (!whole_) return;
+  column.utime = TimeOf(column.stamp_us);
+  columns_.push_back(std::move(column));
 }
 
 void VelodyneSweeps::FillBeam(const FiredColumn& column, std::size_t laser, std::size_t i,

@@ -22,7 +22,8 @@ namespace rgbdt {
 /// other end.
 ///
 /// Times: the packets' own, us since the hour, mapped to the host's clock from when they arrive
-/// (ClockFit, the packet's own duration known); where the sensor's clock stands still, the arrival
+/// (ClockFit, the packet's own duration known), each revolution as the clock is known at its begin:
+/// within a revolution times are the sensor's. Where the sensor's clock stands still, the arrival
 /// less that duration.
 class VelodyneSweeps {
  public:
@@ -43,14 +44,15 @@ class VelodyneSweeps {
  private:
   struct FiredColumn {
     double azimuth_deg = 0, step_deg = 0;
-    Utime utime = 0;
+    double stamp_us = 0;                    // by the sensor's clock
+    Utime utime = 0;                        // of those of a revolution
     std::vector<velodyne::Return> returns;  // empty: lost
   };
 
   bool IsOldNews(std::int64_t stamp);
-  Utime TimeOf(const velodyne::Packet& packet, std::int64_t stamp, Utime arrival);
-  void FillGap(const velodyne::Packet& packet, std::int64_t stamp, Utime utime,
-               std::vector<Cloud>* done);
+  void FollowClock(const velodyne::Packet& packet, std::int64_t stamp, Utime arrival);
+  Utime TimeOf(double stamp_us) const;
+  void FillGap(const velodyne::Packet& packet, std::int64_t stamp, std::vector<Cloud>* done);
   void Push(FiredColumn column, std::vector<Cloud>* done);
   Cloud Revolution() const;
   void FillBeam(const FiredColumn& column, std::size_t laser, std::size_t i, Cloud* cloud) const;
@@ -59,7 +61,8 @@ class VelodyneSweeps {
   const velodyne::Sensor& sensor_;
   std::vector<double> cos_elevation_, sin_elevation_, laser_us_;
   CounterUnwrapper counter_{velodyne::kHour_us};
-  ClockFit fit_;
+  ClockFit fit_, fit_of_turn_;
+  std::optional<Utime> standing_;  // the clock stands still: the host's time less the sensor's
   std::optional<std::int64_t> last_stamp_;
   std::optional<FiredColumn> last_column_;
   std::vector<FiredColumn> columns_;

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "calib/model/errors.h"
 #include "services/drivers/livox/livox_packets.h"
 #include "services/drivers/livox/livox_sweeps.h"
@@ -171,6 +174,37 @@ TEST(LivoxSweeps, AreASecondsPointsWithoutRings) {
     EXPECT_NEAR(static_cast<double>(cloud.sweep_utime - run.clouds[0].sweep_utime), 1e6, 60);
     EXPECT_LT(cloud.utime.back() - cloud.sweep_utime, 1'001'000);
     EXPECT_TRUE(std::is_sorted(cloud.utime.begin(), cloud.utime.end()));
+  }
+}
+
+// The sensor's clock is 50 ppm slow, packets arrive late by chance.
+TEST(LivoxSweeps, WithinACloudTimesAreTheSensorsHoweverPacketsArrive) {
+  constexpr double kDrift = 50e-6;
+  const LivoxEncoder encoder{false, 1};
+  std::mt19937 random(7);
+  std::exponential_distribution<double> late_us(1 / 400.0);
+  LivoxSweeps sweeps;
+  std::vector<Cloud> clouds;
+  for (int i = 0; i < 10 * encoder.PacketsPerSecond(); ++i) {  // a rate is fitted after 5 s
+    const double sent_us = static_cast<double>(encoder.period_us() * (i + 1)) * (1 + kDrift);
+    const Utime arrival = kArrival + std::llround(sent_us + late_us(random));
+    auto cloud = sweeps.Add(Decode(encoder, encoder.Packet(i)), arrival);
+    if (cloud) clouds.push_back(std::move(*cloud));
+  }
+  ASSERT_GE(clouds.size(), 8U);
+  EXPECT_EQ(sweeps.lost_ms(), 0);
+  const livox::Packet packet = Decode(encoder, encoder.Packet(0));
+  const std::size_t of_packet = packet.points.size();
+  for (const Cloud& cloud : clouds) {
+    ASSERT_EQ(cloud.size() % of_packet, 0U);
+    const std::size_t last = cloud.size() / of_packet - 1;
+    const auto passed = static_cast<double>(cloud.utime[last * of_packet] - cloud.utime[0]);
+    EXPECT_NEAR(passed, static_cast<double>(last) * 500, 2 + 500e-6 * passed);
+    for (std::size_t i = 0; i <= last; ++i) {
+      // To the microsecond that times are rounded to.
+      ASSERT_NEAR(static_cast<double>(cloud.utime[i * of_packet] - cloud.utime[0]),
+                  passed * static_cast<double>(i) / static_cast<double>(last), 1.5);
+    }
   }
 }
 

@@ -82,6 +82,29 @@ TEST(RigPrograms, SpeakersAreListedByTheirRoles) {
   EXPECT_THAT(SpeakersOf(rig, {Role::kBoth}), ElementsAre("assembler", "fuser", "viewer"));
 }
 
+TEST(RigPrograms, ALidarSpeaksForAsLongAsTheRigIsUpUnlessItIsARecording) {
+  PacketLidarDevice recorded_packets;
+  recorded_packets.pcap = "drive.pcap";
+  VelodyneDevice recorded_velodyne;
+  recorded_velodyne.pcap = "drive.pcap";
+  Rig rig;
+  EXPECT_THAT(SpeakersOf(rig, {Role::kDriver}), ElementsAre());
+  const auto speaks = [&] { return !SpeakersOf(rig, {Role::kDriver}).empty(); };
+  const auto ends = [&] { return ProgramsOf(rig, Options())[0].ends; };
+  rig.lidar.device = HokuyoDevice();
+  EXPECT_TRUE(speaks() && !ends());
+  rig.lidar.device = VelodyneDevice();
+  EXPECT_TRUE(speaks() && !ends());
+  rig.lidar.device = PacketLidarDevice();
+  EXPECT_TRUE(speaks() && !ends());
+  rig.lidar.device = recorded_velodyne;
+  EXPECT_TRUE(!speaks() && ends());
+  rig.lidar.device = recorded_packets;
+  EXPECT_TRUE(!speaks() && ends());
+  rig.lidar.device = PcdFolderDevice();
+  EXPECT_TRUE(!speaks() && ends());
+}
+
 TEST(RigPrograms, HostsThatDoNotFitTheRigAreNamed) {
   EXPECT_THAT(InputErrorOf([] { NamesOn("laptop", OnTwoHosts()); }),
               AllOf(HasSubstr("\"laptop\""), HasSubstr("sensor, desk"), HasSubstr("--host")));

@@ -16,6 +16,7 @@
 #include "calib/simulate/internal/spinning.h"
 #include "calib/simulate/use_target.h"
 #include "tests/simulated_variants.h"
+#include "tests/unit/detect/cloud/pose_error.h"
 
 namespace rgbdt {
 namespace {
@@ -40,14 +41,6 @@ BoardInCloudOptions Detection(int rings) {
   BoardInCloudOptions options;
   options.range_sigma_m = rings > 0 ? 0.02 : 0.01;
   return options;
-}
-
-// delta of a found pose against the truth, up to half a turn; LIDAR axes.
-Vector6d ErrorOf(const CloudEdges& found, const Rigid3& truth) {
-  const Rigid3& pose = found.pose->sensor_from_target;
-  const Rigid3 turned = truth * RotationAbout({0, 0, 1}, M_PI);
-  const bool half = RotationDistance(pose, turned) < RotationDistance(pose, truth);
-  return Log((half ? turned : truth) * pose.Inverse());
 }
 
 double CentreError(const CloudEdges& found, const Rigid3& truth) {

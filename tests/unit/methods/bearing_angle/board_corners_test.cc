@@ -78,18 +78,36 @@ TEST(PickBoardCorners, ACornerThatIsNotSeenIsNotPicked) {
   for (std::size_t k = 1; k < 4; ++k) EXPECT_TRUE(corners[k].allFinite()) << k;
 }
 
-TEST(BoardEdges, AreNotWithinTheBoard) {
-  const ScannedBoard scanned(BoardBefore(0.3, 0.2));
+// How far inside of the board those lie that lie farthest inside [m].
+double DeepestEdge(const ScannedBoard& scanned) {
   const RangeGrid grid(scanned.cloud);
   const CloudEdges board = scanned.Detected();
   const auto edges = BoardEdges(grid, board, scanned.target);
-  ASSERT_GT(edges.size(), 50U);
+  EXPECT_GT(edges.size(), 30U);
+  double deepest = 0;
   for (const Eigen::Vector3d& point : edges) {
     const Eigen::Vector3d on = board.pose->sensor_from_target.Inverse() * point;
-    const double inside = std::min(scanned.target.width_m / 2 - std::abs(on.x()),
-                                   scanned.target.height_m / 2 - std::abs(on.y()));
-    EXPECT_LT(inside, std::sqrt(2.0) * board.spacing_m);
+    deepest = std::max(deepest, std::min(scanned.target.width_m / 2 - std::abs(on.x()),
+                                         scanned.target.height_m / 2 - std::abs(on.y())));
   }
+  return deepest;
+}
+
+TEST(BoardEdges, AreNotWithinTheBoard) {
+  const ScannedBoard scanned(BoardBefore(0.3, 0.2));
+  EXPECT_LT(DeepestEdge(scanned), std::sqrt(2.0) * scanned.Detected().spacing_m);
+}
+
+TEST(BoardEdges, AreNotBesideBeamsThatWereNotFired) {
+  ScannedBoard scanned(BoardBefore(0.3, 0.2));
+  Cloud missed = scanned.cloud;
+  for (std::size_t i = 0; i < scanned.cloud.size(); i += 3) {
+    missed.points[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+    scanned.cloud.points[i] = scanned.cloud.directions[i] = missed.points[i];
+  }
+  EXPECT_LT(DeepestEdge(scanned), std::sqrt(2.0) * scanned.Detected().spacing_m);
+  scanned.cloud = missed;
+  EXPECT_GT(DeepestEdge(scanned), 0.2);
 }
 
 }  // namespace
