@@ -67,7 +67,6 @@ void LoopColours::Add(const RgbdtCloud& fused) {
   const bool same = !sweeps_.empty() && sweeps_.back().sweep_utime == fused.sweep_utime;
   const bool near = !sweeps_.empty() && (sweeps_.back().at - pose.translation).norm() < apart_m_;
   if (near && !same) return;
-  Sweep sweep{fused.sweep_utime, fused.frame_utime, pose.translation, {}};
   std::vector<std::size_t> seen;
   for (std::size_t i = 0; i < fused.size(); ++i) {
     const auto& rgb = fused.rgb[i];
@@ -76,15 +75,16 @@ void LoopColours::Add(const RgbdtCloud& fused) {
     if (fused.points[i].norm() < kMostRange) seen.push_back(i);
   }
   if (seen.empty()) return;
+  if (!same) sweeps_.push_back({fused.sweep_utime, fused.frame_utime, pose.translation, {}});
+  std::vector<Point>& points = sweeps_.back().points;
   const std::size_t step = (seen.size() + kMostPoints - 1) / kMostPoints;
-  for (std::size_t k = 0; k < seen.size(); k += step) {
+  for (std::size_t k = 0; k < seen.size() && points.size() < 4 * kMostPoints; k += step) {
     const std::size_t i = seen[k];
     const auto& rgb = fused.rgb[i];
     const float grey = static_cast<float>(rgb[0] + rgb[1] + rgb[2]) / 3;
     const Eigen::Vector3d in_world = pose * fused.points[i].cast<double>();
-    sweep.points.push_back({in_world.cast<float>(), grey > 0 ? grey : NAN, fused.temperature_k[i]});
+    points.push_back({in_world.cast<float>(), grey > 0 ? grey : NAN, fused.temperature_k[i]});
   }
-  sweeps_.push_back(std::move(sweep));
   if (sweeps_.size() < kMostSweeps) return;
   for (std::size_t i = 0; 2 * i < sweeps_.size(); ++i) {
     if (i > 0) sweeps_[i] = std::move(sweeps_[2 * i]);

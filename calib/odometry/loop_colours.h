@@ -19,8 +19,8 @@ struct ColoursAlike {
 /// bounded: when there are kMostSweeps, every second one is forgotten.
 class LoopColours {
  public:
-  static constexpr std::size_t kMostSweeps = 4000;  ///< or parts of large ones
-  static constexpr std::size_t kMostPoints = 1500;  ///< of each, 20 B a point
+  static constexpr std::size_t kMostSweeps = 2000;
+  static constexpr std::size_t kMostPoints = 1500;  ///< of a part, four times so many of a sweep
 
   /// A part of a whole fused sweep, where the drive's own odometry has it (map_from_lidar); others
   /// are left out.

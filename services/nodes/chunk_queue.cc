@@ -18,7 +18,9 @@ bool ChunkQueue::Keep(const CloudChunk& chunk) {
   Utime last = cloud.sweep_utime;
   for (const Utime utime : cloud.utime) last = std::max(last, utime);
   longest_sweep_ = std::max(longest_sweep_, std::min(last - cloud.sweep_utime, kLongestSweep));
-  if (!newest_pose_) return false;  // and so all that was kept before is due, and gone
+  // A clock that was set back: no pose comes for what waits.
+  if (!chunks_.empty() && last < chunks_.back().last - kLongestSweep) newest_pose_.reset();
+  if (!newest_pose_ && chunks_.empty()) return false;
   points_ += cloud.size();
   chunks_.push_back({chunk, last});
   heard_ = true;

@@ -84,8 +84,9 @@ void FuserNode::OnImage(const Image& image) {
 }
 
 void FuserNode::OnPose(const StampedPose& pose) {
-  chunks_.OnPose(pose);
-  switch (fuser_->AddPose(pose)) {
+  const auto added = fuser_->AddPose(pose);
+  if (added != PoseTrack::Added::kOld) chunks_.OnPose(pose);
+  switch (added) {
     case PoseTrack::Added::kYes:
       break;
     case PoseTrack::Added::kOld:

@@ -21,7 +21,7 @@ namespace rgbdt {
 /// the image that serves its time, so live and replay agree as long as `readout_s` in the rig file
 /// is not below the true delay. Only clouds whose way rgbdt-odometry tells after them (a turned
 /// scanner's) wait for it (ChunkQueue); of their images fewer are kept, evenly over time. Before a
-/// calibration comes the cloud goes out without colour; a new one holds from the next chunk on. An
+/// calibration comes the cloud goes out without colour; a new one holds for what is not out yet. An
 /// image older than the camera's newest by more than kClockReset means that the clock was set back:
 /// the camera's images go. Memory is bounded. Where it has too little time the oldest images and
 /// clouds that wait for it go (WantsNewest), so that what it says is of now; STATUS counts them as

@@ -89,15 +89,23 @@ class WayColours {
  public:
   void Take(const Message& message) {
     try {
-      for (const Message& fused : fuser_.Handle(message)) {
-        if (const auto* cloud = std::get_if<RgbdtCloud>(&fused)) colours_.Add(*cloud);
-      }
+      for (const Message& fused : fuser_.Handle(message)) Add(fused);
     } catch (const std::exception&) {  // nothing is seen by it
+    }
+  }
+  /// What waits for poses that do not come is seen without them, as far as it can be.
+  void Finish() {
+    for (const Utime now : {Utime{0}, 1000 * kMicrosecondsPerSecond}) {
+      for (const Message& fused : fuser_.Advance(now)) Add(fused);
     }
   }
   const LoopColours& colours() const { return colours_; }
 
  private:
+  void Add(const Message& fused) {
+    if (const auto* cloud = std::get_if<RgbdtCloud>(&fused)) colours_.Add(*cloud);
+  }
+
   FuserNode fuser_;
   LoopColours colours_;
 };
@@ -141,6 +149,7 @@ std::optional<RigText> FindWay(const std::string& log, const DriveOptions& optio
             if (options.close_loops && !pose) colours.Take(message);
           },
           progress);
+  colours.Finish();
   drive->by_odometry = own.empty();
   drive->way = own.empty() ? std::move(found) : std::move(own);
   if (options.close_loops && !drive->way.empty()) Correct(keyframes, colours.colours(), drive);

@@ -25,6 +25,8 @@ class Replay {
   /// left out: they make it again. So is CLOUD in a log with lines, and CALIBRATION in a log of a
   /// session.
   bool Take(const std::string& channel, const Bytes& bytes);
+  /// After the last one: what waits for others is done without them.
+  void Finish();
 
   const SolverNode& solver() const { return solver_; }
   const FuserNode& fuser() const { return fuser_; }

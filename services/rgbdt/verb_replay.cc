@@ -52,6 +52,7 @@ std::int64_t ReplayLog(const std::string& path, Replay* replay) {
     if (now / 5 != percent / 5) std::fprintf(stderr, "replay: %d%%\n", now);
     percent = now;
   }
+  replay->Finish();
   for (const NodeRunner* runner : replay->runners()) PrintProblems(*runner);
   if (log.unreadable_bytes() > 0) {
     std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",

@@ -141,6 +141,20 @@ TEST_F(FuserWaits, WhereNothingComesAnyMoreTheLastGoOut) {
   EXPECT_THAT(node_.Handle(ChunkAt(kNow + kSecond + 200'000)), IsEmpty()) << "clouds are back";
 }
 
+TEST_F(FuserWaits, AClockThatIsSetBackEndsTheWait) {
+  Tell(kNow);
+  EXPECT_THAT(node_.Handle(ChunkAt(kNow + kSecond)), IsEmpty());
+  CloudChunk before = ChunkAt(kNow - 3600 * kSecond);
+  before.cloud.sweep_utime = kNow - 3600 * kSecond;
+  EXPECT_THAT(node_.Handle(before), SizeIs(2));
+}
+
+TEST_F(FuserWaits, APoseThatComesAgainLeavesTheNewestWhereItIs) {
+  Tell(kNow + 2 * kSecond);
+  node_.Handle(PoseAt(kNow, 0));
+  EXPECT_THAT(node_.Handle(ChunkAt(kNow + kSecond)), SizeIs(1));
+}
+
 TEST_F(FuserWaits, SoManyPointsAndNoMoreWait) {
   Tell(kNow);
   CloudChunk large = ChunkAt(kNow + kSecond);

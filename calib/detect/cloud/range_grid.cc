@@ -105,13 +105,14 @@ void RangeGrid::TakeAsItIs() {
   MeasureTurns();
   std::size_t first = Cell(rows_ / 2, 0);
   std::size_t last = Cell(rows_ / 2, columns_ - 1);
-  int skipped = 0;
+  int skipped = 0, at_end = 0;
   for (; skipped + 1 < firing_columns_ && !WasFired(first); ++skipped) ++first;
-  for (; skipped + 1 < firing_columns_ && !WasFired(last); ++skipped) --last;
+  for (; at_end + 1 < firing_columns_ && !WasFired(last); ++at_end) --last;
   const auto from = Direction(first);
   const auto to = Direction(last);
-  wraps_ = from && to && columns_ > 100 &&
-           std::acos(std::clamp(from->dot(*to), -1.0, 1.0)) < (skipped + 2.5) * column_step_;
+  wraps_ =
+      from && to && columns_ > 100 &&
+      std::acos(std::clamp(from->dot(*to), -1.0, 1.0)) < (skipped + at_end + 2.5) * column_step_;
 }
 
 // Of each row the shortest way from beam to beam that is no exception. Of a grid that was put back

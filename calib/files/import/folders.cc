@@ -223,7 +223,8 @@ Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
 }
 
 std::string ViewName(const std::string& file, std::set<std::string>* taken) {
-  std::string name = fs::path(file).stem().string().substr(0, 90);
+  const fs::path stem = fs::path(file).stem();
+  std::string name = (stem.extension() == ".pcd" ? stem.stem() : stem).string().substr(0, 90);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }

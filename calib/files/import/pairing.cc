@@ -16,7 +16,10 @@ namespace fs = std::filesystem;
 std::vector<std::string> StemsOf(const FileList& files) {
   std::vector<std::string> stems;
   stems.reserve(files.names.size());
-  for (const std::string& name : files.names) stems.push_back(fs::path(name).stem().string());
+  for (const std::string& name : files.names) {
+    const fs::path stem = fs::path(name).stem();
+    stems.push_back((stem.extension() == ".pcd" ? stem.stem() : stem).string());  // of x.pcd.bin
+  }
   return stems;
 }
 

@@ -146,7 +146,14 @@ Cloud ReadBare(const std::string& name, Utime sweep_utime) {
   source.bytes = bytes;
   source.data_begin = 0;
   source.count = bytes.size() / record;
-  return FromTable(records::Table::FromBinary(std::move(source)), 1, name, sweep_utime);
+  const records::Table table = records::Table::FromBinary(std::move(source));
+  for (const double intensity : table.Column("intensity")) {
+    if (intensity >= 0 && intensity <= 65535) continue;
+    throw InputError(name + ": its fourth numbers are no intensities (" +
+                     std::to_string(intensity) + "), so its points are not x y z intensity; " +
+                     "write it as PCD or PLY, whose fields have names");
+  }
+  return FromTable(table, 1, name, sweep_utime);
 }
 
 }  // namespace

@@ -52,10 +52,13 @@ std::vector<const Cause*> CausesToName(const CameraReport& camera, Grade grade) 
   for (const Cause& cause : camera.causes) {
     if (cause.Sigmas() >= least || IsFeared(cause)) named.push_back(&cause);
   }
-  std::stable_sort(named.begin(), named.end(), [&](const Cause* a, const Cause* b) {
-    if (wrong(*a) != wrong(*b)) return wrong(*a);
-    return wrong(*a) && GradeOf(*a) > GradeOf(*b);
-  });
+  const auto rank = [&](const Cause* cause) {
+    return wrong(*cause)      ? std::pair(GradeOf(*cause), 2)
+           : IsFeared(*cause) ? std::pair(Grade::kDoubtful, 1)
+                              : std::pair(Grade::kGood, 0);
+  };
+  std::stable_sort(named.begin(), named.end(),
+                   [&](const Cause* a, const Cause* b) { return rank(a) > rank(b); });
   if (named.size() > kMostNamed) named.resize(kMostNamed);
   return named;
 }

@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr double kStep = 2;  // [m] between sweeps, at each of which the LIDAR stands
@@ -173,6 +174,7 @@ TEST(LoopClosure, ColoursThatAgreeChangeNothing) {
 TEST(LoopClosure, WhereCamerasSeeAnotherPlaceALoopHardlyBendsTheWay) {
   const ClosedWay without = DriveBackBy(4, 4, Drift()).closed;
   const ClosedWay with = DriveBackBy(4, 4, Drift(), Cameras::kSeeOthersOnTheWayBack).closed;
+  ASSERT_THAT(with.loops, Not(IsEmpty()));
   for (const ClosedLoop& loop : with.loops) {
     EXPECT_GT(loop.colours.cells, 500U);
     EXPECT_LT(loop.colours.correlation, 0.3);

@@ -52,20 +52,23 @@ std::optional<Utime> Microseconds(std::string digits) {
   return utime;
 }
 
+// The digits behind run `i` that are its fraction: after a point, or as many as one has.
+std::string FractionAfter(const std::string& stem, const Parts& parts, std::size_t i) {
+  const std::size_t end = parts.begins[i] + parts.digits[i].size();
+  if (i + 1 == parts.digits.size() || parts.begins[i + 1] != end + 1) return "";
+  const std::string& next = parts.digits[i + 1];
+  const char between = stem[end];
+  const bool whole = next.size() == 3 || next.size() == 6 || next.size() == 9;
+  return between == '.' || ((between == '_' || between == '-') && whole) ? next : "";
+}
+
 // The run of digits `i` as a time, with the fraction that may follow it.
 std::optional<Utime> TimeAt(const std::string& stem, const Parts& parts, std::size_t i) {
   const std::string& run = parts.digits[i];
   const std::size_t length = run.size();
   if (length == 13 || length == 16 || length == 19) return Microseconds(run);
   if (length != kSecondsDigits) return std::nullopt;
-  const std::size_t end = parts.begins[i] + length;
-  const bool joined = i + 1 < parts.digits.size() && parts.begins[i + 1] == end + 1;
-  if (!joined) return Microseconds(run);
-  const std::string& next = parts.digits[i + 1];
-  const char between = stem[end];
-  const bool whole = next.size() == 3 || next.size() == 6 || next.size() == 9;
-  const bool fraction = between == '.' || ((between == '_' || between == '-') && whole);
-  return Microseconds(fraction ? run + next : run);
+  return Microseconds(run + FractionAfter(stem, parts, i));
 }
 
 // Year, month, day, hour, minute, second as runs of digits from `i` on, together or apart, and the
@@ -88,11 +91,7 @@ std::optional<Utime> DateAt(const std::string& stem, const Parts& parts, std::si
   if (date.size() < kDigits) return std::nullopt;
   fraction = date.substr(kDigits);
   date.resize(kDigits);
-  if (fraction.empty() && run < parts.digits.size()) {
-    const std::size_t end = parts.begins[run - 1] + parts.digits[run - 1].size();
-    const bool point = parts.begins[run] == end + 1 && stem[end] == '.';
-    if (point) fraction = parts.digits[run];
-  }
+  if (fraction.empty()) fraction = FractionAfter(stem, parts, run - 1);
   if (fraction.size() > 9) return std::nullopt;
   fraction.resize(6, '0');
   const auto number = [&](std::size_t at, std::size_t count) {
@@ -118,6 +117,9 @@ std::optional<Utime> TimeInName(const std::string& stem) {
   const Parts parts = Divide(stem);
   for (std::size_t i = 0; i < parts.digits.size(); ++i) {
     if (const std::optional<Utime> time = TimeAt(stem, parts, i)) return time;
+  }
+  // A date may be the session's, and the file's own time stand behind it.
+  for (std::size_t i = 0; i < parts.digits.size(); ++i) {
     if (const std::optional<Utime> date = DateAt(stem, parts, i)) return date;
   }
   return std::nullopt;

@@ -12,48 +12,51 @@ namespace {
 // A time in seconds above this (1973) is one since 1970, below it one since the sweep's start.
 constexpr double kAbsoluteSeconds = 1e8;
 
-// The least and most that the times of a sweep, or of a packet, lie apart [s]; how long sweeps last
-// as a rule.
-constexpr double kLeastApart = 4e-4, kMostApart = 20, kShortSweep = 0.015, kUsualSweep = 0.1;
+constexpr double kFirstSeconds = 1e9, kLastSeconds = 4.2e9;                // 2001 to 2103
+constexpr double kUsualSweep = 0.1, kShortSweep = 0.015, kLongSweep = 60;  // [s]
 constexpr std::size_t kFewPoints = 100;  // which need not be of a whole sweep
 
-// How far the times of points that returned lie apart, but for the first and last hundredth.
-double ApartOf(const std::vector<double>& times, const records::Table& table) {
-  const std::vector<Eigen::Vector3f> points = ReadVectors(table, "x", "y", "z");
+// Of the points that returned.
+std::vector<double> TimesOfHits(const std::vector<double>& times,
+                                const std::vector<Eigen::Vector3f>& points) {
   std::vector<double> kept;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const bool hit = points[i].allFinite() && !points[i].isZero(0);
     if (hit && std::isfinite(times[i])) kept.push_back(times[i]);
   }
-  if (kept.size() < kFewPoints) return 0;
-  const auto at = [&](std::size_t place) {
-    const auto nth = kept.begin() + static_cast<std::ptrdiff_t>(place);
-    std::nth_element(kept.begin(), nth, kept.end());
-    return *nth;
-  };
-  const std::size_t cut = kept.size() / 100;
-  const double least = at(cut);
-  return at(kept.size() - 1 - cut) - least;
+  return kept;
 }
 
-// The unit of a sweep's times [s]; nothing: they are nobody's.
-std::optional<double> UnitOf(const std::vector<double>& times, bool whole,
-                             const records::Table& table) {
+// The unit [s] that makes a sweep of these; nothing: none does. `whole`: they are integers.
+std::optional<double> UnitOf(std::vector<double> times, bool whole) {
   const double usual = whole ? 1e-9 : 1;
-  const double apart = ApartOf(times, table);
-  if (times.size() < kFewPoints) {
-    double largest = 0;
-    for (const double time : times) largest = std::max(largest, std::abs(time));
-    return !whole && largest > 1e11 ? 1e-9 : usual;  // no clock is at 1e11 s
+  if (times.empty()) return usual;
+  const auto at = [&](std::size_t place) {
+    const auto nth = times.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(times.begin(), nth, times.end());
+    return *nth;
+  };
+  // But for the first and last hundredth.
+  const std::size_t cut = times.size() / 100;
+  const double least = at(cut), middle = at(times.size() / 2);
+  const double apart = at(times.size() - 1 - cut) - least;
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {  // since 1970
+    const double seconds = middle * unit;
+    const bool since_1970 = seconds >= kFirstSeconds && seconds < kLastSeconds;
+    if (since_1970 && apart * unit <= kLongSweep && !(whole && unit == 1)) return unit;
   }
-  if (apart * usual >= kLeastApart && apart * usual <= kMostApart) return usual;
-  std::optional<double> best;
+  if (times.size() < kFewPoints) return !whole && middle > 1e11 ? 1e-9 : usual;
+  if (apart == 0) return std::nullopt;
   const auto unusual = [&](double unit) { return std::abs(std::log(apart * unit / kUsualSweep)); };
+  // Another one has to be far more usual: 30 times among integers, 100 times else.
+  double best = usual, least_unusual = unusual(usual) - std::log(whole ? 30 : 100);
   for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
-    if (!(apart * unit >= kShortSweep && apart * unit <= kMostApart)) continue;
-    if (!best || unusual(unit) < unusual(*best)) best = unit;
+    const bool sweep = apart * unit >= kShortSweep && apart * unit <= kLongSweep;
+    if (!sweep || !(unusual(unit) < least_unusual)) continue;
+    best = unit;
+    least_unusual = unusual(unit);
   }
-  return best;
+  return apart * best <= kLongSweep ? std::optional(best) : std::nullopt;
 }
 
 Utime ToUtime(double microseconds, const std::string& where, const std::string& field) {
@@ -106,10 +109,15 @@ std::vector<Utime> ReadUtime(const records::Table& table, Utime sweep_utime,
   for (const char* field : {"timestamp", "time_stamp", "time", "t", "offset_time"}) {
     if (!table.Has(field)) continue;
     const std::vector<double> times = table.Column(field);
-    const auto unit = UnitOf(times, table.TypeOf(field) != 'F', table);
+    const std::vector<Eigen::Vector3f> points = ReadVectors(table, "x", "y", "z");
+    const auto unit = UnitOf(TimesOfHits(times, points), table.TypeOf(field) != 'F');
     if (!unit) return utime;
-    for (const double value : times) {
-      const double seconds = value * *unit;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (std::isnan(times[i]) && !points[i].allFinite()) {  // a miss may have none
+        utime.push_back(sweep_utime);
+        continue;
+      }
+      const double seconds = times[i] * *unit;
       const Utime from = std::abs(seconds) < kAbsoluteSeconds ? sweep_utime : 0;
       utime.push_back(from + ToUtime(seconds * 1e6, where, field));
     }

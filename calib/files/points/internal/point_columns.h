@@ -19,10 +19,10 @@ std::vector<Eigen::Vector3f> ReadVectors(const records::Table& table, const std:
 std::vector<float> ReadIntensity(const records::Table& table);
 
 /// The field utime, timestamp, time_stamp, time, t or offset_time [us, UTC]; empty where there is
-/// none, and where nobody's sweep lasts as long, in whatever unit. Drivers count in seconds where
-/// numbers are of floating point and in nanoseconds where they are whole; where these would make no
-/// sweep (0.4 ms to 20 s, of a hundred points or more), in what makes one. Times since 1970 are
-/// those after 1973.
+/// none, and where those of a hundred points or more are all the same or make no sweep in whatever
+/// unit (of up to 60 s). Times that are since 2001 in s, ms, us or ns are that. Else drivers count
+/// in seconds where numbers are of floating point and in nanoseconds where they are whole, or in
+/// what makes a far more usual sweep (0.1 s). A miss needs no time.
 std::vector<Utime> ReadUtime(const records::Table& table, Utime sweep_utime,
                              const std::string& where);
 

@@ -27,10 +27,16 @@ TEST(NameKeys, DatesAreTimes) {
                            "20230514101523", "cam_2023-05-14_10-15-23_rgb", "7_20230514-101523"}) {
     EXPECT_EQ(TimeInName(name), kTime) << name;
   }
-  for (const char* name : {"2023-05-14-10-15-23.25", "20230514_101523.250000", "20230514101523250",
-                           "20230514_101523250"}) {
+  for (const char* name :
+       {"2023-05-14-10-15-23.25", "20230514_101523.250000", "20230514101523250",
+        "20230514_101523250", "20230514_101523_250000", "2023-05-14-10-15-23-250"}) {
     EXPECT_EQ(TimeInName(name), kTime + 250'000) << name;
   }
+}
+
+TEST(NameKeys, AFilesOwnTimeComesBeforeItsSessionsDate) {
+  EXPECT_EQ(TimeInName("n015-2018-07-24-11-22-45+0800__LIDAR_TOP__1532402927647951.pcd"),
+            1'532'402'927'647'951);
 }
 
 TEST(NameKeys, TimesAreThoseSince1970) {

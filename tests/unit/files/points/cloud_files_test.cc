@@ -175,6 +175,8 @@ TEST(CloudFiles, FloatsWithoutAHeadAreKittisOrNuScenes) {
   EXPECT_THAT(nuscenes.intensity, ElementsAre(0.2F, 1.F));
   write("b.bin", {1, 2, 3});
   EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "b.bin"); }), HasSubstr("points of 16"));
+  write("d.bin", {1, 2, 3, 9, 0.1F, -4, 5, -6, 9, 0.2F, 1, 2, 3, 9, 0.3F, 1, 2, 3, -1, 0.4F});
+  EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "d.bin"); }), HasSubstr("no intensities"));
   write("c.bin", {});
   EXPECT_THAT(test::ErrorOf([&] { ReadSweep(dir / "c.bin"); }), HasSubstr("0 bytes"));
 }
@@ -216,15 +218,28 @@ TEST(CloudFiles, TheUnitOfTimesIsThatOfASweep) {
   // A turned scanner's, and a packet's of a millisecond.
   EXPECT_EQ(read("time", "F", 1, 0, 8)[200], 1'700'000'004'000'000);
   EXPECT_NEAR(static_cast<double>(read("t", "U", 1e-9, 0, 1.3e-3)[200]), 1'700'000'000'000'650, 2);
+  EXPECT_EQ(read("timestamp", "D", 1, 1'699'999'000, 50)[200], 1'699'999'025'000'000);
+  EXPECT_NEAR(static_cast<double>(read("t", "U", 1e-6, 0, 0.5)[200]), 1'700'000'000'250'000, 2);
+  EXPECT_NEAR(static_cast<double>(read("timestamp", "U", 1e-6, 1'699'999'000, 8)[200]),
+              1'699'999'004'000'000, 2);
+  EXPECT_EQ(read("timestamp", "D", 1, 1'699'999'000, 0)[200], 1'699'999'000'000'000)
+      << "of one moment";
+  // Of a Livox that has been on for 1000 s and for a minute.
+  for (const double from : {1000.0, 60.0}) {
+    EXPECT_NEAR(static_cast<double>(read("timestamp", "D", 1e-9, from)[200]),
+                1'700'000'000'050'000 + 1e6 * from, 2);
+  }
   // Nobody's.
   EXPECT_THAT(read("time", "F", 1, 5, 0), IsEmpty());
-  EXPECT_THAT(read("time", "F", 1, 0, 3e10), IsEmpty());
+  EXPECT_THAT(read("time", "F", 1, 0, 3e13), IsEmpty());
 }
 
-TEST(CloudFiles, AMissNeedsNoRing) {
+TEST(CloudFiles, AMissNeedsNeitherRingNorTime) {
   const Cloud cloud =
-      ParsePcd(Ascii("x y z ring", "F F F F", 2, 1, "nan nan nan nan\n1 2 3 5\n"), "a.pcd");
+      ParsePcd(Ascii("x y z ring time", "F F F F F", 2, 1, "nan nan nan nan nan\n1 2 3 5 0.5\n"),
+               "a.pcd", 1'000'000);
   EXPECT_THAT(cloud.ring, ElementsAre(0, 5));
+  EXPECT_THAT(cloud.utime, ElementsAre(1'000'000, 1'500'000));
   const auto bad = [] {
     ParsePcd(Ascii("x y z ring", "F F F F", 2, 1, "1 1 1 nan\n1 2 3 5\n"), "a.pcd");
   };

@@ -225,6 +225,8 @@ TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
   EXPECT_EQ(grade(6.2, 10), Grade::kGood);
   EXPECT_EQ(grade(6.3, 10), Grade::kDoubtful) << "chance, or a result that is far off";
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("not sure of it (2.5 sigma): measure it"));
+  camera.causes = {Wrong(16, 0.5), Wrong(14.4, 0.4), Wrong(9, 8)};
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful) << "whatever is surer and moves little";
   EXPECT_EQ(grade(12.3, 0.9), Grade::kUsable);
   EXPECT_EQ(grade(12.3, 1.1), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, std::nullopt), Grade::kDoubtful);
