@@ -16,6 +16,7 @@
 #include "calib/model/check.h"
 #include "calib/model/errors.h"
 #include "calib/model/range_errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -475,7 +476,12 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   }
   if (!boards.candidates.empty()) return boards;
   const std::string off = WhyCloudIsOff(cloud);
-  return off.empty() ? as_stated : BoardsInCloud{{}, off};
+  if (!off.empty()) return {{}, off};
+  if (grid.crowded() == 0) return as_stated;
+  return {
+      {},
+      Format("%s; %.0f%% of the points share a beam: two returns, or several sweeps in one cloud?",
+             as_stated.why.c_str(), 100 * grid.crowded())};
 }
 
 }  // namespace rgbdt

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calib/detect/cloud/internal/ring_rows.h"
 #include "calib/model/statistics.h"
 
 namespace rgbdt {
@@ -12,75 +13,7 @@ namespace {
 
 using Angles = RangeGrid::Angles;
 
-std::vector<Angles> AnglesOf(const Cloud& cloud) {
-  std::vector<Angles> angles;
-  angles.reserve(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3f& p = cloud.points[i];
-    const float flat = p.x() * p.x() + p.y() * p.y();
-    if (!p.allFinite() || !(flat + p.z() * p.z() > 1e-6F)) continue;
-    angles.push_back({std::atan2(p.y(), p.x()), std::atan2(p.z(), std::sqrt(flat)),
-                      static_cast<std::int32_t>(i)});
-  }
-  return angles;
-}
-
 using Rows = RangeGrid::Rows;
-
-double MedianElevation(const std::vector<Angles>& row) {
-  std::vector<double> elevations;
-  const std::size_t step = std::max<std::size_t>(1, row.size() / 500);
-  for (std::size_t i = 0; i < row.size(); i += step) elevations.push_back(row[i].elevation);
-  return Median(std::move(elevations));
-}
-
-Rows ByRing(const Cloud& cloud, const std::vector<Angles>& angles) {
-  Rows by_ring(65536);
-  for (const Angles& a : angles) {
-    by_ring[cloud.ring[static_cast<std::size_t>(a.point)]].push_back(a);
-  }
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t ring = 0; ring < by_ring.size(); ++ring) {
-    if (!by_ring[ring].empty()) order.emplace_back(MedianElevation(by_ring[ring]), ring);
-  }
-  std::sort(order.begin(), order.end());
-  Rows rows;
-  for (const auto& [elevation, ring] : order) rows.push_back(std::move(by_ring[ring]));
-  return rows;
-}
-
-// The elevations that the points keep to; nothing where they keep to none, as those of a turned
-// scanner do not.
-std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
-  constexpr double kBin = 0.02 * M_PI / 180;
-  const auto bin_of = [&](const Angles& a) {
-    return static_cast<std::size_t>((a.elevation + M_PI / 2) / kBin);
-  };
-  std::vector<int> counts(static_cast<std::size_t>(M_PI / kBin) + 2, 0);
-  for (const Angles& a : angles) ++counts[bin_of(a)];
-  // Runs of occupied bins; a stray point or two is no ring.
-  const int least = std::max<int>(2, static_cast<int>(angles.size() / 20000));
-  std::vector<int> row_of(counts.size(), -1);
-  int rows = 0;
-  int occupied = 0;
-  std::size_t first = 0;
-  std::size_t last = 0;
-  for (std::size_t b = 0; b < counts.size(); ++b) {
-    if (counts[b] < least) continue;
-    if (rows == 0) first = b;
-    if (rows == 0 || b > last + 2) ++rows;
-    last = b;
-    ++occupied;
-    row_of[b] = rows - 1;
-  }
-  if (rows < 4 || rows > 300 || occupied * 2 > static_cast<int>(last - first)) return std::nullopt;
-  Rows out(static_cast<std::size_t>(rows));
-  for (const Angles& a : angles) {
-    const int row = row_of[bin_of(a)];
-    if (row >= 0) out[static_cast<std::size_t>(row)].push_back(a);
-  }
-  return out;
-}
 
 // Width of even cells a little wider than the points are apart, so that few of them stay empty by
 // chance.
@@ -251,22 +184,13 @@ void RangeGrid::Rebuild(double coarser) {
   const std::vector<Angles> angles = AnglesOf(*cloud_);
   hits_ = static_cast<int>(angles.size());
   if (angles.size() < 100) return;
-  Rows rows;
-  if (cloud_->ring.size() == cloud_->size()) {
-    rows = ByRing(*cloud_, angles);
-  } else if (auto found = ByElevation(angles)) {
-    rows = std::move(*found);
-  }
-  for (auto& row : rows) {
-    std::sort(row.begin(), row.end(),
-              [](const Angles& a, const Angles& b) { return a.azimuth < b.azimuth; });
-  }
   // A turned scanner has hundreds of beams, and its centre moves: its points keep to no such grid.
   // Nor do those of which too many share a cell.
-  constexpr std::size_t kMostRings = 200;
-  if (rows.size() >= 2 && rows.size() <= kMostRings) {
-    const auto crowded = Place(rows, AzimuthStep(rows), false);
+  if (const auto found = FindRingRows(*cloud_, angles)) {
+    const auto crowded = Place(found->rows, AzimuthStep(found->rows), false);
+    crowded_ = found->shared;
     if (crowded && *crowded * 50 < hits_) return MeasureTurns();
+    if (crowded) crowded_ = std::max(crowded_, static_cast<double>(*crowded) / hits_);
   }
   scattered_ = true;
   double step = coarser * CellStep(angles);

@@ -28,6 +28,9 @@ class RangeGrid {
   int columns() const { return columns_; }
   /// The cells are even ones of angle, as the points keep to no rows.
   bool scattered() const { return scattered_; }
+  /// The part of the points that share a beam with others and could not be told apart, where that
+  /// puts the grid in doubt; else 0.
+  double crowded() const { return crowded_; }
   /// From a beam of a row to the next one that was fired, in columns, of the row where that is
   /// farthest: 1, or, where rings fire in turn, up to kMostTurns.
   int firing_columns() const { return firing_columns_; }
@@ -82,6 +85,7 @@ class RangeGrid {
   struct Angles {
     float azimuth = 0, elevation = 0;  ///< [rad]
     std::int32_t point = 0;
+    bool again = false;  ///< the LIDAR has been round once before in this cloud
   };
   /// Points that belong to one row each, lowest row first.
   using Rows = std::vector<std::vector<Angles>>;
@@ -104,6 +108,7 @@ class RangeGrid {
   std::vector<int> row_turns_;  // by row: columns from a beam to the next; empty: 1
   bool wraps_ = false;
   bool scattered_ = false;
+  double crowded_ = 0;
   double row_step_ = 0, column_step_ = 0;
   int hits_ = 0;
   std::vector<std::int32_t> place_;    // by cell: index of its point, -1: none; empty: the same

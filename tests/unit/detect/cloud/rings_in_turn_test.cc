@@ -12,6 +12,7 @@
 #include "calib/detect/cloud/range_grid.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "calib/simulate/use_target.h"
+#include "tests/simulated_variants.h"
 #include "tests/unit/detect/cloud/pose_error.h"
 
 namespace rgbdt {

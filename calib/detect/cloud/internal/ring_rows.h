@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib/detect/cloud/range_grid.h"
+#include "calib/model/cloud.h"
+
+namespace rgbdt {
+
+/// A LIDAR with more beams above each other is a turned scanner: its centre moves.
+inline constexpr std::size_t kMostRings = 200;
+
+/// The hits of a cloud, in its order; none at the sensor's very origin.
+std::vector<RangeGrid::Angles> AnglesOf(const Cloud& cloud);
+
+/// The rings of a LIDAR that its cloud shows: lowest first, by azimuth, one return a beam.
+struct RingRows {
+  RangeGrid::Rows rows;
+  /// The part of the points that seem to be of further turns which could not be told apart.
+  double shared = 0;
+};
+
+/// By the cloud's ring numbers, or else by the elevations that the points keep to. Of points at one
+/// azimuth of a ring (two returns, doubled points) the brightest is kept, the first of equals; of
+/// further turns in the same cloud only what the first one left out. Not so where
+/// that would leave out 2% or less, as of a turn that overlaps itself: no grid suffers. Nothing:
+/// the points keep to no rings, or to more than kMostRings.
+std::optional<RingRows> FindRingRows(const Cloud& cloud,
+                                     const std::vector<RangeGrid::Angles>& angles);
+
+/// Median elevation of points [rad].
+double MedianElevation(const std::vector<RangeGrid::Angles>& row);
+
+}  // namespace rgbdt
