@@ -1,6 +1,7 @@
 #include "calib/detect/cloud/internal/ring_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <numeric>
@@ -59,6 +60,33 @@ std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
     if (row >= 0) out[static_cast<std::size_t>(row)].push_back(a);
   }
   return out;
+}
+
+// Whether points of one number keep to one elevation, as far as those of one direction do: a LIDAR
+// may be tilted, and where its beams do not meet in a point their elevations differ with range. A
+// number that tells the ring leaves little of the cloud's own spread; a quarter of its square is
+// the most.
+bool KeepToElevations(const Rows& rows) {
+  constexpr double kSector = 3 * M_PI / 180;
+  struct Sums {
+    double count = 0, sum = 0, squares = 0;
+    void Add(const Sums& s) { count += s.count, sum += s.sum, squares += s.squares; }
+    double Spread() const { return count > 0 ? squares - sum * sum / count : 0; }
+  };
+  double within = 0;
+  Sums all;
+  for (const auto& row : rows) {
+    std::array<Sums, 121> sectors{};
+    for (const Angles& a : row) {
+      const double e = a.elevation;
+      sectors[static_cast<std::size_t>((a.azimuth + M_PI) / kSector)].Add({1, e, e * e});
+    }
+    for (const Sums& sector : sectors) {
+      within += sector.Spread();
+      all.Add(sector);
+    }
+  }
+  return within < 0.25 * all.Spread();
 }
 
 // Marks what a row has of further turns. The row is in the cloud's order: as it was measured, or
@@ -215,12 +243,14 @@ double MedianElevation(const std::vector<Angles>& row) {
 
 std::optional<RingRows> FindRingRows(const Cloud& cloud, const std::vector<Angles>& angles) {
   RingRows out;
-  if (cloud.ring.size() == cloud.size()) {
-    out.rows = ByRing(cloud, angles);
-  } else if (auto found = ByElevation(angles)) {
-    out.rows = std::move(*found);
-  }
+  const bool numbered = cloud.ring.size() == cloud.size();
+  if (numbered) out.rows = ByRing(cloud, angles);
   if (out.rows.size() > kMostRings) return std::nullopt;
+  if (!numbered || !KeepToElevations(out.rows)) {
+    auto found = ByElevation(angles);
+    if (!found || found->size() > kMostRings) return std::nullopt;
+    out = {std::move(*found), numbered};
+  }
   if (out.rows.size() < 2) return std::nullopt;
   for (auto& row : out.rows) {
     MarkFurtherTurns(&row);
