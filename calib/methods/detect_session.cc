@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "calib/detect/cloud/range_grid.h"
 #include "calib/methods/board_check.h"
 #include "calib/methods/detect_view.h"
 #include "calib/model/errors.h"
@@ -68,6 +70,17 @@ void SayWhatIsSeenInstead(const Session& session, const CameraSpec& camera,
   }
 }
 
+bool IsMisnumbered(const Cloud& cloud) {
+  return !cloud.ring.empty() && RangeGrid(cloud).misnumbered();
+}
+
+int MisnumberedClouds(const View& view) {
+  int count = IsMisnumbered(view.cloud) ? 1 : 0;
+  for (const LidarCloud& further : view.further_clouds)
+    count += IsMisnumbered(further.cloud) ? 1 : 0;
+  return count;
+}
+
 // In the session's order; of those that could not be read not all: each takes memory, and a line in
 // all that is written.
 SessionDetection Collected(const Session& session, std::vector<std::optional<ViewDetection>> found,
@@ -98,12 +111,15 @@ SessionDetection DetectSession(const Session& session, const std::string& method
   std::vector<std::optional<ViewDetection>> found(count);
   std::vector<std::string> unreadable(count);
   std::size_t done = 0;
+  std::vector<int> misnumbered(count, 0);
   std::mutex mutex;
   ForEach(static_cast<int>(count), 0, [&](int number) {
     const auto i = static_cast<std::size_t>(number);
     const std::string& name = session.views[i];
     try {
-      found[i] = DetectView(session.rig, ReadView(session, name), method);
+      const View view = ReadView(session, name);
+      found[i] = DetectView(session.rig, view, method);
+      misnumbered[i] = MisnumberedClouds(view);
     } catch (const std::exception& e) {
       unreadable[i] = e.what();
     }
@@ -113,6 +129,12 @@ SessionDetection DetectSession(const Session& session, const std::string& method
              (found[i] && found[i]->heldout ? " (held out)" : ""));
   });
 
+  const int clouds = std::accumulate(misnumbered.begin(), misnumbered.end(), 0);
+  if (clouds > 0) {
+    progress(
+        "warning: the ring numbers of " + std::to_string(clouds) +
+        " clouds are not those of the LIDAR's rings: they are left out, rings go by elevation");
+  }
   SessionDetection detection = Collected(session, std::move(found), unreadable);
   for (const CameraSpec& camera : session.rig.cameras) {
     SayWhatIsSeenInstead(session, camera, &detection.views);

@@ -16,9 +16,10 @@ struct SessionDetection {
 };
 
 /// Detects the target in every view of a session directory, two or more views at a time, with a
-/// line of progress for each. A view that cannot be read is rejected with its reason, and
-/// the rest goes on. Of such views `views` has as many as were read, 100 at least, so that what is
-/// made of it is bounded by what is there, and still tells where most could not be read.
+/// line of progress for each, and a warning where ring numbers say nothing. A view that cannot be
+/// read is rejected with its reason, and the rest goes on. Of such views `views` has as many as
+/// were read, 100 at least, so that what is made of it is bounded by what is there, and still tells
+/// where most could not be read.
 SessionDetection DetectSession(const Session& session, const std::string& method,
                                const Progress& progress);
 

@@ -459,6 +459,7 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   // Many a LIDAR is noisier than its rig file says: where nothing is found, twice as noisy.
   constexpr double kMostSigma = 0.045;
   BoardInCloudOptions noisier = options;
+  noisier.one_laser |= grid.misnumbered();  // nor do the numbers tell lasers
   if (target.WhiteToTheRim()) {
     noisier.edge.class_sigma_rad = std::max(noisier.edge.class_sigma_rad, kPlainClassShiftSigmaRad);
   }

@@ -189,6 +189,7 @@ void RangeGrid::Rebuild(double coarser) {
   // Nor do those of which too many share a cell.
   if (const auto found = FindRingRows(*cloud_, angles)) {
     const auto crowded = Place(found->rows, AzimuthStep(found->rows), false);
+    misnumbered_ = found->misnumbered;
     crowded_ = found->shared;
     if (crowded && *crowded * 50 < hits_) return MeasureTurns();
     if (crowded) crowded_ = std::max(crowded_, static_cast<double>(*crowded) / hits_);

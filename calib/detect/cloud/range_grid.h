@@ -31,6 +31,8 @@ class RangeGrid {
   /// The part of the points that share a beam with others and could not be told apart, where that
   /// puts the grid in doubt; else 0.
   double crowded() const { return crowded_; }
+  /// The cloud's ring numbers are not those of the rings that its points keep to.
+  bool misnumbered() const { return misnumbered_; }
   /// From a beam of a row to the next one that was fired, in columns, of the row where that is
   /// farthest: 1, or, where rings fire in turn, up to kMostTurns.
   int firing_columns() const { return firing_columns_; }
@@ -107,7 +109,7 @@ class RangeGrid {
   int firing_columns_ = 1;
   std::vector<int> row_turns_;  // by row: columns from a beam to the next; empty: 1
   bool wraps_ = false;
-  bool scattered_ = false;
+  bool scattered_ = false, misnumbered_ = false;
   double crowded_ = 0;
   double row_step_ = 0, column_step_ = 0;
   int hits_ = 0;

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "calib/methods/calibrate.h"
+#include "calib/simulate/internal/cloud_world.h"
+#include "tests/simulated_variants.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -77,6 +79,29 @@ TEST_F(ManyViews, AsManyAreListedAsCouldBeRead) {
   const SessionDetection detection = Detect(120, 150);
   EXPECT_EQ(detection.views.size(), 240u);
   EXPECT_EQ(Unread(detection), 120);
+}
+
+TEST(RingNumbersOfASession, ThatSayNothingAreAWarning) {
+  simulate::Options physics;
+  simulate::UseLidar(16, &physics);
+  View view = test::MakeView();
+  view.cloud =
+      simulate::Unorganised(simulate::CloudWorld(physics, 0).Sweep(view.cloud.sweep_utime), true);
+  for (const bool right : {true, false}) {
+    if (!right) std::fill(view.cloud.ring.begin(), view.cloud.ring.end(), std::uint16_t{0});
+    const test::TempDir dir;
+    WriteRig(dir.path(), test::MakeRig());
+    WriteView(dir.path(), view);
+    std::vector<std::string> lines;
+    const SessionDetection detection =
+        DetectSession(OpenSession(dir.path()), kAutoMethod,
+                      [&](const std::string& line) { lines.push_back(line); });
+    ASSERT_THAT(detection.unreadable, ::testing::IsEmpty());
+    ASSERT_EQ(lines.size(), right ? 1U : 2U);
+    if (!right) {
+      EXPECT_THAT(lines[1], HasSubstr("warning: the ring numbers of 1 clouds are not those"));
+    }
+  }
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "calib/detect/cloud/internal/ring_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "calib/model/statistics.h"
 
@@ -58,6 +60,33 @@ std::optional<Rows> ByElevation(const std::vector<Angles>& angles) {
     if (row >= 0) out[static_cast<std::size_t>(row)].push_back(a);
   }
   return out;
+}
+
+// Whether points of one number keep to one elevation, as far as those of one direction do: a LIDAR
+// may be tilted, and where its beams do not meet in a point their elevations differ with range. A
+// number that tells the ring leaves little of the cloud's own spread; a quarter of its square is
+// the most.
+bool KeepToElevations(const Rows& rows) {
+  constexpr double kSector = 3 * M_PI / 180;
+  struct Sums {
+    double count = 0, sum = 0, squares = 0;
+    void Add(const Sums& s) { count += s.count, sum += s.sum, squares += s.squares; }
+    double Spread() const { return count > 0 ? squares - sum * sum / count : 0; }
+  };
+  double within = 0;
+  Sums all;
+  for (const auto& row : rows) {
+    std::array<Sums, 121> sectors{};
+    for (const Angles& a : row) {
+      const double e = a.elevation;
+      sectors[static_cast<std::size_t>((a.azimuth + M_PI) / kSector)].Add({1, e, e * e});
+    }
+    for (const Sums& sector : sectors) {
+      within += sector.Spread();
+      all.Add(sector);
+    }
+  }
+  return within < 0.25 * all.Spread();
 }
 
 // Marks what a row has of further turns. The row is in the cloud's order: as it was measured, or
@@ -162,6 +191,11 @@ void TakeOneOfEachBeam(const Cloud& cloud, const BeamSteps& steps, std::vector<A
   }
 }
 
+std::size_t CountOf(const Rows& rows) {
+  return std::accumulate(rows.begin(), rows.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& row) { return sum + row.size(); });
+}
+
 // The part of the points that would be too many, were each ring there several times, each time at
 // azimuths of its own: then only the next but one, or the next but two, ... is a step away. Rows by
 // azimuth.
@@ -209,19 +243,23 @@ double MedianElevation(const std::vector<Angles>& row) {
 
 std::optional<RingRows> FindRingRows(const Cloud& cloud, const std::vector<Angles>& angles) {
   RingRows out;
-  if (cloud.ring.size() == cloud.size()) {
-    out.rows = ByRing(cloud, angles);
-  } else if (auto found = ByElevation(angles)) {
-    out.rows = std::move(*found);
-  }
+  const bool numbered = cloud.ring.size() == cloud.size();
+  if (numbered) out.rows = ByRing(cloud, angles);
   if (out.rows.size() > kMostRings) return std::nullopt;
+  if (!numbered || !KeepToElevations(out.rows)) {
+    auto found = ByElevation(angles);
+    if (!found || found->size() > kMostRings) return std::nullopt;
+    out = {std::move(*found), numbered};
+  }
   if (out.rows.size() < 2) return std::nullopt;
   for (auto& row : out.rows) {
     MarkFurtherTurns(&row);
     SortByAzimuth(&row);
   }
   const BeamSteps steps = MeasureBeams(out.rows);
-  for (auto& row : out.rows) TakeOneOfEachBeam(cloud, steps, &row);
+  Rows beams = out.rows;
+  for (auto& row : beams) TakeOneOfEachBeam(cloud, steps, &row);
+  if (50 * (CountOf(out.rows) - CountOf(beams)) > CountOf(out.rows)) out.rows = std::move(beams);
   out.shared = SharedBeams(out.rows);
   return out;
 }
