@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib/detect/cloud/board_in_cloud.h"
+#include "calib/detect/cloud/internal/ring_rows.h"
 #include "calib/detect/cloud/range_grid.h"
 #include "calib/simulate/internal/cloud_world.h"
 #include "tests/simulated_variants.h"
@@ -241,15 +242,11 @@ TEST(DoubledPoints, AreNotSeenWherePointsWereTakenOutAtRandom) {
   std::vector<std::size_t> order = simulate::DrawOrder(cloud.size(), 3);
   order.resize(order.size() / 8);
   const Cloud few = TakenOf(cloud, order);
-  const RangeGrid grid(few);
-  std::size_t in_cells = 0;
-  for (int row = 0; row < grid.rows(); ++row) {
-    for (int column = 0; column < grid.columns(); ++column) {
-      grid.ForEachPoint(grid.Cell(row, column),
-                        [&](const Eigen::Vector3f&, std::size_t) { ++in_cells; });
-    }
-  }
-  EXPECT_EQ(in_cells, few.size());
+  const auto found = FindRingRows(few, AnglesOf(few));
+  ASSERT_TRUE(found);
+  std::size_t in_rows = 0;
+  for (const auto& row : found->rows) in_rows += row.size();
+  EXPECT_EQ(in_rows, few.size());
 }
 
 }  // namespace
