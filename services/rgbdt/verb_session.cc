@@ -181,10 +181,11 @@ void AddSession(CommandLine* program) {
   verb->Required("--images", &flags->images,
                  "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
                  "name it is rgb, or thermal where images have 16 bits or the folder says so");
-  verb->Required("--clouds", &flags->clouds,
-                 "[NAME=]DIR, the folder of clouds: PCD, PLY, or .bin as KITTI and nuScenes have them;\n"
-                 "given again for each LIDAR, the reference first: the poses of the others are found\n"
-                 "from their clouds of the same boards");
+  verb->Required(
+      "--clouds", &flags->clouds,
+      "[NAME=]DIR, the folder of clouds: PCD, PLY, or .bin as KITTI and nuScenes have them;\n"
+      "given again for each LIDAR, the reference first: the poses of the others are found\n"
+      "from their clouds of the same boards");
   verb->Required(
       "--board", &flags->board,
       "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"

@@ -60,7 +60,7 @@ TEST(Summary, HasWhenACameraSeesWhereThatIsKnown) {
   EXPECT_EQ(LineOf(FullReport(report), "time offset"), "");
   report.cameras[1].calibration.timing = CameraTiming{{-0.0123, 5e-5}, {0.02, 1.4e-5}};
   const std::string table = FullReport(report);
-  EXPECT_THAT(LineOf(table, "time offset"), HasSubstr(" -    -12.300 +- 0.050"));
+  EXPECT_THAT(LineOf(table, "time offset"), HasSubstr(" -      -12.300 +- 0.050"));
   EXPECT_THAT(LineOf(table, "read-out"), HasSubstr(" 20.000 +- 0.014"));
 }
 
