@@ -11,11 +11,12 @@ namespace rgbdt {
 void SimulateWave(const std::filesystem::path& dir, const simulate::Options& options,
                   double seconds);
 
+enum class Clocks { kExact, kOff };
+
 /// A log of a rig that drives, for `rgbdt map` and `rgbdt refine`: drive.lcmlog in `dir`, with
 /// rig.textproto, truth.textproto, truth.tum (where it was) and calibration.textproto (the truth,
 /// which the log has, too). Clocks::kOff: cameras' clocks and shutters as DrawClocks has them,
 /// which the calibration knows.
-enum class Clocks { kExact, kOff };
 void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& options,
                    double seconds, Clocks of_cameras);
 

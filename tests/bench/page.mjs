@@ -60,7 +60,7 @@ function writeReport(path, points) {
   const frames = [
     frame({ type: "hello", source: "session", title: "bench", version: "", may_command: false, why_not: "" }),
     frame({
-      type: "cloud", sweep_utime: 1e15, whole: true, part: 0, sweep_end: true, utime: 1e15, cameras: ["rgb", "thermal"],
+      type: "cloud", view: "", sweep_utime: 1e15, whole: true, part: 0, sweep_end: true, utime: 1e15, cameras: ["rgb", "thermal"],
       calibrated: [true, true], map_from_lidar: null, count, arrays: [{ name: "points", type: "u8", length: records.length }],
     }, records),
   ];

@@ -9,6 +9,7 @@
 #include "calib/detect/image/checkerboard.h"
 #include "calib/detect/image/internal/board_sides.h"
 #include "calib/detect/image/internal/clipped.h"
+#include "calib/detect/image/internal/colour_planes.h"
 #include "calib/detect/image/internal/corner_order.h"
 #include "calib/detect/image/internal/grey_image.h"
 #include "calib/detect/image/internal/marked_board.h"
@@ -231,7 +232,8 @@ void PlaceOutline(const Target& target, const Rigid3& camera_from_target, Locate
 Located FromPlainBoard(const Image& image, const cv::Mat& grey, const Camera& camera,
                        const Target& target) {
   Located located;
-  PlainBoardResult found = FindPlainBoard(grey, Clipped(image), camera, target);
+  PlainBoardResult found = FindPlainBoard(
+      grey, [&] { return ColourPlanes(image); }, Clipped(image), camera, target);
   located.why = std::move(found.why);
   located.plain = std::move(found.board);
   if (located.plain) {

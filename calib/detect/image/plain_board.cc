@@ -24,6 +24,10 @@ constexpr double kLeastSecondChi2 = 15;
 constexpr double kMostTilt = 1.15;  // [rad] between the board's normal and the line of sight
 // Plain boards are sawn, not printed: by how much each end of a side is off its place.
 constexpr double kSawnM = 0.0015;
+// What is four times too bright for the sensor looks larger by 0.9 px at each side, ten times by
+// 1.6 px, of an edge blurred by 1.3 px in all: where the unsaturated part of it is steepest. All
+// sides alike, while sides are held to be off one by one: 1.4 times as much.
+constexpr double kSaturatedPx = 1.4;
 constexpr int kRounds = 3;
 
 Sides RoughSides(const Quadrangle& quadrangle, std::size_t first, double sigma_px) {
@@ -129,6 +133,7 @@ class Measurement {
     // The rim of a plain board is not told from its front: what it hides is in the sides' sigma.
     options_.max_thickness_px = 1e9;
     options_.max_sigma_px = 8;
+    options_.saturated_px = kSaturatedPx;
     options_.size_tolerance_m = 0.02;  // its lens and its rim may hide more than its pose knows
   }
 
@@ -218,24 +223,36 @@ std::string WhyLensMatters(const Camera& camera) {
   return why.empty() ? "" : "; check the lens in the rig: " + why;
 }
 
+// The first that is the board, or why the first is not.
+PlainBoardResult FirstBoard(const Measurement& measurement,
+                            const std::vector<Quadrangle>& quadrangles) {
+  PlainBoardResult result{std::nullopt,
+                          "no quadrangle in the image; are all four sides of the board in view, at "
+                          "least in part, before something of another brightness or colour?"};
+  for (std::size_t i = 0; i < quadrangles.size(); ++i) {
+    PlainBoardResult one = measurement.From(quadrangles[i]);
+    if (one.board) return one;
+    if (i == 0) result.why = one.why;
+  }
+  return result;
+}
+
 }  // namespace
 
-PlainBoardResult FindPlainBoard(const cv::Mat& grey, const cv::Mat& clipped, const Camera& camera,
+PlainBoardResult FindPlainBoard(const cv::Mat& grey,
+                                const std::function<std::vector<cv::Mat>()>& colours,
+                                const cv::Mat& clipped, const Camera& camera,
                                 const Target& target) {
   const std::string useless = WhyImageIsUseless(grey);
   if (!useless.empty()) return {std::nullopt, useless};
   const cv::Mat repaired = RepairDeadPixels(grey);
   const Measurement measurement(repaired, clipped, camera, target);
-  PlainBoardResult result{std::nullopt,
-                          "no quadrangle in the image; are all four sides of the board in view, at "
-                          "least in part, before something brighter or darker?"};
-  bool first = true;
   const std::vector<Quadrangle> quadrangles = FindQuadrangles(repaired, camera);
-  for (const Quadrangle& quadrangle : quadrangles) {
-    PlainBoardResult one = measurement.From(quadrangle);
-    if (one.board) return one;
-    if (first) result.why = one.why;
-    first = false;
+  PlainBoardResult result = FirstBoard(measurement, quadrangles);
+  if (result.board) return result;
+  for (const cv::Mat& colour : colours()) {
+    PlainBoardResult found = FirstBoard(measurement, FindQuadrangles(colour, camera));
+    if (found.board) return found;
   }
   const std::string other = WhyOfOtherShape(repaired, clipped, camera, target, quadrangles);
   if (!other.empty()) result.why = other;

@@ -177,6 +177,17 @@ std::vector<Eigen::Vector2d> Displaced(const Curve& curve, const SideLine& line)
   return out;
 }
 
+// The profiles without what is beside saturated pixels.
+std::vector<Profile> Unsaturated(std::vector<Profile> profiles) {
+  for (Profile& profile : profiles) {
+    auto& edges = profile.edges;
+    edges.erase(std::remove_if(edges.begin(), edges.end(),
+                               [](const ProfileEdge& edge) { return edge.bright; }),
+                edges.end());
+  }
+  return profiles;
+}
+
 std::string WhyNotSeen(const std::vector<Profile>& profiles, const SideLine& line,
                        const BoardSidesOptions& options) {
   const auto inside =
@@ -184,8 +195,10 @@ std::string WhyNotSeen(const std::vector<Profile>& profiles, const SideLine& lin
   if (static_cast<double>(inside) < options.min_share * static_cast<double>(profiles.size())) {
     return "this side lies outside the image";
   }
-  const auto saturated =
-      std::count_if(profiles.begin(), profiles.end(), [](const Profile& p) { return p.saturated; });
+  const auto saturated = std::count_if(profiles.begin(), profiles.end(), [](const Profile& p) {
+    return std::any_of(p.edges.begin(), p.edges.end(),
+                       [](const ProfileEdge& edge) { return edge.bright; });
+  });
   if (line.share < options.min_share && 3 * saturated > inside) {
     return "the image is saturated along " +
            Percent(static_cast<double>(saturated) / static_cast<double>(inside)) + " of this side";
@@ -233,15 +246,22 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
   }
   // Squares make what is beside the outline alike along their length.
   const double square_px = p.length_px * target.square_m / (p.to - p.from).norm();
-  SideLine line =
-      FitSideLine(profiles, p.length_px, reach.inner_px, reach.outer_px, std::max(8.0, square_px));
+  const auto fit = [&](const std::vector<Profile>& seen) {
+    return FitSideLine(seen, p.length_px, reach.inner_px, reach.outer_px, std::max(8.0, square_px));
+  };
+  SideLine line = fit(Unsaturated(profiles));
   side.why = WhyNotSeen(profiles, line, options);
+  if (!side.why.empty() && options.saturated_px > 0) {
+    line = fit(profiles);
+    if (line.bright_share > 0 && WhyNotSeen(profiles, line, options).empty()) side.why.clear();
+  }
   if (!side.why.empty()) return side;
   side.seen = true;
   side.curve = Displaced(p.curve, line);
-  // Thickness and clipped blacks shift a whole side: what is unknown of them is common to both
+  // Thickness and clipped values shift a whole side: what is unknown of them is common to both
   // ends.
-  const double shift = std::hypot(0.5 * reach.thickness_px, kDarkPx * line.dark_share);
+  const double shift = std::hypot(0.5 * reach.thickness_px, kDarkPx * line.dark_share,
+                                  options.saturated_px * line.bright_share);
   side.covariance = line.covariance + kBiasPx * kBiasPx * Eigen::Matrix2d::Identity() +
                     shift * shift * Eigen::Matrix2d::Ones();
   return side;
@@ -258,6 +278,7 @@ void BoardSidesOptions::Check() const {
   check.NotNegative(max_thickness_px, "max_thickness_px");
   check.Require(min_share > 0 && min_share <= 1, "min_share", min_share, "above 0, up to 1");
   check.Positive(max_sigma_px, "max_sigma_px");
+  check.NotNegative(saturated_px, "saturated_px");
 }
 
 std::array<ImageSide, 4> FitBoardSides(const cv::Mat& grey, const cv::Mat& clipped,

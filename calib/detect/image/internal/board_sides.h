@@ -19,6 +19,9 @@ struct BoardSidesOptions {
   double max_thickness_px = 0.3;
   double min_share = 0.3;      ///< of a side's length along which its edge must be seen, 0 to 1
   double max_sigma_px = 0.35;  ///< a side whose ends are less certain is not seen
+  /// Where a side cannot be seen else, edges beside saturated pixels count, too: all along it they
+  /// are off their place by this (1 sigma). 0: they never count.
+  double saturated_px = 0;
 
   /// Throws InputError naming the field and its value.
   void Check() const;

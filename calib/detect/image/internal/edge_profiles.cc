@@ -75,7 +75,8 @@ std::vector<ProfileEdge> ExtremaOf(const std::vector<double>& slopes, double inn
     const double after = sign * slopes[i + 1];
     if (!(here > before && here >= after) || here < kStandsOut * noise) continue;
     const double shift = 0.5 * (before - after) / (before - 2 * here + after);
-    edges.push_back({inner_px + (static_cast<double>(i) + shift) * kStep, here / noise, false});
+    edges.push_back(
+        {inner_px + (static_cast<double>(i) + shift) * kStep, here / noise, false, false});
   }
   return edges;
 }
@@ -129,8 +130,8 @@ std::vector<Profile> ProfilesAcross(const cv::Mat& grey, const cv::Mat& clipped,
     for (ProfileEdge edge : ExtremaOf(slopes, inner_px, slope_noise)) {
       const std::uint8_t beside = ClippedNear(clipped, at, normal, edge.offset_px);
       edge.dark = beside == kClippedDark;
-      profile.saturated |= beside == kClippedBright;
-      if (beside != kClippedBright) profile.edges.push_back(edge);
+      edge.bright = beside == kClippedBright;
+      profile.edges.push_back(edge);
     }
   }
   return profiles;

@@ -11,13 +11,13 @@ struct ProfileEdge {
   double offset_px = 0;  ///< from the curve along its normal
   double strength = 0;   ///< the gradient there over its noise; always positive
   bool dark = false;     ///< beside it the image is clipped at black
+  bool bright = false;   ///< beside it the image is saturated
 };
 
 /// The image across one place of a curve.
 struct Profile {
-  double along_px = 0;     ///< from the curve's first point
-  bool inside = false;     ///< whether it lies in the image at all
-  bool saturated = false;  ///< whether an edge was left out because the image is, beside it
+  double along_px = 0;  ///< from the curve's first point
+  bool inside = false;  ///< whether it lies in the image at all
   std::vector<ProfileEdge> edges;
 };
 
@@ -34,8 +34,9 @@ double NoiseOf(const cv::Mat& grey);
 
 /// Profiles across every point of a curve, from `inner_px` (negative) to `outer_px` along the
 /// normals: all local extrema of the gradient across the curve, of either sign, that stand out
-/// 4 sigma of `noise`, except those within 3 px of saturated pixels. `clipped` is what Clipped()
-/// says of the image. Smoothed by a Gaussian of 0.8 px, which moves no straight edge.
+/// 4 sigma of `noise`. Within 3 px of clipped pixels they are not where they seem, and are marked.
+/// `clipped` is what Clipped() says of the image. Smoothed by a Gaussian of 0.8 px, which moves no
+/// straight edge.
 std::vector<Profile> ProfilesAcross(const cv::Mat& grey, const cv::Mat& clipped, const Curve& curve,
                                     double inner_px, double outer_px, double noise);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -11,13 +13,14 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kShrunkPx = 800;    // longer side of the shrunk image
-constexpr int kLevels = 16;          // of grey values, and as many of their ranks
-constexpr double kBendPx = 2.5;      // of the shrunk image: an outline's deviation from a line
-constexpr double kLeastLinePx = 25;  // of the shrunk image
+constexpr double kShrunkPx = 800;     // longer side of the shrunk image
+constexpr int kLevels = 16;           // of grey values, and as many of their ranks
+constexpr double kBendPx = 2.5;       // of the shrunk image: an outline's deviation from a line
+constexpr double kLeastPiecePx = 12;  // of the shrunk image, as the next
+constexpr double kLeastLinePx = 25;
 constexpr double kLeastSize = 0.12;  // of an outline, of the image's shorter side
 constexpr std::size_t kMostLines = 9;
-constexpr std::size_t kMostQuadrangles = 10;
+constexpr std::size_t kMostQuadrangles = 20;
 
 // A shrunk image and the way back.
 struct Shrunk {
@@ -128,11 +131,64 @@ std::optional<Line> LineBetween(const FlatOutline& flat, std::size_t from, std::
   line.to = onto(inside.back());
   line.px = {flat.px[(from + leave) % n], flat.px[(from + count - leave) % n]};
   line.length = (line.to - line.from).norm();
-  if (line.length < kLeastLinePx) return std::nullopt;
+  if (line.length < kLeastPiecePx) return std::nullopt;
   return line;
 }
 
-// The straight pieces of an outline in order round it, the longest ones.
+// Whether a piece goes on where a longer line leaves off, or did before it began.
+bool Continues(const Line& line, const Line& piece) {
+  const Eigen::Vector2d along = (line.to - line.from).normalized();
+  const auto across = [&](const Eigen::Vector2d& p) {
+    const Eigen::Vector2d off = p - line.from;
+    return std::abs(off.x() * along.y() - off.y() * along.x());
+  };
+  return along.dot(piece.to - piece.from) > 0 && across(piece.from) < kBendPx &&
+         across(piece.to) < kBendPx;
+}
+
+// The line from the first end of both to the last one.
+Line Joined(const Line& line, const Line& piece) {
+  const Eigen::Vector2d along = (line.to - line.from).normalized();
+  Line out = line;
+  if (along.dot(piece.from - line.from) < 0) {
+    out.from = piece.from;
+    out.px[0] = piece.px[0];
+  }
+  if (along.dot(piece.to - line.to) > 0) {
+    out.to = piece.to;
+    out.px[1] = piece.px[1];
+  }
+  out.length += piece.length;
+  return out;
+}
+
+// What stands before a side, or sticks to it, leaves pieces of one line: joined, at the place of
+// the longest.
+std::vector<Line> JoinPieces(const std::vector<Line>& pieces) {
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return pieces[a].length > pieces[b].length;
+  });
+  std::map<std::size_t, Line> lines;  // by the place of the longest piece
+  for (const std::size_t i : order) {
+    const auto longer = std::find_if(lines.begin(), lines.end(), [&](const auto& line) {
+      return Continues(line.second, pieces[i]);
+    });
+    if (longer == lines.end()) {
+      lines.emplace(i, pieces[i]);
+    } else {
+      longer->second = Joined(longer->second, pieces[i]);
+    }
+  }
+  std::vector<Line> out;
+  for (const auto& [place, line] : lines) {
+    if (line.length >= kLeastLinePx) out.push_back(line);
+  }
+  return out;
+}
+
+// The straight lines of an outline in order round it, the longest ones.
 std::vector<Line> LinesOf(const FlatOutline& flat) {
   std::vector<cv::Point2f> bends;
   cv::approxPolyDP(flat.points, bends, kBendPx, true);
@@ -153,6 +209,7 @@ std::vector<Line> LinesOf(const FlatOutline& flat) {
     const auto line = LineBetween(flat, at[k], (next + n - at[k]) % n);
     if (line) lines.push_back(*line);
   }
+  lines = JoinPieces(lines);
   if (lines.size() <= kMostLines) return lines;
   std::vector<double> lengths;
   for (const Line& line : lines) lengths.push_back(line.length);
@@ -209,22 +266,27 @@ std::optional<Quadrangle> QuadrangleOf(const FlatOutline& flat, std::array<const
   return out;
 }
 
-// Of an outline, the quadrangle of which most is seen.
-std::optional<Quadrangle> BestOf(const FlatOutline& flat) {
+bool MoreIsSeen(const Quadrangle& a, const Quadrangle& b) { return a.seen_px > b.seen_px; }
+
+// Of an outline, those of which most is seen: what sticks to a board has lines of its own.
+std::vector<Quadrangle> QuadranglesOf(const FlatOutline& flat) {
+  constexpr std::size_t kOfOne = 3;
   const std::vector<Line> lines = LinesOf(flat);
-  std::optional<Quadrangle> best;
+  std::vector<Quadrangle> found;
   const std::size_t n = lines.size();
   for (std::size_t a = 0; a < n; ++a) {
     for (std::size_t b = a + 1; b < n; ++b) {
       for (std::size_t c = b + 1; c < n; ++c) {
         for (std::size_t d = c + 1; d < n; ++d) {
-          const auto found = QuadrangleOf(flat, {&lines[a], &lines[b], &lines[c], &lines[d]});
-          if (found && (!best || found->seen_px > best->seen_px)) best = found;
+          const auto one = QuadrangleOf(flat, {&lines[a], &lines[b], &lines[c], &lines[d]});
+          if (one) found.push_back(*one);
         }
       }
     }
   }
-  return best;
+  std::stable_sort(found.begin(), found.end(), MoreIsSeen);
+  if (found.size() > kOfOne) found.resize(kOfOne);
+  return found;
 }
 
 // The same outline at two levels.
@@ -250,8 +312,9 @@ void AddFrom(const Shrunk& shrunk, const Camera& camera, const cv::Mat& mask,
     const cv::Rect box = cv::boundingRect(outline);
     if (std::min(box.width, box.height) < least) continue;
     const auto flat = Flatten(shrunk, camera, outline);
-    const auto quadrangle = flat ? BestOf(*flat) : std::nullopt;
-    if (quadrangle) found->push_back(*quadrangle);
+    if (!flat) continue;
+    const std::vector<Quadrangle> quadrangles = QuadranglesOf(*flat);
+    found->insert(found->end(), quadrangles.begin(), quadrangles.end());
   }
 }
 
@@ -259,14 +322,13 @@ void AddFrom(const Shrunk& shrunk, const Camera& camera, const cv::Mat& mask,
 
 double QuadrangleSigmaPx(const cv::Mat& grey) { return 1.0 / ScaleOf(grey.size()); }
 
-std::vector<Quadrangle> FindQuadrangles(const cv::Mat& grey, const Camera& camera) {
-  const Shrunk shrunk = Shrink(grey);
+std::vector<Quadrangle> FindQuadrangles(const cv::Mat& plane, const Camera& camera) {
+  const Shrunk shrunk = Shrink(plane);
   std::vector<Quadrangle> all;
   for (const float level : LevelsOf(shrunk.grey)) {
     AddFrom(shrunk, camera, shrunk.grey > level, &all);  // its holes are what is darker
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Quadrangle& a, const Quadrangle& b) { return a.seen_px > b.seen_px; });
+  std::stable_sort(all.begin(), all.end(), MoreIsSeen);
   std::vector<Quadrangle> kept;
   for (const Quadrangle& q : all) {
     if (kept.size() == kMostQuadrangles) break;

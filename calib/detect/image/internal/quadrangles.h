@@ -19,11 +19,11 @@ struct Quadrangle {
   double seen_px = 0;  ///< length of these parts
 };
 
-/// Convex quadrangles in grey values (CV_32FC1, any unit), those of which most is seen first, at
-/// most ten: outlines of what lies above or below one of some levels, in the image shrunk to some
-/// 800 px. Something that covers a part of a side, and corners outside the image, do no harm; each
-/// of the four sides must be seen in part. Places are good to some pixels.
-std::vector<Quadrangle> FindQuadrangles(const cv::Mat& grey, const Camera& camera);
+/// Convex quadrangles in one plane of an image (CV_32FC1, any unit), those of which most is seen
+/// first, at most twenty: outlines of what lies above or below one of some levels, in the image
+/// shrunk to some 800 px. Something that covers a part of a side, and corners outside the image, do
+/// no harm; each of the four sides must be seen in part. Places are good to some pixels.
+std::vector<Quadrangle> FindQuadrangles(const cv::Mat& plane, const Camera& camera);
 
 /// Sigma [px] of `seen` across the line.
 double QuadrangleSigmaPx(const cv::Mat& grey);

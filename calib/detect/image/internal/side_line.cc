@@ -26,7 +26,7 @@ struct Sample {
   double residual = 0;  // [px]
   double weight = 0;    // 0: not on the line
   double slope = 0;     // of weight * residual by the residual: how much the edge holds the line
-  bool dark = false;
+  bool dark = false, bright = false;
   Eigen::Vector2d base;  // offset = base . (first, last)
 };
 
@@ -85,6 +85,7 @@ std::vector<Sample> Nearest(const std::vector<Profile>& profiles, double length,
       sample.residual = residual;
       sample.sigma = std::hypot(kPlacePx / edge.strength, kJitterPx);
       sample.dark = edge.dark;
+      sample.bright = edge.bright;
       found = true;
     }
     if (found) samples.push_back(sample);
@@ -168,10 +169,12 @@ void CountInside(const std::vector<Profile>& profiles, const std::vector<Sample>
     if (s.weight == 0) continue;
     ++line->count;
     line->dark_share += s.dark ? 1 : 0;
+    line->bright_share += s.bright ? 1 : 0;
     squares += s.residual * s.residual;
   }
   if (inside == 0 || line->count == 0) return;
   line->dark_share /= line->count;
+  line->bright_share /= line->count;
   line->share = static_cast<double>(line->count) / inside;
   line->edge_share = static_cast<double>(with_edge) / inside;
   line->rms_px = std::sqrt(squares / line->count);

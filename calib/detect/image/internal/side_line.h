@@ -14,11 +14,12 @@ struct SideLine {
   /// Of these two [px^2], by the residuals themselves: neighbouring profiles share noise and what
   /// the background does, so their correlation is counted (Newey and West 1987).
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  double share = 0;       ///< of the profiles inside the image, those that lie on it
-  double edge_share = 0;  ///< of the profiles inside the image, those that show any edge
-  int count = 0;          ///< profiles that lie on it
-  double rms_px = 0;      ///< of their residuals
-  double dark_share = 0;  ///< of these, those beside which the image is clipped at black
+  double share = 0;         ///< of the profiles inside the image, those that lie on it
+  double edge_share = 0;    ///< of the profiles inside the image, those that show any edge
+  int count = 0;            ///< profiles that lie on it
+  double rms_px = 0;        ///< of their residuals
+  double dark_share = 0;    ///< of these, those beside which the image is clipped at black
+  double bright_share = 0;  ///< and those beside which it is saturated
 };
 
 /// The line with the most support among all edges of all profiles, then a robust fit to the edges

@@ -5,6 +5,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/camera/camera.h"
+#include "calib/camera/pixels.h"
+#include "calib/detect/image/internal/clipped.h"
+#include "calib/detect/image/internal/colour_planes.h"
 #include "tests/numbers.h"
 
 namespace rgbdt {
@@ -48,12 +51,27 @@ cv::Mat Picture(const Camera& camera, const Target& board, const Rigid3& pose, d
 }
 
 PlainBoardResult Find(const Camera& camera, const Target& target, const cv::Mat& image) {
-  return FindPlainBoard(image, cv::Mat::zeros(image.size(), CV_8UC1), camera, target);
+  return FindPlainBoard(
+      image, [] { return std::vector<cv::Mat>(); }, cv::Mat::zeros(image.size(), CV_8UC1), camera,
+      target);
 }
 
 Rigid3 At(double roll, double tilt, double x, double z) {
   return Rigid3{Eigen::Quaterniond::Identity(), {x, 0.05, z}} *
          RotationAbout({0.6, 0.8, 0}, tilt * kDegree) * RotationAbout({0, 0, 1}, roll * kDegree);
+}
+
+// How far a pose is off, whichever of its corners it calls the first.
+void ExpectAt(const PlainBoardResult& found, const Rigid3& truth, double degrees, double metres) {
+  ASSERT_TRUE(found.board) << found.why;
+  double least = 1e9;
+  for (int turn = 0; turn < 4; ++turn) {
+    const Rigid3 turned =
+        found.board->pose.sensor_from_target * RotationAbout({0, 0, 1}, 90 * turn * kDegree);
+    least = std::min(least, RotationDistance(turned, truth));
+  }
+  EXPECT_LT(least, degrees * kDegree);
+  EXPECT_LT((found.board->pose.sensor_from_target.translation - truth.translation).norm(), metres);
 }
 
 TEST(PlainBoard, IsFoundAtAnyRollBrightOrDarkAndWithACornerOutside) {
@@ -68,18 +86,81 @@ TEST(PlainBoard, IsFoundAtAnyRollBrightOrDarkAndWithACornerOutside) {
           EXPECT_GT(x, 0) << roll << ": " << found.why;
           continue;
         }
-        double least = 1e9;
-        for (int turn = 0; turn < 4; ++turn) {
-          const Rigid3 turned =
-              found.board->pose.sensor_from_target * RotationAbout({0, 0, 1}, 90 * turn * kDegree);
-          least = std::min(least, RotationDistance(turned, truth));
-        }
-        EXPECT_LT(least, 0.5 * kDegree) << roll << " " << x;
-        EXPECT_LT((found.board->pose.sensor_from_target.translation - truth.translation).norm(),
-                  0.012)
-            << roll << " " << x;
+        SCOPED_TRACE(std::to_string(roll) + " " + std::to_string(x));
+        ExpectAt(found, truth, 0.5, 0.012);
       }
     }
+  }
+}
+
+// A board of bare wood before things that are darker than it here and brighter there: a street.
+// Hands hold it at two of its sides.
+struct Street {
+  Image image;
+  Rigid3 truth = At(20, 25, 0, 2.6);
+
+  explicit Street(const Camera& camera) {
+    cv::Mat bgr(camera.height(), camera.width(), CV_8UC3);
+    for (int x = 0; x < bgr.cols; x += 40) {
+      bgr.colRange(x, std::min(bgr.cols, x + 40))
+          .setTo(cv::Scalar::all(x / 40 % 2 == 0 ? 35 : 215));
+    }
+    const cv::Mat mask = Picture(camera, Square(), truth, 240) > 140;
+    bgr.setTo(cv::Scalar(70, 130, 190), mask);
+    for (const std::size_t corner : {0, 1}) {
+      const auto outline = Square().OutlineCorners();
+      const Eigen::Vector3d side = 0.5 * (outline[corner] + outline[corner + 1]);
+      const Eigen::Vector2d p = *camera.Project(truth * side);
+      cv::circle(bgr, {static_cast<int>(p.x()), static_cast<int>(p.y())}, 14,
+                 cv::Scalar(150, 150, 150), cv::FILLED);
+    }
+    cv::GaussianBlur(bgr, bgr, {}, 0.8);
+    image.camera = "rgb";
+    image.format = PixelFormat::kBgr8;
+    image.pixels = bgr;
+  }
+};
+
+TEST(PlainBoard, OfAnotherColourIsFoundBeforeWhatIsBrighterAndDarker) {
+  const Camera camera(Spec());
+  const Street street(camera);
+  const cv::Mat grey = ToGrey(street.image);
+  const cv::Mat clipped = cv::Mat::zeros(grey.size(), CV_8UC1);
+  EXPECT_FALSE(Find(camera, Square(), grey).board);  // grey alone does not tell it
+  const auto colours = [&] { return ColourPlanes(street.image); };
+  ExpectAt(FindPlainBoard(grey, colours, clipped, camera, Square()), street.truth, 0.5, 0.012);
+}
+
+TEST(PlainBoard, InGreyHasNoColours) {
+  Image image;
+  image.format = PixelFormat::kMono8;
+  image.pixels = cv::Mat::zeros(10, 10, CV_8UC1);
+  EXPECT_TRUE(ColourPlanes(image).empty());
+}
+
+// A white board in the sun, up to four times too bright for the sensor: larger than it is, and as
+// unsure as it says.
+TEST(PlainBoard, ThatIsOverexposedIsFoundAndIsLessSure) {
+  const Camera camera(Spec());
+  const Rigid3 truth = At(10, 25, 0, 2.6);
+  const auto find = [&](double value) {
+    Image image;
+    image.camera = "rgb";
+    image.format = PixelFormat::kMono8;
+    Picture(camera, Square(), truth, value).convertTo(image.pixels, CV_8U);
+    return FindPlainBoard(
+        ToGrey(image), [] { return std::vector<cv::Mat>(); }, Clipped(image), camera, Square());
+  };
+  const PlainBoardResult exposed = find(200);
+  ASSERT_TRUE(exposed.board);
+  for (const double value : {260.0, 500.0, 1000.0}) {
+    const PlainBoardResult found = find(value);
+    ASSERT_TRUE(found.board) << value << ": " << found.why;
+    const auto& sigma = found.board->pose.covariance;
+    EXPECT_GT(sigma(5, 5), 4 * exposed.board->pose.covariance(5, 5));
+    const double range = (found.board->pose.sensor_from_target.translation - truth.translation).z();
+    EXPECT_LT(std::abs(range), 3 * std::sqrt(sigma(5, 5))) << value;
+    ExpectAt(found, truth, 1.0, 0.03);
   }
 }
 
