@@ -20,21 +20,20 @@ bool ChunkQueue::Keep(const CloudChunk& chunk) {
   longest_sweep_ = std::max(longest_sweep_, std::min(last - cloud.sweep_utime, kLongestSweep));
   // A clock that was set back: no pose comes for what waits.
   if (!chunks_.empty() && last < chunks_.back().last - kLongestSweep) newest_pose_.reset();
-  if (!newest_pose_ && chunks_.empty()) return false;
+  if (chunks_.empty() && IsDue(last, last)) return false;
   points_ += cloud.size();
   chunks_.push_back({chunk, last});
   heard_ = true;
   return true;
 }
 
-bool ChunkQueue::IsDue(const Waiting& waiting) const {
+bool ChunkQueue::IsDue(Utime last, Utime newest) const {
   if (!newest_pose_ || given_up_ || points_ > kMostPoints) return true;
-  const Utime ahead = waiting.last - *newest_pose_;
-  return ahead <= PoseTrack::kAhead || chunks_.back().last - *newest_pose_ > MostWait();
+  return last - *newest_pose_ <= PoseTrack::kAhead || newest - *newest_pose_ > MostWait();
 }
 
 std::optional<CloudChunk> ChunkQueue::Next() {
-  if (chunks_.empty() || !IsDue(chunks_.front())) return std::nullopt;
+  if (chunks_.empty() || !IsDue(chunks_.front().last, chunks_.back().last)) return std::nullopt;
   CloudChunk chunk = std::move(chunks_.front().chunk);
   chunks_.pop_front();
   points_ -= chunk.cloud.size();

@@ -40,7 +40,8 @@ class ChunkQueue {
   };
 
   Utime MostWait() const { return 2 * longest_sweep_ + kSlack; }
-  bool IsDue(const Waiting& waiting) const;
+  // A chunk whose last point has this time; of the newest chunk it is `newest`.
+  bool IsDue(Utime last, Utime newest) const;
 
   std::deque<Waiting> chunks_;
   std::size_t points_ = 0;
