@@ -1,15 +1,16 @@
 #include "services/import/import_bag.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 
 #include "calib/files/image_files.h"
+#include "calib/files/import/camera_kind.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/model/livox.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
+#include "services/import/image_data.h"
 #include "services/import/sensor_data.h"
 #include "services/import/transforms.h"
 
@@ -20,16 +21,39 @@ std::string Where(const BagSurvey::Topic& topic, Utime utime) {
   return topic.topic.name + " at utime " + std::to_string(utime);
 }
 
-bool SaysThermal(std::string name) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
+bool IsCalledThermal(const TopicChoice::Camera& camera, bool sixteen_bit = false) {
+  return SaysThermal(camera.name, sixteen_bit) ||
+         SaysThermal(camera.images->topic.name, sixteen_bit);
+}
+
+// Depth in metres looks as degrees Celsius do.
+void RequireTemperatures(const TopicChoice::Camera& camera) {
+  const std::string& topic = camera.images->topic.name;
+  if (camera.images->unit != FloatUnit::kMaybeCelsius || IsCalledThermal(camera, true)) return;
+  throw InputError(topic +
+                   ": numbers of floating point (32FC1), degrees Celsius or metres of depth; if "
+                   "they are temperatures, say --image thermal=" +
+                   topic);
+}
+
+std::string UnitText(const TopicChoice::Camera& camera) {
+  switch (camera.images->unit) {
+    case FloatUnit::kKelvin:
+      return ", 32FC1 taken for kelvin";
+    case FloatUnit::kMaybeCelsius:
+      return ", 32FC1 taken for degrees Celsius";
+    case FloatUnit::kNone:
+      break;
+  }
+  return "";
 }
 
 CameraKind KindOf(const TopicChoice::Camera& camera, PixelFormat format) {
-  if (format == PixelFormat::kMono16) return CameraKind::kThermal;
-  if (!SaysThermal(camera.name) && !SaysThermal(camera.images->topic.name)) {
-    return CameraKind::kColor;
+  if (format == PixelFormat::kMono16) {
+    RequireTemperatures(camera);
+    return CameraKind::kThermal;
   }
+  if (!IsCalledThermal(camera)) return CameraKind::kColor;
   if (format == PixelFormat::kMono8) return CameraKind::kThermal;
   throw InputError(camera.images->topic.name +
                    ": a thermal camera by its name, but its images are coloured pictures; expected "
@@ -199,13 +223,14 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
     spec.name = camera.name;
     spec.format = first.format;
     spec.kind = KindOf(camera, first.format);
+    spec.radiometry = first.radiometry;
     spec.width = first.pixels.cols;
     spec.height = first.pixels.rows;
     const std::string lens = SetLens(choice, wishes, i, &spec);
     out.lines.push_back("camera " + spec.name + ": " +
                         (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
                         std::to_string(spec.width) + "x" + std::to_string(spec.height) + ", " +
-                        lens + "; " + camera.images->topic.name);
+                        lens + UnitText(camera) + "; " + camera.images->topic.name);
     const std::string guess = SetGuess(survey, choice, camera, &spec);
     if (!guess.empty()) out.lines.push_back(guess);
     out.rig.cameras.push_back(spec);

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "calib/files/import/camera_kind.h"
 #include "calib/model/errors.h"
 #include "services/bags/printable.h"
 #include "services/messages/limits.h"
@@ -66,9 +67,15 @@ std::string WhyNoCamera(const Topic& topic) {
   if (topic.stamped.empty()) {
     return topic.problem.empty() ? "no messages" : "cannot be read: " + topic.problem;
   }
-  if (says("depth") || says("disparity") || topic.what.find("32FC1") != std::string::npos) {
-    return says("therm") ? "numbers of floating point (32FC1); expected raw counts, mono16 or mono8"
-                         : "depth, no picture";
+  if (says("depth") || says("disparity")) return "depth, no picture";
+  if (topic.what.find("32FC1") != std::string::npos && topic.unit != FloatUnit::kKelvin) {
+    const bool celsius = topic.unit == FloatUnit::kMaybeCelsius;
+    if (!celsius) return "numbers of floating point (32FC1) that are no temperatures";
+    if (!SaysThermal(name, true)) {
+      return "numbers of floating point (32FC1), degrees Celsius or metres of depth; if they are "
+             "temperatures, say --image thermal=" +
+             topic.topic.name;
+    }
   }
   if (IsRectified(topic)) return "rectified: another lens; --image takes it, with --lens";
   for (const char* word : {"mask", "label", "segment", "debug", "overlay"}) {

@@ -1,13 +1,13 @@
 #include "calib/files/import/folders.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "calib/files/check_writable.h"
+#include "calib/files/import/camera_kind.h"
 #include "calib/files/import/internal/folder_files.h"
 #include "calib/files/import/lens_file.h"
 #include "calib/files/schema/rig_file.h"
@@ -115,11 +115,6 @@ void CheckAlike(const FileList& files, const std::vector<ImageFacts>& facts) {
   }
 }
 
-bool SaysThermal(std::string name) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
-}
-
 std::string LastName(const fs::path& folder) {
   const fs::path whole = fs::weakly_canonical(folder);
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
@@ -128,7 +123,7 @@ std::string LastName(const fs::path& folder) {
 CameraKind KindOf(const Folders::Camera& camera, const ImageFacts& facts) {
   if (IsSixteenBit(facts)) return CameraKind::kThermal;
   const std::string name = camera.name.empty() ? LastName(camera.images) : camera.name;
-  if (!SaysThermal(name)) return CameraKind::kColor;
+  if (!SaysThermal(name, false)) return CameraKind::kColor;
   if (facts.format == PixelFormat::kBgr8) {
     throw InputError("\"" + name + "\" is a thermal camera's name, but the images of " +
                      camera.images.string() +

@@ -13,6 +13,7 @@
 namespace rgbdt {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -94,6 +95,27 @@ TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
   EXPECT_EQ(ChooseTopics(survey, {{}, {{"", "/fused"}}}).lidar.clouds->topic.name, "/fused");
   survey.topics.pop_back();
   EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/fused");
+}
+
+TEST(ChooseTopics, NumbersOfFloatingPointAreTakenWhereTheyAreTemperatures) {
+  BagSurvey survey;
+  survey.topics = {Topic("/cam/image", BagData::kImage, {0}), Topic("/d", BagData::kImage, {0}),
+                   Topic("/points", BagData::kCloud, {0})};
+  BagSurvey::Topic& floats = survey.topics[1];
+  floats.what = "640x512 32FC1";
+  const auto cameras = [&](const std::string& name, FloatUnit unit) {
+    floats.topic.name = name;
+    floats.unit = unit;
+    return ChooseTopics(survey, {}).cameras.size();
+  };
+  EXPECT_EQ(cameras("/d/image", FloatUnit::kKelvin), 2U);
+  EXPECT_EQ(cameras("/d/image", FloatUnit::kMaybeCelsius), 1U);
+  EXPECT_THAT(
+      ChooseTopics(survey, {}).left_out,
+      ElementsAre(AllOf(HasSubstr("metres of depth"), HasSubstr("--image thermal=/d/image"))));
+  EXPECT_EQ(cameras("/flir/ir/temperature", FloatUnit::kMaybeCelsius), 2U);
+  EXPECT_EQ(cameras("/thermal/image", FloatUnit::kNone), 1U);
+  EXPECT_EQ(cameras("/thermal/depth", FloatUnit::kKelvin), 1U);
 }
 
 TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {
