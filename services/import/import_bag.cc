@@ -48,17 +48,27 @@ std::string UnitText(const TopicChoice::Camera& camera) {
   return "";
 }
 
-CameraKind KindOf(const TopicChoice::Camera& camera, PixelFormat format) {
-  if (format == PixelFormat::kMono16) {
+// Gives what there is to say of it in `why`.
+CameraKind KindOf(const TopicChoice::Camera& camera, const Image& first, std::string* why) {
+  const std::string& topic = camera.images->topic.name;
+  if (camera.images->unit != FloatUnit::kNone) {
     RequireTemperatures(camera);
     return CameraKind::kThermal;
   }
+  if (first.format == PixelFormat::kMono16) {
+    const auto [kind, by] = KindOfSixteenBit({camera.name, topic}, DarkOverBright(first.pixels));
+    if (!by.empty()) {
+      *why = ", " + by + "; otherwise say --image " +
+             (kind == CameraKind::kThermal ? "rgb=" : "thermal=") + topic;
+    }
+    return kind;
+  }
   if (!IsCalledThermal(camera)) return CameraKind::kColor;
-  if (format == PixelFormat::kMono8) return CameraKind::kThermal;
-  throw InputError(camera.images->topic.name +
+  if (first.format == PixelFormat::kMono8) return CameraKind::kThermal;
+  throw InputError(topic +
                    ": a thermal camera by its name, but its images are coloured pictures; expected "
                    "its raw counts (mono16 or mono8), or another name: --image NAME=" +
-                   camera.images->topic.name);
+                   topic);
 }
 
 // Calls `decode` with the message; what is wrong with it begins with where it is.
@@ -222,7 +232,11 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
     CameraSpec spec;
     spec.name = camera.name;
     spec.format = first.format;
-    spec.kind = KindOf(camera, first.format);
+    std::string why = UnitText(camera);
+    spec.kind = KindOf(camera, first, &why);
+    if (spec.kind == CameraKind::kColor && spec.format == PixelFormat::kMono16) {
+      spec.format = PixelFormat::kMono8;
+    }
     spec.radiometry = first.radiometry;
     spec.width = first.pixels.cols;
     spec.height = first.pixels.rows;
@@ -230,7 +244,7 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
     out.lines.push_back("camera " + spec.name + ": " +
                         (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
                         std::to_string(spec.width) + "x" + std::to_string(spec.height) + ", " +
-                        lens + UnitText(camera) + "; " + camera.images->topic.name);
+                        lens + why + "; " + camera.images->topic.name);
     const std::string guess = SetGuess(survey, choice, camera, &spec);
     if (!guess.empty()) out.lines.push_back(guess);
     out.rig.cameras.push_back(spec);
@@ -254,9 +268,14 @@ CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic) {
   };
 }
 
-Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, const Stamped& stamped) {
+Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, CameraKind kind,
+                      const Stamped& stamped) {
   Image image = DecodeImage(bag, *camera.images, stamped);
   image.camera = camera.name;
+  if (kind == CameraKind::kColor && image.format == PixelFormat::kMono16) {
+    EightBits(&image.pixels);
+    image.format = PixelFormat::kMono8;
+  }
   return image;
 }
 
@@ -282,7 +301,7 @@ bool ByHeadersClock(Cloud* cloud) {
 
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped) {
-  Image image = DecodeImage(bag, *camera.images, stamped);
+  Image image = ReadImageAsItIs(bag, camera, spec.kind, stamped);
   image.camera = spec.name;
   const bool alike = image.pixels.cols == spec.width && image.pixels.rows == spec.height &&
                      image.format == spec.format;
