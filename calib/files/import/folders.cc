@@ -10,6 +10,7 @@
 #include "calib/files/import/camera_kind.h"
 #include "calib/files/import/internal/folder_files.h"
 #include "calib/files/import/lens_file.h"
+#include "calib/files/name_keys.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
@@ -234,8 +235,7 @@ Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
 }
 
 std::string ViewName(const std::string& file, std::set<std::string>* taken) {
-  const fs::path stem = fs::path(file).stem();
-  std::string name = (stem.extension() == ".pcd" ? stem.stem() : stem).string().substr(0, 90);
+  std::string name = StemOf(file).substr(0, 90);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }
