@@ -44,8 +44,8 @@ std::string ToLower(std::string text) {
 
 TopicParts SplitTopic(std::string name, bool compressed) {
   static const std::set<std::string> image_words = {
-      "image", "images", "img",  "raw", "color", "colour",    "mono",
-      "gray",  "grey",   "rect", "bgr", "bayer", "rectified", "compressed"};
+      "image", "images", "img", "raw",   "color",     "colour",     "mono",       "gray",
+      "grey",  "rect",   "bgr", "bayer", "rectified", "compressed", "temperature"};
   for (const char* transport : {"/compressed", "/compressedDepth"}) {
     const std::string end = transport;
     if (compressed && name.size() > end.size() &&

@@ -75,6 +75,8 @@ std::vector<std::string> CamerasOf(const std::vector<std::string>& images,
 }
 
 TEST(ChooseTopics, CamerasThatDifferInOnePartOfTheirTopicsAreTwo) {
+  EXPECT_THAT(CamerasOf({"/thermal/temperature", "/rgb/image_raw"}),
+              ElementsAre("rgb /rgb/image_raw", "thermal /thermal/temperature"));
   EXPECT_THAT(CamerasOf({"/ir/left", "/ir/right"}),
               ElementsAre("left /ir/left", "right /ir/right"));
   EXPECT_THAT(CamerasOf({"/left", "/right"}), ElementsAre("left /left", "right /right"));
