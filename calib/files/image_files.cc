@@ -1,5 +1,6 @@
 #include "calib/files/image_files.h"
 
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -74,7 +75,20 @@ void WritePng(const std::filesystem::path& path, const cv::Mat& pixels) {
   WriteFileAtomically(path, EncodePng(pixels));
 }
 
+void EightBits(cv::Mat* pixels) {
+  if (pixels->depth() != CV_16U) return;
+  double brightest = 0;
+  cv::minMaxIdx(pixels->reshape(1), nullptr, &brightest);
+  int bits = 8;
+  while (brightest >= std::ldexp(1, bits)) bits += 2;
+  cv::Mat eight;
+  pixels->convertTo(eight, CV_8U, std::ldexp(1, 8 - bits));
+  *pixels = eight;
+}
+
 PixelFormat FormatOf(PixelFormat declared, cv::Mat* decoded) {
+  const bool mosaic = declared >= PixelFormat::kBayerRg8 && declared <= PixelFormat::kBayerBg8;
+  if (decoded->channels() > 1 || mosaic) EightBits(decoded);
   if (decoded->type() == CV_8UC4) {
     cv::Mat bgr;
     cv::cvtColor(*decoded, bgr, cv::COLOR_BGRA2BGR);

@@ -21,10 +21,14 @@ std::string EncodeJpeg(const cv::Mat& pixels, int quality);
 /// EncodePng into a file, atomically.
 void WritePng(const std::filesystem::path& path, const cv::Mat& pixels);
 
+/// 16 bits of a picture as 8, all by the power of two that makes its brightest pixel fit: sensors
+/// of 10, 12 and 14 bits are sent in 16. Others stay as they are.
+void EightBits(cv::Mat* pixels);
+
 /// What `decoded` is: kMono8, kMono16 or kBgr8 by its type, or `declared` where that fits the type
-/// (a raw mosaic is a grey image of which only the writer knows the pattern). Turns BGRA into BGR.
-/// Throws InputError where the type is none of these or contradicts `declared`; 0 is "not
-/// declared".
+/// (a raw mosaic is a grey image of which only the writer knows the pattern). Turns BGRA into BGR,
+/// and colours and declared mosaics of 16 bit into 8. Throws InputError where the type is none of
+/// these or contradicts `declared`; 0 is "not declared".
 PixelFormat FormatOf(PixelFormat declared, cv::Mat* decoded);
 
 /// BAYER_RG8 and so on, as the schemas name it.

@@ -65,7 +65,8 @@ class BagReader {
 
   /// Those met so far; all of them once Next has come to the end.
   virtual const std::vector<BagTopic>& topics() const = 0;
-  /// Once Next has come to the end, a line each: where it is cut off or damaged.
+  /// Once Next has come to the end, a line each: where it is cut off or damaged, and the parts that
+  /// its metadata.yaml lists and that are not there.
   virtual const std::vector<std::string>& problems() const = 0;
   /// How far Next is, of how much [byte].
   virtual std::int64_t position() const = 0;

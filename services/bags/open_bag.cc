@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <sstream>
@@ -8,6 +9,7 @@
 #include "calib/model/text.h"
 #include "services/bags/bag_reader.h"
 #include "services/bags/internal/bag_file.h"
+#include "services/bags/printable.h"
 
 namespace rgbdt {
 namespace {
@@ -67,12 +69,12 @@ void DropEarlier(std::set<std::string, NaturalOrder>* names) {
   }
 }
 
-// The names that ROS 2's metadata.yaml beside them lists as the recording's.
-std::set<std::string> Listed(const fs::path& folder) {
+// What stands in the lines of ROS 2's metadata.yaml, without dashes, quotes and blanks around.
+std::vector<std::string> MetadataLines(const fs::path& folder) {
   constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-  std::set<std::string> names;
+  std::vector<std::string> stripped;
   std::error_code ignored;
-  if (!fs::exists(folder / "metadata.yaml", ignored)) return names;
+  if (!fs::exists(folder / "metadata.yaml", ignored)) return stripped;
   const BagFile file(folder / "metadata.yaml");
   std::string text(kMostBytes, '\0');
   text.resize(file.Read(0, text.data(), text.size()));
@@ -80,11 +82,80 @@ std::set<std::string> Listed(const fs::path& folder) {
   for (std::string line; std::getline(lines, line);) {
     const std::size_t begin = line.find_first_not_of(" -\"'"),
                       end = line.find_last_not_of(" \"'\r");
-    if (begin != std::string::npos) {
-      names.insert(fs::path(line.substr(begin, end + 1 - begin)).filename().string());
-    }
+    if (begin != std::string::npos) stripped.push_back(line.substr(begin, end + 1 - begin));
+  }
+  return stripped;
+}
+
+// The names that it lists as the recording's.
+std::set<std::string> Listed(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const std::string& line : MetadataLines(folder)) {
+    names.insert(fs::path(line).filename().string());
   }
   return names;
+}
+
+// Of a part what metadata.yaml tells; 0: it does not say.
+struct Recorded {
+  double begin_s = 0, length_s = 0;  // since 1970; how long
+};
+
+// The value of "key: value"; empty: the line has another key.
+std::string ValueOf(const std::string& line, const std::string& key) {
+  if (line.compare(0, key.size() + 2, key + ": ") != 0) return "";
+  return line.substr(line.find_first_not_of(" \"'", key.size() + 1));
+}
+
+// Those that it lists, by name; the recording itself has none.
+std::map<std::string, Recorded, NaturalOrder> ListedParts(const fs::path& folder) {
+  std::map<std::string, Recorded, NaturalOrder> parts = {{"", {}}};
+  std::string current;  // names that are no path's have no times behind them
+  for (const std::string& line : MetadataLines(folder)) {
+    const std::string path = ValueOf(line, "path");
+    const std::string name = fs::path(path.empty() ? line : path).filename().string();
+    if (!path.empty()) current = name;
+    if (!EndingOf(name).empty()) parts[name];
+    Recorded& recorded = parts[current];
+    const std::string begin = ValueOf(line, "nanoseconds_since_epoch"),
+                      length = ValueOf(line, "nanoseconds");
+    if (!begin.empty()) recorded.begin_s = 1e-9 * std::strtod(begin.c_str(), nullptr);
+    if (!length.empty()) recorded.length_s = 1e-9 * std::strtod(length.c_str(), nullptr);
+  }
+  return parts;
+}
+
+// What metadata.yaml lists and is not there, and what time is lost by it; empty: nothing.
+std::string MissingParts(const fs::path& folder) {
+  constexpr std::size_t kMostNamed = 5;
+  const std::map<std::string, Recorded, NaturalOrder> parts = ListedParts(folder);
+  std::size_t there = 0, missing = 0;
+  double lost_s = 0;
+  bool all_told = true;
+  std::string names;
+  for (const auto& [name, recorded] : parts) {
+    if (EndingOf(name).empty()) continue;
+    const std::string bare = EndsIn(name, ".zstd") ? name.substr(0, name.size() - 5) : name;
+    std::error_code ignored;
+    if (fs::exists(folder / bare, ignored) || fs::exists(folder / (bare + ".zstd"), ignored)) {
+      ++there;
+      continue;
+    }
+    lost_s += recorded.length_s;
+    all_told &= recorded.length_s > 0;
+    if (++missing > kMostNamed) continue;
+    names += (missing == 1 ? "" : ", ") + Printable(name);
+    if (recorded.length_s > 0) {
+      names += Format(" (%.1f to %.1f s)", recorded.begin_s - parts.at("").begin_s,
+                      recorded.begin_s + recorded.length_s - parts.at("").begin_s);
+    }
+  }
+  if (missing == 0 || there == 0) return "";  // of another recording, or renamed
+  if (missing > kMostNamed) names += Format(" and %zu more", missing - kMostNamed);
+  return (folder / "metadata.yaml").string() +
+         ": lists parts of the recording that are not there: " + names + "; " +
+         (all_told ? Format("%.1f s of it are missing", lost_s) : "their time is missing") +
+         "; put them beside the others";
 }
 
 // Several kinds are one recording twice, as after a conversion, or no recording: metadata.yaml may
@@ -134,7 +205,8 @@ std::vector<fs::path> FilesOf(const fs::path& path) {
 // One file after the other as one bag.
 class SplitReader : public BagReader {
  public:
-  explicit SplitReader(const std::vector<fs::path>& files) {
+  SplitReader(const std::vector<fs::path>& files, const std::string& problem) {
+    if (!problem.empty()) problems_.push_back(problem);
     for (const fs::path& file : files) {
       parts_.push_back({OpenFile(file), {}});
       size_ += parts_.back().reader->size();
@@ -211,8 +283,10 @@ bool operator<(const BagPlace& a, const BagPlace& b) {
 
 std::unique_ptr<BagReader> OpenBag(const fs::path& path) {
   const std::vector<fs::path> files = FilesOf(path);
-  if (files.size() == 1) return OpenFile(files[0]);
-  return std::make_unique<SplitReader>(files);
+  std::error_code ignored;
+  const std::string problem = fs::is_directory(path, ignored) ? MissingParts(path) : "";
+  if (files.size() == 1 && problem.empty()) return OpenFile(files[0]);
+  return std::make_unique<SplitReader>(files, problem);
 }
 
 }  // namespace rgbdt

@@ -1,15 +1,16 @@
 #include "services/import/import_bag.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 
 #include "calib/files/image_files.h"
+#include "calib/files/import/camera_kind.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/model/livox.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
+#include "services/import/image_data.h"
 #include "services/import/sensor_data.h"
 #include "services/import/transforms.h"
 
@@ -20,21 +21,54 @@ std::string Where(const BagSurvey::Topic& topic, Utime utime) {
   return topic.topic.name + " at utime " + std::to_string(utime);
 }
 
-bool SaysThermal(std::string name) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
+bool IsCalledThermal(const TopicChoice::Camera& camera, bool sixteen_bit = false) {
+  return SaysThermal(camera.name, sixteen_bit) ||
+         SaysThermal(camera.images->topic.name, sixteen_bit);
 }
 
-CameraKind KindOf(const TopicChoice::Camera& camera, PixelFormat format) {
-  if (format == PixelFormat::kMono16) return CameraKind::kThermal;
-  if (!SaysThermal(camera.name) && !SaysThermal(camera.images->topic.name)) {
-    return CameraKind::kColor;
+// Depth in metres looks as degrees Celsius do.
+void RequireTemperatures(const TopicChoice::Camera& camera) {
+  const std::string& topic = camera.images->topic.name;
+  if (camera.images->unit != FloatUnit::kMaybeCelsius || IsCalledThermal(camera, true)) return;
+  throw InputError(topic +
+                   ": numbers of floating point (32FC1), degrees Celsius or metres of depth; if "
+                   "they are temperatures, say --image thermal=" +
+                   topic);
+}
+
+std::string UnitText(const TopicChoice::Camera& camera) {
+  switch (camera.images->unit) {
+    case FloatUnit::kKelvin:
+      return ", 32FC1 taken for kelvin";
+    case FloatUnit::kMaybeCelsius:
+      return ", 32FC1 taken for degrees Celsius";
+    case FloatUnit::kNone:
+      break;
   }
-  if (format == PixelFormat::kMono8) return CameraKind::kThermal;
-  throw InputError(camera.images->topic.name +
+  return "";
+}
+
+// Gives what there is to say of it in `why`.
+CameraKind KindOf(const TopicChoice::Camera& camera, const Image& first, std::string* why) {
+  const std::string& topic = camera.images->topic.name;
+  if (camera.images->unit != FloatUnit::kNone) {
+    RequireTemperatures(camera);
+    return CameraKind::kThermal;
+  }
+  if (first.format == PixelFormat::kMono16) {
+    const auto [kind, by] = KindOfSixteenBit({camera.name, topic}, DarkOverBright(first.pixels));
+    if (!by.empty()) {
+      *why = ", " + by + "; otherwise say --image " +
+             (kind == CameraKind::kThermal ? "rgb=" : "thermal=") + topic;
+    }
+    return kind;
+  }
+  if (!IsCalledThermal(camera)) return CameraKind::kColor;
+  if (first.format == PixelFormat::kMono8) return CameraKind::kThermal;
+  throw InputError(topic +
                    ": a thermal camera by its name, but its images are coloured pictures; expected "
                    "its raw counts (mono16 or mono8), or another name: --image NAME=" +
-                   camera.images->topic.name);
+                   topic);
 }
 
 // Calls `decode` with the message; what is wrong with it begins with where it is.
@@ -198,14 +232,19 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
     CameraSpec spec;
     spec.name = camera.name;
     spec.format = first.format;
-    spec.kind = KindOf(camera, first.format);
+    std::string why = UnitText(camera);
+    spec.kind = KindOf(camera, first, &why);
+    if (spec.kind == CameraKind::kColor && spec.format == PixelFormat::kMono16) {
+      spec.format = PixelFormat::kMono8;
+    }
+    spec.radiometry = first.radiometry;
     spec.width = first.pixels.cols;
     spec.height = first.pixels.rows;
     const std::string lens = SetLens(choice, wishes, i, &spec);
     out.lines.push_back("camera " + spec.name + ": " +
                         (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
                         std::to_string(spec.width) + "x" + std::to_string(spec.height) + ", " +
-                        lens + "; " + camera.images->topic.name);
+                        lens + why + "; " + camera.images->topic.name);
     const std::string guess = SetGuess(survey, choice, camera, &spec);
     if (!guess.empty()) out.lines.push_back(guess);
     out.rig.cameras.push_back(spec);
@@ -229,9 +268,14 @@ CloudReader CloudMessages(BagReader* bag, const BagSurvey::Topic& topic) {
   };
 }
 
-Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, const Stamped& stamped) {
+Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, CameraKind kind,
+                      const Stamped& stamped) {
   Image image = DecodeImage(bag, *camera.images, stamped);
   image.camera = camera.name;
+  if (kind == CameraKind::kColor && image.format == PixelFormat::kMono16) {
+    EightBits(&image.pixels);
+    image.format = PixelFormat::kMono8;
+  }
   return image;
 }
 
@@ -257,7 +301,7 @@ bool ByHeadersClock(Cloud* cloud) {
 
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped) {
-  Image image = DecodeImage(bag, *camera.images, stamped);
+  Image image = ReadImageAsItIs(bag, camera, spec.kind, stamped);
   image.camera = spec.name;
   const bool alike = image.pixels.cols == spec.width && image.pixels.rows == spec.height &&
                      image.format == spec.format;

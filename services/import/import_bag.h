@@ -36,9 +36,10 @@ BagRig ReadRig(BagReader* bag, const BagSurvey& survey, const TopicChoice& choic
 Image ReadImage(BagReader* bag, const TopicChoice::Camera& camera, const CameraSpec& spec,
                 const Stamped& stamped);
 
-/// The same as it is in the bag, whatever the camera's is. Throws InputError where it is
-/// unreadable.
-Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, const Stamped& stamped);
+/// The same whatever the camera's size and colours are; of a colour camera 8 bit. Throws InputError
+/// where it is unreadable.
+Image ReadImageAsItIs(BagReader* bag, const TopicChoice::Camera& camera, CameraKind kind,
+                      const Stamped& stamped);
 
 /// Points' times that are of another clock than their header's, as of a LIDAR that counts since it
 /// was switched on, moved so that the first is the header's. False: they are of the header's clock.

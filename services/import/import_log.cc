@@ -143,7 +143,7 @@ WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::option
         AddCloud(cloud, source.until, &log);
         ++written.clouds;
       } else {
-        Image image = ReadImageAsItIs(bag, *source.camera, source.stamped);
+        Image image = ReadImageAsItIs(bag, *source.camera, source.spec->kind, source.stamped);
         const BagSurvey::Topic& topic = *source.camera->images;
         RequireOfCamera(image, *source.spec, topic.topic.name);
         image.radiometry = source.spec->radiometry;

@@ -4,95 +4,15 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <opencv2/imgproc.hpp>
 
-#include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
-#include "calib/model/image_codec.h"
 #include "calib/model/livox.h"
 #include "calib/model/text.h"
 #include "services/bags/printable.h"
 
 namespace rgbdt {
 namespace {
-
-constexpr std::int64_t kMostSide = 20000;  // [px]
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
-
-// How an encoding of sensor_msgs lies in memory, and what it becomes.
-struct Encoding {
-  int type;  // OpenCV's
-  PixelFormat format;
-  int conversion = -1;  // cv::ColorConversionCodes; -1: as it is
-};
-
-const std::map<std::string, Encoding>& Encodings() {
-  using F = PixelFormat;
-  static const std::map<std::string, Encoding> encodings = {
-      {"mono8", {CV_8UC1, F::kMono8}},
-      {"8UC1", {CV_8UC1, F::kMono8}},
-      {"mono16", {CV_16UC1, F::kMono16}},
-      {"16UC1", {CV_16UC1, F::kMono16}},
-      {"bgr8", {CV_8UC3, F::kBgr8}},
-      {"8UC3", {CV_8UC3, F::kBgr8}},
-      {"rgb8", {CV_8UC3, F::kBgr8, cv::COLOR_RGB2BGR}},
-      {"bgra8", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
-      {"8UC4", {CV_8UC4, F::kBgr8, cv::COLOR_BGRA2BGR}},
-      {"rgba8", {CV_8UC4, F::kBgr8, cv::COLOR_RGBA2BGR}},
-      {"RGB8", {CV_8UC3, F::kBgr8, cv::COLOR_RGB2BGR}},  // GenICam's names, as some drivers send
-      {"BGR8", {CV_8UC3, F::kBgr8}},
-      {"Mono8", {CV_8UC1, F::kMono8}},
-      {"Mono16", {CV_16UC1, F::kMono16}},
-      {"BayerRG8", {CV_8UC1, F::kBayerRg8}},
-      {"BayerGR8", {CV_8UC1, F::kBayerGr8}},
-      {"BayerGB8", {CV_8UC1, F::kBayerGb8}},
-      {"BayerBG8", {CV_8UC1, F::kBayerBg8}},
-      {"bayer_rggb8", {CV_8UC1, F::kBayerRg8}},
-      {"bayer_grbg8", {CV_8UC1, F::kBayerGr8}},
-      {"bayer_gbrg8", {CV_8UC1, F::kBayerGb8}},
-      {"bayer_bggr8", {CV_8UC1, F::kBayerBg8}},
-      {"yuv422", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_UYVY}},
-      {"uyvy", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_UYVY}},
-      {"yuv422_yuy2", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_YUY2}},
-      {"yuyv", {CV_8UC2, F::kBgr8, cv::COLOR_YUV2BGR_YUY2}},
-  };
-  return encodings;
-}
-
-const Encoding& EncodingOf(const std::string& name, const std::string& where) {
-  const auto found = Encodings().find(name);
-  if (found != Encodings().end()) return found->second;
-  std::string known;
-  for (const auto& entry : Encodings()) known += " " + entry.first;
-  throw InputError(where + ": encoding \"" + Printable(name) +
-                   "\" is not read; those that are:" + known);
-}
-
-void CheckSize(std::int64_t width, std::int64_t height, const std::string& where) {
-  const bool good = width >= 1 && height >= 1 && width <= kMostSide && height <= kMostSide &&
-                    width * height <= kMostPixels;
-  if (good) return;
-  throw InputError(where + ": is " + std::to_string(width) + " x " + std::to_string(height) +
-                   " px; expected 1 to " + std::to_string(kMostSide) + ", and at most " +
-                   std::to_string(kMostPixels) + " pixels");
-}
-
-void SwapBytes(cv::Mat* pixels) {
-  for (int y = 0; y < pixels->rows; ++y) {
-    auto* row = pixels->ptr<std::uint16_t>(y);
-    for (int x = 0; x < pixels->cols; ++x) {
-      row[x] = static_cast<std::uint16_t>(row[x] << 8 | row[x] >> 8);
-    }
-  }
-}
-
-// "bayer_rggb8; png compressed bayer_rggb8": what the pixels were before.
-PixelFormat MosaicOf(const std::string& format) {
-  const auto found = Encodings().find(format.substr(0, format.find(';')));
-  const bool mosaic = found != Encodings().end() && found->second.type == CV_8UC1;
-  return mosaic ? found->second.format : PixelFormat::kMono8;
-}
 
 // A PointCloud2 differs from a PCD in its header only, so it is read as one: what fields mean is
 // decided there.
@@ -270,51 +190,6 @@ std::string YamlList(const Numbers& numbers) {
 }
 
 }  // namespace
-
-Image ToImage(const ros::Image& image, const std::string& where) {
-  const Encoding& encoding = EncodingOf(image.encoding, where);
-  CheckSize(image.width, image.height, where);
-  const std::size_t row = image.width * static_cast<std::size_t>(CV_ELEM_SIZE(encoding.type));
-  if (image.step % static_cast<std::size_t>(CV_ELEM_SIZE1(encoding.type)) != 0) {
-    throw InputError(where + ": rows of 16-bit pixels are " + std::to_string(image.step) +
-                     " bytes apart; expected an even number");
-  }
-  if (image.step < row || image.size / image.step < image.height) {
-    throw InputError(where + ": is cut short: " + std::to_string(image.height) + " rows of " +
-                     std::to_string(row) + " bytes, " + std::to_string(image.step) +
-                     " apart, are announced, " + std::to_string(image.size) + " bytes are there");
-  }
-  const cv::Mat sent(static_cast<int>(image.height), static_cast<int>(image.width), encoding.type,
-                     const_cast<std::uint8_t*>(image.data), image.step);
-  Image out;
-  out.utime = image.header.utime;
-  out.format = encoding.format;
-  if (encoding.conversion < 0) {
-    out.pixels = sent.clone();
-  } else {
-    if (encoding.type == CV_8UC2 && image.width % 2 != 0) {
-      throw InputError(where + ": YUV 4:2:2 of an odd width, " + std::to_string(image.width));
-    }
-    cv::cvtColor(sent, out.pixels, encoding.conversion);
-  }
-  if (image.big_endian && encoding.type == CV_16UC1) SwapBytes(&out.pixels);
-  return out;
-}
-
-Image ToImage(const ros::CompressedImage& image, const std::string& where) {
-  const auto size = StatedSize(image.data, image.size);
-  if (!size) {
-    throw InputError(where + ": format \"" + Printable(image.format) +
-                     "\" is not read; expected JPEG, PNG or TIFF");
-  }
-  CheckSize(size->width, size->height, where);
-  Image out;
-  out.utime = image.header.utime;
-  out.pixels = rgbdt::DecodeImage(image.data, image.size, where);
-  const bool grey = out.pixels.type() == CV_8UC1;
-  out.format = FormatOf(grey ? MosaicOf(image.format) : static_cast<PixelFormat>(0), &out.pixels);
-  return out;
-}
 
 bool IsLivox(const ros::PointCloud& cloud) {
   int found = 0;

@@ -5,19 +5,11 @@
 
 #include "calib/files/import/lens_file.h"
 #include "calib/model/cloud.h"
-#include "calib/model/image.h"
 #include "services/import/ros_messages.h"
 
 namespace rgbdt {
 
 // Messages of ROS as the library's own structs. Each throws InputError, which begins with `where`.
-
-/// The pixels as they were sent, in OpenCV's order, of: mono8 8UC1 mono16 16UC1, bgr8 rgb8 bgra8
-/// rgba8 8UC3 8UC4, bayer_*8, and YUV 4:2:2. Other encodings (depth, 16-bit colour) are refused.
-Image ToImage(const ros::Image& image, const std::string& where);
-
-/// The same of JPEG, PNG and TIFF; a mosaic in a PNG stays one. `utime` is the header's.
-Image ToImage(const ros::CompressedImage& image, const std::string& where);
 
 /// As a PCD of the same fields would be read (calib/files/points/cloud_files.h), so a point that is
 /// not finite or at 0 0 0 is a beam that returned nothing. Besides, by their drivers' names:

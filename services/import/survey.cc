@@ -114,7 +114,11 @@ class Surveyor {
     const BagEncoding encoding = seen->topic.encoding;
     switch (seen->data) {
       case BagData::kImage:
-        if (seen->what.empty()) seen->what = Describe(ros::DecodeImage(message, encoding));
+        if (seen->what.empty()) {
+          const ros::Image image = ros::DecodeImage(message, encoding);
+          seen->unit = FloatUnitOf(image);
+          seen->what = Describe(image);
+        }
         return Keep(message, seen);
       case BagData::kCompressedImage:
         if (seen->what.empty()) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/bags/bag_reader.h"
+#include "services/import/image_data.h"
 #include "services/import/ros_messages.h"
 
 namespace rgbdt {
@@ -32,6 +33,7 @@ struct BagSurvey {
     std::string what;                     ///< of the first: "640x480 mono16", "2048x64 x y z ring"
     std::optional<ros::CameraInfo> info;  ///< the first that is calibrated, or else the first
     bool info_changes = false;            ///< a later one has another lens
+    FloatUnit unit = FloatUnit::kNone;    ///< of the first image, where it is 32FC1
     bool livox = false;                   ///< clouds of which those of a second are one (IsLivox)
     std::string text;                     ///< of a topic "metadata": what the LIDAR says of itself
     std::string problem;                  ///< the last message that could not be read, and why

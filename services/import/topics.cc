@@ -7,8 +7,10 @@
 #include <set>
 #include <sstream>
 
+#include "calib/files/import/camera_kind.h"
 #include "calib/model/errors.h"
 #include "services/bags/printable.h"
+#include "services/import/internal/topic_names.h"
 #include "services/messages/limits.h"
 
 namespace rgbdt {
@@ -28,29 +30,8 @@ bool HasMessages(const Topic& topic) {
   return topic.data == BagData::kPackets ? !topic.what.empty() : !topic.stamped.empty();
 }
 
-// "/cam/rgb/image_raw/compressed": the camera "/cam/rgb", and its images "image_raw".
-struct Parts {
-  std::string camera, images;
-};
-
-Parts Split(const Topic& topic) {
-  std::string name = topic.topic.name;
-  for (const char* transport : {"/compressed", "/compressedDepth"}) {
-    const std::string end = transport;
-    if (topic.data == BagData::kCompressedImage && name.size() > end.size() &&
-        name.compare(name.size() - end.size(), end.size(), end) == 0) {
-      name.erase(name.size() - end.size());
-      break;
-    }
-  }
-  const std::size_t slash = name.rfind('/');
-  if (slash == std::string::npos) return {"", name};
-  return {name.substr(0, slash), name.substr(slash + 1)};
-}
-
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+TopicParts Split(const Topic& topic) {
+  return SplitTopic(topic.topic.name, topic.data == BagData::kCompressedImage);
 }
 
 // By image_proc: its CameraInfo is of the images before.
@@ -61,14 +42,20 @@ bool IsRectified(const Topic& topic) {
 
 // Why these are not taken for a camera's images; empty: they may be.
 std::string WhyNoCamera(const Topic& topic) {
-  const std::string name = Lower(topic.topic.name);
+  const std::string name = ToLower(topic.topic.name);
   const auto says = [&](const char* word) { return name.find(word) != std::string::npos; };
   if (topic.stamped.empty()) {
     return topic.problem.empty() ? "no messages" : "cannot be read: " + topic.problem;
   }
-  if (says("depth") || says("disparity") || topic.what.find("32FC1") != std::string::npos) {
-    return says("therm") ? "numbers of floating point (32FC1); expected raw counts, mono16 or mono8"
-                         : "depth, no picture";
+  if (says("depth") || says("disparity")) return "depth, no picture";
+  if (topic.what.find("32FC1") != std::string::npos && topic.unit != FloatUnit::kKelvin) {
+    const bool celsius = topic.unit == FloatUnit::kMaybeCelsius;
+    if (!celsius) return "numbers of floating point (32FC1) that are no temperatures";
+    if (!SaysThermal(name, true)) {
+      return "numbers of floating point (32FC1), degrees Celsius or metres of depth; if they are "
+             "temperatures, say --image thermal=" +
+             topic.topic.name;
+    }
   }
   if (IsRectified(topic)) return "rectified: another lens; --image takes it, with --lens";
   for (const char* word : {"mask", "label", "segment", "debug", "overlay"}) {
@@ -83,22 +70,6 @@ int Rank(const Topic& topic) {
   const auto found = std::find(order.begin(), order.end(), Split(topic).images);
   return static_cast<int>(found - order.begin()) +
          (topic.data == BagData::kCompressedImage ? 100 : 0);
-}
-
-// 1 to 32 of a-z, 0-9 and _, as the rig file has it.
-std::string SensorName(const Topic& topic, const std::set<std::string>& taken) {
-  const Parts parts = Split(topic);
-  const std::string whole = parts.camera.empty() ? parts.images : parts.camera;
-  std::string name;
-  for (const char c : whole.substr(whole.rfind('/') + 1)) {
-    const auto u = static_cast<unsigned char>(c);
-    name += std::isalnum(u) != 0 ? static_cast<char>(std::tolower(u)) : '_';
-  }
-  name = name.substr(0, 28);
-  if (name.empty()) name = "sensor";
-  std::string free = name;
-  for (int i = 2; taken.count(free) != 0; ++i) free = name + "_" + std::to_string(i);
-  return free;
 }
 
 std::string NamesOf(const BagSurvey& survey, bool (*is)(const Topic&)) {
@@ -125,13 +96,58 @@ const Topic& Wanted(const BagSurvey& survey, const std::string& name, bool (*is)
   return *topic;
 }
 
+// Images whose camera has its name by the space that they are in.
+std::multimap<std::string, const Topic*> NamedBySpace(const BagSurvey& survey) {
+  std::multimap<std::string, const Topic*> named;
+  for (const Topic& topic : survey.topics) {
+    if (!IsImages(topic) || !WhyNoCamera(topic).empty()) continue;
+    const TopicParts parts = Split(topic);
+    if (parts.own.empty()) named.emplace(parts.space, &topic);
+  }
+  return named;
+}
+
+// The camera, as a path; empty: that without a space. Where the images' name says whose they are
+// that is one by itself, unless it is of the frame of images beside it that are named by the space.
+std::string CameraOf(const std::multimap<std::string, const Topic*>& named_by_space,
+                     const Topic& images) {
+  const TopicParts parts = Split(images);
+  if (parts.own.empty()) return parts.space;
+  const auto [begin, end] = named_by_space.equal_range(parts.space);
+  const bool of_space = std::any_of(begin, end, [&](const auto& entry) {
+    const std::string& frame = entry.second->frame;
+    return frame.empty() || images.frame.empty() || frame == images.frame;
+  });
+  return of_space ? parts.space : parts.space + "/" + parts.own;
+}
+
 const Topic* InfoOf(const BagSurvey& survey, const Topic& images) {
-  const Topic* info = survey.Find(Split(images).camera + "/camera_info");
-  return info != nullptr && info->info ? info : nullptr;
+  const TopicParts parts = Split(images);
+  const std::string space = parts.space + "/";
+  for (const std::string& name :
+       {space + parts.leaf + "/camera_info", space + parts.own + "/camera_info",
+        space + parts.own + "_camera_info", space + "camera_info"}) {
+    const Topic* info = survey.Find(name);
+    if (info != nullptr && info->info) return info;
+  }
+  return nullptr;
+}
+
+// One CameraInfo beside the images of several cameras is that one's whose frame it has.
+void DropOthersInfo(const std::vector<std::string>& paths,
+                    std::vector<TopicChoice::Camera>* cameras) {
+  std::map<const Topic*, std::set<std::string>> cameras_of;
+  for (std::size_t i = 0; i < paths.size(); ++i) cameras_of[(*cameras)[i].info].insert(paths[i]);
+  for (TopicChoice::Camera& camera : *cameras) {
+    if (camera.info == nullptr || cameras_of[camera.info].size() == 1) continue;
+    const std::string& frame = camera.info->info->header.frame;
+    if (frame.empty() || frame != camera.images->frame) camera.info = nullptr;
+  }
 }
 
 // Of each camera the topic that is taken.
 std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::string>* left_out) {
+  const auto named_by_space = NamedBySpace(survey);
   std::map<std::string, const Topic*> best;
   for (const Topic& topic : survey.topics) {
     if (!IsImages(topic)) continue;
@@ -140,7 +156,7 @@ std::vector<const Topic*> SeenCameras(const BagSurvey& survey, std::vector<std::
       left_out->push_back(topic.topic.name + ": " + why);
       continue;
     }
-    const Topic*& of_camera = best[Split(topic).camera];
+    const Topic*& of_camera = best[CameraOf(named_by_space, topic)];
     const Topic* worse = &topic;
     if (of_camera == nullptr || Rank(topic) < Rank(*of_camera)) std::swap(of_camera, worse);
     if (worse != nullptr) {
@@ -162,7 +178,7 @@ bool IsColoured(const Topic& topic) {
 
 // What programs make of LIDARs' clouds, and what depth cameras tell.
 std::string MadeWord(const Topic& topic) {
-  const std::string name = Lower(topic.topic.name);
+  const std::string name = ToLower(topic.topic.name);
   for (const char* word :
        {"depth", "disparity", "concat", "merge", "fused", "filter", "crop", "downsample", "voxel",
         "ground", "obstacle", "segment", "cluster", "map", "debug"}) {
@@ -231,6 +247,42 @@ std::vector<const Topic*> SeenLidars(const BagSurvey& survey, bool one_lidar,
   return found;
 }
 
+std::vector<TopicChoice::Camera> CamerasOf(
+    const BagSurvey& survey, const std::vector<std::pair<std::string, const Topic*>>& taken) {
+  if (static_cast<std::int64_t>(taken.size()) > kMaxCameras) {
+    throw InputError("the bag has more than " + std::to_string(kMaxCameras) +
+                     " cameras; say by --image which are to be taken");
+  }
+  const auto named_by_space = NamedBySpace(survey);
+  std::set<std::string> names;
+  std::vector<std::string> paths;
+  for (const auto& [name, images] : taken) {
+    if (!name.empty() && !names.insert(name).second) {
+      throw InputError("two cameras are called \"" + name + "\"; expected a name for each");
+    }
+    const std::string path = CameraOf(named_by_space, *images);
+    paths.push_back(path.empty() ? Split(*images).leaf : path);
+  }
+  const std::vector<std::string> apart = TellApart(paths);
+  std::vector<TopicChoice::Camera> cameras;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const auto& [name, images] = taken[i];
+    TopicChoice::Camera& camera = cameras.emplace_back();
+    camera.name = name.empty() ? FreeName(apart[i], names) : name;
+    names.insert(camera.name);
+    camera.images = images;
+    camera.info = IsRectified(*images) ? nullptr : InfoOf(survey, *images);
+  }
+  DropOthersInfo(paths, &cameras);
+  return cameras;
+}
+
+// By the space that the clouds are in.
+std::string SensorName(const Topic& clouds, const std::set<std::string>& taken) {
+  const TopicParts parts = Split(clouds);
+  return FreeName(TellApart({parts.space.empty() ? parts.leaf : parts.space})[0], taken);
+}
+
 void ChooseLidars(const BagSurvey& survey, const TopicWishes& wishes, TopicChoice* choice) {
   std::vector<TopicChoice::Lidar> lidars;
   for (const auto& [name, topic] : wishes.clouds) {
@@ -279,27 +331,14 @@ const BagSurvey::Topic* MetadataOf(const BagSurvey& survey, const BagSurvey::Top
 
 TopicChoice ChooseTopics(const BagSurvey& survey, const TopicWishes& wishes) {
   TopicChoice choice;
-  std::set<std::string> names;
-  const auto add = [&](const std::string& wish, const Topic& topic) {
-    if (static_cast<std::int64_t>(choice.cameras.size()) >= kMaxCameras) {
-      throw InputError("the bag has more than " + std::to_string(kMaxCameras) +
-                       " cameras; say by --image which are to be taken");
-    }
-    TopicChoice::Camera camera;
-    camera.name = wish.empty() ? SensorName(topic, names) : wish;
-    if (!names.insert(camera.name).second) {
-      throw InputError("two cameras are called \"" + camera.name + "\"; expected a name for each");
-    }
-    camera.images = &topic;
-    camera.info = IsRectified(topic) ? nullptr : InfoOf(survey, topic);
-    choice.cameras.push_back(camera);
-  };
+  std::vector<std::pair<std::string, const Topic*>> taken;  // name (or empty), images
   for (const auto& [name, topic] : wishes.images) {
-    add(name, Wanted(survey, topic, IsImages, "--image"));
+    taken.emplace_back(name, &Wanted(survey, topic, IsImages, "--image"));
   }
   if (wishes.images.empty() && !wishes.clouds_alone) {
-    for (const Topic* topic : SeenCameras(survey, &choice.left_out)) add("", *topic);
+    for (const Topic* topic : SeenCameras(survey, &choice.left_out)) taken.emplace_back("", topic);
   }
+  choice.cameras = CamerasOf(survey, taken);
   if (choice.cameras.empty() && !wishes.clouds_alone) {
     std::string why;
     for (const std::string& line : choice.left_out) why += "; " + line;

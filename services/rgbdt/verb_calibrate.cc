@@ -35,7 +35,8 @@ struct CalibrateFlags {
 
 // Where one result goes, what it is compared with, and whether it is told as JSON.
 struct Place {
-  std::filesystem::path out, truth;
+  std::filesystem::path out;
+  std::optional<Truth> truth;
   bool json = false;
 };
 
@@ -61,7 +62,7 @@ ExitCode Finish(const Place& place, const Session& session, const SessionDetecti
                 Report report, const std::set<std::string>& left_out = {}) {
   report = WithUnlisted(std::move(report), session, detection.views);
   const std::string wrote = WriteIfSolved(place.out, session.rig, &report);
-  if (!place.truth.empty()) report = WithTruth(std::move(report), ReadTruth(place.truth));
+  if (place.truth) report = WithTruth(std::move(report), *place.truth);
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);
   WriteReportFiles(place.out, {listed, detection.views, reports, {left_out, {}, ""}});
@@ -88,11 +89,12 @@ void PrintNext(const Session& session, const std::filesystem::path& out, ExitCod
 ExitCode CalibrateOne(const CalibrateFlags& flags) {
   const Session session = OpenSession(flags.dirs[0]);
   const std::set<std::string> left_out = LeftOutOf(flags, session);
-  SetAside(PathOr(flags.out, session.root));
-  const SessionDetection detection = Detect(session, flags.options.method);
   const std::filesystem::path out = PathOr(flags.out, session.root);
+  const Place place{out, ReadTruthOf(flags.truth, session.root), flags.json};  // before the work
+  SetAside(out);
+  const SessionDetection detection = Detect(session, flags.options.method);
   const ExitCode end =
-      Finish({out, TruthPath(flags.truth, session.root), flags.json}, session, detection,
+      Finish(place, session, detection,
              CalibrateWithout(session.rig, detection.views, left_out, flags.options), left_out);
   PrintUnreadable(detection.unreadable);
   if (!flags.json) PrintNext(session, out, end);
@@ -124,6 +126,7 @@ std::vector<SessionViews> Divided(const Session& joined, const std::vector<ViewD
 // One pose of each camera in all sessions.
 ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
+  const Place place{flags.out, ReadTruthOf(flags.truth, session.parts[0].session.root), flags.json};
   SetAside(flags.out);
   const SessionDetection detection = Detect(session, flags.options.method);
   std::vector<CalibrationComparison> comparisons;
@@ -135,9 +138,7 @@ ExitCode CalibrateTogether(const CalibrateFlags& flags) {
   }
   const Report report =
       WithChanges(Calibrate(session.rig, detection.views, flags.options), comparisons);
-  const ExitCode end =
-      Finish({flags.out, TruthPath(flags.truth, session.parts[0].session.root), flags.json},
-             session, detection, report);
+  const ExitCode end = Finish(place, session, detection, report);
   PrintUnreadable(detection.unreadable);
   if (!flags.json) PrintComparisons(comparisons);
   return end;
@@ -151,7 +152,12 @@ std::filesystem::path OutOf(const CalibrateFlags& flags, const std::string& sess
 // Poses of its own in each session; what all have in common is told by all.
 ExitCode CalibrateEach(const CalibrateFlags& flags) {
   const Session session = OpenAll(flags);
-  for (const Session::Part& part : session.parts) SetAside(OutOf(flags, part.name));
+  std::vector<Place> places;
+  for (const Session::Part& part : session.parts) {
+    places.push_back(
+        {OutOf(flags, part.name), ReadTruthOf(flags.truth, part.session.root), flags.json});
+  }
+  for (const Place& place : places) SetAside(place.out);
   const SessionDetection detection = Detect(session, flags.options.method);
   const std::vector<SessionViews> views = Divided(session, detection.views);
   CalibratedSessions result = CalibrateSessions(session.rig, views, flags.options);
@@ -161,9 +167,7 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
     if (!flags.json) {
       std::printf("%s%s\n", s == 0 ? "" : "\n", parts[s].Title().c_str());
     }
-    const Place place{OutOf(flags, views[s].name),
-                      TruthPath(flags.truth, parts[s].parts[0].session.root), flags.json};
-    end = WorseOf(end, Finish(place, parts[s], {views[s].detections, detection.unreadable},
+    end = WorseOf(end, Finish(places[s], parts[s], {views[s].detections, detection.unreadable},
                               result.reports[s]));
   }
   PrintUnreadable(detection.unreadable);
@@ -173,7 +177,6 @@ ExitCode CalibrateEach(const CalibrateFlags& flags) {
 
 int RunCalibrate(const CalibrateFlags& flags) {
   flags.options.Check();
-  if (!flags.truth.empty()) ReadTruth(flags.truth);  // before the work
   if (!flags.without.empty() && flags.dirs.size() > 1) {
     throw UsageError("--without is for one session; each has its own views");
   }

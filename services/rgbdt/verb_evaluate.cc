@@ -111,6 +111,7 @@ void KeepFromSolve(const CalibrationFiles& files, const std::filesystem::path& s
 int RunEvaluate(const EvaluateFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
+  const std::optional<Truth> truth = ReadTruthOf(flags.truth, session.root);  // before the work
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
   const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSameRig(calibration, session.rig, files.Names(), files.HowToUse()));
@@ -122,8 +123,7 @@ int RunEvaluate(const EvaluateFlags& flags) {
   Report report = Evaluate(session.rig, detection.views, calibration);
   KeepFromSolve(files, session.root, &report);
   report = WithUnlisted(std::move(report), session, detection.views);
-  const auto truth = TruthPath(flags.truth, session.root);
-  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
+  if (truth) report = WithTruth(std::move(report), *truth);
   const auto reports = CalibrateByViews(session.rig, detection.views, report);
   const Session listed = ListedOnly(session, detection.views);
   WriteReportFiles(out, {listed, detection.views, reports});

@@ -119,11 +119,21 @@ int RunLas(const ExportFlags& flags) {
   return EndsWith(true);
 }
 
+// A calibration alone does not tell the cameras' kinds, sizes and lenses.
+void RequireSession(const std::filesystem::path& dir) {
+  if (!std::filesystem::is_directory(dir) || std::filesystem::exists(dir / "rig.textproto")) return;
+  throw InputError(dir.string() +
+                   ": holds no rig.textproto; expected the session directory that was calibrated, "
+                   "with --calibration FILE where the result lies elsewhere; for a log say --mcap, "
+                   "for a cloud --las");
+}
+
 int RunExport(const ExportFlags& flags) {
   if (flags.mcap && flags.las) throw UsageError("--mcap is of a log, --las of a cloud: give one");
   if (flags.mcap) return RunMcap(flags);
   if (flags.las) return RunLas(flags);
   const std::filesystem::path dir = flags.dir;
+  RequireSession(dir);
   const std::filesystem::path out =
       flags.out.empty() ? OwnFolder(dir, "export") : std::filesystem::path(flags.out);
   if (std::filesystem::exists(dir)) CheckWritable(out / "calibration");

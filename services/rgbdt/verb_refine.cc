@@ -125,7 +125,7 @@ int RunRefine(RefineFlags flags) {
                                     : is_log           ? session.root.parent_path()
                                                        : OwnFolder(session.root, "refined");
   CheckWritable(out / "report.json");
-  if (!flags.truth.empty()) ReadTruth(flags.truth);  // before the work
+  const std::optional<Truth> truth = ReadTruthOf(flags.truth, session.root);  // before the work
   const Calibration start = StartOf(flags, session);
   const ReadViews read = ReadAll(session);
   RequireReadable(session, read.unreadable);
@@ -135,8 +135,7 @@ int RunRefine(RefineFlags flags) {
   Report report = Refine(session.rig, read.views, start, flags.options);
   for (CameraReport& camera : report.cameras) camera.cannot_tell = cannot_tell;
   const std::string wrote = WriteIfSolved(out, session.rig, &report);
-  const auto truth = TruthPath(flags.truth, session.root);
-  if (!truth.empty()) report = WithTruth(std::move(report), ReadTruth(truth));
+  if (truth) report = WithTruth(std::move(report), *truth);
   WriteReportFiles(out, {session, WithoutBoards(report), {report}});
   PrintReport(flags.json, report, out, wrote, read.unreadable);
   PrintUnreadable(read.unreadable);

@@ -65,6 +65,7 @@ std::vector<Image> SomeImages(const FolderSession& session, const CameraSpec& ca
     Image& image = images.emplace_back();
     image.camera = camera.name;
     image.pixels = DecodeImageFile(files[(2 * i + 1) * files.size() / (2 * count)]);
+    if (camera.kind == CameraKind::kColor) EightBits(&image.pixels);
     image.format = FormatOf(static_cast<PixelFormat>(0), &image.pixels);
   }
   return images;
@@ -178,9 +179,11 @@ void AddSession(CommandLine* program) {
       "\\\n"
       "            --clouds rear=pcd_rear --board 8x6@0.095,0.85x0.61 --out out/session",
       [flags] { return RunSession(*flags); });
-  verb->Required("--images", &flags->images,
-                 "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
-                 "name it is rgb, or thermal where images have 16 bits or the folder says so");
+  verb->Required(
+      "--images", &flags->images,
+      "[NAME=]DIR, a camera's folder of images; given again for each camera. Without a\n"
+      "name it is rgb, or thermal where the folder says so, or images are one channel of\n"
+      "16 bits with a thermal camera's values; NAME rgb or thermal says which it is");
   verb->Required(
       "--clouds", &flags->clouds,
       "[NAME=]DIR, the folder of clouds: PCD, PLY, or .bin as KITTI and nuScenes have them;\n"

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "calib/files/import/folders.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/calibration_use.h"
+#include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "services/command_line/command_line.h"
 
@@ -44,11 +46,12 @@ inline std::filesystem::path PathOr(const std::string& given,
   return given.empty() ? otherwise : std::filesystem::path(given);
 }
 
-/// The truth file that the user named, or else the session's own; empty: there is none.
-inline std::filesystem::path TruthPath(const std::string& given,
-                                       const std::filesystem::path& session_root) {
-  const std::filesystem::path beside = session_root / "truth.textproto";
-  return given.empty() && !std::filesystem::exists(beside) ? "" : PathOr(given, beside);
+/// Of the file that the user named, or else the session's own; none: there is none.
+inline std::optional<Truth> ReadTruthOf(const std::string& given,
+                                        const std::filesystem::path& session_root) {
+  const std::filesystem::path file = PathOr(given, session_root / "truth.textproto");
+  if (given.empty() && !std::filesystem::exists(file)) return std::nullopt;
+  return ReadTruth(file);
 }
 
 /// A calibration that a verb uses, and the rig that it is used with.

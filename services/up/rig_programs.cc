@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calib/model/errors.h"
+#include "calib/model/recording.h"
 
 namespace rgbdt {
 namespace {
@@ -81,17 +82,6 @@ std::string NamesOf(const std::vector<Program>& programs) {
   names.reserve(programs.size());
   for (const Program& program : programs) names.push_back(program.name);
   return Listed(names);
-}
-
-// That has an end, after which it is not to be played again.
-bool IsRecording(const LidarSpec& lidar) {
-  if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
-    return !velodyne->pcap.empty();
-  }
-  if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
-    return !packets->pcap.empty();
-  }
-  return std::holds_alternative<PcdFolderDevice>(lidar.device);
 }
 
 // Of sessions and drives, all but the logger.

@@ -57,6 +57,10 @@ grep -qx '  thermal/camera_link:' "$scratch/plain/sensor_kit_calibration.yaml" |
 grep -q -- '--frame-id vlp16 --child-frame-id rgb_optical_frame' "$scratch"/plain/*.launch.yaml ||
   complain "names that were not given"
 
+cp "$session/calibration.textproto" "$scratch/kept"
+says=("no rig.textproto" "session directory" "--calibration")
+refuses "a calibration without its rig" "$bin/rgbdt" export "$scratch/kept"
+
 says=("--camera-frame" "CAMERA=FRAME")
 misuses "a frame of no camera" "$bin/rgbdt" export "$session" --camera-frame front --out "$scratch/kept"
 says=("front" "rgb" "thermal")

@@ -4,6 +4,7 @@
 
 #include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
+#include "services/import/image_data.h"
 #include "services/import/sensor_data.h"
 #include "services/import/survey.h"
 

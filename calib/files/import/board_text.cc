@@ -59,11 +59,15 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-// `least`: what is shorter in metres once millimetres are converted must have been centimetres.
+// `least`: what is shorter in metres once millimetres are converted must have been centimetres. No
+// board is ten times smaller still.
 void CheckMetres(const std::string& text, double value, const char* what, double least,
                  double most) {
   const std::string is = "--board " + text + ": " + what + " is " + Exact(value) + " m";
   if (!(value > 0)) throw InputError(is + "; expected more than 0");
+  if (std::isinf(value) || value < least / 10) {
+    throw InputError(is + Format("; expected metres, %g to %g", least / 10, most));
+  }
   if (value <= most) return;
   const bool millimetres = value / 1000 >= least;
   throw InputError(is + ", which looks like " + (millimetres ? "millimetres" : "centimetres") +

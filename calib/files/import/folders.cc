@@ -1,18 +1,20 @@
 #include "calib/files/import/folders.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "calib/files/check_writable.h"
+#include "calib/files/import/camera_kind.h"
 #include "calib/files/import/internal/folder_files.h"
 #include "calib/files/import/lens_file.h"
+#include "calib/files/name_keys.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
+#include "calib/model/statistics.h"
 
 namespace rgbdt {
 namespace {
@@ -26,6 +28,7 @@ struct ReadCamera {
   std::set<std::size_t> unreadable, without;  // images, and the clouds that had them
   CameraSpec spec;
   bool turned_by_exif = false;
+  std::string why;  // it is of its kind; empty: there is nothing to say
 };
 
 std::string SizeOf(int width, int height) {
@@ -115,20 +118,27 @@ void CheckAlike(const FileList& files, const std::vector<ImageFacts>& facts) {
   }
 }
 
-bool SaysThermal(std::string name) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name.find("therm") != std::string::npos || name.find("lwir") != std::string::npos;
-}
-
 std::string LastName(const fs::path& folder) {
   const fs::path whole = fs::weakly_canonical(folder);
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-CameraKind KindOf(const Folders::Camera& camera, const ImageFacts& facts) {
-  if (IsSixteenBit(facts)) return CameraKind::kThermal;
+// Gives what there is to say of it in `why`.
+CameraKind KindOf(const Folders::Camera& camera, const std::vector<ImageFacts>& all,
+                  std::string* why) {
+  const ImageFacts& facts = all[0];
   const std::string name = camera.name.empty() ? LastName(camera.images) : camera.name;
-  if (!SaysThermal(name)) return CameraKind::kColor;
+  if (IsSixteenBit(facts)) {
+    std::vector<double> parts;
+    for (const ImageFacts& one : all) parts.push_back(one.dark_over_bright);
+    const auto [kind, by] = KindOfSixteenBit({name, LastName(camera.images)}, Median(parts));
+    if (!by.empty()) {
+      *why = by + "; otherwise say --images " +
+             (kind == CameraKind::kThermal ? "rgb=" : "thermal=") + camera.images.string();
+    }
+    return kind;
+  }
+  if (!SaysThermal(name, false)) return CameraKind::kColor;
   if (facts.format == PixelFormat::kBgr8) {
     throw InputError("\"" + name + "\" is a thermal camera's name, but the images of " +
                      camera.images.string() +
@@ -177,13 +187,14 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
   const std::vector<ImageFacts> facts = DropUnreadable(&read, left_over);
   CheckAlike(read.images, facts);
   CameraSpec& spec = read.spec;
-  spec.kind = KindOf(camera, facts[0]);
+  spec.kind = KindOf(camera, facts, &read.why);
   const bool thermal = spec.kind == CameraKind::kThermal;
   spec.name = camera.name.empty() ? FreeName(thermal ? "thermal" : "rgb", *names) : camera.name;
   names->insert(spec.name);
   spec.width = facts[0].width;
   spec.height = facts[0].height;
-  spec.format = facts[0].format;
+  const bool reduced = IsSixteenBit(facts[0]) && !thermal;
+  spec.format = reduced ? PixelFormat::kMono8 : facts[0].format;
   read.turned_by_exif = std::any_of(facts.begin(), facts.end(),
                                     [](const ImageFacts& one) { return one.turned_by_exif; });
   return read;
@@ -200,6 +211,7 @@ std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamer
     lines.push_back("camera " + spec.name + ": " +
                     (spec.kind == CameraKind::kThermal ? "thermal" : "colour") + ", " +
                     SizeOf(spec.width, spec.height) + ", " + lens +
+                    ((*cameras)[i].why.empty() ? "" : "; " + (*cameras)[i].why) +
                     ((*cameras)[i].turned_by_exif
                          ? "; EXIF says that they are to be turned: they are taken as they are "
                            "stored, and the lens must be of that"
@@ -223,8 +235,7 @@ Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
 }
 
 std::string ViewName(const std::string& file, std::set<std::string>* taken) {
-  const fs::path stem = fs::path(file).stem();
-  std::string name = (stem.extension() == ".pcd" ? stem.stem() : stem).string().substr(0, 90);
+  std::string name = StemOf(file).substr(0, 90);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }

@@ -4,22 +4,17 @@
 #include <cmath>
 #include <map>
 
-#include "calib/files/import/internal/name_keys.h"
+#include "calib/files/name_keys.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::vector<std::string> StemsOf(const FileList& files) {
   std::vector<std::string> stems;
   stems.reserve(files.names.size());
-  for (const std::string& name : files.names) {
-    const fs::path stem = fs::path(name).stem();
-    stems.push_back((stem.extension() == ".pcd" ? stem.stem() : stem).string());  // of x.pcd.bin
-  }
+  for (const std::string& name : files.names) stems.push_back(StemOf(name));
   return stems;
 }
 

@@ -101,7 +101,7 @@ void CheckPixels(const CameraSpec& camera, const Image& image, const std::string
                            "coloured picture of them");
   }
   if (camera.kind == CameraKind::kColor && pixels.depth() != CV_8U) {
-    place.Fail("file", file + " is not 8-bit, but camera \"" + camera.name +
+    place.Fail("file", file + " has neither 8 nor 16 bit, but camera \"" + camera.name +
                            "\" is a colour camera: convert it to 8-bit grey, Bayer or colour");
   }
   if (pixels.cols != camera.width || pixels.rows != camera.height) {
@@ -129,6 +129,7 @@ Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path&
   image.exposure_s = message.exposure_s();
   image.shutter_correcting = message.shutter_correcting();
   image.radiometry = ReadRadiometry(message, camera, place);
+  if (camera.kind == CameraKind::kColor) EightBits(&image.pixels);
   // Before the format: of all that can be wrong with a thermal image, three channels come first.
   CheckPixels(camera, image, file.string(), place);
   image.format = ReadFor(place, "file", [&] {

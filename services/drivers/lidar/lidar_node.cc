@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calib/model/errors.h"
+#include "calib/model/recording.h"
 #include "services/drivers/hokuyo/scip_scanner.h"
 #include "services/drivers/lidar/internal/pcd_folder.h"
 #include "services/drivers/packets/packet_source.h"
@@ -28,17 +29,18 @@ class SourceOf : public LidarNode::Source {
 };
 
 std::unique_ptr<LidarNode::Source> MakeSource(const LidarSpec& lidar) {
+  const bool live = !IsRecording(lidar);
   if (const auto* hokuyo = std::get_if<HokuyoDevice>(&lidar.device)) {
-    return std::make_unique<SourceOf<ScipScanner>>(*hokuyo, false, true);
+    return std::make_unique<SourceOf<ScipScanner>>(*hokuyo, false, live);
   }
   if (const auto* velodyne = std::get_if<VelodyneDevice>(&lidar.device)) {
-    return std::make_unique<SourceOf<PacketSource>>(*velodyne, true, velodyne->pcap.empty());
+    return std::make_unique<SourceOf<PacketSource>>(*velodyne, true, live);
   }
   if (const auto* packets = std::get_if<PacketLidarDevice>(&lidar.device)) {
-    return std::make_unique<SourceOf<PacketSource>>(*packets, true, packets->pcap.empty());
+    return std::make_unique<SourceOf<PacketSource>>(*packets, true, live);
   }
   if (const auto* folder = std::get_if<PcdFolderDevice>(&lidar.device)) {
-    return std::make_unique<SourceOf<PcdFolder>>(*folder, true, false);
+    return std::make_unique<SourceOf<PcdFolder>>(*folder, true, live);
   }
   throw InputError(
       "the rig's lidar names no device; add one of these to its lidar { ... }:\n"

@@ -18,6 +18,7 @@ namespace rgbdt {
 namespace {
 
 using test::Little;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -344,6 +345,37 @@ TEST_F(Bags, AFolderOfSeveralKindsIsTheOneThatItsMetadataLists) {
   EXPECT_THAT(error(), HasSubstr("several kinds"));
   WriteFileAtomically(dir_ / "b/metadata.yaml", "- other.mcap\n");
   EXPECT_THAT(error(), HasSubstr("several kinds"));
+}
+
+TEST_F(Bags, PartsThatAreNotThereAreTold) {
+  const std::string begin = test::kMcapMagic + test::McapChannels();
+  WriteFileAtomically(dir_ / "b/b_0.mcap", begin + test::McapMessage(1, 2000, "two"));
+  const auto metadata = [&](const std::string& lines) {
+    WriteFileAtomically(dir_ / "b/metadata.yaml",
+                        "rosbag2_bagfile_information:\n  duration:\n    nanoseconds: 9000000000\n"
+                        "  starting_time:\n    nanoseconds_since_epoch: 1600000000000000000\n"
+                        "  relative_file_paths:\n" +
+                            lines);
+    return ReadAll(dir_ / "b").problems;
+  };
+  EXPECT_THAT(metadata("    - b_0.mcap\n"), IsEmpty());
+  EXPECT_THAT(metadata("    - b_0.mcap.zstd\n"), IsEmpty()) << "unpacked since";
+  EXPECT_THAT(metadata("    - c_0.mcap\n    - c_1.mcap\n"), IsEmpty()) << "renamed since";
+  EXPECT_THAT(metadata("    - b_0.mcap\n    - b_1.mcap\n"),
+              ElementsAre(AllOf(HasSubstr("not there: b_1.mcap;"), HasSubstr("their time"))));
+  EXPECT_THAT(metadata("    - b_0.mcap\n    - b_1.mcap\n    - b_2.mcap\n  files:\n"
+                       "    - path: b_0.mcap\n      starting_time:\n"
+                       "        nanoseconds_since_epoch: 1600000000000000000\n"
+                       "      duration:\n        nanoseconds: 2000000000\n"
+                       "    - path: \"b_1.mcap\"\n      starting_time:\n"
+                       "        nanoseconds_since_epoch: 1600000002000000000\n"
+                       "      duration:\n        nanoseconds: 3000000000\n"
+                       "    - path: b_2.mcap\n      starting_time:\n"
+                       "        nanoseconds_since_epoch: 1600000005000000000\n"
+                       "      duration:\n        nanoseconds: 4000000000\n"),
+              ElementsAre(AllOf(HasSubstr("b_1.mcap (2.0 to 5.0 s), b_2.mcap (5.0 to 9.0 s)"),
+                                HasSubstr("7.0 s of it are missing"))));
+  EXPECT_THAT(ReadAll(dir_ / "b").messages, ElementsAre("/a 2 two"));
 }
 
 TEST_F(Bags, WhatRosbagFixLeftDoesNotCount) {

@@ -67,8 +67,23 @@ TEST(ImageFiles, FormatFollowsTheTypeOrWhatIsTold) {
   EXPECT_EQ(format(CV_8UC1, PixelFormat::kBayerGb8), PixelFormat::kBayerGb8);
   EXPECT_THAT(test::ErrorOf([&] { format(CV_8UC3, PixelFormat::kBayerGb8); }),
               HasSubstr("BAYER_GB8"));
-  EXPECT_THAT(test::ErrorOf([&] { format(CV_16UC3); }), HasSubstr("3-channel 16-bit"));
+  EXPECT_EQ(format(CV_16UC3), PixelFormat::kBgr8);
+  EXPECT_EQ(format(CV_16UC4), PixelFormat::kBgr8);
+  EXPECT_EQ(format(CV_16UC1, PixelFormat::kBayerGb8), PixelFormat::kBayerGb8);
   EXPECT_THAT(test::ErrorOf([&] { format(CV_32FC1); }), HasSubstr("32-bit float"));
+}
+
+TEST(ImageFiles, SixteenBitsBecomeEightByTheSensorsBits) {
+  const auto brightest = [](int count) {
+    cv::Mat image(1, 2, CV_16UC3, cv::Scalar(count, count / 2, 0));
+    EightBits(&image);
+    return image.at<cv::Vec3b>(0);
+  };
+  EXPECT_EQ(brightest(0xffff), cv::Vec3b(255, 128, 0));
+  EXPECT_EQ(brightest(0x3fff), cv::Vec3b(255, 128, 0)) << "14 bits";
+  EXPECT_EQ(brightest(0xfff), cv::Vec3b(255, 128, 0)) << "12 bits";
+  EXPECT_EQ(brightest(0x3ff), cv::Vec3b(255, 128, 0)) << "10 bits";
+  EXPECT_EQ(brightest(255), cv::Vec3b(255, 127, 0));
 }
 
 TEST(ImageFiles, DamagedFilesNeverCrashAndAreNamed) {

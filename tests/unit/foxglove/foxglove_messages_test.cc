@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/import/image_data.h"
 #include "services/import/sensor_data.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"

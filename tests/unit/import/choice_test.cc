@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "calib/files/atomic_file.h"
 #include "calib/files/import/folders.h"
 #include "services/import/moments.h"
@@ -13,6 +15,7 @@
 namespace rgbdt {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -43,12 +46,89 @@ TEST(ChooseTopics, OfEachCameraTheRawest) {
   for (const auto& camera : choice.cameras) {
     taken.push_back(camera.name + " " + camera.images->topic.name);
   }
-  EXPECT_THAT(taken, ElementsAre("front_left /Front-Left/image", "rgb /a/rgb/image_raw",
-                                 "rgb_2 /c/rgb/image_raw/compressed"));
+  EXPECT_THAT(taken, ElementsAre("front_left /Front-Left/image", "a_rgb /a/rgb/image_raw",
+                                 "c_rgb /c/rgb/image_raw/compressed"));
   EXPECT_EQ(choice.cameras[0].info, nullptr);
   EXPECT_EQ(choice.cameras[1].info->topic.name, "/a/rgb/camera_info");
   EXPECT_EQ(choice.lidar.clouds->topic.name, "/points");
   EXPECT_THAT(choice.left_out, SizeIs(5));
+}
+
+// "name topic" of each camera that is taken of these images; those of CompressedImage end in
+// /compressed.
+std::vector<std::string> CamerasOf(const std::vector<std::string>& images,
+                                   const std::map<std::string, std::string>& frames = {}) {
+  BagSurvey survey;
+  survey.topics.push_back(Topic("/points", BagData::kCloud, {0}));
+  for (const std::string& name : images) {
+    const bool compressed = name.find("/compressed") != std::string::npos;
+    survey.topics.push_back(
+        Topic(name, compressed ? BagData::kCompressedImage : BagData::kImage, {0}));
+    const auto frame = frames.find(name);
+    if (frame != frames.end()) survey.topics.back().frame = frame->second;
+  }
+  std::vector<std::string> cameras;
+  for (const auto& camera : ChooseTopics(survey, {}).cameras) {
+    cameras.push_back(camera.name + " " + camera.images->topic.name);
+  }
+  return cameras;
+}
+
+TEST(ChooseTopics, CamerasThatDifferInOnePartOfTheirTopicsAreTwo) {
+  EXPECT_THAT(CamerasOf({"/thermal/temperature", "/rgb/image_raw"}),
+              ElementsAre("rgb /rgb/image_raw", "thermal /thermal/temperature"));
+  EXPECT_THAT(CamerasOf({"/ir/left", "/ir/right"}),
+              ElementsAre("left /ir/left", "right /ir/right"));
+  EXPECT_THAT(CamerasOf({"/left", "/right"}), ElementsAre("left /left", "right /right"));
+  EXPECT_THAT(CamerasOf({"/stereo/left/image_raw", "/stereo/right/image_raw"}),
+              ElementsAre("left /stereo/left/image_raw", "right /stereo/right/image_raw"));
+  EXPECT_THAT(CamerasOf({"/cam0/image_raw", "/cam1/image_raw"}),
+              ElementsAre("cam0 /cam0/image_raw", "cam1 /cam1/image_raw"));
+  EXPECT_THAT(
+      CamerasOf({"/front/camera/image_raw/compressed", "/rear/camera/image_raw/compressed"}),
+      ElementsAre("front /front/camera/image_raw/compressed",
+                  "rear /rear/camera/image_raw/compressed"));
+  EXPECT_THAT(CamerasOf({"/oak/left_image_raw", "/oak/right_image_raw"}),
+              ElementsAre("left /oak/left_image_raw", "right /oak/right_image_raw"));
+  EXPECT_THAT(CamerasOf({"/car/cam/image_0", "/car/cam/image_1"}),
+              ElementsAre("cam_0 /car/cam/image_0", "cam_1 /car/cam/image_1"));
+  EXPECT_THAT(
+      CamerasOf({"/a/x/rgb/image", "/b/x/rgb/image", "/b/x/thermal/image"}),
+      ElementsAre("a_rgb /a/x/rgb/image", "b_rgb /b/x/rgb/image", "thermal /b/x/thermal/image"));
+}
+
+TEST(ChooseTopics, WhatOneCameraSendsSeveralTimesIsOneCamera) {
+  EXPECT_THAT(CamerasOf({"/ir/left", "/ir/left/compressed"}), ElementsAre("left /ir/left"));
+  EXPECT_THAT(CamerasOf({"/cam/compressed", "/cam/image_raw"}), ElementsAre("cam /cam/image_raw"));
+  EXPECT_THAT(CamerasOf({"/image_color", "/image_raw", "/image_raw/compressed"}),
+              ElementsAre("image_raw /image_raw"));
+  EXPECT_THAT(CamerasOf({"/oak/left_image_color", "/oak/left_image_raw"}),
+              ElementsAre("left /oak/left_image_raw"));
+  // What is made of a camera's images is no further one, unless it has a frame of its own.
+  EXPECT_THAT(CamerasOf({"/cam/image_raw", "/cam/tracked"}), ElementsAre("cam /cam/image_raw"));
+  EXPECT_THAT(CamerasOf({"/cam/image_raw", "/cam/thermal"},
+                        {{"/cam/image_raw", "rgb"}, {"/cam/thermal", "thermal"}}),
+              ElementsAre("cam /cam/image_raw", "thermal /cam/thermal"));
+}
+
+TEST(ChooseTopics, ACameraInfoIsOfTheCameraWhoseFrameItHas) {
+  BagSurvey survey;
+  survey.topics = {Topic("/ir/left", BagData::kImage, {0}),
+                   Topic("/ir/right", BagData::kImage, {0}), Topic("/points", BagData::kCloud, {0}),
+                   Topic("/ir/camera_info", BagData::kCameraInfo, {})};
+  const auto lenses = [&] {
+    std::vector<std::string> names;
+    for (const auto& camera : ChooseTopics(survey, {}).cameras) {
+      names.push_back(camera.info == nullptr ? "" : camera.info->topic.name);
+    }
+    return names;
+  };
+  EXPECT_THAT(lenses(), ElementsAre("", "")) << "whose it is cannot be told";
+  survey.topics[0].frame = "left";
+  survey.topics[1].frame = survey.topics[3].info->header.frame = "right";
+  EXPECT_THAT(lenses(), ElementsAre("", "/ir/camera_info"));
+  survey.topics.push_back(Topic("/ir/left/camera_info", BagData::kCameraInfo, {}));
+  EXPECT_THAT(lenses(), ElementsAre("/ir/left/camera_info", "/ir/camera_info"));
 }
 
 TEST(ChooseTopics, MoreCamerasThanARigMayHaveAreRefused) {
@@ -94,6 +174,27 @@ TEST(ChooseTopics, AColouredCloudIsNoLidarsWhereThereIsAnother) {
   EXPECT_EQ(ChooseTopics(survey, {{}, {{"", "/fused"}}}).lidar.clouds->topic.name, "/fused");
   survey.topics.pop_back();
   EXPECT_EQ(ChooseTopics(survey, {}).lidar.clouds->topic.name, "/fused");
+}
+
+TEST(ChooseTopics, NumbersOfFloatingPointAreTakenWhereTheyAreTemperatures) {
+  BagSurvey survey;
+  survey.topics = {Topic("/cam/image", BagData::kImage, {0}), Topic("/d", BagData::kImage, {0}),
+                   Topic("/points", BagData::kCloud, {0})};
+  BagSurvey::Topic& floats = survey.topics[1];
+  floats.what = "640x512 32FC1";
+  const auto cameras = [&](const std::string& name, FloatUnit unit) {
+    floats.topic.name = name;
+    floats.unit = unit;
+    return ChooseTopics(survey, {}).cameras.size();
+  };
+  EXPECT_EQ(cameras("/d/image", FloatUnit::kKelvin), 2U);
+  EXPECT_EQ(cameras("/d/image", FloatUnit::kMaybeCelsius), 1U);
+  EXPECT_THAT(
+      ChooseTopics(survey, {}).left_out,
+      ElementsAre(AllOf(HasSubstr("metres of depth"), HasSubstr("--image thermal=/d/image"))));
+  EXPECT_EQ(cameras("/flir/ir/temperature", FloatUnit::kMaybeCelsius), 2U);
+  EXPECT_EQ(cameras("/thermal/image", FloatUnit::kNone), 1U);
+  EXPECT_EQ(cameras("/thermal/depth", FloatUnit::kKelvin), 1U);
 }
 
 TEST(ChooseTopics, WishesComeFirstAndMustBeThere) {

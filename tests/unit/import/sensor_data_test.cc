@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "calib/files/image_files.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -17,93 +16,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr Utime kStamp = 1'700'000'000'000'000;
-
-ros::Image RosImage(const std::string& encoding, std::uint32_t width, std::uint32_t height,
-                    std::uint32_t step, const std::string& bytes) {
-  ros::Image image;
-  image.header.utime = kStamp;
-  image.encoding = encoding;
-  image.width = width;
-  image.height = height;
-  image.step = step;
-  image.data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  image.size = bytes.size();
-  return image;
-}
-
-TEST(RosPixels, RowsMayBePadded) {
-  const std::string bytes = "ab__cd__";
-  const Image image = ToImage(RosImage("bayer_grbg8", 2, 2, 4, bytes), "/cam");
-  EXPECT_EQ(image.format, PixelFormat::kBayerGr8);
-  EXPECT_EQ(image.utime, kStamp);
-  EXPECT_EQ(cv::countNonZero(image.pixels != (cv::Mat_<std::uint8_t>(2, 2) << 'a', 'b', 'c', 'd')),
-            0);
-}
-
-TEST(RosPixels, ColoursComeInOpenCvsOrder) {
-  const std::string rgb = {1, 2, 3}, bgra = {3, 2, 1, 9}, uyvy = {'\x80', 50, '\x80', 60};
-  EXPECT_EQ(ToImage(RosImage("rgb8", 1, 1, 3, rgb), "").pixels.at<cv::Vec3b>(0),
-            cv::Vec3b(3, 2, 1));
-  EXPECT_EQ(ToImage(RosImage("bgra8", 1, 1, 4, bgra), "").pixels.at<cv::Vec3b>(0),
-            cv::Vec3b(3, 2, 1));
-  const cv::Mat grey = ToImage(RosImage("yuv422", 2, 1, 4, uyvy), "").pixels;
-  EXPECT_EQ(grey.at<cv::Vec3b>(0)[0], grey.at<cv::Vec3b>(0)[2]);
-  EXPECT_GT(grey.at<cv::Vec3b>(1)[0], grey.at<cv::Vec3b>(0)[0]);
-}
-
-TEST(RosPixels, SixteenBitsOfEitherByteOrder) {
-  const std::string bytes = {1, 2};
-  ros::Image image = RosImage("mono16", 1, 1, 2, bytes);
-  EXPECT_EQ(ToImage(image, "").pixels.at<std::uint16_t>(0), 0x0201);
-  image.big_endian = true;
-  EXPECT_EQ(ToImage(image, "").pixels.at<std::uint16_t>(0), 0x0102);
-}
-
-TEST(RosPixels, WhatCannotBeIsRefused) {
-  const std::string bytes(8, 'x');
-  const auto error = [&](const ros::Image& image) {
-    return test::ErrorOf([&] { ToImage(image, "/cam"); });
-  };
-  EXPECT_THAT(error(RosImage("32FC1", 1, 1, 4, bytes)), HasSubstr("/cam: encoding \"32FC1\""));
-  EXPECT_THAT(error(RosImage("mono8", 2, 5, 2, bytes)), HasSubstr("cut short"));
-  EXPECT_THAT(error(RosImage("mono8", 2, 2, 1, bytes)), HasSubstr("cut short"));
-  EXPECT_THAT(error(RosImage("mono8", 0, 2, 0, bytes)), HasSubstr("0 x 2 px"));
-  EXPECT_THAT(error(RosImage("mono8", 4'000'000'000U, 4'000'000'000U, 4'000'000'000U, bytes)),
-              HasSubstr("px; expected"));
-  EXPECT_THAT(error(RosImage("yuv422", 1, 1, 2, bytes)), HasSubstr("odd width"));
-  EXPECT_THAT(error(RosImage("mono16", 1, 2, 3, bytes)), HasSubstr("even number"));
-}
-
-ros::CompressedImage Compressed(const std::string& format, const std::string& bytes) {
-  ros::CompressedImage image;
-  image.format = format;
-  image.data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  image.size = bytes.size();
-  return image;
-}
-
-TEST(RosPixels, PngKeepsItsBits) {
-  const cv::Mat counts = (cv::Mat_<std::uint16_t>(1, 2) << 7, 40000);
-  const std::string bytes = EncodePng(counts);
-  const Image image = ToImage(Compressed("mono16; png compressed mono16", bytes), "");
-  EXPECT_EQ(image.format, PixelFormat::kMono16);
-  EXPECT_EQ(image.pixels.at<std::uint16_t>(1), 40000);
-  const std::string mosaic = EncodePng(cv::Mat(2, 2, CV_8UC1, cv::Scalar(9)));
-  EXPECT_EQ(ToImage(Compressed("bayer_rggb8; png compressed bayer_rggb8", mosaic), "").format,
-            PixelFormat::kBayerRg8);
-  EXPECT_EQ(ToImage(Compressed("png", mosaic), "").format, PixelFormat::kMono8);
-}
-
-// A few bytes may claim gigabytes.
-TEST(RosPixels, AnImageThatClaimsTooMuchIsNotDecoded) {
-  std::string bytes = EncodePng(cv::Mat(2, 2, CV_8UC1, cv::Scalar(9)));
-  bytes[18] = '\x4e';  // 19970 x 19970: each side is allowed, so many pixels are not
-  bytes[22] = '\x4e';
-  EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("png", bytes), "/cam"); }),
-              HasSubstr("/cam: is 19970 x 19970 px; expected"));
-  EXPECT_THAT(test::ErrorOf([&] { ToImage(Compressed("compressedDepth", "12345678"), "/cam"); }),
-              HasSubstr("expected JPEG, PNG or TIFF"));
-}
 
 // Builds clouds field by field.
 class RosCloud {

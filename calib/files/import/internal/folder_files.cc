@@ -8,6 +8,7 @@
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
+#include "calib/files/import/camera_kind.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/image_codec.h"
@@ -84,6 +85,7 @@ ImageFacts LookAt(const fs::path& path) {
     facts.height = pixels.rows;
     try {
       facts.format = FormatOf(static_cast<PixelFormat>(0), &pixels);
+      if (facts.format == PixelFormat::kMono16) facts.dark_over_bright = DarkOverBright(pixels);
     } catch (const InputError& error) {
       facts.problem = path.string() + " " + error.what();
     }

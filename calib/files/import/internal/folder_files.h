@@ -20,7 +20,8 @@ struct ImageFacts {
   int width = 0, height = 0;
   PixelFormat format = PixelFormat::kMono8;
   bool turned_by_exif = false;
-  std::string problem;  ///< why it cannot be used; empty: it can
+  double dark_over_bright = 0;  ///< of kMono16
+  std::string problem;          ///< why it cannot be used; empty: it can
 };
 
 /// Of those whose indices are given, in that order.

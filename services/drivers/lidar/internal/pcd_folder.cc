@@ -1,9 +1,8 @@
 #include "services/drivers/lidar/internal/pcd_folder.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
+#include "calib/files/name_keys.h"
 #include "calib/files/points/cloud_files.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
@@ -12,25 +11,6 @@
 
 namespace rgbdt {
 namespace fs = std::filesystem;
-
-std::optional<Utime> UtimeOfName(const std::string& name) {
-  const std::size_t point = name.find('.');
-  const std::string whole = name.substr(0, point);
-  const std::string decimals = point == std::string::npos ? "" : name.substr(point + 1);
-  const auto digits = [](const std::string& text) {
-    return std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-  };
-  if (whole.empty() || whole.size() > 19 || !digits(whole) || !digits(decimals)) {
-    return std::nullopt;
-  }
-  const std::uint64_t number = std::strtoull(whole.c_str(), nullptr, 10);
-  if (number >= 100'000'000'000'000'000) return static_cast<Utime>(number / 1000);
-  if (number >= 100'000'000'000'000) return static_cast<Utime>(number);
-  if (number >= 100'000'000'000) return static_cast<Utime>(number * 1000);
-  if (number < 100'000'000) return std::nullopt;  // before 1973: it counts files
-  const std::string us = (decimals + "000000").substr(0, 6);
-  return static_cast<Utime>(number) * kMicrosecondsPerSecond + std::atoi(us.c_str());
-}
 
 PcdFolder::PcdFolder(const PcdFolderDevice& device) : device_(device) {
   std::error_code error;
@@ -48,7 +28,7 @@ std::optional<Cloud> PcdFolder::Read(DeviceThread& thread, const fs::path& file)
   const Utime next =
       last_ == 0 ? HostUtime() : last_ + std::max<Utime>(1, FromSeconds(device_.period_s));
   try {
-    Cloud cloud = ReadSweep(file, UtimeOfName(file.stem().string()).value_or(next));
+    Cloud cloud = ReadSweep(file, TimeInName(StemOf(file)).value_or(next));
     if (!cloud.utime.empty()) {
       cloud.sweep_utime = *std::min_element(cloud.utime.begin(), cloud.utime.end());
     }

@@ -10,15 +10,11 @@
 
 namespace rgbdt {
 
-/// A time told by a file's name without its ending, if that is a number: seconds since 1970, with
-/// or without decimals, or whole ms, us or ns, which their size tells apart.
-std::optional<Utime> UtimeOfName(const std::string& name);
-
 /// A folder of PCD files, in the order of their names -> CLOUD, one sweep a file, at the pace of
 /// their times. A sweep's time is that of its first point, where the points have times (ReadSweep);
-/// else what the file's name tells; else period_s after the one before, the first one's being the
-/// host's. A file that cannot be read, or whose time is not after the one before, is named and
-/// passed over.
+/// else what the file's name tells (TimeInName); else period_s after the one before, the first
+/// one's being the host's. A file that cannot be read, or whose time is not after the one before,
+/// is named and passed over.
 class PcdFolder {
  public:
   /// Throws InputError where there is no such folder, or no *.pcd in it.

@@ -88,7 +88,11 @@ TEST(BoardText, LengthsThatAreNoMetresAreRefusedWithWhatWasMeant) {
               AllOf(HasSubstr("centimetres"), HasSubstr("1.016")));
   EXPECT_THAT(ErrorOfBoard("8x6@0,0.85x0.61"), HasSubstr("more than 0"));
   EXPECT_THAT(ErrorOfBoard("8x6@nan,0.85x0.61"), HasSubstr("more than 0"));
-  EXPECT_THAT(ErrorOfBoard("8x6@0.1,infx0.61"), HasSubstr("width is inf m"));
+  EXPECT_THAT(ErrorOfBoard("8x6@0.1,infx0.61"),
+              AllOf(HasSubstr("width is inf m"), HasSubstr("0.015 to 5")));
+  EXPECT_THAT(ErrorOfBoard("8x6@0.1,1x1e-9"),
+              AllOf(HasSubstr("height is 1e-09 m"), HasSubstr("expected metres, 0.015 to 5")));
+  EXPECT_THAT(ErrorOfBoard("8x6@1e-9,0.85x0.61"), HasSubstr("square's side is 1e-09 m"));
 }
 
 TEST(BoardText, APatternLargerThanItsBoardIsExplained) {

@@ -194,6 +194,40 @@ TEST_F(FoldersTest, KindsFollowFromImagesAndNames) {
   EXPECT_THAT(Error(), HasSubstr("\"Front\""));
 }
 
+TEST_F(FoldersTest, SixteenBitsAreThermalWhereANameOrTheirValuesSaySo) {
+  const auto write = [&](const std::string& folder, int type, double dark, double bright) {
+    for (const char* name : {"p1", "p2", "p3"}) {
+      cv::Mat pixels(16, 20, type, cv::Scalar::all(dark));
+      pixels.colRange(0, 10) = cv::Scalar::all(bright);
+      WritePng(dir_ / (folder + "/" + name + ".png"), pixels);
+    }
+  };
+  const auto read = [&](const std::string& name, const std::string& folder) {
+    folders_.cameras = {{name, dir_ / folder}};
+    return ReadFolders(folders_);
+  };
+  write("cam0", CV_16UC3, 29000, 30500);
+  EXPECT_EQ(read("", "cam0").rig.cameras[0].kind, CameraKind::kColor) << "three channels";
+  EXPECT_EQ(read("", "cam0").rig.cameras[0].format, PixelFormat::kBgr8);
+  write("cam1", CV_16UC1, 2000, 60000);
+  FolderSession grey = read("", "cam1");
+  EXPECT_EQ(grey.rig.cameras[0].kind, CameraKind::kColor);
+  EXPECT_EQ(grey.rig.cameras[0].format, PixelFormat::kMono8);
+  EXPECT_THAT(grey.cameras,
+              ElementsAre(AllOf(HasSubstr("grey picture"), HasSubstr("say --images thermal="))));
+  EXPECT_EQ(read("lwir", "cam1").rig.cameras[0].kind, CameraKind::kThermal);
+  write("ir", CV_16UC1, 2000, 60000);
+  EXPECT_EQ(read("", "ir").rig.cameras[0].kind, CameraKind::kThermal);
+  EXPECT_THAT(read("", "ir").cameras, ElementsAre(Not(HasSubstr("16 bit"))));
+  write("cam2", CV_16UC1, 29000, 30500);
+  const FolderSession counts = read("", "cam2");
+  EXPECT_EQ(counts.rig.cameras[0].kind, CameraKind::kThermal);
+  EXPECT_EQ(counts.rig.cameras[0].format, PixelFormat::kMono16);
+  EXPECT_THAT(counts.cameras, ElementsAre(AllOf(HasSubstr("thermal camera's counts"),
+                                                HasSubstr("say --images rgb="))));
+  EXPECT_EQ(read("rgb", "cam2").rig.cameras[0].kind, CameraKind::kColor);
+}
+
 TEST_F(FoldersTest, LensesBelongToTheirCameras) {
   folders_.model.reset();
   EXPECT_THAT(Error(), AllOf(HasSubstr("\"rgb\" has no lens"), HasSubstr("--pinhole")));

@@ -1,6 +1,6 @@
 #include "calib/files/import/pairing.h"
 
-#include "calib/files/import/internal/name_keys.h"
+#include "calib/files/name_keys.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -54,6 +54,13 @@ TEST(NameKeys, TimesAreThoseSince1970) {
         "20231114_1015", "1999-05-14-10-15-23", "9999999999999999999999999"}) {
     EXPECT_EQ(TimeInName(none), kNone) << none;
   }
+}
+
+TEST(NameKeys, StemsAreNamesWithoutTheirEndings) {
+  EXPECT_EQ(StemOf("a/1700000000.25.pcd"), "1700000000.25");
+  EXPECT_EQ(StemOf("n015.pcd.bin"), "n015");
+  EXPECT_EQ(StemOf("000012.bin"), "000012");
+  EXPECT_EQ(StemOf(""), "");
 }
 
 TEST(NameKeys, NumbersAreThoseThatTellNamesApart) {

@@ -1,4 +1,4 @@
-#include "calib/files/import/internal/name_keys.h"
+#include "calib/files/name_keys.h"
 
 #include <algorithm>
 #include <cctype>
@@ -112,6 +112,11 @@ std::optional<Utime> DateAt(const std::string& stem, const Parts& parts, std::si
 }
 
 }  // namespace
+
+std::string StemOf(const std::filesystem::path& file) {
+  const std::filesystem::path stem = file.stem();
+  return (stem.extension() == ".pcd" ? stem.stem() : stem).string();
+}
 
 std::optional<Utime> TimeInName(const std::string& stem) {
   const Parts parts = Divide(stem);

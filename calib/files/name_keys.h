@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "calib/model/time.h"
 
 namespace rgbdt {
+
+/// A file's name without its ending, of a `.pcd.bin` without both.
+std::string StemOf(const std::filesystem::path& file);
 
 /// The time since 1970 that a file's name holds, as recorders write it: seconds with or without a
 /// fraction (1700000000.25, 1700000000_250000000), or a whole number of milli-, micro- or
