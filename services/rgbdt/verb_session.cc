@@ -65,6 +65,7 @@ std::vector<Image> SomeImages(const FolderSession& session, const CameraSpec& ca
     Image& image = images.emplace_back();
     image.camera = camera.name;
     image.pixels = DecodeImageFile(files[(2 * i + 1) * files.size() / (2 * count)]);
+    if (camera.kind == CameraKind::kThermal) image.pixels = OneChannelOfGrey(image.pixels);
     image.format = FormatOf(static_cast<PixelFormat>(0), &image.pixels);
   }
   return images;

@@ -129,7 +129,7 @@ CameraKind KindOf(const Folders::Camera& camera, const ImageFacts& facts) {
   if (IsSixteenBit(facts)) return CameraKind::kThermal;
   const std::string name = camera.name.empty() ? LastName(camera.images) : camera.name;
   if (!SaysThermal(name)) return CameraKind::kColor;
-  if (facts.format == PixelFormat::kBgr8) {
+  if (!facts.grey) {
     throw InputError("\"" + name + "\" is a thermal camera's name, but the images of " +
                      camera.images.string() +
                      " have 3 channels: give its raw counts (one channel, 16 or 8 bit), not a "
@@ -184,6 +184,7 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
   spec.width = facts[0].width;
   spec.height = facts[0].height;
   spec.format = facts[0].format;
+  if (thermal && spec.format == PixelFormat::kBgr8) spec.format = PixelFormat::kMono8;
   read.turned_by_exif = std::any_of(facts.begin(), facts.end(),
                                     [](const ImageFacts& one) { return one.turned_by_exif; });
   return read;
