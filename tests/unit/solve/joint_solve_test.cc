@@ -28,6 +28,16 @@ TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   }
 }
 
+TEST(CalibrateJointly, ThreeViewsOfWhichOneIsHeldOutAreToldHowToBeUsed) {
+  SolveWorldOptions options = Views(3);
+  options.heldout_every = 3;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  EXPECT_THAT(report.cameras[0].calibration.detail,
+              AllOf(HasSubstr("2 usable views, at least 3"), HasSubstr("1 more held out"),
+                    HasSubstr("`heldout: false`")));
+}
+
 // Between the sweep and the image.
 void MoveBoard(const Eigen::Vector3d& move, CloudEdges* cloud) {
   cloud->pose->sensor_from_target.translation += move;
