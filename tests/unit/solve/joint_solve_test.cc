@@ -38,6 +38,20 @@ TEST(CalibrateJointly, ThreeViewsOfWhichOneIsHeldOutAreToldHowToBeUsed) {
                     HasSubstr("`heldout: false`")));
 }
 
+TEST(Evaluate, APoseThatNoViewAgreesWithIsRefusedAndItsInverseIsNamed) {
+  const SolveWorld world(Views(6));
+  Calibration calibration = Calibrate(world.rig, world.detections, Brief()).ToCalibration();
+  const auto why = [&](const Rigid3& pose) {
+    calibration.cameras[0].camera_from_lidar = pose;
+    return Evaluate(world.rig, world.detections, calibration).cameras[0].contradiction;
+  };
+  const Rigid3 truth = world.camera_from_lidar[0];
+  EXPECT_EQ(why(truth), "");
+  EXPECT_THAT(why(truth.Inverse()), HasSubstr("In 6 the inverse does"));
+  EXPECT_THAT(why({truth.rotation, 1000 * truth.translation}),
+              AllOf(HasSubstr("In none of 6 views"), HasSubstr("in metres")));
+}
+
 // Between the sweep and the image.
 void MoveBoard(const Eigen::Vector3d& move, CloudEdges* cloud) {
   cloud->pose->sensor_from_target.translation += move;
