@@ -55,6 +55,19 @@ cv::Mat DecodeImageFile(const std::filesystem::path& path) {
   return DecodeImage(bytes.data(), bytes.size(), path.string());
 }
 
+cv::Mat OneChannelOfGrey(const cv::Mat& pixels) {
+  constexpr double kAlike = 8;
+  if (pixels.type() != CV_8UC3 && pixels.type() != CV_8UC4) return pixels;
+  std::vector<cv::Mat> channels;
+  cv::split(pixels, channels);
+  for (int c : {1, 2}) {
+    if (cv::norm(channels[0], channels[static_cast<std::size_t>(c)], cv::NORM_INF) > kAlike) {
+      return pixels;
+    }
+  }
+  return channels[1];
+}
+
 std::string EncodePng(const cv::Mat& pixels, int compression) {
   const int depth = pixels.depth();
   const int channels = pixels.channels();

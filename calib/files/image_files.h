@@ -11,6 +11,10 @@ namespace rgbdt {
 /// DecodeImage of a file. Throws InputError naming it where it cannot be read or decoded.
 cv::Mat DecodeImageFile(const std::filesystem::path& path);
 
+/// The first channel of a grey picture that was written as three (8 bit; alike to 8 counts, as JPEG
+/// and video leave them); any other picture as it is.
+cv::Mat OneChannelOfGrey(const cv::Mat& pixels);
+
 /// `pixels` (8 or 16 bit; 1 or 3 channels) as the bytes of a PNG. `compression` 0 to 9; the default
 /// is for speed: a raw camera image is mostly noise, and more takes seconds to save little.
 std::string EncodePng(const cv::Mat& pixels, int compression = 1);

@@ -71,6 +71,36 @@ Report Calibrate(const Rig& rig, const std::vector<ViewDetection>& detections,
   return report;
 }
 
+namespace {
+
+CameraViews WithCandidatesAt(const Rigid3& camera_from_lidar, CameraViews views) {
+  for (CameraView& view : views.all) {
+    view = WithChosenCandidate(std::move(view), camera_from_lidar, kJudgeGate);
+  }
+  return views;
+}
+
+// Where image and cloud of views show the board, and none of them where the pose puts it: a pose
+// that was written the other way round, in another unit, or of something else. Empty: it is not so.
+std::string WhyPoseFitsNowhere(const CameraViews& views, const CameraViews& at_pose,
+                               const Rigid3& camera_from_lidar) {
+  constexpr std::size_t kLeast = 3;
+  const std::size_t seen = views.Usable().size();
+  if (seen < kLeast || !at_pose.Usable().empty()) return "";
+  const std::size_t inverse = WithCandidatesAt(camera_from_lidar.Inverse(), views).Usable().size();
+  std::string why = "In none of " + std::to_string(seen) +
+                    " views that show the board is it where this pose puts it. ";
+  if (2 * inverse > seen) {
+    return why + "In " + std::to_string(inverse) +
+           " the inverse does: it seems to be lidar_from_camera. Invert it";
+  }
+  return why +
+         "Check that it is camera_from_lidar (point_in_camera = R * point_in_lidar + t), of this "
+         "rig, in metres, its quaternion w x y z";
+}
+
+}  // namespace
+
 Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
                 const Calibration& calibration) {
   Report report = BlankReport(rig, calibration.method, detections);
@@ -78,10 +108,9 @@ Report Evaluate(const Rig& rig, const std::vector<ViewDetection>& detections,
   for (const CameraSpec& camera : rig.cameras) {
     const CameraCalibration* found = calibration.Find(camera.name);
     if (found == nullptr) continue;
-    CameraViews views = ViewsOf(camera, detections);
-    for (CameraView& view : views.all) {
-      view = WithChosenCandidate(std::move(view), found->camera_from_lidar, kJudgeGate);
-    }
+    const CameraViews all = ViewsOf(camera, detections);
+    CameraViews views = WithCandidatesAt(found->camera_from_lidar, all);
+    views.report.contradiction = WhyPoseFitsNowhere(all, views, found->camera_from_lidar);
     if (calibration.method == kPaperMethod) {
       views.report.first_guess = camera.camera_from_lidar_guess;
     }

@@ -50,6 +50,14 @@ CameraReport WithSolution(const JointResult& result, std::size_t camera, double 
   report.nuisance = NuisancesOf(result, camera);
   report.view_scatter = result.view_scatter;
   report.variance_factor = result.variance_factor;
+  const auto views = result.joint.problem.views.size();
+  constexpr double kSayEnlarged = 1.2;  // of variance
+  if (result.placements.factor > kSayEnlarged) {
+    report.warnings.push_back(Format(
+        "%zu views show the board in %d places: more views of one place tell little more, so "
+        "the stated sigma was enlarged %.1f times; carry the board elsewhere between views",
+        views, result.placements.places, std::sqrt(result.placements.factor)));
+  }
   for (const RefutedOffset& refuted : result.refuted_offsets) {
     if (refuted.lidar) continue;
     report.warnings.push_back(
@@ -93,8 +101,8 @@ std::vector<MountChange> ChangesOf(const JointResult& result) {
     const CameraViews& from = result.joint.cameras[first].views;
     const CameraViews& to = result.joint.cameras[c].views;
     const auto at = SharedPlaces::Pose(c), at_first = SharedPlaces::Pose(first);
-    Matrix6d together =
-        result.variance_factor * result.solution.covariance.block<6, 6>(at, at_first);
+    Matrix6d together = result.variance_factor * result.placements.factor *
+                        result.solution.covariance.block<6, 6>(at, at_first);
     if (result.encoder_delay) {
       const Eigen::VectorXd& move = result.encoder_delay->unknown_move;
       together += move.segment<6>(at) * move.segment<6>(at_first).transpose();

@@ -236,7 +236,9 @@ std::string WhyNone(const Views& views, const Vote& vote) {
            "images are as a person sees them, check that the clouds' y points to the left";
   }
   return "the views do not agree where the camera is (at most " + std::to_string(vote.best.views) +
-         " of " + of + "); do images and clouds belong together?";
+         " of " + of +
+         "); do images and clouds belong together, and is the whole board, with its border, as "
+         "large as the rig file says?";
 }
 
 // By a quarter, so that image and cloud differ by half a turn at most. What was the right side is

@@ -28,6 +28,12 @@ CameraCalibration NotSolved(const CalibrateOptions& options, const CameraViews& 
     calibration.detail = WhyDegenerate({used[0]->cloud->pose->sensor_from_target});
   } else {
     calibration.detail = TooFewViews(used.size(), options);
+    const std::size_t heldout = camera.Usable().size() - used.size();
+    if (used.size() + heldout >= static_cast<std::size_t>(options.min_views)) {
+      calibration.detail += "; " + std::to_string(heldout) +
+                            " more held out to check the result: take more views, or write "
+                            "`heldout: false` into their view.textproto";
+    }
   }
   return calibration;
 }

@@ -33,7 +33,7 @@ const CameraReport* FindSame(const Report& report, const CameraCalibration& cali
 
 void KeepFromSolve(const CameraReport& before, CameraReport* camera) {
   camera->first_guess = before.first_guess;
-  camera->contradiction = before.contradiction;
+  if (camera->contradiction.empty()) camera->contradiction = before.contradiction;
   camera->cannot_tell = before.cannot_tell;
   camera->causes = before.causes;
   camera->view_scatter = before.view_scatter;

@@ -66,6 +66,7 @@ std::vector<Image> SomeImages(const FolderSession& session, const CameraSpec& ca
     image.camera = camera.name;
     image.pixels = DecodeImageFile(files[(2 * i + 1) * files.size() / (2 * count)]);
     if (camera.kind == CameraKind::kColor) EightBits(&image.pixels);
+    if (camera.kind == CameraKind::kThermal) image.pixels = OneChannelOfGrey(image.pixels);
     image.format = FormatOf(static_cast<PixelFormat>(0), &image.pixels);
   }
   return images;

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 
@@ -71,11 +72,97 @@ std::string WhyAxesAreOff(const Cloud& cloud) {
       about == 0 ? 'x' : 'y', about == 1 ? "a camera's (x right, y down, z forward)" : "others");
 }
 
+// Coarser than a millimetre or two beams of a ring share a place, and rings are not told apart.
+std::string WhyRounded(const Cloud& cloud) {
+  for (const double step : {0.1, 0.05, 0.02, 0.01, 0.005}) {
+    std::size_t all = 0;
+    std::size_t even = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (!cloud.IsHit(i)) continue;
+      const Eigen::Array3d steps = cloud.points[i].cast<double>().array() / step;
+      all += 1;
+      even += ((steps - steps.round()).abs() < 0.01).all() ? 1 : 0;
+    }
+    if (100 * even < 99 * all) continue;
+    return Format(
+        "the cloud's coordinates are rounded to %g mm, which is more than its beams are apart; "
+        "write them with 4 decimals",
+        1000 * step);
+  }
+  return "";
+}
+
+// Sines of elevations as they are seen from a point, about an axis: each less its ring's mean.
+struct Cones {
+  Eigen::Vector3d apex = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+
+  // Over apex and tilt of the axis, and the residual. RMS of the residuals.
+  double Equations(const std::map<std::uint16_t, std::vector<Eigen::Vector3d>>& rings,
+                   Eigen::Matrix<double, 6, 6>* h) const {
+    h->setZero();
+    double count = 0;
+    for (const auto& [ring, points] : rings) {
+      Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
+      for (const Eigen::Vector3d& p : points) {
+        const double range = (p - apex).norm();
+        const Eigen::Vector3d u = (p - apex) / range;
+        const double sine = axis.dot(u);
+        Eigen::Matrix<double, 6, 1> row;
+        row << (sine * u - axis) / range, axis.cross(u).head<2>(), sine;
+        *h += row * row.transpose();
+        sum += row;
+      }
+      *h -= sum * sum.transpose() / static_cast<double>(points.size());
+      count += static_cast<double>(points.size());
+    }
+    return std::sqrt((*h)(5, 5) / count);
+  }
+};
+
+// Whether rings are cones about another point than the cloud's origin.
+std::string WhyFrameIsOff(const Cloud& cloud) {
+  constexpr double kNear_m = 2, kScatter = 0.02, kClearly = 4, kFar_m = 0.3;
+  constexpr std::size_t kMostPoints = 20000;
+  constexpr int kRounds = 20;
+  if (cloud.ring.size() != cloud.size()) return "";
+  std::map<std::uint16_t, std::vector<Eigen::Vector3d>> rings;
+  for (std::size_t i = 0; i < cloud.size(); i += 1 + cloud.size() / kMostPoints) {
+    const Eigen::Vector3d p = cloud.points[i].cast<double>();
+    if (cloud.IsHit(i) && p.norm() > kNear_m) rings[cloud.ring[i]].push_back(p);
+  }
+  if (rings.size() < 4) return "";
+  Cones cones;
+  Eigen::Matrix<double, 6, 6> h;
+  const double given = cones.Equations(rings, &h);
+  double found = given;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Matrix<double, 5, 1> step =
+        SolveSymmetric(Eigen::Matrix<double, 5, 5>(h.topLeftCorner<5, 5>()),
+                       Eigen::Matrix<double, 5, 1>(-h.topRightCorner<5, 1>()));
+    if (!step.allFinite()) return "";
+    cones.apex += step.head<3>();
+    cones.axis = (cones.axis + Eigen::Vector3d(step[3], step[4], 0).cross(cones.axis)).normalized();
+    found = cones.Equations(rings, &h);
+  }
+  if (!(given > kScatter) || !(given > kClearly * found) || !(cones.apex.norm() > kFar_m))
+    return "";
+  return Format(
+      "the cloud's rings meet at %.2f %.2f %.2f m, not at its origin: it seems to be in another "
+      "frame than the LIDAR's own (the vehicle's?), in which clouds are read; give it as the "
+      "LIDAR's "
+      "driver does",
+      cones.apex.x(), cones.apex.y(), cones.apex.z());
+}
+
 }  // namespace
 
 std::string WhyCloudIsOff(const Cloud& cloud) {
-  std::string why = WhyUnitIsOff(cloud);
-  return why.empty() ? WhyAxesAreOff(cloud) : why;
+  for (const auto& why_off : {WhyUnitIsOff, WhyRounded, WhyAxesAreOff, WhyFrameIsOff}) {
+    std::string why = why_off(cloud);
+    if (!why.empty()) return why;
+  }
+  return "";
 }
 
 }  // namespace rgbdt

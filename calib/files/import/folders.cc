@@ -139,7 +139,7 @@ CameraKind KindOf(const Folders::Camera& camera, const std::vector<ImageFacts>& 
     return kind;
   }
   if (!SaysThermal(name, false)) return CameraKind::kColor;
-  if (facts.format == PixelFormat::kBgr8) {
+  if (!facts.grey) {
     throw InputError("\"" + name + "\" is a thermal camera's name, but the images of " +
                      camera.images.string() +
                      " have 3 channels: give its raw counts (one channel, 16 or 8 bit), not a "
@@ -195,6 +195,7 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
   spec.height = facts[0].height;
   const bool reduced = IsSixteenBit(facts[0]) && !thermal;
   spec.format = reduced ? PixelFormat::kMono8 : facts[0].format;
+  if (thermal && spec.format == PixelFormat::kBgr8) spec.format = PixelFormat::kMono8;
   read.turned_by_exif = std::any_of(facts.begin(), facts.end(),
                                     [](const ImageFacts& one) { return one.turned_by_exif; });
   return read;

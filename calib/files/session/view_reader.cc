@@ -123,6 +123,7 @@ Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path&
   Image image;
   image.camera = camera.name;
   image.pixels = ReadFor(place, "file", [&] { return DecodeImageFile(file); });
+  if (camera.kind == CameraKind::kThermal) image.pixels = OneChannelOfGrey(image.pixels);
   image.utime = message.utime();
   image.frame_number = message.frame_number();
   image.device_utime = message.device_utime();

@@ -220,6 +220,7 @@ class JointSolver {
       }
       return FactorFor(scatter->factor, scatter->freedom, AsStated(own, views));
     };
+    result_.placements = PlacementsOf(result_.solution.state.lidar_from_target);
     result_.view_scatter = ViewScatterOf(Problem(), result_.solution);
     result_.variance_factor = factor(result_.view_scatter, std::nullopt, Problem().views.size());
     result_.lidar_factors.clear();
@@ -420,8 +421,8 @@ JointResult WithoutLidars(JointResult result) {
 
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
   const SharedPlaces places(result.joint.problem);
-  PoseAndLensCovariance covariance =
-      result.variance_factor * result.solution.PoseAndLens(places, index);
+  PoseAndLensCovariance covariance = result.variance_factor * result.placements.factor *
+                                     result.solution.PoseAndLens(places, index);
   if (result.encoder_delay) {
     Eigen::Matrix<double, kPoseAndLens, 1> move;
     Index i = 0;

@@ -6,6 +6,7 @@
 #include "calib/solve/board_problem.h"
 #include "calib/solve/internal/joint_problem.h"
 #include "calib/solve/internal/lens_check.h"
+#include "calib/solve/internal/placements.h"
 
 namespace rgbdt {
 
@@ -22,7 +23,9 @@ struct JointResult {
   BoardSolution solution;
   std::optional<ViewScatter> view_scatter;  ///< absent: fewer than four views
   double variance_factor = 1;               ///< by which the covariance was enlarged (FactorFor)
-  std::vector<double> lidar_factors{};      ///< the same of each further LIDAR's own
+  /// Of the views that are left: by `factor`, too, covariances are enlarged.
+  Placements placements{};
+  std::vector<double> lidar_factors{};  ///< the same of each further LIDAR's own
   /// By further LIDAR: its pose by edges alone against that by planes alone
   /// (HoldEdgesAgainstPlanes).
   std::vector<std::optional<Halves>> lidars_edges_planes{};
@@ -54,7 +57,8 @@ Halves LidarApart(const BoardSolution& a, const BoardSolution& b, const JointRes
 /// The result as it is without further LIDARs.
 [[nodiscard]] JointResult WithoutLidars(JointResult result);
 
-/// Of camera `index`, the variance factor counted in, and what is not known of the encoder's delay.
+/// Of camera `index`, the variance factor and the places counted in, and what is not known of the
+/// encoder's delay.
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index);
 
 }  // namespace rgbdt

@@ -94,8 +94,8 @@ LidarReport WithPose(const JointResult& result, std::size_t index,
   const Index at = SharedPlaces(result.joint.problem).LidarPose(index);
   LidarCalibration& calibration = report.calibration;
   calibration.reference_from_lidar = result.solution.state.lidars[index].reference_from_lidar;
-  Matrix6d covariance =
-      result.lidar_factors[index] * result.solution.covariance.block<6, 6>(at, at);
+  Matrix6d covariance = result.lidar_factors[index] * result.placements.factor *
+                        result.solution.covariance.block<6, 6>(at, at);
   if (result.encoder_delay) {
     const Vector6d move = result.encoder_delay->unknown_move.segment<6>(at);
     covariance += move * move.transpose();

@@ -28,6 +28,30 @@ TEST(CalibrateJointly, FindsBothCamerasAndSaysHowSureItIs) {
   }
 }
 
+TEST(CalibrateJointly, ThreeViewsOfWhichOneIsHeldOutAreToldHowToBeUsed) {
+  SolveWorldOptions options = Views(3);
+  options.heldout_every = 3;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  EXPECT_THAT(report.cameras[0].calibration.detail,
+              AllOf(HasSubstr("2 usable views, at least 3"), HasSubstr("1 more held out"),
+                    HasSubstr("`heldout: false`")));
+}
+
+TEST(Evaluate, APoseThatNoViewAgreesWithIsRefusedAndItsInverseIsNamed) {
+  const SolveWorld world(Views(6));
+  Calibration calibration = Calibrate(world.rig, world.detections, Brief()).ToCalibration();
+  const auto why = [&](const Rigid3& pose) {
+    calibration.cameras[0].camera_from_lidar = pose;
+    return Evaluate(world.rig, world.detections, calibration).cameras[0].contradiction;
+  };
+  const Rigid3 truth = world.camera_from_lidar[0];
+  EXPECT_EQ(why(truth), "");
+  EXPECT_THAT(why(truth.Inverse()), HasSubstr("In 6 the inverse does"));
+  EXPECT_THAT(why({truth.rotation, 1000 * truth.translation}),
+              AllOf(HasSubstr("In none of 6 views"), HasSubstr("in metres")));
+}
+
 // Between the sweep and the image.
 void MoveBoard(const Eigen::Vector3d& move, CloudEdges* cloud) {
   cloud->pose->sensor_from_target.translation += move;

@@ -41,6 +41,43 @@ float RepairedValue(const cv::Mat& grey, int y, int x, float limit) {
   return out && std::abs(value - middle) > 2 * spread ? middle : value;
 }
 
+// Of lines of pixels one that stands out from both beside it, all along and on one side.
+class LineCount {
+ public:
+  void Add(float value, float before, float after, float limit) {
+    above_ += static_cast<int>(value > before + limit && value > after + limit);
+    below_ += static_cast<int>(value < before - limit && value < after - limit);
+  }
+  bool IsDead(int length) const { return 10 * std::max(above_, below_) > 9 * length; }
+
+ private:
+  int above_ = 0, below_ = 0;
+};
+
+// Columns and rows that a readout lost.
+void RepairDeadLines(float limit, cv::Mat* grey) {
+  std::vector<LineCount> columns(static_cast<std::size_t>(grey->cols));
+  std::vector<LineCount> rows(static_cast<std::size_t>(grey->rows));
+  for (int y = 1; y + 1 < grey->rows; ++y) {
+    const float* row = grey->ptr<float>(y);
+    const float* above = grey->ptr<float>(y - 1);
+    const float* below = grey->ptr<float>(y + 1);
+    LineCount& line = rows[static_cast<std::size_t>(y)];
+    for (int x = 1; x + 1 < grey->cols; ++x) {
+      columns[static_cast<std::size_t>(x)].Add(row[x], row[x - 1], row[x + 1], limit);
+      line.Add(row[x], above[x], below[x], limit);
+    }
+  }
+  for (int x = 1; x + 1 < grey->cols; ++x) {
+    if (!columns[static_cast<std::size_t>(x)].IsDead(grey->rows - 2)) continue;
+    grey->col(x) = 0.5 * (grey->col(x - 1) + grey->col(x + 1));
+  }
+  for (int y = 1; y + 1 < grey->rows; ++y) {
+    if (!rows[static_cast<std::size_t>(y)].IsDead(grey->cols - 2)) continue;
+    grey->row(y) = 0.5 * (grey->row(y - 1) + grey->row(y + 1));
+  }
+}
+
 }  // namespace
 
 std::string WhyImageIsUseless(const cv::Mat& grey) {
@@ -62,9 +99,11 @@ std::string WhyImageIsUseless(const cv::Mat& grey) {
   return "";
 }
 
-cv::Mat RepairDeadPixels(const cv::Mat& grey) {
+cv::Mat RepairDeadPixels(const cv::Mat& given) {
   // Of two pixels with noise sigma, the distance's median is 0.95 sigma: 8 sigma here.
-  const float limit = 8 * std::max(TypicalStep(grey), 1e-6F);
+  const float limit = 8 * std::max(TypicalStep(given), 1e-6F);
+  cv::Mat grey = given.clone();
+  RepairDeadLines(limit, &grey);
   cv::Mat out = grey.clone();
   std::vector<int> far_from(static_cast<std::size_t>(grey.cols));  // of four neighbours, a row's
   for (int y = 1; y + 1 < grey.rows; ++y) {

@@ -81,6 +81,7 @@ ImageFacts LookAt(const fs::path& path) {
     const std::string head = ReadFileHead(path, kHeadBytes);
     facts.turned_by_exif = IsTurnedByExif(head.data(), head.size());
     cv::Mat pixels = DecodeImageFile(path);
+    facts.grey = OneChannelOfGrey(pixels).channels() == 1;
     facts.width = pixels.cols;
     facts.height = pixels.rows;
     try {

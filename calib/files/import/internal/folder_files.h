@@ -19,6 +19,7 @@ FileList ListClouds(const std::filesystem::path& folder);
 struct ImageFacts {
   int width = 0, height = 0;
   PixelFormat format = PixelFormat::kMono8;
+  bool grey = false;  ///< of one channel, or of three alike (OneChannelOfGrey)
   bool turned_by_exif = false;
   double dark_over_bright = 0;  ///< of kMono16
   std::string problem;          ///< why it cannot be used; empty: it can

@@ -12,6 +12,7 @@
 namespace rgbdt {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -44,6 +45,17 @@ TEST_P(CloudSanity, AWrongUnitIsNamed) {
               HasSubstr("kilometre"));
 }
 
+TEST_P(CloudSanity, RoundedCoordinatesAreNamed) {
+  const auto rounded = [&](float step) {
+    return With([&](const auto& p) -> Eigen::Vector3f {
+      return (p.array() / step).round().matrix() * step;
+    });
+  };
+  EXPECT_THAT(WhyCloudIsOff(rounded(0.01F)), HasSubstr("rounded to 10 mm"));
+  EXPECT_THAT(WhyCloudIsOff(rounded(0.1F)), HasSubstr("rounded to 100 mm"));
+  EXPECT_THAT(WhyCloudIsOff(rounded(0.001F)), IsEmpty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Lidars, CloudSanity, testing::Values(0, 16, 64));
 
 using CloudAxes = CloudSanity;
@@ -51,6 +63,16 @@ using CloudAxes = CloudSanity;
 TEST_P(CloudAxes, ACamerasAxesAreNamed) {
   const Cloud turned = With([](const auto& p) { return Eigen::Vector3f(-p.y(), -p.z(), p.x()); });
   EXPECT_THAT(WhyCloudIsOff(turned), HasSubstr("a camera's (x right, y down, z forward)"));
+}
+
+// In the vehicle's frame, where the LIDAR stands on the roof, nodding and turned.
+TEST_P(CloudAxes, AnotherFrameIsNamedWithWhereTheLidarIsInIt) {
+  const Eigen::AngleAxisf turned(0.5F, Eigen::Vector3f(0.04F, 0.12F, 1).normalized());
+  const Cloud vehicles = With([&](const auto& p) -> Eigen::Vector3f {
+    return turned * p + Eigen::Vector3f(0.8F, 0.1F, 1.7F);
+  });
+  EXPECT_THAT(WhyCloudIsOff(vehicles), AllOf(HasSubstr("meet at 0.80 0.10 1.70 m"),
+                                             HasSubstr("another frame than the LIDAR's own")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Spinning, CloudAxes, testing::Values(16, 64));

@@ -163,6 +163,21 @@ TEST(GreyImage, DeadPixelsAreRepairedAndSquaresAreNot) {
   EXPECT_EQ(cv::countNonZero(RepairDeadPixels(clean) != clean), 0);
 }
 
+// As raw images of thermal cameras have them.
+TEST(GreyImage, DeadColumnsAndRowsAreRepaired) {
+  PaintedCheckerboard board;
+  board.square_px = 9;
+  board.noise = 1;
+  const cv::Mat clean = board.Paint();
+  cv::Mat image = clean.clone();
+  image.col(310) = 0;
+  image.col(334) = 16383;
+  image.row(240) = 16383;
+  const cv::Mat repaired = RepairDeadPixels(image);
+  EXPECT_LT(cv::norm(repaired, clean, cv::NORM_INF), 50);  // as above
+  EXPECT_LT(cv::countNonZero(repaired != clean), 2 * image.rows + image.cols + 20);
+}
+
 TEST(GreyImage, InterpolatesBetweenPixels) {
   cv::Mat image(3, 3, CV_32F);
   for (int i = 0; i < 9; ++i) image.at<float>(i / 3, i % 3) = static_cast<float>(i * i);

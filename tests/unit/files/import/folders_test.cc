@@ -188,8 +188,13 @@ TEST_F(FoldersTest, KindsFollowFromImagesAndNames) {
   EXPECT_EQ(made.rig.cameras[0].kind, CameraKind::kThermal);
   EXPECT_EQ(made.rig.cameras[1].kind, CameraKind::kColor);
   EXPECT_EQ(made.rig.cameras[1].format, PixelFormat::kMono8);
-  folders_.cameras = {{"thermal", dir_ / "a"}};
+  Image("coloured", "p1", CV_8UC3);
+  WritePng(dir_ / "coloured/p1.png", cv::Mat(30, 40, CV_8UC3, cv::Scalar(7, 90, 200)));
+  folders_.cameras = {{"thermal", dir_ / "coloured"}};
   EXPECT_THAT(Error(), AllOf(HasSubstr("3 channels"), HasSubstr("raw counts")));
+  folders_.cameras = {{"thermal", dir_ / "a"}};  // three channels, all grey
+  EXPECT_EQ(ReadFolders(folders_).rig.cameras[0].kind, CameraKind::kThermal);
+  EXPECT_EQ(ReadFolders(folders_).rig.cameras[0].format, PixelFormat::kMono8);
   folders_.cameras = {{"Front", dir_ / "a"}};
   EXPECT_THAT(Error(), HasSubstr("\"Front\""));
 }

@@ -293,7 +293,7 @@ TEST_F(SessionDir, AnImageWithoutRadiometryHasTheRigs) {
 }
 
 TEST_F(SessionDir, AThermalImageOfThreeChannelsIsRefused) {
-  WritePng(Folder("0006") / "thermal.png", cv::Mat(18, 24, CV_8UC3));
+  WritePng(Folder("0006") / "thermal.png", cv::Mat(18, 24, CV_8UC3, cv::Scalar(7, 90, 200)));
   const std::string error = ErrorOfView(
       "cloud: \"cloud.pcd\"\nimage {\n  camera: \"thermal\"\n  file: \"thermal.png\"\n}\n");
   EXPECT_THAT(error, HasSubstr("view.textproto:4: image.file"));
@@ -309,6 +309,18 @@ TEST_F(SessionDir, AColourCamerasImageOfSixteenBitIsReadAsEight) {
     EXPECT_EQ(image.format, type == CV_16UC1 ? PixelFormat::kMono8 : PixelFormat::kBgr8);
     EXPECT_EQ(image.pixels.ptr<std::uint8_t>()[0], 0x80);
   }
+}
+
+// As video of a thermal camera is: grey, within what its compression leaves.
+TEST_F(SessionDir, AThermalImageOfThreeChannelsThatAreAlikeIsOne) {
+  WriteViewText("0006",
+                "cloud: \"cloud.pcd\"\nimage { camera: \"thermal\" file: \"thermal.png\" }\n");
+  cv::Mat pixels = ReadView(OpenSession(dir_.path()), "0006").images[0].pixels;
+  pixels = cv::Mat(pixels.size(), CV_8UC3, cv::Scalar(101, 100, 98));
+  WritePng(Folder("0006") / "thermal.png", pixels);
+  const View view = ReadView(OpenSession(dir_.path()), "0006");
+  EXPECT_EQ(view.images[0].format, PixelFormat::kMono8);
+  EXPECT_EQ(view.images[0].pixels.at<unsigned char>(3, 5), 100);
 }
 
 TEST_F(SessionDir, WhatDoesNotFitTheRigIsRefused) {
