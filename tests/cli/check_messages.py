@@ -34,7 +34,7 @@ WORDS = {
     r"\bthing away\b": "remove the other object",
     r"[Nn]othing can be asked": "not available",
 }
-STARTS = r"(?:^|[.:;] )So,? [a-z]"  # "So" in front of a sentence, in what programs say
+STARTS = r"(?:^|[.:;|*] )So,? [a-z]"  # "So" in front of a sentence
 
 
 def check_words(where, text, wrong):
@@ -44,9 +44,12 @@ def check_words(where, text, wrong):
 
 
 def check_all_words(pages):
-    """The viewer's page has its words between tags, too: its files are read whole."""
+    """The viewer's page has its words between tags, too: its files are read whole, comments, too,
+    in which a sentence may begin with "So"."""
     starts = {STARTS: "leave it out, or say what follows from what"}
     check_words("a program", said_by_programs(), WORDS | starts)
+    for path in sorted(pages):
+        check_words(path, read(path), starts)
     scripts = subprocess.run(["git", "-C", str(root), "ls-files", "scripts", "viewer/page/src"],
                              capture_output=True, text=True).stdout.splitlines()
     for path in sorted(pages | {root / name for name in scripts}):
