@@ -63,21 +63,34 @@ std::vector<const Cause*> CausesToName(const CameraReport& camera, Grade grade) 
   return named;
 }
 
-void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
-  if (!camera.contradiction.empty()) return;
+// What a cause alone makes of the result: kGood of one that is only named.
+Grade AloneGradeOf(const CameraReport& camera, const Cause& cause) {
   // Where it left no pose, nothing tells how far that would move.
   const bool solved = camera.calibration.status != SolveStatus::kNotSolved;
+  if (cause.Sigmas() >= kGivenWrongSigmas) return solved ? GradeOf(cause) : Grade::kBad;
+  return IsFeared(cause) ? Grade::kDoubtful : Grade::kGood;
+}
+
+void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
+  if (!camera.contradiction.empty()) return;
+  // A cause that is an alarm by itself has the next likeliest named, too.
+  Grade alarm = judgement->grade();
+  for (const Cause& cause : camera.causes) alarm = std::max(alarm, AloneGradeOf(camera, cause));
   const char* prefix = "Likeliest cause: ";
-  for (const Cause* cause : CausesToName(camera, judgement->grade())) {
-    const std::string sentence = prefix + cause->words + "." + Moves(*cause);
+  Grade first = Grade::kGood;
+  for (const Cause* cause : CausesToName(camera, alarm)) {
+    std::string sentence = prefix + cause->words + "." + Moves(*cause);
     prefix = "Second likeliest: ";
-    if (cause->Sigmas() >= kGivenWrongSigmas) {
-      judgement->Cause(solved ? GradeOf(*cause) : Grade::kBad, sentence);
-    } else if (IsFeared(*cause)) {
-      judgement->Cause(Grade::kDoubtful, sentence + " These views alone are not sure of it (" +
-                                             Number(cause->Sigmas(), 1) + " sigma): measure it.");
-    } else {
+    const Grade grade = AloneGradeOf(camera, *cause);
+    first = std::max(first, grade);
+    if (IsFeared(*cause)) {
+      sentence += " These views alone are not sure of it (" + Number(cause->Sigmas(), 1) +
+                  " sigma): measure it.";
+    }
+    if (first == Grade::kGood) {
       judgement->AddReason(sentence);
+    } else {  // the second stands beside the first
+      judgement->Cause(grade == Grade::kGood ? first : grade, sentence);
     }
   }
 }

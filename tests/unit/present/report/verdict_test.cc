@@ -248,6 +248,19 @@ TEST(Verdict, TheLikeliestAndTheSecondLikeliestCauseAreNamed) {
   EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("the board is wider"))));
 }
 
+// The first cause alone makes it doubtful: that is alarm enough to name another that may be it.
+TEST(Verdict, TheSecondLikeliestIsNamedBesideAFirstThatAloneIsTheAlarm) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(25, 3), {"focal length", "the focal length is too long", 4, 1, 3.0}};
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kDoubtful);
+  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("Likeliest cause: the squares"));
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Second likeliest: the focal length"));
+  camera.causes[0].moves_sigma = 0.5;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Second likeliest"))));
+}
+
 // Where something else says that all is not well, what is less sure is worth a look.
 TEST(Verdict, AnUnsureCauseIsNamedOnlyBesideAnotherAlarm) {
   CameraReport camera = Good();
