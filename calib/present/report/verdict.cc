@@ -71,6 +71,26 @@ Grade AloneGradeOf(const CameraReport& camera, const Cause& cause) {
   return IsFeared(cause) ? Grade::kDoubtful : Grade::kGood;
 }
 
+// The views contradict what was given, so far that the result is not to be used.
+bool IsGivenWrong(const CameraReport& camera) {
+  return !camera.contradiction.empty() ||
+         std::any_of(camera.causes.begin(), camera.causes.end(), [&](const Cause& cause) {
+           return AloneGradeOf(camera, cause) == Grade::kBad;
+         });
+}
+
+bool MoreViewsHelp(const CameraReport& camera) {
+  switch (camera.calibration.status) {
+    case SolveStatus::kNotSolved:
+      return !IsGivenWrong(camera);
+    case SolveStatus::kUndetermined:
+    case SolveStatus::kDegenerate:
+      return !ManyAreRejected(camera);
+    default:
+      return Judge(camera).grade != Grade::kBad;
+  }
+}
+
 void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) return;
   // A cause that is an alarm by itself has the next likeliest named, too.
@@ -136,8 +156,10 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
     case SolveStatus::kUndetermined:
     case SolveStatus::kDegenerate:
       judgement->Headline("Do not use it: these views do not determine the pose.");
+      // Views that were rejected may have.
+      if (ManyAreRejected(camera)) JudgeRejections(camera, judgement);
       judgement->Bad("Status of the solve: " + calibration.StatusText());
-      if (next_view) judgement->Bad("Next: " + next_view->words);
+      if (next_view && !ManyAreRejected(camera)) judgement->Bad("Next: " + next_view->words);
       break;
     case SolveStatus::kNotSolved:
       // Where no view is left, why they were rejected says more.
@@ -146,8 +168,7 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
       if (!camera.used.empty()) JudgeRejections(camera, judgement);
       break;
     case SolveStatus::kContradicted:
-      judgement->Bad("Status of the solve: " + calibration.StatusText());
-      break;
+      break;  // at the end: what contradicts it may be said by then
     case SolveStatus::kNotConverged:
       judgement->Bad("The solve did not converge" + (detail.empty() ? "." : ": " + detail));
       break;
@@ -159,13 +180,21 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
   }
 }
 
+// Of a calibration that was judged before, whose verdict's first reason is the detail.
+void JudgeContradicted(const CameraCalibration& calibration, Judgement* judgement) {
+  if (calibration.status != SolveStatus::kContradicted) return;
+  if (!calibration.detail.empty() && judgement->SaysBad(calibration.detail)) return;
+  judgement->Bad("Status of the solve: " + calibration.StatusText());
+}
+
 void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
   const std::string uncertain = "The projection uncertainty of a point " + Number(kJudgedAtM, 0) +
                                 " m away is " + Number(at.worst_px, 2) +
                                 " px (1 sigma) where it is worst in the image";
   if (at.worst_px > kUncertainPx) {
-    judgement->Usable(uncertain + ", more than " + Number(kUncertainPx, 0) +
-                      " px: take more views in that part of the image.");
+    judgement->Usable(
+        uncertain + ", more than " + Number(kUncertainPx, 0) + " px" +
+        (judgement->more_views() ? ": take more views in that part of the image." : "."));
   } else {
     judgement->AddReason(uncertain + ".");
   }
@@ -183,6 +212,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera) {
 
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
+  if (IsGivenWrong(camera)) judgement.NoMoreViews();
   JudgeStatus(camera, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
   JudgeResiduals(camera, &judgement);
@@ -199,12 +229,19 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
         "it.");
   }
   JudgeCauses(camera, &judgement);
+  JudgeContradicted(camera.calibration, &judgement);
   if (camera.truth_error) {
     judgement.AddReason("The truth is known here: the result is " +
                         Number(camera.truth_error->rotation_deg, 3) + "° and " +
                         Number(camera.truth_error->translation_mm, 1) + " mm away from it.");
   }
   return judgement.Finish();
+}
+
+const NextView* NextViewOf(const Report& report) {
+  const auto& cameras = report.cameras;
+  const bool help = std::all_of(cameras.begin(), cameras.end(), MoreViewsHelp);
+  return report.next_view && help ? &*report.next_view : nullptr;
 }
 
 Grade GradeOf(const Report& report) {

@@ -35,6 +35,10 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 /// `next_view` is the report's.
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view = std::nullopt);
 
+/// Where to hold the board next, of a report to which more views are of help: nullptr where a
+/// camera is not to be used, and something else has to be corrected first.
+const NextView* NextViewOf(const Report& report);
+
 /// The worst of its cameras'; kNone of none.
 Grade GradeOf(const Report& report);
 

@@ -43,6 +43,35 @@ TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Next:"))));
 }
 
+TEST(Verdict, WhyManyViewsAreMissingComesBeforeWhatTheRestDoNotDetermine) {
+  CameraReport camera = Good();
+  camera.calibration.status = SolveStatus::kDegenerate;
+  camera.calibration.detail = "all boards are parallel";
+  camera.used = {"1", "2"};
+  camera.heldout = {"3"};
+  camera.rejected = {{"4", "sizes do not fit"}, {"5", "sizes do not fit"}};
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("sizes do not fit"))));
+  camera.rejected.push_back({"6", "sizes do not fit"});
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.reasons.at(0), "3 views rejected (4, 5, 6), 4: sizes do not fit.");
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("all boards are parallel"));
+  EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("Rejected: 3 of 6")))) << "once is enough";
+}
+
+TEST(Verdict, WhatContradictsACalibrationThatWasJudgedBeforeIsSaidOnce) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(100, 10)};
+  const std::string why = Judge(camera).reasons.at(0);
+  camera.calibration.status = SolveStatus::kContradicted;
+  camera.calibration.detail = why;
+  EXPECT_EQ(Judge(camera).reasons.at(0), why);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Status of the solve"))));
+  camera.causes.clear();  // judged where its report is not known
+  EXPECT_EQ(Judge(camera).grade, Grade::kBad);
+  EXPECT_EQ(Judge(camera).reasons.at(0),
+            "Status of the solve: contradicted: do not use it: " + why);
+}
+
 TEST(Verdict, TheStatusOfAConvergedSolveIsAReasonWithoutAlarm) {
   CameraReport camera = Good();
   camera.calibration.status = SolveStatus::kFirstGuessKept;
@@ -346,6 +375,29 @@ TEST(Verdict, AMethodWithoutACovarianceIsNoMoreThanUsable) {
   camera.calibration.covariance.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("cannot be told by this method")));
+}
+
+TEST(NextViewOf, IsNoneWhereSomethingElseHasToBeCorrectedFirst) {
+  Report report = test::MakeReport();
+  report.cameras = {Good()};
+  CameraReport& camera = report.cameras[0];
+  camera.sigma->colouring[1].worst_px = 2;
+  ASSERT_NE(NextViewOf(report), nullptr);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("take more views")));
+  camera.calibration.status = SolveStatus::kDegenerate;
+  EXPECT_NE(NextViewOf(report), nullptr) << "more views are what is missing";
+  camera.calibration.status = SolveStatus::kConverged;
+  camera.causes = {Wrong(100, 10)};
+  EXPECT_EQ(NextViewOf(report), nullptr);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("more views"))));
+  camera.causes.clear();
+  camera.calibration.status = SolveStatus::kNotSolved;
+  EXPECT_NE(NextViewOf(report), nullptr);
+  camera.contradiction = "Images and clouds are 1 apart";
+  EXPECT_EQ(NextViewOf(report), nullptr);
+  report.next_view.reset();
+  report.cameras.clear();
+  EXPECT_EQ(NextViewOf(report), nullptr);
 }
 
 TEST(JudgedCalibration, WhatIsDoubtfulOrNotToBeUsedSaysSo) {
