@@ -16,6 +16,9 @@ constexpr std::size_t kFewViews = 5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
+// Recorded sessions of right rig files reach 12 px; beyond three times that something that is not
+// in the views, a lens most often, is wrong, however large the stated sigma is.
+constexpr double kMostUncertainPx = 40;
 // Of what was given wrong, in sigmas of the pose that it moves.
 constexpr double kMovesLittle = 1, kMovesMuch = 4;
 // What is less likely than this is not named as a cause.
@@ -191,7 +194,13 @@ void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
   const std::string uncertain = "The projection uncertainty of a point " + Number(kJudgedAtM, 0) +
                                 " m away is " + Number(at.worst_px, 2) +
                                 " px (1 sigma) where it is worst in the image";
-  if (at.worst_px > kUncertainPx) {
+  if (at.worst_px > kMostUncertainPx) {
+    judgement->Doubtful(uncertain + ", more than " + Number(kMostUncertainPx, 0) +
+                        " px: too uncertain. Check the lens (rgbdt intrinsics)" +
+                        (judgement->more_views() ? ", and take more views in all parts of the "
+                                                   "image."
+                                                 : "."));
+  } else if (at.worst_px > kUncertainPx) {
     judgement->Usable(
         uncertain + ", more than " + Number(kUncertainPx, 0) + " px" +
         (judgement->more_views() ? ": take more views in that part of the image." : "."));

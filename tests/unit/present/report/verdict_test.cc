@@ -87,6 +87,11 @@ TEST(Verdict, MoreThanAPixelOfReprojectionUncertaintyAtFiveMetresIsAWarning) {
   camera.sigma->colouring[1].worst_px = 1.01;
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
+  camera.sigma->colouring[1].worst_px = 39;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  camera.sigma->colouring[1].worst_px = 41;
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("too uncertain"));
 }
 
 TEST(Verdict, HalvesThatDifferTooMuchContradictTheStatedUncertainty) {
