@@ -26,8 +26,8 @@ constexpr double kLeastNamedSigmas = 1, kLeastNamedWhereUsable = 2.5;
 constexpr std::size_t kMostNamed = 2;
 
 std::string Moves(const Cause& cause) {
-  if (!cause.moves_sigma) return "";
-  return " Put right, it moves the result by " + Number(*cause.moves_sigma, 1) + " sigma.";
+  const std::string sigmas = cause.moves_sigma ? Number(*cause.moves_sigma, 1) : "0.0";
+  return sigmas == "0.0" ? "" : " Corrected, it moves the result by " + sigmas + " sigma.";
 }
 
 // May be chance, but for what hangs on it: the pose is as sure as stated only if what was given is.
@@ -107,8 +107,7 @@ void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
     const Grade grade = AloneGradeOf(camera, *cause);
     first = std::max(first, grade);
     if (IsFeared(*cause)) {
-      sentence += " These views alone are not sure of it (" + Number(cause->Sigmas(), 1) +
-                  " sigma): measure it.";
+      sentence += " It may be chance (" + Number(cause->Sigmas(), 1) + " sigma): measure it.";
     }
     if (first == Grade::kGood) {
       judgement->AddReason(sentence);

@@ -214,7 +214,7 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
     if (scatter && camera.variance_factor > kMuchScatter) {
       judgement->Usable(
           "The stated sigma was enlarged " + Number(std::sqrt(camera.variance_factor), 1) +
-          " times: the views seem to scatter more than they state, and are too few to be sure. " +
+          " times: the views seem to scatter more than they state, which may be chance. " +
           kWhyViewsDisagree);
     }
     return;

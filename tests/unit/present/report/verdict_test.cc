@@ -258,10 +258,13 @@ TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
   EXPECT_EQ(grade(12.2, 3.9), Grade::kGood);  // by chance once in 2,000 times
   EXPECT_EQ(grade(6.2, 10), Grade::kGood);
   EXPECT_EQ(grade(6.3, 10), Grade::kDoubtful) << "chance, or a result that is far off";
-  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("not sure of it (2.5 sigma): measure it"));
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It may be chance (2.5 sigma): measure it"));
   camera.causes = {Wrong(16, 0.5), Wrong(14.4, 0.4), Wrong(9, 8)};
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful) << "whatever is surer and moves little";
   EXPECT_EQ(grade(12.3, 0.9), Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("moves the result by 0.9 sigma"));
+  EXPECT_EQ(grade(12.3, 0.04), Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), Not(HasSubstr("moves the result")));
   EXPECT_EQ(grade(12.3, 1.1), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, std::nullopt), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, 4.1), Grade::kBad);
