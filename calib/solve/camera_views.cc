@@ -6,6 +6,7 @@
 
 #include "calib/camera/camera.h"
 #include "calib/camera/target_pose.h"
+#include "calib/solve/evaluate.h"
 
 namespace rgbdt {
 namespace {
@@ -89,6 +90,30 @@ std::string Joined(const std::string& no_image, const std::string& no_cloud) {
   if (no_image.empty() || no_image == no_cloud) return no_cloud;  // e.g. of an unreadable view
   if (no_cloud.empty()) return no_image;
   return "image: " + no_image + "; cloud: " + no_cloud;
+}
+
+// The outline of the board at a pose, as the lens bends it.
+std::vector<Eigen::Vector2d> OutlineAt(const Camera& camera, const Target& target,
+                                       const Rigid3& camera_from_target) {
+  constexpr int kPieces = 32;
+  std::vector<Eigen::Vector2d> outline;
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto side = ProjectSegment(camera, camera_from_target * corners[i],
+                                     camera_from_target * corners[(i + 1) % 4], kPieces);
+    outline.insert(outline.end(), side.begin(), side.end());
+  }
+  return outline;
+}
+
+// The detection looks for the outline no farther than this from where the lens that was given has
+// it. Where another lens has it farther off, that is not the board's edge.
+bool IsFarFrom(const std::vector<Eigen::Vector2d>& outline,
+               const std::vector<Eigen::Vector2d>& found) {
+  constexpr double kReachPx = 3;
+  return std::any_of(found.begin(), found.end(), [&](const Eigen::Vector2d& pixel) {
+    return DistanceToOutline(pixel, outline) > kReachPx;
+  });
 }
 
 }  // namespace
@@ -193,6 +218,8 @@ CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& targe
     edges->pose = found->pose;
     edges->pose->half_turn_known = half_turn_known;
     edges->corner_sigma_px = found->inflation * found->corner_sigma_px;
+    auto outline = OutlineAt(by_lens, target, edges->pose->sensor_from_target);
+    if (!outline.empty() && IsFarFrom(outline, edges->outline)) edges->outline = std::move(outline);
     view.image = edges.get();
     camera.posed_again.push_back(std::move(edges));
   }
