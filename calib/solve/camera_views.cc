@@ -6,7 +6,6 @@
 
 #include "calib/camera/camera.h"
 #include "calib/camera/target_pose.h"
-#include "calib/solve/evaluate.h"
 
 namespace rgbdt {
 namespace {
@@ -106,14 +105,15 @@ std::vector<Eigen::Vector2d> OutlineAt(const Camera& camera, const Target& targe
   return outline;
 }
 
-// The detection looks for the outline no farther than this from where the lens that was given has
-// it. Where another lens has it farther off, that is not the board's edge.
-bool IsFarFrom(const std::vector<Eigen::Vector2d>& outline,
-               const std::vector<Eigen::Vector2d>& found) {
+// Whether two lenses have the outline in places that are farther apart than the detection looks to
+// either side of where the one that was given has it: what it found there is not the board's edge.
+bool AreApart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
   constexpr double kReachPx = 3;
-  return std::any_of(found.begin(), found.end(), [&](const Eigen::Vector2d& pixel) {
-    return DistanceToOutline(pixel, outline) > kReachPx;
-  });
+  if (a.size() != b.size()) return true;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if ((a[i] - b[i]).norm() > kReachPx) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -207,7 +207,7 @@ CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& targe
                        const Eigen::Vector3d& bow_m) {
   CameraSpec spec = *camera.spec;
   spec.lens = lens;
-  const Camera by_lens(spec);
+  const Camera by_lens(spec), by_given(*camera.spec);
   for (CameraView& view : camera.all) {
     if (!view.usable() || !view.image->pose) continue;
     const auto found =
@@ -219,7 +219,11 @@ CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& targe
     edges->pose->half_turn_known = half_turn_known;
     edges->corner_sigma_px = found->inflation * found->corner_sigma_px;
     auto outline = OutlineAt(by_lens, target, edges->pose->sensor_from_target);
-    if (!outline.empty() && IsFarFrom(outline, edges->outline)) edges->outline = std::move(outline);
+    const auto given =
+        PoseFromCorners(by_given, target, view.image->corners, kMostCornersOff, bow_m);
+    const bool apart =
+        !given || AreApart(OutlineAt(by_given, target, given->pose.sensor_from_target), outline);
+    if (apart && !outline.empty()) edges->outline = std::move(outline);
     view.image = edges.get();
     camera.posed_again.push_back(std::move(edges));
   }
