@@ -40,7 +40,7 @@ function FrameCoverage({ camera, views, labels }: { camera: CameraInfo; views: V
     <figure class="coverage">
       <svg viewBox={`-0.5 -0.5 ${camera.width} ${camera.height}`} role="img" data-testid={`coverage-${camera.name}`}
         aria-label={`Image of ${camera.name} with the board's outlines of ${found.length} views`}>
-        {found.map(({ view, own }) => <Outline key={view.name} view={view} own={own} text={camera.width / 18} label={labels.get(view.name)} />)}
+        {found.map(({ view, own }) => <Outline key={view.name} view={view} own={own} text={camera.width / 28} label={labels.get(view.name)} />)}
       </svg>
       <figcaption>{camera.name}: {camera.width} × {camera.height} px, board detected in {found.length} of {views.length} views</figcaption>
     </figure>
