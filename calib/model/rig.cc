@@ -177,11 +177,14 @@ void CheckTarget(const Target& target) {
           std::to_string(target.print_sigma), "0 (exact) to 0.1");
   if (target.markers) CheckMarkers(target, *target.markers);
   const Eigen::Vector2d half = 0.5 * target.PatternSize() + target.pattern_offset_m.cwiseAbs();
+  const std::string or_pattern =
+      " m, by squares_x, squares_y (squares, not inner corners) and square_m: one of these, or the "
+      "board's size, was counted or measured wrong";
   Require(half.x() <= 0.5 * target.width_m + 1e-6, "target.width_m", std::to_string(target.width_m),
-          "at least the pattern's width " + std::to_string(2 * half.x()) + " m");
+          "at least the pattern's width " + std::to_string(2 * half.x()) + or_pattern);
   Require(half.y() <= 0.5 * target.height_m + 1e-6, "target.height_m",
           std::to_string(target.height_m),
-          "at least the pattern's height " + std::to_string(2 * half.y()) + " m");
+          "at least the pattern's height " + std::to_string(2 * half.y()) + or_pattern);
 }
 
 // `field` names the LIDAR.

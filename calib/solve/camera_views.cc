@@ -91,6 +91,31 @@ std::string Joined(const std::string& no_image, const std::string& no_cloud) {
   return "image: " + no_image + "; cloud: " + no_cloud;
 }
 
+// The outline of the board at a pose, as the lens bends it.
+std::vector<Eigen::Vector2d> OutlineAt(const Camera& camera, const Target& target,
+                                       const Rigid3& camera_from_target) {
+  constexpr int kPieces = 32;
+  std::vector<Eigen::Vector2d> outline;
+  const auto corners = target.OutlineCorners();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto side = ProjectSegment(camera, camera_from_target * corners[i],
+                                     camera_from_target * corners[(i + 1) % 4], kPieces);
+    outline.insert(outline.end(), side.begin(), side.end());
+  }
+  return outline;
+}
+
+// Whether two lenses have the outline in places that are farther apart than the detection looks to
+// either side of where the one that was given has it: what it found there is not the board's edge.
+bool AreApart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
+  constexpr double kReachPx = 3;
+  if (a.size() != b.size()) return true;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if ((a[i] - b[i]).norm() > kReachPx) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void CameraView::Reject(const std::string& why) {
@@ -182,7 +207,7 @@ CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& targe
                        const Eigen::Vector3d& bow_m) {
   CameraSpec spec = *camera.spec;
   spec.lens = lens;
-  const Camera by_lens(spec);
+  const Camera by_lens(spec), by_given(*camera.spec);
   for (CameraView& view : camera.all) {
     if (!view.usable() || !view.image->pose) continue;
     const auto found =
@@ -193,6 +218,12 @@ CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& targe
     edges->pose = found->pose;
     edges->pose->half_turn_known = half_turn_known;
     edges->corner_sigma_px = found->inflation * found->corner_sigma_px;
+    auto outline = OutlineAt(by_lens, target, edges->pose->sensor_from_target);
+    const auto given =
+        PoseFromCorners(by_given, target, view.image->corners, kMostCornersOff, bow_m);
+    const bool apart =
+        !given || AreApart(OutlineAt(by_given, target, given->pose.sensor_from_target), outline);
+    if (apart && !outline.empty()) edges->outline = std::move(outline);
     view.image = edges.get();
     camera.posed_again.push_back(std::move(edges));
   }

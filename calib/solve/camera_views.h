@@ -59,9 +59,9 @@ struct CameraViews {
 /// A view whose image or cloud is another one's counts once.
 CameraViews ViewsOf(const CameraSpec& camera, const std::vector<ViewDetection>& detections);
 
-/// The same views with the target's pose in each image, and how exact its corners are, by another
-/// lens than the one that they were detected with, and on a board of this shape
-/// (Target::BowFactors).
+/// The same views with the target's pose in each image, how exact its corners are, and an outline
+/// that was looked for in the wrong place, by another lens than the one that they were detected
+/// with, and on a board of this shape (Target::BowFactors).
 CameraViews PosedAgain(CameraViews camera, const Lens& lens, const Target& target,
                        const Eigen::Vector3d& bow_m = {0, 0, 0});
 

@@ -53,7 +53,7 @@ std::string FindingsText(Findings findings) {
   std::string text;
   for (const Finding& finding : findings) {
     text += Word(finding.level) + finding.check + ": " + finding.what + "\n";
-    if (!finding.mend.empty()) text += "  mend: " + finding.mend + "\n";
+    if (!finding.mend.empty()) text += "  fix: " + finding.mend + "\n";
   }
   return text + Count(findings, Finding::Level::kProblem, "problem") + ", " +
          Count(findings, Finding::Level::kWarning, "warning") + "\n";

@@ -53,7 +53,7 @@ std::optional<LogRig> LogRigOf(const std::string& session) {
   for (const std::string& why : RequireSound(*rig.calibration, rig.rig, names, Use::kAnyway)) {
     std::fprintf(stderr, "rgbdt: %s\n", why.c_str());  // who uses the log is to decide
   }
-  PrintDoubts(*rig.calibration, file);
+  PrintDoubts(*rig.calibration, rig.rig, file);
   return rig;
 }
 

@@ -141,7 +141,7 @@ int RunExport(const ExportFlags& flags) {
   const Rig rig = ReadRig(files.rig);
   const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSound(calibration, rig, files.Names(), files.HowToUse(), Further::kUsed));
-  PrintDoubts(calibration, files.calibration);
+  PrintDoubts(calibration, rig, files.calibration);
   for (const ExportedFile& file : ExportAll(out, rig, calibration, FramesOf(flags))) {
     std::printf("wrote %s: %s\n", file.path.c_str(), file.purpose.c_str());
   }

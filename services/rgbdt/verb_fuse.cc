@@ -70,7 +70,7 @@ int RunFuse(const FuseFlags& flags) {
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
   const Calibration calibration = ReadCalibrationOf(files);
   PrintWarnings(RequireSound(calibration, session.rig, files.Names(), files.HowToUse()));
-  PrintDoubts(calibration, files.calibration);
+  PrintDoubts(calibration, session.rig, files.calibration);
   const std::string view = flags.view.empty() ? session.views.back() : flags.view;
   if (std::find(session.views.begin(), session.views.end(), view) == session.views.end()) {
     throw InputError("session " + session.root.string() + " has no view \"" + view + "\"; it has " +

@@ -55,7 +55,7 @@ Calibration StartOf(const RefineFlags& flags, const Session& session) {
   Calibration start = ReadCalibration(path);
   const CalibrationFiles files = FilesOf(session.root, path.string(), flags.anyway);
   PrintWarnings(RequireSameRig(start, session.rig, files.Names(), files.HowToUse()));
-  PrintDoubts(start, path);
+  PrintDoubts(start, session.rig, path);
   return start;
 }
 

@@ -117,7 +117,7 @@ void RequireCalibrated(const std::filesystem::path& session, const std::string& 
   const std::filesystem::path file = session / "calibration.textproto";
   const Calibration calibration = ReadCalibration(file);
   RequireSound(calibration, rig, {file.string(), rig_file}, Use::kIfSound);
-  PrintDoubts(calibration, file);
+  PrintDoubts(calibration, rig, file);
 }
 
 int RunUp(UpFlags flags) {

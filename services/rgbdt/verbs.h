@@ -85,8 +85,9 @@ inline void PrintWarnings(const std::vector<std::string>& against) {
 }
 
 /// What is doubtful about a calibration that is used, on stderr.
-inline void PrintDoubts(const Calibration& calibration, const std::filesystem::path& file) {
-  for (const std::string& line : DoubtsOf(calibration, file.string())) {
+inline void PrintDoubts(const Calibration& calibration, const Rig& rig,
+                        const std::filesystem::path& file) {
+  for (const std::string& line : DoubtsOf(calibration, rig, file.string())) {
     std::fprintf(stderr, "rgbdt: %s\n", line.c_str());
   }
 }

@@ -101,7 +101,10 @@ run(async () => {
   await checkClouds(online.page);
   await checkClouds(offline.page);
   await openTab(offline.page, "session");
-  require(await byId(offline.page, "leave-out-0002").isDisabled(), "a file pretends that it can solve");
+  require(await byId(offline.page, "leave-out-0002").count() === 0, "a file pretends that it can solve");
+  require(await byId(offline.page, "log").count() === 0, "a file has a log without events");
+  const cut = await byId(offline.page, "panel-session").locator(".residual-words").evaluateAll((all) => all.filter((each) => each.getBoundingClientRect().right > each.closest(".card").getBoundingClientRect().right).length);
+  require(cut === 0, `${cut} views' figures run out of their cards`);
   require(/rgbdt-viewer --session/.test(await byId(offline.page, "why-not-leave-out").innerText()), "it does not say where views can be left out");
   await offline.page.setViewportSize(kPhone);
   await shot(offline.page, "phone");

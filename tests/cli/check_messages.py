@@ -1,6 +1,7 @@
 """Pages against the project: what stands in backticks in the first column of TROUBLESHOOTING.md's
-tables is said by a program; every relative link of a page leads to something, a heading included;
-no program and no page has words that are not plain English (WORDS).
+tables, and of the glossary's of what verbs print, is said by a program; every relative link of a
+page leads to something, a heading included; no program and no page has words that are not plain
+English (WORDS).
 Usage: check_messages.py SOURCE_DIR"""
 import pathlib
 import re
@@ -34,7 +35,7 @@ WORDS = {
     r"\bthing away\b": "remove the other object",
     r"[Nn]othing can be asked": "not available",
 }
-STARTS = r"(?:^|[.:;] )So,? [a-z]"  # "So" in front of a sentence, in what programs say
+STARTS = r"(?:^|[.:;|*] )So,? [a-z]"  # "So" in front of a sentence
 
 
 def check_words(where, text, wrong):
@@ -44,19 +45,22 @@ def check_words(where, text, wrong):
 
 
 def check_all_words(pages):
-    """The viewer's page has its words between tags, too: its files are read whole."""
+    """The viewer's page has its words between tags, too: its files are read whole, comments, too,
+    in which a sentence may begin with "So"."""
     starts = {STARTS: "leave it out, or say what follows from what"}
     check_words("a program", said_by_programs(), WORDS | starts)
+    for path in sorted(pages):
+        check_words(path, read(path), starts)
     scripts = subprocess.run(["git", "-C", str(root), "ls-files", "scripts", "viewer/page/src"],
                              capture_output=True, text=True).stdout.splitlines()
     for path in sorted(pages | {root / name for name in scripts}):
         check_words(path, re.sub(r'"?\s*\n\s*"?', " ", read(path)), WORDS)
 
 
-def check_messages(page):
+def check_messages(page, text):
     sources = said_by_programs()
     quotes = 0
-    for line in read(page).splitlines():
+    for line in text.splitlines():
         if not line.startswith("|"):
             continue
         first = line.split(" | ")[0].lstrip("| ")
@@ -69,6 +73,15 @@ def check_messages(page):
                     problems.append(f'{page}: no program says "{part}"')
     if quotes < 15:
         problems.append(f"{page}: only {quotes} messages")
+
+
+def check_figures(page):
+    """The part of the glossary that no unit test holds to what is printed."""
+    verbs = ("sync", "scanner", "map", "terrain")
+    parts = [part for part in read(page).split("\n## Of rgbdt ") if part.startswith(verbs)]
+    if len(parts) != len(verbs):
+        problems.append(f"{page}: lacks the figures of one of {verbs}")
+    check_messages(page, "\n".join(parts))
 
 
 def anchors(page):
@@ -102,7 +115,9 @@ for page in pages:
 for name in PAGES:
     if name not in check_links(root / "README.md"):
         problems.append(f"README.md does not lead to {name}")
-check_messages(root / "services/rgbdt/TROUBLESHOOTING.md")
+troubleshooting = root / "services/rgbdt/TROUBLESHOOTING.md"
+check_messages(troubleshooting, read(troubleshooting))
+check_figures(root / "calib/present/report/GLOSSARY.md")
 check_all_words(pages)
 for problem in sorted(set(problems)):
     print(problem)

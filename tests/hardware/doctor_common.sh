@@ -31,7 +31,7 @@ fail_with_output() {
   fail "line ${BASH_LINENO[1]}: $*"
 }
 
-mend_of() { grep -F -A1 "  $1: " "$scratch/output" | sed -n 's/^  mend: //p'; }  # CHECK
+mend_of() { grep -F -A1 "  $1: " "$scratch/output" | sed -n 's/^  fix: //p'; }  # CHECK
 
 finds() {  # LEVEL CHECK WORD...: in its line or its mend's; a mend is there
   local said word

@@ -339,7 +339,7 @@ if can_be_nobody; then
   mend motor
   as=("${unprivileged[@]}" --clear-groups)
   doctor --rig "$scratch/rig.textproto"
-  finds PROBLEM motor "members of dialout have it" "mend: $join"
+  finds PROBLEM motor "members of dialout have it" "fix: $join"
   group=$(getent group dialout | cut -d: -f3)
   as=("${unprivileged[@]}" --groups "$group")
   doctor --rig "$scratch/rig.textproto"

@@ -42,7 +42,7 @@ echo "it ended with exit code $code"
 
 echo "== with it"
 advised
-mend=$(grep -F -A1 '  LCM firewall: ' "$scratch/doctor" | sed -n 's/^  mend: //p')
+mend=$(grep -F -A1 '  LCM firewall: ' "$scratch/doctor" | sed -n 's/^  fix: //p')
 [ -n "$mend" ] || fail "rgbdt doctor advises nothing: $(cat "$scratch/doctor")"
 eval "$mend" || fail "the rule was not made: $mend"
 advised

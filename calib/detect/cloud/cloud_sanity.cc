@@ -25,10 +25,11 @@ std::string WhyUnitIsOff(const Cloud& cloud) {
   const double range = Median(std::move(ranges));
   if (range < kFarthestM && range > kNearestM) return "";
   return Format(
-      "half of the cloud's points lie beyond %.3g m: its unit seems to be %s, and clouds are read "
+      "half of the cloud's points lie beyond %s m: its unit seems to be %s, and clouds are read "
       "in "
       "metres; convert it",
-      range, range > 1 ? "the millimetre" : "the kilometre, or it was scaled");
+      Fixed(range, range > 1 ? 0 : 4).c_str(),
+      range > 1 ? "the millimetre" : "the kilometre, or it was scaled");
 }
 
 // How far beams of one ring differ in their angle with an axis [rad]: RMS over all of them.

@@ -107,7 +107,7 @@ std::string WhyNotToUse(const CameraCalibration& camera, const std::string& name
   std::string why = judged ? camera.detail : camera.StatusText();
   while (!why.empty() && why.back() == '.') why.pop_back();
   return (name.empty() ? "" : name + ": ") + "the calibration of camera " + camera.camera +
-         " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
+         " is not to be used: " + why + ". Fix that and calibrate again" + kAnywayHelps;
 }
 
 std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name) {
@@ -115,11 +115,17 @@ std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name) 
   std::string why = lidar.StatusText();
   while (!why.empty() && why.back() == '.') why.pop_back();
   return (name.empty() ? "" : name + ": ") + "the pose of LIDAR " + lidar.lidar +
-         " is not to be used: " + why + ". Mend that and calibrate again" + kAnywayHelps;
+         " is not to be used: " + why + ". Fix that and calibrate again" + kAnywayHelps;
 }
 
-std::vector<std::string> DoubtsOf(const Calibration& calibration, const std::string& name) {
+std::vector<std::string> DoubtsOf(const Calibration& calibration, const Rig& rig,
+                                  const std::string& name) {
   std::vector<std::string> doubts;
+  if (calibration.sensors && calibration.sensors->lidar.name != rig.lidar.name) {
+    doubts.push_back(name + " was made with LIDAR " + calibration.sensors->lidar.name +
+                     ", and the rig's is " + rig.lidar.name +
+                     ": if that is not the same one in the same place, calibrate again");
+  }
   for (const CameraCalibration& camera : calibration.cameras) {
     if (!camera.converged() || camera.detail.rfind(kDoubtfulDetail, 0) != 0) continue;
     doubts.push_back(name + ": camera " + camera.camera + ": " + camera.detail);

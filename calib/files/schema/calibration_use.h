@@ -39,9 +39,11 @@ std::string WhyNotToUse(const CameraCalibration& camera, const std::string& name
 /// The same of a further LIDAR's pose.
 std::string WhyNotToUse(const LidarCalibration& lidar, const std::string& name = "");
 
-/// What is to be known of cameras that may be used all the same, a line each: which are doubtful,
-/// and why.
-std::vector<std::string> DoubtsOf(const Calibration& calibration, const std::string& name);
+/// What is to be known of a calibration that may be used all the same, a line each: which cameras
+/// are doubtful, and why; whether the rig calls its LIDAR by another name, which may be another
+/// one.
+std::vector<std::string> DoubtsOf(const Calibration& calibration, const Rig& rig,
+                                  const std::string& name);
 
 /// Whether the poses of LIDARs beside the reference are used, too.
 enum class Further { kUnused, kUsed };

@@ -281,9 +281,10 @@ json LogOf(const std::vector<SessionEvent>& events) {
   return log;
 }
 
-json NextViewOf(const std::optional<Report>& report) {
-  if (!report || !report->next_view) return nullptr;
-  const NextViewWords next = WordsOf(*report->next_view);
+json NextViewJson(const std::optional<Report>& report) {
+  const NextView* found = report ? NextViewOf(*report) : nullptr;
+  if (found == nullptr) return nullptr;
+  const NextViewWords next = WordsOf(*found);
   return {{"words", next.words}, {"gain", next.gain}};
 }
 
@@ -360,7 +361,7 @@ std::string SessionFrame(const SessionState& state, const Rig* rig) {
                     {"cameras", states},
                     {"verdict", VerdictJson(VerdictOfAll(judged, next_view))},
                     {"heldout", TableJson(HeldoutTable(judged))},
-                    {"next_view", NextViewOf(state.report)},
+                    {"next_view", NextViewJson(state.report)},
                     {"report", state.report ? ContentJson(ContentOf(*state.report)) : nullptr}});
 }
 

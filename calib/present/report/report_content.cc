@@ -74,7 +74,7 @@ ReportContent ContentOf(const Report& report) {
   AddIfAny(ClosureTable(report), &content.tables);
   AddIfAny(FurtherLidarsTable(report), &content.tables);
   AddIfAny(FurtherNuisanceTable(report), &content.tables);
-  if (report.next_view) content.next_view = WordsOf(*report.next_view);
+  if (const NextView* next = NextViewOf(report)) content.next_view = WordsOf(*next);
   return content;
 }
 

@@ -65,10 +65,10 @@ std::string ProjectionSigma(const CameraReport& camera) {
   return text;
 }
 
-// The verdict, and what speaks most against the result.
-std::string VerdictLines(const CameraReport& camera, const std::optional<NextView>& next_view,
-                         const std::vector<std::string>& told) {
-  Verdict verdict = Judge(camera, next_view);
+// The verdict, and what speaks most against the result. Where to hold the board next, a line of its
+// own says.
+std::string VerdictLines(const CameraReport& camera, const std::vector<std::string>& told) {
+  Verdict verdict = Judge(camera);
   const auto is_told = [&](const std::string& reason) {
     return std::any_of(told.begin(), told.end(), [&](const std::string& why) {
       return reason.find(why) != std::string::npos;
@@ -85,12 +85,31 @@ std::string VerdictLines(const CameraReport& camera, const std::optional<NextVie
   return lines + "  " + reasons[1] + "\n";
 }
 
-// What the cameras' columns have no room for.
-std::string Warnings(const Report& report, const std::vector<std::string>& told) {
+// By camera.
+using VerdictTexts = std::vector<std::pair<std::string, std::string>>;
+
+// Whether the verdict on each whom a line "NAME, NAME: TEXT" is about has the text.
+bool IsSaid(const std::string& line, const VerdictTexts& verdicts) {
+  const std::size_t colon = line.find(": ");
+  if (colon == std::string::npos) return false;
+  const std::string names = ", " + line.substr(0, colon) + ",";
+  auto left = std::count(names.begin(), names.end(), ',') - 1;
+  for (const auto& [name, text] : verdicts) {
+    const bool named = names.find(", " + name + ",") != std::string::npos;
+    if (named && text.find(line.substr(colon + 2)) != std::string::npos) --left;
+  }
+  return left == 0;
+}
+
+// What the cameras' columns have no room for, and no verdict has said.
+std::string Warnings(const Report& report, const std::vector<std::string>& told,
+                     const VerdictTexts& verdicts) {
   std::vector<Said> statuses, rejected, warnings;
   for (const CameraReport& camera : report.cameras) {
     const std::string& name = camera.calibration.camera;
-    if (camera.calibration.status != SolveStatus::kConverged) {
+    const std::string& detail = camera.calibration.detail;
+    if (camera.calibration.status != SolveStatus::kConverged &&
+        (detail.empty() || !IsSaid(name + ": " + detail, verdicts))) {
       statuses.push_back({name, "", camera.calibration.StatusText()});
     }
     for (const RejectedView& view : camera.rejected) {
@@ -107,7 +126,9 @@ std::string Warnings(const Report& report, const std::vector<std::string>& told)
   std::string text;
   for (const auto& [said, what] :
        {std::pair{statuses, ""}, {rejected, "rejected"}, {warnings, ""}}) {
-    for (const std::string& line : SaidOnce(said, what)) text += line + "\n";
+    for (const std::string& line : SaidOnce(said, what)) {
+      if (!IsSaid(line, verdicts)) text += line + "\n";
+    }
   }
   return text;
 }
@@ -139,8 +160,10 @@ std::string Summary::BriefReport() const {
 
 std::string Summary::FullReport(const std::vector<std::string>& told) const {
   std::string text;
+  VerdictTexts verdicts;
   for (const CameraReport& camera : report_.cameras) {
-    text += VerdictLines(camera, report_.next_view, told);
+    verdicts.emplace_back(camera.calibration.camera, VerdictLines(camera, told));
+    text += verdicts.back().second;
   }
   const auto row = [&](const std::string& label,
                        const std::function<std::string(const CameraReport&)>& cell) {
@@ -151,8 +174,9 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
     text += "\n";
   };
   row("method " + report_.method, [](const CameraReport& c) { return c.calibration.camera; });
-  row("status", [](const CameraReport& c) {
-    return std::string(c.calibration.converged() ? "converged" : "NOT CONVERGED");
+  row("status", [](const CameraReport& c) -> std::string {
+    if (c.calibration.status == SolveStatus::kContradicted) return "NOT TO BE USED";
+    return c.calibration.converged() ? "converged" : "NOT CONVERGED";
   });
   row("views used / held out / rejected", [](const CameraReport& c) {
     return fmt::format("{} / {} / {}", c.used.size(), c.heldout.size(), c.rejected.size());
@@ -222,8 +246,8 @@ std::string Summary::FullReport(const std::vector<std::string>& told) const {
   row("seconds: image / cloud / solve", [](const CameraReport& c) {
     return fmt::format("{:.1f} / {:.1f} / {:.2f}", c.detect_image_s, c.detect_cloud_s, c.solve_s);
   });
-  text += FurtherLidarLines(report_) + Warnings(report_, told);
-  if (report_.next_view) text += "next view: " + report_.next_view->words + "\n";
+  text += FurtherLidarLines(report_) + Warnings(report_, told, verdicts);
+  if (const NextView* next = NextViewOf(report_)) text += "next view: " + next->words + "\n";
   return text;
 }
 

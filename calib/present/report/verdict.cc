@@ -16,6 +16,9 @@ constexpr std::size_t kFewViews = 5;
 constexpr double kElsewhereDeg = 0.5, kElsewhereMm = 50;
 constexpr double kClearlyWorse = 1.2;
 constexpr double kUncertainPx = 1;
+// Recorded sessions of right rig files reach 12 px; beyond three times that something that is not
+// in the views, a lens most often, is wrong, however large the stated sigma is.
+constexpr double kMostUncertainPx = 40;
 // Of what was given wrong, in sigmas of the pose that it moves.
 constexpr double kMovesLittle = 1, kMovesMuch = 4;
 // What is less likely than this is not named as a cause.
@@ -23,8 +26,8 @@ constexpr double kLeastNamedSigmas = 1, kLeastNamedWhereUsable = 2.5;
 constexpr std::size_t kMostNamed = 2;
 
 std::string Moves(const Cause& cause) {
-  if (!cause.moves_sigma) return "";
-  return " Put right, it moves the result by " + Number(*cause.moves_sigma, 1) + " sigma.";
+  const std::string sigmas = cause.moves_sigma ? Number(*cause.moves_sigma, 1) : "0.0";
+  return sigmas == "0.0" ? "" : " Corrected, it moves the result by " + sigmas + " sigma.";
 }
 
 // May be chance, but for what hangs on it: the pose is as sure as stated only if what was given is.
@@ -63,21 +66,53 @@ std::vector<const Cause*> CausesToName(const CameraReport& camera, Grade grade) 
   return named;
 }
 
-void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
-  if (!camera.contradiction.empty()) return;
+// What a cause alone makes of the result: kGood of one that is only named.
+Grade AloneGradeOf(const CameraReport& camera, const Cause& cause) {
   // Where it left no pose, nothing tells how far that would move.
   const bool solved = camera.calibration.status != SolveStatus::kNotSolved;
+  if (cause.Sigmas() >= kGivenWrongSigmas) return solved ? GradeOf(cause) : Grade::kBad;
+  return IsFeared(cause) ? Grade::kDoubtful : Grade::kGood;
+}
+
+// The views contradict what was given, so far that the result is not to be used.
+bool IsGivenWrong(const CameraReport& camera) {
+  return !camera.contradiction.empty() ||
+         std::any_of(camera.causes.begin(), camera.causes.end(), [&](const Cause& cause) {
+           return AloneGradeOf(camera, cause) == Grade::kBad;
+         });
+}
+
+bool MoreViewsHelp(const CameraReport& camera) {
+  switch (camera.calibration.status) {
+    case SolveStatus::kNotSolved:
+      return !IsGivenWrong(camera);
+    case SolveStatus::kUndetermined:
+    case SolveStatus::kDegenerate:
+      return !ManyAreRejected(camera);
+    default:
+      return Judge(camera).grade != Grade::kBad;
+  }
+}
+
+void JudgeCauses(const CameraReport& camera, Judgement* judgement) {
+  if (!camera.contradiction.empty()) return;
+  // A cause that is an alarm by itself has the next likeliest named, too.
+  Grade alarm = judgement->grade();
+  for (const Cause& cause : camera.causes) alarm = std::max(alarm, AloneGradeOf(camera, cause));
   const char* prefix = "Likeliest cause: ";
-  for (const Cause* cause : CausesToName(camera, judgement->grade())) {
-    const std::string sentence = prefix + cause->words + "." + Moves(*cause);
+  Grade first = Grade::kGood;
+  for (const Cause* cause : CausesToName(camera, alarm)) {
+    std::string sentence = prefix + cause->words + "." + Moves(*cause);
     prefix = "Second likeliest: ";
-    if (cause->Sigmas() >= kGivenWrongSigmas) {
-      judgement->Cause(solved ? GradeOf(*cause) : Grade::kBad, sentence);
-    } else if (IsFeared(*cause)) {
-      judgement->Cause(Grade::kDoubtful, sentence + " These views alone are not sure of it (" +
-                                             Number(cause->Sigmas(), 1) + " sigma): measure it.");
-    } else {
+    const Grade grade = AloneGradeOf(camera, *cause);
+    first = std::max(first, grade);
+    if (IsFeared(*cause)) {
+      sentence += " It may be chance (" + Number(cause->Sigmas(), 1) + " sigma): measure it.";
+    }
+    if (first == Grade::kGood) {
       judgement->AddReason(sentence);
+    } else {  // the second stands beside the first
+      judgement->Cause(grade == Grade::kGood ? first : grade, sentence);
     }
   }
 }
@@ -123,8 +158,10 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
     case SolveStatus::kUndetermined:
     case SolveStatus::kDegenerate:
       judgement->Headline("Do not use it: these views do not determine the pose.");
+      // Views that were rejected may have.
+      if (ManyAreRejected(camera)) JudgeRejections(camera, judgement);
       judgement->Bad("Status of the solve: " + calibration.StatusText());
-      if (next_view) judgement->Bad("Next: " + next_view->words);
+      if (next_view && !ManyAreRejected(camera)) judgement->Bad("Next: " + next_view->words);
       break;
     case SolveStatus::kNotSolved:
       // Where no view is left, why they were rejected says more.
@@ -133,8 +170,7 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
       if (!camera.used.empty()) JudgeRejections(camera, judgement);
       break;
     case SolveStatus::kContradicted:
-      judgement->Bad("Status of the solve: " + calibration.StatusText());
-      break;
+      break;  // at the end: what contradicts it may be said by then
     case SolveStatus::kNotConverged:
       judgement->Bad("The solve did not converge" + (detail.empty() ? "." : ": " + detail));
       break;
@@ -146,13 +182,27 @@ void JudgeStatus(const CameraReport& camera, const std::optional<NextView>& next
   }
 }
 
+// Of a calibration that was judged before, whose verdict's first reason is the detail.
+void JudgeContradicted(const CameraCalibration& calibration, Judgement* judgement) {
+  if (calibration.status != SolveStatus::kContradicted) return;
+  if (!calibration.detail.empty() && judgement->SaysBad(calibration.detail)) return;
+  judgement->Bad("Status of the solve: " + calibration.StatusText());
+}
+
 void JudgeColouring(const ColouringSigma& at, Judgement* judgement) {
   const std::string uncertain = "The projection uncertainty of a point " + Number(kJudgedAtM, 0) +
                                 " m away is " + Number(at.worst_px, 2) +
                                 " px (1 sigma) where it is worst in the image";
-  if (at.worst_px > kUncertainPx) {
-    judgement->Usable(uncertain + ", more than " + Number(kUncertainPx, 0) +
-                      " px: take more views in that part of the image.");
+  if (at.worst_px > kMostUncertainPx) {
+    judgement->Doubtful(uncertain + ", more than " + Number(kMostUncertainPx, 0) +
+                        " px: too uncertain. Check the lens (rgbdt intrinsics)" +
+                        (judgement->more_views() ? ", and take more views in all parts of the "
+                                                   "image."
+                                                 : "."));
+  } else if (at.worst_px > kUncertainPx) {
+    judgement->Usable(
+        uncertain + ", more than " + Number(kUncertainPx, 0) + " px" +
+        (judgement->more_views() ? ": take more views in that part of the image." : "."));
   } else {
     judgement->AddReason(uncertain + ".");
   }
@@ -170,6 +220,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera) {
 
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view) {
   Judgement judgement;
+  if (IsGivenWrong(camera)) judgement.NoMoreViews();
   JudgeStatus(camera, next_view, &judgement);
   JudgeAgreement(camera, &judgement);
   JudgeResiduals(camera, &judgement);
@@ -186,12 +237,19 @@ Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_vi
         "it.");
   }
   JudgeCauses(camera, &judgement);
+  JudgeContradicted(camera.calibration, &judgement);
   if (camera.truth_error) {
     judgement.AddReason("The truth is known here: the result is " +
                         Number(camera.truth_error->rotation_deg, 3) + "° and " +
                         Number(camera.truth_error->translation_mm, 1) + " mm away from it.");
   }
   return judgement.Finish();
+}
+
+const NextView* NextViewOf(const Report& report) {
+  const auto& cameras = report.cameras;
+  const bool help = std::all_of(cameras.begin(), cameras.end(), MoreViewsHelp);
+  return report.next_view && help ? &*report.next_view : nullptr;
 }
 
 Grade GradeOf(const Report& report) {

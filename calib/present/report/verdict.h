@@ -27,13 +27,18 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 ///  - doubtful: something was given wrong that moves the pose by more than 1 sigma, or nobody knows
 ///    how far; more than a quarter of the views were rejected; views scatter far more than they
 ///    state; beams and planes are missed by more than LIDARs leave; halves or held-out views
-///    contradict the stated uncertainty, edges and planes each other by far.
+///    contradict the stated uncertainty, edges and planes each other by far; a projection
+///    uncertainty of more than 40 pixels 5 m away.
 ///  - usable: it could be more exact, or better checked: few views, nothing held out, a
 ///    projection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
 ///    which the enlarged sigma makes good for; a method that states no uncertainty.
 ///
 /// `next_view` is the report's.
 Verdict Judge(const CameraReport& camera, const std::optional<NextView>& next_view = std::nullopt);
+
+/// Where to hold the board next, of a report to which more views are of help: nullptr where a
+/// camera is not to be used, and something else has to be corrected first.
+const NextView* NextViewOf(const Report& report);
 
 /// The worst of its cameras'; kNone of none.
 Grade GradeOf(const Report& report);

@@ -163,7 +163,7 @@ void CameraNode::CheckFits(const Image& image) const {
     throw InputError("its frames are " + std::to_string(image.pixels.cols) + " x " +
                      std::to_string(image.pixels.rows) + " px, the rig file says " +
                      std::to_string(spec_.width) + " x " + std::to_string(spec_.height) +
-                     "; they are dropped: set Width and Height, or mend the rig file");
+                     "; they are dropped: set Width and Height, or correct the rig file");
   }
   CheckImage(spec_, image);
 }

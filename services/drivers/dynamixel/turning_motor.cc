@@ -218,7 +218,7 @@ void TurningMotor::FailOnAlert() {
       Ask(dynamixel::EncodeRead(device_.id, entry.address, entry.size), 1);
   const int bits = status.parameters.empty() ? 0 : status.parameters[0];
   Fail("has stopped itself, hardware error: " + dynamixel::HardwareErrorInWords(bits) +
-       "; mend the cause, then switch its power off and on");
+       "; remove the cause, then switch its power off and on");
 }
 
 std::int64_t TurningMotor::Get(Entry entry) {

@@ -89,7 +89,7 @@ TEST(DoctorFinding, ProblemsComeLastWhereTheEyeIs) {
                           Warning("c", "is old"), Ok("d", "is well")};
   EXPECT_EQ(FindingsText(findings),
             "ok       b: is well\nok       d: is well\nWARNING  c: is old\n"
-            "PROBLEM  a: is broken\n  mend: mend it\n1 problem, 1 warning\n");
+            "PROBLEM  a: is broken\n  fix: mend it\n1 problem, 1 warning\n");
   EXPECT_TRUE(HasProblem(findings));
   EXPECT_FALSE(HasProblem({Ok("b", ""), Warning("c", "")}));
   EXPECT_THAT(FindingsText({}), HasSubstr("0 problems, 0 warnings"));

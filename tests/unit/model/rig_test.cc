@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"board_width", "target.width_m", "nan",
             [](Rig* r) { r->target.width_m = kNotANumber; }},
         Bad{"board_height", "target.height_m", "0.0", [](Rig* r) { r->target.height_m = 0; }},
-        Bad{"pattern_wider_than_board", "target.width_m", "1.09",
+        Bad{"pattern_wider_than_board", "target.width_m", "squares_x, squares_y",
             [](Rig* r) { r->target.width_m = 1.09; }},
         Bad{"pattern_off_the_board", "target.height_m", "0.91",
             [](Rig* r) { r->target.pattern_offset_m.y() = 0.06; }},

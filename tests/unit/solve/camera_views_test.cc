@@ -1,5 +1,6 @@
 #include "calib/solve/camera_views.h"
 
+#include "calib/solve/evaluate.h"
 #include "tests/unit/solve/solve_world.h"
 
 namespace rgbdt {
@@ -146,6 +147,28 @@ TEST(ViewsOf, ACandidateWithoutBoundaryPointsIsNone) {
   EXPECT_THAT(views.all[0].candidates, ElementsAre(&cloud.candidates[1]));
   EXPECT_EQ(views.all[0].cloud->centre, cloud.candidates[1].centre);
   EXPECT_THAT(views.all[1].rejected, HasSubstr("no boundary points"));
+}
+
+// Detection looks 3 px to either side of where the lens that was given has the board's edge.
+TEST(PosedAgain, AnOutlineThatWasLookedForInTheWrongPlaceIsWhereTheOtherLensHasIt) {
+  SolveWorldOptions options;
+  options.views = 1;
+  options.noise = 0.1;
+  SolveWorld world(options);
+  ImageEdges& image = world.ImageAt(0, 0);
+  const std::vector<Eigen::Vector2d> truth = image.outline;
+  for (Eigen::Vector2d& pixel : image.outline) pixel.x() += 8;
+  const auto outline = [&](double fx_factor) {
+    CameraSpec given = world.rig.cameras[0];
+    given.lens.fx *= fx_factor;
+    const CameraViews views =
+        PosedAgain(ViewsOf(given, world.detections), world.TrueLens(0), world.rig.target);
+    return views.all[0].image->outline;
+  };
+  EXPECT_EQ(outline(1.002), image.outline) << "what was found in the image";
+  for (const Eigen::Vector2d& pixel : outline(1.5)) {
+    EXPECT_LT(DistanceToOutline(pixel, truth), 0.5);
+  }
 }
 
 }  // namespace

@@ -45,6 +45,16 @@ std::vector<Said> RejectedOf(const CameraReport& camera) {
   return rejected;
 }
 
+std::size_t ViewsOf(const CameraReport& camera) {
+  return camera.used.size() + camera.heldout.size() + RejectedOf(camera).size();
+}
+
+// Where the status tells why each view was rejected.
+bool RejectionsAreSaid(SolveStatus status) {
+  return status == SolveStatus::kNotSolved || status == SolveStatus::kUndetermined ||
+         status == SolveStatus::kDegenerate;
+}
+
 // How many views were rejected, and why most of them were, where that is one reason.
 std::string ManyRejected(const CameraReport& camera, std::size_t views) {
   const std::vector<Said> rejected = RejectedOf(camera);
@@ -89,11 +99,11 @@ void JudgeFit(const CameraReport& camera, Judgement* judgement) {
   if (!rms.train) {
     judgement->AddReason(held + ".");
   } else if (*rms.heldout > kWorse * *rms.train + kWorsePx) {
-    judgement->Usable(held + ", clearly worse than the " + Number(*rms.train, 2) +
-                      " px on the views used" +
-                      (camera.variance_factor > kMuchScatter
-                           ? ". " + std::string(kWhyViewsDisagree)
-                           : ": take more views, at other distances and tilts."));
+    judgement->Usable(
+        held + ", clearly worse than the " + Number(*rms.train, 2) + " px on the views used" +
+        (camera.variance_factor > kMuchScatter ? ". " + std::string(kWhyViewsDisagree)
+         : judgement->more_views()             ? ": take more views, at other distances and tilts."
+                                               : "."));
   } else {
     judgement->AddReason(held + ", as well as on the views used (" + Number(*rms.train, 2) +
                          " px).");
@@ -183,10 +193,8 @@ void JudgeWhitened(const CameraReport& camera, Judgement* judgement) {
 
 void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   if (!camera.contradiction.empty()) judgement->Cause(Grade::kBad, camera.contradiction);
-  const std::size_t rejected = RejectedOf(camera).size();
-  const std::size_t views = camera.used.size() + camera.heldout.size() + rejected;
-  if (rejected >= kManyRejected && 4 * rejected > views) {
-    judgement->Doubtful(ManyRejected(camera, views));
+  if (ManyAreRejected(camera) && !RejectionsAreSaid(camera.calibration.status)) {
+    judgement->Doubtful(ManyRejected(camera, ViewsOf(camera)));
   }
   double misfit = 0;
   double expected = 0;
@@ -204,11 +212,10 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   const auto& scatter = camera.view_scatter;
   if (!scatter || !(scatter->factor > kMuchScatter) || !(scatter->Chance() < kUnlikely)) {
     if (scatter && camera.variance_factor > kMuchScatter) {
-      judgement->Usable("The stated sigma was enlarged " +
-                        Number(std::sqrt(camera.variance_factor), 1) +
-                        " times: the views seem to scatter more than they state, and are too few "
-                        "to be sure. " +
-                        kWhyViewsDisagree);
+      judgement->Usable(
+          "The stated sigma was enlarged " + Number(std::sqrt(camera.variance_factor), 1) +
+          " times: the views seem to scatter more than they state, which may be chance. " +
+          kWhyViewsDisagree);
     }
     return;
   }
@@ -224,6 +231,11 @@ void JudgeAgreement(const CameraReport& camera, Judgement* judgement) {
   } else {
     judgement->Usable(scatters);
   }
+}
+
+bool ManyAreRejected(const CameraReport& camera) {
+  const std::size_t rejected = RejectedOf(camera).size();
+  return rejected >= kManyRejected && 4 * rejected > ViewsOf(camera);
 }
 
 bool ViewsDisagree(const CameraReport& camera) {

@@ -16,6 +16,9 @@ bool ViewsDisagree(const CameraReport& camera);
 /// board in millimetres, and in their sigmas; halves, and edges against planes.
 void JudgeResiduals(const CameraReport& camera, Judgement* judgement);
 
+/// Whether so many views were rejected that it speaks against the result.
+bool ManyAreRejected(const CameraReport& camera);
+
 /// Without a pose: why views could not be used; what is alike is said once.
 void JudgeRejections(const CameraReport& camera, Judgement* judgement);
 

@@ -18,6 +18,17 @@ class Judgement {
   void Doubtful(const std::string& sentence) { Say(Grade::kDoubtful, sentence); }
   void Bad(const std::string& sentence) { Say(Grade::kBad, sentence); }
   Grade grade() const { return grade_; }
+  /// Whether a reason not to use it has these words.
+  bool SaysBad(const std::string& words) const {
+    const auto says = [&](const auto& said) {
+      return said.first == Grade::kBad && said.second.find(words) != std::string::npos;
+    };
+    return std::any_of(causes_.begin(), causes_.end(), says) ||
+           std::any_of(against_.begin(), against_.end(), says);
+  }
+  /// Something else has to be corrected first: more views are no advice.
+  void NoMoreViews() { more_views_ = false; }
+  bool more_views() const { return more_views_; }
   /// Before all else of this grade.
   void Cause(Grade grade, const std::string& sentence) {
     grade_ = std::max(grade_, grade);
@@ -48,6 +59,7 @@ class Judgement {
   }
 
   Grade grade_ = Grade::kGood;
+  bool more_views_ = true;
   std::string headline_;
   std::vector<std::pair<Grade, std::string>> causes_, against_;
   std::vector<std::string> others_;  // reasons that are no alarm

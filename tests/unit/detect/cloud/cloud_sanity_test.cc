@@ -15,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class CloudSanity : public testing::TestWithParam<int> {
  protected:
@@ -40,6 +41,7 @@ TEST_P(CloudSanity, ALidarsCloudIsAsItShouldBe) { EXPECT_THAT(WhyCloudIsOff(clou
 TEST_P(CloudSanity, AWrongUnitIsNamed) {
   const Cloud millimetres = With([](const auto& p) { return Eigen::Vector3f(1000 * p); });
   EXPECT_THAT(WhyCloudIsOff(millimetres), HasSubstr("the millimetre"));
+  EXPECT_THAT(WhyCloudIsOff(millimetres), Not(HasSubstr("e+"))) << "a plain number";
   EXPECT_THAT(FindBoards(millimetres, world_.target()).why, HasSubstr("the millimetre"));
   EXPECT_THAT(WhyCloudIsOff(With([](const auto& p) { return Eigen::Vector3f(0.001F * p); })),
               HasSubstr("kilometre"));

@@ -56,6 +56,16 @@ TEST(CalibrationUse, WhatMovesNoCameraDoesNotCount) {
   EXPECT_EQ(WhyAnotherRig(CalibrationOf(rig), read, kNames), "");
 }
 
+TEST(CalibrationUse, ALidarOfAnotherNameIsToldWhereItIsUsed) {
+  const Rig rig = Read(test::MakeRig());
+  EXPECT_THAT(DoubtsOf(CalibrationOf(rig), rig, "c"), IsEmpty());
+  Rig other = test::MakeRig();
+  other.lidar.name = "os0";
+  EXPECT_THAT(DoubtsOf(CalibrationOf(rig), Read(other), "c"),
+              ElementsAre(AllOf(HasSubstr("with LIDAR " + rig.lidar.name), HasSubstr("is os0"))));
+  EXPECT_THAT(RequireSound(CalibrationOf(rig), Read(other), kNames, Use::kIfSound), IsEmpty());
+}
+
 Rig WithRear() {
   Rig rig = test::MakeRig();
   rig.further_lidars.emplace_back().name = "rear";
@@ -173,7 +183,7 @@ TEST(CalibrationUse, WhatIsNotToBeUsedIsRefusedWithItsReason) {
     EXPECT_THAT(why,
                 AllOf(HasSubstr("old/calibration.textproto: the calibration of camera thermal "
                                 "is not to be used: "),
-                      HasSubstr("Likeliest cause: the squares. Mend that"), HasSubstr("--anyway")));
+                      HasSubstr("Likeliest cause: the squares. Fix that"), HasSubstr("--anyway")));
     EXPECT_THAT(RequireSound(calibration, rig, kNames, Use::kAnyway), ElementsAre(why));
     EXPECT_THAT(RequireSameRig(calibration, rig, kNames, Use::kIfSound), IsEmpty());
   }

@@ -43,6 +43,35 @@ TEST(Verdict, ADegeneratePoseIsBadAndSaysWhatToDoNext) {
   EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Next:"))));
 }
 
+TEST(Verdict, WhyManyViewsAreMissingComesBeforeWhatTheRestDoNotDetermine) {
+  CameraReport camera = Good();
+  camera.calibration.status = SolveStatus::kDegenerate;
+  camera.calibration.detail = "all boards are parallel";
+  camera.used = {"1", "2"};
+  camera.heldout = {"3"};
+  camera.rejected = {{"4", "sizes do not fit"}, {"5", "sizes do not fit"}};
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("sizes do not fit"))));
+  camera.rejected.push_back({"6", "sizes do not fit"});
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.reasons.at(0), "3 views rejected (4, 5, 6), 4: sizes do not fit.");
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("all boards are parallel"));
+  EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("Rejected: 3 of 6")))) << "once is enough";
+}
+
+TEST(Verdict, WhatContradictsACalibrationThatWasJudgedBeforeIsSaidOnce) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(100, 10)};
+  const std::string why = Judge(camera).reasons.at(0);
+  camera.calibration.status = SolveStatus::kContradicted;
+  camera.calibration.detail = why;
+  EXPECT_EQ(Judge(camera).reasons.at(0), why);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Status of the solve"))));
+  camera.causes.clear();  // judged where its report is not known
+  EXPECT_EQ(Judge(camera).grade, Grade::kBad);
+  EXPECT_EQ(Judge(camera).reasons.at(0),
+            "Status of the solve: contradicted: do not use it: " + why);
+}
+
 TEST(Verdict, TheStatusOfAConvergedSolveIsAReasonWithoutAlarm) {
   CameraReport camera = Good();
   camera.calibration.status = SolveStatus::kFirstGuessKept;
@@ -58,6 +87,11 @@ TEST(Verdict, MoreThanAPixelOfReprojectionUncertaintyAtFiveMetresIsAWarning) {
   camera.sigma->colouring[1].worst_px = 1.01;
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
+  camera.sigma->colouring[1].worst_px = 39;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  camera.sigma->colouring[1].worst_px = 41;
+  EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("too uncertain"));
 }
 
 TEST(Verdict, HalvesThatDifferTooMuchContradictTheStatedUncertainty) {
@@ -224,10 +258,13 @@ TEST(Verdict, WhatWasGivenWrongCountsByWhatItMoves) {
   EXPECT_EQ(grade(12.2, 3.9), Grade::kGood);  // by chance once in 2,000 times
   EXPECT_EQ(grade(6.2, 10), Grade::kGood);
   EXPECT_EQ(grade(6.3, 10), Grade::kDoubtful) << "chance, or a result that is far off";
-  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("not sure of it (2.5 sigma): measure it"));
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("It may be chance (2.5 sigma): measure it"));
   camera.causes = {Wrong(16, 0.5), Wrong(14.4, 0.4), Wrong(9, 8)};
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful) << "whatever is surer and moves little";
   EXPECT_EQ(grade(12.3, 0.9), Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("moves the result by 0.9 sigma"));
+  EXPECT_EQ(grade(12.3, 0.04), Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons.at(0), Not(HasSubstr("moves the result")));
   EXPECT_EQ(grade(12.3, 1.1), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, std::nullopt), Grade::kDoubtful);
   EXPECT_EQ(grade(12.3, 4.1), Grade::kBad);
@@ -246,6 +283,19 @@ TEST(Verdict, TheLikeliestAndTheSecondLikeliestCauseAreNamed) {
   EXPECT_THAT(verdict.reasons.at(0), HasSubstr("Likeliest cause: the squares"));
   EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Second likeliest: the focal length"));
   EXPECT_THAT(verdict.reasons, Not(Contains(HasSubstr("the board is wider"))));
+}
+
+// The first cause alone makes it doubtful: that is alarm enough to name another that may be it.
+TEST(Verdict, TheSecondLikeliestIsNamedBesideAFirstThatAloneIsTheAlarm) {
+  CameraReport camera = Good();
+  camera.causes = {Wrong(25, 3), {"focal length", "the focal length is too long", 4, 1, 3.0}};
+  const Verdict verdict = Judge(camera);
+  EXPECT_EQ(verdict.grade, Grade::kDoubtful);
+  EXPECT_THAT(verdict.reasons.at(0), HasSubstr("Likeliest cause: the squares"));
+  EXPECT_THAT(verdict.reasons.at(1), HasSubstr("Second likeliest: the focal length"));
+  camera.causes[0].moves_sigma = 0.5;
+  EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("Second likeliest"))));
 }
 
 // Where something else says that all is not well, what is less sure is worth a look.
@@ -333,6 +383,29 @@ TEST(Verdict, AMethodWithoutACovarianceIsNoMoreThanUsable) {
   camera.calibration.covariance.reset();
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("cannot be told by this method")));
+}
+
+TEST(NextViewOf, IsNoneWhereSomethingElseHasToBeCorrectedFirst) {
+  Report report = test::MakeReport();
+  report.cameras = {Good()};
+  CameraReport& camera = report.cameras[0];
+  camera.sigma->colouring[1].worst_px = 2;
+  ASSERT_NE(NextViewOf(report), nullptr);
+  EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("take more views")));
+  camera.calibration.status = SolveStatus::kDegenerate;
+  EXPECT_NE(NextViewOf(report), nullptr) << "more views are what is missing";
+  camera.calibration.status = SolveStatus::kConverged;
+  camera.causes = {Wrong(100, 10)};
+  EXPECT_EQ(NextViewOf(report), nullptr);
+  EXPECT_THAT(Judge(camera).reasons, Not(Contains(HasSubstr("more views"))));
+  camera.causes.clear();
+  camera.calibration.status = SolveStatus::kNotSolved;
+  EXPECT_NE(NextViewOf(report), nullptr);
+  camera.contradiction = "Images and clouds are 1 apart";
+  EXPECT_EQ(NextViewOf(report), nullptr);
+  report.next_view.reset();
+  report.cameras.clear();
+  EXPECT_EQ(NextViewOf(report), nullptr);
 }
 
 TEST(JudgedCalibration, WhatIsDoubtfulOrNotToBeUsedSaysSo) {

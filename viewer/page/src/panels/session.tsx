@@ -67,7 +67,7 @@ export function SessionPanel() {
         <ViewCards session={state} />
       </section>
       {state.report && <ReportSection report={state.report} open={state.mode === "finished"} />}
-      <EventLog log={state.log} />
+      {(state.mode !== "finished" || state.log.length > 0) && <EventLog log={state.log} />}
     </div>
   );
 }

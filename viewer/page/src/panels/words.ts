@@ -37,6 +37,15 @@ export function short(view: string): string {
   return view.replace(/^0+(?=.)/, "");
 }
 
+/// The same without what all the views' names begin with: "pose07" as "7". A number stays whole.
+export function shortNames(views: string[]): Map<string, string> {
+  const [first = "", ...others] = views;
+  let same = others.length === 0 ? 0 : first.length;
+  for (const other of others) while (!other.startsWith(first.slice(0, same))) --same;
+  const prefix = first.slice(0, same).replace(/\d+$/, "");
+  return new Map(views.map((view) => [view, short(view.slice(prefix.length) || view)]));
+}
+
 export function count(many: number, what: string): string {
   return `${many} ${what}${many === 1 ? "" : "s"}`;
 }

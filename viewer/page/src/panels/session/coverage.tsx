@@ -1,6 +1,6 @@
 // Where in each image, and how far away, the board was held.
 import type { CameraInfo, Vec2, View, ViewCamera } from "../../protocol";
-import { metres, short } from "../words";
+import { metres, shortNames } from "../words";
 import { rowsOf, stripOf } from "./depth_strip";
 
 type Fate = "used" | "heldout" | "rejected";
@@ -22,17 +22,17 @@ function middleOf(outline: Vec2[]): Vec2 {
   return [sum[0] / outline.length, sum[1] / outline.length];
 }
 
-function Outline({ view, own, text }: { view: View; own: ViewCamera; text: number }) {
+function Outline({ view, own, text, label }: { view: View; own: ViewCamera; text: number; label: string | undefined }) {
   const [x, y] = middleOf(own.outline);
   return (
     <g class={`fate ${fateOf(view, own)}`}>
       <polygon points={own.outline.map(([u, v]) => `${u},${v}`).join(" ")} />
-      <text x={x} y={y} font-size={text}>{short(view.name)}</text>
+      <text x={x} y={y} font-size={text}>{label}</text>
     </g>
   );
 }
 
-function FrameCoverage({ camera, views }: { camera: CameraInfo; views: View[] }) {
+function FrameCoverage({ camera, views, labels }: { camera: CameraInfo; views: View[]; labels: Map<string, string> }) {
   const found = views.flatMap((view) => view.cameras
     .filter((own) => own.camera === camera.name && own.outline.length > 2)
     .map((own) => ({ view, own })));
@@ -40,7 +40,7 @@ function FrameCoverage({ camera, views }: { camera: CameraInfo; views: View[] })
     <figure class="coverage">
       <svg viewBox={`-0.5 -0.5 ${camera.width} ${camera.height}`} role="img" data-testid={`coverage-${camera.name}`}
         aria-label={`Image of ${camera.name} with the board's outlines of ${found.length} views`}>
-        {found.map(({ view, own }) => <Outline key={view.name} view={view} own={own} text={camera.width / 18} />)}
+        {found.map(({ view, own }) => <Outline key={view.name} view={view} own={own} text={camera.width / 28} label={labels.get(view.name)} />)}
       </svg>
       <figcaption>{camera.name}: {camera.width} × {camera.height} px, board detected in {found.length} of {views.length} views</figcaption>
     </figure>
@@ -49,7 +49,7 @@ function FrameCoverage({ camera, views }: { camera: CameraInfo; views: View[] })
 
 const kLabelShare = 0.08, kRowPx = 26;
 
-function DepthStrip({ views }: { views: View[] }) {
+function DepthStrip({ views, labels }: { views: View[]; labels: Map<string, string> }) {
   const seen = views.flatMap((view) => (view.board ? [{ view, distance: view.board.distance_m }] : []));
   if (seen.length === 0) return <p class="muted">No board detected in the cloud yet.</p>;
   const { length, parts } = stripOf(Math.max(...seen.map((each) => each.distance)));
@@ -61,7 +61,7 @@ function DepthStrip({ views }: { views: View[] }) {
         {seen.map(({ view, distance }, i) => (
           <span key={view.name} class={`depth fate ${fateOfView(view)}`} title={`View ${view.name}: ${metres(distance)}`}
             style={{ left: `${(100 * distance) / length}%`, bottom: `${kRowPx * rows[i]!}px` }}>
-            {short(view.name)}<span class="visually-hidden"> at {metres(distance)}</span>
+            {labels.get(view.name)}<span class="visually-hidden"> at {metres(distance)}</span>
           </span>
         ))}
       </div>
@@ -87,11 +87,12 @@ function FateLegend() {
 }
 
 export function Coverage({ cameras, views }: { cameras: CameraInfo[]; views: View[] }) {
+  const labels = shortNames(views.map(({ name }) => name));
   return (
     <>
-      <div class="coverages">{cameras.map((camera) => <FrameCoverage key={camera.name} camera={camera} views={views} />)}</div>
+      <div class="coverages">{cameras.map((camera) => <FrameCoverage key={camera.name} camera={camera} views={views} labels={labels} />)}</div>
       <FateLegend />
-      <DepthStrip views={views} />
+      <DepthStrip views={views} labels={labels} />
     </>
   );
 }

@@ -1,6 +1,6 @@
 import type { SessionFrame, View, ViewCamera } from "../../protocol";
 import { chooseView, hasLive, shownView } from "../../chosen_view";
-import { images, keyOf, overlays, thumbs } from "../../store";
+import { connection, images, keyOf, overlays, thumbs } from "../../store";
 import { wide } from "../../wide";
 import { ViewPicture } from "../image/view_picture";
 import { choose } from "../pick/choice";
@@ -93,7 +93,7 @@ function ViewCard({ session, view, lengths, wanted }: CardProps) {
       <header class="row">
         <h3>{view.name}</h3>
         <span class="badge muted" data-testid={`role-${view.name}`}>{roleOf(view)}</span>
-        <LeaveOutButton session={session} view={view} />
+        {connection.value !== "embedded" && <LeaveOutButton session={session} view={view} />}
       </header>
       <div class="thumbs">
         {view.cameras.map(({ camera }) => <Picture key={camera} view={view.name} camera={camera} />)}
