@@ -112,6 +112,18 @@ void AddSessions(Inputs* seeds) {
   (*seeds)["no_cloud"] = "image { camera: \"rgb\" file: \"rgb.png\" }";
   (*seeds)["no_image"] = "cloud: \"cloud.pcd\"";
   (*seeds)["never"] = "cloud: \"cloud.pcd\" sweep_utime: 9000000000000000000";
+  const auto further = [&](const std::string& fields) {
+    return std::string(kSmallView) + "further_cloud { " + fields + " }\n";
+  };
+  const std::string second = "lidar: \"second\" file: ";
+  (*seeds)["second"] = further(second + "\"second.pcd\"") +
+                       "map_from_lidar { quaternion_wxyz: [1, 0, 0, 0] translation_m: [1, 2, 3] }";
+  (*seeds)["second_twice"] =
+      further(second + "\"second.pcd\" } further_cloud { " + second + "\"second.pcd\"");
+  (*seeds)["same_points"] = further(second + "\"cloud.pcd\"");
+  (*seeds)["no_file"] = further("lidar: \"second\"");
+  (*seeds)["broken_name"] = further(second + "\"a\\n.pcd\"");
+  (*seeds)["whose_cloud"] = further("lidar: \"third\" file: \"second.pcd\"");
   (*seeds)["script"] =
       "name: \"s\"\nrig: \"rig.textproto\"\nstep { next_pose {} timeout_s: 5 }\nstep { sweep {} "
       "}\nstep { capture { heldout: true picked_camera: \"thermal\" } }\n"
