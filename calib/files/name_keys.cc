@@ -12,7 +12,8 @@ namespace {
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// A name as its runs of digits and what stands around them: "a12b3" is "a#b#" with 12 and 3.
+// A name as its runs of digits and what stands around them: "a12b3" is "a0b0" with 12 and 3. A
+// digit, as no other stays in the shape.
 struct Parts {
   std::string shape;
   std::vector<std::string> digits;
@@ -28,7 +29,7 @@ Parts Divide(const std::string& stem) {
     }
     const std::size_t begin = i;
     while (i < stem.size() && IsDigit(stem[i])) ++i;
-    parts.shape += '#';
+    parts.shape += '0';
     parts.digits.push_back(stem.substr(begin, i - begin));
     parts.begins.push_back(begin);
   }
@@ -144,7 +145,7 @@ NameNumbers NumbersInNames(const std::vector<std::string>& stems) {
       std::max_element(shapes.begin(), shapes.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::size_t runs =
-      static_cast<std::size_t>(std::count(usual->first.begin(), usual->first.end(), '#'));
+      static_cast<std::size_t>(std::count(usual->first.begin(), usual->first.end(), '0'));
   // The first run of digits that is another one in each name.
   bool chosen = false;
   int changing = 0;

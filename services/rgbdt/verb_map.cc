@@ -9,6 +9,7 @@
 #include "calib/files/points/map_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
+#include "calib/odometry/comes_back.h"
 #include "calib/present/pictures/map_picture.h"
 #include "services/bus/log.h"
 #include "services/messages/codec.h"
@@ -181,24 +182,6 @@ void TellLoops(const ClosedWay& closed) {
     TellColours(closed);
   }
   TellRefused(closed);
-}
-
-// A way that comes back near to where it was, long before, with walls that may stand twice.
-bool ComesBack(const std::vector<Eigen::Vector3d>& places) {
-  constexpr double kNear = 10, kLong = 50;  // [m]
-  std::vector<Eigen::Vector3d> kept;
-  std::vector<double> ways;
-  double way = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    if (i > 0) way += (places[i] - places[i - 1]).norm();
-    if (!ways.empty() && way - ways.back() < 1) continue;
-    for (std::size_t k = 0; k < kept.size() && way - ways[k] > kLong; ++k) {
-      if ((kept[k] - places[i]).norm() < kNear) return true;
-    }
-    kept.push_back(places[i]);
-    ways.push_back(way);
-  }
-  return false;
 }
 
 void TellDrive(const MappedDrive& drive) {

@@ -1,5 +1,5 @@
-// An image file. Where the first byte is odd a PNG's chunks get the sums that they should have: a
-// decoder looks at nothing behind a wrong one.
+// An image file, and what its EXIF says. Where the first byte is odd a PNG's chunks get the sums
+// that they should have: a decoder looks at nothing behind a wrong one.
 #include <zlib.h>
 
 #include "calib/files/image_files.h"
@@ -40,6 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool mend = input.Byte() % 2 == 1;
   std::string bytes = input.Rest();
   if (mend) MendSums(&bytes);
+  IsTurnedByExif(bytes.data(), bytes.size());
   fuzz::Try([&] {
     cv::Mat pixels = DecodeImage(bytes.data(), bytes.size(), "image");
     const auto said = StatedSize(bytes.data(), bytes.size());

@@ -57,7 +57,7 @@ inline void WriteViewText(const std::filesystem::path& session, const std::strin
 inline void WriteSmallSession(const std::filesystem::path& dir) {
   const std::filesystem::path view = dir / "views/0001";
   std::filesystem::create_directories(view);
-  std::ofstream(dir / "rig.textproto") << kSmallRig;
+  std::ofstream(dir / "rig.textproto") << kSmallRig << "lidar { name: \"second\" }\n";
   WritePng(view / "rgb.png", cv::Mat(3, 4, CV_8UC1, 100));
   WritePng(view / "colour.png", cv::Mat(3, 4, CV_8UC3, cv::Scalar(1, 2, 3)));
   WritePng(view / "large.png", cv::Mat(4, 4, CV_8UC1, 100));
@@ -67,6 +67,8 @@ inline void WriteSmallSession(const std::filesystem::path& dir) {
   cloud.lines = 1;
   cloud.beams = 2;
   WritePcd(view / "cloud.pcd", cloud);
+  cloud.points[0].x() = 3;
+  WritePcd(view / "second.pcd", cloud);
   WriteViewText(dir, kSmallView);
 }
 

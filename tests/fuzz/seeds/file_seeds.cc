@@ -1,5 +1,6 @@
 #include <liblzf/lzf.h>
 
+#include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
 #include "calib/files/image_files.h"
@@ -111,6 +112,18 @@ void AddSessions(Inputs* seeds) {
   (*seeds)["no_cloud"] = "image { camera: \"rgb\" file: \"rgb.png\" }";
   (*seeds)["no_image"] = "cloud: \"cloud.pcd\"";
   (*seeds)["never"] = "cloud: \"cloud.pcd\" sweep_utime: 9000000000000000000";
+  const auto further = [&](const std::string& fields) {
+    return std::string(kSmallView) + "further_cloud { " + fields + " }\n";
+  };
+  const std::string second = "lidar: \"second\" file: ";
+  (*seeds)["second"] = further(second + "\"second.pcd\"") +
+                       "map_from_lidar { quaternion_wxyz: [1, 0, 0, 0] translation_m: [1, 2, 3] }";
+  (*seeds)["second_twice"] =
+      further(second + "\"second.pcd\" } further_cloud { " + second + "\"second.pcd\"");
+  (*seeds)["same_points"] = further(second + "\"cloud.pcd\"");
+  (*seeds)["no_file"] = further("lidar: \"second\"");
+  (*seeds)["broken_name"] = further(second + "\"a\\n.pcd\"");
+  (*seeds)["whose_cloud"] = further("lidar: \"third\" file: \"second.pcd\"");
   (*seeds)["script"] =
       "name: \"s\"\nrig: \"rig.textproto\"\nstep { next_pose {} timeout_s: 5 }\nstep { sweep {} "
       "}\nstep { capture { heldout: true picked_camera: \"thermal\" } }\n"
@@ -175,7 +188,51 @@ std::string Compressed() {
          size(packed.size()) + size(columns.size()) + packed;
 }
 
+std::string LittleEndian(std::initializer_list<float> values) {
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), std::data(values), bytes.size());
+  return bytes;
+}
+
+// `points` of a sweep whose times are `first` and so on, in steps of `step`.
+std::string TimedSweep(const std::string& field, const std::string& type, int points, double first,
+                       double step) {
+  const std::string count = std::to_string(points);
+  std::string text = std::string(kPcdHead) + "FIELDS x y z " + field +
+                     "\nSIZE 4 4 4 8\nTYPE F F F " + type + "\nWIDTH " + count +
+                     "\nHEIGHT 1\nPOINTS " + count + "\nDATA ascii\n";
+  for (int i = 0; i < points; ++i) {
+    const double time = first + i * step;
+    text += "1 2 " + std::to_string(i) + " " +
+            (type == "F" ? std::to_string(time) : std::to_string(static_cast<std::int64_t>(time))) +
+            "\n";
+  }
+  return text;
+}
+
+// Drivers count from the sweep's start or from 1970, in whatever unit.
+void AddTimedSweeps(Inputs* seeds) {
+  for (const double unit : {1.0, 1e3, 1e6, 1e9}) {
+    const std::string per_second = std::to_string(static_cast<int>(unit));
+    for (const std::string type : {"F", "U"}) {
+      const std::string end = type + "_" + per_second + ".pcd";
+      (*seeds)["since_start_" + end] = TimedSweep("time", type, 100, 0, 0.001 * unit);
+      (*seeds)["since_1970_" + end] =
+          TimedSweep("timestamp", type, 100, 1.7e9 * unit, 0.001 * unit);
+    }
+  }
+  (*seeds)["one_time.pcd"] = TimedSweep("t", "U", 100, 5, 0);
+  (*seeds)["no_sweep.pcd"] = TimedSweep("offset_time", "F", 100, 0, 1e13);
+  (*seeds)["few_since_1970.pcd"] = TimedSweep("time_stamp", "F", 3, 1.7e18, 1e6);
+  (*seeds)["few_late.pcd"] = TimedSweep("time", "F", 3, 5e12, 1e6);
+  (*seeds)["kitti"] = LittleEndian({1, 2, 3, 0.5, -1, -2, -3, 0.25, 4, 5, 6, 0});
+  (*seeds)["nuscenes"] = LittleEndian({1, 2, 3, 40, 0, -1, -2, -3, 80, 1});
+  (*seeds)["either"] = LittleEndian({1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4, 1, 2, 3, 4});
+  (*seeds)["no_intensity"] = LittleEndian({1, 2, 3, -4});
+}
+
 void AddClouds(Inputs* seeds) {
+  AddTimedSweeps(seeds);
   const std::string head = kPcdHead;
   Cloud cloud = test::MakeCloud();
   (*seeds)["sweep.pcd"] =
@@ -206,6 +263,10 @@ void AddClouds(Inputs* seeds) {
       "4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n1 2 3 5 0 1700000000000000\n1 2 3 5 1 "
       "1700000000000001\n1 2 3 6 0 1700000000000002\n1 2 3 6 1 1700000000000003\n";
   const std::string ply = "ply\nformat ascii 1.0\ncomment anybody's\nelement vertex 2\n";
+  (*seeds)["rings.pcd"] =
+      head +
+      "FIELDS x y z ring\nSIZE 4 4 4 2\nTYPE F F F U\nWIDTH 2\nHEIGHT 3\nPOINTS 6\nDATA "
+      "ascii\n1 2 3 0\n1 2 3 2\n1 2 3 1\n1 2 4 0\n1 2 4 2\n1 2 4 1\n";
   (*seeds)["ascii.ply"] =
       ply +
       "property float x\nproperty double y\nproperty float z\nproperty uchar "
@@ -264,7 +325,48 @@ void AddImages(Inputs* seeds) {
   cv::imencode(".png", with_alpha, bytes);
   (*seeds)["alpha.png"] = "\x01" + std::string(bytes.begin(), bytes.end());
   cv::imencode(".jpg", colour, bytes, {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
-  (*seeds)["progressive.jpg"] = std::string(1, '\0') + std::string(bytes.begin(), bytes.end());
+  const std::string jpeg(bytes.begin(), bytes.end()), begin = std::string(1, '\0') + "\xFF\xD8";
+  (*seeds)["progressive.jpg"] = std::string(1, '\0') + jpeg;
+  const std::string big(
+      "\xFF\xE1\0\x22"
+      "Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06"
+      "\0\0\0\0\0\0",
+      36),
+      little(
+          "\xFF\xE1\0\x2E"
+          "Exif\0\0II*\0\x08\0\0\0\x02\0\0\x01\x03\0\x01\0\0\0\x10\0\0\0"
+          "\x12\x01\x03\0\x01\0\0\0\x01\0\0\0\0\0\0\0",
+          48);
+  (*seeds)["exif_big.jpg"] = begin + big + jpeg.substr(2);
+  (*seeds)["exif_little.jpg"] = begin + little + jpeg.substr(2);
+  (*seeds)["exif_second.jpg"] = begin + std::string("\xFF\xE0\0\x04\0\0", 6) + big + jpeg.substr(2);
+}
+
+void AddNames(Inputs* seeds) {
+  const std::string either(1, '\0');
+  (*seeds)["same"] = either + "a.png\nb.png\n\na.pcd\nb.pcd.bin\nc.pcd\n";
+  (*seeds)["numbers"] = either + "rgb_007_8.png\nrgb_12_8.png\nx\n\n0007.pcd\n0012.pcd\n000.pcd\n";
+  (*seeds)["many_numbers"] = either + "1_5_3.png\n2_6_3.png\n3_6_3\n\n7-1.pcd\n8-2.pcd\n";
+  (*seeds)["seconds"] =
+      either +
+      "1700000000.25.png\n1700000001_5.png\n1700000002_250000.png\n\n1700000000.pcd\n"
+      "1700000001.3.pcd\n0003_1700000002240.pcd\n";
+  (*seeds)["units"] =
+      either +
+      "1700000000123.png\n\n1700000000123456.pcd\n1700000000123456789.pcd\n9999999999.pcd\n";
+  (*seeds)["dates"] =
+      either +
+      "2023-05-14-10-15-23.png\n20230514_101524.250.png\n20230514101525999.png\n\n"
+      "2023-05-14T10_15_23.pcd\n20230514-101524-250000.pcd\n2023-13-14-10-15-23.pcd\n"
+      "20230514101523123456789012.pcd\n2023-5-14.pcd\n";
+  (*seeds)["far"] = either + "1700000000.png\n\n1800000000.pcd\n";
+  (*seeds)["none"] = either + "a.png\n\nb.pcd\n";
+  (*seeds)["in_order"] =
+      "\x01"
+      "a.png\nb.png\n\nc.pcd\nd.pcd\n";
+  (*seeds)["not_in_order"] =
+      "\x01"
+      "a.png\nb.png\n\nc.pcd\n";
 }
 
 }  // namespace
@@ -275,6 +377,7 @@ void AddFileSeeds(Seeds* seeds) {
   AddReports(&(*seeds)["report_json"]);
   AddSessions(&(*seeds)["session_text"]);
   AddLenses(&(*seeds)["lens_file"]);
+  AddNames(&(*seeds)["names"]);
   AddClouds(&(*seeds)["cloud_file"]);
   AddGround(&(*seeds)["terrain"]);
   AddImages(&(*seeds)["image"]);

@@ -85,8 +85,11 @@ class Reader {
     return words[index];
   }
   Utime Time(std::string_view word) const {
+    constexpr Utime kMost = 4'000'000'000'000'000'000;  // points' times are added to it
     Utime value = 0;
-    if (!records::ParseNumber(word, &value) || value < 0) Fail("a whole number from 0 on");
+    if (!records::ParseNumber(word, &value) || value < 0 || value > kMost) {
+      Fail("a whole number from 0 to " + std::to_string(kMost));
+    }
     return value;
   }
   double Number(std::string_view word) const {

@@ -72,6 +72,12 @@ TEST(NameKeys, NumbersAreThoseThatTellNamesApart) {
   EXPECT_THAT(Numbers({"a", "b"}), ElementsAre("", ""));
 }
 
+// It stood for a number once, and numbers were looked for that are not there.
+TEST(Pairing, ANumberSignIsNoNumber) {
+  EXPECT_THAT(Numbers({"frame#1", "frame#2", "frame##"}), ElementsAre("1", "2", ""));
+  EXPECT_THAT(Numbers({"1#", "2#", "#3"}), ElementsAre("1", "2", ""));
+}
+
 TEST(Pairing, ByName) {
   const Pairs pairs =
       PairNames({"pose1.png", "pose2.png", "pose10.png"}, {"pose2.pcd", "pose3.pcd", "pose10.pcd"});

@@ -96,6 +96,7 @@ TEST_P(FusedFiles, ForgedCommentsAreRefused) {
     return ErrorOf(bytes);
   };
   EXPECT_THAT(error("sweep_utime 1", "sweep_utime x"), HasSubstr("comment \""));
+  EXPECT_THAT(error("sweep_utime 1", "sweep_utime 5000"), HasSubstr("from 0 to 4000000000000"));
   EXPECT_THAT(error("valid_bit 1", "valid_bit 3"), HasSubstr("expected bit 1"));
   EXPECT_THAT(error("camera thermal", "camera"), HasSubstr("expected"));
   EXPECT_THAT(error("quaternion_wxyz ", "quaternion_wxyz 7"), HasSubstr("a unit quaternion"));
