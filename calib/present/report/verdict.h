@@ -28,7 +28,7 @@ const ColouringSigma* JudgedColouring(const CameraReport& camera);
 ///    how far; more than a quarter of the views were rejected; views scatter far more than they
 ///    state; beams and planes are missed by more than LIDARs leave; halves or held-out views
 ///    contradict the stated uncertainty, edges and planes each other by far; a projection
-///    uncertainty of more than 40 pixels 5 m away.
+///    uncertainty of more than 100 pixels 5 m away.
 ///  - usable: it could be more exact, or better checked: few views, nothing held out, a
 ///    projection uncertainty of more than a pixel 5 m away, views that scatter more than stated,
 ///    which the enlarged sigma makes good for; a method that states no uncertainty.

@@ -87,9 +87,9 @@ TEST(Verdict, MoreThanAPixelOfReprojectionUncertaintyAtFiveMetresIsAWarning) {
   camera.sigma->colouring[1].worst_px = 1.01;
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
   EXPECT_THAT(Judge(camera).reasons, Contains(HasSubstr("1.01 px")));
-  camera.sigma->colouring[1].worst_px = 39;
+  camera.sigma->colouring[1].worst_px = 99;
   EXPECT_EQ(Judge(camera).grade, Grade::kUsable);
-  camera.sigma->colouring[1].worst_px = 41;
+  camera.sigma->colouring[1].worst_px = 101;
   EXPECT_EQ(Judge(camera).grade, Grade::kDoubtful);
   EXPECT_THAT(Judge(camera).reasons.at(0), HasSubstr("too uncertain"));
 }
