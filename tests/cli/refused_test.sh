@@ -65,8 +65,8 @@ uses "an earlier version's, of this rig" fuse
 
 sed '0,/status: CONVERGED/s//status: CONTRADICTED detail: "Likeliest cause: the focal length is 3% too long."/' \
   "$scratch/good.textproto" >"$s/calibration.textproto"
-refuses_it "do not use" export "camera rgb is not to be used" "the focal length is 3% too long. Mend"
-yields "do not use" fuse "camera rgb is not to be used" "the focal length is 3% too long. Mend"
+refuses_it "do not use" export "camera rgb is not to be used" "the focal length is 3% too long. Fix"
+yields "do not use" fuse "camera rgb is not to be used" "the focal length is 3% too long. Fix"
 ends_with 4 "judging what is not to be used" "$bin/rgbdt" evaluate "$s" --out "$scratch/out"
 sed '0,/status: CONVERGED/s//status: DEGENERATE/' "$scratch/good.textproto" >"$s/calibration.textproto"
 refuses_it "degenerate" fuse "camera rgb is not to be used: degenerate"
