@@ -106,7 +106,7 @@ path, width, height = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 def chunk(kind, data):
     return (struct.pack(">I", len(data)) + kind + data +
             struct.pack(">I", zlib.crc32(kind + data)))
-rows = (b"\0" + bytes(3 * width)) * height
+rows = (b"\0" + bytes([200, 90, 20]) * width) * height  # coloured
 with open(path, "wb") as f:
     f.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
             chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
@@ -115,7 +115,7 @@ session
 cp "$scratch/three.png" "$view/thermal.png"
 sed -i 's/pixel_format: MONO16//' "$view/view.textproto"
 says=("0002" "thermal" "channel")
-refuses_view "a 3-channel thermal image"
+refuses_view "a coloured thermal image"
 
 session
 for name in 0001 0002; do
