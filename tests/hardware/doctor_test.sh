@@ -335,7 +335,7 @@ if can_be_nobody; then
   doctor --rig "$scratch/rig.textproto"
   finds PROBLEM motor "no permission for" "$join"
   # All that it says but the last: that is what the second run's group is.
-  sed -i '/mend:.*usermod/s/; sudo usermod.*//' "$scratch/output"
+  sed -i '/fix:.*usermod/s/; sudo usermod.*//' "$scratch/output"
   mend motor
   as=("${unprivileged[@]}" --clear-groups)
   doctor --rig "$scratch/rig.textproto"
