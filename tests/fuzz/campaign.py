@@ -23,7 +23,7 @@ PARSERS = """
 calib/model/image_codec.cc
 calib/files/image_files.cc
 calib/files/import/lens_file.cc calib/files/import/internal/yaml_tree.cc
-calib/files/import/pairing.cc calib/files/import/internal/name_keys.cc
+calib/files/import/pairing.cc calib/files/name_keys.cc
 calib/files/points/fused_reader.cc calib/files/points/map_files.cc calib/files/points/sweep_reader.cc
 calib/files/points/internal/fused_comments.cc calib/files/points/internal/pcd_table.cc
 calib/files/points/internal/ply_table.cc calib/files/points/internal/point_columns.cc
