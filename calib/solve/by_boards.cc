@@ -101,8 +101,7 @@ std::vector<MountChange> ChangesOf(const JointResult& result) {
     const CameraViews& from = result.joint.cameras[first].views;
     const CameraViews& to = result.joint.cameras[c].views;
     const auto at = SharedPlaces::Pose(c), at_first = SharedPlaces::Pose(first);
-    Matrix6d together = result.variance_factor * result.placements.factor *
-                        result.solution.covariance.block<6, 6>(at, at_first);
+    Matrix6d together = result.PoseFactor() * result.solution.covariance.block<6, 6>(at, at_first);
     if (result.encoder_delay) {
       const Eigen::VectorXd& move = result.encoder_delay->unknown_move;
       together += move.segment<6>(at) * move.segment<6>(at_first).transpose();
@@ -197,13 +196,13 @@ SolvedGroup SolveGroup(const Target& target, const CalibrateOptions& options,
   JointResult result = SolveWithLidars(target, options, std::move(cameras), detected, lidars);
   const double seconds = watch.Seconds();
   std::vector<std::vector<Cause>> causes = GivenWrong(result);
-  const std::optional<Cause> beyond = FarthestBeyondPriors(result);
   for (std::size_t c = 0; c < result.joint.cameras.size(); ++c) {
     CameraReport& report = result.joint.cameras[c].views.report;
     report = WithSolution(result, c, seconds);
     report.causes = std::move(causes[c]);
     // Where nothing that was given explains it.
-    if (beyond && !IsExplained(report.causes)) report.causes.push_back(*beyond);
+    if (IsExplained(report.causes)) continue;
+    for (Cause& cause : BeyondPriors(result, c)) report.causes.push_back(std::move(cause));
   }
   result = HoldEdgesAgainstPlanes(std::move(result));
   SolvedGroup solved;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/model/linear_algebra.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -41,6 +42,10 @@ double SigmaAt(const JointResult& result, Eigen::Index at, double factor) {
 bool IsOfGivenSize(SharedUnknown unknown) {
   return (unknown >= kOutlineTop && unknown <= kOutlineLeft) || unknown == kPrintWidth ||
          unknown == kPrintHeight;
+}
+
+bool IsOfShape(SharedUnknown unknown) {
+  return unknown == kBowX || unknown == kTwist || unknown == kBowY;
 }
 
 // An unknown that all views share.
@@ -109,6 +114,44 @@ Estimate TermOf(const JointResult& result, std::size_t term) {
   return {result.solution.state.range_terms[term], SigmaAt(result, at, result.variance_factor)};
 }
 
+Cause BeyondPrior(const NuisanceLine& line, const JointResult& result) {
+  const BoardPriors& priors = result.joint.problem.priors;
+  const Estimate estimate = EstimateOf(result, line.unknown);
+  const double mean = priors.Means()[static_cast<std::size_t>(line.unknown)];
+  const double prior = priors.Sigma(line.unknown);
+  // Rather too little: what a model has wrong goes where the data tell least.
+  const double variance = prior * prior + estimate.sigma * estimate.sigma;
+  const double off = estimate.value - mean;
+  const bool shape = IsOfShape(line.unknown);
+  return {
+      shape ? "board's shape" : "beams or board",
+      Format("%s: %.1f +- %.1f %s, where %.1f +- %.1f %s is usual. Check that the board is flat%s",
+             line.name, 1000 * estimate.value, 1000 * estimate.sigma, line.unit, 1000 * mean,
+             1000 * prior, line.unit,
+             shape ? ""
+                   : " and as large as the rig file says, and the LIDAR's beam against its "
+                     "data sheet"),
+      off * off / variance};
+}
+
+// How far a camera's pose moves, in its own sigmas, where nothing is taken to be known beforehand
+// of an unknown: one step of Newton without its prior, C / (1 - C_uu / prior^2) the covariance.
+std::optional<double> MovesWithoutPrior(SharedUnknown unknown, const JointResult& result,
+                                        std::size_t camera) {
+  const BoardPriors& priors = result.joint.problem.priors;
+  const Eigen::MatrixXd& covariance = result.solution.covariance;
+  const Eigen::Index at = SharedPlaces(result.joint.problem).Of(unknown);
+  const double weight = 1 / (priors.Sigma(unknown) * priors.Sigma(unknown));
+  const double left = 1 - weight * covariance(at, at);
+  if (!(left > 0)) return std::nullopt;
+  const double off = result.solution.state.shared[static_cast<std::size_t>(unknown)] -
+                     priors.Means()[static_cast<std::size_t>(unknown)];
+  const Vector6d pose =
+      covariance.col(at).segment<6>(SharedPlaces::Pose(camera)) * (weight * off / left);
+  const Matrix6d of_pose = CovarianceOf(result, camera).topLeftCorner<6, 6>();
+  return std::sqrt(std::max(0.0, pose.dot(SolveSymmetric(of_pose, pose))));
+}
+
 }  // namespace
 
 std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera) {
@@ -146,28 +189,23 @@ std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t li
   return nuisances;
 }
 
-std::optional<Cause> FarthestBeyondPriors(const JointResult& result) {
+std::vector<Cause> BeyondPriors(const JointResult& result, std::size_t camera) {
   const BoardPriors& priors = result.joint.problem.priors;
-  const auto means = priors.Means();
-  std::optional<Cause> farthest;
+  std::optional<Cause> of_beam, of_shape;
   for (const NuisanceLine& line : kNuisances) {
     if (IsOfGivenSize(line.unknown)) continue;
-    const Estimate estimate = EstimateOf(result, line.unknown);
-    const double prior = priors.Sigma(line.unknown);
-    if (!LineOf(line, estimate, priors)) continue;
-    // Rather too little: what a model has wrong goes where the data tell least.
-    const double variance = prior * prior + estimate.sigma * estimate.sigma;
-    const double off = estimate.value - means[static_cast<std::size_t>(line.unknown)];
-    if (farthest && off * off / variance <= farthest->chi2) continue;
-    farthest = Cause{
-        "beams or board",
-        Format("%s: %.1f +- %.1f %s, where %.1f +- %.1f is usual. Check that the board is flat "
-               "and as large as the rig file says, and the LIDAR's beam against its data sheet",
-               line.name, 1000 * estimate.value, 1000 * estimate.sigma, line.unit,
-               1000 * means[static_cast<std::size_t>(line.unknown)], 1000 * prior),
-        off * off / variance};
+    if (!LineOf(line, EstimateOf(result, line.unknown), priors)) continue;
+    const bool shape = IsOfShape(line.unknown);
+    Cause cause = BeyondPrior(line, result);
+    if (shape) cause.moves_sigma = MovesWithoutPrior(line.unknown, result, camera);
+    std::optional<Cause>& farthest = shape ? of_shape : of_beam;
+    if (!farthest || cause.chi2 > farthest->chi2) farthest = std::move(cause);
   }
-  return farthest;
+  std::vector<Cause> causes;
+  for (std::optional<Cause>* cause : {&of_beam, &of_shape}) {
+    if (*cause) causes.push_back(std::move(**cause));
+  }
+  return causes;
 }
 
 std::optional<RangeErrors> RangeErrorsOf(const JointResult& result) {

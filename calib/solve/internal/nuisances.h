@@ -17,10 +17,12 @@ std::vector<Nuisance> NuisancesOf(const JointResult& result, std::size_t camera)
 Estimate RangeOffsetOfLidar(const JointResult& result, std::size_t lidar);
 std::vector<Nuisance> NuisancesOfLidar(const JointResult& result, std::size_t lidar);
 
-/// The beam's or the board's unknown that lies the farthest beyond what such sensors and boards do
-/// (beam_priors.h), as a cause that something is not as it was given; nothing where none is told.
+/// The beam's unknown and the board's shape that lie the farthest beyond what such sensors and
+/// boards do (beam_priors.h), as causes that something is not as it was given; without those of
+/// which the data say nothing. A board that is bent far, but whose shape the views tell, moves
+/// camera `camera`'s pose by little (Cause::moves_sigma).
 /// Of sizes that were given there are better tests (given_wrong.h).
-std::optional<Cause> FarthestBeyondPriors(const JointResult& result);
+std::vector<Cause> BeyondPriors(const JointResult& result, std::size_t camera);
 
 /// What the reference LIDAR is off by; nothing where it was taken for exact.
 std::optional<RangeErrors> RangeErrorsOf(const JointResult& result);

@@ -147,7 +147,7 @@ TEST(GivenWrong, ACloudOfAnotherScaleIsNamed) {
 }
 
 // Its lens is stated with an uncertainty: the one that is found is used.
-TEST(FarthestBeyondPriors, ABeamThatIsWiderThanAnyIsNamed) {
+TEST(BeyondPriors, ABeamThatIsWiderThanAnyIsNamed) {
   SolveWorldOptions options = Views(10);
   options.shared[kFarShift] = 0.012;
   const SolveWorld world(options);
@@ -156,6 +156,24 @@ TEST(FarthestBeyondPriors, ABeamThatIsWiderThanAnyIsNamed) {
   ASSERT_NE(found, nullptr);
   EXPECT_GT(found->Sigmas(), kGivenWrongSigmas);
   EXPECT_THAT(found->words, AllOf(HasSubstr("beam edge, far background"), HasSubstr("data sheet")));
+}
+
+// The data tell its shape far better than its prior does: it is told, and the result is as good.
+TEST(BeyondPriors, ABoardThatIsTwistedFarIsToldAndMovesLittle) {
+  SolveWorldOptions options = Views(10);
+  options.print_sigma = kUsualPrintSigma;
+  options.shared[kTwist] = 0.006;
+  const SolveWorld world(options);
+  const Report report = Calibrate(world.rig, world.detections, Brief());
+  for (std::size_t c = 0; c < 2; ++c) {
+    EXPECT_LT(Chi2(world, report, c), kMostChi2);
+    const Cause* const found = Find(report.cameras[c], "board's shape");
+    ASSERT_NE(found, nullptr);
+    EXPECT_THAT(found->words, AllOf(HasSubstr("twist: "), HasSubstr("where 0.0 +- 1.0 mm")));
+    EXPECT_GT(found->Sigmas(), kGivenWrongSigmas);
+    ASSERT_TRUE(found->moves_sigma);
+    EXPECT_LT(*found->moves_sigma, 1);
+  }
 }
 
 // Stated as exact, which it cannot be: the images alone say so, and what it should be.
