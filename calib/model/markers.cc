@@ -1,18 +1,8 @@
 #include "calib/model/markers.h"
 
-#include <algorithm>
-#include <cctype>
+#include "calib/model/text.h"
 
 namespace rgbdt {
-namespace {
-
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-}  // namespace
 
 const std::array<MarkerFamily, 21>& MarkerFamilies() {
   static const std::array<MarkerFamily, 21> families{{
@@ -42,10 +32,10 @@ const std::array<MarkerFamily, 21>& MarkerFamilies() {
 }
 
 const MarkerFamily* FindMarkerFamily(const std::string& name) {
-  std::string wanted = Lower(name);
+  std::string wanted = ToLower(name);
   if (wanted.rfind("dict_", 0) == 0) wanted = wanted.substr(5);
   for (const MarkerFamily& family : MarkerFamilies()) {
-    if (Lower(family.name) == wanted) return &family;
+    if (ToLower(family.name) == wanted) return &family;
   }
   return nullptr;
 }

@@ -13,6 +13,9 @@ std::string Fixed(double value, int decimals);
 /// A number in as few digits as it takes to read the same bits back.
 std::string Exact(double value);
 
+/// ASCII letters only.
+std::string ToLower(std::string text);
+
 /// "view2" before "view10": digits compare as numbers.
 bool NaturalLess(const std::string& a, const std::string& b);
 

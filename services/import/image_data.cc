@@ -10,6 +10,7 @@
 #include "calib/files/image_files.h"
 #include "calib/model/errors.h"
 #include "calib/model/image_codec.h"
+#include "calib/model/text.h"
 #include "services/bags/printable.h"
 
 namespace rgbdt {
@@ -67,9 +68,8 @@ const std::map<std::string, Encoding>& Encodings() {
 // "BayerRG8" (GenICam), "bayer_rggb8" (ROS): "bayerrggb8".
 std::string Normalised(const std::string& name) {
   std::string plain;
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (std::isalnum(u) != 0) plain += static_cast<char>(std::tolower(u));
+  for (const char c : ToLower(name)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) plain += c;
   }
   static const std::map<std::string, std::string> mosaics = {
       {"bayerrg", "gb"}, {"bayergr", "bg"}, {"bayergb", "rg"}, {"bayerbg", "gr"}};

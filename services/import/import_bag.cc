@@ -121,8 +121,8 @@ Cloud DecodeSecond(BagReader* bag, const BagSurvey::Topic& topic, const Stamped&
   const auto before = [](const Stamped& stamped, Utime utime) { return stamped.utime < utime; };
   const auto& all = topic.stamped;
   const auto first =
-      std::lower_bound(all.begin(), all.end(), middle.utime - kLivoxCloud_us / 2, before);
-  const auto last = std::lower_bound(first, all.end(), middle.utime + kLivoxCloud_us / 2, before);
+      std::lower_bound(all.begin(), all.end(), middle.utime - kLivoxCloudUs / 2, before);
+  const auto last = std::lower_bound(first, all.end(), middle.utime + kLivoxCloudUs / 2, before);
   Cloud whole;
   whole.sweep_utime = first->utime;
   for (auto part = first; part != last; ++part) {

@@ -32,11 +32,11 @@ std::vector<Source> CloudsOf(const BagSurvey::Topic& topic) {
     for (const Stamped& stamped : topic.stamped) clouds.push_back({stamped.utime, stamped});
     return clouds;
   }
-  constexpr Utime kHalf = kLivoxCloud_us / 2;
+  constexpr Utime kHalf = kLivoxCloudUs / 2;
   Utime middle = topic.stamped.empty() ? 0 : topic.stamped.front().utime + kHalf;
   for (const Stamped& stamped : topic.stamped) {
     const Utime later = stamped.utime - middle + kHalf;
-    if (later >= kLivoxCloud_us) middle += later / kLivoxCloud_us * kLivoxCloud_us;
+    if (later >= kLivoxCloudUs) middle += later / kLivoxCloudUs * kLivoxCloudUs;
     if (!clouds.empty() && clouds.back().stamped.utime == middle) continue;
     clouds.push_back({middle + kHalf, {middle, stamped.place}});
   }

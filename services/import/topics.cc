@@ -9,6 +9,8 @@
 
 #include "calib/files/import/camera_kind.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
+#include "calib/model/unique_names.h"
 #include "services/bags/printable.h"
 #include "services/import/internal/topic_names.h"
 #include "services/messages/limits.h"
@@ -254,10 +256,10 @@ std::vector<TopicChoice::Camera> CamerasOf(
                      " cameras; say by --image which are to be taken");
   }
   const auto named_by_space = NamedBySpace(survey);
-  std::set<std::string> names;
+  UniqueNames names;
   std::vector<std::string> paths;
   for (const auto& [name, images] : taken) {
-    if (!name.empty() && !names.insert(name).second) {
+    if (!name.empty() && !names.Insert(name)) {
       throw InputError("two cameras are called \"" + name + "\"; expected a name for each");
     }
     const std::string path = CameraOf(named_by_space, *images);
@@ -268,8 +270,7 @@ std::vector<TopicChoice::Camera> CamerasOf(
   for (std::size_t i = 0; i < taken.size(); ++i) {
     const auto& [name, images] = taken[i];
     TopicChoice::Camera& camera = cameras.emplace_back();
-    camera.name = name.empty() ? FreeName(apart[i], names) : name;
-    names.insert(camera.name);
+    camera.name = name.empty() ? names.Make(ShortName(apart[i])) : name;
     camera.images = images;
     camera.info = IsRectified(*images) ? nullptr : InfoOf(survey, *images);
   }
@@ -278,9 +279,9 @@ std::vector<TopicChoice::Camera> CamerasOf(
 }
 
 // By the space that the clouds are in.
-std::string SensorName(const Topic& clouds, const std::set<std::string>& taken) {
+std::string SensorName(const Topic& clouds) {
   const TopicParts parts = Split(clouds);
-  return FreeName(TellApart({parts.space.empty() ? parts.leaf : parts.space})[0], taken);
+  return ShortName(TellApart({parts.space.empty() ? parts.leaf : parts.space})[0]);
 }
 
 void ChooseLidars(const BagSurvey& survey, const TopicWishes& wishes, TopicChoice* choice) {
@@ -294,15 +295,17 @@ void ChooseLidars(const BagSurvey& survey, const TopicWishes& wishes, TopicChoic
     }
   }
   // A camera may look the same way.
-  std::set<std::string> names;
-  for (const TopicChoice::Camera& camera : choice->cameras) names.insert(camera.name);
+  UniqueNames names;
+  for (const TopicChoice::Camera& camera : choice->cameras) names.Insert(camera.name);
   std::set<const Topic*> topics;
   for (TopicChoice::Lidar& lidar : lidars) {
-    if (lidar.name.empty()) {
-      lidar.name = lidars.size() == 1 ? "lidar" : SensorName(*lidar.clouds, names);
-    }
-    if (!names.insert(lidar.name).second) {
-      throw InputError("two sensors are called \"" + lidar.name + "\"; expected a name for each");
+    if (lidar.name.empty() && lidars.size() > 1) {
+      lidar.name = names.Make(SensorName(*lidar.clouds));
+    } else {
+      if (lidar.name.empty()) lidar.name = "lidar";
+      if (!names.Insert(lidar.name)) {
+        throw InputError("two sensors are called \"" + lidar.name + "\"; expected a name for each");
+      }
     }
     if (!topics.insert(lidar.clouds).second) {
       throw InputError("--cloud " + lidar.clouds->topic.name +

@@ -1,7 +1,6 @@
 #include "calib/files/import/camera_kind.h"
 
 #include <array>
-#include <cctype>
 #include <initializer_list>
 
 #include "calib/model/errors.h"
@@ -20,10 +19,7 @@ bool HasAny(const std::string& text, std::initializer_list<const char*> words) {
 // In small letters, all else blanks, blanks around: "/IR/left2" is " ir left  ".
 std::string Words(const std::string& name) {
   std::string words = " ";
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    words += std::isalpha(u) != 0 ? static_cast<char>(std::tolower(u)) : ' ';
-  }
+  for (const char c : ToLower(name)) words += c >= 'a' && c <= 'z' ? c : ' ';
   return words + ' ';
 }
 

@@ -15,6 +15,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
 #include "calib/model/statistics.h"
+#include "calib/model/unique_names.h"
 
 namespace rgbdt {
 namespace {
@@ -148,13 +149,6 @@ CameraKind KindOf(const Folders::Camera& camera, const std::vector<ImageFacts>& 
   return CameraKind::kThermal;
 }
 
-// "rgb", "thermal", and "rgb_2" where that is taken.
-std::string FreeName(const std::string& wanted, const std::set<std::string>& taken) {
-  std::string name = wanted;
-  for (int i = 2; taken.count(name) != 0; ++i) name = wanted + "_" + std::to_string(i);
-  return name;
-}
-
 [[noreturn]] void RefuseWithoutLens(const std::string& camera) {
   throw InputError("camera \"" + camera +
                    "\" has no lens: give --lens FILE, or say --pinhole or --fisheye and it is "
@@ -180,7 +174,7 @@ std::string SetLens(const Folders& folders, const std::vector<std::string>& name
 }
 
 ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const FileList& clouds,
-                   std::set<std::string>* names, std::vector<std::string>* left_over) {
+                   UniqueNames* names, std::vector<std::string>* left_over) {
   ReadCamera read;
   read.images = ListImages(camera.images);
   read.pairs = PairFiles(read.images, clouds, folders.pairing);
@@ -189,8 +183,8 @@ ReadCamera ReadOne(const Folders& folders, const Folders::Camera& camera, const 
   CameraSpec& spec = read.spec;
   spec.kind = KindOf(camera, facts, &read.why);
   const bool thermal = spec.kind == CameraKind::kThermal;
-  spec.name = camera.name.empty() ? FreeName(thermal ? "thermal" : "rgb", *names) : camera.name;
-  names->insert(spec.name);
+  spec.name = camera.name.empty() ? names->Make(thermal ? "thermal" : "rgb") : camera.name;
+  names->Insert(spec.name);
   spec.width = facts[0].width;
   spec.height = facts[0].height;
   const bool reduced = IsSixteenBit(facts[0]) && !thermal;
@@ -223,11 +217,12 @@ std::vector<std::string> SetLenses(const Folders& folders, std::vector<ReadCamer
 
 Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
   Rig rig;
-  std::set<std::string> names;
-  for (const Folders::Lidar& lidar : folders.lidars) {
-    LidarSpec& spec = names.empty() ? rig.lidar : rig.further_lidars.emplace_back();
-    spec.name = lidar.name.empty() ? FreeName("lidar", names) : lidar.name;
-    names.insert(spec.name);
+  UniqueNames names;
+  for (std::size_t i = 0; i < folders.lidars.size(); ++i) {
+    LidarSpec& spec = i == 0 ? rig.lidar : rig.further_lidars.emplace_back();
+    const std::string& name = folders.lidars[i].name;
+    spec.name = name.empty() ? names.Make("lidar") : name;
+    names.Insert(spec.name);
   }
   rig.target = folders.board;
   for (const ReadCamera& camera : cameras) rig.cameras.push_back(camera.spec);
@@ -235,14 +230,12 @@ Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
   return rig;
 }
 
-std::string ViewName(const std::string& file, std::set<std::string>* taken) {
+std::string ViewName(const std::string& file, UniqueNames* names) {
   std::string name = StemOf(file).substr(0, 90);
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ') c = '_';
   }
-  name = FreeName(PrintableText(name), *taken);
-  taken->insert(name);
-  return name;
+  return names->Make(PrintableText(name));
 }
 
 FileList CloudsOf(const Folders::Lidar& lidar) {
@@ -280,7 +273,7 @@ std::vector<ViewFiles> MakeViews(const Folders::Lidar& lidar, const FileList& cl
   for (const auto& [cloud, view] : of_cloud) used.push_back(cloud);
   const std::vector<std::string> problems = LookAtClouds(lidar, clouds, used);
   std::vector<ViewFiles> views;
-  std::set<std::string> taken;
+  UniqueNames taken;
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (!problems[k].empty()) {
       left_over->push_back(problems[k]);
@@ -402,7 +395,7 @@ FolderSession ReadFolders(const Folders& folders) {
   CheckFolders(folders);
   const FileList clouds = CloudsOf(folders.lidars.at(0));
   FolderSession session;
-  std::set<std::string> names;
+  UniqueNames names;
   std::vector<ReadCamera> cameras;
   for (const Folders::Camera& camera : folders.cameras) {
     cameras.push_back(ReadOne(folders, camera, clouds, &names, &session.left_over));

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
@@ -12,6 +11,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
 #include "calib/model/text.h"
+#include "calib/model/unique_names.h"
 
 namespace rgbdt {
 namespace {
@@ -28,15 +28,6 @@ void CheckName(const std::string& name, const std::string& what) {
     throw InputError(what + " \"" + PrintableText(name) +
                      "\" cannot be a file's name; expected letters, digits, _ and -");
   }
-}
-
-// rgb.png, and rgb_2.png for a second image of the camera.
-std::string FreeName(const std::string& camera, std::set<std::string>* taken) {
-  std::string name = camera + ".png";
-  for (int i = 2; !taken->insert(name).second; ++i) {
-    name = camera + "_" + std::to_string(i) + ".png";
-  }
-  return name;
 }
 
 void FromRadiometry(const Radiometry& radiometry, proto::ViewImage* out) {
@@ -127,10 +118,10 @@ void WriteView(const fs::path& session_dir, const View& view) {
   message.set_sweep_utime(view.cloud.sweep_utime);
   message.set_heldout(view.heldout);
   if (view.map_from_lidar) text::FromRigid3(*view.map_from_lidar, message.mutable_map_from_lidar());
-  std::set<std::string> taken;
+  UniqueNames names;  // rgb.png, and rgb_2.png for a second image of the camera
   for (const Image& image : view.images) {
     CheckName(image.camera, "view " + view.name + ": the camera's name");
-    FromImage(image, FreeName(image.camera, &taken), message.add_image());
+    FromImage(image, names.Make(image.camera) + ".png", message.add_image());
   }
   for (const CornerSelection& picks : view.picks) FromPicks(view, picks, &message);
   for (const LidarCloud& further : view.further_clouds) {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <set>
 #include <sstream>
+
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -28,19 +31,13 @@ bool IsNumber(const std::string& text) {
 // Of a-z, 0-9 and _, as the rig file has it.
 std::string Plain(const std::string& part) {
   std::string name;
-  for (const char c : part) {
-    const auto u = static_cast<unsigned char>(c);
-    name += std::isalnum(u) != 0 ? static_cast<char>(std::tolower(u)) : '_';
+  for (const char c : ToLower(part)) {
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   }
   return name;
 }
 
 }  // namespace
-
-std::string ToLower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 TopicParts SplitTopic(std::string name, bool compressed) {
   static const std::set<std::string> image_words = {
@@ -65,11 +62,8 @@ TopicParts SplitTopic(std::string name, bool compressed) {
   return parts;
 }
 
-std::string FreeName(const std::string& wanted, const std::set<std::string>& taken) {
-  const std::string name = wanted.empty() ? "sensor" : wanted.substr(0, 28);
-  std::string free = name;
-  for (int i = 2; taken.count(free) != 0; ++i) free = name + "_" + std::to_string(i);
-  return free;
+std::string ShortName(const std::string& name) {
+  return name.empty() ? "sensor" : name.substr(0, 28);
 }
 
 std::vector<std::string> TellApart(const std::vector<std::string>& paths) {

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
 namespace rgbdt {
-
-std::string ToLower(std::string text);
 
 /// A topic's name taken apart: "/cam/rgb/image_raw" is the leaf "image_raw" in the space
 /// "/cam/rgb", and says what the images are ("image_raw"), not whose. "/ir/left_image" are the
@@ -17,13 +14,12 @@ struct TopicParts {
 /// `compressed`: a transport at its end ("/compressed") does not count.
 TopicParts SplitTopic(std::string name, bool compressed);
 
-/// The wanted name, or with _2, _3, ... one that is not taken; 1 to 32 characters.
-std::string FreeName(const std::string& wanted, const std::set<std::string>& taken);
+/// 1 to 28 characters: with a number behind it, too, it can be a sensor's.
+std::string ShortName(const std::string& name);
 
 /// The last part of each path, of a-z, 0-9 and _. Of those that end alike with the nearest part
 /// above in which most differ: "/front/rgb" and "/rear/rgb" are front_rgb and rear_rgb,
-/// "/front/camera" and
-/// "/rear/camera" front and rear. A few may be alike still.
+/// "/front/camera" and "/rear/camera" front and rear. A few may be alike still.
 std::vector<std::string> TellApart(const std::vector<std::string>& paths);
 
 }  // namespace rgbdt

@@ -1,7 +1,6 @@
 #include "calib/files/import/internal/folder_files.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <utility>
@@ -23,11 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr double kFarthestM = 500;  // no LIDAR has half of its returns from beyond
 
-std::string EndingOf(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
+std::string EndingOf(const fs::path& path) { return ToLower(path.extension().string()); }
 
 // What a folder holds besides: kinds of files, and folders by their names.
 struct Others {

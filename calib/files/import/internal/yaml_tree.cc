@@ -3,11 +3,11 @@
 #include <yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt::yaml {
 
@@ -67,9 +67,8 @@ std::string TextOf(const yaml_node_t& node) {
 
 std::string Plain(const std::string& name) {
   std::string plain;
-  for (const char c : name) {
-    if (c != '_' && c != '-')
-      plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char c : ToLower(name)) {
+    if (c != '_' && c != '-') plain += c;
   }
   return plain;
 }
