@@ -8,7 +8,7 @@ namespace rgbdt {
 
 /// How long a cloud of a Livox is: its pattern does not repeat, and within a second it has seen
 /// most of its field. Rig and board stand still meanwhile.
-inline constexpr Utime kLivoxCloud_us = kMicrosecondsPerSecond;
+inline constexpr Utime kLivoxCloudUs = kMicrosecondsPerSecond;
 
 /// Whether the vendor calls a point normal, by bits 0 to 3 of its tag: of a Mid-360 its confidence
 /// that it is no bridge between two things (0, 1) and no rain, fog or dust (2, 3); of an Avia,

@@ -53,16 +53,15 @@ Finding OutOfReach(const CameraFacts& camera, const CameraNetwork& network) {
   const GvcpDevice& device = camera.found->device;
   const std::string at = WithPrefix(device.address, MaskOf(device));
   const NetworkInterface* interface = network.Interface(camera.interface);
-  std::string mend = "sudo ip addr add " +
-                     WithPrefix(FreeAddress(device, network), MaskOf(device)) + " dev " +
-                     camera.interface;
+  std::string fix = "sudo ip addr add " + WithPrefix(FreeAddress(device, network), MaskOf(device)) +
+                    " dev " + camera.interface;
   if (interface != nullptr && !interface->addresses.empty()) {
-    mend += "  # or give the camera an address in the subnet of " + AddressesText(interface);
+    fix += "  # or give the camera an address in the subnet of " + AddressesText(interface);
   }
   return Problem("camera " + camera.name,
                  "is there (" + Describe(device) + ") but cannot be reached: it has " + at + ", " +
                      camera.interface + " where it answers has " + AddressesText(interface),
-                 mend);
+                 fix);
 }
 
 Finding WrongWay(const CameraFacts& camera) {
@@ -85,8 +84,8 @@ Finding Held(const CameraFacts& camera, const CameraNetwork& network) {
                    "close it (a vendor's viewer?); a camera whose program died frees itself after "
                    "some seconds");
   }
-  std::string mend = "kill";
-  for (const Holder& program : programs) mend += " " + std::to_string(program.pid);
+  std::string fix = "kill";
+  for (const Holder& program : programs) fix += " " + std::to_string(program.pid);
   const bool ours = std::all_of(programs.begin(), programs.end(), [](const Holder& program) {
     return program.name == "rgbdt-camera";
   });
@@ -94,9 +93,9 @@ Finding Held(const CameraFacts& camera, const CameraNetwork& network) {
     return Warning(
         check,
         what + ", likely " + HoldersText(programs) + ": well, unless you mean to start another",
-        mend);
+        fix);
   }
-  return Problem(check, what + ", likely " + HoldersText(programs), mend);
+  return Problem(check, what + ", likely " + HoldersText(programs), fix);
 }
 
 Finding Missing(const CameraFacts& camera, const CameraNetwork& network) {

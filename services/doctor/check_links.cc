@@ -57,20 +57,20 @@ Findings CheckPackets(const CameraNetwork& network) {
     if (interface == nullptr || interface->mtu == 0) continue;
     const std::string check = "packets of " + camera.name;
     const std::string mtu = std::to_string(interface->mtu);
-    const std::string mend = "sudo ip link set dev " + interface->name + " mtu " +
-                             std::to_string(std::max(kJumboMtu, camera.device.packet_bytes));
+    const std::string fix = "sudo ip link set dev " + interface->name + " mtu " +
+                            std::to_string(std::max(kJumboMtu, camera.device.packet_bytes));
     if (camera.device.packet_bytes > interface->mtu) {
       findings.push_back(Problem(check,
                                  "the rig asks for packets of " +
                                      std::to_string(camera.device.packet_bytes) + " bytes, and " +
                                      interface->name + " takes " + mtu + ": no image arrives",
-                                 mend));
+                                 fix));
     } else if (interface->mtu <= kPlainMtu && camera.rate.bits_per_s > kFastBitsPerS) {
       findings.push_back(Warning(check,
                                  RateText(camera) + " in packets of " + mtu +
                                      " bytes: each costs an interrupt, and "
                                      "images with holes may follow",
-                                 mend + "  # switch and camera must take it, too"));
+                                 fix + "  # switch and camera must take it, too"));
     } else {
       findings.push_back(Ok(check, interface->name + " takes " + mtu + " bytes"));
     }

@@ -84,10 +84,10 @@ Finding CheckMulticast(const MulticastFacts& facts) {
   }
   if (facts.interface && !facts.interface->multicast) {
     const std::string name = facts.interface->name;
-    const std::string mend = "sudo ip link set " + name + " multicast on";
+    const std::string fix = "sudo ip link set " + name + " multicast on";
     const std::string what =
         "the route to " + group + " leads to " + name + ", which has no multicast switched on";
-    return facts.came_back ? Warning(check, what, mend) : Problem(check, what, mend);
+    return facts.came_back ? Warning(check, what, fix) : Problem(check, what, fix);
   }
   if (!facts.came_back) {
     return Problem(check, "a message to " + group + " did not come back; a firewall may drop it",
@@ -111,9 +111,9 @@ Finding CheckDisk(const DiskFacts& facts) {
   const double gigabytes = static_cast<double>(facts.free_bytes) / kGigabyte;
   const std::string what = Format("%.1f GB free in ", gigabytes) + facts.folder;
   if (gigabytes >= kMinFreeGigabytes) return Ok("disk", what);
-  const std::string mend = "du -xh --max-depth=2 " + facts.folder + " | sort -h | tail";
-  if (gigabytes < kFullGigabytes) return Problem("disk", what + ", too little for a view", mend);
-  return Warning("disk", what + "; a session or a log of some minutes fills it", mend);
+  const std::string fix = "du -xh --max-depth=2 " + facts.folder + " | sort -h | tail";
+  if (gigabytes < kFullGigabytes) return Problem("disk", what + ", too little for a view", fix);
+  return Warning("disk", what + "; a session or a log of some minutes fills it", fix);
 }
 
 Finding CheckReassembly(std::int64_t failures) {

@@ -29,12 +29,12 @@ Finding Ok(std::string check, std::string what) {
   return {Finding::Level::kOk, std::move(check), std::move(what), ""};
 }
 
-Finding Warning(std::string check, std::string what, std::string mend) {
-  return {Finding::Level::kWarning, std::move(check), std::move(what), std::move(mend)};
+Finding Warning(std::string check, std::string what, std::string fix) {
+  return {Finding::Level::kWarning, std::move(check), std::move(what), std::move(fix)};
 }
 
-Finding Problem(std::string check, std::string what, std::string mend) {
-  return {Finding::Level::kProblem, std::move(check), std::move(what), std::move(mend)};
+Finding Problem(std::string check, std::string what, std::string fix) {
+  return {Finding::Level::kProblem, std::move(check), std::move(what), std::move(fix)};
 }
 
 void Append(Findings findings, Findings* to) {
@@ -53,7 +53,7 @@ std::string FindingsText(Findings findings) {
   std::string text;
   for (const Finding& finding : findings) {
     text += Word(finding.level) + finding.check + ": " + finding.what + "\n";
-    if (!finding.mend.empty()) text += "  fix: " + finding.mend + "\n";
+    if (!finding.fix.empty()) text += "  fix: " + finding.fix + "\n";
   }
   return text + Count(findings, Finding::Level::kProblem, "problem") + ", " +
          Count(findings, Finding::Level::kWarning, "warning") + "\n";

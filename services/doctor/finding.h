@@ -11,13 +11,13 @@ struct Finding {
   Level level = Level::kOk;
   std::string check;  ///< what was looked at: "receive buffer", "camera rgb"
   std::string what;   ///< in plain words, with the values
-  std::string mend;   ///< the command, or what to do; empty: nothing
+  std::string fix;    ///< the command, or what to do; empty: nothing
 };
 using Findings = std::vector<Finding>;
 
 Finding Ok(std::string check, std::string what);
-Finding Warning(std::string check, std::string what, std::string mend = "");
-Finding Problem(std::string check, std::string what, std::string mend = "");
+Finding Warning(std::string check, std::string what, std::string fix = "");
+Finding Problem(std::string check, std::string what, std::string fix = "");
 
 void Append(Findings findings, Findings* to);
 

@@ -110,7 +110,7 @@ camera_timing_t ToWire(const CameraTiming& timing) { return FieldsToWire<camera_
 
 void Check(const camera_timing_t& wire) {
   // A second is no read-out.
-  if (!(std::abs(wire.time_offset_s) <= kMaxTimeOffset_s)) {
+  if (!(std::abs(wire.time_offset_s) <= kMaxTimeOffsetS)) {
     Fail("timing.time_offset_s", wire.time_offset_s, "-60 to 60");
   }
   if (!(std::abs(wire.rolling_s) <= 1)) Fail("timing.rolling_s", wire.rolling_s, "-1 to 1");

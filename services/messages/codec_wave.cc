@@ -25,7 +25,7 @@ void Check(const waved_clock_t& wire) {
   CheckCameraName("clocks.camera", wire.camera);
   CheckText("clocks.text", wire.text);
   if (wire.told == 0) return;
-  if (!(std::abs(wire.time_offset_s) <= kMaxTimeOffset_s)) {
+  if (!(std::abs(wire.time_offset_s) <= kMaxTimeOffsetS)) {
     Fail("clocks.time_offset_s", wire.time_offset_s, "-60 to 60");
   }
   CheckNotNegative("clocks.time_offset_sigma_s", wire.time_offset_sigma_s);

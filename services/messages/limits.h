@@ -21,7 +21,7 @@ inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 inline constexpr std::int64_t kMaxLines = 1'000'000;  ///< of a sweep, and beams of a line
 inline constexpr std::int64_t kMaxCameras = 32;       ///< of a rig: the bits of rgbdt_cloud_t.valid
 inline constexpr std::int64_t kMaxCandidates = 100;   ///< a few are sent; each costs readers time
-inline constexpr double kMaxTimeOffset_s = 60;        ///< of a camera's clock
+inline constexpr double kMaxTimeOffsetS = 60;         ///< of a camera's clock
 inline constexpr std::int64_t kMaxCounters = 1000;    ///< of a process's status
 
 }  // namespace rgbdt

@@ -28,11 +28,11 @@ double ShareRead(const LogReader& reader) {
 
 // Whether a rig whose place is known to some millimetres was anywhere else than at its first pose.
 bool Moves(const std::vector<StampedPose>& way) {
-  constexpr double kPlace_m = 0.05, kTurn_rad = 0.01;
+  constexpr double kPlaceM = 0.05, kTurnRad = 0.01;
   return std::any_of(way.begin(), way.end(), [&](const StampedPose& pose) {
     const Rigid3& first = way.front().map_from_lidar;
-    return (pose.map_from_lidar.translation - first.translation).norm() > kPlace_m ||
-           RotationDistance(pose.map_from_lidar, first) > kTurn_rad;
+    return (pose.map_from_lidar.translation - first.translation).norm() > kPlaceM ||
+           RotationDistance(pose.map_from_lidar, first) > kTurnRad;
   });
 }
 

@@ -24,7 +24,7 @@ constexpr auto kLeastPause = std::chrono::seconds(1);                // between 
 constexpr std::size_t kMostImages = 20, kMostChunks = 1000;          // that wait, of a channel
 constexpr std::size_t kMostBytes = 64'000'000;                       // that wait, of a channel
 constexpr std::size_t kLeastSweeps = 20, kLeastImages = 20;
-constexpr double kMostGap_s = 0.6;  // between images of which some were passed over
+constexpr double kMostGapS = 0.6;  // between images of which some were passed over
 
 bool Tells(const WavedBoard& board) {
   return board.sweeps.size() >= kLeastSweeps &&
@@ -165,7 +165,7 @@ void WavePreview::TakeAll(const Batch& batch, WaveReader* reader) const {
 
 void WavePreview::Solve(const WavedBoard& board) {
   SyncOptions options;
-  options.most_gap_s = kMostGap_s;
+  options.most_gap_s = kMostGapS;
   std::vector<WavedClock> clocks;
   try {
     clocks = ClocksOf(Synchronise(board, options));

@@ -136,15 +136,15 @@ Rig WrittenRig(const std::filesystem::path& dir, const Rig& rig) {
 
 void SimulateWave(const std::filesystem::path& dir, const simulate::Options& options,
                   double seconds) {
-  constexpr double kColor_hz = 20, kThermal_hz = 9;
+  constexpr double kColorHz = 20, kThermalHz = 9;
   const simulate::WaveOptions wave;
   const auto clocks = simulate::DrawClocks(options);
   simulate::Waving waving(options, wave, clocks);
   const Rig rig = WrittenRig(dir, waving.rig());
   WriteTruth(dir / "truth.textproto", waving.truth(),
              simulate::ClocksText(options, clocks) + simulate::ImperfectionsText(options));
-  Record({dir / "wave.lcmlog", wave.start, seconds, options.spinning->revolution_s, kColor_hz,
-          kThermal_hz},
+  Record({dir / "wave.lcmlog", wave.start, seconds, options.spinning->revolution_s, kColorHz,
+          kThermalHz},
          rig, &waving);
   std::printf(
       "wrote %s: rig.textproto, wave.lcmlog (%.0f s), truth.textproto (with what each clock is off "
@@ -154,7 +154,7 @@ void SimulateWave(const std::filesystem::path& dir, const simulate::Options& opt
 
 void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& options,
                    double seconds, Clocks of_cameras) {
-  constexpr double kImage_hz = 2, kStreet_mps = 3, kRoom_mps = 0.5;
+  constexpr double kImageHz = 2, kStreet_mps = 3, kRoom_mps = 0.5;
   using simulate::Driving;
   const auto clocks = of_cameras == Clocks::kOff ? simulate::DrawClocks(options)
                                                  : std::vector<simulate::ClockOptions>();
@@ -170,8 +170,8 @@ void SimulateDrive(const std::filesystem::path& dir, const simulate::Options& op
                         Driving::kStart,
                         seconds,
                         options.spinning->revolution_s,
-                        kImage_hz,
-                        kImage_hz,
+                        kImageHz,
+                        kImageHz,
                         calibration};
   Record(what, rig, &driving);
   WriteFileAtomically(dir / "truth.tum", TumText(TrueWay(driving, what)));

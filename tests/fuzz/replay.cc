@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMost_s = 60;               // that a run may take
+constexpr unsigned kMostS = 60;                // that a run may take
 constexpr std::size_t kMostVaried = 16 << 20;  // bytes of an input's variants in all
 
 std::string running_name, running_bytes;  // for OnCrash
@@ -47,7 +47,7 @@ void OnCrash(int signal_number) {
 void Run(const std::string& name, std::string bytes) {
   running_name = name;
   running_bytes = std::move(bytes);
-  alarm(kMost_s);
+  alarm(kMostS);
   LLVMFuzzerTestOneInput(rgbdt::fuzz::Data(running_bytes), running_bytes.size());
 }
 

@@ -173,15 +173,15 @@ HesaiBeams DecodedHesai(const fs::path& bag_path, const hesai::Angles& angles) {
 
 // Channels may look equally high.
 bool IsThere(const Eigen::Vector3d& p, const hesai::Angles& angles, const HesaiBeams& beams) {
-  constexpr double kNear_rad = 1e-5;
+  constexpr double kNearRad = 1e-5;
   const double elevation = std::asin(p.z() / p.norm()), azimuth = std::atan2(p.x(), p.y());
   const std::int64_t mm = std::lround(p.norm() * 1e3);
   if (!IsRange(1e-3 * static_cast<double>(mm), p.norm())) return false;
   for (std::size_t channel = 0; channel < angles.elevation_rad.size(); ++channel) {
-    if (std::abs(angles.elevation_rad[channel] - elevation) > kNear_rad) continue;
+    if (std::abs(angles.elevation_rad[channel] - elevation) > kNearRad) continue;
     const auto [first, last] = beams.equal_range({channel, mm});
     for (auto beam = first; beam != last; ++beam) {
-      if (std::abs(std::remainder(beam->second - azimuth, 2 * M_PI)) < kNear_rad) return true;
+      if (std::abs(std::remainder(beam->second - azimuth, 2 * M_PI)) < kNearRad) return true;
     }
   }
   return false;

@@ -175,18 +175,18 @@ TEST(OusterReal, PointsAreWhereTheSensorsOwnSoftwareHasThem) {
   for (std::size_t i = 0; i < first->size(); ++i) {
     if (first->IsHit(i)) sweep.Add(first->points[i]);
   }
-  constexpr double kPaired_m = 1e-3, kAgree_rad = 10e-6;
+  constexpr double kPairedM = 1e-3, kAgreeRad = 10e-6;
   std::set<std::size_t> rows, columns;
   std::size_t paired = 0, agree = 0;
   double farthest_rad = 0;
   for (std::size_t i = 0; i < first->size(); ++i) {
     if (!first->IsHit(i) || sweep.CountAt(first->points[i]) != 1) continue;
     const double off_m = map.NearestTo(first->points[i]);
-    if (off_m > kPaired_m) continue;
+    if (off_m > kPairedM) continue;
     const double off_rad = off_m / first->points[i].cast<double>().norm();
     farthest_rad = std::max(farthest_rad, off_rad);
     ++paired;
-    if (off_rad > kAgree_rad) continue;
+    if (off_rad > kAgreeRad) continue;
     ++agree;
     rows.insert(i / static_cast<std::size_t>(first->beams));
     columns.insert(i % static_cast<std::size_t>(first->beams));

@@ -51,8 +51,8 @@ int TurnedByNebula(int step, std::size_t slot) {
                             26.53, 27.77, 31.49, 32.73, 36.46, 38.94, 41.42, 43.91,
                             55.56, 58.70, 61.85, 65.00, 68.82, 72.64, 76.12, 79.27,
                             82.08, 83.32, 87.05, 88.29, 92.01, 94.50, 96.98, 99.46};
-  constexpr double kBlock_us = 2 * 55.56;
-  return static_cast<int>(step * kUs[slot] / kBlock_us);
+  constexpr double kBlockUs = 2 * 55.56;
+  return static_cast<int>(step * kUs[slot] / kBlockUs);
 }
 
 const std::uint8_t* Data(const std::string& bytes) {
@@ -114,12 +114,12 @@ std::vector<Point> PointsOf(const fs::path& path) {
 
 // Angles are whole hundredths of a degree, the points follow by tables of floats.
 bool IsThere(const Point& point, const Angles& file, const Beams& beams) {
-  constexpr double kFile_deg = 0.0101, kSame = 0.01;  // of a hundredth
+  constexpr double kFileDeg = 0.0101, kSame = 0.01;  // of a hundredth
   const Sensor& sensor = *beams.sensor;
   const int units = static_cast<int>(std::lround(point.range_m / sensor.unit_m));
   if (std::abs(units * sensor.unit_m - point.range_m) > 1e-6 + 2e-7 * point.range_m) return false;
   for (std::size_t laser = 0; laser < 16; ++laser) {
-    if (std::abs(file.elevation_rad[laser] / kDegree - point.elevation_deg) > kFile_deg) continue;
+    if (std::abs(file.elevation_rad[laser] / kDegree - point.elevation_deg) > kFileDeg) continue;
     const double offset_deg = std::round(file.azimuth_rad[laser] / kDegree * 100) / 100;
     const double e = point.elevation_deg * kDegree, a = point.azimuth_deg * kDegree;
     const double head = a - offset_deg * kDegree;

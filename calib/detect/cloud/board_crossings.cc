@@ -9,8 +9,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kHole_m = 0.12;  // beams missing over less than this leave a hole, not an edge
-constexpr double kMerge_m = 0.5;  // farther behind than this, returns do not merge
+constexpr double kHoleM = 0.12;  // beams missing over less than this leave a hole, not an edge
+constexpr double kMergeM = 0.5;  // farther behind than this, returns do not merge
 
 struct Window {
   int first_row, last_row, first_column, last_column;
@@ -99,7 +99,7 @@ class MemberFinder {
       } else if (behind < 0) {
         beams_[i] = Beam::kBefore;
       } else {
-        beams_[i] = behind > kMerge_m ? Beam::kFar : Beam::kBehind;
+        beams_[i] = behind > kMergeM ? Beam::kFar : Beam::kBehind;
         members->through.push_back(flat_[i]);
       }
     });
@@ -185,7 +185,7 @@ class MemberFinder {
           last = k;
           ++count;
         } else if (beams_[i] != Beam::kUnknown &&
-                   (flat_[i] - flat_[start + last * step]).norm() > kHole_m) {
+                   (flat_[i] - flat_[start + last * step]).norm() > kHoleM) {
           break;
         }
       }

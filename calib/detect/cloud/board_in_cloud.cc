@@ -280,7 +280,7 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
   constexpr double kBluntestRad = 4e-3, kMisfit = 1.2;
   options.edge.class_sigma_rad = std::max(options.edge.class_sigma_rad, kClassSigmaRad);
   constexpr int kRounds = 4;
-  constexpr double kStill_m = 0.002, kLeastOnSides = 0.7;
+  constexpr double kStillM = 0.002, kLeastOnSides = 0.7;
   constexpr double kMostDeviation = 4, kLeastScore = 0.87;
   const auto cut = [&] {
     return ScatteredCrossings(cloud, members.plane, members.frame, near, target,
@@ -300,7 +300,7 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
     if (!board) return std::nullopt;
     const Eigen::Vector2d before = near.centre;
     near = InFrame(members.frame, *board);
-    if ((near.centre - before).norm() < kStill_m) break;
+    if ((near.centre - before).norm() < kStillM) break;
   }
   // What holds the board, or stands beside it in its plane, leaves more than one place for it: then
   // none is better than a wrong one. A panel a few centimetres larger makes itself fit by shifts

@@ -123,14 +123,14 @@ struct Cones {
 
 // Whether rings are cones about another point than the cloud's origin.
 std::string WhyFrameIsOff(const Cloud& cloud) {
-  constexpr double kNear_m = 2, kScatter = 0.02, kClearly = 4, kFar_m = 0.3;
+  constexpr double kNearM = 2, kScatter = 0.02, kClearly = 4, kFarM = 0.3;
   constexpr std::size_t kMostPoints = 20000;
   constexpr int kRounds = 20;
   if (cloud.ring.size() != cloud.size()) return "";
   std::map<std::uint16_t, std::vector<Eigen::Vector3d>> rings;
   for (std::size_t i = 0; i < cloud.size(); i += 1 + cloud.size() / kMostPoints) {
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
-    if (cloud.IsHit(i) && p.norm() > kNear_m) rings[cloud.ring[i]].push_back(p);
+    if (cloud.IsHit(i) && p.norm() > kNearM) rings[cloud.ring[i]].push_back(p);
   }
   if (rings.size() < 4) return "";
   Cones cones;
@@ -146,8 +146,7 @@ std::string WhyFrameIsOff(const Cloud& cloud) {
     cones.axis = (cones.axis + Eigen::Vector3d(step[3], step[4], 0).cross(cones.axis)).normalized();
     found = cones.Equations(rings, &h);
   }
-  if (!(given > kScatter) || !(given > kClearly * found) || !(cones.apex.norm() > kFar_m))
-    return "";
+  if (!(given > kScatter) || !(given > kClearly * found) || !(cones.apex.norm() > kFarM)) return "";
   return Format(
       "the cloud's rings meet at %.2f %.2f %.2f m, not at its origin: it seems to be in another "
       "frame than the LIDAR's own (the vehicle's?), in which clouds are read; give it as the "

@@ -9,8 +9,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr double kMerge_m = 0.5;   // farther behind than this, returns do not merge
-constexpr double kReach_m = 0.15;  // of a side: what farther out or in says nothing of it
+constexpr double kMergeM = 0.5;   // farther behind than this, returns do not merge
+constexpr double kReachM = 0.15;  // of a side: what farther out or in says nothing of it
 
 enum class Label : std::uint8_t { kOn, kMerged, kFar, kBefore };
 
@@ -107,7 +107,7 @@ class SideCutter {
              const FlatRectangle& near, const Target& target, double sigma_m)
       : cloud_(cloud), plane_(plane), frame_(frame), near_(near), target_(target) {
     const double tolerance = std::max(0.03, 3.5 * sigma_m);
-    const double reach = 0.5 * std::hypot(target.width_m, target.height_m) + 2 * kReach_m;
+    const double reach = 0.5 * std::hypot(target.width_m, target.height_m) + 2 * kReachM;
     int inside = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       if (!cloud.IsHit(i)) continue;
@@ -117,7 +117,7 @@ class SideCutter {
       const double behind = point.norm() - met->range;
       const Label label = std::abs(plane.Signed(point)) <= tolerance ? Label::kOn
                           : behind < 0                               ? Label::kBefore
-                          : behind > kMerge_m                        ? Label::kFar
+                          : behind > kMergeM                         ? Label::kFar
                                                                      : Label::kMerged;
       points_.push_back({met->flat, label, i});
       if (label == Label::kOn && IsInside(met->flat)) ++inside;
@@ -141,7 +141,7 @@ class SideCutter {
       const Eigen::Vector2d d = p.flat - near_.centre;
       const double place = along.dot(d) + usable / 2;
       const double outwards = outward.dot(d) - half;
-      if (place < 0 || place >= usable || outwards > kReach_m || outwards < -2 * half) continue;
+      if (place < 0 || place >= usable || outwards > kReachM || outwards < -2 * half) continue;
       const auto strip = std::min(count - 1, static_cast<std::size_t>(place / width));
       strips[strip].push_back({along.dot(d), outwards, p.label, p.index});
     }
@@ -185,7 +185,7 @@ class SideCutter {
   }
 
   static std::optional<Span> LookAt(std::vector<Met>* strip) {
-    const auto far_in = [](const Met& m) { return m.outwards < -kReach_m; };
+    const auto far_in = [](const Met& m) { return m.outwards < -kReachM; };
     strip->erase(std::remove_if(strip->begin(), strip->end(), far_in), strip->end());
     const bool hidden = std::any_of(strip->begin(), strip->end(),
                                     [](const Met& m) { return m.label == Label::kBefore; });

@@ -24,8 +24,8 @@ constexpr double kLow = -7 * kDegree, kTop = 52 * kDegree;
 constexpr int kMid360Lasers = 4;
 // Of 4 lasers, so 40 lines in 0.1 s. A turn is 500.618 firings: the next turn's lie between this
 // one's, as evenly as the golden ratio spreads them.
-constexpr double kTurn_hz = 50'000 / 500.6180339887498949;
-constexpr double kNod_hz = 6.180339887498949;  // to the turns as no two whole numbers are
+constexpr double kTurnHz = 50'000 / 500.6180339887498949;
+constexpr double kNodHz = 6.180339887498949;  // to the turns as no two whole numbers are
 constexpr double kLaserStep = (kTop - kLow) / 40;
 
 double AviaLaserHeight(int laser) {
@@ -44,8 +44,8 @@ Eigen::Vector3d AviaDirection(double time_s, int laser) {
 }
 
 Eigen::Vector3d Mid360Direction(double time_s, int laser) {
-  const double azimuth = kTwoPi * std::fmod(kTurn_hz * time_s, 1.0);
-  const double nod = std::sin(kTwoPi * std::fmod(kNod_hz * time_s, 1.0));
+  const double azimuth = kTwoPi * std::fmod(kTurnHz * time_s, 1.0);
+  const double nod = std::sin(kTwoPi * std::fmod(kNodHz * time_s, 1.0));
   const double reach = (kTop - kLow - (kMid360Lasers - 1) * kLaserStep) / 2;
   const double elevation = kLow + reach * (1 + nod) + kLaserStep * laser;
   return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),

@@ -421,8 +421,8 @@ JointResult WithoutLidars(JointResult result) {
 
 PoseAndLensCovariance CovarianceOf(const JointResult& result, std::size_t index) {
   const SharedPlaces places(result.joint.problem);
-  PoseAndLensCovariance covariance = result.variance_factor * result.placements.factor *
-                                     result.solution.PoseAndLens(places, index);
+  PoseAndLensCovariance covariance =
+      result.PoseFactor() * result.solution.PoseAndLens(places, index);
   if (result.encoder_delay) {
     Eigen::Matrix<double, kPoseAndLens, 1> move;
     Index i = 0;

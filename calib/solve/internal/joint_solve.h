@@ -34,6 +34,9 @@ struct JointResult {
   /// widened.
   std::vector<LensOff> lenses_off;
   std::optional<EncoderDelay> encoder_delay{};  ///< absent: no motor turned (encoder_delay.h)
+
+  /// By which the solution's covariance of cameras' poses and lenses is to be multiplied.
+  double PoseFactor() const { return variance_factor * placements.factor; }
 };
 
 /// Solves; leaves out what contradicts the rest, worst first, at most a third of a camera's views,

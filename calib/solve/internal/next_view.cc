@@ -326,7 +326,7 @@ std::optional<NextView> FindNextView(const JointResult& result) {
   const Eigen::MatrixXd& covariance = result.solution.covariance;
   const Eigen::MatrixXd information = InverseOfSymmetric(covariance);
   const Exactness exactness = ExactnessOf(problem);
-  const double scale = std::sqrt(result.variance_factor * result.placements.factor);
+  const double scale = std::sqrt(result.PoseFactor());
   const Worst before = WorstOf(problem, covariance);
   std::optional<NextView> best;
   for (const Place& place : PlacesToTry(problem, exactness)) {

@@ -11,8 +11,8 @@ namespace {
 constexpr double kShared = 0.25;
 
 bool IsSamePlace(const Rigid3& a, const Rigid3& b) {
-  constexpr double kSame_m = 0.010, kPerMetre = 0.003, kSameRad = 0.3 * M_PI / 180;
-  const double same_m = std::max(kSame_m, kPerMetre * a.translation.norm());
+  constexpr double kSameM = 0.010, kPerMetre = 0.003, kSameRad = 0.3 * M_PI / 180;
+  const double same_m = std::max(kSameM, kPerMetre * a.translation.norm());
   const auto turned = [&](const Rigid3& other) {
     return a.rotation.angularDistance(other.rotation);
   };

@@ -157,9 +157,9 @@ const Slots& SlotsOf128E3X() {
     s.us[1] = Microseconds({776, 2781, 4786, 6441});
     s.us[2] = Microseconds({776, 2781, 4436, 6091});
     s.us[3] = Microseconds({776, 2431, 4086, 6091});
-    constexpr double kAside_us[] = {0, 0.35, 0, -0.35};
+    constexpr double kAsideUs[] = {0, 0.35, 0, -0.35};
     for (std::size_t state = 0; state < 4; ++state) {
-      for (int i = 0; i < 8; ++i) s.us[state].push_back(8.096 + 2.285 * i + kAside_us[state]);
+      for (int i = 0; i < 8; ++i) s.us[state].push_back(8.096 + 2.285 * i + kAsideUs[state]);
     }
     s.of_channels =
         "24012536701347546360157629babdd8aa9fcfbbdcae8e99e88daaffcecb9bcc"
@@ -196,14 +196,14 @@ const Slots& SlotsOfOt128() {
   return slots;
 }
 
-constexpr double kHalf_us = 27.778;  // of a column of standard resolution
+constexpr double kHalfUs = 27.778;  // of a column of standard resolution
 
 Sensor Pandar128E3X() {
   Sensor s = Of128("Pandar128E3X", 0x0104);
   s.last_kind = 127;
   s.beam_flags = 0x70;
   s.turn_at = 9;
-  s.block_us = 2 * kHalf_us;
+  s.block_us = 2 * kHalfUs;
   s.last_block_us = 3.148;
   s.slots = &SlotsOf128E3X();
   return s;
@@ -234,12 +234,12 @@ Firing FiringOf(const Slots& slots, std::size_t state, bool high_resolution) {
     const bool fires = slot >= 2 * Slots::kOuter || slot / Slots::kOuter == of % 2;
     const std::size_t place =
         slot >= 2 * Slots::kOuter ? slot - Slots::kOuter : slot % Slots::kOuter;
-    firing.us.push_back(fires ? slots.us[of][place] + (is_late ? kHalf_us : 0) : kNever);
+    firing.us.push_back(fires ? slots.us[of][place] + (is_late ? kHalfUs : 0) : kNever);
   }
   firing.near_us = firing.us;
   for (const Slots::Near& near : slots.near) {
     const std::size_t column = high_resolution ? near.state : near.state / 2;
-    const double later = !high_resolution && near.state % 2 == 1 ? kHalf_us : 0;
+    const double later = !high_resolution && near.state % 2 == 1 ? kHalfUs : 0;
     const std::size_t now = high_resolution ? state % 4 : state % 2;
     if (column == now) firing.near_us[near.channel - 1] = near.us + later;
   }

@@ -9,8 +9,8 @@
 namespace rgbdt {
 namespace {
 
-constexpr Utime kMostGap_us = 2000;         // from packet to packet; 0.2 to 0.5 ms is usual
-constexpr Utime kMostAway_us = 10'000'000;  // farther: somebody set a clock
+constexpr Utime kMostGapUs = 2000;         // from packet to packet; 0.2 to 0.5 ms is usual
+constexpr Utime kMostAwayUs = 10'000'000;  // farther: somebody set a clock
 // Of a cloud. None sends a quarter of it in a second (Avia: 240,000 beams): the clock stands still.
 constexpr std::size_t kMostPoints = 1'000'000;
 
@@ -47,18 +47,18 @@ std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival
   std::optional<Cloud> done;
   const Utime gap = utime - next_;
   const bool full = cloud_.points.size() + packet.points.size() > kMostPoints;
-  if (any_ && (full || std::abs(gap) > kMostAway_us)) {
+  if (any_ && (full || std::abs(gap) > kMostAwayUs)) {
     cloud_ = Cloud();
     ++left_out_;
     any_ = false;
-  } else if (any_ && gap < -kMostGap_us) {
+  } else if (any_ && gap < -kMostGapUs) {
     return std::nullopt;
   }
-  if (any_ && gap > kMostGap_us) {
+  if (any_ && gap > kMostGapUs) {
     lost_us_ += gap;
-    cloud_lost_us_ += std::max<Utime>(0, std::min(utime, begun_ + kLivoxCloud_us) - next_);
+    cloud_lost_us_ += std::max<Utime>(0, std::min(utime, begun_ + kLivoxCloudUs) - next_);
   }
-  if (any_ && utime >= begun_ + kLivoxCloud_us) {
+  if (any_ && utime >= begun_ + kLivoxCloudUs) {
     done = Take();
     any_ = false;  // a gap that the next one begins with is not in it
   }
@@ -79,14 +79,14 @@ std::optional<Cloud> LivoxSweeps::Add(const livox::Packet& packet, Utime arrival
 }
 
 std::optional<Cloud> LivoxSweeps::Finish() {
-  if (!any_ || next_ - begun_ < kLivoxCloud_us - kMostGap_us) return std::nullopt;
+  if (!any_ || next_ - begun_ < kLivoxCloudUs - kMostGapUs) return std::nullopt;
   any_ = false;
   return Take();
 }
 
 std::optional<Cloud> LivoxSweeps::Take() {
   Cloud cloud = std::exchange(cloud_, Cloud());
-  if (cloud_lost_us_ > kLivoxCloud_us / 10) {
+  if (cloud_lost_us_ > kLivoxCloudUs / 10) {
     ++left_out_;
     return std::nullopt;
   }

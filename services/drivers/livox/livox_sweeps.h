@@ -10,7 +10,7 @@
 
 namespace rgbdt {
 
-/// A Livox's packets -> clouds of a second each (kLivoxCloud_us), one after the other: hits in the
+/// A Livox's packets -> clouds of a second each (kLivoxCloudUs), one after the other: hits in the
 /// order in which they were measured, without rings (Cloud::organised is false), as the sensor's
 /// own frame has them, x forward, y left, z up. A cloud of which more than a tenth never came is
 /// left out, and so are a million points that came while the sensor's clock stood still.

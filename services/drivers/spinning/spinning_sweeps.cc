@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostColumns = 20'000;  // a head that hardly turns
-constexpr double kMostPassed_us = 5e5;        // from packet to packet
+constexpr double kMostPassedUs = 5e5;         // from packet to packet
 
 // From the back on, 0 to a full turn.
 double FromSeam(double azimuth_rad) { return std::fmod(azimuth_rad + 3 * M_PI, 2 * M_PI); }
@@ -56,15 +56,15 @@ void SpinningSweeps::CountLost(const spinning::Packet& packet, double utime) {
                 static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
   double column_us = (last.time_us - first.time_us) /
                      static_cast<double>(std::max<std::size_t>(packet.columns.size() - 1, 1));
-  if (packet.columns.size() == 1) {        // about the step before, unless something was lost
-    constexpr double kRounded_rad = 2e-4;  // azimuths are of 0.01 degrees
-    if (gap > 0 && gap < 1.5 * last_step_ + kRounded_rad) last_step_ = gap;
+  if (packet.columns.size() == 1) {       // about the step before, unless something was lost
+    constexpr double kRoundedRad = 2e-4;  // azimuths are of 0.01 degrees
+    if (gap > 0 && gap < 1.5 * last_step_ + kRoundedRad) last_step_ = gap;
     step = last_step_;
     column_us = packet.column_us;
   }
   if (step <= 0) return;  // the head stands
   const double half_turn_us = M_PI / step * column_us;
-  if (passed_us < 0 || passed_us > std::min(half_turn_us, kMostPassed_us) || gap < -step) {
+  if (passed_us < 0 || passed_us > std::min(half_turn_us, kMostPassedUs) || gap < -step) {
     Leave();
   } else if (whole_ && gap > 1.5 * step) {
     lost_columns_ += std::llround(gap / step) - 1;

@@ -226,7 +226,7 @@ Packet Decode(const Sensor& sensor, const std::uint8_t* data, std::size_t size) 
   CheckProduct(sensor, data[kProductAt]);
   const auto blocks = ReadBlocks(sensor, data);
   Packet packet;
-  packet.stamp_us = LongWord(data + kStampAt) % kHour_us;
+  packet.stamp_us = LongWord(data + kStampAt) % kHourUs;
   packet.dual = sensor.model != Model::kHdl64e && data[kModeAt] == kDual;
   const Groups groups = GroupsOf(sensor, blocks, &packet.dual);
   const auto lasers = static_cast<std::size_t>(sensor.lasers());

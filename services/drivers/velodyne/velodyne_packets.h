@@ -12,7 +12,7 @@ namespace rgbdt::velodyne {
 
 inline constexpr std::size_t kDataBytes = 1206;     ///< of a data packet
 inline constexpr std::size_t kPositionBytes = 554;  ///< of a position packet (GPS, gyro)
-inline constexpr std::int64_t kHour_us = 3'600'000'000;
+inline constexpr std::int64_t kHourUs = 3'600'000'000;
 
 /// A sensor, from its manual: VLP-16 (63-9243), VLP-32C (63-9325), HDL-32E (63-9113), HDL-64E S3
 /// (63-HDL64ES3).

@@ -11,14 +11,14 @@ using velodyne::Packet;
 using velodyne::Return;
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kSeam_deg = 180;
-constexpr double kMostFilled_s = 0.5;  // a longer gap ends the revolution
-constexpr int kStandsStill = 3;        // packets with one and the same time
-constexpr std::int64_t kMostLate_us = 1'000'000;
+constexpr double kSeamDeg = 180;
+constexpr double kMostFilledS = 0.5;  // a longer gap ends the revolution
+constexpr int kStandsStill = 3;       // packets with one and the same time
+constexpr std::int64_t kMostLateUs = 1'000'000;
 constexpr std::size_t kMaxColumns = 20'000;  // a head that hardly turns
 
 // From the seam on, 0 to 360.
-double FromSeam(double azimuth_deg) { return std::fmod(azimuth_deg + 720 - kSeam_deg, 360); }
+double FromSeam(double azimuth_deg) { return std::fmod(azimuth_deg + 720 - kSeamDeg, 360); }
 
 }  // namespace
 
@@ -40,7 +40,7 @@ bool VelodyneSweeps::IsOldNews(std::int64_t stamp) {
   if (!last_stamp_) return false;
   same_stamps_ = stamp == *last_stamp_ ? same_stamps_ + 1 : 0;
   if (stamp == *last_stamp_) return same_stamps_ < kStandsStill;
-  return stamp < *last_stamp_ && stamp > *last_stamp_ - kMostLate_us;
+  return stamp < *last_stamp_ && stamp > *last_stamp_ - kMostLateUs;
 }
 
 // The stamp is of the packet's first firing.
@@ -84,7 +84,7 @@ void VelodyneSweeps::FillGap(const Packet& packet, std::int64_t stamp, std::vect
   const std::int64_t lost = std::llround(passed / duration) - 1;
   if (lost <= 0) return;
   lost_packets_ += lost;
-  if (passed > kMostFilled_s * 1e6) {
+  if (passed > kMostFilledS * 1e6) {
     columns_.clear();
     whole_ = false;
     last_column_.reset();
@@ -108,8 +108,8 @@ void VelodyneSweeps::FillGap(const Packet& packet, std::int64_t stamp, std::vect
 }
 
 void VelodyneSweeps::Push(FiredColumn column, std::vector<Cloud>* done) {
-  const bool wraps = last_column_ &&
-                     FromSeam(column.azimuth_deg) < FromSeam(last_column_->azimuth_deg) - kSeam_deg;
+  const bool wraps =
+      last_column_ && FromSeam(column.azimuth_deg) < FromSeam(last_column_->azimuth_deg) - kSeamDeg;
   if (wraps) {
     if (whole_ && columns_.size() > 1) done->push_back(Revolution());
     columns_.clear();

@@ -60,7 +60,7 @@ class VelodyneSweeps {
 
   const velodyne::Sensor& sensor_;
   std::vector<double> cos_elevation_, sin_elevation_, laser_us_;
-  CounterUnwrapper counter_{velodyne::kHour_us};
+  CounterUnwrapper counter_{velodyne::kHourUs};
   ClockFit fit_, fit_of_turn_;
   std::optional<Utime> standing_;  // the clock stands still: the host's time less the sensor's
   std::optional<std::int64_t> last_stamp_;

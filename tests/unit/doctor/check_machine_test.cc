@@ -35,7 +35,7 @@ TEST(DoctorMachine, MulticastWithoutARoute) {
   facts.group = kGroup;
   facts.route.error = ENETUNREACH;
   facts.loopback_up = true;
-  EXPECT_EQ(CheckMulticast(facts).mend,
+  EXPECT_EQ(CheckMulticast(facts).fix,
             "sudo ip route add 239.0.0.0/8 dev lo; sudo ip link set lo multicast on");
   facts.loopback_up = false;
   EXPECT_THAT(CheckMulticast(facts), Says(kProblem, "unreachable", "sudo ip link set lo up; "));
@@ -71,7 +71,7 @@ TEST(DoctorMachine, WhereTheBusesMessagesGo) {
 
 TEST(DoctorMachine, ClockAndDisk) {
   EXPECT_THAT(CheckClock({true, false}), Is(kOk));
-  EXPECT_EQ(CheckClock({false, false}).mend, "sudo timedatectl set-ntp true");
+  EXPECT_EQ(CheckClock({false, false}).fix, "sudo timedatectl set-ntp true");
   EXPECT_THAT(CheckClock({false, true}), Says(kWarning, "not sync", "# on the host"));
   EXPECT_THAT(CheckDisk({"/data", 2'000'000'000}), Is(kOk));
   EXPECT_THAT(CheckDisk({"/data", 1'900'000'000}), Says(kWarning, "1.9 GB free in /data", "du "));
@@ -85,11 +85,11 @@ TEST(DoctorMachine, DatagramsThatLackedAPiece) {
 }
 
 TEST(DoctorFinding, ProblemsComeLastWhereTheEyeIs) {
-  const Findings findings{Problem("a", "is broken", "mend it"), Ok("b", "is well"),
+  const Findings findings{Problem("a", "is broken", "fix it"), Ok("b", "is well"),
                           Warning("c", "is old"), Ok("d", "is well")};
   EXPECT_EQ(FindingsText(findings),
             "ok       b: is well\nok       d: is well\nWARNING  c: is old\n"
-            "PROBLEM  a: is broken\n  fix: mend it\n1 problem, 1 warning\n");
+            "PROBLEM  a: is broken\n  fix: fix it\n1 problem, 1 warning\n");
   EXPECT_TRUE(HasProblem(findings));
   EXPECT_FALSE(HasProblem({Ok("b", ""), Warning("c", "")}));
   EXPECT_THAT(FindingsText({}), HasSubstr("0 problems, 0 warnings"));

@@ -188,6 +188,14 @@ std::vector<Profile> Unsaturated(std::vector<Profile> profiles) {
   return profiles;
 }
 
+// How many have an edge beside saturated pixels.
+std::ptrdiff_t BrightProfiles(const std::vector<Profile>& profiles) {
+  return std::count_if(profiles.begin(), profiles.end(), [](const Profile& p) {
+    return std::any_of(p.edges.begin(), p.edges.end(),
+                       [](const ProfileEdge& edge) { return edge.bright; });
+  });
+}
+
 std::string WhyNotSeen(const std::vector<Profile>& profiles, const SideLine& line,
                        const BoardSidesOptions& options) {
   const auto inside =
@@ -195,10 +203,7 @@ std::string WhyNotSeen(const std::vector<Profile>& profiles, const SideLine& lin
   if (static_cast<double>(inside) < options.min_share * static_cast<double>(profiles.size())) {
     return "this side lies outside the image";
   }
-  const auto saturated = std::count_if(profiles.begin(), profiles.end(), [](const Profile& p) {
-    return std::any_of(p.edges.begin(), p.edges.end(),
-                       [](const ProfileEdge& edge) { return edge.bright; });
-  });
+  const auto saturated = BrightProfiles(profiles);
   if (line.share < options.min_share && 3 * saturated > inside) {
     return "the image is saturated along " +
            Percent(static_cast<double>(saturated) / static_cast<double>(inside)) + " of this side";
@@ -251,7 +256,7 @@ ImageSide FitSide(const Pixels& pixels, const Camera& camera, const Target& targ
   };
   SideLine line = fit(Unsaturated(profiles));
   side.why = WhyNotSeen(profiles, line, options);
-  if (!side.why.empty() && options.saturated_px > 0) {
+  if (!side.why.empty() && options.saturated_px > 0 && BrightProfiles(profiles) > 0) {
     line = fit(profiles);
     if (line.bright_share > 0 && WhyNotSeen(profiles, line, options).empty()) side.why.clear();
   }
