@@ -80,8 +80,7 @@ SceneAlignment Align(const CameraSpec& spec, const std::vector<Shot>& shots, con
             : options.method == "gom" ? AlignByGradientOrientation(spec, shots, start)
                                       : AlignByEdgeGrid(spec, shots, start);
   out.state.camera_from_lidar = out.fit.camera_from_lidar;
-  out.sums = SceneProblem(spec, shots, options.natural.edges, options.natural.most_edges, 1)
-                 .SumsAt(out.state, out.look);
+  out.sums = SceneProblem(spec, shots, options.natural.edges, 1).SumsAt(out.state, out.look);
   return out;
 }
 
@@ -112,14 +111,14 @@ std::optional<SolvedLens> LensOf(const SceneAlignment& found, const CameraSpec& 
 SceneCheck CheckOf(const CameraSpec& spec, const CameraShots& shots, const SceneAlignment& found,
                    const Rigid3& start, const NaturalOptions& options) {
   SceneCheck check;
-  check.edges = found.sums.edges;
-  check.shown = found.sums.edges > 0 ? found.sums.matched / found.sums.edges : 0;
+  check.edges = found.sums.Depth().edges;
+  check.shown = found.sums.Depth().Share();
   if (shots.heldout.empty()) return check;
-  const SceneProblem heldout(spec, shots.heldout, options.edges, options.most_edges, 1);
+  const SceneProblem heldout(spec, shots.heldout, options.edges, 1);
   if (heldout.edges() == 0) return check;
   SceneAlignment before = found;  // the beam is the LIDAR's; the lens belongs to the pose
   before.state.lens = spec.lens;
-  if (!(heldout.SumsAt(found.state, found.look).edges > 0)) return check;
+  if (!(heldout.SumsAt(found.state, found.look).All().edges > 0)) return check;
   check.heldout_start = SceneFitness(heldout, before, start);
   check.heldout_result = SceneFitness(heldout, found, found.fit.camera_from_lidar);
   return check;

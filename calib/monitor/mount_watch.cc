@@ -41,15 +41,14 @@ PoseAndLensCovariance PoseAndLensOf(const SceneAlignment& found) {
   return out;
 }
 
-double ShownOf(const SceneAlignment& found) {
-  return found.sums.edges > 0 ? found.sums.matched / found.sums.edges : 0;
-}
+double ShownOf(const SceneAlignment& found) { return found.sums.Depth().Share(); }
 
 void FillWhatIsSeen(const SceneAlignment& found, MountCheck* check) {
-  check->edges = found.sums.edges;
+  check->edges = found.sums.Depth().edges;
   check->shown = ShownOf(found);
-  for (std::size_t i = 0; i < check->where.size() && found.sums.matched > 0; ++i) {
-    check->where[i] = found.sums.where[i] / found.sums.matched;
+  const double matched = found.sums.All().matched;
+  for (std::size_t i = 0; i < check->where.size() && matched > 0; ++i) {
+    check->where[i] = found.sums.where[i] / matched;
   }
 }
 
@@ -207,7 +206,7 @@ void MountWatch::Decide(const SceneAlignment& found, const PoseAndLensCovariance
 }
 
 MountCheck MountWatch::Add(const Shot& shot) {
-  shots_.push_back(PrepareShot(spec_, shot, {}, options_.most_edges, 5));
+  shots_.push_back(PrepareShot(spec_, shot, {{}, false, options_.most_edges}, 5));
   if (shots_.size() > options_.sweeps) shots_.pop_front();
   MountCheck check;
   check.camera = rig_spec_.name;

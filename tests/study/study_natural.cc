@@ -49,7 +49,7 @@ void Run(const std::vector<std::string>& a) {
   }
   std::ofstream csv(a[6]);
   csv << "place,camera,group,start,start_deg,start_mm,rotation_deg,translation_mm,sigma_deg,"
-         "sigma_mm,chi2,converged,edges,shown,solve_s\n";
+         "sigma_mm,chi2,converged,edges,shown,marks,marks_shown,solve_s\n";
   std::vector<View> views;
   for (const std::string& name : session.views) views.push_back(ReadView(session, name));
   std::vector<ShotPlace> places;  // of a group without the others
@@ -87,8 +87,9 @@ void Run(const std::vector<std::string>& a) {
             << std::sqrt(covariance.topLeftCorner<3, 3>().trace()) / kDegree << ','
             << 1e3 * std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) << ','
             << delta.dot(SolveSymmetric(covariance, delta)) << ',' << found.fit.converged << ','
-            << found.sums.edges << ',' << found.sums.matched / std::max(1.0, found.sums.edges)
-            << ',' << seconds << '\n';
+            << found.sums.Depth().edges << ',' << found.sums.Depth().Share() << ','
+            << found.sums.shown[1].edges << ',' << found.sums.shown[1].Share() << ',' << seconds
+            << '\n';
       }
     }
   }

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kCoarsestSigmaPx = 5;  // of a level's pixels
 constexpr int kFineReachPx = 8;
+// Of a source's edges: fewer are shown by chance, too.
+constexpr double kLeastShown = 0.15;
 // Sigma of an image edge about its rim: what lies outside of these is chance that was learned.
 constexpr double kLeastEdgePx = 0.6, kMostEdgePx = 2.5;
 constexpr double kLeastStepRad = 0.01, kMostStepRad = 0.035;  // between turned starts
@@ -47,7 +49,7 @@ class Solver {
     prior_.bottomLeftCorner<kLensNumbers, 6>() = information.bottomLeftCorner<kLensNumbers, 6>();
     prior_.bottomRightCorner<kLensNumbers, kLensNumbers>() =
         information.bottomRightCorner<kLensNumbers, kLensNumbers>();
-    prior_.diagonal().segment<kDepthEdgeKinds>(kShiftAt).setConstant(
+    prior_.diagonal().segment<kSceneEdgeKinds>(kShiftAt).setConstant(
         1 / std::pow(options.shift_sigma_rad, 2));
     prior_(kBeamAt, kBeamAt) = 1 / std::pow(options.beam_sigma_rad, 2);
     prior_(kFartherAt, kFartherAt) = 1 / std::pow(options.farther_sigma_m, 2);
@@ -73,15 +75,18 @@ class Solver {
   SceneState Rounds(SceneState state, SceneLook* look, int most, bool learn) const {
     for (int i = 0; i < most; ++i) {
       const SceneSums sums = problem_.SumsAt(state, *look);
-      if (!(sums.matched > 0)) return state;
+      const ShownEdges all = sums.All();
+      if (!(all.matched > 0)) return state;
       const SceneMatrix h = sums.information + prior_;
       const SceneVector g = sums.gradient - prior_ * OffPrior(state);
       const SceneVector step = SolveSymmetric(h, g);
       if (!step.allFinite()) return state;
       state = state.Moved(step);
-      look->matched = std::clamp(sums.matched / sums.edges, 0.05, 0.95);
+      for (std::size_t source = 0; source < kEdgeSources; ++source) {
+        look->matched[source] = std::clamp(sums.shown[source].Share(), 0.05, 0.95);
+      }
       if (learn) {
-        look->sigma_px = std::clamp(std::sqrt(std::max(0.0, sums.squares / sums.matched)),
+        look->sigma_px = std::clamp(std::sqrt(std::max(0.0, sums.squares / all.matched)),
                                     kLeastEdgePx, kMostEdgePx);
       }
       if (step.dot(h * step) < 1e-4) break;
@@ -122,11 +127,16 @@ SceneState AtFullResolution(const Solver& solver, SceneState state, SceneLook* l
     state = solver.Rounds(state, look, 4, false);
   }
   look->reach_px = kFineReachPx;
-  return solver.Rounds(state, look, 20, true);
+  const SceneState found = solver.Rounds(state, look, 20, true);
+  const SceneSums sums = solver.problem().SumsAt(found, *look);
+  if (sums.shown[1].edges == 0 || sums.shown[1].Share() >= kLeastShown) return found;
+  look->reflectivity = false;  // the camera sees other paint than the LIDAR does
+  return solver.Rounds(found, look, 20, true);
 }
 
 double Fitness(const SceneSums& sums) {
-  return sums.edges > 0 ? sums.log_likelihood / sums.edges : 0;
+  const double edges = sums.All().edges;
+  return edges > 0 ? sums.log_likelihood / edges : 0;
 }
 
 struct Candidate {
@@ -193,12 +203,13 @@ std::vector<Candidate> BestApart(std::vector<Candidate> candidates, std::size_t 
 std::vector<SceneState> WithNeighbours(const SceneState& state, const SceneSums& sums,
                                        const SceneLook& look, const Vector6d& start_sigma) {
   std::vector<SceneState> out{state};
-  if (!(sums.matched > 0)) return out;
+  const double matched = sums.All().matched;
+  if (!(matched > 0)) return out;
   const Matrix6d information =
       start_sigma.asDiagonal() * sums.information.topLeftCorner<6, 6>() * start_sigma.asDiagonal();
   const auto system = EigensystemOf(Matrix6d(information + Matrix6d::Identity()));
   for (Eigen::Index k = 0; k < 6; ++k) {
-    const double per_pixel = std::sqrt(sums.matched / system.values[k]) / look.sigma_px;
+    const double per_pixel = std::sqrt(matched / system.values[k]) / look.sigma_px;
     for (const double pixels : {-2.0, -1.0, 1.0, 2.0}) {
       const double size = std::clamp(pixels * per_pixel, -1.5, 1.5);
       const Vector6d delta = start_sigma.cwiseProduct(size * system.vectors.col(k));
@@ -289,15 +300,15 @@ std::vector<SceneAlignment::Direction> DirectionsOf(const Matrix6d& covariance,
 // Why the result is not to be used; empty: it is.
 std::string WhyNot(const SceneAlignment& found, const Rigid3& start,
                    const NaturalOptions& options) {
-  constexpr double kFewestThings = 2, kFewestEdges = 30, kLeastShown = 0.15, kMostSigmas = 6;
-  if (found.sums.matched < kFewestEdges || found.sums.things < kFewestThings) {
+  constexpr double kFewestThings = 2, kFewestEdges = 30, kMostSigmas = 6;
+  const ShownEdges& depth = found.sums.Depth();
+  if (depth.matched < kFewestEdges || found.sums.things < kFewestThings) {
     return "the images show too few of the cloud's depth edges (" +
-           std::to_string(static_cast<int>(found.sums.matched)) +
+           std::to_string(static_cast<int>(depth.matched)) +
            "): point the camera at things that stand free, 3 to 10 m away, and take more sweeps";
   }
-  if (found.sums.matched < kLeastShown * found.sums.edges) {
-    return "the images show only " +
-           std::to_string(static_cast<int>(100 * found.sums.matched / found.sums.edges)) +
+  if (depth.Share() < kLeastShown) {
+    return "the images show only " + std::to_string(static_cast<int>(100 * depth.Share())) +
            "% of the cloud's depth edges: the start is too far off (--search looks farther), the "
            "lens is wrong, or images and clouds are not of the same moment";
   }
@@ -362,8 +373,7 @@ Matrix6d NaturalOptions::StartCovariance() const {
 
 SceneProblem MakeSceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
                               const NaturalOptions& options) {
-  return {camera, shots, options.edges, options.most_edges,
-          LevelsFor(StartSigmaPx(camera, options))};
+  return {camera, shots, options.edges, LevelsFor(StartSigmaPx(camera, options))};
 }
 
 SceneAlignment AlignToScene(const SceneProblem& problem, const Rigid3& start,

@@ -20,8 +20,7 @@ struct NaturalOptions {
   double shift_sigma_rad = 0.4e-3;  ///< of where a rim lies between its beams, of each kind
   double beam_sigma_rad = 0.6e-3;   ///< of half the beam's width
   double farther_sigma_m = 0.015;   ///< of how much farther away rims are than they seem
-  DepthEdgeOptions edges;
-  std::size_t most_edges = 8000;  ///< of a sweep
+  SceneEdgeOptions edges;
 
   /// Of the start's delta.
   Matrix6d StartCovariance() const;

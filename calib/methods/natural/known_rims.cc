@@ -13,16 +13,16 @@ constexpr double kCellM = 0.5;
 constexpr double kApartM = 0.1;  // of a rim's edges that are kept
 
 // Across the rim, to where the nearer surface has ended.
-Vector3d Outwards(const DepthEdge& edge) {
+Vector3d Outwards(const SceneEdge& edge) {
   return edge.across - edge.across.dot(edge.along) * edge.along;
 }
 
 // 1 sigma of the error that a rim's edges have in common, from the places between beams that it
 // runs through: it averages their errors.
-double CommonRad(const std::vector<const DepthEdge*>& edges) {
+double CommonRad(const std::vector<const SceneEdge*>& edges) {
   double aside_rad = 0;
   std::set<int> places;
-  for (const DepthEdge* edge : edges) {
+  for (const SceneEdge* edge : edges) {
     aside_rad += Outwards(*edge).norm() / edge->point.norm();
     places.insert(edge->place);
   }
@@ -97,16 +97,16 @@ int KnownRims::StationOf(const ShotPlace& place) {
   return static_cast<int>(stations_.size() - 1);
 }
 
-std::vector<int> KnownRims::Add(const std::vector<DepthEdge>& edges, const ShotPlace& taken_at) {
+std::vector<int> KnownRims::Add(const std::vector<SceneEdge>& edges, const ShotPlace& taken_at) {
   const Rigid3& world_from_lidar = taken_at.world_from_lidar;
   const int station = StationOf(taken_at);
-  std::map<int, std::vector<const DepthEdge*>> own;
-  for (const DepthEdge& edge : edges) own[edge.rim].push_back(&edge);
+  std::map<int, std::vector<const SceneEdge*>> own;
+  for (const SceneEdge& edge : edges) own[edge.rim].push_back(&edge);
   std::map<int, int> numbers, things;
   std::vector<Seen> all;
   for (const auto& [number, of_rim] : own) {
     std::vector<Seen> seen;
-    for (const DepthEdge* edge : of_rim) {
+    for (const SceneEdge* edge : of_rim) {
       // A round thing's rim is another line of it from elsewhere.
       seen.push_back({world_from_lidar * edge->point,
                       world_from_lidar.rotation * Outwards(*edge).normalized(),
@@ -127,7 +127,7 @@ std::vector<int> KnownRims::Add(const std::vector<DepthEdge>& edges, const ShotP
   // A thing is called as the first of its rims.
   std::vector<int> out;
   out.reserve(edges.size());
-  for (const DepthEdge& edge : edges) {
+  for (const SceneEdge& edge : edges) {
     SceneRim& met = rims_[static_cast<std::size_t>(numbers[edge.rim])];
     int& thing = thing_of_[static_cast<std::size_t>(met.rim)];
     if (thing < 0) thing = things.emplace(edge.thing, met.rim).first->second;

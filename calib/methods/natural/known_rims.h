@@ -25,7 +25,7 @@ struct SceneRim {
 class KnownRims {
  public:
   /// Of each edge of the next shot, which was taken there, an index of rims().
-  std::vector<int> Add(const std::vector<DepthEdge>& edges, const ShotPlace& taken_at);
+  std::vector<int> Add(const std::vector<SceneEdge>& edges, const ShotPlace& taken_at);
   const std::vector<SceneRim>& rims() const { return rims_; }
 
  private:

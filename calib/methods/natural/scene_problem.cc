@@ -9,6 +9,7 @@
 #include "calib/camera/camera.h"
 #include "calib/camera/pixel_by_point.h"
 #include "calib/camera/pixels.h"
+#include "calib/methods/natural/reflectivity_edges.h"
 
 namespace rgbdt {
 namespace {
@@ -27,14 +28,15 @@ struct Projected {
 };
 
 std::optional<Projected> Project(const Camera& camera, const SceneState& state,
-                                 const DepthEdge& rim) {
+                                 const SceneEdge& rim) {
   const Matrix3d turn = state.camera_from_lidar.rotation.toRotationMatrix();
   const auto kind = static_cast<std::size_t>(rim.kind);
+  const bool depth = rim.kind != SceneEdgeKind::kReflectivity;
   const double out = state.shift_rad[kind] - rim.reach * state.beam_rad;
   const Vector3d aside = rim.across - rim.across.dot(rim.along) * rim.along;
   const double range = rim.point.norm();
   const Vector3d outwards = range * aside.normalized();
-  const double farther = 1 + state.farther_m / range;
+  const double farther = depth ? 1 + state.farther_m / range : 1;
   const Vector3d point =
       turn * (farther * (rim.point + out * outwards)) + state.camera_from_lidar.translation;
   const auto pixel = camera.Project(point);
@@ -49,7 +51,9 @@ std::optional<Projected> Project(const Camera& camera, const SceneState& state,
   seen.by_shift = by_point * (turn * (farther * outwards));
   seen.by_unknowns.col(kShiftAt + static_cast<Eigen::Index>(kind)) = seen.by_shift;
   seen.by_unknowns.col(kBeamAt) = -rim.reach * seen.by_shift;
-  seen.by_unknowns.col(kFartherAt) = by_point * (turn * (rim.point + out * outwards) / range);
+  if (depth) {
+    seen.by_unknowns.col(kFartherAt) = by_point * (turn * (rim.point + out * outwards) / range);
+  }
   seen.by_unknowns.rightCols<kLensNumbers>() = by_all.rightCols<kLensNumbers>();
   seen.across = by_point * (turn * (farther * rim.across));
   const Vector2d along = by_point * (turn * rim.along);
@@ -59,11 +63,25 @@ std::optional<Projected> Project(const Camera& camera, const SceneState& state,
   return seen;
 }
 
-std::vector<DepthEdge> Thinned(std::vector<DepthEdge> edges, std::size_t most) {
+std::vector<SceneEdge> Thinned(std::vector<SceneEdge> edges, std::size_t most) {
   if (edges.size() <= most) return edges;
-  std::vector<DepthEdge> kept;
+  std::vector<SceneEdge> kept;
   for (std::size_t i = 0; i < most; ++i) kept.push_back(edges[i * edges.size() / most]);
   return kept;
+}
+
+// Behind those, as things of their own.
+void Append(std::vector<SceneEdge> more, std::vector<SceneEdge>* edges) {
+  int things = 0, rims = 0;
+  for (const SceneEdge& edge : *edges) {
+    things = std::max(things, edge.thing + 1);
+    rims = std::max(rims, edge.rim + 1);
+  }
+  for (SceneEdge& edge : more) {
+    edge.thing += things;
+    edge.rim += rims;
+    edges->push_back(edge);
+  }
 }
 
 /// What some edges add that have a shift in common: the equations with it as a further unknown.
@@ -120,10 +138,11 @@ class Summing {
   Summing(const SceneLook& look, double pixels, const CameraSpec& spec)
       : look_(look), pixels_(pixels), columns_(spec.width), rows_(spec.height) {}
 
-  void Add(const Projected& seen, const std::vector<ImageRim>& met, int reach, ShiftSums* own,
-           SceneSums* sums) const {
+  void Add(const Projected& seen, std::size_t source, const std::vector<ImageRim>& met, int reach,
+           ShiftSums* own, SceneSums* sums) const {
+    const double usually_matched = look_.matched[source];
     // Densities over the line that was looked along [1/px of the level].
-    const double nothing = (1 - look_.matched) / (2 * reach);
+    const double nothing = (1 - usually_matched) / (2 * reach);
     double strengths = 0.5;
     for (const ImageRim& rim : met) strengths += rim.strength;
     double total = nothing;
@@ -135,15 +154,15 @@ class Summing {
       const double spread = rim.normal.dot(seen.across) / pixels_;
       term.spread = spread * spread / 3;
       term.variance = look_.sigma_px * look_.sigma_px + term.spread;
-      term.density = look_.matched * rim.strength / strengths *
+      term.density = usually_matched * rim.strength / strengths *
                      std::exp(-0.5 * term.residual * term.residual / term.variance) /
                      std::sqrt(2 * M_PI * term.variance);
       term.normal = rim.normal;
       total += term.density;
       terms.push_back(term);
     }
-    sums->edges += 1;
-    sums->log_likelihood += std::log(total / nothing * (1 - look_.matched));
+    sums->shown[source].edges += 1;
+    sums->log_likelihood += std::log(total / nothing * (1 - usually_matched));
     SceneVector mean = SceneVector::Zero();  // of the score: of what each of them would pull with
     double mean_by_shift = 0;
     double matched = 0;
@@ -165,7 +184,7 @@ class Summing {
       matched += share;
       own->shown = true;
     }
-    sums->matched += matched;
+    sums->shown[source].matched += matched;
     sums->where[PartOf(seen.pixel)] += matched;
     own->gradient += mean;
     own->shift_gradient += mean_by_shift;
@@ -209,12 +228,15 @@ SceneState SceneState::Moved(const SceneVector& x) const {
 }
 
 std::shared_ptr<const SceneShot> PrepareShot(const CameraSpec& camera, const Shot& shot,
-                                             const DepthEdgeOptions& edges, std::size_t most_edges,
-                                             int levels) {
+                                             const SceneEdgeOptions& edges, int levels) {
   CheckImage(camera, *shot.image);
   auto ready = std::make_shared<SceneShot>();
   ready->place = shot.place;
-  ready->edges = Thinned(FindDepthEdges(*shot.cloud, edges), most_edges);
+  const RangeGrid grid(*shot.cloud);
+  ready->edges = Thinned(FindDepthEdges(grid, edges.depth), edges.most_edges);
+  if (edges.reflectivity && camera.kind != CameraKind::kThermal) {
+    Append(Thinned(FindReflectivityEdges(grid), edges.most_edges), &ready->edges);
+  }
   const cv::Mat grey = ToGrey(*shot.image);
   for (int level = 0; level < levels; ++level) {
     if (level > 0 && (std::min(camera.width, camera.height) >> level) < 16) break;
@@ -227,12 +249,11 @@ namespace {
 
 std::vector<std::shared_ptr<const SceneShot>> Prepared(const CameraSpec& camera,
                                                        const std::vector<Shot>& shots,
-                                                       const DepthEdgeOptions& edges,
-                                                       std::size_t most_edges, int levels) {
+                                                       const SceneEdgeOptions& edges, int levels) {
   std::vector<std::shared_ptr<const SceneShot>> ready;
   ready.reserve(shots.size());
   for (const Shot& shot : shots) {
-    ready.push_back(PrepareShot(camera, shot, edges, most_edges, levels));
+    ready.push_back(PrepareShot(camera, shot, edges, levels));
   }
   return ready;
 }
@@ -251,8 +272,8 @@ SceneProblem::SceneProblem(const CameraSpec& camera,
 }
 
 SceneProblem::SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
-                           const DepthEdgeOptions& edges, std::size_t most_edges, int levels)
-    : SceneProblem(camera, Prepared(camera, shots, edges, most_edges, levels)) {}
+                           const SceneEdgeOptions& edges, int levels)
+    : SceneProblem(camera, Prepared(camera, shots, edges, levels)) {}
 
 std::size_t SceneProblem::edges() const {
   std::size_t sum = 0;
@@ -272,13 +293,16 @@ SceneSums SceneProblem::SumsAt(const SceneState& state, const SceneLook& look) c
     const ImageRims& picture = part.shot->pictures[static_cast<std::size_t>(look.level)];
     const Summing summing(look, picture.pixels(), spec);
     for (std::size_t i = 0; i < part.shot->edges.size(); i += look.stride) {
-      const auto seen = Project(camera, state, part.shot->edges[i]);
+      const SceneEdge& edge = part.shot->edges[i];
+      if (!look.reflectivity && edge.kind == SceneEdgeKind::kReflectivity) continue;
+      const auto seen = Project(camera, state, edge);
       if (!seen) continue;
       const double spread = std::abs(seen->normal.dot(seen->across)) / picture.pixels();
       if (spread > kMostSpreadPx) continue;
       const int reach = look.reach_px + static_cast<int>(std::ceil(spread));
       picture.Meet(picture.ToLevel(seen->pixel), seen->normal, reach, &met);
-      summing.Add(*seen, met, reach, &rims[static_cast<std::size_t>(part.rims[i])], &sums);
+      summing.Add(*seen, SourceOf(edge.kind), met, reach,
+                  &rims[static_cast<std::size_t>(part.rims[i])], &sums);
     }
   }
   Eliminate(rims, rims_, look, &sums);

@@ -16,11 +16,11 @@
 
 namespace rgbdt {
 
-/// What is solved for: delta (rigid3.h); for each kind of depth edge, by how much the rim lies
-/// farther out than halfway between its beams [rad]; half the beam's width [rad], which DepthEdge
+/// What is solved for: delta (rigid3.h); for each kind of edge, by how much the rim lies
+/// farther out than halfway between its beams [rad]; half the beam's width [rad], which SceneEdge
 /// counts its reach in; by how much rims are farther away than they seem [m]; and the lens's
 /// numbers (lens.h).
-inline constexpr int kShiftAt = 6, kBeamAt = kShiftAt + kDepthEdgeKinds, kFartherAt = kBeamAt + 1,
+inline constexpr int kShiftAt = 6, kBeamAt = kShiftAt + kSceneEdgeKinds, kFartherAt = kBeamAt + 1,
                      kLensAt = kFartherAt + 1;
 inline constexpr int kSceneUnknowns = kLensAt + kLensNumbers;
 using SceneVector = Eigen::Matrix<double, kSceneUnknowns, 1>;
@@ -28,7 +28,7 @@ using SceneMatrix = Eigen::Matrix<double, kSceneUnknowns, kSceneUnknowns>;
 
 struct SceneState {
   Rigid3 camera_from_lidar;
-  std::array<double, kDepthEdgeKinds> shift_rad{};
+  std::array<double, kSceneEdgeKinds> shift_rad{};
   double beam_rad = 1.2e-3;
   /// A round thing recedes towards its rim as the square root of the distance from it, which its
   /// last beams do not tell: a trunk of 0.3 m at 6 m, beams 0.25 deg apart, by 40 mm more; a flat
@@ -52,7 +52,15 @@ struct SceneLook {
   /// Information as it is observed: less where it is not known which edge belongs to a rim. For
   /// covariances; steps take the expected one, which is positive.
   bool observed = false;
-  double matched = 0.5;  ///< share of the rims that the image shows as an edge
+  /// By source: share of the rims that the image shows as an edge.
+  std::array<double, kEdgeSources> matched{0.5, 0.5};
+  bool reflectivity = true;  ///< edges of reflectivity are looked at
+};
+
+/// Edges of a cloud that lie in the image, and how many of these it shows, in expectation.
+struct ShownEdges {
+  double edges = 0, matched = 0;
+  double Share() const { return edges > 0 ? matched / edges : 0; }
 };
 
 /// The normal equations of one round, the shifts of things and rims eliminated, and what the round
@@ -60,28 +68,37 @@ struct SceneLook {
 struct SceneSums {
   SceneMatrix information = SceneMatrix::Zero();  ///< of the unknowns
   SceneVector gradient = SceneVector::Zero();     ///< information * step = gradient
-  double log_likelihood = 0;                ///< over that of edges which the image shows nothing of
-  double edges = 0;                         ///< that lie in the image
-  double matched = 0;                       ///< of these, how many are shown, in expectation
-  std::array<double, kImageParts> where{};  ///< of those that are shown, by part of the image
+  double log_likelihood = 0;  ///< over that of edges which the image shows nothing of
+  std::array<ShownEdges, kEdgeSources> shown{};  ///< by source (SourceOf)
+  std::array<double, kImageParts> where{};       ///< of those that are shown, by part of the image
   double squares = 0;  ///< of their residuals, less what beams' spacing makes [px^2 of the level]
   /// By thing: its part of information and gradient.
   std::vector<std::pair<SceneMatrix, SceneVector>> parts;
   double things = 0;  ///< that tell, in expectation
+
+  const ShownEdges& Depth() const { return shown[0]; }
+  ShownEdges All() const {
+    return {shown[0].edges + shown[1].edges, shown[0].matched + shown[1].matched};
+  }
 };
 
-/// What of a shot does not depend on the pose: the cloud's depth edges and the image's, by level.
+/// What of a shot does not depend on the pose: the cloud's edges and the image's, by level.
 struct SceneShot {
   ShotPlace place;
-  std::vector<DepthEdge> edges;
+  std::vector<SceneEdge> edges;
   std::vector<ImageRims> pictures;
 };
 
-/// Edges are found in the cloud, `most_edges` of them are kept, evenly. There are `levels`
-/// pictures, or as many as have sixteen pixels at least each way.
+struct SceneEdgeOptions {
+  DepthEdgeOptions depth;
+  bool reflectivity = true;       ///< of colour cameras: paint is not warmer than what is beside it
+  std::size_t most_edges = 8000;  ///< of each source, in a sweep
+};
+
+/// Edges are found in the cloud. There are `levels` pictures, or as many as have sixteen pixels at
+/// least each way.
 std::shared_ptr<const SceneShot> PrepareShot(const CameraSpec& camera, const Shot& shot,
-                                             const DepthEdgeOptions& edges, std::size_t most_edges,
-                                             int levels);
+                                             const SceneEdgeOptions& edges, int levels);
 
 /// Rims of sweeps and the images that they are laid on. A rim of the cloud is met by one of the
 /// image's edges nearby, or by none: a mixture of normal distributions about each of them and of
@@ -94,7 +111,7 @@ class SceneProblem {
                const std::vector<std::shared_ptr<const SceneShot>>& shots);
   /// Of shots as they come (PrepareShot).
   SceneProblem(const CameraSpec& camera, const std::vector<Shot>& shots,
-               const DepthEdgeOptions& edges, std::size_t most_edges, int levels);
+               const SceneEdgeOptions& edges, int levels);
 
   const CameraSpec& spec() const { return spec_; }
   int levels() const { return levels_; }

@@ -46,10 +46,10 @@ TEST(FindDepthEdges, LieWithinHalfAStepOfTheRim) {
   const Cloud cloud = GridOf(60, 60, [&](double azimuth, double elevation) {
     return std::abs(azimuth) < half && std::abs(elevation) < half ? 4.0 : 8.0;
   });
-  const auto edges = FindDepthEdges(cloud);
+  const auto edges = FindDepthEdges(RangeGrid(cloud));
   ASSERT_GE(edges.size(), 60U);
   int left = 0, up = 0;
-  for (const DepthEdge& edge : edges) {
+  for (const SceneEdge& edge : edges) {
     EXPECT_NEAR(edge.point.norm(), 4, 0.02);
     const double azimuth = std::atan2(edge.point.y(), edge.point.x());
     const double elevation = std::asin(edge.point.z() / edge.point.norm());
@@ -74,9 +74,9 @@ TEST(FindDepthEdges, LieWithinHalfAStepOfTheRim) {
 TEST(FindDepthEdges, ABeamThatReturnedNothingIsFarAway) {
   const Cloud cloud =
       GridOf(60, 60, [](double azimuth, double) { return azimuth < 0 ? 4.0 : 0.0; });
-  const auto edges = FindDepthEdges(cloud);
+  const auto edges = FindDepthEdges(RangeGrid(cloud));
   ASSERT_GT(edges.size(), 30U);
-  for (const DepthEdge& edge : edges) {
+  for (const SceneEdge& edge : edges) {
     EXPECT_NEAR(std::atan2(edge.point.y(), edge.point.x()), -0.5 * kStep, 0.01 * kStep);
     EXPECT_GT(edge.reach, 0.5);  // a little of the beam is enough there
     EXPECT_EQ(edge.rim, edges[0].rim);
@@ -87,11 +87,11 @@ TEST(FindDepthEdges, SinglePointsAndEvenGroundHaveNone) {
   const Cloud stray = GridOf(60, 60, [](double azimuth, double elevation) {
     return std::abs(azimuth) < 0.4 * kStep && std::abs(elevation) < 0.4 * kStep ? 4.0 : 8.0;
   });
-  EXPECT_TRUE(FindDepthEdges(stray).empty());
+  EXPECT_TRUE(FindDepthEdges(RangeGrid(stray)).empty());
   const Cloud ground = GridOf(60, 60, [](double, double elevation) {
     return elevation < -0.02 ? 1.2 / std::sin(-elevation) : 0.0;
   });
-  for (const DepthEdge& edge : FindDepthEdges(ground)) {
+  for (const SceneEdge& edge : FindDepthEdges(RangeGrid(ground))) {
     ADD_FAILURE() << "an edge on even ground, " << edge.point.transpose();
   }
 }

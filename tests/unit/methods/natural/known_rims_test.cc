@@ -12,12 +12,12 @@ using Eigen::Vector3d;
 using ::testing::Each;
 
 // A post's left (-1) or right (1) rim in the world, from z = `from` to `to`, as a LIDAR sees it.
-std::vector<DepthEdge> Rim(const Rigid3& world_from_lidar, const Vector3d& foot, int side,
+std::vector<SceneEdge> Rim(const Rigid3& world_from_lidar, const Vector3d& foot, int side,
                            double from = 0, double to = 2, int number = 0) {
-  std::vector<DepthEdge> edges;
+  std::vector<SceneEdge> edges;
   const Rigid3 lidar_from_world = world_from_lidar.Inverse();
   for (double z = from; z <= to; z += 0.05) {
-    DepthEdge edge;
+    SceneEdge edge;
     edge.point = lidar_from_world * Vector3d(foot + Vector3d(0, 0, z));
     edge.across = lidar_from_world.rotation * Vector3d(0, -0.01 * side, 0);
     edge.along = lidar_from_world.rotation * Vector3d::UnitZ();
@@ -29,7 +29,7 @@ std::vector<DepthEdge> Rim(const Rigid3& world_from_lidar, const Vector3d& foot,
 }
 
 // Of each edge, which rim of the world it is of.
-std::vector<int> RimsOf(KnownRims* known, const std::vector<DepthEdge>& edges,
+std::vector<int> RimsOf(KnownRims* known, const std::vector<SceneEdge>& edges,
                         const ShotPlace& place) {
   std::vector<int> rims;
   for (const int met : known->Add(edges, place)) {
@@ -64,8 +64,8 @@ TEST(KnownRims, AlsoWhereAPartOfItIsSeen) {
 
 TEST(KnownRims, AThingsOtherSideIsAnotherRimOfIt) {
   KnownRims known;
-  std::vector<DepthEdge> both = Rim({}, kFoot, 1);
-  for (DepthEdge edge : Rim({}, kFoot + Vector3d(0, 0.05, 0), -1)) {
+  std::vector<SceneEdge> both = Rim({}, kFoot, 1);
+  for (SceneEdge edge : Rim({}, kFoot + Vector3d(0, 0.05, 0), -1)) {
     edge.rim = 1;
     both.push_back(edge);
   }
@@ -87,7 +87,7 @@ TEST(KnownRims, PlacesThatAreNoneHarmNothing) {
   const double huge = 1e300;
   const Rigid3 far{Eigen::Quaterniond::Identity(), Vector3d(huge, -huge, huge)};
   known.Add(Rim({}, kFoot, 1), {0, far});
-  const std::vector<DepthEdge> edges = Rim({}, kFoot, 1);
+  const std::vector<SceneEdge> edges = Rim({}, kFoot, 1);
   EXPECT_EQ(known.Add(edges, {0, far}).size(), edges.size());
 }
 

@@ -65,7 +65,7 @@ std::shared_ptr<const SceneShot> QuadrangleShot() {
     const Eigen::Vector2d from = kCorners[k], to = kCorners[(k + 1) % kCorners.size()];
     for (int i = 2; i < 38; ++i) {
       const Eigen::Vector2d at = from + (to - from) * i / 40;
-      DepthEdge edge;
+      SceneEdge edge;
       edge.point = Eigen::Vector3d(at.x(), at.y(), kPlaneM) - kLidar;
       edge.along.head<2>() = (to - from).normalized();
       // Hardly any room between the beams: rims are where they are.
@@ -73,7 +73,7 @@ std::shared_ptr<const SceneShot> QuadrangleShot() {
       edge.reach = i % 2 == 0 ? 0.6 : -0.2;
       edge.place = i;
       edge.thing = edge.rim = static_cast<int>(k);
-      edge.kind = k % 2 == 0 ? DepthEdgeKind::kWithinRow : DepthEdgeKind::kAcrossRows;
+      edge.kind = static_cast<SceneEdgeKind>(k % kSceneEdgeKinds);
       shot->edges.push_back(edge);
     }
   }
@@ -90,7 +90,7 @@ class SceneProblemTest : public ::testing::Test {
     off << 0.004, -0.003, 0.005, 0.01, 0.008, 0.02;
     state_.camera_from_lidar = Exp(off) * Rigid3{Eigen::Quaterniond::Identity(), kLidar};
     look_.sigma_px = 2;
-    look_.matched = 0.7;
+    look_.matched = {0.7, 0.7};
     look_.thing_sigma_rad = look_.rim_sigma_rad = 1e-9;  // nothing is eliminated
   }
   double LogLikelihoodAt(const SceneVector& x) const {
@@ -109,7 +109,7 @@ const std::vector<double> kSigmas = {3, 4, 5, 6};
 
 TEST_F(SceneProblemTest, TheGradientIsThatOfTheLogLikelihood) {
   const SceneSums sums = problem_.SumsAt(state_, look_);
-  EXPECT_GT(sums.matched, 100);
+  EXPECT_GT(sums.All().matched, 100);
   for (int k = 0; k < kSceneUnknowns; ++k) {
     ASSERT_GT(sums.information(k, k), 0) << k;
     const double sigma = 1 / std::sqrt(sums.information(k, k));
@@ -148,7 +148,7 @@ TEST_F(SceneProblemTest, NewtonsStepsEndWhereTheRimIsPainted) {
     state_ = state_.Moved(step);
   }
   const SceneSums sums = problem_.SumsAt(state_, look_);
-  EXPECT_LT(std::sqrt(sums.squares / sums.matched), 0.2);  // px
+  EXPECT_LT(std::sqrt(sums.squares / sums.All().matched), 0.2);  // px
   EXPECT_LT(RotationDistance(state_.camera_from_lidar, Rigid3()), 2e-3);
 }
 
@@ -174,7 +174,7 @@ TEST_F(SceneProblemTest, WhereSaysInWhichPartOfTheImage) {
   const SceneSums sums = problem_.SumsAt(state_, look_);
   double all = 0;
   for (const double part : sums.where) all += part;
-  EXPECT_NEAR(all, sums.matched, 1e-9);
+  EXPECT_NEAR(all, sums.All().matched, 1e-9);
   for (const std::size_t inner : {5U, 6U}) {  // the rim runs round them
     EXPECT_LT(sums.where[inner], 0.05 * all) << inner;
   }
