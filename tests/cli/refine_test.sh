@@ -24,7 +24,32 @@ for name, camera in report["cameras"].items():
     assert camera["scene"]["heldout_result"] > camera["scene"]["heldout_start"], (name, camera["scene"])
 END
 
-# From that result, in turn; what it knew of itself is joined.
+# From a guess that is off by some 20 degrees: not without --search, and it says so.
+cp -r "$scratch/room" "$scratch/lost"
+rm -r "$scratch/lost/refined"
+python3 - "$scratch/lost/rig.textproto" <<'END'
+import math, re, sys
+half = math.radians(19) / 2
+def turned(match):  # about an axis of the LIDAR's
+    w, x, y, z = (float(number) for number in match[1].split(","))
+    c, s = math.cos(half), math.sin(half)
+    return f"quaternion_wxyz: [{w*c - x*s}, {x*c + w*s}, {y*c + z*s}, {z*c - y*s}]"
+text = open(sys.argv[1]).read()
+open(sys.argv[1], "w").write(re.sub(r"quaternion_wxyz: \[(.*?)\]", turned, text))
+END
+"$bin/rgbdt" refine "$scratch/lost" --out "$scratch/lost/near" >"$scratch/output" 2>&1 &&
+  complain "a guess that is off by 20 degrees is refined without --search"
+grep -q -- '--search looks farther' "$scratch/output" || complain "nothing says that --search may help"
+accepts "a search" "$bin/rgbdt" refine "$scratch/lost" --search --out "$scratch/lost/far"
+python3 - "$scratch/lost/far/report.json" <<'END' || complain "--search ends elsewhere"
+import json, sys
+for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
+    assert camera["first_guess_error"]["rotation_deg"] > 15, (name, camera["first_guess_error"])
+    assert camera["status"] == "CONVERGED", (name, camera["status"])
+    assert camera["truth_error"]["rotation_deg"] < 0.1, (name, camera["truth_error"])
+END
+
+# From the first result, in turn; what it knew of itself is joined.
 accepts "a prior" "$bin/rgbdt" refine "$scratch/room" \
   --prior "$scratch/room/refined/calibration.textproto" --out "$scratch/joined"
 [ -s "$scratch/joined/calibration.textproto" ] || complain "no calibration with --prior"
