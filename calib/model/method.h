@@ -30,7 +30,7 @@ inline constexpr const char* kMethodHelp =
     "(Unnikrishnan and Hebert 2005); paper, the reference (Krishnan et al. 2015); line-scan, one\n"
     "line of the scanner on board planes (Zhang and Pless 2004); bearing-angle, outline corners\n"
     "in a bearing-angle image (Scaramuzza et al. 2007); single-shot, planes matched by themselves\n"
-    "(Geiger et al. 2012)";
+    "(Geiger et al. 2012). Without a target (natural, mi, nmi, gom, edge-grid): rgbdt refine";
 
 /// The same for what works on the bus.
 inline const std::vector<std::string> kBusMethodNames = {kAutoMethod, kPlaneMethod, kPaperMethod};
