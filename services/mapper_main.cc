@@ -3,6 +3,7 @@
 #include <string>
 
 #include "calib/files/atomic_file.h"
+#include "calib/files/check_writable.h"
 #include "services/command_line/command_line.h"
 #include "services/nodes/mapper_node.h"
 #include "services/runtime/process.h"
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
   line.Option("--out", &out, "the map; one that is there is kept beside it, as map_1.ply");
   line.Within("--every", &every_s, 0.1, 86400.0, "seconds from one writing to the next");
   return line.Run(argc, argv, [&] {
+    rgbdt::CheckWritable(out);
     SetAside(out);
     rgbdt::MapperNode node(options, out, rgbdt::FromSeconds(every_s));
     const int code = rgbdt::RunOnLcm(node, bus);

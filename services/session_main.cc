@@ -61,6 +61,9 @@ int Run(const Flags& flags) {
   rgbdt::CheckWritable(std::filesystem::path(flags.out) / "rig.textproto");
   const auto node = flags.script.empty() ? LedByThePage(flags) : ByScript(flags);
   const int code = rgbdt::RunOnLcm(*node, flags.bus);
+  if (const std::string lost = node->WriteWhatIsKept(); !lost.empty()) {
+    std::fprintf(stderr, "rgbdt-session: %s\n", lost.c_str());
+  }
   if (!node->failure().empty()) {
     std::fprintf(stderr, "rgbdt-session: %s\n", node->failure().c_str());
     if (node->failure().find("not heard") != std::string::npos) {

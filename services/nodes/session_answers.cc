@@ -245,6 +245,17 @@ bool SessionNode::IsDetected() const {
   return detection != nullptr && IsCaptured(*detection);
 }
 
+// Of the view at hand, which detector and this process have each put together; empty: nothing. Of
+// the images from during the sweep one is as good as another.
+std::string SessionNode::LostHere() const {
+  const Utime asked = captures_.at(command_).utime;
+  for (const ImageDetection& image : solver_views_.Find(view_)->images) {
+    if (image.utime < asked || images_.count({image.camera, image.utime}) != 0) continue;
+    return "the image of camera " + image.camera + " that rgbdt-detector has was lost on its way";
+  }
+  return {};
+}
+
 // By this session: another one's views are called the same.
 bool SessionNode::IsCaptured(const ViewDetection& detection) const {
   return std::any_of(captures_.begin(), captures_.end(), [&](const auto& capture) {

@@ -66,6 +66,11 @@ void SessionNode::WriteToDisk() {
   if (failed) timeout_.AskedAgain(now_);  // nobody else was waited for
 }
 
+std::string SessionNode::WriteWhatIsKept() {
+  WriteToDisk();
+  return unwritten_.Lost();
+}
+
 // What a failure does not cost; empty: too little for a calibration.
 std::string SessionNode::WhatIsOnDisk() const {
   const std::size_t views = earlier_.detected.size() + taken_.size() - unwritten_.views();

@@ -92,7 +92,13 @@ Messages SessionNode::GoOn() {
     const bool waits = step().kind == SessionStep::Kind::kWait || !unwritten_.empty();
     if (const std::string why = waits ? "" : timeout_.WhyOver(now_); !why.empty()) {
       const std::string clocks = ClockTrouble();
-      Fail(why + "; " + WhatIsMissing() + WhoIsSilent() + (clocks.empty() ? "" : "; " + clocks));
+      const std::string what =
+          why + "; " + WhatIsMissing() + WhoIsSilent() + (clocks.empty() ? "" : "; " + clocks);
+      if (step().kind == SessionStep::Kind::kCapture && answered_) {
+        TakeTornAgain(what);  // it was lost on its way here
+      } else {
+        Fail(what);
+      }
     }
     return RepeatCommand();
   }
@@ -312,7 +318,9 @@ bool SessionNode::StepDone() {
     case SessionStep::Kind::kSave:
       return true;
     case SessionStep::Kind::kCapture:
-      return answered_ && has_view_ && IsDetected() && unwritten_.empty();
+      if (!answered_ || !has_view_ || !IsDetected()) return false;
+      if (const std::string lost = LostHere(); !lost.empty()) TakeTornAgain(lost);
+      return waiting_ && !finished_ && unwritten_.empty();
     case SessionStep::Kind::kSolve:
     case SessionStep::Kind::kEvaluate:
       return answered_ && SolverTookAll();

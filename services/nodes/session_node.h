@@ -59,11 +59,12 @@ struct SessionProgress {
 /// directory of another rig or script, or of a session that has ended, is refused.
 ///
 /// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
-/// sweep and all, kMaxRetakes times at most; then it has failed. So is one for which a process was
-/// started anew (its STATUS counts from 0 again) that had a part in it, kMaxRestarts times; and
-/// what such a process was asked it is asked again. No sweep begins until everybody is ready, by
-/// the newest STATUS; that of a process that is gone counts until it is back (one at work is
-/// silent, too).
+/// sweep and all, kMaxRetakes times at most; then it has failed. So is one of which the detector
+/// had what was lost on its way here: an image, or the DETECTION itself. So is one for which a
+/// process was started anew (its STATUS counts from 0 again) that had a part in it, kMaxRestarts
+/// times; and what such a process was asked it is asked again. No sweep begins until everybody is
+/// ready, by the newest STATUS; that of a process that is gone counts until it is back (one at work
+/// is silent, too).
 ///
 /// A command that is not answered is sent again, as it was, after 3, 6, 12 and then every 16 s; who
 /// got it answers once more what it answered (NodeRunner). A process whose STATUS was not heard for
@@ -117,6 +118,10 @@ class SessionNode : public Node {
   /// A person's Enter is to be noticed.
   Utime LongestWait() const override { return 20'000; }
 
+  /// The process ends: what is kept in memory is written where it can be by now. Returns what is
+  /// lost and why, for a person; empty: nothing is.
+  std::string WriteWhatIsKept();
+
   const std::string& failure() const { return failure_; }          ///< empty: none so far
   const std::optional<Report>& report() const { return report_; }  ///< of the newest solve
 
@@ -135,6 +140,7 @@ class SessionNode : public Node {
   Messages Send(SessionVerb verb);
   bool StepDone();
   bool IsDetected() const;
+  std::string LostHere() const;
   bool SolverTookAll();
   bool RestoreSolver(const std::string& why);
   void Take(const Message& message);

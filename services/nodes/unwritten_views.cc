@@ -82,6 +82,10 @@ std::string UnwrittenViews::Trouble() const {
          std::to_string(kRetry / kMicrosecondsPerSecond) + " s";
 }
 
+std::string UnwrittenViews::Lost() const {
+  return empty() ? "" : What() + " is lost, as it could not be written: " + why_;
+}
+
 std::string UnwrittenViews::WhyNoRoom(const std::string& view) const {
   if (!empty()) return Trouble();
   try {

@@ -40,6 +40,8 @@ class UnwrittenViews {
   std::size_t views() const { return views_.size(); }
   /// What is kept and why, for a person; empty: nothing is.
   std::string Trouble() const;
+  /// The process ends: what is lost with it and why; empty: nothing is.
+  std::string Lost() const;
 
   /// Why one more view of that name could not be written, for a person; empty: it could.
   std::string WhyNoRoom(const std::string& view) const;

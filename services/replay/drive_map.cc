@@ -46,6 +46,7 @@ class Reader {
         Drop(e);
       }
     }
+    drive_->unreadable_bytes = log_.unreadable_bytes();
   }
 
  private:

@@ -20,6 +20,7 @@ struct MappedDrive {
   std::int64_t without_place = 0, degenerate = 0, restarts = 0;  ///< odometry: of these
   std::optional<ClosedWay> closed;                               ///< where loops were looked for
   std::int64_t clouds = 0, dropped = 0;
+  std::int64_t unreadable_bytes = 0;  ///< of the log, that belong to no whole message
   std::string last_problem;
 };
 

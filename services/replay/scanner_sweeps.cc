@@ -43,7 +43,7 @@ struct ScannerLog {
   std::optional<Rig> rig;
   std::vector<EncoderReading> readings;
   std::vector<LineScan> lines;
-  std::int64_t dropped = 0;
+  std::int64_t dropped = 0, unreadable_bytes = 0;
   std::string last_problem;
 
   void Take(const Message& message) {
@@ -70,6 +70,7 @@ ScannerLog ReadLog(const std::string& path) {
       read.last_problem = error.what();
     }
   }
+  read.unreadable_bytes = log.unreadable_bytes();
   return read;
 }
 
@@ -94,6 +95,10 @@ ScannerSweeps FromLog(const std::string& path) {
   if (log.dropped > 0) {
     read.problems.push_back(std::to_string(log.dropped) +
                             " messages dropped; the last: " + log.last_problem);
+  }
+  if (log.unreadable_bytes > 0) {
+    read.problems.push_back(std::to_string(log.unreadable_bytes) +
+                            " bytes belong to no whole message; was the logger killed?");
   }
   return read;
 }

@@ -111,6 +111,7 @@ void KeepFromSolve(const CalibrationFiles& files, const std::filesystem::path& s
 int RunEvaluate(const EvaluateFlags& flags) {
   const Session session = OpenSession(flags.dir);
   const std::filesystem::path out = PathOr(flags.out, session.root);
+  CheckWritable(out / "report.json");
   const std::optional<Truth> truth = ReadTruthOf(flags.truth, session.root);  // before the work
   const CalibrationFiles files = FilesOf(session.root, flags.calibration, flags.anyway);
   const Calibration calibration = ReadCalibrationOf(files);

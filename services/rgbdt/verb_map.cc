@@ -23,13 +23,13 @@ namespace {
 
 struct MapFlags {
   std::string log, out = "map.ply";
-  bool drive = false, close_loops = false;
+  bool drive = false, close_loops = false, json = false;
   VoxelMapOptions options;
 };
 
 /// What a log gave.
 struct LogRead {
-  std::int64_t events = 0, clouds = 0, sweeps = 0, dropped = 0;
+  std::int64_t events = 0, clouds = 0, sweeps = 0, dropped = 0, unreadable_bytes = 0;
   std::string last_problem;
   std::vector<StampedPose> way;  // where clouds say that the rig was
 };
@@ -59,17 +59,21 @@ LogRead ReadLog(const std::string& path, MapperNode* node) {
       read.last_problem = e.what();
     }
   }
-  if (log.unreadable_bytes() > 0) {
-    std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
-                 path.c_str(), static_cast<long long>(log.unreadable_bytes()));
-  }
+  read.unreadable_bytes = log.unreadable_bytes();
   return read;
 }
 
-void TellDropped(const std::string& log, std::int64_t dropped, const std::string& last_problem) {
-  if (dropped == 0) return;
-  std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", log.c_str(),
-               static_cast<long long>(dropped), last_problem.c_str());
+// Of a LogRead, or a MappedDrive.
+template <typename Read>
+void TellDropped(const std::string& log, const Read& read) {
+  if (read.unreadable_bytes > 0) {
+    std::fprintf(stderr, "%s: %lld bytes belong to no whole message; was the logger killed?\n",
+                 log.c_str(), static_cast<long long>(read.unreadable_bytes));
+  }
+  if (read.dropped > 0) {
+    std::fprintf(stderr, "%s: %lld messages dropped; last problem: %s\n", log.c_str(),
+                 static_cast<long long>(read.dropped), read.last_problem.c_str());
+  }
 }
 
 std::vector<Eigen::Vector3d> PlacesOf(const std::vector<StampedPose>& way) {
@@ -77,6 +81,12 @@ std::vector<Eigen::Vector3d> PlacesOf(const std::vector<StampedPose>& way) {
   std::transform(way.begin(), way.end(), places.begin(),
                  [](const StampedPose& pose) { return pose.map_from_lidar.translation; });
   return places;
+}
+
+double LengthOf(const std::vector<Eigen::Vector3d>& places) {
+  double length = 0;
+  for (std::size_t i = 1; i < places.size(); ++i) length += (places[i] - places[i - 1]).norm();
+  return length;
 }
 
 std::filesystem::path Beside(const std::filesystem::path& map, const std::string& end) {
@@ -103,19 +113,20 @@ void RemoveSideFiles(const std::filesystem::path& map) {
 
 // The map, and beside it the way, a picture from above and the terrain.
 void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds,
-              const std::vector<StampedPose>& way, const std::vector<Eigen::Vector3d>& loops) {
+              const std::vector<StampedPose>& way, const std::vector<Eigen::Vector3d>& loops,
+              std::FILE* told) {
   const MapCloud map = node.map().Cloud();
   WriteMapPly(flags.out, map);
   RemoveSideFiles(flags.out);
-  std::printf(
-      "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
+  std::fprintf(
+      told, "%lld clouds, %lld points in %zu voxels of %g m, frame %s; wrote %s\n",
       static_cast<long long>(clouds), static_cast<long long>(node.map().points()), map.size(),
       map.voxel_m,
       map.frame == "map" ? "of the pose stream" : "LIDAR (no poses: a rig that stands still)",
       flags.out.c_str());
   if (node.map().evicted() > 0) {
-    std::printf("the map was full: %lld voxels went; take larger ones, or --max-voxels\n",
-                static_cast<long long>(node.map().evicted()));
+    std::fprintf(told, "the map was full: %lld voxels went; take larger ones, or --max-voxels\n",
+                 static_cast<long long>(node.map().evicted()));
   }
   std::string wrote;
   if (!way.empty()) {
@@ -129,10 +140,11 @@ void WriteMap(const MapFlags& flags, const MapperNode& node, std::int64_t clouds
   const std::filesystem::path terrain = Beside(flags.out, "_terrain.png");
   const TerrainOptions limits;
   if (const auto found = TerrainOf(map, limits)) {
-    WriteTerrain(*found, limits, map.frame, flags.out, Beside(flags.out, "_terrain.json"), terrain);
+    WriteTerrain(*found, limits, map.frame, flags.out, Beside(flags.out, "_terrain.json"), terrain,
+                 told);
     wrote += ", " + terrain.string() + " and .json (where a vehicle can drive)";
   }
-  std::printf("wrote %s\n", wrote.c_str());
+  std::fprintf(told, "wrote %s\n", wrote.c_str());
 }
 
 void TellNext(const MapFlags& flags) {
@@ -140,9 +152,10 @@ void TellNext(const MapFlags& flags) {
               ForShell(flags.out).c_str());
 }
 
-void TellRefused(const ClosedWay& closed) {
+void TellRefused(const ClosedWay& closed, std::FILE* told) {
   if (closed.refused() == 0) return;
-  std::printf(
+  std::fprintf(
+      told,
       "%zu of %zu places that look alike, or lie near each other, were refused: %zu where the "
       "sweep "
       "does not lie on what was seen before, %zu farther off than odometry can be, %zu that no "
@@ -152,61 +165,62 @@ void TellRefused(const ClosedWay& closed) {
 }
 
 // What cameras had to say of the loops.
-void TellColours(const ClosedWay& closed) {
+void TellColours(const ClosedWay& closed, std::FILE* told) {
   std::size_t seen = 0, unlike = 0;
   for (const ClosedLoop& loop : closed.loops) {
     if (loop.colours.cells > 0) ++seen;
     if (loop.sigma_factor > 3) ++unlike;
   }
   if (seen == 0) return;
-  std::printf("cameras saw both places of %zu of them: ", seen);
+  std::fprintf(told, "cameras saw both places of %zu of them: ", seen);
   if (unlike == 0) {
-    std::printf("they look the same\n");
+    std::fprintf(told, "they look the same\n");
   } else {
-    std::printf("%zu look different and hardly count (another light, or another place)\n", unlike);
+    std::fprintf(told, "%zu look different and hardly count (another light, or another place)\n",
+                 unlike);
   }
 }
 
-void TellLoops(const ClosedWay& closed) {
+void TellLoops(const ClosedWay& closed, std::FILE* told) {
   if (!closed.solved) {
-    std::printf("loops: the poses have no solution; the way is as odometry found it\n");
+    std::fprintf(told, "loops: the poses have no solution; the way is as odometry found it\n");
   } else if (closed.loops.empty()) {
-    std::printf(
+    std::fprintf(
+        told,
         "no loop found: way and map are as without --close-loops, which takes a way back to a "
         "place after %g m or more\n",
         LoopClosureOptions().least_way_m);
   } else {
-    std::printf(
-        "%zu loops closed: the end of the way moved by %.2f m, no place by more than %.2f\n",
+    std::fprintf(
+        told, "%zu loops closed: the end of the way moved by %.2f m, no place by more than %.2f\n",
         closed.loops.size(), closed.end_moved_m, closed.most_moved_m);
-    TellColours(closed);
+    TellColours(closed, told);
   }
-  TellRefused(closed);
+  TellRefused(closed, told);
 }
 
-void TellDrive(const MappedDrive& drive) {
+void TellDrive(const MappedDrive& drive, std::FILE* told) {
   const std::vector<Eigen::Vector3d> places = PlacesOf(drive.way);
-  double way = 0;
-  for (std::size_t i = 1; i < places.size(); ++i) way += (places[i] - places[i - 1]).norm();
-  std::printf("%.1f m of way, %zu poses by %s\n", way, drive.way.size(),
-              drive.by_odometry ? "odometry from the sweeps" : "the log's POSE");
+  const double way = LengthOf(places);
+  std::fprintf(told, "%.1f m of way, %zu poses by %s\n", way, drive.way.size(),
+               drive.by_odometry ? "odometry from the sweeps" : "the log's POSE");
   if (!drive.by_odometry) return;
-  std::printf("%lld sweeps, %lld without a place, %lld that do not tell a direction\n",
-              static_cast<long long>(drive.sweeps), static_cast<long long>(drive.without_place),
-              static_cast<long long>(drive.degenerate));
+  std::fprintf(told, "%lld sweeps, %lld without a place, %lld that do not tell a direction\n",
+               static_cast<long long>(drive.sweeps), static_cast<long long>(drive.without_place),
+               static_cast<long long>(drive.degenerate));
   if (drive.degenerate > 0) {
-    std::printf("where a direction is not told, as along a corridor, the way is a guess\n");
+    std::fprintf(told, "where a direction is not told, as along a corridor, the way is a guess\n");
   }
   if (drive.restarts > 0) {
-    std::printf("the map was begun anew %lld times: parts of it may lie off each other\n",
-                static_cast<long long>(drive.restarts));
+    std::fprintf(told, "the map was begun anew %lld times: parts of it may lie off each other\n",
+                 static_cast<long long>(drive.restarts));
   }
   if (drive.closed) {
-    TellLoops(*drive.closed);
+    TellLoops(*drive.closed, told);
   } else if (ComesBack(places)) {
-    std::printf(
-        "the way comes back to where it was: --close-loops corrects what it drifted by in "
-        "between\n");
+    std::fprintf(told,
+                 "the way comes back to where it was: --close-loops corrects what it drifted by in "
+                 "between\n");
   }
 }
 
@@ -223,18 +237,50 @@ std::vector<Eigen::Vector3d> PlacesOfLoops(const MappedDrive& drive) {
   return places;
 }
 
+std::string Number(std::int64_t value) { return std::to_string(value); }
+
+// How the way was found; what only odometry tells is null where the log's POSE did.
+std::string DriveJson(const MappedDrive& drive) {
+  const auto of_odometry = [&](std::int64_t value) {
+    return drive.by_odometry ? Number(value) : "null";
+  };
+  std::string text = "{\"length_m\": " + Fixed(LengthOf(PlacesOf(drive.way)), 3) +
+                     ", \"poses\": " + std::to_string(drive.way.size()) +
+                     ", \"by_odometry\": " + (drive.by_odometry ? "true" : "false") +
+                     ", \"sweeps\": " + of_odometry(drive.sweeps) +
+                     ", \"without_place\": " + of_odometry(drive.without_place) +
+                     ", \"degenerate\": " + of_odometry(drive.degenerate) +
+                     ", \"begun_anew\": " + of_odometry(drive.restarts);
+  text += ", \"loops\": " + (drive.closed ? std::to_string(drive.closed->loops.size()) : "null");
+  return text + "}";
+}
+
+// `read`: a LogRead, or a MappedDrive.
+template <typename Read>
+void PrintJson(const MapperNode& node, const Read& read, const std::string& drive) {
+  std::printf(
+      "{\n  \"clouds\": %s,\n  \"points\": %s,\n  \"voxels\": %zu,\n  \"voxels_gone\": %s,\n"
+      "  \"frame\": \"%s\",\n  \"messages_dropped\": %s,\n  \"unreadable_bytes\": %s,\n"
+      "  \"drive\": %s\n}\n",
+      Number(read.clouds).c_str(), Number(node.map().points()).c_str(), node.map().size(),
+      Number(node.map().evicted()).c_str(), node.map().frame().value_or("").c_str(),
+      Number(read.dropped).c_str(), Number(read.unreadable_bytes).c_str(), drive.c_str());
+}
+
 int RunDrive(const MapFlags& flags) {
   MapperNode node(flags.options);
   DriveOptions options;
   options.close_loops = flags.close_loops;
   const MappedDrive drive = MapDrive(flags.log, &node, options);
-  TellDropped(flags.log, drive.dropped, drive.last_problem);
+  TellDropped(flags.log, drive);
   if (node.map().size() == 0) {
     throw InputError(flags.log + ": its poses and its sweeps (CLOUD) are of different times");
   }
-  WriteMap(flags, node, drive.clouds, drive.way, PlacesOfLoops(drive));
-  TellDrive(drive);
-  TellNext(flags);
+  std::FILE* told = flags.json ? stderr : stdout;
+  WriteMap(flags, node, drive.clouds, drive.way, PlacesOfLoops(drive), told);
+  TellDrive(drive, told);
+  if (flags.json) PrintJson(node, drive, DriveJson(drive));
+  if (!flags.json) TellNext(flags);
   return EndsWith(true);
 }
 
@@ -255,14 +301,15 @@ int RunMap(const MapFlags& flags) {
   MapperNode node(flags.options);
   const LogRead read = ReadLog(flags.log, &node);
   if (read.clouds == 0 && read.sweeps > 0) return RunDrive(flags);
-  TellDropped(flags.log, read.dropped, read.last_problem);
+  TellDropped(flags.log, read);
   if (node.map().size() == 0) {
     throw InputError(flags.log + ": none of its " + std::to_string(read.events) +
                      " messages is a fused cloud with points (RGBDT_CLOUD), or a sweep (CLOUD); "
                      "record either channel, as rgbdt-fuser or the LIDAR publishes it");
   }
-  WriteMap(flags, node, read.clouds, read.way, {});
-  TellNext(flags);
+  WriteMap(flags, node, read.clouds, read.way, {}, flags.json ? stderr : stdout);
+  if (flags.json) PrintJson(node, read, "null");
+  if (!flags.json) TellNext(flags);
   return EndsWith(true);
 }
 
@@ -295,6 +342,10 @@ void AddMap(CommandLine* program) {
       "a\n"
       "place it is corrected for what it drifted by, and the map made with that. Off by default:\n"
       "the way is then that of rgbdt-odometry, live, and a loop that is no loop cannot bend it");
+  verb->Flag(
+      "--json", &flags->json,
+      "for programs: print what came of it as JSON on stdout (with `drive`: how the way was\n"
+      "found), and nothing else there; words go to stderr");
   verb->Option("--voxel", &flags->options.voxel_m, "edge of a voxel [m]");
   verb->Option("--max-voxels", &flags->options.max_voxels,
                "most voxels kept (80 bytes each); then those not seen for the longest are dropped");

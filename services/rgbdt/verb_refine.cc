@@ -19,6 +19,9 @@
 namespace rgbdt {
 namespace {
 
+constexpr const char* kDrive = "drive";
+constexpr const char* kDrivePart = "drive.part";
+
 struct RefineFlags {
   double every_s = 2;
   std::string dir, calibration, prior, out, truth;
@@ -81,19 +84,22 @@ struct Opened {
   std::string cannot_tell;  // what would bend the result, see CameraReport
 };
 
-// Of a log, the session that is cut out of it.
+// Of a log, the session that is cut out of it. It has its name once it was refined: what a run that
+// was killed left is cut anew.
 Opened SessionOf(const RefineFlags& flags) {
   if (!std::filesystem::is_regular_file(flags.dir)) return {OpenSession(flags.dir), ""};
-  const std::filesystem::path drive = PathOr(flags.out, "out/refine") / "drive";
+  const std::filesystem::path out = PathOr(flags.out, "out/refine");
+  const std::filesystem::path drive = out / kDrive, part = out / kDrivePart;
   if (std::filesystem::exists(drive)) {
     throw InputError(drive.string() +
                      " is there already, of an earlier run: remove it, or choose another --out");
   }
   CheckWritable(drive);
+  std::filesystem::remove_all(part);
   CutOptions options;
   options.every = FromSeconds(flags.every_s);
   int percent = -1;
-  const CutDrive cut = CutIntoSession(flags.dir, drive, options, [&](double fraction) {
+  const CutDrive cut = CutIntoSession(flags.dir, part, options, [&](double fraction) {
     const int now = static_cast<int>(100 * fraction);
     if (now / 10 != percent / 10) PrintProgress("reading the log: " + std::to_string(now) + "%");
     percent = now;
@@ -104,11 +110,11 @@ Opened SessionOf(const RefineFlags& flags) {
   if (cut.by_odometry) {
     PrintProgress("the log has no POSE: the rig's motion is that which the sweeps tell");
   }
-  PrintProgress(std::to_string(cut.sweeps) + " sweeps of the log, as a session: " + drive.string());
-  return {OpenSession(drive),
-          cut.motion_unknown ? "Nothing in the log tells how the rig moved; had it driven, the "
-                               "result would be wrong. Record sweeps without gaps, or POSE."
-                             : ""};
+  PrintProgress(std::to_string(cut.sweeps) + " sweeps of the log");
+  return {OpenSession(part), cut.motion_unknown
+                                 ? "Nothing in the log tells how the rig moved; had it driven, the "
+                                   "result would be wrong. Record sweeps without gaps, or POSE."
+                                 : ""};
 }
 
 int RunRefine(RefineFlags flags) {
@@ -119,7 +125,7 @@ int RunRefine(RefineFlags flags) {
   }
   flags.options.join_start = !flags.prior.empty();
   flags.options.Check();
-  const auto [session, cannot_tell] = SessionOf(flags);
+  auto [session, cannot_tell] = SessionOf(flags);
   const bool is_log = std::filesystem::is_regular_file(flags.dir);
   const std::filesystem::path out = !flags.out.empty() ? std::filesystem::path(flags.out)
                                     : is_log           ? session.root.parent_path()
@@ -134,6 +140,11 @@ int RunRefine(RefineFlags flags) {
   SetAside(out);
   Report report = Refine(session.rig, read.views, start, flags.options);
   for (CameraReport& camera : report.cameras) camera.cannot_tell = cannot_tell;
+  if (is_log) {
+    Rename(session.root, out / kDrive);
+    session.root = out / kDrive;
+    PrintProgress("the log's sweeps are a session: " + session.root.string());
+  }
   const std::string wrote = WriteIfSolved(out, session.rig, &report);
   if (truth) report = WithTruth(std::move(report), *truth);
   WriteReportFiles(out, {session, WithoutBoards(report), {report}});

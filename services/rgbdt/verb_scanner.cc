@@ -48,6 +48,7 @@ void WriteScanner(const ScannerFlags& flags, const ScannerSweeps& input,
 }
 
 int RunScanner(const ScannerFlags& flags) {
+  CheckWritable(flags.out);
   const ScannerSweeps input = ReadScannerSweeps(flags.input);
   PrintUnreadable(input.problems, "not used");
   const TurnedScanner& before = *input.rig.lidar.turned_scanner;

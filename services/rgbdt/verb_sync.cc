@@ -156,6 +156,7 @@ Synced Write(const fs::path& out, const WavedLog& input, const SyncResult& resul
 Synced SyncLog(const SyncFlags& flags, const std::string& log,
                const std::optional<Calibration>& calibration, const WavedLogOptions& options,
                const Say& say) {
+  CheckWritable(fs::path(flags.out) / "calibration.textproto");
   int percent = 0;
   const WavedLog input = ReadWavedLog(log, calibration, options, [&](double share) {
     const int now = static_cast<int>(100 * share);

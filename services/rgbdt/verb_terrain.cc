@@ -22,6 +22,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 struct TerrainFlags {
   std::string input, out = "out/terrain";
   TerrainOptions options;
+  bool json = false;
   double max_slope_deg = 20, site_max_slope_deg = 15;
 };
 
@@ -53,7 +54,11 @@ int RunTerrain(TerrainFlags flags) {
   const MapCloud cloud = ReadMapOrCloud(flags.input);
   const Terrain terrain = FindTerrain(cloud, flags.options);
   WriteTerrain(terrain, flags.options, cloud.frame, flags.input, out / "terrain.json",
-               out / "terrain.png");
+               out / "terrain.png", flags.json ? stderr : stdout);
+  if (flags.json) {
+    std::fputs(ReadWholeFile(out / "terrain.json").c_str(), stdout);
+    return EndsWith(true);
+  }
   PrintSites(terrain.sites);
   std::printf("wrote terrain.json, terrain.png to %s; look at terrain.png\n", flags.out.c_str());
   return EndsWith(true);
@@ -80,14 +85,15 @@ void AddLimits(TerrainFlags* flags, CommandLine* verb) {
 
 void WriteTerrain(const Terrain& terrain, const TerrainOptions& options, const std::string& frame,
                   const std::string& input, const std::filesystem::path& json,
-                  const std::filesystem::path& picture) {
+                  const std::filesystem::path& picture, std::FILE* told) {
   WriteFileAtomically(json, TerrainJson(terrain, options, frame, input));
   WritePng(picture, TerrainPicture(terrain, options, frame));
   const std::vector<CellState>& state = terrain.grid.state;
   const auto count = [&](CellState one) {
     return static_cast<long long>(std::count(state.begin(), state.end(), one));
   };
-  std::printf(
+  std::fprintf(
+      told,
       "%d x %d cells of %g m, frame %s: %lld traversable, %lld obstacle, the others unknown\n",
       terrain.grid.columns, terrain.grid.rows, terrain.grid.cell_m, frame.c_str(),
       count(CellState::kTraversable), count(CellState::kObstacle));
@@ -105,6 +111,8 @@ void AddTerrain(CommandLine* program) {
       [flags] { return RunTerrain(*flags); });
   verb->Required("INPUT", &flags->input, "PLY or PCD file");
   verb->Option("--out", &flags->out, "where to write");
+  verb->Flag("--json", &flags->json,
+             "for programs: print terrain.json on stdout, and nothing else there");
   AddLimits(flags.get(), verb);
 }
 

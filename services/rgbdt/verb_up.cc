@@ -143,14 +143,20 @@ int RunUp(UpFlags flags) {
   if (!flags.log.empty() && !logs) {
     throw InputError("--log: by the rig's file another host runs the logger; leave --log out here");
   }
-  if (logs) RequireLogger();
+  if (logs) {
+    RequireLogger();
+    CheckWritable(Find(programs, kLogger)->arguments.back());
+  }
   WarnOfTtl(rig, flags.bus.url);
   if (Find(programs, "monitor") != nullptr) RequireCalibrated(flags.drive, flags.rig, rig);
   if (Find(programs, "mapper") != nullptr) {
     CheckWritable(std::filesystem::path(flags.out) / "map.ply");
   }
   // What the session would refuse again and again.
-  if (Find(programs, "session") != nullptr) ReadEarlierViews(flags.out, rig);
+  if (Find(programs, "session") != nullptr) {
+    ReadEarlierViews(flags.out, rig);
+    CheckWritable(std::filesystem::path(flags.out) / "rig.textproto");
+  }
   for (const Program& program : programs) std::filesystem::remove(program.log);
   const Program* viewer = Find(programs, "viewer");
   Screen screen(viewer == nullptr ? std::filesystem::path() : viewer->log);

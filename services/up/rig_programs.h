@@ -25,7 +25,7 @@ struct Program {
   std::string name;                    ///< as its STATUS calls it: "camera-rgb"
   std::vector<std::string> arguments;  ///< the program's path first
   std::filesystem::path log;           ///< what it prints is added to this file
-  bool ends = false;                   ///< exit code 0 means that it is done, for good
+  bool ends = false;                   ///< where it says that it is done, it is for good
   bool speaks = true;                  ///< it sends STATUS
   Role role = Role::kBoth;
 };

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "calib/model/errors.h"
+#include "services/command_line/exit_codes.h"
 #include "services/posix/descriptor.h"
 
 namespace rgbdt {
@@ -83,6 +84,13 @@ std::string HowItEnded(const Program& program, int status) {
          (last.empty() ? "" : ": " + last);
 }
 
+// A session that is saved ends by its verdict.
+bool IsDone(int status) {
+  if (!WIFEXITED(status)) return false;
+  const auto code = static_cast<ExitCode>(WEXITSTATUS(status));
+  return code == ExitCode::kDone || code == ExitCode::kDoubtful || code == ExitCode::kDoNotUse;
+}
+
 }  // namespace
 
 Supervisor::Supervisor(std::vector<Program> programs, Tell tell) : tell_(std::move(tell)) {
@@ -128,7 +136,7 @@ void Supervisor::Start(Child* child, Utime now) {
 void Supervisor::Ended(Child* child, int status, Utime now) {
   child->pid = 0;
   child->how_it_ended = HowItEnded(child->program, status);
-  child->done = child->program.ends && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  child->done = child->program.ends && IsDone(status);
   if (now - child->started >= kSound) child->failures = 0;
   const Utime pause = PauseAfter(++child->failures);
   child->next_start = now + pause;

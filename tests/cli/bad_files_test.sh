@@ -183,11 +183,11 @@ cannot() {  # WHAT COMMAND...: where --out leads below a file
   [ "$(wc -l <"$scratch/output")" -eq 1 ] || complain "$1: not one line"
 }
 for verb in calibrate intrinsics; do cannot "$verb" "$bin/rgbdt" "$verb" "$bad" --out "$below"; done
-for verb in fuse export refine; do
+for verb in fuse export refine evaluate; do
   cannot "$verb" "$bin/rgbdt" "$verb" "$bad" --out "$below" \
     --calibration "$scratch/kept/calibration.textproto"
 done
-for verb in map "export --mcap"; do
+for verb in map "export --mcap" scanner sync; do
   # shellcheck disable=SC2086 # a verb and its flag
   cannot "$verb" "$bin/rgbdt" $verb "$scratch/noise.lcmlog" --out "$below"
 done

@@ -60,6 +60,32 @@ grep -q '^no loop found: way and map are as without' "$scratch/output" || compla
 for kind in ply tum png; do
   cmp "$scratch/drive/map.$kind" "$scratch/drive/open.$kind" || complain "no loop, another $kind"
 done
+# For programs.
+"$bin/rgbdt" map "$drive" --json --out "$scratch/json/map.ply" >"$scratch/said.json" \
+  2>"$scratch/output" || complain "map as JSON: exit code $?"
+cmp "$scratch/json/map.ply" "$scratch/drive/map.ply" || complain "map as JSON: another map"
+python3 - "$scratch/said.json" <<'END' >"$scratch/output" 2>&1 || complain "map as JSON"
+import json, sys
+said = json.load(open(sys.argv[1]))
+assert said["clouds"] == 18 and said["frame"] == "map" and said["unreadable_bytes"] == 0, said
+assert said["points"] > said["voxels"] > 1000 and said["voxels_gone"] == 0, said
+drive = said["drive"]
+assert drive["by_odometry"] and drive["poses"] == 20 and drive["length_m"] > 4, drive
+assert (drive["sweeps"], drive["without_place"], drive["degenerate"]) == (20, 1, 0), drive
+assert drive["begun_anew"] == 0 and drive["loops"] is None, drive
+END
+"$bin/rgbdt" terrain "$scratch/json/map.ply" --json --out "$scratch/json" >"$scratch/said.json" \
+  2>"$scratch/output" || complain "terrain as JSON: exit code $?"
+cmp "$scratch/said.json" "$scratch/json/terrain.json" || complain "--json: not terrain.json"
+# A log that was cut in the midst of a message, as a disk was full.
+for options in "" --drive --close-loops; do
+  head -c -1000 "$drive" >"$scratch/cut.lcmlog"
+  # shellcheck disable=SC2086 # none or one
+  accepts "a log that was cut $options" "$bin/rgbdt" map "$scratch/cut.lcmlog" $options \
+    --out "$scratch/cut/map.ply"
+  [ "$(grep -c 'bytes belong to no whole message' "$scratch/output")" = 1 ] ||
+    complain "a log that was cut $options: it is not said, or twice"
+done
 # There and back: the way ends 1 m beside where it began, looking back.
 accepts "a loop, not closed" "$bin/rgbdt" map "$scratch/loop.lcmlog" --out "$scratch/drive/loop.ply"
 grep -q -- '--close-loops' "$scratch/output" || complain "the way comes back, and nothing is said"

@@ -83,6 +83,26 @@ for name, camera in json.load(open(sys.argv[1]))["cameras"].items():
     assert camera["truth_error"]["rotation_deg"] < 0.1, (name, camera["truth_error"])
     assert camera["views"]["heldout"] == ["0003-" + name], (name, camera["views"])
 END
+# Killed while the log is cut, and again once it is: run again it gives the same.
+is_cut() { grep -q solving "$scratch/output"; }
+is_being_cut() { compgen -G "$scratch/killed/drive*/views/*/view.textproto" >"$scratch/found"; }
+for stage in is_being_cut is_cut; do
+  "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/killed" \
+    --truth "$scratch/room/truth.textproto" >"$scratch/output" 2>&1 &
+  refining=$!
+  until "$stage"; do
+    kill -0 "$refining" 2>/dev/null || break
+    sleep 0.02
+  done
+  kill -KILL "$refining" || complain "$stage: it ended before it could be killed"
+  wait "$refining" 2>/dev/null || true
+done
+accepts "a log once more" "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/killed" \
+  --truth "$scratch/room/truth.textproto"
+cmp "$scratch/from_log/calibration.textproto" "$scratch/killed/calibration.textproto" ||
+  complain "killed and run again: another calibration"
+[ "$(ls "$scratch/killed")" = "$(ls "$scratch/from_log")" ] ||
+  complain "killed and run again: other files: $(ls "$scratch/killed")"
 says=("is there already")
 refuses "a drive that was cut before" "$bin/rgbdt" refine "$scratch/drive.lcmlog" --out "$scratch/from_log"
 

@@ -70,6 +70,9 @@ cmp -s "$scratch/before" "$scratch/after" || complain "more than motor_from_scan
 "$bin/scanner_test_log" "$scratch/room.lcmlog" "$room/rig.textproto"
 accepts "a log" "$bin/rgbdt" scanner "$scratch/room.lcmlog" --out "$scratch/log/rig.textproto"
 near "$scratch/log/rig.textproto" 0.5 0.02 || complain "the rig found from a log is not as true"
+head -c -100 "$scratch/room.lcmlog" >"$scratch/cut.lcmlog"
+accepts "a log that was cut" "$bin/rgbdt" scanner "$scratch/cut.lcmlog" --out "$scratch/cut/rig.textproto"
+grep -q 'bytes belong to no whole message' "$scratch/output" || complain "a log that was cut: it is not said"
 
 # What cannot be done is said, and writes nothing.
 accepts "a short sweep" "$bin/rgbdt" simulate "$scratch/short" --views 1 --scene indoor --seed 3

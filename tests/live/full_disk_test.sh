@@ -129,5 +129,32 @@ says scripted "what was kept in memory is on disk"
 wait_for scripted || fail "the session ended with exit code $?"
 [ "$(find "$session/views" -name view.textproto | wc -l)" = 4 ] || fail "not every view is there"
 [ -s "$session/calibration.textproto" ] || fail "nothing was saved"
+
+echo "== told to end while a view is kept in memory"
+session=$disk/ended
+start ended "$bin/rgbdt-session" --rig "$scratch/rig.textproto" --out "$session"
+helper ask next_pose || fail "no pose"
+start asked "$bin/live_helper" ask capture
+says ended "view 0001: asked for a sweep"
+spoil
+says ended "view 0001 is kept in memory: .*$reason"
+mend
+kill -TERM "${pids[ended]}"
+wait_for ended || true
+[ -s "$session/views/0001/view.textproto" ] || fail "the view is lost, though there was room"
+kill_process asked
+
+start lost "$bin/rgbdt-session" --rig "$scratch/rig.textproto" --out "$session"
+helper ask next_pose || fail "no pose"
+start asked "$bin/live_helper" ask capture
+says lost "view 0002: asked for a sweep"
+spoil
+says lost "view 0002 is kept in memory: .*$reason"
+kill -TERM "${pids[lost]}"
+wait_for lost || true
+grep -q "view 0002 is lost, as it could not be written: .*$reason" "$scratch/lost.log" ||
+  fail "it did not say that the view is lost"
+kill_process asked
+mend
 stop TERM "${services[@]}" simulator
 echo "passed"

@@ -23,6 +23,10 @@ for signal in TERM INT; do
 done
 
 code=0
+timeout 20 "$bin/rgbdt-mapper" --out "$scratch/mapper.log/map.ply" >"$scratch/refused.log" 2>&1 &&
+  fail "it maps to nowhere"
+grep -q "cannot write $scratch/mapper.log/map.ply: Not a directory" "$scratch/refused.log" ||
+  fail "it did not say what cannot be written"
 "$bin/rgbdt-mapper" --voxel 0 >"$scratch/mapper.log" 2>&1 || code=$?
 [ "$code" = 1 ] || fail "a voxel of nothing: exit code $code"
 grep -q 'voxel_m is 0' "$scratch/mapper.log" || fail "it did not say what is wrong"

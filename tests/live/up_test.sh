@@ -78,6 +78,20 @@ timeout 60 "$bin/rgbdt" up "$scratch/rig.textproto" --out "$scratch/first" --lis
 grep -q 'has ended' "$scratch/refused.log" || fail "it does not say that the session has ended"
 ! grep -q started "$scratch/refused.log" || fail "something was started"
 
+echo "== so is what cannot be written"
+echo "a file" >"$scratch/file"
+for options in "--out $scratch/file/session --logs $scratch/logs" \
+  "--out $scratch/third --log $scratch/file/bus.lcmlog"; do
+  code=0
+  # shellcheck disable=SC2086 # an option and its value
+  timeout 60 "$bin/rgbdt" up "$scratch/rig.textproto" $options --listen 127.0.0.1:0 \
+    >"$scratch/refused.log" 2>&1 || code=$?
+  [ "$code" = 1 ] || fail "$options: exit code $code"
+  grep -q "cannot write $scratch/file/.*Not a directory" "$scratch/refused.log" ||
+    fail "$options: it does not say what cannot be written"
+  if grep started "$scratch/refused.log"; then fail "$options: something was started"; fi
+done
+
 echo "== killed itself, it takes all along"
 up second
 mapfile -t all < <(for process in "${processes[@]}"; do pid_of second "$process"; done)

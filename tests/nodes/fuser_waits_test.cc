@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-StampedPose PoseAt(Utime utime, double x, const std::string& source = OdometryNode::kSource) {
+StampedPose PoseFrom(Utime utime, double x, const std::string& source = OdometryNode::kSource) {
   StampedPose pose;
   pose.utime = utime;
   pose.source = source;
@@ -46,7 +46,7 @@ class FuserWaits : public ::testing::Test {
   Messages Tell(Utime until, const std::string& source = OdometryNode::kSource) {
     Messages all;
     for (; told_ <= until; told_ += 100'000) {
-      for (Message& m : node_.Handle(PoseAt(told_, ToSeconds(told_ - kNow), source))) {
+      for (Message& m : node_.Handle(PoseFrom(told_, ToSeconds(told_ - kNow), source))) {
         all.push_back(std::move(m));
       }
     }
@@ -113,7 +113,7 @@ TEST_F(FuserWaits, NothingWaitsForAnotherSourcesPoses) {
 TEST_F(FuserWaits, AnotherSourceThatTakesOverEndsTheWait) {
   Tell(kNow);
   EXPECT_THAT(node_.Handle(ChunkAt(kNow + kSecond)), IsEmpty());
-  EXPECT_THAT(node_.Handle(PoseAt(told_, 0.1, "gps")), SizeIs(1));
+  EXPECT_THAT(node_.Handle(PoseFrom(told_, 0.1, "gps")), SizeIs(1));
 }
 
 // The sweep lasts 1.1 s by its first chunk, so that none waits beyond 4.2 s: two more at the end.
@@ -151,7 +151,7 @@ TEST_F(FuserWaits, AClockThatIsSetBackEndsTheWait) {
 
 TEST_F(FuserWaits, APoseThatComesAgainLeavesTheNewestWhereItIs) {
   Tell(kNow + 2 * kSecond);
-  node_.Handle(PoseAt(kNow, 0));
+  node_.Handle(PoseFrom(kNow, 0));
   EXPECT_THAT(node_.Handle(ChunkAt(kNow + kSecond)), SizeIs(1));
 }
 

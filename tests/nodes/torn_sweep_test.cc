@@ -44,9 +44,30 @@ Messages RefusedByDetector(const Messages& answer, Utime sweep_utime) {
   return out;
 }
 
+// What did not come to the session, though the detector had it. Of kImageLost another one came.
+template <typename Where>
+Messages Lost(Where where, Messages answer) {
+  Messages out;
+  Utime newest = 0;
+  for (Message& message : answer) {
+    if (const auto* image = std::get_if<Image>(&message)) newest = image->utime;
+    if (where == Where::kDetectionLost && std::holds_alternative<ViewDetection>(message)) continue;
+    if (where == Where::kImagesLost && std::holds_alternative<Image>(message)) continue;
+    auto* detection = std::get_if<ViewDetection>(&message);
+    if (where == Where::kImageLost && detection != nullptr) {
+      detection->images.emplace_back();
+      detection->images.back().camera = "rgb";
+      detection->images.back().utime = newest + 1;
+      detection->images.back().why_not = "made up";
+    }
+    out.push_back(std::move(message));
+  }
+  return out;
+}
+
 class TornSweepTest : public ::testing::Test {
  protected:
-  enum class Where { kNowhere, kDetector, kSession };
+  enum class Where { kNowhere, kDetector, kSession, kDetectionLost, kImagesLost, kImageLost };
 
   void Lead(std::unique_ptr<SessionNode> node) {
     node_ = std::move(node);
@@ -73,6 +94,7 @@ class TornSweepTest : public ::testing::Test {
         if (where == Where::kDetector && this_one && command.verb == Verb::kCapture) {
           answer = RefusedByDetector(answer, command.sweep_utime);
         }
+        if (this_one && command.verb == Verb::kCapture) answer = Lost(where, std::move(answer));
         test::HandleAll(node_.get(), answer);
       }
     }
@@ -115,6 +137,26 @@ TEST_F(TornSweepTest, SweepAndCaptureAreRepeatedWhoeverLacksLines) {
     EXPECT_THAT(warnings_, ::testing::Each(AllOf(HasSubstr("view 0001"), HasSubstr("is not whole"),
                                                  HasSubstr("the sweep is taken again"))));
     EXPECT_EQ(warnings_.size(), 2U);
+  }
+}
+
+TEST_F(TornSweepTest, SoTheyAreWhereWhatTheDetectorHadWasLostOnItsWay) {
+  for (const auto& [where, words] :
+       {std::pair(Where::kDetectionLost, "lacks the view's DETECTION"),
+        std::pair(Where::kImagesLost, "lacks an image of camera rgb"),
+        std::pair(Where::kImageLost, "image of camera rgb that rgbdt-detector has was lost")}) {
+    std::filesystem::remove_all(dir_ / "session");
+    world_ = test::World();
+    warnings_.clear();
+    sweeps_ = 0;
+    ByScript(one_view_);
+    Run(where, 1);
+    EXPECT_TRUE(node_->finished());
+    EXPECT_EQ(node_->failure(), "");
+    EXPECT_THAT(Verbs(), ElementsAre(Verb::kReset, Verb::kNextPose, Verb::kSweep, Verb::kCapture,
+                                     Verb::kSweep, Verb::kCapture, Verb::kSolve, Verb::kEvaluate));
+    EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr(words), HasSubstr("taken again"))));
+    EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001"));
   }
 }
 

@@ -102,6 +102,24 @@ TEST_F(SupervisorTest, OneThatIsToEndIsDoneAndFailsLikeTheOthers) {
   EXPECT_THAT(told_.back(), "session: ended with exit code 0");
 }
 
+// `doubtful` is 3, `do not use` 4: saved all the same, and to be started anew it would be refused.
+TEST_F(SupervisorTest, ASessionThatEndsByItsVerdictIsDone) {
+  for (const char* code : {"3", "4"}) {
+    told_.clear();
+    Program session = Shell("session", std::string("exit ") + code);
+    session.ends = true;
+    Make({session});
+    ASSERT_TRUE(Until(2, kSecond));
+    EXPECT_TRUE(child().done) << told_.back();
+    EXPECT_EQ(told_.back(), std::string("session: ended with exit code ") + code);
+  }
+  Program solver = Shell("solver", "exit 3");
+  Make({solver});
+  told_.clear();
+  ASSERT_TRUE(Until(2, kSecond));
+  EXPECT_FALSE(child().done) << "it is to run for as long as the rig is up";
+}
+
 TEST_F(SupervisorTest, ItIsNoticedWhereEndsOfChildrenWereIgnored) {
   signal(SIGCHLD, SIG_IGN);
   Make({Shell("failing", "exit 1")});
