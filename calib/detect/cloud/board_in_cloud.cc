@@ -180,6 +180,7 @@ std::vector<Eigen::Vector3d> Outline(const Target& target, const FlatRectangle& 
 struct Candidate {
   CloudEdges edges;
   double score = 0;
+  double but_one = 0;    // the score of the three sides that show most
   double misfit = 0;     // of its outline
   double deviation = 0;  // of its outline's priors
 };
@@ -226,7 +227,11 @@ std::optional<Candidate> FitBoard(const Cloud& cloud, const PlaneMembers& member
   Candidate out;
   out.misfit = rectangle.misfit;
   out.deviation = rectangle.prior_deviation;
-  out.score = rectangle.coverage * filling.inside * (1 - filling.beyond);
+  const double filled = filling.inside * (1 - filling.beyond);
+  out.score = rectangle.coverage * filled;
+  auto sides = rectangle.side_coverage;
+  std::sort(sides.begin(), sides.end());
+  out.but_one = sides[1] * filled;
   out.edges.boundary = Outline(target, rectangle, pose);
   out.edges.centre = pose.translation;
   out.edges.normal = points.plane().normal;
@@ -271,6 +276,12 @@ bool DoesNotRepeat(const RangeGrid& grid) {
          std::is_sorted(utime.begin(), utime.end()) && utime.back() - utime.front() <= kLongest;
 }
 
+// Many write such a cloud without times. Where it is none after all, a turned scanner's whose rig
+// file does not say so, its crossings by the points alone are blunter.
+bool MayNotRepeat(const RangeGrid& grid, const BoardInCloudOptions& options) {
+  return grid.scattered() && grid.cloud().utime.empty() && !options.one_laser;
+}
+
 // Of points that keep to no grid: crossings by the points themselves, and as sharp as they turn out
 // to be. Such LIDARs' beams and angles differ more than those of rings: a Livox's beam is 4.9 mrad
 // high, its angles have a noise of up to 2.6 mrad.
@@ -280,7 +291,7 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
   constexpr double kBluntestRad = 4e-3, kMisfit = 1.2;
   options.edge.class_sigma_rad = std::max(options.edge.class_sigma_rad, kClassSigmaRad);
   constexpr int kRounds = 4;
-  constexpr double kStillM = 0.002, kLeastOnSides = 0.7;
+  constexpr double kStillM = 0.002, kLeastOnSides = 0.7, kLeastOnThree = 0.9;
   constexpr double kMostDeviation = 4, kLeastScore = 0.87;
   const auto cut = [&] {
     return ScatteredCrossings(cloud, members.plane, members.frame, near, target,
@@ -303,11 +314,14 @@ std::optional<Candidate> FitScattered(const Cloud& cloud, PlaneMembers members, 
     if ((near.centre - before).norm() < kStillM) break;
   }
   // What holds the board, or stands beside it in its plane, leaves more than one place for it: then
-  // none is better than a wrong one. A panel a few centimetres larger makes itself fit by shifts
-  // that are hardly likely.
-  const auto on_sides = static_cast<double>(board->edges.crossings.size());
-  const bool is_board = on_sides >= kLeastOnSides * static_cast<double>(members.crossings.size()) &&
-                        board->deviation <= kMostDeviation && board->score >= kLeastScore;
+  // none is better than a wrong one. One side may be hidden, as by the floor that it stands on: the
+  // other three leave one place, where nothing speaks for another. A panel a few centimetres larger
+  // makes itself fit by shifts that are hardly likely.
+  const double on_sides = static_cast<double>(board->edges.crossings.size()) /
+                          static_cast<double>(members.crossings.size());
+  const bool is_whole = on_sides >= kLeastOnSides && board->score >= kLeastScore;
+  const bool is_but_one = on_sides >= kLeastOnThree && board->but_one >= kLeastScore;
+  const bool is_board = board->deviation <= kMostDeviation && (is_whole || is_but_one);
   if (!is_board) return std::nullopt;
   return board;
 }
@@ -382,9 +396,13 @@ std::vector<Candidate> LookCloser(const RangeGrid& grid, PlaneRegion region, con
                                0.5 * std::min(target.width_m, target.height_m)};
     PlaneMembers about = FindMembers(grid, region, closer);
     const FlatRectangle near = InFrame(about.frame, *board);
-    auto better = DoesNotRepeat(grid)
-                      ? FitScattered(grid.cloud(), std::move(about), near, target, options)
-                      : FitBoard(grid.cloud(), about, near, target, options);
+    std::optional<Candidate> better;
+    if (DoesNotRepeat(grid) || MayNotRepeat(grid, options)) {
+      better = FitScattered(grid.cloud(), about, near, target, options);
+    }
+    if (!better && !DoesNotRepeat(grid)) {
+      better = FitBoard(grid.cloud(), about, near, target, options);
+    }
     if (better) found.push_back(std::move(*better));
   }
   if (found.empty()) likeness->Consider(members);

@@ -1,6 +1,8 @@
 // Clouds of a second of LIDARs whose pattern does not repeat, without rings.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calib/detect/cloud/board_in_cloud.h"
 #include "calib/simulate/internal/cloud_world.h"
 
@@ -45,6 +47,47 @@ TEST(LivoxBoard, IsNotFoundWhereThereIsNone) {
     detection.range_sigma_m = options.livox->range_sigma_m;
     EXPECT_TRUE(
         FindBoards(world.Sweep(1'000'000'000), world.target(), detection).candidates.empty());
+  }
+}
+
+// As most programs write such clouds.
+TEST(LivoxBoard, IsFoundAsWellWithoutTimes) {
+  for (int view = 0; view < 4; ++view) {
+    const simulate::Options options = LivoxPhysics(simulate::kAvia);
+    const simulate::CloudWorld world(options, view);
+    BoardInCloudOptions detection;
+    detection.range_sigma_m = options.livox->range_sigma_m;
+    Cloud cloud = world.Sweep(1'000'000'000 + view);
+    const BoardsInCloud with = FindBoards(cloud, world.target(), detection);
+    cloud.utime.clear();
+    const BoardsInCloud without = FindBoards(cloud, world.target(), detection);
+    ASSERT_FALSE(with.candidates.empty()) << view << ": " << with.why;
+    ASSERT_FALSE(without.candidates.empty()) << view << ": " << without.why;
+    EXPECT_LT((without.candidates[0].centre - with.candidates[0].centre).norm(), 1e-9) << view;
+    EXPECT_EQ(without.candidates[0].crossings.size(), with.candidates[0].crossings.size()) << view;
+  }
+}
+
+// Before the board, a floor as high as its lowest corner: beams below it end on the floor.
+TEST(LivoxBoard, IsFoundWhereTheFloorHidesOneSide) {
+  simulate::Options options = LivoxPhysics(simulate::kAvia);
+  options.pose.max_roll_rad = 0;
+  for (int view = 0; view < 4; ++view) {
+    const simulate::CloudWorld world(options, view);
+    const Rigid3& truth = world.lidar_from_target();
+    BoardInCloudOptions detection;
+    detection.range_sigma_m = options.livox->range_sigma_m;
+    Cloud cloud = world.Sweep(1'000'000'000 + view);
+    double lowest = 0;
+    for (const Eigen::Vector3d& corner : world.target().OutlineCorners()) {
+      lowest = std::min(lowest, (truth * corner).z());
+    }
+    for (Eigen::Vector3f& p : cloud.points) {
+      if (p.z() < lowest) p *= static_cast<float>(lowest) / p.z();
+    }
+    const BoardsInCloud boards = FindBoards(cloud, world.target(), detection);
+    ASSERT_FALSE(boards.candidates.empty()) << view << ": " << boards.why;
+    EXPECT_LT((boards.candidates[0].centre - truth.translation).norm(), 0.03) << view;
   }
 }
 
