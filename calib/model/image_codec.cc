@@ -17,6 +17,8 @@ namespace rgbdt {
 namespace {
 
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 27;
+// No format packs more into a byte: 1032 bytes of deflate with 8 pixels each are half of it.
+constexpr std::int64_t kMostPixelsOfAByte = std::int64_t{1} << 14;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
 // OpenCV's words end in a new line, or go on in a next one.
@@ -210,6 +212,11 @@ cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& wher
     throw InputError(where + " is an image of " + std::to_string(said->width) + "x" +
                      std::to_string(said->height) + " pixels; expected at most " +
                      std::to_string(kMostPixels));
+  }
+  if (said->width * said->height > static_cast<std::int64_t>(size) * kMostPixelsOfAByte) {
+    throw InputError(where + " says that it is an image of " + std::to_string(said->width) + "x" +
+                     std::to_string(said->height) + " pixels, which its " + std::to_string(size) +
+                     " bytes cannot hold");
   }
   cv::Mat image;
   std::string reason = "damaged, cut short or of an unknown format";

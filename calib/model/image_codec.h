@@ -22,8 +22,8 @@ bool IsTurnedByExif(const void* bytes, std::size_t size);
 
 /// The pixels of a PNG, JPEG, TIFF, BMP or PNM as they are stored: depth and channels unchanged, no
 /// rotation by EXIF. Throws InputError, which begins with `where`, for bytes that cannot be
-/// decoded, for a PNG that is cut short or damaged, and for an image of more than 2^27 pixels,
-/// which is not unpacked.
+/// decoded, for a PNG that is cut short or damaged, and for an image of more than 2^27 pixels or of
+/// more than `size` bytes can hold, which is not unpacked.
 cv::Mat DecodeImage(const void* bytes, std::size_t size, const std::string& where);
 
 }  // namespace rgbdt

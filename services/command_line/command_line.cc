@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 #include "calib/model/version.h"
 #include "services/command_line/commit.h"
@@ -82,11 +83,12 @@ std::string VersionText() {
   return Version() + (commit.empty() ? "" : " (commit " + commit + ")");
 }
 
-// What others throw may have lines.
+// What others throw may have lines, and a stranger's file or its name what moves a terminal's
+// cursor.
 std::string OneLine(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+  return PrintableText(text);
 }
 
 // After the names of a choice: in its line, or in lines of its own.

@@ -8,6 +8,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/version.h"
 #include "services/bags/mcap_writer.h"
 #include "services/bus/log.h"
@@ -158,7 +159,7 @@ ExportedLog ExportLog(const std::string& log_path, const std::filesystem::path& 
       throw;
     } catch (const std::exception& error) {
       ++exported.dropped;
-      exported.last_problem = event->channel + ": " + error.what();
+      exported.last_problem = PrintableText(event->channel) + ": " + error.what();
     }
   }
   stream.Finish();

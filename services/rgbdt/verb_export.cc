@@ -39,7 +39,7 @@ FrameNames FramesOf(const ExportFlags& flags) {
 // What was written, what was left out, and what went wrong on the way.
 void PrintExported(const ExportFlags& flags, const std::string& out, const ExportedLog& exported) {
   for (const auto& [name, topic] : exported.topics) {
-    std::printf("%s  %s  %lld messages\n", name.c_str(), topic.schema.c_str(),
+    std::printf("%s  %s  %lld messages\n", Printable(name).c_str(), topic.schema.c_str(),
                 static_cast<long long>(topic.messages));
   }
   for (const auto& [channel, count] : exported.left_out) {

@@ -162,6 +162,17 @@ for name in '\\n\\033[2J' '\\302\\233' '\\342\\200\\256'; do # the last two: U+0
   harmless "a file of no text"
 done
 
+# Names that stand in its texts.
+for name in '\\033[2J' '\\342\\200\\256'; do
+  session
+  sed -i "0,/name: \"/s//name: \"$name/" "$bad/rig.textproto"
+  for verb in calibrate evaluate fuse export intrinsics; do
+    says=("rig.textproto:4" "control character")
+    refuses "a rig's name of no text ($verb)" "${bounded[@]}" "$bin/rgbdt" "$verb" "$bad" --out "$scratch/kept"
+    one_line "a rig's name of no text ($verb)"
+  done
+done
+
 # What is written goes into the directory, whatever lies there under its name.
 session
 echo precious >"$scratch/outside/precious"

@@ -9,6 +9,7 @@
 #include "calib/files/check_writable.h"
 #include "calib/files/import/camera_kind.h"
 #include "calib/files/import/internal/folder_files.h"
+#include "calib/files/import/internal/view_names.h"
 #include "calib/files/import/lens_file.h"
 #include "calib/files/name_keys.h"
 #include "calib/files/schema/rig_file.h"
@@ -230,14 +231,6 @@ Rig MakeRig(const Folders& folders, const std::vector<ReadCamera>& cameras) {
   return rig;
 }
 
-std::string ViewName(const std::string& file, UniqueNames* names) {
-  std::string name = StemOf(file).substr(0, 90);
-  for (char& c : name) {
-    if (static_cast<unsigned char>(c) <= ' ') c = '_';
-  }
-  return names->Make(PrintableText(name));
-}
-
 FileList CloudsOf(const Folders::Lidar& lidar) {
   if (lidar.names.empty()) return ListClouds(lidar.clouds);
   return {lidar.clouds, lidar.names, "cloud"};
@@ -273,14 +266,14 @@ std::vector<ViewFiles> MakeViews(const Folders::Lidar& lidar, const FileList& cl
   for (const auto& [cloud, view] : of_cloud) used.push_back(cloud);
   const std::vector<std::string> problems = LookAtClouds(lidar, clouds, used);
   std::vector<ViewFiles> views;
-  UniqueNames taken;
+  ViewNames names;
   for (std::size_t k = 0; k < used.size(); ++k) {
     if (!problems[k].empty()) {
       left_over->push_back(problems[k]);
       continue;
     }
     ViewFiles& view = of_cloud[used[k]];
-    view.name = ViewName(clouds.names[used[k]], &taken);
+    view.name = names.NameOf(clouds.names[used[k]]);
     view.cloud = clouds.folder / clouds.names[used[k]];
     views.push_back(std::move(view));
   }

@@ -92,7 +92,7 @@ bool IsMap(const ply::File& file) {
 
 void ReadComments(const ply::File& file, const std::string& where, MapCloud* map) {
   const std::string voxel = Comment(file, "voxel_m").value_or("");
-  map->frame = Comment(file, "frame").value_or("map");
+  map->frame = Word(Comment(file, "frame").value_or("map"));
   const auto [end, error] =
       std::from_chars(voxel.data(), voxel.data() + voxel.size(), map->voxel_m);
   if (error != std::errc() || !(map->voxel_m > 0 && map->voxel_m < 1e6)) {

@@ -1,12 +1,11 @@
 #include "calib/files/schema/session_script.h"
 
-#include <cmath>
-
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session.pb.h"
 #include "calib/files/schema/text_proto.h"
 #include "calib/model/errors.h"
+#include "calib/model/text.h"
 
 namespace rgbdt {
 namespace {
@@ -22,9 +21,10 @@ constexpr double kDefaultTimeout = 60;
 }
 
 double CheckSeconds(double seconds, const Place& place, int index, const std::string& field) {
-  if (!(seconds >= 0) || !std::isfinite(seconds)) {
+  constexpr double kMost = 7 * 24 * 3600.;
+  if (!(seconds >= 0 && seconds <= kMost)) {
     FailStep(place, index,
-             "has " + field + " " + std::to_string(seconds) + "; expected seconds, 0 or more");
+             "has " + field + " " + Format("%g", seconds) + "; expected seconds, a week at most");
   }
   return seconds;
 }

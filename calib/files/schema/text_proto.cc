@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt::text {
@@ -82,6 +83,58 @@ class FirstError : public google::protobuf::io::ErrorCollector {
   const std::string& source_;
 };
 
+std::string NamesOf(const google::protobuf::EnumDescriptor& type) {
+  std::string names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    if (type.value(i)->number() == 0) continue;  // unspecified
+    names += (names.empty() ? "" : ", ") + type.value(i)->name();
+  }
+  return names;
+}
+
+// What Protobuf takes and nobody else would: numbers for names that there are not, and texts that
+// break a line where they are printed. Element `i` of `field`, which may be repeated.
+void CheckValue(const google::protobuf::Message& message, const FieldDescriptor* field, int i,
+                const Place& place) {
+  const auto* reflection = message.GetReflection();
+  const bool repeated = field->is_repeated();
+  if (field->cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+    const std::string value = repeated ? reflection->GetRepeatedString(message, field, i)
+                                       : reflection->GetString(message, field);
+    if (IsPrintable(value)) return;
+    place.Fail(field->name(), "is \"" + PrintableText(value) +
+                                  "\", which has a line break or another control character, or "
+                                  "bytes that are no UTF-8; expected text of one line");
+  }
+  if (field->cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
+    const int value = repeated ? reflection->GetRepeatedEnumValue(message, field, i)
+                               : reflection->GetEnumValue(message, field);
+    if (field->enum_type()->FindValueByNumber(value) != nullptr) return;
+    place.Fail(field->name(), "is " + std::to_string(value) +
+                                  "; expected one of: " + NamesOf(*field->enum_type()));
+  }
+}
+
+void CheckValues(const google::protobuf::Message& message, const Place& place) {
+  const auto* reflection = message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection->ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    const bool repeated = field->is_repeated();
+    const int count = repeated ? reflection->FieldSize(message, field) : 1;
+    const bool is_message = field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    for (int i = 0; i < count; ++i) {
+      if (!is_message) {
+        CheckValue(message, field, i, place);
+        continue;
+      }
+      CheckValues(repeated ? reflection->GetRepeatedMessage(message, field, i)
+                           : reflection->GetMessage(message, field),
+                  place.In(field->name(), i));
+    }
+  }
+}
+
 int LineOf(const Place::Tree* tree, const FieldDescriptor* field, int index) {
   if (tree == nullptr || field == nullptr) return 0;
   return tree->GetLocation(field, field->is_repeated() ? index : -1).line + 1;
@@ -130,7 +183,9 @@ Place ParseText(const std::string& text, const std::string& file,
   if (!parser.ParseFromString(text, message)) {
     throw InputError(file + ":" + (error.text.empty() ? " cannot be parsed" : error.text));
   }
-  return {file, message->GetDescriptor(), tree};
+  Place place(file, message->GetDescriptor(), tree);
+  CheckValues(*message, place);
+  return place;
 }
 
 std::string PrintText(const google::protobuf::Message& message, const std::string& comment) {

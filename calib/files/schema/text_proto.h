@@ -42,7 +42,8 @@ class Place {
 };
 
 /// Parses `text` into `message` and fills `tree`. Throws InputError with file, line, column and
-/// what is wrong (an unknown key is named).
+/// what is wrong (an unknown key is named), also for a string with control characters and for a
+/// number in place of a name that there is not.
 Place ParseText(const std::string& text, const std::string& file,
                 google::protobuf::Message* message, Place::Tree* tree);
 

@@ -9,7 +9,6 @@
 #include "calib/files/schema/text_proto.h"
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
-#include "calib/model/printable.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -50,17 +49,6 @@ std::size_t IndexOf(const Session& session, const std::string& view) {
   }
   throw InputError("the session " + session.root.string() + " has no view \"" + view +
                    "\"; it has: " + names);
-}
-
-// Where a field names a file of the view.
-fs::path FileOf(const fs::path& folder, const std::string& file, const Place& place,
-                const std::string& field) {
-  if (!IsPrintable(file)) {
-    place.Fail(field, "is \"" + PrintableText(file) +
-                          "\", which has a line break or another control character, or bytes that "
-                          "are no UTF-8; rename the file");
-  }
-  return folder / file;
 }
 
 // Runs `read`, and says which field of which file asked for what it could not read.
@@ -119,7 +107,7 @@ Image ReadImage(const proto::ViewImage& message, const Rig& rig, const fs::path&
       place, "camera",
       [&]() -> std::reference_wrapper<const CameraSpec> { return rig.Camera(message.camera()); });
   if (message.file().empty()) place.Fail("file", "is missing; expected the image's path");
-  const fs::path file = FileOf(folder, message.file(), place, "file");
+  const fs::path file = folder / message.file();
   Image image;
   image.camera = camera.name;
   image.pixels = ReadFor(place, "file", [&] { return DecodeImageFile(file); });
@@ -205,7 +193,7 @@ void RequireCloud(const ViewFile& file, const Place& place) {
 }
 
 Cloud ReadCloudOf(const ViewFile& file, const Place& place) {
-  const fs::path cloud = FileOf(file.folder, file.message.cloud(), place, "cloud");
+  const fs::path cloud = file.folder / file.message.cloud();
   return ReadFor(place, "cloud", [&] { return ReadSweep(cloud, file.message.sweep_utime()); });
 }
 
@@ -225,7 +213,7 @@ std::vector<LidarCloud> ReadFurtherClouds(const ViewFile& file, const Rig& rig,
       at.Fail("lidar", "is \"" + message.lidar() + "\" for the second time");
     }
     if (message.file().empty()) at.Fail("file", "is missing; expected the PCD file's path");
-    const fs::path path = FileOf(file.folder, message.file(), at, "file");
+    const fs::path path = file.folder / message.file();
     clouds.push_back({message.lidar(), ReadFor(at, "file", [&] {
                         return ReadSweep(path, file.message.sweep_utime());
                       })});

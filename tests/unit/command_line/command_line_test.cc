@@ -164,6 +164,9 @@ TEST(CommandLine, TellsWhatIsThrown) {
   EXPECT_EQ(RunWith(&line, {}, []() -> int { throw std::runtime_error("two\nlines\n"); }), 1);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: two lines\n");
   testing::internal::CaptureStderr();
+  EXPECT_EQ(RunWith(&line, {}, []() -> int { throw std::runtime_error("\x1b[2J\u202e\xff"); }), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "program: ?[2J?\uFFFD\n");
+  testing::internal::CaptureStderr();
   EXPECT_EQ(RunWith(&line, {}, []() -> int { throw UsageError("--a goes with --b"); }), 2);
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
             "program: --a goes with --b; see program --help\n");

@@ -8,6 +8,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
+#include "calib/model/printable.h"
 #include "services/bags/bag_reader.h"
 #include "services/foxglove/foxglove.pb.h"
 #include "services/messages/codec.h"
@@ -262,6 +263,14 @@ TEST_F(ExportingLog, WhatCannotBeReadCostsItselfAlone) {
   EXPECT_THAT(exported.last_problem, HasSubstr("CLOUD: "));
   EXPECT_EQ(exported.left_out.at("NOBODYS"), 1);
   EXPECT_EQ(exported.topics.at("/lidar/points").messages, 1);
+}
+
+TEST_F(ExportingLog, AChannelThatMovesACursorIsToldWithout) {
+  Add(Chunk(kStart, 0, 1));
+  log_.Write("\x1b[2J\n_IMAGE", Bytes(100, 7), 42);
+  const ExportedLog exported = Export();
+  EXPECT_EQ(exported.dropped, 1);
+  EXPECT_TRUE(IsPrintable(exported.last_problem)) << exported.last_problem;
 }
 
 TEST_F(ExportingLog, WithoutAnythingToExportTheOldFileStays) {

@@ -166,5 +166,42 @@ TEST(ImageFiles, EveryFormatTellsItsSizeBeforeItIsUnpacked) {
   EXPECT_THAT(error(encoded(".webp")), HasSubstr("expected a PNG, JPEG, TIFF, BMP or PNM"));
 }
 
+// Each of these took OpenCV half a second.
+TEST(ImageFiles, AnImageThatItsFewBytesCannotHoldIsNotUnpacked) {
+  // One strip or tile of zeros by deflate: 11536x11536 pixels.
+  const auto tiff = [](const std::string& sides) {
+    const auto entry = [](const std::string& tag, char value_low, char value_high = 0) {
+      return tag + "\4\0\1\0\0\0"s + value_low + value_high + "\0\0"s;
+    };
+    return "II*\0\x08\0\0\0\x09\0"s + sides + entry("\x02\1"s, 8) + entry("\x03\1"s, 8) +
+           entry("\x06\1"s, 1) + entry("\x11\1"s, '\x7a') + entry("\x15\1"s, 1) +
+           entry("\x16\1"s, '\x10', '\x2d') + entry("\x17\1"s, 12) + "\0\0\0\0"s +
+           "\x78\x9c\x63\x60\0\0\0\x01\0\x01"s;
+  };
+  const std::string side = "\4\0\1\0\0\0\x10\x2d\0\0"s;
+  const std::string strip = tiff("\0\1"s + side + "\1\1"s + side);
+  const std::string jpeg = EncodeJpeg(cv::Mat::zeros(64, 48, CV_8UC1), 90);
+  std::string large_jpeg = jpeg;
+  const std::size_t frame = jpeg.find("\xFF\xC0"s);
+  ASSERT_NE(frame, std::string::npos);
+  for (const std::size_t i : {5, 7}) large_jpeg.replace(frame + i, 2, "\x2d\x10"s);
+  for (const std::string& bytes : {strip, large_jpeg}) {
+    EXPECT_THAT(test::ErrorOf([&] { DecodeImage(bytes.data(), bytes.size(), "bomb"); }),
+                HasSubstr("11536x11536 pixels, which its " + std::to_string(bytes.size()) +
+                          " bytes cannot hold"));
+  }
+}
+
+// As few bytes as a picture of one colour has.
+TEST(ImageFiles, APictureOfOneColourIsRead) {
+  for (const std::string extension : {".png", ".jpg", ".tif"}) {
+    std::vector<unsigned char> bytes;
+    cv::imencode(extension, cv::Mat::zeros(1456, 1936, CV_8UC1), bytes,
+                 {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_BILEVEL, 1,
+                  cv::IMWRITE_JPEG_OPTIMIZE, 1, cv::IMWRITE_JPEG_QUALITY, 1});
+    EXPECT_EQ(DecodeImage(bytes.data(), bytes.size(), "a").cols, 1936) << extension;
+  }
+}
+
 }  // namespace
 }  // namespace rgbdt

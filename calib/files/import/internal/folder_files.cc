@@ -12,6 +12,7 @@
 #include "calib/model/errors.h"
 #include "calib/model/image_codec.h"
 #include "calib/model/parallel.h"
+#include "calib/model/printable.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
 
@@ -30,18 +31,32 @@ struct Others {
   std::set<std::string> folders;
 };
 
-std::string Described(const Others& others) {
+// The first few, as there may be very many.
+std::string Listed(const std::vector<std::string>& words) {
+  constexpr std::size_t kMost = 8;
   std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, words.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + words[i];
+  }
+  return words.size() > kMost ? text + " and " + std::to_string(words.size() - kMost) + " more"
+                              : text;
+}
+
+std::string Described(const Others& others) {
+  std::vector<std::string> files, folders;
   for (const auto& [ending, count] : others.endings) {
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
-            (ending.empty() ? "without an ending" : ending);
+    files.push_back(std::to_string(count) + " " + (ending.empty() ? "without an ending" : ending));
   }
-  std::string folders;
-  for (const std::string& name : others.folders) {
-    folders += (folders.empty() ? "" : ", ") + name + "/";
-  }
-  if (!text.empty() && !folders.empty()) text += " and ";
-  return text.empty() && folders.empty() ? "nothing" : text + folders;
+  for (const std::string& name : others.folders) folders.push_back(name + "/");
+  if (files.empty() && folders.empty()) return "nothing";
+  return Listed(files) + (files.empty() || folders.empty() ? "" : " and ") + Listed(folders);
+}
+
+// Names are printed, and stand in texts and pages.
+void CheckName(const fs::path& folder, const std::string& name) {
+  if (IsPrintable(name)) return;
+  throw InputError(folder.string() + "/" + PrintableText(name) +
+                   ": its name has a control character or is not UTF-8; rename it");
 }
 
 FileList List(const fs::path& folder, const std::set<std::string>& endings, const char* what,
@@ -56,6 +71,7 @@ FileList List(const fs::path& folder, const std::set<std::string>& endings, cons
     if (it->is_directory(error)) {
       others.folders.insert(name);
     } else if (endings.count(EndingOf(it->path())) != 0) {
+      CheckName(folder, name);
       files.names.push_back(name);
     } else {
       ++others.endings[EndingOf(it->path())];

@@ -3,6 +3,7 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
 #include "calib/files/points/cloud_files.h"
+#include "calib/model/printable.h"
 #include "tests/unit/files/test_data.h"
 
 namespace rgbdt {
@@ -271,6 +272,29 @@ TEST_F(FoldersTest, FoldersThatMakeNoSenseAreRefused) {
   EXPECT_THAT(Error(), AllOf(HasSubstr("40x30"), HasSubstr("20x15")));
   Image("a", "p2", CV_16UC1);
   EXPECT_THAT(Error(), HasSubstr("8 bits and 16"));
+}
+
+// They would be printed, those without a pair, too.
+TEST_F(FoldersTest, NamesThatMoveACursorAreRefused) {
+  for (const std::string bad : {"\x1b[2J", "\n", "\xff", "\u202e"}) {
+    Image("a", "alone" + bad, CV_8UC3);
+    EXPECT_THAT(Error(), AllOf(HasSubstr("/a/alone"), HasSubstr("rename it")));
+    EXPECT_TRUE(IsPrintable(Error()));
+    fs::remove(dir_ / ("a/alone" + bad + ".png"));
+  }
+}
+
+TEST_F(FoldersTest, OfManyOtherFilesAFewAreTold) {
+  folders_.lidars = {{"", dir_ / "others"}};
+  fs::create_directory(dir_ / "others");
+  for (int i = 0; i < 1000; ++i) {
+    test::WriteQuickly(dir_ / ("others/a.x" + std::to_string(i)), "");
+    fs::create_directory(dir_ / ("others/folder" + std::to_string(i)));
+  }
+  const std::string error = Error();
+  EXPECT_THAT(error, AllOf(HasSubstr("1 .x0, "), HasSubstr("and 992 more and folder0/, "),
+                           HasSubstr("/ and 992 more")));
+  EXPECT_LT(error.size(), 1000u);
 }
 
 TEST_F(FoldersTest, CloudsOfFurtherLidarsJoinTheReferences) {

@@ -35,6 +35,15 @@ TEST(MapFiles, ReadsBackWhatItWrote) {
   EXPECT_EQ(back.voxel_m, 0.1);
 }
 
+TEST(MapFiles, AFramesNameIsAWordThatMovesNoCursor) {
+  const TempDir dir;
+  WriteMapPly(dir / "map.ply", MakeMap());
+  std::string bytes = ReadWholeFile(dir / "map.ply");
+  const std::string frame = "frame: map";
+  bytes.replace(bytes.find(frame), frame.size(), "frame: \x1b[2J");
+  EXPECT_EQ(ParseMapPly(bytes, "m.ply").frame, "__2J");
+}
+
 TEST(MapFiles, ABadMapIsNotWritten) {
   const TempDir dir;
   EXPECT_THAT(ErrorOf([&] { WriteMapPly(dir / "map.ply", {}); }), HasSubstr("empty"));

@@ -382,6 +382,11 @@ TEST(RigFile, WrongValuesAreNamedWithLineAndKey) {
   expect("roll_pitch_yaw_deg: [-90, 0, -90]", "", "10: ", "roll_pitch_yaw_deg");
   expect("kind: COLOR", "", "3: camera.kind", "COLOR or THERMAL");
   expect("pixel_format: BGR8", "", "3: camera.pixel_format", "missing");
+  // Protobuf takes any number for a name.
+  expect("kind: COLOR", "kind: 9", "5: camera.kind is 9", "expected one of: COLOR, THERMAL");
+  expect("pixel_format: BGR8", "pixel_format: 77", "8: camera.pixel_format is 77", "BGR8");
+  expect("{ name: \"lidar\" }", "{ name: \"lidar\" velodyne { model: 99 } }",
+         "2: lidar.velodyne.model is 99", "VLP16");
 }
 
 TEST(RigFile, WhatIsMissingIsNamed) {

@@ -51,6 +51,7 @@ TEST_F(Script, ErrorsNameLineAndStep) {
   EXPECT_THAT(ErrorOf("step { sweep {} timeout_s: -1 }"), HasSubstr("step 1 has timeout_s -1"));
   EXPECT_THAT(ErrorOf("step { wait { seconds: -3 } }"), HasSubstr("step 1 has wait.seconds -3"));
   EXPECT_THAT(ErrorOf("step { wait { seconds: nan } }"), HasSubstr("step 1"));
+  EXPECT_THAT(ErrorOf("step { wait { seconds: 1e300 } }"), HasSubstr("a week at most"));
   EXPECT_THAT(ErrorOf("step { capture {} }"), HasSubstr("step 1 captures"));
   EXPECT_THAT(ErrorOf("step { sweep {} }\nstep { next_pose {} }\nstep { capture {} }"),
               HasSubstr("step 3 captures"));

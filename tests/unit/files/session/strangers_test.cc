@@ -1,5 +1,6 @@
 // Sessions that a stranger made: what they hold is told in one line, costs little, and nothing
 // outside their folder is changed.
+#include <algorithm>
 #include <fstream>
 
 #include "calib/files/atomic_file.h"
@@ -131,6 +132,31 @@ TEST_F(StrangersSession, NamesThatMoveACursorOrTurnTextAboutAreNoNames) {
     view.name = bad;
     EXPECT_THAT(test::ErrorOf([&] { WriteView(dir(), view); }),
                 HasSubstr("cannot be a file's name"));
+  }
+}
+
+// Of rigs the first LIDAR's and a machine's name are any text, and errors tell what they quote.
+TEST_F(StrangersSession, TextsThatMoveACursorAreRefusedWhereTheyStand) {
+  WriteCalibration(dir() / "calibration.textproto", test::MakeReport().ToCalibration());
+  for (const std::string name :
+       {"rig.textproto", "calibration.textproto", "views/0001/view.textproto"}) {
+    const std::string kept = ReadWholeFile(dir() / name);
+    for (std::size_t at = kept.find(": \""); at != std::string::npos; at = kept.find(": \"", at)) {
+      at += 3;
+      for (const std::string bad : {"\\033[2J", "\\n", "\xe2\x80\xae"}) {
+        std::string text = kept;
+        test::WriteQuickly(dir() / name, text.insert(at, bad));
+        const std::string error = test::ErrorOf([&] {
+          ReadView(OpenSession(dir()), "0001");
+          ReadCalibration(dir() / "calibration.textproto");
+        });
+        const auto line = std::count(kept.begin(), kept.begin() + static_cast<long>(at), '\n') + 1;
+        EXPECT_THAT(error, AllOf(HasSubstr(name + ":" + std::to_string(line) + ": "),
+                                 HasSubstr("control character")));
+        EXPECT_TRUE(IsPrintable(error)) << error;
+      }
+    }
+    test::WriteQuickly(dir() / name, kept);
   }
 }
 
