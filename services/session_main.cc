@@ -4,6 +4,7 @@
 #include <random>
 
 #include "calib/files/check_writable.h"
+#include "calib/files/folder_lock.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/files/schema/session_script.h"
 #include "calib/model/errors.h"
@@ -59,6 +60,7 @@ std::unique_ptr<rgbdt::SessionNode> LedByThePage(const Flags& flags) {
 
 int Run(const Flags& flags) {
   rgbdt::CheckWritable(std::filesystem::path(flags.out) / "rig.textproto");
+  const rgbdt::FolderLock lock(flags.out, "rgbdt-session");
   const auto node = flags.script.empty() ? LedByThePage(flags) : ByScript(flags);
   const int code = rgbdt::RunOnLcm(*node, flags.bus);
   if (const std::string lost = node->WriteWhatIsKept(); !lost.empty()) {

@@ -29,6 +29,8 @@ Message DecodeEvent(const LogEvent& event) {
   return Decode(event.channel, event.bytes.data(), event.bytes.size());
 }
 
+constexpr std::size_t kMostLeftOut = 100;  // channels by name: a log may be a stranger's
+
 // What must be known before the first message is written.
 struct LogSurvey {
   Utime first = 0;         // sensor time; 0: there is none
@@ -43,7 +45,9 @@ LogSurvey SurveyLog(const std::string& path, const std::function<void(double)>& 
   while (const auto event = log.Next()) {
     if (progress) progress(0.5 * log.position() / static_cast<double>(log.size()));
     if (!IsExported(event->channel)) {
-      ++survey.left_out[event->channel];
+      const bool named =
+          survey.left_out.size() < kMostLeftOut || survey.left_out.count(event->channel) != 0;
+      ++survey.left_out[named ? event->channel : "other channels"];
       continue;
     }
     survey.fused_sweeps |= event->channel == "RGBDT_SWEEP";

@@ -94,37 +94,13 @@ Image Packed(Image image, bool compressed) {
   return Packed(std::move(image));
 }
 
-// It has its name once it is whole.
-class PartFile {
- public:
-  explicit PartFile(const std::filesystem::path& path)
-      : path_(path), part_(path.string() + ".part") {
-    std::error_code ignored;  // what cannot be made is told where it is opened
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), ignored);
-  }
-  ~PartFile() {
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
-  }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-
-  const std::string& name() const { return part_; }
-  void Keep() const { Rename(part_, path_); }
-
- private:
-  std::filesystem::path path_;
-  std::string part_;
-};
-
 }  // namespace
 
 WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::optional<LogRig>& rig,
                     const CloudReader& read_cloud, const std::filesystem::path& path,
                     const std::function<void(double)>& progress) {
   const std::vector<Source> sources = SourcesOf(choice, rig);
-  const PartFile file(path);
-  TimedLog log(file.name());
+  TimedLog log(path);
   WrittenLog written;
   std::map<std::string, std::int64_t> images_of;
   Utime rig_due = 0;
@@ -168,7 +144,6 @@ WrittenLog WriteLog(BagReader* bag, const TopicChoice& choice, const std::option
     throw InputError("no image of camera " + camera.name + " can be used: " + written.last_problem);
   }
   log.Close();
-  file.Keep();
   return written;
 }
 

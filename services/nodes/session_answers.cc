@@ -44,6 +44,7 @@ void SessionNode::Take(const Message& message) {
     collector_.Add(*picks);
   } else if (const auto* detection = std::get_if<ViewDetection>(&message)) {
     if (!IsCaptured(*detection)) return;
+    newly_detected_.insert(detection->view);
     solver_views_.Add(*detection);
     SaveDetection(detection->view);
   } else if (const auto* left_out = std::get_if<LeftOutViews>(&message)) {
@@ -183,7 +184,11 @@ void SessionNode::Append(SessionStep::Kind kind, bool heldout) {
 void SessionNode::OnEvent(const SessionEvent& event) {
   if (event.source == name()) return;
   const auto capture = captures_.find(event.command);
-  if (event.source == "detector" && capture != captures_.end() && event.command != command_) {
+  const bool of_capture = event.source == "detector" && capture != captures_.end();
+  // Without a DETECTION its last word is said again (AnsweredCommands).
+  const bool detected = of_capture && newly_detected_.erase(capture->second.view) != 0;
+  if (of_capture && event.command != command_) {
+    if (!detected && event.kind == EventKind::kDone) return;
     PublishEvent(event.kind, "view " + capture->second.view + ", once more: " + event.text, 1);
     if (!by_request_ || finished_ || event.kind != EventKind::kDone) return;
     Append(SessionStep::Kind::kSolve);

@@ -215,8 +215,9 @@ class SessionNode : public Node {
   std::string last_answer_;  // of the newest step that was answered
   std::map<std::pair<std::string, Utime>, std::string> images_;  // of views on disk: camera, utime
   std::map<std::int64_t, SessionCommand> captures_;              // by their numbers
-  std::set<std::string> taken_;  // views of this start, on disk or not yet
-  Messages events_;              // not yet published
+  std::set<std::string> taken_;           // views of this start, on disk or not yet
+  Messages events_;                       // not yet published
+  std::set<std::string> newly_detected_;  // views whose detector's word is still to come
   SolverViews solver_views_;
   Messages again_;  // for the solver, not yet published
   Utime sweep_utime_ = 0;

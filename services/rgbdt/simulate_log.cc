@@ -61,7 +61,7 @@ std::vector<Shutter> ShuttersOf(const Rig& rig, const LogOptions& what) {
 // how far it is. `source`: Waving, or Driving.
 template <typename Source>
 void Record(const LogOptions& what, const Rig& rig, Source* source) {
-  TimedLog log(what.log.string());
+  TimedLog log(what.log);
   std::vector<Shutter> shutters = ShuttersOf(rig, what);
   const Utime revolution = FromSeconds(what.revolution_s);
   const Utime end = what.start + FromSeconds(what.seconds);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "calib/files/check_writable.h"
+#include "calib/files/folder_lock.h"
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/model/errors.h"
@@ -120,6 +121,13 @@ void RequireCalibrated(const std::filesystem::path& session, const std::string& 
   PrintDoubts(calibration, rig, file);
 }
 
+// What a process printed in the run before is what tells why one is begun anew.
+void KeepEarlier(const std::filesystem::path& log) {
+  if (std::filesystem::exists(log)) {
+    std::filesystem::rename(log, std::filesystem::path(log) += ".earlier");
+  }
+}
+
 int RunUp(UpFlags flags) {
   const Rig rig = ReadRig(flags.rig);
   const bool drives = !flags.drive.empty();
@@ -156,8 +164,9 @@ int RunUp(UpFlags flags) {
   if (Find(programs, "session") != nullptr) {
     ReadEarlierViews(flags.out, rig);
     CheckWritable(std::filesystem::path(flags.out) / "rig.textproto");
+    const FolderLock free(flags.out, "rgbdt-session");
   }
-  for (const Program& program : programs) std::filesystem::remove(program.log);
+  for (const Program& program : programs) KeepEarlier(program.log);
   const Program* viewer = Find(programs, "viewer");
   Screen screen(viewer == nullptr ? std::filesystem::path() : viewer->log);
   std::printf("What the processes print is in %s\n", options.logs.c_str());
@@ -191,8 +200,10 @@ void AddUp(CommandLine* program) {
                "of a drive the folder of its map, map.ply. Default: out/session; out/drive");
   verb->Option("--drive", &flags->drive,
                "SESSION, a calibrated one: the rig drives, and is watched and mapped");
-  verb->Option("--logs", &flags->logs,
-               "folder for what the processes print; default: beside the session's, OUT.logs");
+  verb->Option(
+      "--logs", &flags->logs,
+      "folder for what the processes print, and printed in the run before (NAME.log.earlier); "
+      "default: beside the session's, OUT.logs");
   verb->Option(
       "--log", &flags->log,
       "keep what is said on the bus here, by lcm-logger: FILE.00, and FILE.01 where it died "

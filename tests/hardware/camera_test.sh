@@ -115,6 +115,11 @@ for view in 0001 0002; do
   done
   helper raw "$scratch/captures/$view/rgb.png" "$color_frames" || fail "the capture is not raw"
 done
+helper capture 0001  # as the next session calls its first view
+until [ -s "$scratch/captures/0001/rgb.1.png" ] && [ -s "$scratch/captures/0001/rgb.png" ]; do
+  sleep 0.2
+  [ $((waited = waited + 1)) -lt 200 ] || fail "the earlier session's raw image was not kept"
+done
 stop TERM rgb
 start_driver thermal
 helper images THERMAL_IMAGE "$thermal_frames" 10 || fail "PNG changed the counts"

@@ -35,6 +35,14 @@ until [ -s "$scratch/disturbed/views/0002/view.textproto" ]; do
 done
 refused second "$scratch/session.textproto"
 refused third
+
+echo "== one on another bus, in the first one's folder"
+code=0
+"$bin/rgbdt-session" --rig "$scratch/rig.textproto" --out "$scratch/disturbed" \
+  --lcm-url 'udpm://239.255.76.67:7668?ttl=0' >"$scratch/same_folder.log" 2>&1 || code=$?
+[ "$code" = 1 ] || fail "a session in another one's folder ended with exit code $code"
+grep "rgbdt-session: $scratch/disturbed: another rgbdt-session writes to it" \
+  "$scratch/same_folder.log" || fail "it did not name the folder"
 end_session disturbed
 [ "$(grep -c 'another rgbdt-session is on this bus' "$scratch/disturbed.log")" = 2 ] ||
   fail "the first session did not warn of each of the others, once"

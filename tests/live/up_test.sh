@@ -92,8 +92,21 @@ for options in "--out $scratch/file/session --logs $scratch/logs" \
   if grep started "$scratch/refused.log"; then fail "$options: something was started"; fi
 done
 
-echo "== killed itself, it takes all along"
+echo "== so is a session that another process writes, on whichever bus"
+mkdir "$scratch/taken"
+code=0
+flock "$scratch/taken" timeout 60 "$bin/rgbdt" up "$scratch/rig.textproto" --out "$scratch/taken" \
+  --listen 127.0.0.1:0 >"$scratch/refused.log" 2>&1 || code=$?
+[ "$code" = 1 ] || fail "a session that is taken: exit code $code"
+grep -q "$scratch/taken: another rgbdt-session writes to it" "$scratch/refused.log" ||
+  fail "it does not say that the session is taken"
+if grep started "$scratch/refused.log"; then fail "something was started"; fi
+
+echo "== killed itself, it takes all along; what was printed in the run before is kept"
+mkdir "$scratch/second.logs"
+echo "why it ended" >"$scratch/second.logs/fuser.log"
 up second
+grep -q "why it ended" "$scratch/second.logs/fuser.log.earlier" || fail "its last run's log is lost"
 mapfile -t all < <(for process in "${processes[@]}"; do pid_of second "$process"; done)
 kill_process second
 none_is_left "${all[@]}"

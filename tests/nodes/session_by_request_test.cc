@@ -311,7 +311,7 @@ TEST_F(SessionByRequestTest, CornersPickedLaterAreWrittenToTheViewAndSolvedWith)
   node_.Handle(picks);
   Run();
   EXPECT_EQ(world_.commands.size(), commands) << "the detector has not looked again yet";
-  node_.Handle(world_.Event(capture, "detector"));
+  test::HandleAll(&node_, world_.Detect(capture));
   Run();
   ASSERT_EQ(world_.commands.size(), commands + 2);
   EXPECT_EQ(world_.commands[commands].verb, SessionVerb::kSolve);
@@ -321,6 +321,25 @@ TEST_F(SessionByRequestTest, CornersPickedLaterAreWrittenToTheViewAndSolvedWith)
   EXPECT_EQ(after.cloud.points.size(), before.cloud.points.size());
   EXPECT_EQ(after.images.size(), before.images.size());
   EXPECT_TRUE(ReadView(session, "0002").picks.empty());
+}
+
+// As where the command came twice (AnsweredCommands).
+TEST_F(SessionByRequestTest, ADetectorsLastWordThatIsSaidAgainAsksForNothing) {
+  EverybodyReady();
+  Ask(SessionRequestKind::kCapture);
+  Run();
+  const SessionCommand capture = world_.commands[2];
+  ASSERT_EQ(capture.verb, SessionVerb::kCapture);
+  const std::size_t commands = world_.commands.size();
+  node_.Handle(world_.Event(capture, "detector"));
+  Run();
+  EXPECT_EQ(world_.commands.size(), commands);
+  EXPECT_EQ(HowOftenTold("once more"), 0U);
+  test::HandleAll(&node_, world_.Detect(capture));
+  node_.Handle(world_.Event(capture, "detector"));
+  Run();
+  EXPECT_EQ(world_.commands.size(), commands + 2) << "solve and evaluate, once";
+  EXPECT_EQ(HowOftenTold("once more"), 1U);
 }
 
 TEST_F(SessionByRequestTest, CornersPickedDuringAnotherCaptureAreNotLost) {
@@ -337,7 +356,7 @@ TEST_F(SessionByRequestTest, CornersPickedDuringAnotherCaptureAreNotLost) {
   const auto sweep = Only<SessionCommand>(test::AdvanceTo(time_s_ += 1, &node_));
   ASSERT_EQ(sweep.size(), 1U);
   node_.Handle(picks);
-  node_.Handle(world_.Event(capture, "detector"));
+  test::HandleAll(&node_, world_.Detect(capture));
   EXPECT_EQ(ReadView(session, "0001").picks.size(), 1U);
   const std::size_t before = world_.commands.size();
   test::HandleAll(&node_, world_.Answer(sweep[0]));

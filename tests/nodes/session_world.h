@@ -106,6 +106,15 @@ class World {
     return event;
   }
 
+  /// What the detector says of a capture, at first and once there are corners for it.
+  Messages Detect(const SessionCommand& capture) const {
+    ViewDetection detection;
+    detection.view = capture.view;
+    detection.sweep_utime = capture.sweep_utime;
+    detection.cloud.why_not = "made up";
+    return {detection, Event(capture, "detector")};
+  }
+
   Utime now = kStart;
   std::optional<SessionVerb> silent_at, failing_at;
   bool images = true;
@@ -134,12 +143,7 @@ class World {
       out.push_back(picks);
     }
     out.push_back(Event(command, "simulator"));  // its images are taken: not what is waited for
-    ViewDetection detection;
-    detection.view = command.view;
-    detection.sweep_utime = command.sweep_utime;
-    detection.cloud.why_not = "made up";
-    out.push_back(detection);
-    out.push_back(Event(command, "detector"));
+    for (Message& message : Detect(command)) out.push_back(std::move(message));
     return out;
   }
 };

@@ -265,6 +265,18 @@ TEST_F(ExportingLog, WhatCannotBeReadCostsItselfAlone) {
   EXPECT_EQ(exported.topics.at("/lidar/points").messages, 1);
 }
 
+TEST_F(ExportingLog, ALogOfChannelsWithoutEndNamesSomeOfThem) {
+  Add(Chunk(kStart, 0, 1));
+  constexpr int kChannels = 5'000;
+  for (int i = 0; i < kChannels; ++i) log_.Write("NOBODYS_" + std::to_string(i), Bytes(1, 7), 42);
+  const ExportedLog exported = Export();
+  EXPECT_LE(exported.left_out.size(), 101U);
+  std::int64_t messages = 0;
+  for (const auto& [channel, count] : exported.left_out) messages += count;
+  EXPECT_EQ(messages, kChannels);
+  EXPECT_GT(exported.left_out.at("other channels"), 4'000);
+}
+
 TEST_F(ExportingLog, AChannelThatMovesACursorIsToldWithout) {
   Add(Chunk(kStart, 0, 1));
   log_.Write("\x1b[2J\n_IMAGE", Bytes(100, 7), 42);

@@ -10,6 +10,10 @@ namespace {
 
 constexpr double kDegree = M_PI / 180;
 
+// Either way, as a DYNAMIXEL in its mode of extended positions.
+constexpr int kMostTurns = 256;
+constexpr int kMostDegreesPerSecond = 10'000;
+
 // A number that may be left out: 0 is not one of its values.
 int OrDefault(int value, int otherwise, int least, int most, const Place& place,
               const std::string& field) {
@@ -105,14 +109,22 @@ DynamixelDevice ToDevice(const proto::Dynamixel& device, const Place& place) {
   spec.port = device.port();
   spec.baud = OrDefault(device.baud(), spec.baud, 9600, 10'500'000, place, "baud");
   spec.id = OrDefault(device.id(), spec.id, 1, 252, place, "id");
-  RequireFinite(device.from_deg(), place, "from_deg");
-  RequireFinite(device.to_deg(), place, "to_deg");
+  for (const auto& [angle, field] :
+       {std::pair{device.from_deg(), "from_deg"}, std::pair{device.to_deg(), "to_deg"}}) {
+    RequireFinite(angle, place, field);
+    if (std::abs(angle) > kMostTurns * 360) {
+      place.Fail(field, "is " + std::to_string(angle) + "; expected degrees, at most " +
+                            std::to_string(kMostTurns) + " turns");
+    }
+  }
   RequireFinite(device.speed_deg_s(), place, "speed_deg_s");
   if (device.from_deg() == device.to_deg()) {
     place.Fail("to_deg", "is " + std::to_string(device.to_deg()) + ", the same as from_deg");
   }
-  if (!(device.speed_deg_s() > 0)) {
-    place.Fail("speed_deg_s", "is " + std::to_string(device.speed_deg_s()) + "; expected above 0");
+  if (!(device.speed_deg_s() > 0 && device.speed_deg_s() <= kMostDegreesPerSecond)) {
+    place.Fail("speed_deg_s", "is " + std::to_string(device.speed_deg_s()) +
+                                  "; expected above 0 and at most " +
+                                  std::to_string(kMostDegreesPerSecond));
   }
   spec.from_rad = device.from_deg() * kDegree;
   spec.to_rad = device.to_deg() * kDegree;

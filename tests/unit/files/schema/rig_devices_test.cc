@@ -6,6 +6,7 @@
 namespace rgbdt {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string RigWith(const std::string& lidar, const std::string& camera) {
@@ -108,9 +109,16 @@ TEST(RigDevices, WhatIsMissingOrWrongIsNamedWithItsLine) {
               HasSubstr("packet_bytes is 101; expected 576 to"));
   EXPECT_THAT(ErrorOf("", "device { serial: \"1\" feature { value: \"2\" } }"),
               HasSubstr("feature.name is missing"));
-  std::string still = kMotor;
-  still.replace(still.find("speed_deg_s: 12"), 15, "speed_deg_s: -1");
-  EXPECT_THAT(ErrorOf(still, ""), HasSubstr("dynamixel.speed_deg_s is -1"));
+  const auto motor_error = [](const std::string& is, const std::string& becomes) {
+    std::string motor = kMotor;
+    motor.replace(motor.find(is), is.size(), becomes);
+    return ErrorOf(motor, "");
+  };
+  EXPECT_THAT(motor_error("speed_deg_s: 12", "speed_deg_s: -1"),
+              HasSubstr("dynamixel.speed_deg_s is -1"));
+  EXPECT_THAT(motor_error("speed_deg_s: 12", "speed_deg_s: 1e300"), HasSubstr("at most 10000"));
+  EXPECT_THAT(motor_error("to_deg: 210", "to_deg: -1e300"),
+              AllOf(HasSubstr("dynamixel.to_deg is -1"), HasSubstr("at most 256 turns")));
 }
 
 }  // namespace
