@@ -129,8 +129,6 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
                  shared[static_cast<std::size_t>(kOutlineTop + crossing.side)] -
                  out.per_rad * shift - out.per_fringe * shared[kFringe] -
                  out.per_thickness * shared[kThickness];
-  const double blur = priors.blur_rad * out.per_rad;
-  out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
   const double across = outward.dot(slope);
   const Eigen::Vector2d at_by_meet = by_meet.head<2>() - by_meet.z() * slope;
   out.by_beams_meet = outward.dot(at_by_meet) + shift / upright * by_meet.z() / beam.z();
@@ -159,6 +157,17 @@ CrossingResidual ResidualOf(const Target& target, const BoardPriors& priors,
   if (out.per_thickness > 0) out.by_target += shared[kThickness] * by_across;
   out.by_target += bow * by_across + across * bow_slope * at_by_target;
   out.by_beams_meet += across * bow_slope.dot(at_by_meet);
+  // At the range at which it was seen.
+  const double scale = crossing.point.norm() / range;
+  out.by_target = scale * (out.by_target - out.beyond_m / range * by_range);
+  out.by_beams_meet = scale * (out.by_beams_meet + out.beyond_m / range * by_meet.z() / beam.z());
+  out.per_outline = scale;
+  for (double* metres : {&out.beyond_m, &out.per_rad, &out.per_thickness, &out.per_fringe}) {
+    *metres *= scale;
+  }
+  out.per_bow *= scale;
+  const double blur = priors.blur_rad * out.per_rad;
+  out.sigma_m = std::sqrt(crossing.half_width_m * crossing.half_width_m / 3 + blur * blur);
   return out;
 }
 

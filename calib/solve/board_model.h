@@ -116,11 +116,15 @@ Eigen::RowVector2d BowSlope(const Target& target, const std::array<double, kShar
 /// The target with its pattern as large as the shared unknowns have it.
 Target PrintedAs(const Target& target, const std::array<double, kSharedUnknowns>& shared);
 
-/// A crossing against its side. All on the board, metres and radians.
+/// A crossing against its side. All on the board, radians and metres, as many as they are at the
+/// range at which the crossing was seen: what a beam tells is a direction. Metres on the board
+/// where a state has it would be fewer the nearer that is, and a solve that knows of no ranges
+/// (edges alone) would draw it near.
 struct CrossingResidual {
   double beyond_m = 0;                    ///< outwards of the side, shifts taken off
   double sigma_m = 0;                     ///< of this crossing alone
   Eigen::Matrix<double, 1, 6> by_target;  ///< d beyond / d delta, lidar_from_target * Exp(delta)
+  double per_outline = 0;    ///< metres that a side lies farther out for each metre of its outline
   double per_rad = 0;        ///< metres that a side seems farther out for each radian of shift
   double per_thickness = 0;  ///< the same for each metre of thickness
   double by_beams_meet = 0;  ///< d beyond / d kBeamsMeet

@@ -252,8 +252,8 @@ void ViewEquations::AddCrossings() {
                                           lidar_from_target_, state_.shared, side_shift_[side]);
     if (!(r.per_rad > 0)) continue;
     CrossingVector j;
-    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -1, r.by_beams_meet, -r.per_fringe,
-        r.per_bow.transpose();
+    j << r.by_target.transpose(), -r.per_rad, -r.per_thickness, -r.per_outline, r.by_beams_meet,
+        -r.per_fringe, r.per_bow.transpose();
     const double sigma = OwnSigma(crossing, r);
     const double squared = r.beyond_m * r.beyond_m / (sigma * sigma);
     // Noise that it shares with its neighbours counts once: in weight, not in what is far off.

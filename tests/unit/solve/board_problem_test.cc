@@ -128,6 +128,26 @@ TEST_P(ResidualOfSide, TheSidesOwnCutAndShiftAreTakenOff) {
   EXPECT_NEAR(r.beyond_m, 0.004 - 1e-3 * r.per_rad, 1e-12);
 }
 
+// Beams tell directions: a board that is smaller and nearer alike, under the same beams, fits as
+// well, and is drawn no nearer.
+TEST_P(ResidualOfSide, ASmallerAndNearerBoardIsNoBetter) {
+  const Rigid3 board = TiltedBoard(0.5, -0.4);
+  const Crossing crossing = CrossingOn(board, GetParam(), 0.012);
+  std::array<double, kSharedUnknowns> shared{};
+  shared[kFarShift] = 2e-3;
+  const CrossingResidual r = ResidualAt(crossing, board, shared);
+  for (const double smaller : {0.9, 0.99, 1.1}) {
+    Target target = kTarget;
+    target.width_m *= smaller;
+    target.height_m *= smaller;
+    Rigid3 nearer = board;
+    nearer.translation *= smaller;
+    const CrossingResidual same = ResidualOf(target, {}, crossing, nearer, shared, 0);
+    EXPECT_NEAR(same.beyond_m, r.beyond_m, 1e-12) << smaller;
+    EXPECT_NEAR(same.sigma_m, r.sigma_m, 0.001 * r.sigma_m) << smaller;
+  }
+}
+
 TEST(ResidualOf, OfABeamThatMissesTheFrontThereIsNone) {
   const Rigid3 board = TiltedBoard(0, 0);
   Crossing crossing = CrossingOn(board, 0, 0);

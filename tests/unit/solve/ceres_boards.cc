@@ -198,8 +198,8 @@ struct CrossingDistance {  // of board, shared, the view's sides
     residual[0] = (Dot<T>(lidar, out) + range * lean + inwards - half -
                    block[1][kOutlineTop + crossing.side] -
                    per_rad * (block[1][kind] + block[2][crossing.side]) -
-                   1.0 / sqrt(1.0 - lean * lean) * block[1][kFringe] - rim * block[1][kThickness]) /
-                  crossing.sigma_m;
+                   1.0 / sqrt(1.0 - lean * lean) * block[1][kFringe] - rim * block[1][kThickness]) *
+                  crossing.point.norm() / range / crossing.sigma_m;
     return true;
   }
 };

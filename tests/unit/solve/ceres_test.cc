@@ -225,7 +225,9 @@ TEST_P(SolveBoardsAndCeres, FindTheSame) {
   if (GetParam().rings) OpenRanges(&joint);
   if (GetParam().sides_bent) joint.problem.priors.image_side_sigma_m = 0.0005;
   const BoardSolution ours = SolveToTheEnd(joint.problem, NearStart(joint));
-  const BoardState theirs = SolveByCeres(joint.problem, NearStart(joint));
+  // Its own last step ends where rounding hides what the cost still falls by.
+  const BoardState theirs =
+      SolveByCeres(joint.problem, SolveByCeres(joint.problem, NearStart(joint)));
   const MatrixXd jacobian = JacobianByCeres(joint.problem, ours.state);
   // All unknowns' distance in sigmas; loose directions count for nothing.
   EXPECT_LT((jacobian * Between(joint.problem, ours.state, theirs)).norm(), kOptimumSigmas);
