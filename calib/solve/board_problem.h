@@ -143,8 +143,9 @@ bool HasCloud(const BoardProblem& problem, std::size_t lidar, std::size_t view);
 ///    lens, weighed down beyond 3 sigma, so that a wrong corner has no say;
 ///  - outline sides seen in an image: the projected side's distance from the fitted curve at both
 ///    of its ends, with that curve's covariance;
-///  - crossings: where the beam meets the board's plane, its distance beyond the side, less what
-///    the beam's width (class and side), the board's rim and the board's cut do;
+///  - crossings: where the beam meets the board's plane, its distance beyond the side (in metres at
+///    the range at which it was seen, CrossingResidual), less what the beam's width (class and
+///    side), the board's rim and the board's cut do;
 ///  - points on the board: their distances from its plane, a quadratic form for each group of them
 ///    (CloudEdges::groups), or one for all of a view (CloudEdges::scatter); what the rings of one
 ///    view are off by besides is noise that the points of a ring share;
