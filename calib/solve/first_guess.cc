@@ -219,6 +219,25 @@ std::vector<ImageEdges> Unmirrored(const Views& views) {
   return out;
 }
 
+// Views in whose cloud all that looks like the board stands where it does in half of the views or
+// more: a thing of the room. (Of a board that was hardly moved the views would agree.)
+int OnlyThingsOfTheRoom(const Views& views) {
+  constexpr double kSamePlaceM = 0.05;
+  const auto stands = [&](const CloudEdges* edges) {
+    const auto is_same = [&](const CloudEdges* other) {
+      const Rigid3 &a = edges->pose->sensor_from_target, &b = other->pose->sensor_from_target;
+      return (a.translation - b.translation).norm() < kSamePlaceM;
+    };
+    const auto count = std::count_if(views.begin(), views.end(), [&](const CameraView* view) {
+      return std::any_of(view->candidates.begin(), view->candidates.end(), is_same);
+    });
+    return 2 * count >= static_cast<std::ptrdiff_t>(views.size()) && count > 2;
+  };
+  return static_cast<int>(std::count_if(views.begin(), views.end(), [&](const CameraView* view) {
+    return std::all_of(view->candidates.begin(), view->candidates.end(), stands);
+  }));
+}
+
 std::string WhyNone(const Views& views, const Vote& vote) {
   const std::string of = std::to_string(views.size()) + " views";
   const std::vector<ImageEdges> images = Unmirrored(views);
@@ -235,9 +254,16 @@ std::string WhyNone(const Views& views, const Vote& vote) {
            " agree once left and right are swapped; turn that off in the camera, or, where its "
            "images are as a person sees them, check that the clouds' y points to the left";
   }
-  return "the views do not agree where the camera is (at most " + std::to_string(vote.best.views) +
-         " of " + of +
-         "); do images and clouds belong together, and is the whole board, with its border, as "
+  const std::string no_agreement = "the views do not agree where the camera is (at most " +
+                                   std::to_string(vote.best.views) + " of " + of + ")";
+  const int things = OnlyThingsOfTheRoom(views);
+  if (2 * things > static_cast<int>(views.size())) {
+    return no_agreement + "; in " + std::to_string(things) +
+           " clouds all that looks like the board stands where it does in other views, too, so the "
+           "board was not found: is it wholly in the LIDAR's view and nothing touching its sides?";
+  }
+  return no_agreement +
+         "; do images and clouds belong together, and is the whole board, with its border, as "
          "large as the rig file says?";
 }
 

@@ -194,7 +194,8 @@ void AddSession(CommandLine* program) {
       "--board", &flags->board,
       "SQUARESxSQUARES@SQUARE,WIDTHxHEIGHT in metres: squares along the width and the\n"
       "height, a square's side, the whole board with its border. Squares, not inner\n"
-      "corners, which are one fewer each way and are written 7x5corners@... A board\n"
+      "corners, which are one fewer each way and are written 7x5corners@... A pattern that\n"
+      "is not in the middle of its board: write pattern_offset_m into the rig file. A board\n"
       "without a pattern: plain@WIDTHxHEIGHT. With markers: charuco@SQUARESxSQUARES,SQUARE,\n"
       "MARKER,DICTIONARY,WIDTHxHEIGHT[,legacy] (charuco@8x6,0.095,0.07,5X5_100,0.85x0.61),\n"
       "or Kalibr's aprilgrid@TAGSxTAGS,TAG,SPACING,FAMILY,WIDTHxHEIGHT. With four holes: "

@@ -13,6 +13,7 @@ namespace rgbdt {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const Rigid3 kHalfTurn = RotationAbout({0, 0, 1}, M_PI);
 
@@ -198,7 +199,37 @@ TEST(FirstGuess, ViewsThatDoNotBelongTogetherGiveNone) {
   const FirstGuess guess = Guess(session);
   EXPECT_FALSE(guess.camera_from_lidar);
   EXPECT_THAT(guess.detail, HasSubstr("do not agree"));
+  EXPECT_THAT(guess.detail, HasSubstr("as the rig file says"));
   EXPECT_THAT(GuessFromBoards({}).detail, HasSubstr("0 views"));
+}
+
+// As where the board stands on a table, and a window of its size is in every cloud.
+TEST(FirstGuess, ThingsThatStandInEveryCloudAreNotTakenForABoardOfAnotherSize) {
+  Made made(11);
+  const Rigid3 truth = made.AnyCamera();
+  auto session = made.Session(truth, 6);
+  const Rigid3 window = made.AnyBoard(), door = made.AnyBoard();
+  for (std::size_t i = 0; i < session.size(); ++i) {
+    auto& candidates = session[i].cloud.candidates;
+    if (i > 0) candidates.clear();  // one is found
+    candidates.push_back(made.Candidate(window));
+    if (i % 2 == 0) candidates.push_back(made.Candidate(door));
+  }
+  const FirstGuess guess = Guess(session);
+  EXPECT_FALSE(guess.camera_from_lidar);
+  EXPECT_THAT(guess.detail, HasSubstr("in 5 clouds all that looks like the board stands where it"));
+  EXPECT_THAT(guess.detail, Not(HasSubstr("as the rig file says")));
+}
+
+// Three shots a place, whose images belong to other clouds.
+TEST(FirstGuess, ABoardThatWasLeftWhereItStoodIsNoThingOfTheRoom) {
+  Made made(12);
+  std::vector<ViewDetection> session;
+  for (int place = 0; place < 3; ++place) {
+    const Rigid3 board = made.AnyBoard();
+    for (int shot = 0; shot < 3; ++shot) session.push_back(made.View(made.AnyCamera(), board));
+  }
+  EXPECT_THAT(Guess(session).detail, HasSubstr("as the rig file says"));
 }
 
 TEST(FirstGuess, FindsWhatTheRangesAreOffBy) {

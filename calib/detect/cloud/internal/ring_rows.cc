@@ -191,6 +191,24 @@ void TakeOneOfEachBeam(const Cloud& cloud, const BeamSteps& steps, std::vector<A
   }
 }
 
+// Pairs of points in one cell of so many radians.
+double PairsInCells(const std::vector<Angles>& angles, double width, double height) {
+  std::vector<std::pair<int, int>> cells;
+  cells.reserve(angles.size());
+  for (const Angles& a : angles) {
+    cells.emplace_back(static_cast<int>(std::floor(a.elevation / height)),
+                       static_cast<int>(std::floor(a.azimuth / width)));
+  }
+  std::sort(cells.begin(), cells.end());
+  double pairs = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] != cells[first]) first = i;
+    pairs += static_cast<double>(i - first);
+  }
+  return pairs;
+}
+
 std::size_t CountOf(const Rows& rows) {
   return std::accumulate(rows.begin(), rows.end(), std::size_t{0},
                          [](std::size_t sum, const auto& row) { return sum + row.size(); });
@@ -232,6 +250,11 @@ std::vector<Angles> AnglesOf(const Cloud& cloud) {
                       static_cast<std::int32_t>(i)});
   }
   return angles;
+}
+
+bool LieInRows(const std::vector<Angles>& angles) {
+  constexpr double kLong = M_PI / 180, kShort = 0.1 * kLong, kClearly = 4;
+  return PairsInCells(angles, kLong, kShort) > kClearly * PairsInCells(angles, kShort, kLong);
 }
 
 double MedianElevation(const std::vector<Angles>& row) {

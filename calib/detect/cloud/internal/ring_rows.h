@@ -31,6 +31,10 @@ struct RingRows {
 std::optional<RingRows> FindRingRows(const Cloud& cloud,
                                      const std::vector<RangeGrid::Angles>& angles);
 
+/// Whether points lie in rows, as a spinning LIDAR's do, whose beams are closer together along a
+/// ring than its rings are.
+bool LieInRows(const std::vector<RangeGrid::Angles>& angles);
+
 /// Median elevation of points [rad].
 double MedianElevation(const std::vector<RangeGrid::Angles>& row);
 

@@ -2,6 +2,7 @@
 
 #include <liblzf/lzf.h>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -45,6 +46,7 @@ class HeaderParser {
       }
     }
     CheckData();
+    DropEmptyFields();
     CheckFields();
     CheckPoints();
     return std::move(header_);
@@ -104,6 +106,14 @@ class HeaderParser {
              ? "is not a PCD file: its header has no DATA line"
              : "PCD header, " + Line() + ": DATA is \"" + header_.data.substr(0, 40) +
                    "\"; expected ascii, binary or binary_compressed");
+  }
+
+  // Padding of no bytes, as PCL writes it between fields that follow each other.
+  void DropEmptyFields() {
+    auto& fields = header_.fields;
+    fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                [](const Field& field) { return field.count == 0; }),
+                 fields.end());
   }
 
   void CheckFields() const {

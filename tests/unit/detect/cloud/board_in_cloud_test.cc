@@ -23,6 +23,7 @@ namespace {
 
 using simulate::CloudWorld;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr Utime kSweepTime = 1'000'000'000;
 
@@ -303,6 +304,28 @@ TEST(BoardInCloud, ABoardOfAnotherSizeIsNamedWithBothSizes) {
   EXPECT_THAT(boards.why, HasSubstr("the rig file says 0.61 x 0.85 m"));
   EXPECT_THAT(boards.why, HasSubstr("measured 0.9"));
   EXPECT_THAT(boards.why, HasSubstr(" x 1.2"));
+}
+
+// As some tools want it: nothing says where the beams beside the board went.
+TEST(BoardInCloud, ABoardThatWasCutOutOfItsCloudIsNamed) {
+  simulate::Options options = Physics(32);
+  options.pose.max_roll_rad = 0;
+  const CloudWorld world(options, 0);
+  const Target& target = world.target();
+  const Cloud whole = world.Sweep(kSweepTime);
+  Cloud part = whole;
+  for (Eigen::Vector3f& p : part.points) {
+    const Eigen::Vector3d on = world.lidar_from_target().Inverse() * p.cast<double>();
+    const bool is_on = std::abs(on.x()) < target.width_m / 2 &&
+                       std::abs(on.y()) < target.height_m / 2 && std::abs(on.z()) < 0.1;
+    if (!is_on) p.setConstant(std::numeric_limits<float>::quiet_NaN());
+  }
+  const auto boards = FindBoards(simulate::Unorganised(part, true), target, Detection(32));
+  EXPECT_TRUE(boards.candidates.empty());
+  EXPECT_THAT(boards.why, HasSubstr("cut out of a whole one"));
+  Target larger = target;
+  larger.width_m += 0.3;
+  EXPECT_THAT(FindBoards(whole, larger, Detection(32)).why, Not(HasSubstr("cut out")));
 }
 
 TEST(BoardInCloud, EmptyCloudsAndCloudsOfNothingSaySo) {

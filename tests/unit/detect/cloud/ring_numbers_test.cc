@@ -1,8 +1,10 @@
 // Ring numbers that are not those of the LIDAR's rings, and rings that are no exact cones.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "calib/detect/cloud/board_in_cloud.h"
@@ -12,6 +14,9 @@
 
 namespace rgbdt {
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 simulate::Options NumberedPhysics(int rings) {
   simulate::Options options;
@@ -84,6 +89,35 @@ TEST(RingNumbers, OfRingsThatAreNoExactConesAreUsed) {
       }
       EXPECT_FALSE(RangeGrid(cloud).misnumbered()) << rings << ' ' << unlike.name;
     }
+  }
+}
+
+// Beams that meet farther above the origin than rings tell apart (RS-Bpearl): without numbers
+// nothing tells its rings.
+TEST(RingNumbers, ThatAreMissedAreAskedFor) {
+  const auto why = [](const Cloud& cloud, const Target& target) {
+    const BoardsInCloud boards = FindBoards(cloud, target);
+    EXPECT_TRUE(boards.candidates.empty());
+    return boards.why;
+  };
+  const auto raised = [](Cloud cloud) {
+    for (Eigen::Vector3f& p : cloud.points) p.z() += 0.8F;
+    return cloud;
+  };
+  const simulate::CloudWorld spinning(NumberedPhysics(16), std::nullopt);
+  const Cloud numbered = simulate::Unorganised(spinning.Sweep(1'000'000'000), true);
+  Cloud bare = numbered;
+  bare.ring.clear();
+  EXPECT_THAT(why(raised(bare), spinning.target()), HasSubstr("no field `ring`"));
+  EXPECT_THAT(why(raised(numbered), spinning.target()), Not(HasSubstr("`ring`")));
+  EXPECT_THAT(why(bare, spinning.target()), Not(HasSubstr("`ring`"))) << "exact cones";
+  for (const int lidar : {simulate::kMid360, simulate::kAvia}) {
+    simulate::Options options;
+    simulate::UseLidar(lidar, &options);
+    const simulate::CloudWorld world(options, std::nullopt);
+    Cloud cloud = world.Sweep(1'000'000'000);
+    cloud.ring.clear();
+    EXPECT_THAT(why(cloud, world.target()), Not(HasSubstr("`ring`"))) << lidar;
   }
 }
 

@@ -115,6 +115,33 @@ TEST(CloudFiles, TakesFieldsByNameAndOfAnyType) {
   EXPECT_TRUE(cloud.directions.empty());
 }
 
+// Padding as it comes from a LIDAR's driver by way of PCL, some of it of no bytes.
+TEST(CloudFiles, PaddingIsSkippedAlsoWhereItIsOfNoBytes) {
+  const std::string head =
+      "FIELDS x y z _ ring _ time _\nSIZE 4 4 4 1 2 1 4 1\nTYPE F F F U U U F U\n"
+      "COUNT 1 1 1 4 1 0 1 2\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ";
+  std::string points;
+  const auto append = [&](const auto& value) {
+    points.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (const float x : {1.F, 4.F}) {
+    for (const float coordinate : {x, x + 1, x + 2}) append(coordinate);
+    append(std::uint32_t{0xffffffff});
+    append(static_cast<std::uint16_t>(x));
+    append(0.1F * x);
+    append(std::uint16_t{0xffff});
+  }
+  const Cloud binary = ParsePcd(head + "binary\n" + points, "a.pcd");
+  const Cloud ascii =
+      ParsePcd(head + "ascii\n1 2 3 9 9 9 9 1 0.1 9 9\n4 5 6 9 9 9 9 4 0.4 9 9\n", "a.pcd");
+  for (const Cloud& cloud : {binary, ascii}) {
+    ASSERT_EQ(cloud.size(), 2u);
+    EXPECT_EQ(cloud.points[1], Eigen::Vector3f(4, 5, 6));
+    EXPECT_THAT(cloud.ring, ElementsAre(1, 4));
+    EXPECT_THAT(cloud.utime, ElementsAre(100'000, 400'000));
+  }
+}
+
 TEST(CloudFiles, IntensityIsBroughtToZeroToOne) {
   const auto read = [](const std::string& values) {
     return ParsePcd(Ascii("x y z intensity", "F F F F", 2, 1, values), "a.pcd").intensity;
@@ -304,6 +331,11 @@ TEST(CloudFiles, BadFilesGiveOneClearLine) {
   EXPECT_THAT(error(""), HasSubstr("not a PCD file"));
   EXPECT_THAT(error("ply\nformat ascii 1.0\n"), HasSubstr("not a PCD file"));
   EXPECT_THAT(error(Ascii("x y z", "F F Q", 1, 1, "1 2 3\n")), HasSubstr("field z has TYPE Q"));
+  std::string none = Ascii("x y z", "F F F", 1, 1, "1 2\n");
+  none.replace(none.find("COUNT 1 1 1"), 11, "COUNT 1 1 0");
+  EXPECT_THAT(error(none), HasSubstr("no field z"));
+  none.replace(none.find("COUNT 1 1 0"), 11, "COUNT 0 0 0");
+  EXPECT_THAT(error(none), HasSubstr("no FIELDS"));
   EXPECT_THAT(error(Ascii("x y z ring", "F F F F", 1, 1, "1 2 3 -1\n")), HasSubstr("ring"));
   std::string mismatch = Ascii("x y z", "F F F", 1, 1, "1 2 3\n");
   mismatch.replace(mismatch.find("POINTS 1"), 8, "POINTS 2");
