@@ -28,7 +28,8 @@ struct Splits {
   }
 };
 
-Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::string& method) {
+Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::string& method,
+             std::size_t splits = kSplits) {
   CalibrateOptions options;
   options.method = method;
   options.diagnostics = false;
@@ -36,7 +37,7 @@ Splits Split(const Rig& rig, const std::vector<ViewDetection>& all, const std::s
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), 0U);
   Splits out;
-  for (std::size_t i = 0; i < kSplits; ++i) {
+  for (std::size_t i = 0; i < splits; ++i) {
     std::shuffle(order.begin(), order.end(), random);
     std::vector<CameraCalibration> halves;
     for (std::size_t half = 0; half < 2; ++half) {
@@ -81,12 +82,14 @@ TEST(Acfr, HalvesOfTheViewsAgreeAsTheStatedSigmaSays) {
   EXPECT_LE(joint.Inside(), 0.99);
 }
 
-// As a user has it: the lens and the print of the board's pattern are the solve's to find.
+// As a user has it: the lens and the print of the board's pattern are the solve's to find. As many
+// halves as in scripts/study real: of 40 the share inside is known to 0.04 only.
 TEST(Acfr, HalvesOfTheViewsAgreeWithTheLensUnknown) {
+  constexpr std::size_t kMany = 100;
   auto detected = DetectReal(kAutoMethod);
   if (!detected) GTEST_SKIP() << kAbsent;
-  const Splits joint = Split(detected->session.rig, detected->views, kAutoMethod);
-  ASSERT_EQ(joint.chi2.size(), kSplits);
+  const Splits joint = Split(detected->session.rig, detected->views, kAutoMethod, kMany);
+  ASSERT_EQ(joint.chi2.size(), kMany);
   std::printf(
       "halves differ by a median of %.2f deg, %.1f mm; %.0f%% lie in the stated 95%% region\n",
       Median(joint.rotation_deg), Median(joint.translation_mm), 100 * joint.Inside());
