@@ -223,15 +223,20 @@ std::vector<ImageEdges> Unmirrored(const Views& views) {
 // more: a thing of the room. (Of a board that was hardly moved the views would agree.)
 int OnlyThingsOfTheRoom(const Views& views) {
   constexpr double kSamePlaceM = 0.05;
+  constexpr std::size_t kMost = 200;  // of thousands some tell as well
+  Views others;
+  for (std::size_t v = 0; v < views.size(); v += 1 + views.size() / kMost) {
+    others.push_back(views[v]);
+  }
   const auto stands = [&](const CloudEdges* edges) {
     const auto is_same = [&](const CloudEdges* other) {
       const Rigid3 &a = edges->pose->sensor_from_target, &b = other->pose->sensor_from_target;
       return (a.translation - b.translation).norm() < kSamePlaceM;
     };
-    const auto count = std::count_if(views.begin(), views.end(), [&](const CameraView* view) {
+    const auto count = std::count_if(others.begin(), others.end(), [&](const CameraView* view) {
       return std::any_of(view->candidates.begin(), view->candidates.end(), is_same);
     });
-    return 2 * count >= static_cast<std::ptrdiff_t>(views.size()) && count > 2;
+    return 2 * count >= static_cast<std::ptrdiff_t>(others.size()) && count > 2;
   };
   return static_cast<int>(std::count_if(views.begin(), views.end(), [&](const CameraView* view) {
     return std::all_of(view->candidates.begin(), view->candidates.end(), stands);

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <sstream>
@@ -10,7 +9,6 @@
 #include "calib/detect/cloud/board_crossings.h"
 #include "calib/detect/cloud/cloud_sanity.h"
 #include "calib/detect/cloud/internal/board_plane.h"
-#include "calib/detect/cloud/internal/ring_rows.h"
 #include "calib/detect/cloud/plane_regions.h"
 #include "calib/detect/cloud/range_grid.h"
 #include "calib/detect/cloud/scattered_crossings.h"
@@ -422,43 +420,6 @@ PlaneRegionOptions RegionOptions(const Target& target, const BoardInCloudOptions
   return out;
 }
 
-// That of a cloud hardly anything but the board is there: where the board ends, so does the cloud,
-// and nothing says that its beams passed the board.
-std::string WhyCutOut(const Cloud& cloud, const Target& target) {
-  constexpr double kDiagonals = 0.75, kPart = 0.9;
-  std::array<std::vector<double>, 3> along;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.IsHit(i)) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      along[static_cast<std::size_t>(axis)].push_back(double{cloud.points[i][axis]});
-    }
-  }
-  const Eigen::Vector3d middle(Median(along[0]), Median(along[1]), Median(along[2]));
-  const double near = kDiagonals * std::hypot(target.width_m, target.height_m);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < along[0].size(); ++i) {
-    const Eigen::Vector3d point(along[0][i], along[1][i], along[2][i]);
-    count += (point - middle).norm() < near ? 1 : 0;
-  }
-  if (static_cast<double>(count) < kPart * static_cast<double>(along[0].size())) return "";
-  return Format(
-      "hardly anything but the board is in the cloud (%.0f%% of its points lie within %.1f m): it "
-      "seems to be cut out of a whole one; give whole clouds, as the beams beside the board show "
-      "its sides",
-      100.0 * static_cast<double>(count) / static_cast<double>(along[0].size()), near);
-}
-
-// That of a spinning LIDAR's cloud its rings cannot be told, where its beams do not meet in a
-// point.
-std::string WhyNoRings(const RangeGrid& grid, const BoardInCloudOptions& options) {
-  const Cloud& cloud = grid.cloud();
-  if (!grid.scattered() || options.one_laser || cloud.ring.size() == cloud.size()) return "";
-  if (!LieInRows(AnglesOf(cloud))) return "";
-  return "the points lie in rings, as a spinning LIDAR's do, but their elevations do not tell "
-         "which is which, and there is no field `ring`: write the clouds with it, as the LIDAR's "
-         "driver has it";
-}
-
 BoardsInCloud FindAtNoise(const RangeGrid& grid, const Target& target,
                           const BoardInCloudOptions& options) {
   std::vector<Candidate> found;
@@ -536,9 +497,9 @@ BoardsInCloud FindBoards(const Cloud& cloud, const Target& target,
   if (!boards.candidates.empty()) return boards;
   const std::string off = WhyCloudIsOff(cloud);
   if (!off.empty()) return {{}, off};
-  for (const std::string& why : {WhyCutOut(cloud, target), WhyNoRings(grid, options)}) {
-    if (!why.empty()) return {{}, as_stated.why + "; " + why};
-  }
+  std::string lacks = WhyCutOut(cloud, target);
+  if (lacks.empty() && !options.one_laser) lacks = WhyNoRings(grid);
+  if (!lacks.empty()) return {{}, as_stated.why + "; " + lacks};
   if (grid.crowded() == 0) return as_stated;
   return {
       {},

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "calib/detect/cloud/internal/ring_rows.h"
 #include "calib/model/linear_algebra.h"
 #include "calib/model/statistics.h"
 #include "calib/model/text.h"
@@ -163,6 +164,40 @@ std::string WhyCloudIsOff(const Cloud& cloud) {
     if (!why.empty()) return why;
   }
   return "";
+}
+
+std::string WhyCutOut(const Cloud& cloud, const Target& target) {
+  constexpr double kDiagonals = 0.75, kPart = 0.9;
+  std::array<std::vector<double>, 3> along;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.IsHit(i)) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      along[static_cast<std::size_t>(axis)].push_back(double{cloud.points[i][axis]});
+    }
+  }
+  const Eigen::Vector3d middle(Median(along[0]), Median(along[1]), Median(along[2]));
+  const double near = kDiagonals * std::hypot(target.width_m, target.height_m);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < along[0].size(); ++i) {
+    const Eigen::Vector3d point(along[0][i], along[1][i], along[2][i]);
+    count += (point - middle).norm() < near ? 1 : 0;
+  }
+  const double part = static_cast<double>(count) / static_cast<double>(along[0].size());
+  if (part < kPart) return "";
+  return Format(
+      "hardly anything but the board is in the cloud (%.0f%% of its points lie within %.1f m): it "
+      "seems to be cut out of a whole one; give whole clouds, as the beams beside the board show "
+      "its sides",
+      100 * part, near);
+}
+
+std::string WhyNoRings(const RangeGrid& grid) {
+  const Cloud& cloud = grid.cloud();
+  if (!grid.scattered() || cloud.ring.size() == cloud.size()) return "";
+  if (!LieInRows(AnglesOf(cloud))) return "";
+  return "the points lie in rings, as a spinning LIDAR's do, but their elevations do not tell "
+         "which is which, and there is no field `ring`: write the clouds with it, as the LIDAR's "
+         "driver has it";
 }
 
 }  // namespace rgbdt
