@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
@@ -18,22 +19,6 @@ namespace {
 [[noreturn]] void Fail(const std::string& what, const std::filesystem::path& path, int error) {
   throw InputError("cannot " + what + " " + path.string() + ": " + std::strerror(error));
 }
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 /// One that is open for reading.
 class RegularFile {

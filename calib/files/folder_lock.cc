@@ -2,9 +2,9 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
+#include <cstring>
 #include <system_error>
 
 #include "calib/model/errors.h"
@@ -16,11 +16,11 @@ FolderLock::FolderLock(std::filesystem::path folder, const std::string& who)
   std::error_code error;
   made_ = std::filesystem::create_directories(folder_, error);
   if (error) throw InputError("cannot make " + folder_.string() + ": " + error.message());
-  descriptor_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) {
-    return;
+  descriptor_ = Descriptor(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor_) {
+    throw InputError("cannot open " + folder_.string() + ": " + std::strerror(errno));
   }
-  ::close(descriptor_);
+  if (::flock(descriptor_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   throw InputError(folder_.string() + ": another " + who +
                    " writes to it; end that one, or name another folder");
 }
@@ -28,7 +28,6 @@ FolderLock::FolderLock(std::filesystem::path folder, const std::string& who)
 FolderLock::~FolderLock() {
   std::error_code ignored;
   if (made_) std::filesystem::remove(folder_, ignored);  // fails where it is not empty
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace rgbdt

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "calib/files/descriptor.h"
+
 namespace rgbdt {
 
 /// For as long as it lives no other process has a lock on the folder, which is made where it is not
@@ -20,7 +22,7 @@ class FolderLock {
  private:
   std::filesystem::path folder_;
   bool made_ = false;
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 }  // namespace rgbdt

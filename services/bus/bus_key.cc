@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

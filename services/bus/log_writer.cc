@@ -1,6 +1,7 @@
 #include "services/bus/log_writer.h"
 
 #include <lcm/eventlog.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -8,30 +9,32 @@
 #include <filesystem>
 #include <system_error>
 
+#include "calib/files/atomic_file.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {
 namespace {
 
-// What lies there is not written through: it may be a stranger's link, or a pipe. A folder stays,
-// and so do devices: as root /dev/null would be gone.
+namespace fs = std::filesystem;
+
+// A folder stays, and so do devices: as root /dev/null would be gone.
+void RequireNoDevice(const std::string& path) {
+  std::error_code ignored;
+  const fs::file_type type = fs::symlink_status(path, ignored).type();
+  const bool device = type == fs::file_type::block || type == fs::file_type::character;
+  if (!device && type != fs::file_type::directory) return;
+  throw InputError(path + " is a " + (device ? "device" : "folder") +
+                   "; a log is written to a file: name another");
+}
+
+// What lies there is not written through: it may be a stranger's link, or a pipe.
 lcm_eventlog_t* CreateAnew(const std::string& path) {
-  using Type = std::filesystem::file_type;
+  RequireNoDevice(path);
   std::error_code error;
-  switch (std::filesystem::symlink_status(path, error).type()) {
-    case Type::regular:
-    case Type::symlink:
-    case Type::fifo:
-    case Type::socket:
-      std::filesystem::remove(path, error);
-      if (error) throw InputError("cannot remove " + path + ": " + error.message());
-      break;
-    case Type::block:
-    case Type::character:
-      throw InputError(path + " is a device; a log is written to a file: name another");
-    default:  // nothing, or what LCM cannot open
-      break;
-  }
+  fs::remove(path, error);
+  if (error) throw InputError("cannot remove " + path + ": " + error.message());
+  const fs::path folder = fs::path(path).parent_path();
+  if (!folder.empty()) fs::create_directories(folder, error);  // told where it cannot be opened
   return lcm_eventlog_create(path.c_str(), "w");
 }
 
@@ -42,15 +45,24 @@ struct LogWriter::Impl {
     void operator()(lcm_eventlog_t* log) const { lcm_eventlog_destroy(log); }
   };
 
-  explicit Impl(const std::string& at) : path(at), log(CreateAnew(at)) {
+  explicit Impl(const std::string& at) : path(at), part(at + ".part") {
+    RequireNoDevice(path);
+    log.reset(CreateAnew(part));
     if (log == nullptr) ThrowErrno();
   }
+  ~Impl() {
+    if (log == nullptr) return;
+    std::error_code ignored;
+    fs::remove(part, ignored);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   [[noreturn]] void ThrowErrno() const {
     throw InputError("cannot write " + path + ": " + std::strerror(errno));
   }
 
-  std::string path;
+  std::string path, part;
   std::unique_ptr<lcm_eventlog_t, Destroy> log;
 };
 
@@ -69,8 +81,12 @@ void LogWriter::Write(const std::string& channel, const std::uint8_t* data, std:
 }
 
 void LogWriter::Close() {
-  if (std::fflush(impl_->log->f) != 0) impl_->ThrowErrno();
+  std::FILE* file = impl_->log->f;
+  if (std::fflush(file) != 0 || ::fsync(::fileno(file)) != 0) impl_->ThrowErrno();
+  Rename(impl_->part, impl_->path);
   impl_->log.reset();
 }
+
+void LogWriter::Discard() { impl_.reset(); }
 
 }  // namespace rgbdt

@@ -9,11 +9,12 @@
 
 namespace rgbdt {
 
-/// Writes a log as lcm-logger does, by LCM's own event log.
+/// Writes a log as lcm-logger does, by LCM's own event log. It has its name once it is closed, and
+/// lies beside until then, as NAME.part; one that is never closed is gone with its owner.
 class LogWriter {
  public:
-  /// It takes the place of a file, link, pipe or socket that is called so. Throws InputError where
-  /// the file cannot be made, or a device is called so.
+  /// The folder is made. The log will take the place of a file, link, pipe or socket that is called
+  /// so. Throws InputError where the file cannot be made, or a folder or device is called so.
   explicit LogWriter(const std::string& path);
   ~LogWriter();
 
@@ -25,8 +26,10 @@ class LogWriter {
     Write(channel, bytes.data(), bytes.size(), receive_utime);
   }
 
-  /// All of it is handed to the system, or InputError. The destructor closes without a word.
+  /// All of it is on disk under its name, or InputError.
   void Close();
+  /// It is not wanted after all.
+  void Discard();
 
  private:
   struct Impl;

@@ -7,9 +7,9 @@
 #include <cerrno>
 #include <cstring>
 
+#include "calib/files/descriptor.h"
 #include "services/bus/bus.h"
 #include "services/bus/bus_url.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "calib/files/descriptor.h"
 #include "services/doctor/facts.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

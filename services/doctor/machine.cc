@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "calib/files/descriptor.h"
 #include "services/bus/multicast.h"
 #include "services/doctor/facts.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

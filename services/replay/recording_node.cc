@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 #include <variant>
 
@@ -34,17 +33,11 @@ std::string SigmasOf(const std::vector<WavedClock>& clocks) {
   return text;
 }
 
-std::string PartOf(const std::string& log) { return log + ".part"; }
-
 }  // namespace
 
 RecordingNode::RecordingNode(const std::string& log, double seconds, Tell tell,
                              WavePreview* preview)
-    : path_(log),
-      log_(PartOf(log)),
-      length_(FromSeconds(seconds)),
-      tell_(std::move(tell)),
-      preview_(preview) {}
+    : log_(log), length_(FromSeconds(seconds)), tell_(std::move(tell)), preview_(preview) {}
 
 Messages RecordingNode::Handle(const Message& message) {
   const Bytes bytes = Encode(message);
@@ -117,14 +110,12 @@ std::string RecordingNode::WhatIsMissing() const {
 }
 
 void RecordingNode::Close() {
-  std::error_code ignored;
   if (problem_.empty() && !over_ && counts_.count(kRig) == 0) problem_ = "stopped before it began";
   if (!problem_.empty()) {
-    std::filesystem::remove(PartOf(path_), ignored);
+    log_.Discard();
     throw InputError(problem_);
   }
   log_.Close();
-  std::filesystem::rename(PartOf(path_), path_);
 }
 
 WaveProgress RecordingNode::Told() const {

@@ -54,7 +54,6 @@ class RecordingNode : public Node {
   double Left() const;
   std::string Progress() const;
 
-  std::string path_;
   LogWriter log_;
   Utime length_;
   Tell tell_;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <sstream>
 
+#include "calib/files/atomic_file.h"
 #include "calib/files/check_writable.h"
 #include "calib/files/folder_lock.h"
 #include "calib/files/schema/calibration_file.h"
@@ -124,7 +125,7 @@ void RequireCalibrated(const std::filesystem::path& session, const std::string& 
 // What a process printed in the run before is what tells why one is begun anew.
 void KeepEarlier(const std::filesystem::path& log) {
   if (std::filesystem::exists(log)) {
-    std::filesystem::rename(log, std::filesystem::path(log) += ".earlier");
+    Rename(log, std::filesystem::path(log) += ".earlier");
   }
 }
 

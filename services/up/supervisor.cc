@@ -14,9 +14,9 @@
 #include <thread>
 #include <utility>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
 #include "services/command_line/exit_codes.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

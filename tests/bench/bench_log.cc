@@ -6,10 +6,10 @@
 #include <iostream>
 #include <string>
 
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
 #include "tests/bench/scanned_room.h"
 #include "tests/bench/turning_scanner.h"
-#include "tests/log_writer.h"
 #include "tests/numbers.h"
 
 namespace rgbdt::bench {
@@ -63,7 +63,7 @@ class Log {
     log_.Write(ChannelOf(message), Encode(message), kJune2015 + t);
   }
 
-  test::LogWriter log_;
+  LogWriter log_;
   Utime frame_period_;
   BenchRig rig_ = MakeBenchRig();
   TurningScanner scanner_{kJune2015};

@@ -10,8 +10,8 @@
 #include "calib/files/session/session_dir.h"
 #include "calib/model/errors.h"
 #include "calib/scan_assembly/sweep_chunks.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
-#include "tests/log_writer.h"
 
 namespace rgbdt {
 namespace {
@@ -41,7 +41,7 @@ class Drive {
   void Close() { log_.Close(); }
 
  private:
-  test::LogWriter log_;
+  LogWriter log_;
   std::map<std::string, std::int64_t> seq_;
   Utime now_ = 1'500'000'000'000'000;
 };

@@ -9,8 +9,8 @@
 #include "calib/files/schema/rig_file.h"
 #include "calib/scan_assembly/sweep_chunks.h"
 #include "calib/simulate/simulator.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
-#include "tests/log_writer.h"
 #include "tests/study/drives.h"
 
 namespace {
@@ -46,7 +46,7 @@ RgbdtCloud Line(int number) {
   return cloud;
 }
 
-void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message, Utime heard = kNow) {
+void Write(rgbdt::LogWriter* log, const rgbdt::Message& message, Utime heard = kNow) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), heard);
 }
 
@@ -66,7 +66,7 @@ void WriteLoop(const char* path) {
   lidar.azimuth_step_rad *= 6;
   rgbdt::study::Drive drive(rgbdt::study::DriveScene::kStreet, 4, lidar,
                             rgbdt::study::ThereAndBackWay(kLength, kSpeed));
-  rgbdt::test::LogWriter log(path);
+  rgbdt::LogWriter log(path);
   const double seconds = rgbdt::study::ThereAndBackSeconds(kLength, kSpeed);
   for (int i = 0; 0.1 * i < seconds; ++i) Write(&log, Chunk(i, &drive));
   log.Close();
@@ -75,7 +75,7 @@ void WriteLoop(const char* path) {
 // A turned scanner in a room: the rig stands for the first sweep and drives through two more.
 void WriteTurned(const char* path) {
   rgbdt::study::TurningDrive drive(5, rgbdt::study::QuickScanner(), 0.4);
-  rgbdt::test::LogWriter log(path);
+  rgbdt::LogWriter log(path);
   for (int i = 0; i < 3; ++i) {
     for (const rgbdt::CloudChunk& chunk : rgbdt::SplitSweep(drive.Sweep(i))) Write(&log, chunk);
   }
@@ -87,7 +87,7 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
   lidar.azimuth_step_rad *= 4;
   rgbdt::study::Drive drive(rgbdt::study::DriveScene::kStreet, 4, lidar,
                             rgbdt::study::StreetWay(4, 5));
-  rgbdt::test::LogWriter log(log_path), rigged(rigged_path);
+  rgbdt::LogWriter log(log_path), rigged(rigged_path);
   const rgbdt::Rig rig = rgbdt::ParseRig(
       rgbdt::PrintRig(rgbdt::simulate::Simulator(rgbdt::simulate::Options()).rig()), "rig");
   std::ofstream truth(truth_path);
@@ -109,10 +109,10 @@ void WriteDrive(const char* log_path, const char* rigged_path, const char* truth
 
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 6 && argc != 8) return 1;
-  rgbdt::test::LogWriter fused(argv[1]);
+  rgbdt::LogWriter fused(argv[1]);
   for (int line = 0; line < 160; ++line) Write(&fused, Line(line));
   fused.Close();
-  rgbdt::test::LogWriter other(argv[2]);
+  rgbdt::LogWriter other(argv[2]);
   rgbdt::StampedPose pose;
   pose.utime = kNow;
   pose.source = "odometry";

@@ -5,18 +5,18 @@
 #include "calib/files/atomic_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/simulator.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
 #include "services/simulator/simulator_node.h"
-#include "tests/log_writer.h"
 
 namespace rgbdt {
 namespace {
 
-void Write(const Message& message, Utime utime, test::LogWriter* log) {
+void Write(const Message& message, Utime utime, LogWriter* log) {
   log->Write(ChannelOf(message), Encode(message), utime);
 }
 
-void WriteSweep(const simulate::Simulator& simulator, test::LogWriter* log) {
+void WriteSweep(const simulate::Simulator& simulator, LogWriter* log) {
   const Utime start = SimulatorNode::kEpoch;
   const Utime end = start + simulator.sweep_lines() * simulator.line_period();
   std::int64_t seq = 0;
@@ -41,7 +41,7 @@ void WriteLog(const char* log_path, const char* rig_path) {
   options.scanner = simulate::FullTurnScanner();
   const simulate::Simulator simulator(options);
   const std::string text = ReadWholeFile(rig_path);
-  test::LogWriter log(log_path);
+  LogWriter log(log_path);
   Write(RigText{0, HashOfRigText(text), text}, SimulatorNode::kEpoch, &log);
   WriteSweep(simulator, &log);
   log.Close();

@@ -4,15 +4,15 @@
 #include "calib/files/schema/calibration_file.h"
 #include "calib/files/schema/rig_file.h"
 #include "calib/simulate/waving.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
-#include "tests/log_writer.h"
 #include "tests/simulated_variants.h"
 
 namespace {
 
 using rgbdt::Utime;
 
-void Write(rgbdt::test::LogWriter* log, const rgbdt::Message& message, Utime utime) {
+void Write(rgbdt::LogWriter* log, const rgbdt::Message& message, Utime utime) {
   log->Write(rgbdt::ChannelOf(message), rgbdt::Encode(message), utime);
 }
 
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   rgbdt::simulate::Waving waving(rgbdt::simulate::OneCamera(7, 32, 640), wave, {clock});
   const rgbdt::Rig rig = rgbdt::ParseRig(rgbdt::PrintRig(waving.rig()), "rig");
   WriteCalibrationOff(waving, rig, argv[3]);
-  rgbdt::test::LogWriter log(argv[1]), other(argv[2]);
+  rgbdt::LogWriter log(argv[1]), other(argv[2]);
   for (int i = 0; i < 50; ++i) {  // 5 s, ten sweeps and as many images a second
     const Utime utime = wave.start + i * 100'000;
     rgbdt::CloudChunk chunk;

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/posix/descriptor.h"
+#include "calib/files/descriptor.h"
 #include "tests/fuzz/fuzz.h"
 #include "viewer/server/server.h"
 

@@ -19,12 +19,12 @@
 #include "calib/model/errors.h"
 #include "services/bus/bus.h"
 #include "services/bus/log.h"
+#include "services/bus/log_writer.h"
 #include "services/bus/sequence.h"
 #include "services/messages/codec.h"
 #include "services/messages/signature.h"
 #include "services/messages/status_counters.h"
 #include "tests/datagrams.h"
-#include "tests/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
@@ -240,7 +240,7 @@ int Forge(const Arguments& processes) {
 // A log without what Forge put into it.
 int KeepSigned(const Arguments& arguments) {
   LogReader log(arguments.at(0));
-  test::LogWriter out(arguments.at(1));
+  LogWriter out(arguments.at(1));
   std::int64_t dropped = 0;
   while (const auto event = log.Next()) {
     if (IsSignedChannel(event->channel) && !SignatureOf(event->bytes.data(), event->bytes.size())) {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt::bags {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "calib/files/descriptor.h"
 #include "services/bus/bus_url.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 

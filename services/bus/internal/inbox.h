@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "calib/files/descriptor.h"
 #include "services/bus/bus.h"
 #include "services/bus/internal/reassembly.h"
 #include "services/bus/internal/source.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 

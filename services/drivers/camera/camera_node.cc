@@ -5,8 +5,8 @@
 
 #include "calib/camera/packed.h"
 #include "calib/camera/pixels.h"
-#include "calib/files/atomic_file.h"
 #include "calib/files/image_files.h"
+#include "calib/files/keep_aside.h"
 #include "calib/model/errors.h"
 #include "calib/model/text.h"
 #include "services/drivers/camera/internal/frame_format.h"
@@ -44,19 +44,6 @@ const CameraSpec& WithDevice(const Rig& rig, const std::string& camera) {
 }
 
 std::string Seconds(Utime duration) { return Format("%.1f s", ToSeconds(duration)); }
-
-// An earlier session's views may be called the same: NAME.png becomes NAME.1.png, or the next one.
-void SetAside(const std::filesystem::path& folder, const std::string& name) {
-  constexpr int kMost = 10'000;
-  const std::filesystem::path newest = folder / (name + ".png");
-  if (!std::filesystem::exists(newest)) return;
-  for (int i = 1; i <= kMost; ++i) {
-    const std::filesystem::path aside = folder / (name + "." + std::to_string(i) + ".png");
-    if (std::filesystem::exists(aside)) continue;
-    Rename(newest, aside);
-    return;
-  }
-}
 
 }  // namespace
 
@@ -245,10 +232,10 @@ void CameraNode::KeepRaw(const Image& image) {
     capture_.reset();
   }
   if (wire_ == CameraDevice::Wire::kRaw) return;
-  const std::filesystem::path folder = captures_ / capture.view;
-  std::filesystem::create_directories(folder);
-  SetAside(folder, spec_.name);
-  WritePng(folder / (spec_.name + ".png"), image.pixels);
+  const std::filesystem::path path = captures_ / capture.view / (spec_.name + ".png");
+  std::filesystem::create_directories(path.parent_path());
+  KeepAside(path);  // an earlier session's views may be called the same
+  WritePng(path, image.pixels);
 }
 
 // For the wire; the bus compresses.

@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "services/posix/descriptor.h"
+#include "calib/files/descriptor.h"
 
 namespace rgbdt {
 namespace {

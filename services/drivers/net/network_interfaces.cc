@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "services/posix/descriptor.h"
+#include "calib/files/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "calib/files/descriptor.h"
 #include "services/drivers/net/network_interfaces.h"
-#include "services/posix/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "services/posix/descriptor.h"
+#include "calib/files/descriptor.h"
 
 namespace rgbdt {
 namespace {

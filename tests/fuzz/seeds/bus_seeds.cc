@@ -2,11 +2,11 @@
 
 #include "services/bus/bus_key.h"
 #include "services/bus/internal/repair_message.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
 #include "services/messages/signature.h"
 #include "tests/datagrams.h"
 #include "tests/fuzz/seeds/seeds.h"
-#include "tests/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt::fuzz {
@@ -147,7 +147,7 @@ void AddDatagrams(std::map<std::string, std::string>* seeds) {
 
 void AddLogs(std::map<std::string, std::string>* seeds) {
   const std::string log = Written([](const std::filesystem::path& path) {
-    test::LogWriter writer(path);
+    LogWriter writer(path);
     for (const int size : {0, 5, 300}) {
       writer.Write("CLOUD", Bytes(static_cast<std::size_t>(size), 7), 1'700'000'000'000'000);
     }

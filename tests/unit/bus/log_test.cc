@@ -10,15 +10,14 @@
 #include <filesystem>
 #include <fstream>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
-#include "services/posix/descriptor.h"
-#include "tests/log_writer.h"
+#include "services/bus/log_writer.h"
 #include "tests/unit/messages/random_messages.h"
 
 namespace rgbdt {
 namespace {
 
-using test::LogWriter;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -167,6 +166,18 @@ TEST_F(LogTest, NothingIsWrittenThroughALinkNorWaitedFor) {
   EXPECT_EQ(FileBytes(), before);
   EXPECT_THROW(LogWriter{directory_.string()}, InputError);
   EXPECT_TRUE(std::filesystem::is_directory(directory_));
+}
+
+TEST_F(LogTest, OneThatIsNotClosedLeavesWhatWasThere) {
+  const Bytes before = FileBytes();
+  {
+    LogWriter writer(path_);
+    writer.Write("A", Bytes{1}, 5);
+    EXPECT_EQ(FileBytes(), before);
+    EXPECT_TRUE(std::filesystem::exists(std::string(path_) + ".part"));
+  }
+  EXPECT_EQ(FileBytes(), before);
+  EXPECT_FALSE(std::filesystem::exists(std::string(path_) + ".part"));
 }
 
 TEST_F(LogTest, ADeviceStays) {

@@ -4,7 +4,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "services/posix/descriptor.h"
+#include "calib/files/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -10,9 +10,9 @@
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
 #include "services/bags/bag_reader.h"
+#include "services/bus/log_writer.h"
 #include "services/foxglove/foxglove.pb.h"
 #include "services/messages/codec.h"
-#include "tests/log_writer.h"
 #include "tests/unit/files/test_data.h"
 #include "tests/unit/matchers.h"
 
@@ -111,7 +111,7 @@ class ExportingLog : public testing::Test {
   }
 
   test::TempDir dir_;
-  test::LogWriter log_;
+  LogWriter log_;
   Utime last_ = kStart - 1000;  // nothing is logged before the first sensor time
 };
 

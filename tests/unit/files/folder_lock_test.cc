@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <memory>
 
 #include "tests/unit/files/test_data.h"
@@ -28,14 +29,21 @@ TEST(FolderLock, OneAtATime) {
 // As kill -9 ends it: its destructor is not run.
 TEST(FolderLock, GoesWithItsProcess) {
   const test::TempDir dir;
+  int has_it[2];
+  ASSERT_EQ(pipe(has_it), 0);
+  const Descriptor hears(has_it[0]), says(has_it[1]);
   const pid_t child = fork();
   if (child == 0) {
     const FolderLock lock(dir.path(), "rgbdt-session");
-    _exit(0);
+    if (write(says.get(), "x", 1) != 1) _exit(1);
+    for (;;) pause();
   }
-  int status = 1;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_EQ(status, 0);
+  char byte = 0;
+  ASSERT_EQ(read(hears.get(), &byte, 1), 1);
+  EXPECT_THAT(ErrorOf([&] { FolderLock(dir.path(), "rgbdt-session"); }),
+              HasSubstr("another rgbdt-session"));
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
   EXPECT_NO_THROW(FolderLock(dir.path(), "rgbdt-session"));
 }
 

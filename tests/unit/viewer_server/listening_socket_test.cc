@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "calib/files/descriptor.h"
 #include "calib/model/errors.h"
-#include "services/posix/descriptor.h"
 #include "test_browser.h"
 #include "viewer/server/internal/acceptor.h"
 
