@@ -17,6 +17,8 @@ enum class SessionVerb {
   kSolve = 4,     ///< calibrate from all views so far
   kEvaluate = 5,  ///< judge the calibration on the held-out views
   kReset = 6,     ///< forget all views: a new session begins
+  kGoOn = 7,      ///< an earlier session goes on: its results are made anew, its captures count
+  kSayView = 8,   ///< say again all that the view was detected in, and its detection
 };
 
 /// What the session asks of everybody. Who is concerned answers with events of the same command.
@@ -25,9 +27,9 @@ struct SessionCommand {
   std::int64_t seq = 0;
   Utime utime = 0;  ///< newest sensor time that the session knew; 0 before the first
   SessionVerb verb = SessionVerb::kReset;
-  std::string view;                         ///< next_pose, sweep, capture: name of the view
-  Utime sweep_utime = 0;                    ///< capture: the sweep
-  bool heldout = false;                     ///< capture
+  std::string view;                         ///< next_pose, sweep, capture, say_view: its name
+  Utime sweep_utime = 0;                    ///< capture, say_view: the sweep
+  bool heldout = false;                     ///< sweep, capture
   std::vector<std::string> picked_cameras;  ///< capture: where a person picks the corners
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calib/model/errors.h"
+#include "calib/model/said_again.h"
 #include "calib/scan_assembly/sweep_chunks.h"
 
 namespace rgbdt {
@@ -24,10 +25,8 @@ void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
   if (sweep.chunks.size() >= kMaxChunks) {
     throw InputError(name + " has more than " + std::to_string(kMaxChunks) + " chunks");
   }
-  const auto first = std::find_if(sweep.chunks.begin(), sweep.chunks.end(),
-                                  [](const CloudChunk& c) { return c.cloud.size() != 0; });
-  const bool is_first = first == sweep.chunks.end();
-  const Cloud& like = is_first || chunk.cloud.size() != 0 ? chunk.cloud : first->cloud;
+  const Cloud* first = sweep.first ? &sweep.chunks[*sweep.first].cloud : nullptr;
+  const Cloud& like = first == nullptr || chunk.cloud.size() != 0 ? chunk.cloud : *first;
   // An unorganised sweep is not filled up where lines are lost.
   const int lines = like.organised ? std::max(sweep.lines, LinesToldBy(chunk))
                                    : chunk.cloud.first_line + chunk.cloud.lines;
@@ -36,15 +35,27 @@ void SweepCollector::Check(const Sweep& sweep, const CloudChunk& chunk) {
   if (std::max(reach, sweep.points + chunk.cloud.size()) > kMaxPoints) {
     throw InputError(name + " has more than " + std::to_string(kMaxPoints) + " points");
   }
-  if (is_first || chunk.cloud.size() == 0) return;
-  RequireJoinable(first->cloud, chunk.cloud);
+  if (first == nullptr || chunk.cloud.size() == 0) return;
+  RequireJoinable(*first, chunk.cloud);
 }
 
 void SweepCollector::Add(CloudChunk chunk) {
   const auto found = sweeps_.find(chunk.cloud.sweep_utime);
+  const bool again = chunk.seq == kSaidAgain;
+  if (found != sweeps_.end() && found->second.said_again != again) {
+    if (!again) return;
+    Check(Sweep(), chunk);
+    found->second = Sweep();
+  }
+  const std::tuple place(chunk.cloud.first_line, chunk.cloud.lines, chunk.cloud.beams,
+                         chunk.sweep_end);
+  if (found != sweeps_.end() && found->second.came.count(place) != 0) return;
   static const Sweep kNone;
   Check(found == sweeps_.end() ? kNone : found->second, chunk);
   Sweep& sweep = sweeps_[chunk.cloud.sweep_utime];
+  sweep.said_again = again;
+  sweep.came.insert(place);
+  if (!sweep.first && chunk.cloud.size() != 0) sweep.first = sweep.chunks.size();
   sweep.points += std::max(chunk.cloud.size(), kChunkPoints);
   sweep.lines = std::max(sweep.lines, LinesToldBy(chunk));
   sweep.ended |= chunk.sweep_end;
@@ -59,6 +70,11 @@ void SweepCollector::ForgetOldest() {
     points -= sweeps_.begin()->second.points;
     sweeps_.erase(sweeps_.begin());
   }
+}
+
+std::vector<CloudChunk> SweepCollector::ChunksOf(Utime sweep_utime) const {
+  const auto found = sweeps_.find(sweep_utime);
+  return found == sweeps_.end() ? std::vector<CloudChunk>() : found->second.chunks;
 }
 
 bool SweepCollector::Ended(Utime sweep_utime) const {

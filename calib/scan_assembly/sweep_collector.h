@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "calib/model/cloud.h"
@@ -21,8 +23,13 @@ class SweepCollector {
   static constexpr std::size_t kMaxPoints = 8'000'000;  ///< of one sweep, lost lines included
   static constexpr double kMaxMissing = 0.01;           ///< of its lines: gaps look like edges
 
-  /// Throws InputError for a chunk that cannot be joined to those of its sweep.
+  /// One that came before is not kept twice. Those that are said again (kSaidAgain) take the place
+  /// of all that came of their sweep: it is as whoever says them has it. Throws InputError for a
+  /// chunk that cannot be joined to those of its sweep.
   void Add(CloudChunk chunk);
+  /// Those of a sweep so far, in the order in which they came; empty: none came, or they are no
+  /// longer kept.
+  std::vector<CloudChunk> ChunksOf(Utime sweep_utime) const;
   /// The sweep, or nothing while its end has not come. Lines that never came, at its head and tail,
   /// too, are there as lines of which nothing is known (JoinChunks).
   std::optional<Cloud> Complete(Utime sweep_utime) const;
@@ -39,6 +46,9 @@ class SweepCollector {
  private:
   struct Sweep {
     std::vector<CloudChunk> chunks;
+    std::optional<std::size_t> first;  // of them that has points
+    bool said_again = false;
+    std::set<std::tuple<int, int, int, bool>> came;  // first line, lines, beams, whether it ends
     std::size_t points = 0;
     int lines = 0;  // that it must have, as far as its chunks have told
     bool ended = false;

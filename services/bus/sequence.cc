@@ -1,5 +1,7 @@
 #include "services/bus/sequence.h"
 
+#include "calib/model/said_again.h"
+
 namespace rgbdt {
 namespace {
 
@@ -14,6 +16,7 @@ std::uint64_t Ones(std::int64_t count) {
 }  // namespace
 
 SequenceCounter::Step SequenceCounter::Add(std::int64_t seq) {
+  if (seq == kSaidAgain) return {Kind::kSaidAgain, 0};
   if (newest_ < 0) {
     newest_ = seq;
     return {Kind::kFirst, 0};

@@ -14,6 +14,7 @@ class SequenceCounter {
     kGap,        ///< those between it and the newest are missing
     kLate,       ///< one of the 63 before the newest that were missing: no longer a gap
     kDuplicate,  ///< one of the 63 before the newest, or the newest, once more
+    kSaidAgain,  ///< it has no number
     kRestart,    ///< the sender counts anew: 0 after anything; a fall back by more than 63; a leap
                  ///< ahead of more than a million (nobody loses so many)
   };

@@ -5,6 +5,7 @@
 
 #include "calib/model/errors.h"
 #include "calib/model/printable.h"
+#include "calib/model/said_again.h"
 #include "calib/model/text.h"
 
 namespace rgbdt {
@@ -66,7 +67,7 @@ void CheckUtimeOrZero(std::string_view field, Utime utime) {
   CheckRange(field, utime, 0, kMaxInteger);
 }
 
-void CheckSeq(std::int64_t seq) { CheckRange("seq", seq, 0, kMaxInteger); }
+void CheckSeq(std::int64_t seq) { CheckRange("seq", seq, kSaidAgain, kMaxInteger); }
 
 void CheckRange(std::string_view field, std::int64_t value, std::int64_t low, std::int64_t high) {
   if (value >= low && value <= high) return;

@@ -42,7 +42,7 @@ session_command_t ToWire(const SessionCommand& command) {
 void Check(const session_command_t& wire) {
   CheckUtimeOrZero("utime", wire.utime);
   CheckRange("command", wire.command, 0, kMaxInteger);
-  CheckRange("verb", wire.verb, session_command_t::NEXT_POSE, session_command_t::RESET);
+  CheckRange("verb", wire.verb, session_command_t::NEXT_POSE, session_command_t::SAY_VIEW);
   CheckName("view", wire.view, true);
   CheckUtimeOrZero("sweep_utime", wire.sweep_utime);
   CheckRange("num_picked", wire.num_picked, 0, kMaxCameras);

@@ -37,6 +37,7 @@ Messages DetectorNode::Handle(const Message& message) {
     Messages again = OnPicks(*picks);
     if (!again.empty()) return again;
   } else if (const auto* command = std::get_if<SessionCommand>(&message)) {
+    if (command->verb == SessionVerb::kSayView) return SayAgain(*command);
     OnCommand(*command);
   }
   return DetectIfComplete();
@@ -64,20 +65,35 @@ Messages DetectorNode::DetectIfComplete() {
   event.command = view_.capture().command;
   event.utime = view_.capture().utime;
   event.source = name();
-  const std::optional<View> view = view_.Take(*rig_);
-  if (!view) return {};
-  const std::string torn = view_.sweeps().WhyTorn(view->cloud.sweep_utime);
-  if (!torn.empty()) {
+  const Utime sweep = view_.capture().sweep_utime;
+  if (const std::string torn = view_.sweeps().WhyTorn(sweep); !torn.empty()) {
+    if (!view_.Missing(*rig_).empty() || torn_told_ == event.command) return {};
+    torn_told_ = event.command;
     ++torn_sweeps_;
     event.kind = EventKind::kFailed;
-    event.sweep_utime = view->cloud.sweep_utime;
+    event.sweep_utime = sweep;
     event.text = torn;
     return {event};
   }
+  const std::optional<View> view = view_.Take(*rig_);
+  if (!view) return {};
   ++views_;
   kept_.push_back({*view, event});
   if (kept_.size() > kKeptViews) kept_.pop_front();
   return DetectOrFail(*view, event);
+}
+
+// What came more than kKeptViews views ago is gone: nothing.
+Messages DetectorNode::SayAgain(const SessionCommand& asked) {
+  if (said_again_ && now_ - *said_again_ < kSayEvery) return {};
+  for (const Kept& kept : kept_) {
+    if (kept.view.name != asked.view || kept.view.cloud.sweep_utime != asked.sweep_utime) continue;
+    said_again_ = now_;
+    Messages again = view_.Again(kept.view);
+    for (Message& word : DetectOrFail(kept.view, kept.event)) again.push_back(std::move(word));
+    return again;
+  }
+  return {};
 }
 
 // A person helps a view that was taken before.
@@ -120,6 +136,7 @@ Messages DetectorNode::Detect(const View& view, SessionEvent event) {
 }
 
 Messages DetectorNode::Advance(Utime now) {
+  now_ = now;
   if (!looked_at_) return {};
   const Utime took = now - *looked_at_;
   look_from_ = *looked_at_ + std::clamp(kLookShare * took, kLookEvery, kMicrosecondsPerSecond);
@@ -140,7 +157,8 @@ Messages DetectorNode::UseSpareTime(Utime now) {
 }
 
 Messages DetectorNode::LookAtNext() {
-  if (!rig_ || view_.active()) return {};
+  const bool has_time = !view_.active() || torn_told_ == view_.capture().command;
+  if (!rig_ || !has_time) return {};
   const std::size_t sensors = rig_->cameras.size() + 1;
   for (std::size_t i = 0; i < sensors; ++i) {
     const std::size_t turn = next_look_++ % sensors;
@@ -157,13 +175,18 @@ Messages DetectorNode::LookAtNext() {
   return {};
 }
 
+std::string DetectorNode::Missing() const {
+  const std::string missing = view_.Missing(*rig_);
+  if (!missing.empty()) return missing;
+  return "lines of sweep " + std::to_string(view_.capture().sweep_utime);
+}
+
 Status DetectorNode::GetStatus() const {
   Status status;
   status.ready = rig_.has_value();
-  status.text = !rig_ ? "waits for the rig (RIG)"
-                : !view_.active()
-                    ? "waits for a capture"
-                    : "view " + view_.capture().view + " waits for " + view_.Missing(*rig_);
+  status.text = !rig_            ? "waits for the rig (RIG)"
+                : view_.active() ? "view " + view_.capture().view + " waits for " + Missing()
+                                 : "waits for a capture";
   status.counters = {{"views", views_},
                      {"images without board", images_without_board_},
                      {"clouds without board", clouds_without_board_},

@@ -1,6 +1,7 @@
 #include "services/nodes/earlier_views.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 
 #include "calib/files/atomic_file.h"
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDetectionFile = "detection.lcm";
 constexpr const char* kLeftOutFile = "left_out_views.lcm";
+constexpr const char* kAskedFile = "asked.lcm";
 constexpr const char* kEndedFile = "ended";  // report.json does not tell: others write it, too
 constexpr const char* kWayOut = "name another directory (--out)";
 
@@ -63,6 +65,18 @@ Session OpenEarlier(const fs::path& directory, const Rig& rig) {
   return session;
 }
 
+// It only saves a sweep: whatever is wrong with it, there is none.
+std::optional<SessionCommand> ReadAsked(const fs::path& directory, const Rig& rig) {
+  try {
+    const auto age = fs::file_time_type::clock::now() - fs::last_write_time(directory / kAskedFile);
+    if (age > std::chrono::seconds(kAskedIsOld) || fs::exists(directory / kEndedFile)) return {};
+    if (!DifferencesOf(ReadRig(directory / "rig.textproto"), rig).empty()) return {};
+    return ReadMessage<SessionCommand>(directory / kAskedFile);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
 bool IsNumber(const std::string& name) {
   return !name.empty() && name.size() < 9 &&
          std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -83,6 +97,39 @@ class Names {
   int number_ = 0;
   bool taken_ = false;
 };
+
+SessionVerb VerbOf(SessionStep::Kind kind) {
+  switch (kind) {
+    case SessionStep::Kind::kNextPose:
+      return SessionVerb::kNextPose;
+    case SessionStep::Kind::kSweep:
+      return SessionVerb::kSweep;
+    case SessionStep::Kind::kCapture:
+      return SessionVerb::kCapture;
+    default:
+      return SessionVerb::kReset;
+  }
+}
+
+// Of the steps of the next view.
+void FindAsked(const SessionScript& script, const SessionCommand& asked, ResumePoint* point) {
+  Names names;
+  for (std::size_t i = 0; i < script.steps.size(); ++i) {
+    const SessionStep& step = script.steps[i];
+    names.Take(step.kind);
+    if (i < point->step) continue;
+    const bool same = VerbOf(step.kind) == asked.verb && ViewName(names.number()) == asked.view;
+    const bool capture = step.kind == SessionStep::Kind::kCapture;
+    if (same && (!capture ||
+                 (step.heldout == asked.heldout && step.picked_cameras == asked.picked_cameras))) {
+      point->step = i;
+      point->view_number = names.number();
+      point->asked = true;
+      return;
+    }
+    if (capture) return;
+  }
+}
 
 }  // namespace
 
@@ -113,6 +160,7 @@ Utime EarlierViews::NewestUtime() const {
 
 EarlierViews ReadEarlierViews(const fs::path& directory, const Rig& rig) {
   EarlierViews views;
+  views.asked = ReadAsked(directory, rig);
   if (!HoldsViews(directory / "views")) return views;
   std::error_code ignored;
   for (const std::string& name : OpenEarlier(directory, rig).views) {
@@ -168,6 +216,19 @@ ResumePoint FindResumePoint(const SessionScript& script, const EarlierViews& vie
          "which it takes others");
   }
   if (point.step == script.steps.size()) fail("nothing is left to do");
+  if (views.asked) FindAsked(script, *views.asked, &point);
+  return point;
+}
+
+ResumePoint FindResumePoint(const EarlierViews& views) {
+  ResumePoint point;
+  point.view_number = views.NewestNumber();
+  if (!views.asked || !IsNumber(views.asked->view)) return point;
+  const std::string& view = views.asked->view;
+  if (views.detected.count(view) != 0 || std::stoi(view) < point.view_number) return point;
+  point.view_number = std::stoi(view);
+  point.asked = true;
+  if (views.undetected.count(view) != 0) point.unfinished = view;
   return point;
 }
 
@@ -178,6 +239,15 @@ void WriteDetection(const fs::path& directory, const ViewDetection& detection) {
 
 void WriteLeftOut(const fs::path& directory, const LeftOutViews& left_out) {
   WriteMessage(directory / kLeftOutFile, left_out);
+}
+
+void WriteAsked(const fs::path& directory, const SessionCommand& command) {
+  WriteMessage(directory / kAskedFile, command);
+}
+
+void RemoveAsked(const fs::path& directory) {
+  std::error_code ignored;
+  fs::remove(directory / kAskedFile, ignored);
 }
 
 void WriteEnded(const fs::path& directory) {

@@ -20,11 +20,16 @@ struct EarlierViews {
   std::map<std::string, ViewDetection> detected;  ///< by view
   std::set<std::string> undetected;               ///< folders of views that do not count
   std::optional<LeftOutViews> left_out;
+  /// What it asked for last, of a view; absent: too long ago, or that is not known.
+  std::optional<SessionCommand> asked;
 
   bool empty() const { return detected.empty() && undetected.empty(); }
   int NewestNumber() const;   ///< of a view whose name is a number; 0: there is none
   Utime NewestUtime() const;  ///< of what the sensors gave for them
 };
+
+/// What it asked for longer ago nobody is still at [s].
+inline constexpr int kAskedIsOld = 300;
 
 /// Empty where the folder holds no views, or is not there. Throws InputError, with what differs,
 /// where the views are of another rig; where the session has ended (WriteEnded); and where a
@@ -40,16 +45,28 @@ struct ResumePoint {
   int view_number = 0;   ///< of the newest view that there is
   /// A view that is on disk and was not detected: it is taken again; empty: there is none.
   std::string unfinished;
+  /// `step` was asked for and is still to be answered, or was and nobody heard.
+  bool asked = false;
 };
 
-/// After the script's last capture of which all views up to it are there. Throws InputError, with
+/// After the script's last capture of which all views up to it are there; at the step after it that
+/// was asked for, if one was. Throws InputError, with
 /// what differs, where the views are not those that the script takes, or nothing is left to do.
 ResumePoint FindResumePoint(const SessionScript& script, const EarlierViews& views,
                             const std::filesystem::path& directory);
 
+/// Of a session that a person leads: the view that it was asked for, if one was.
+ResumePoint FindResumePoint(const EarlierViews& views);
+
 /// Beside the view; whole or not at all. Throw InputError.
 void WriteDetection(const std::filesystem::path& directory, const ViewDetection& detection);
 void WriteLeftOut(const std::filesystem::path& directory, const LeftOutViews& left_out);
+
+/// Before a command of a view is sent: a session that is killed goes on waiting for its answer
+/// (EarlierViews::asked). Throws InputError.
+void WriteAsked(const std::filesystem::path& directory, const SessionCommand& command);
+/// Nobody is to wait for it.
+void RemoveAsked(const std::filesystem::path& directory);
 
 /// The session was saved and is not to be gone on with: a file `ended`. Throws InputError.
 void WriteEnded(const std::filesystem::path& directory);

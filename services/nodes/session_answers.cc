@@ -97,7 +97,8 @@ void SessionNode::OnStartedAnew(const std::string& process) {
   const bool assembles = process == "assembler" && rig_.lidar.turned_scanner;
   const bool has_lines = assembles || process == "lidar" || process == "simulator";
   const bool has_images = process == "simulator" || process.rfind("camera-", 0) == 0;
-  if (process == "detector" || has_lines) spoiled_ = why;
+  if (has_lines) spoiled_ = why;
+  if (process == "detector") OnDetectorStartedAnew(why);
   if (!waiting_ || idle()) return;
   switch (step().kind) {
     case SessionStep::Kind::kNextPose:
@@ -108,9 +109,7 @@ void SessionNode::OnStartedAnew(const std::string& process) {
       return;
     case SessionStep::Kind::kCapture: {
       const bool swept = collector_.sweeps().Ended(sweep_utime_);
-      if (process == "detector") answered_ |= IsDetected();  // its event alone is missing
-      if ((process == "detector" && !answered_) || (has_images && !has_view_) ||
-          (has_lines && !swept)) {
+      if ((has_images && !has_view_) || (has_lines && !swept)) {
         TakeAgain(why, &restarts_, kMaxRestarts);
       }
       return;
@@ -159,10 +158,7 @@ void SessionNode::OnRequest(const SessionRequest& request) {
       Append(SessionStep::Kind::kNextPose);
       break;
     case SessionRequestKind::kCapture:
-      Append(SessionStep::Kind::kSweep);
-      Append(SessionStep::Kind::kCapture, request.heldout);
-      Append(SessionStep::Kind::kSolve);
-      Append(SessionStep::Kind::kEvaluate);
+      AppendCapture(request.heldout);
       break;
     case SessionRequestKind::kFinish:
       Append(SessionStep::Kind::kEvaluate);
@@ -179,6 +175,13 @@ void SessionNode::Append(SessionStep::Kind kind, bool heldout) {
   step.heldout = heldout;
   if (kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
   script_.steps.push_back(std::move(step));
+}
+
+void SessionNode::AppendCapture(bool heldout) {
+  Append(SessionStep::Kind::kSweep);
+  Append(SessionStep::Kind::kCapture, heldout);
+  Append(SessionStep::Kind::kSolve);
+  Append(SessionStep::Kind::kEvaluate);
 }
 
 void SessionNode::OnEvent(const SessionEvent& event) {
@@ -202,7 +205,8 @@ void SessionNode::OnEvent(const SessionEvent& event) {
     const std::string why = event.source + ": " + event.text;
     if (event.source == "solver" && RestoreSolver("rgbdt-" + why)) return;
     if (event.source == "detector" && event.sweep_utime != 0) {
-      TakeTornAgain(why);
+      exchange_.detector_lacks = why;
+      exchange_.next_try = now_;
     } else {
       Fail(why);
     }
@@ -215,7 +219,7 @@ void SessionNode::OnEvent(const SessionEvent& event) {
   }
   const std::string wanted = AnsweredBy(step().kind);
   if (!wanted.empty() && event.source != wanted) return;
-  answered_ = true;
+  if (!std::exchange(answered_, true)) exchange_.next_try = now_ + kMicrosecondsPerSecond;
   last_answer_ = event.text;
   if (event.sweep_utime != 0) sweep_utime_ = event.sweep_utime;
   ReportProgress(event.text, 1);
@@ -316,6 +320,7 @@ std::string SessionNode::WhoIsSilent() const {
 std::string SessionNode::WhatIsMissing() const {
   const std::string wanted = AnsweredBy(step().kind);
   if (answered_ && has_view_) return "this process still lacks the view's DETECTION";
+  if (answered_ && !exchange_.torn_here.empty()) return exchange_.torn_here;
   if (answered_) return "this process still lacks " + collector_.Missing(rig_);
   const auto found = statuses_.find(wanted);
   if (step().kind == SessionStep::Kind::kNextPose) {

@@ -10,21 +10,32 @@ namespace rgbdt {
 
 void SessionNode::SaveView() {
   if (finished_ || !collector_.active()) return;
-  const bool is_newest = collector_.capture().command == command_;
-  std::optional<View> view = collector_.Take(rig_);
-  if (!view) return;
-  const std::string torn = collector_.sweeps().WhyTorn(view->cloud.sweep_utime);
+  const std::string torn = collector_.sweeps().WhyTorn(collector_.capture().sweep_utime);
   if (!torn.empty()) {
-    if (waiting_ && is_newest) TakeTornAgain(torn);
+    if (collector_.Missing(rig_).empty()) exchange_.torn_here = torn;
     return;
   }
+  std::optional<View> view = collector_.Take(rig_);
+  if (!view) return;
   const std::string name = view->name;
   has_view_ = true;
+  exchange_.torn_here.clear();
+  exchange_.view.cloud.sweep_utime = view->cloud.sweep_utime;
+  exchange_.view.images = view->images;
+  exchange_.view.picks = view->picks;
   taken_.insert(name);
   for (const Image& image : view->images) images_[{image.camera, image.utime}] = name;
   unwritten_.Add(std::move(*view));
   WriteToDisk();
   SaveDetection(name);
+}
+
+// Where it cannot be written, a session that is killed takes the view again.
+void SessionNode::NoteAsked(const SessionCommand& command) const {
+  try {
+    WriteAsked(directory_, command);
+  } catch (const std::exception&) {
+  }
 }
 
 void SessionNode::SaveDetection(const std::string& view) {
@@ -68,6 +79,7 @@ void SessionNode::WriteToDisk() {
 
 std::string SessionNode::WriteWhatIsKept() {
   WriteToDisk();
+  if (started_) RemoveAsked(directory_);
   return unwritten_.Lost();
 }
 

@@ -11,7 +11,8 @@ namespace rgbdt {
 Messages SessionNode::RepeatCommand() {
   const bool carries = board_stands_ && step().kind == SessionStep::Kind::kNextPose;
   const bool asks = step().kind != SessionStep::Kind::kWait && !carries;
-  if (!waiting_ || finished_ || answered_ || !asks || now_ < repeat_at_) return {};
+  const bool exchanges = !exchange_.detector_lacks.empty();  // SayWhatIsLacking does it
+  if (!waiting_ || finished_ || answered_ || !asks || exchanges || now_ < repeat_at_) return {};
   repeat_pause_ = std::min(2 * repeat_pause_, kLongestRepeat);
   repeat_at_ = now_ + repeat_pause_;
   return {newest_command_};

@@ -18,7 +18,6 @@ namespace {
 
 // After one that was cut off is heard: within that the others are, too.
 constexpr Utime kHeardAgain = 3 * kMicrosecondsPerSecond / 2;
-constexpr Utime kStartTimeout = 30 * kMicrosecondsPerSecond;  // until everybody is ready
 
 }  // namespace
 
@@ -32,7 +31,9 @@ SessionNode::SessionNode(SessionScript script, Rig rig, std::filesystem::path di
       identity_(std::move(identity)) {
   if (script_.steps.empty()) throw InputError("the session script has no steps");
   earlier_ = ReadEarlierViews(directory_, rig_);
-  if (!earlier_.empty()) resume_ = FindResumePoint(script_, earlier_, directory_);
+  if (!earlier_.empty() || earlier_.asked) {
+    resume_ = FindResumePoint(script_, earlier_, directory_);
+  }
   for (SessionStep& step : script_.steps) {
     if (board_stands_ && step.kind == SessionStep::Kind::kNextPose) step.timeout_s = kPatience;
   }
@@ -46,7 +47,7 @@ SessionNode::SessionNode(Rig rig, std::filesystem::path directory, OnProgress pr
       progress_(std::move(progress)),
       identity_(std::move(identity)) {
   earlier_ = ReadEarlierViews(directory_, rig_);
-  resume_.view_number = earlier_.NewestNumber();
+  resume_ = FindResumePoint(earlier_);
 }
 
 Messages SessionNode::Handle(const Message& message) {
@@ -94,75 +95,20 @@ Messages SessionNode::GoOn() {
       const std::string clocks = ClockTrouble();
       const std::string what =
           why + "; " + WhatIsMissing() + WhoIsSilent() + (clocks.empty() ? "" : "; " + clocks);
-      if (step().kind == SessionStep::Kind::kCapture && answered_) {
-        TakeTornAgain(what);  // it was lost on its way here
+      const bool lacking = answered_ || !exchange_.detector_lacks.empty();
+      if (step().kind == SessionStep::Kind::kCapture && lacking) {
+        TakeTornAgain(what);  // it was lost on its way
       } else {
         Fail(what);
       }
     }
-    return RepeatCommand();
+    Messages said = RepeatCommand();
+    for (Message& again : SayWhatIsLacking()) said.push_back(std::move(again));
+    return said;
   }
   if (!finished_) EndStep();
   if (finished_ || idle()) return {};
   return Begin();
-}
-
-Messages SessionNode::Start() {
-  const std::string who = WhoIsNotReady();
-  if (!who.empty()) {
-    if (!by_request_ && now_ - *began_ > kStartTimeout) Fail("not ready after 30 s: " + who);
-    return {};
-  }
-  SetEarlierResultsAside();
-  if (earlier_.empty()) RemoveTraces(directory_);
-  WriteRig(directory_, rig_);
-  started_ = true;
-  solver_views_.Clear();
-  Messages out = Send(SessionVerb::kReset);
-  const auto add = [&](Messages messages) {
-    std::move(messages.begin(), messages.end(), std::back_inserter(out));
-  };
-  if (!earlier_.empty()) add(GoOnWithEarlierViews());
-  if (!by_request_) {
-    add(Begin());
-  } else if (idle()) {
-    PublishEvent(EventKind::kDone, "ready", 1);
-  }
-  return out;
-}
-
-// As if they had just been taken; the solver is told of them.
-Messages SessionNode::GoOnWithEarlierViews() {
-  newest_utime_ = std::max(newest_utime_, earlier_.NewestUtime());
-  for (const auto& [name, detection] : earlier_.detected) {
-    solver_views_.Add(detection);
-    solver_views_.Require(name);
-    for (const ImageDetection& image : detection.images) {
-      images_[{image.camera, image.utime}] = name;
-    }
-  }
-  if (earlier_.left_out) solver_views_.Set(*earlier_.left_out);
-  index_ = resume_.step;
-  view_number_ = resume_.view_number;
-  if (view_number_ > 0) view_ = ViewName(view_number_);
-  view_taken_ = true;
-  Tell("goes on with the " + std::to_string(earlier_.detected.size()) + " views that are in " +
-       directory_.string());
-  if (!resume_.unfinished.empty()) {
-    Tell("view " + resume_.unfinished + " was not finished and is taken again; the first one is " +
-         SetViewAside(directory_, resume_.unfinished));
-  }
-  if (by_request_ && !earlier_.undetected.empty()) {
-    std::string names;
-    for (const std::string& name : earlier_.undetected) names += (names.empty() ? "" : ", ") + name;
-    Tell("view " + names + " was not detected and does not count here; rgbdt calibrate " +
-         ForShell(directory_.string()) + " takes all views that are there");
-  }
-  if (by_request_ && !earlier_.detected.empty()) {
-    Append(SessionStep::Kind::kSolve);
-    Append(SessionStep::Kind::kEvaluate);
-  }
-  return solver_views_.Again();
 }
 
 void SessionNode::EndStep() {
@@ -171,6 +117,8 @@ void SessionNode::EndStep() {
   if (step().kind == SessionStep::Kind::kCapture) {
     view_taken_ = true;
     retakes_ = restarts_ = 0;
+    exchange_ = {};
+    RemoveAsked(directory_);
     solver_views_.Require(view_);
   }
   if (++index_ < script_.steps.size()) return;
@@ -213,6 +161,7 @@ bool SessionNode::IsHeldUp() {
 }
 
 Messages SessionNode::Begin() {
+  if (std::exchange(resume_.asked, false)) return GoOnWaiting();
   if (IsHeldUp()) return {};
   waiting_ = true;
   answered_ = false;
@@ -227,6 +176,7 @@ Messages SessionNode::Begin() {
       if (view_.empty() || view_taken_) view_ = ViewName(++view_number_);
       view_taken_ = false;
       spoiled_.clear();
+      exchange_ = {};
       Announce("asked for a sweep");
       return Send(SessionVerb::kSweep);
     case SessionStep::Kind::kCapture:
@@ -247,7 +197,6 @@ Messages SessionNode::Begin() {
   return {};
 }
 
-// The sweep before the capture at hand, and the capture, once more.
 // The step before this one, waits aside; nothing: it is none that sweeps.
 std::optional<std::size_t> SessionNode::SweepBefore() const {
   std::size_t sweep = index_;
@@ -258,8 +207,10 @@ std::optional<std::size_t> SessionNode::SweepBefore() const {
   return sweep;
 }
 
-void SessionNode::TakeAgain(const std::string& why, int* tries, int most) {
+// The sweep before the capture at hand, and the capture, once more.
+void SessionNode::TakeAgain(std::string why, int* tries, int most) {
   collector_.GiveUp();
+  exchange_ = {};
   captures_.erase(command_);
   const std::optional<std::size_t> sweep = SweepBefore();
   const bool can = sweep.has_value();
@@ -300,15 +251,28 @@ Messages SessionNode::Send(SessionVerb verb) {
   command.utime = newest_utime_;
   command.verb = verb;
   command.view = view_;
+  if (verb == SessionVerb::kSweep) command.heldout = CaptureIsHeldOut();
   if (verb == SessionVerb::kCapture) {
     command.sweep_utime = sweep_utime_;
     command.heldout = step().heldout;
     command.picked_cameras = step().picked_cameras;
   }
+  if (verb == SessionVerb::kNextPose || verb == SessionVerb::kSweep ||
+      verb == SessionVerb::kCapture) {
+    NoteAsked(command);
+  }
   newest_command_ = command;
   repeat_pause_ = kFirstRepeat;
   repeat_at_ = now_ + repeat_pause_;
   return {command};
+}
+
+// The capture that follows the sweep at hand.
+bool SessionNode::CaptureIsHeldOut() const {
+  for (std::size_t i = index_; i < script_.steps.size(); ++i) {
+    if (script_.steps[i].kind == SessionStep::Kind::kCapture) return script_.steps[i].heldout;
+  }
+  return false;
 }
 
 bool SessionNode::StepDone() {
@@ -379,6 +343,7 @@ void SessionNode::Fail(const std::string& why) {
   failure_ = which + (in_step ? NameOf(step().kind) : "start") +
              (view_.empty() || of_next ? "" : ", view " + view_) + ": " + why + WhatIsOnDisk();
   PublishEvent(EventKind::kFailed, failure_, 1);
+  if (started_) RemoveAsked(directory_);
   finished_ = !leads;
   retakes_ = restarts_ = 0;
   if (!leads) return;

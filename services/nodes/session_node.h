@@ -55,16 +55,20 @@ struct SessionProgress {
 ///
 /// A directory with views of an earlier start of the session, that was ended or killed, is gone on
 /// with (EarlierViews): the solver gets what it had, the script goes on after the last view that is
-/// there with its detection, a person is asked for the next. What is there is not written over. A
-/// directory of another rig or script, or of a session that has ended, is refused.
+/// there with its detection, a person is asked for the next. What was asked for and not yet
+/// answered is waited for: it is asked as it was, and who is at it, or has done it, answers. What
+/// is there is not written over. A directory of another rig or script, or of a session that has
+/// ended, is refused.
 ///
-/// A capture whose sweep is not whole, as the detector or this process got it, is taken again,
-/// sweep and all, kMaxRetakes times at most; then it has failed. So is one of which the detector
-/// had what was lost on its way here: an image, or the DETECTION itself. So is one for which a
-/// process was started anew (its STATUS counts from 0 again) that had a part in it, kMaxRestarts
-/// times; and what such a process was asked it is asked again. No sweep begins until everybody is
-/// ready, by the newest STATUS; that of a process that is gone counts until it is back (one at work
-/// is silent, too).
+/// Detector and this process put each view together for themselves. What one of them lacks, as it
+/// was started anew or messages were lost, the other one says again (ViewCollector::Again,
+/// say_view). A capture whose sweep is whole for neither is taken again, sweep and all, kMaxRetakes
+/// times at most; then it has failed. So is one for which this process took another image than the
+/// detector, or that one of them still lacks when its time is over. So is one for which a process
+/// was started anew (its STATUS counts from 0 again) that the sensors' messages come from, or the
+/// detector twice, kMaxRestarts times; and what such a process was asked it is asked again. No
+/// sweep begins until everybody is ready, by the newest STATUS; that of a process that is gone
+/// counts until it is back (one at work is silent, too).
 ///
 /// A command that is not answered is sent again, as it was, after 3, 6, 12 and then every 16 s; who
 /// got it answers once more what it answered (NodeRunner). A process whose STATUS was not heard for
@@ -89,6 +93,7 @@ class SessionNode : public Node {
   static constexpr Utime kClocksSettle = 5 * kMicrosecondsPerSecond;
   static constexpr Utime kFirstRepeat = 3 * kMicrosecondsPerSecond;
   static constexpr Utime kLongestRepeat = 16 * kMicrosecondsPerSecond;
+  static constexpr int kMostExchanges = 3;  ///< of a view, 3, 6 and 12 s apart
 
   using OnProgress = std::function<void(const SessionProgress&)>;
   /// Whether the person who carries the board has put it where the next view wants it; asked in
@@ -109,7 +114,6 @@ class SessionNode : public Node {
     return {"STATUS",           "SESSION_EVENT", "SESSION_REQUEST", "CLOUD",         ".*_IMAGE",
             "CORNER_SELECTION", "DETECTION",     "REPORT",          "LEFT_OUT_VIEWS"};
   }
-  std::vector<std::string> Repeats() const override { return {"DETECTION", "LEFT_OUT_VIEWS"}; }
   Messages Handle(const Message& message) override;
   /// Goes on as far as possible.
   Messages Advance(Utime now) override;
@@ -130,6 +134,7 @@ class SessionNode : public Node {
   Messages GoOn();
   Messages Start();
   Messages GoOnWithEarlierViews();
+  Messages GoOnWaiting();
   bool WaitsForPose() const;
   bool IsCaptured(const ViewDetection& detection) const;
   void PoseIsSet();
@@ -141,6 +146,8 @@ class SessionNode : public Node {
   bool StepDone();
   bool IsDetected() const;
   std::string LostHere() const;
+  void OnDetectorStartedAnew(const std::string& why);
+  Messages SayWhatIsLacking();
   bool SolverTookAll();
   bool RestoreSolver(const std::string& why);
   void Take(const Message& message);
@@ -164,7 +171,7 @@ class SessionNode : public Node {
   void WriteToDisk();
   std::string NoRoom();
   std::optional<std::size_t> SweepBefore() const;
-  void TakeAgain(const std::string& why, int* tries, int most);
+  void TakeAgain(std::string why, int* tries, int most);
   void TakeTornAgain(const std::string& why) { TakeAgain(why, &retakes_, kMaxRetakes); }
   void Tell(const std::string& text);
   void Save();
@@ -172,6 +179,9 @@ class SessionNode : public Node {
   void Fail(const std::string& why);
   void EndStep();
   void Append(SessionStep::Kind kind, bool heldout = false);
+  void AppendCapture(bool heldout);
+  bool CaptureIsHeldOut() const;
+  void NoteAsked(const SessionCommand& command) const;
   bool idle() const { return by_request_ && started_ && index_ >= script_.steps.size(); }
   void PublishEvent(EventKind kind, const std::string& text, double fraction);
   void ReportProgress(const std::string& text, double fraction);
@@ -226,9 +236,19 @@ class SessionNode : public Node {
   Periodic room_asked_{kMicrosecondsPerSecond};  // while the script waits for it
   std::string no_room_;
   bool has_view_ = false;  // of the capture at hand, on disk or not yet
-  int retakes_ = 0;        // of the capture at hand: torn sweeps
-  int restarts_ = 0;       // likewise: processes started anew
-  std::string spoiled_;    // why the newest sweep is lost to who needs it; empty: it is not
+  struct Exchange {
+    std::string torn_here;       // why this process has no whole sweep; empty: it has, or none yet
+    std::string detector_lacks;  // why the detector has not all of the view; empty: it has
+    bool detector_is_new = false;  // it was started since the sweep began: it knows no capture
+    View view;                     // as this process put it together, without its points
+    int deaths = 0;                // of the detector, in this capture
+    int tries = 0;
+    Utime next_try = 0;
+  };
+  Exchange exchange_;    // with the detector, since the sweep began
+  int retakes_ = 0;      // of the capture at hand: torn sweeps
+  int restarts_ = 0;     // likewise: processes started anew
+  std::string spoiled_;  // why the newest sweep is lost to who needs it; empty: it is not
   std::optional<Utime> held_up_since_;  // until everybody is ready
   EarlierViews earlier_;
   ResumePoint resume_;

@@ -63,7 +63,7 @@ ReportText SolverNode::ReportMessage() const {
 }
 
 Messages SolverNode::OnCommand(const SessionCommand& command) {
-  if (command.verb == SessionVerb::kReset) {
+  if (command.verb == SessionVerb::kReset || command.verb == SessionVerb::kGoOn) {
     Forget();
     return {};
   }

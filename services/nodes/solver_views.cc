@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calib/model/said_again.h"
 #include "services/messages/status_counters.h"
 
 namespace rgbdt {
@@ -44,6 +45,7 @@ Messages SolverViews::Again() {
   Messages again;
   for (const auto& [view, detection] : detections_) again.emplace_back(detection);
   if (left_out_) again.emplace_back(*left_out_);
+  for (Message& message : again) SetSeq(kSaidAgain, &message);
   return again;
 }
 

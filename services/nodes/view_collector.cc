@@ -2,10 +2,18 @@
 
 #include <algorithm>
 
+#include "calib/model/said_again.h"
+#include "services/messages/limits.h"
+
 namespace rgbdt {
 namespace {
 
 using Seconds = std::map<Utime, Image>;
+
+// Of a time that is past, whatever the clock says.
+bool IsSaidAgain(const Image& image) { return image.seq == kSaidAgain; }
+
+constexpr std::size_t kMostRawBytes = kMaxMessageBytes - 64 * 1024;  // the rest of its message
 
 std::size_t BytesOf(const Image& image) { return image.pixels.total() * image.pixels.elemSize(); }
 
@@ -20,7 +28,7 @@ void Thin(Seconds::iterator from, Seconds::iterator to, Seconds* seconds) {
                  ViewCollector::kLeastOfSweep, ViewCollector::kMostOfSweep);
   for (Utime stride = 2; count > most; stride *= 2) {
     for (auto at = std::next(from, 2); at != to;) {
-      const bool stays = at->first % stride == 0;
+      const bool stays = at->first % stride == 0 || IsSaidAgain(at->second);
       count -= stays ? 0 : 1;
       at = stays ? std::next(at) : seconds->erase(at);
     }
@@ -33,7 +41,8 @@ void ViewCollector::Add(const Image& image) {
   if (image.shutter_correcting) return;
   KeepForSweep(image);
   std::deque<Image>& kept = images_[image.camera];
-  if (!kept.empty() && image.utime < kept.back().utime - kClockReset) kept.clear();
+  const bool reset = !kept.empty() && image.utime < kept.back().utime - kClockReset;
+  if (reset && !IsSaidAgain(image)) kept.clear();
   const auto later = std::find_if(kept.begin(), kept.end(),
                                   [&](const Image& other) { return other.utime >= image.utime; });
   if (later != kept.end() && later->utime == image.utime) return;
@@ -53,14 +62,16 @@ void ViewCollector::KeepForSweep(const Image& image) {
   if (during_ == During::kForget) return;
   std::map<Utime, Image>& seconds = seconds_[image.camera];
   const Utime second = image.utime / kMicrosecondsPerSecond;
-  if (!seconds.empty() && second < seconds.rbegin()->first - kClockReset / kMicrosecondsPerSecond &&
+  const bool again = IsSaidAgain(image);
+  if (!again && !seconds.empty() &&
+      second < seconds.rbegin()->first - kClockReset / kMicrosecondsPerSecond &&
       second < seconds.begin()->first) {
     seconds.clear();
   }
   const auto found = seconds.find(second);
   if (found == seconds.end()) {
     seconds.emplace(second, image);
-  } else if (image.utime < found->second.utime) {
+  } else if (again || (image.utime < found->second.utime && !IsSaidAgain(found->second))) {
     found->second = image;
   }
   ForgetSeconds(&seconds);
@@ -92,7 +103,8 @@ std::size_t ViewCollector::ImageBytes() const {
   return bytes;
 }
 
-// At most two: the first since the sweep's start, and the nearest to its middle.
+// At most two: the first since the sweep's start, and the nearest to its middle. Where they were
+// said again, those: of who chose from all.
 std::vector<Image> ViewCollector::DuringSweep(const Image& at_capture) const {
   const Utime start = capture_->sweep_utime;
   const auto kept = seconds_.find(at_capture.camera);
@@ -100,8 +112,14 @@ std::vector<Image> ViewCollector::DuringSweep(const Image& at_capture) const {
   const Utime middle = start + (capture_->utime - start) / 2;
   const Image* first = nullptr;
   const Image* nearest = nullptr;
+  const auto during = [&](const Image& image) {
+    return image.utime >= start && image.utime < capture_->utime;
+  };
+  const bool again = std::any_of(kept->second.begin(), kept->second.end(), [&](const auto& second) {
+    return during(second.second) && IsSaidAgain(second.second);
+  });
   for (const auto& [second, image] : kept->second) {
-    if (image.utime < start || image.utime >= capture_->utime) continue;
+    if (!during(image) || (again && !IsSaidAgain(image))) continue;
     if (first == nullptr) first = &image;
     if (nearest == nullptr || std::abs(image.utime - middle) < std::abs(nearest->utime - middle)) {
       nearest = &image;
@@ -166,6 +184,22 @@ std::string ViewCollector::Missing(const Rig& rig) const {
     }
   }
   return missing;
+}
+
+Messages ViewCollector::Again(const View& view) const {
+  Messages again;
+  std::vector<CloudChunk> chunks = sweeps_.ChunksOf(view.cloud.sweep_utime);
+  if (chunks.empty()) return again;
+  std::stable_partition(chunks.begin(), chunks.end(),
+                        [](const CloudChunk& chunk) { return !chunk.sweep_end; });
+  for (Image image : view.images) {
+    if (BytesOf(image) > kMostRawBytes) image.format = PixelFormat::kPng;
+    again.emplace_back(std::move(image));
+  }
+  for (const CornerSelection& picks : view.picks) again.emplace_back(picks);
+  for (const CloudChunk& chunk : chunks) again.emplace_back(chunk);
+  for (Message& message : again) SetSeq(kSaidAgain, &message);
+  return again;
 }
 
 std::optional<View> ViewCollector::Take(const Rig& rig) {

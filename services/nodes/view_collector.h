@@ -11,6 +11,7 @@
 #include "calib/model/session.h"
 #include "calib/model/view_detection.h"
 #include "calib/scan_assembly/sweep_collector.h"
+#include "services/messages/message.h"
 
 namespace rgbdt {
 
@@ -54,6 +55,11 @@ class ViewCollector {
 
   /// The view, once, as soon as it is complete.
   std::optional<View> Take(const Rig& rig);
+  /// All messages that a view of this collector's was put together from, to be said again
+  /// (kSaidAgain): its images and picks, then its sweep, whose end completes the view for whoever
+  /// has been asked for it. Images too large for a message raw go as PNG. Empty where the sweep is
+  /// no longer kept.
+  Messages Again(const View& view) const;
   /// The image that a camera has in the view of the capture at hand; null: it has not come yet, or
   /// there is no capture.
   const Image* ImageOf(const std::string& camera) const;

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include "calib/model/errors.h"
+#include "calib/model/said_again.h"
+#include "services/messages/codec.h"
+#include "services/messages/header.h"
 #include "services/messages/image_channel.h"
 
 namespace rgbdt {
@@ -18,6 +22,20 @@ bool IsInput(const std::string& channel) {
   return channel == "RIG" || channel == "LINE_SCAN" || channel == "ENCODER" ||
          channel == "CORNER_SELECTION" || channel == "LEFT_OUT_VIEWS" ||
          channel == "SESSION_COMMAND" || channel == "POSE" || IsImageChannel(channel);
+}
+
+// Said for a process that was started anew, or to which the network did not bring it.
+bool IsForWhoWasAway(const std::string& channel, const Bytes& bytes) {
+  if (channel == "CLOUD" || IsImageChannel(channel)) {
+    return HeaderOf(bytes.data(), bytes.size()).value_or(Header()).seq == kSaidAgain;
+  }
+  if (channel != "SESSION_COMMAND") return false;
+  try {
+    const auto command = std::get<SessionCommand>(Decode(channel, bytes.data(), bytes.size()));
+    return command.verb == SessionVerb::kGoOn || command.verb == SessionVerb::kSayView;
+  } catch (const InputError&) {
+    return false;  // counted by who cannot decode it
+  }
 }
 
 }  // namespace
@@ -43,7 +61,7 @@ bool Replay::IsOfUse(const std::string& channel) {
 }
 
 bool Replay::Take(const std::string& channel, const Bytes& bytes) {
-  if (!IsOfUse(channel)) return false;
+  if (!IsOfUse(channel) || IsForWhoWasAway(channel, bytes)) return false;
   took_calibration_ |= channel == "CALIBRATION";
   bus_.Publish(channel, bytes);
   bus_.Run();

@@ -22,8 +22,8 @@ class Replay {
   explicit Replay(const std::string& method, Use use = Use::kIfSound);
 
   /// A message of the log, in the log's order; true: it was of use. All that nodes made live is
-  /// left out: they make it again. So is CLOUD in a log with lines, and CALIBRATION in a log of a
-  /// session.
+  /// left out: they make it again. So is CLOUD in a log with lines, CALIBRATION in a log of a
+  /// session, and what was said again for a process that had been started anew: here none was.
   bool Take(const std::string& channel, const Bytes& bytes);
   /// After the last one: what waits for others is done without them.
   void Finish();

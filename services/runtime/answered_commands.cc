@@ -17,6 +17,12 @@ bool AnsweredCommands::IsNew(const SessionCommand& command) {
   return true;
 }
 
+void AnsweredCommands::Forget(const SessionCommand& command) {
+  asked_.erase(std::remove_if(asked_.begin(), asked_.end(),
+                              [&](const Asked& a) { return a.command == command.command; }),
+               asked_.end());
+}
+
 void AnsweredCommands::Remember(const SessionEvent& event) {
   if (event.kind == EventKind::kProgress) return;
   for (Asked& asked : asked_) {

@@ -17,6 +17,8 @@ class AnsweredCommands {
 
   /// False: it came before, and is not for the node. A RESET begins a new session.
   bool IsNew(const SessionCommand& command);
+  /// The node could not use it yet: sent again it is new.
+  void Forget(const SessionCommand& command);
   /// What the node says of a command: done or failed is its last word.
   void Remember(const SessionEvent& event);
   /// The last word on a command; nothing: the node is still at it, or has no part in it.

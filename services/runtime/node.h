@@ -24,17 +24,14 @@ class Node {
   /// Channels to subscribe to, as regular expressions: "CLOUD", ".*_IMAGE".
   virtual std::vector<std::string> Subscriptions() const = 0;
 
-  /// Channels, by name, on which it repeats what others said: such a message goes out as it came,
-  /// with its sender's number, so that it is nobody's gap.
-  virtual std::vector<std::string> Repeats() const { return {}; }
-
   /// Whether it would rather lose images and clouds than be late with the newest, where it gets
   /// less time than it needs (LcmBus::WantNewest).
   virtual bool WantsNewest() const { return false; }
 
   /// Takes one message. Throws InputError for one that cannot be used: the caller drops it, counts
   /// it and names it in the status. The node is then as if the message had never come. What follows
-  /// from a message and is not its sender's fault is a warning.
+  /// from a message and is not its sender's fault is a warning. Messages that come back, here and
+  /// below, are numbered by the caller; but one whose number is kSaidAgain keeps it.
   virtual Messages Handle(const Message& message) = 0;
 
   /// It is `now` [us]: does what is due, and repeats what processes that start late need. The clock

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "calib/model/said_again.h"
 #include "services/messages/check.h"
 #include "services/messages/codec.h"
 #include "services/messages/limits.h"
@@ -27,10 +28,9 @@ std::string SequenceOf(const Message& message) {
   return ChannelOf(message) + (sender.empty() ? "" : " " + sender);
 }
 
-// Not those on which each sender counts for itself, persons speak, or the session says again what
-// others said.
+// Not those on which each sender counts for itself, or persons speak.
 bool HasOneSender(const std::string& channel, const std::string& sequence) {
-  static const std::set<std::string> several = {"CORNER_SELECTION", "DETECTION", "LEFT_OUT_VIEWS",
+  static const std::set<std::string> several = {"CORNER_SELECTION", "LEFT_OUT_VIEWS",
                                                 "SESSION_REQUEST"};
   return channel == sequence && several.count(channel) == 0;
 }
@@ -65,7 +65,6 @@ void AddCounters(const std::string& what, const std::map<std::string, std::int64
 }  // namespace
 
 NodeRunner::NodeRunner(Node* node, Bus* bus) : node_(node), bus_(bus) {
-  for (const std::string& channel : node_->Repeats()) repeats_.insert(channel);
   node_->SetWarningHandler([this](const std::string& warning) { NameProblem(warning); });
   for (const std::string& channel : node_->Subscriptions()) {
     bus_->Subscribe(channel, [this](const std::string& name, const std::uint8_t* data,
@@ -86,7 +85,12 @@ void NodeRunner::OnBytes(const std::string& channel, const std::uint8_t* data, s
       }
       return;
     }
-    answers = node_->Handle(message);
+    try {
+      answers = node_->Handle(message);
+    } catch (...) {
+      if (command != nullptr) commands_.Forget(*command);
+      throw;
+    }
     // Another process' health is not this one's time.
     if (!std::holds_alternative<Status>(message)) {
       newest_utime_ = std::max(newest_utime_, UtimeOf(message));
@@ -117,7 +121,7 @@ void NodeRunner::Publish(Messages messages) {
 void NodeRunner::PublishOne(Message message) {
   const std::string channel = ChannelOf(message);
   Guard("publishing " + channel, [&] {
-    if (repeats_.count(channel) != 0) {
+    if (SeqOf(message) == kSaidAgain) {
       bus_->Publish(channel, Encode(message));
       return;
     }

@@ -20,12 +20,12 @@ namespace rgbdt {
 /// none leaves Advance: what cannot be sent is dropped, counted and named likewise.
 ///
 /// Numbers (sequence.h) are kept by channel, on STATUS, SESSION_EVENT and POSE by channel and
-/// sender, since several processes speak there. What a node repeats (Node::Repeats) keeps its
-/// sender's number. Late and repeated messages are handed over as they
-/// come: what their order means only the node knows; but a session's command that came before is
-/// not handed over, the node's last word on it is said again (AnsweredCommands). A channel of one
-/// sender whose numbers keep falling back is named: two programs send on it. A message that cannot
-/// be decoded is dropped and also leaves a gap, as its number is unknown.
+/// sender, since several processes speak there. What is said again (kSaidAgain) has none. Late and
+/// repeated messages are handed over as they come: what their order means only the node knows; but
+/// a session's command that came before is not handed over, the node's last word on it is said
+/// again (AnsweredCommands). A channel of one sender whose numbers keep falling back is named: two
+/// programs send on it. A message that cannot be decoded is dropped and also leaves a gap, as its
+/// number is unknown.
 class NodeRunner {
  public:
   using ProblemHandler = std::function<void(const std::string& problem)>;
@@ -78,7 +78,6 @@ class NodeRunner {
 
   Node* node_;
   Bus* bus_;
-  std::set<std::string> repeats_;  // Node::Repeats
   ProblemHandler problem_handler_;
   Periodic status_{kMicrosecondsPerSecond};
   std::optional<Utime> spared_;  // when it had spare time last

@@ -61,6 +61,15 @@ Messages EmptySweep() {
   return {line, end};
 }
 
+// But for its number and how long it took.
+Messages WhatItSays(const Message& message) {
+  auto detection = std::get<ViewDetection>(message);
+  detection.seq = 0;
+  detection.cloud.detect_s = 0;
+  for (ImageDetection& image : detection.images) image.detect_s = 0;
+  return {detection};
+}
+
 class DetectorNodeTest : public ::testing::Test {
  protected:
   DetectorNodeTest() { node_.Handle(test::TextOf(SmallRig())); }
@@ -170,12 +179,54 @@ TEST_F(DetectorNodeTest, AViewWhoseSweepLacksItsFirstLinesHasFailed) {
   EXPECT_THAT(event.text, HasSubstr("3 of its 4 lines never came"));
   EXPECT_EQ(Counter(node_.GetStatus(), "sweeps not whole"), 1);
   EXPECT_EQ(Counter(node_.GetStatus(), "views"), 0);
-  EXPECT_EQ(node_.GetStatus().text, "waits for a capture");
+  EXPECT_THAT(node_.GetStatus().text, HasSubstr("view 0001 waits for lines of sweep"));
   CornerSelection picks;
   picks.camera = "thermal";
   picks.image_utime = kCommand;
   picks.corners = {{{5, 5}, {50, 5}, {50, 40}, {5, 40}}};
-  EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is not kept";
+  EXPECT_TRUE(node_.Handle(picks).empty()) << "the view is not kept, and it is said once";
+}
+
+TEST_F(DetectorNodeTest, LinesThatAreSaidAgainCompleteIt) {
+  Messages sweep = EmptySweep();
+  test::HandleAll(&node_, {sweep[1]});
+  node_.Handle(Capture());
+  ASSERT_EQ(test::HandleAll(&node_, {Blank("rgb"), Blank("thermal")}).size(), 1U);
+  const Messages out = node_.Handle(sweep[0]);
+  ASSERT_EQ(out.size(), 2U);
+  EXPECT_EQ(std::get<ViewDetection>(out[0]).sweep_utime, kSweep);
+  EXPECT_EQ(std::get<SessionEvent>(out[1]).kind, EventKind::kDone);
+}
+
+TEST_F(DetectorNodeTest, SaysAViewAgainFromWhichAnotherOneDetectsTheSame) {
+  test::HandleAll(&node_, EmptySweep());
+  node_.Handle(Capture());
+  const Messages first = test::HandleAll(&node_, {Blank("rgb"), Blank("thermal")});
+  SessionCommand say = Capture();
+  say.command = 0;
+  say.verb = SessionVerb::kSayView;
+  Messages again = node_.Handle(say);
+  ASSERT_GE(again.size(), 2U + 2U + 2U) << "images, chunks, detection and event";
+  const auto word = std::get<SessionEvent>(again.back());
+  EXPECT_EQ(word.command, 7);
+  again.pop_back();
+  const auto detection = std::get<ViewDetection>(again.back());
+  again.pop_back();
+  EXPECT_EQ(BytesOf(WhatItSays(detection)), BytesOf(WhatItSays(first[0])));
+  for (const Message& message : again) EXPECT_EQ(SeqOf(message), kSaidAgain);
+
+  DetectorNode other;
+  other.Handle(test::TextOf(SmallRig()));
+  other.Handle(Capture());
+  const Messages same = test::HandleAll(&other, again);
+  ASSERT_EQ(same.size(), 2U);
+  EXPECT_EQ(BytesOf(WhatItSays(same[0])), BytesOf(WhatItSays(first[0])));
+  EXPECT_TRUE(node_.Handle(say).empty()) << "strangers may ask a thousand times a second";
+  node_.Advance(DetectorNode::kSayEvery);
+  say.sweep_utime += 1;
+  EXPECT_TRUE(node_.Handle(say).empty()) << "another sweep's";
+  say.sweep_utime -= 1;
+  EXPECT_FALSE(node_.Handle(say).empty());
 }
 
 // As a process calls it that has nothing to handle.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib/files/schema/rig_file.h"
+#include "calib/model/said_again.h"
 #include "calib/simulate/simulator.h"
 #include "services/messages/codec.h"
 #include "services/messages/status_counters.h"

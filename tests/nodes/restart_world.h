@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,6 +69,10 @@ class RestartWorld {
       : directory_(std::move(directory)), on_command_(std::move(on_command)) {
     StartSession();
     StartSolver();
+    bus_.Subscribe("CLOUD",
+                   [this](const std::string& channel, const std::uint8_t* data, std::size_t size) {
+                     OnChunk(std::get<CloudChunk>(Decode(channel, data, size)));
+                   });
     bus_.Subscribe("SESSION_COMMAND",
                    [this](const std::string& channel, const std::uint8_t* data, std::size_t size) {
                      Answer(std::get<SessionCommand>(Decode(channel, data, size)));
@@ -113,12 +118,12 @@ class RestartWorld {
   /// simulator, assembler, detector or fuser.
   void Kill(const std::string& process, int seconds) {
     others_[process] = {turn_ + 10 * seconds, 0, false};
-    if (process == "detector") detector_has_sweep_ = false;
+    if (process == "detector") detector_ = {};
   }
   /// Its machine: it hears nobody and is not heard, and goes on.
   void CutOff(const std::string& process, int seconds) {
     others_[process] = {turn_ + 10 * seconds, others_[process].statuses, true};
-    if (process == "detector") detector_has_sweep_ = false;
+    if (process == "detector") detector_ = {};
   }
   void Send(const Message& message) { bus_.Publish(ChannelOf(message), Encode(message)); }
   void LeaveOut(const std::string& view) {
@@ -142,6 +147,23 @@ class RestartWorld {
 
   bool Lives(const std::string& process) const { return turn_ >= others_.at(process).back_at; }
 
+  // What the session says again; images came before.
+  void OnChunk(const CloudChunk& chunk) {
+    if (chunk.seq != kSaidAgain || !Lives("detector")) return;
+    detector_.has_sweep = true;
+    if (detector_.capture) Detect(*detector_.capture);
+  }
+
+  void SayView() {
+    if (!Lives("detector") || !detector_.detected || !detector_.has_sweep) return;
+    Image image = Blank(OneCamera().cameras[0], world_.now);
+    CloudChunk chunk = detector_.chunk;
+    image.seq = chunk.seq = kSaidAgain;
+    Send(image);
+    Send(chunk);
+    Detect(*detector_.detected);
+  }
+
   void Answer(const SessionCommand& command) {
     const bool of_view =
         command.verb == SessionVerb::kSweep || command.verb == SessionVerb::kCapture;
@@ -152,19 +174,24 @@ class RestartWorld {
     const Messages answer = of_view ? world_.Answer(command) : Messages();
     if (!of_view) world_.commands.push_back(command);
     on_command_(command, this);
+    if (command.verb == SessionVerb::kSayView) SayView();
     if (command.verb == SessionVerb::kNextPose && Lives("simulator")) {
       Send(world_.Event(command, "simulator"));
     }
     if (command.verb == SessionVerb::kSweep) {
       const bool whole = Lives("simulator") && Lives("assembler");
       for (const Message& message : answer) {
-        if (std::holds_alternative<CloudChunk>(message) ? whole : Lives("simulator")) Send(message);
+        const auto* chunk = std::get_if<CloudChunk>(&message);
+        if (chunk != nullptr) detector_.chunk = *chunk;
+        if (chunk != nullptr ? whole : Lives("simulator")) Send(message);
       }
-      detector_has_sweep_ = whole && Lives("detector");
+      detector_.has_sweep = whole && Lives("detector");
     }
     if (command.verb != SessionVerb::kCapture || !Lives("simulator")) return;
     Send(Blank(OneCamera().cameras[0], world_.now));
-    if (detector_has_sweep_ && Lives("detector")) Detect(command);
+    if (!Lives("detector")) return;
+    detector_.capture = command;
+    if (detector_.has_sweep) Detect(command);
   }
 
   void Detect(const SessionCommand& command) {
@@ -175,6 +202,8 @@ class RestartWorld {
     detection.seq = detections_++;
     detection.images[0].utime = world_.now;
     detection.cloud.candidates[0].normal = {-1, 0, 0};
+    detector_.detected = command;
+    detector_.capture.reset();
     Send(detection);
     Send(world_.Event(command, "detector"));
   }
@@ -187,7 +216,12 @@ class RestartWorld {
   std::unique_ptr<Solver> solver_;
   std::map<std::string, Other> others_ = {
       {"assembler", {}}, {"detector", {}}, {"fuser", {}}, {"simulator", {}}};
-  bool detector_has_sweep_ = false;
+  struct Detector {
+    bool has_sweep = false;
+    CloudChunk chunk;
+    std::optional<SessionCommand> capture, detected;  // asked for; done
+  };
+  Detector detector_;
   std::vector<std::string> problems_;
   std::int64_t sessions_ = 0, detections_ = 0;
   int turn_ = 0, starts_solver_at_ = -1, starts_session_at_ = -1;

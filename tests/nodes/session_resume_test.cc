@@ -49,6 +49,13 @@ class SessionResumeTest : public ::testing::Test {
       happens(world);
     };
   }
+  std::vector<SessionCommand> Asked(Verb verb, const std::string& view) const {
+    std::vector<SessionCommand> asked;
+    for (const SessionCommand& command : world_->commands()) {
+      if (command.verb == verb && command.view == view) asked.push_back(command);
+    }
+    return asked;
+  }
   // A session that was ended after its second view.
   fs::path TwoViews() {
     RestartWorld world(dir_ / "two",
@@ -89,6 +96,51 @@ TEST_F(SessionResumeTest, AtWhateverCommandItIsKilledTheCalibrationIsTheSame) {
               expected)
         << name;
   }
+}
+
+// Who is at it, or has done it, answers; what of the view is lost with the session the detector
+// has.
+TEST_F(SessionResumeTest, WhatItAskedForIsAskedAsItWasAndNothingIsTakenAgain) {
+  const std::string expected = Undisturbed();
+  for (const std::string view : {"0001", "0003"}) {
+    for (const Verb verb : {Verb::kNextPose, Verb::kSweep, Verb::kCapture}) {
+      const std::string name = view + std::to_string(static_cast<int>(verb));
+      EXPECT_EQ(CalibrationOf(name, At(verb, view, [](RestartWorld* w) { w->KillSession(2); })),
+                expected);
+      for (const Verb asked : {Verb::kNextPose, Verb::kSweep, Verb::kCapture}) {
+        const std::vector<SessionCommand> commands = Asked(asked, view);
+        ASSERT_EQ(commands.size(), asked == verb ? 2U : 1U) << name;
+        EXPECT_EQ(commands[0].command, commands.back().command);
+        EXPECT_EQ(commands[0].utime, commands.back().utime);
+      }
+      EXPECT_EQ(Asked(Verb::kSayView, view).size(), verb == Verb::kCapture ? 1U : 0U) << name;
+      EXPECT_EQ(Asked(Verb::kReset, "").size(), 1U) << name;
+    }
+  }
+}
+
+TEST_F(SessionResumeTest, WhatWasAskedForLongAgoIsAskedAnew) {
+  CalibrationOf("old", At(Verb::kCapture, "0003", [&](RestartWorld* world) {
+                  const fs::path asked = dir_ / "old/asked.lcm";
+                  fs::last_write_time(
+                      asked, fs::last_write_time(asked) - std::chrono::seconds(kAskedIsOld + 10));
+                  world->KillSession(1);
+                }));
+  const std::vector<SessionCommand> poses = Asked(Verb::kNextPose, "0003");
+  ASSERT_EQ(poses.size(), 2U);
+  EXPECT_NE(poses[0].command, poses[1].command);
+}
+
+// Nobody waits for what a session that was told to end, or has failed, asked for.
+TEST_F(SessionResumeTest, OneThatWasToldToEndLeavesNothingAsked) {
+  SessionNode node(test::ManyViews(), OneCamera(), dir_ / "session", {});
+  for (const char* process : {"assembler", "detector", "solver", "fuser"}) {
+    node.Handle(test::Ready(process));
+  }
+  test::AdvanceTo(0, &node);
+  EXPECT_TRUE(fs::exists(dir_ / "session/asked.lcm"));
+  EXPECT_EQ(node.WriteWhatIsKept(), "");
+  EXPECT_FALSE(fs::exists(dir_ / "session/asked.lcm"));
 }
 
 TEST_F(SessionResumeTest, AgainAndAgainAndTheSolverWithIt) {
@@ -259,7 +311,7 @@ TEST_F(SessionResumeTest, APersonGoesOnWithTheNextView) {
   EXPECT_EQ(node.failure(), "");
   std::vector<Verb> verbs;
   for (const SessionCommand& command : world.commands) verbs.push_back(command.verb);
-  EXPECT_THAT(verbs, ElementsAre(Verb::kReset, Verb::kSolve, Verb::kEvaluate, Verb::kSweep,
+  EXPECT_THAT(verbs, ElementsAre(Verb::kGoOn, Verb::kSolve, Verb::kEvaluate, Verb::kSweep,
                                  Verb::kCapture, Verb::kSolve, Verb::kEvaluate));
   EXPECT_EQ(detections.size(), 2U);
   EXPECT_THAT(OpenSession(dir_ / "session").views, ElementsAre("0001", "0002", "0003", "kitchen"));

@@ -63,6 +63,8 @@ class World {
     now += kMicrosecondsPerSecond;
     switch (command.verb) {
       case SessionVerb::kReset:
+      case SessionVerb::kGoOn:
+      case SessionVerb::kSayView:
         return {};
       case SessionVerb::kNextPose:
         return {Event(command, "simulator")};

@@ -117,6 +117,69 @@ TEST_F(ViewCollectorTest, WhatArrivesFirstDoesNotMatter) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
+// Of who was started in the midst of the sweep, and has later images by now.
+TEST_F(ViewCollectorTest, WhatIsSaidAgainMakesTheSameViewForWhoLacksIt) {
+  AddImages(kSweep + kSecond);
+  AddImages(kSweep + 4 * kSecond);
+  AddSweep();
+  collector_.Begin(Capture(kCaptureTime, kSweep, {"rgb"}));
+  AddImages();
+  collector_.Add(Picks("rgb", kCaptureTime));
+  const std::optional<View> view = collector_.Take(rig_);
+  ASSERT_TRUE(view.has_value());
+  const Messages again = collector_.Again(*view);
+
+  ViewCollector other;
+  other.Add(LinesOf(kSweep, 2));
+  for (int i = -40; i < 9; ++i) {
+    if (i == 0) continue;  // the view's own never came
+    for (const CameraSpec& camera : rig_.cameras) {
+      other.Add(MakeImage(camera.name, kCaptureTime + i * kSecond / 10));
+    }
+  }
+  other.Begin(Capture(kCaptureTime, kSweep, {"rgb"}));
+  std::optional<View> same;
+  for (const Message& message : again) {
+    ASSERT_FALSE(same.has_value()) << "before all was said";
+    EXPECT_EQ(SeqOf(message), kSaidAgain);
+    if (const auto* image = std::get_if<Image>(&message)) other.Add(*image);
+    if (const auto* picks = std::get_if<CornerSelection>(&message)) other.Add(*picks);
+    if (const auto* chunk = std::get_if<CloudChunk>(&message)) other.Add(*chunk);
+    same = other.Take(rig_);
+  }
+  ASSERT_TRUE(same.has_value()) << other.Missing(rig_);
+  ASSERT_EQ(same->images.size(), view->images.size());
+  for (std::size_t i = 0; i < view->images.size(); ++i) {
+    EXPECT_EQ(same->images[i].camera, view->images[i].camera);
+    EXPECT_EQ(same->images[i].utime, view->images[i].utime);
+  }
+  EXPECT_EQ(same->picks.size(), 1U);
+  EXPECT_EQ(same->cloud.lines, 3);
+}
+
+TEST_F(ViewCollectorTest, AnImageThatIsTooLargeRawIsSaidAgainAsPng) {
+  AddSweep();
+  collector_.Begin(Capture());
+  AddImages();
+  View view = *collector_.Take(rig_);
+  view.images[0].format = PixelFormat::kBgr8;
+  view.images[0].pixels = cv::Mat(1200, 1600, CV_8UC3, cv::Scalar(1, 2, 3));
+  const auto image = std::get<Image>(collector_.Again(view)[0]);
+  const Bytes bytes = Encode(image);
+  const auto back = std::get<Image>(Decode("RGB_IMAGE", bytes.data(), bytes.size()));
+  EXPECT_EQ(back.format, PixelFormat::kBgr8);
+  EXPECT_EQ(cv::norm(back.pixels, view.images[0].pixels), 0);
+}
+
+TEST_F(ViewCollectorTest, ASweepThatIsNoLongerKeptIsNotSaidAgain) {
+  AddSweep();
+  collector_.Begin(Capture());
+  AddImages();
+  const View view = *collector_.Take(rig_);
+  collector_.Reset();
+  EXPECT_TRUE(collector_.Again(view).empty());
+}
+
 TEST_F(ViewCollectorTest, TheFirstImageAtOrAfterTheCommandCounts) {
   AddSweep();
   AddImages(kCaptureTime - kSecond);

@@ -12,8 +12,8 @@
 #include "calib/files/session/session_dir.h"
 #include "calib/methods/detect_view.h"
 #include "calib/present/report/verdict.h"
+#include "services/bus/log_writer.h"
 #include "services/messages/codec.h"
-#include "tests/log_writer.h"
 #include "tests/nodes/nodes_testing.h"
 #include "tests/replay/harness.h"
 #include "tests/unit/files/test_data.h"
@@ -23,7 +23,6 @@
 namespace rgbdt {
 namespace {
 
-using test::LogWriter;
 using test::Recorded;
 using test::Recording;
 using ::testing::HasSubstr;
@@ -130,6 +129,29 @@ TEST_F(ReplayTest, TheInputsAloneGiveTheSameBitForBit) {
     return bytes;
   };
   EXPECT_TRUE(clouds(made) == clouds(run_->recording));
+}
+
+// As of a session that was killed and gone on with: the views from before it count.
+TEST_F(ReplayTest, WhatWasSaidForWhoWasStartedAnewChangesNothing) {
+  Recording recording = run_->recording;
+  const std::size_t middle = PlacesOf("DETECTION")[2];
+  const auto image_at = PlacesOf("RGB_IMAGE")[1];
+  auto image = std::get<Image>(
+      Decode("RGB_IMAGE", recording[image_at].bytes.data(), recording[image_at].bytes.size()));
+  image.seq = kSaidAgain;
+  const auto insert = [&](const Message& message) {
+    recording.insert(recording.begin() + static_cast<std::ptrdiff_t>(middle),
+                     {ChannelOf(message), Encode(message)});
+  };
+  insert(image);
+  for (const SessionVerb verb : {SessionVerb::kSayView, SessionVerb::kGoOn}) {
+    SessionCommand command;
+    command.verb = verb;
+    insert(command);
+  }
+  Replay replay(kAutoMethod);
+  test::Feed(recording, &replay);
+  EXPECT_EQ(test::CalibrationOf(replay.solver()), run_->calibration);
 }
 
 // A lost line shows as a gap across the board. Compared with the result of the whole log: the

@@ -128,8 +128,9 @@ void LiveNode::OnCommand(const SessionCommand& command) {
     view->picks_wanted = command.picked_cameras;
     changed_ = true;
   }
-  if (command.verb != SessionVerb::kReset) return;
-  collector_.Reset();
+  const bool begins = command.verb == SessionVerb::kReset;
+  if (!begins && command.verb != SessionVerb::kGoOn) return;
+  if (begins) collector_.Reset();
   views_.clear();
   outbox_->Forget("thumb/");
   const SessionState before = std::move(state_);

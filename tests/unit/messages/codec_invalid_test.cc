@@ -76,7 +76,7 @@ TEST_F(Invalid, LineScan) {
               HasSubstr("beam_period_s is 1e+300"));
   EXPECT_THAT(error([](auto& w) { w.utime = 0; }), HasSubstr("utime is 0"));
   EXPECT_THAT(error([](auto& w) { w.utime = std::int64_t{1} << 60; }), HasSubstr("utime is"));
-  EXPECT_THAT(error([](auto& w) { w.seq = -1; }), HasSubstr("seq is -1"));
+  EXPECT_THAT(error([](auto& w) { w.seq = -2; }), HasSubstr("seq is -2"));
   line.intensity.resize(2);
   EXPECT_THAT(ErrorOf([&] { Encode(line); }), HasSubstr("length of intensity is 2; expected 3"));
 }
@@ -218,7 +218,7 @@ TEST_F(Invalid, Session) {
     return ErrorAfter<session_command_t>(random_.Command(), change);
   };
   EXPECT_THAT(command([](auto& w) { w.verb = 0; }), HasSubstr("verb is 0"));
-  EXPECT_THAT(command([](auto& w) { w.verb = 7; }), HasSubstr("verb is 7"));
+  EXPECT_THAT(command([](auto& w) { w.verb = 9; }), HasSubstr("verb is 9"));
   EXPECT_THAT(command([](auto& w) { w.view = "a/b"; }), HasSubstr("view is"));
   const auto event = [&](auto change) {
     return ErrorAfter<session_event_t>(random_.Event(), change);

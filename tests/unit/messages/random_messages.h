@@ -312,7 +312,7 @@ class RandomMessages {
     command.command = Int(0, 1000);
     command.seq = Seq();
     command.utime = Coin() ? Time() : 0;
-    command.verb = static_cast<SessionVerb>(Int(1, 6));
+    command.verb = static_cast<SessionVerb>(Int(1, 8));
     command.view = Coin() ? "0001" : "";
     command.sweep_utime = Coin() ? Time() : 0;
     command.heldout = Coin();

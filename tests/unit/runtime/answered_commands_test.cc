@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calib/model/errors.h"
 #include "services/messages/codec.h"
 #include "services/runtime/node_runner.h"
 
@@ -32,6 +33,7 @@ class Worker : public Node {
   Messages Handle(const Message& message) override {
     const auto* command = std::get_if<SessionCommand>(&message);
     if (command == nullptr) return {};
+    if (!knows_rig) throw InputError("no rig heard yet");
     asked.push_back(command->command);
     return {Says(EventKind::kProgress)};
   }
@@ -54,6 +56,7 @@ class Worker : public Node {
 
   std::vector<std::int64_t> asked;
   bool done = false;
+  bool knows_rig = true;
 };
 
 class AnsweredCommandsTest : public ::testing::Test {
@@ -96,6 +99,17 @@ TEST_F(AnsweredCommandsTest, ARepeatedCommandIsCarriedOutOnceAndItsLastWordSaidA
   EXPECT_THAT(worker_.asked, ElementsAre(5));
   Send(Command(6));
   EXPECT_THAT(worker_.asked, ElementsAre(5, 6));
+}
+
+// As of a process that was started anew and has not heard the rig.
+TEST_F(AnsweredCommandsTest, OneThatCouldNotBeUsedIsNewWhenItIsRepeated) {
+  worker_.knows_rig = false;
+  Send(Command(5));
+  EXPECT_THAT(Said(), IsEmpty());
+  worker_.knows_rig = true;
+  Send(Command(5));
+  EXPECT_EQ(Said().size(), 1U);
+  EXPECT_THAT(worker_.asked, ElementsAre(5));
 }
 
 TEST_F(AnsweredCommandsTest, AnotherSessionMayCountTheSame) {

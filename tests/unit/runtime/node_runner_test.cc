@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calib/model/errors.h"
+#include "calib/model/said_again.h"
 #include "services/messages/codec.h"
 #include "services/messages/limits.h"
 #include "services/messages/status_counters.h"
@@ -25,7 +26,6 @@ class ScriptedNode : public Node {
   std::vector<std::string> Subscriptions() const override {
     return {"ENCODER", "CALIBRATION", "STATUS", "SESSION_EVENT", ".*_IMAGE"};
   }
-  std::vector<std::string> Repeats() const override { return {"CALIBRATION"}; }
   Messages Handle(const Message& message) override {
     handled.push_back(ChannelOf(message));
     const auto* reading = std::get_if<EncoderReading>(&message);
@@ -34,7 +34,7 @@ class ScriptedNode : public Node {
     if (reading->ticks == -2) throw std::runtime_error("out of range");
     if (reading->ticks == -3) throw 3;
     if (reading->ticks == -4) return {Pose(NAN), Pose(1)};
-    if (reading->ticks == -5) return {Said(41), Said(42)};
+    if (reading->ticks == -5) return {Said(kSaidAgain), Said(41)};
     return Messages(static_cast<std::size_t>(reading->ticks), Pose(1));
   }
   Messages Advance(Utime now) override {
@@ -113,12 +113,16 @@ TEST_F(NodeRunnerTest, PublishesAnswersNumberedFromZero) {
   EXPECT_EQ(runner_.dropped(), 0);
 }
 
-TEST_F(NodeRunnerTest, WhatItRepeatsKeepsItsSendersNumber) {
+TEST_F(NodeRunnerTest, WhatIsSaidAgainTakesNoNumberAndIsNoGap) {
   SendReading(0, -5);
+  SendReading(kSaidAgain, 0);
   SendReading(1, -5);
-  ASSERT_EQ(published_.size(), 4U);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(SeqOf(published_[i]), 41 + static_cast<int>(i % 2));
+  std::vector<std::int64_t> numbers;
+  for (const Message& message : published_) numbers.push_back(SeqOf(message));
+  EXPECT_THAT(numbers, ElementsAre(kSaidAgain, 0, kSaidAgain, 1));
   EXPECT_EQ(runner_.dropped(), 0);
+  EXPECT_EQ(runner_.gaps(), 0);
+  for (const char* name : {"duplicates", "restarts", "late"}) EXPECT_EQ(Counter(name), -1) << name;
 }
 
 TEST_F(NodeRunnerTest, ExceptionsOfTheNodeAreCountedAndNamed) {

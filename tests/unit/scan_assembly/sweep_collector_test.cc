@@ -1,5 +1,6 @@
 #include "calib/scan_assembly/sweep_collector.h"
 
+#include "calib/model/said_again.h"
 #include "tests/numbers.h"
 #include "tests/unit/matchers.h"
 
@@ -41,6 +42,27 @@ TEST(SweepCollectorTest, ChunksInAnyOrderAndTwice) {
   EXPECT_FALSE(sweeps.Complete(kSweep + 1).has_value());
 }
 
+// Not made whole by what is left of another one's: it ends when all was said.
+TEST(SweepCollectorTest, WhatIsSaidAgainTakesThePlaceOfWhatCame) {
+  const auto again = [](CloudChunk chunk) {
+    chunk.seq = kSaidAgain;
+    return chunk;
+  };
+  SweepCollector sweeps;
+  for (int line = 100; line < 300; ++line) sweeps.Add(Chunk(kSweep, line));
+  sweeps.Add(End(kSweep, 300));
+  ASSERT_NE(sweeps.WhyTorn(kSweep), "");
+  for (int line = 0; line < 300; ++line) {
+    sweeps.Add(again(Chunk(kSweep, line)));
+    ASSERT_FALSE(sweeps.Ended(kSweep)) << line;
+  }
+  sweeps.Add(Chunk(kSweep, 7));  // one that comes late is no longer of interest
+  sweeps.Add(again(End(kSweep, 300)));
+  EXPECT_EQ(sweeps.WhyTorn(kSweep), "");
+  EXPECT_EQ(sweeps.Complete(kSweep)->lines, 300);
+  EXPECT_EQ(sweeps.ChunksOf(kSweep).size(), 301U);
+}
+
 // The oldest sweep that is kept after `count` of so many points.
 int OldestKept(int count, int points) {
   SweepCollector sweeps;
@@ -66,10 +88,26 @@ TEST(SweepCollectorTest, KeepsTheNewestOnesBoundedByPointsAndByCount) {
 TEST(SweepCollectorTest, ChunksOfNothingTakeMemoryToo) {
   SweepCollector sweeps;
   for (int i = 0; i < 20; ++i) {
-    for (int k = 0; k < 50'000; ++k) sweeps.Add(End(kSweep + i, 0));
+    for (int k = 0; k < 50'000; ++k) {
+      CloudChunk nothing = End(kSweep + i, 0);
+      nothing.cloud.first_line = k;
+      sweeps.Add(nothing);
+    }
   }
   EXPECT_FALSE(sweeps.Ended(kSweep + 4));
   EXPECT_TRUE(sweeps.Ended(kSweep + 5)) << "750,000 are kept";
+}
+
+TEST(SweepCollectorTest, ChunksThatComeTwiceAreKeptOnce) {
+  SweepCollector sweeps;
+  for (int i = 0; i < 3; ++i) {
+    sweeps.Add(Chunk(kSweep, 0, 0, 0));  // an empty one is no line
+    sweeps.Add(Chunk(kSweep, 0));
+    sweeps.Add(End(kSweep, 1));
+  }
+  EXPECT_EQ(sweeps.ChunksOf(kSweep).size(), 3U);
+  EXPECT_EQ(sweeps.Complete(kSweep)->lines, 1);
+  EXPECT_TRUE(sweeps.ChunksOf(kSweep + 1).empty());
 }
 
 // A sweep without an order is as large as what came of it, whatever its end tells.
