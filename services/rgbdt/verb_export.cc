@@ -85,12 +85,10 @@ int RunMcap(const ExportFlags& flags) {
   return EndsWith(true);
 }
 
-// LAZ and COPC need a library that Debian does not have.
 void RequireLas(const std::filesystem::path& out) {
-  if (out.extension() == ".las" || out.extension() == ".LAS") return;
+  if (LasKindOf(out)) return;
   throw UsageError("--out is \"" + out.filename().string() +
-                   "\"; --las writes FILE.las, uncompressed. For LAZ or COPC: pdal "
-                   "translate FILE.las FILE.laz (or FILE.copc.laz)");
+                   "\"; --las writes FILE.las, FILE.laz or FILE.copc.laz");
 }
 
 int RunLas(const ExportFlags& flags) {
@@ -164,15 +162,17 @@ void AddExport(CommandLine* program) {
       "With --las, a fused cloud or a map (PLY, PCD) as LAS 1.4 for CloudCompare, QGIS and PDAL: "
       "metres\n"
       "in steps of 0.1 mm, no coordinate system, colour, temperature [K] as an extra dimension.\n"
+      "The ending of --out decides: FILE.las, FILE.laz (compressed without loss) or FILE.copc.laz\n"
+      "(COPC: a LAZ for viewers that load what they show).\n"
       "Examples: rgbdt export out/demo/session --lidar-frame velodyne \\\n"
       "            --camera-frame rgb=camera_optical_frame\n"
       "          rgbdt export --mcap out/demo/session.lcmlog\n"
-      "          rgbdt export --las out/demo/fused.ply",
+      "          rgbdt export --las out/demo/fused.ply --out out/demo/fused.laz",
       [flags] { return RunExport(*flags); });
   verb->Required("DIR", &flags->dir,
                  "session directory; with --mcap: the log; with --las: the cloud");
   verb->Flag("--mcap", &flags->mcap, "a log as an MCAP of Foxglove's messages");
-  verb->Flag("--las", &flags->las, "a fused cloud or a map as LAS 1.4");
+  verb->Flag("--las", &flags->las, "a fused cloud or a map as LAS 1.4, LAZ or COPC");
   verb->Option("--calibration", &flags->calibration, "default: DIR/calibration.textproto");
   verb->Option("--out", &flags->out,
                "where to write; default: DIR/export, with --mcap the\nlog's name with .mcap, with "

@@ -10,31 +10,18 @@ namespace rgbdt::las {
 namespace {
 
 constexpr std::uint16_t kHeaderBytes = 375;
-constexpr std::uint16_t kRecordHeaderBytes = 54;  // of a variable length record
-constexpr std::uint16_t kDescriptorBytes = 192;   // of an extra dimension
+constexpr std::uint16_t kDescriptorBytes = 192;  // of an extra dimension
 constexpr std::uint16_t kFormat7Bytes = 36;
 constexpr std::uint16_t kTextRecord = 3, kExtraBytesRecord = 4;
+constexpr const char* kSpecification = "LASF_Spec";
 
-// Little-endian, as this machine is.
-template <typename T>
-void Put(T value, std::string* out) {
-  out->append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-void PutText(const std::string& text, std::size_t size, std::string* out) {
-  std::string field = text.substr(0, size);
-  field.resize(size);
-  *out += field;
-}
-
-void PutRecord(std::uint16_t id, const std::string& description, const std::string& data,
-               std::string* out) {
+void PutRecord(const Record& record, std::string* out) {
   Put<std::uint16_t>(0, out);
-  PutText("LASF_Spec", 16, out);
-  Put(id, out);
-  Put(static_cast<std::uint16_t>(data.size()), out);
-  PutText(description, 32, out);
-  *out += data;
+  PutText(record.user, 16, out);
+  Put(record.id, out);
+  Put(static_cast<std::uint16_t>(record.data.size()), out);
+  PutText(record.description, 32, out);
+  *out += record.data;
 }
 
 std::string DescriptorOf(const ExtraDimension& dimension) {
@@ -50,14 +37,26 @@ std::string DescriptorOf(const ExtraDimension& dimension) {
 
 std::string RecordsOf(const Layout& layout) {
   std::string descriptors, records;
+  for (const Record& record : layout.first) PutRecord(record, &records);
   for (const ExtraDimension& dimension : layout.extra) descriptors += DescriptorOf(dimension);
-  PutRecord(kExtraBytesRecord, "Extra Bytes Record", descriptors, &records);
+  PutRecord({kSpecification, kExtraBytesRecord, "Extra Bytes Record", descriptors}, &records);
   // Its length has 16 bits, and it ends with a zero.
-  PutRecord(kTextRecord, "Text Area Description", layout.text.substr(0, 65534) + '\0', &records);
+  PutRecord(
+      {kSpecification, kTextRecord, "Text Area Description", layout.text.substr(0, 65534) + '\0'},
+      &records);
+  for (const Record& record : layout.last) PutRecord(record, &records);
   return records;
 }
 
 }  // namespace
+
+std::size_t Layout::RecordBytes() const { return kFormat7Bytes + 4 * extra.size(); }
+
+void PutText(const std::string& text, std::size_t size, std::string* out) {
+  std::string field = text.substr(0, size);
+  field.resize(size);
+  *out += field;
+}
 
 std::string Head(const Layout& layout) {
   const std::string records = RecordsOf(layout);
@@ -72,9 +71,9 @@ std::string Head(const Layout& layout) {
   Put<std::uint32_t>(0, &out);  // no day and year: the same cloud gives the same bytes
   Put(kHeaderBytes, &out);
   Put(static_cast<std::uint32_t>(kHeaderBytes + records.size()), &out);
-  Put<std::uint32_t>(2, &out);  // records
-  Put<std::uint8_t>(7, &out);
-  Put(static_cast<std::uint16_t>(kFormat7Bytes + 4 * layout.extra.size()), &out);
+  Put(static_cast<std::uint32_t>(2 + layout.first.size() + layout.last.size()), &out);  // records
+  Put<std::uint8_t>(layout.compressed ? 7 | 0x80 : 7, &out);
+  Put(static_cast<std::uint16_t>(layout.RecordBytes()), &out);
   PutText("", 4 + 5 * 4, &out);  // counts of LAS 1.2, which format 7 does without
   for (int axis = 0; axis < 3; ++axis) Put(layout.step_m, &out);
   for (int axis = 0; axis < 3; ++axis) Put(0.0, &out);  // offsets
@@ -82,7 +81,9 @@ std::string Head(const Layout& layout) {
     Put(layout.most[axis], &out);
     Put(layout.least[axis], &out);
   }
-  PutText("", 8 + 8 + 4, &out);  // no waveforms, no extended records
+  PutText("", 8, &out);  // no waveforms
+  Put(layout.extended_at, &out);
+  Put<std::uint32_t>(layout.extended_at > 0 ? 1 : 0, &out);
   Put(layout.points, &out);
   Put(layout.points, &out);   // first returns: all
   PutText("", 14 * 8, &out);  // others

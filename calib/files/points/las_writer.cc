@@ -1,10 +1,14 @@
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string_view>
 
 #include "calib/files/atomic_file.h"
 #include "calib/files/points/internal/fused_comments.h"
 #include "calib/files/points/internal/las_layout.h"
+#include "calib/files/points/internal/laz_file.h"
 #include "calib/files/points/internal/records.h"
 #include "calib/files/points/las_files.h"
 #include "calib/model/errors.h"
@@ -90,6 +94,15 @@ void Add(const std::vector<T>& values, const std::string& name, const std::strin
        std::is_floating_point_v<T> ? ExtraDimension::Type::kFloat : ExtraDimension::Type::kUint32});
 }
 
+// A file's bytes, in pieces.
+laz::Parts PartsOf(LasKind kind, const las::Layout& layout, std::string records) {
+  if (kind == LasKind::kLaz) return laz::LazFile(layout, records);
+  if (kind == LasKind::kCopc) return laz::CopcFile(layout, records);
+  laz::Parts parts = {las::Head(layout)};
+  parts.push_back(std::move(records));
+  return parts;
+}
+
 void Write(const std::filesystem::path& path, const Points& points,
            const std::vector<Column>& columns, las::Layout layout) {
   layout.points = points.size();
@@ -102,10 +115,28 @@ void Write(const std::filesystem::path& path, const Points& points,
     layout.least = layout.least.min(written);
     layout.most = layout.most.max(written);
   }
-  WriteFileAtomically(path, las::Head(layout) + records::Pack(columns, points.size()));
+  const LasKind kind = LasKindOf(path).value_or(LasKind::kPlain);
+  const laz::Parts parts = PartsOf(kind, layout, records::Pack(columns, points.size()));
+  AtomicFile file(path);
+  for (const std::string& part : parts) file.Write(part);
+  file.Commit();
 }
 
 }  // namespace
+
+std::optional<LasKind> LasKindOf(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto ends = [&name](std::string_view ending) {
+    return name.size() > ending.size() &&
+           name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
+  };
+  if (ends(".copc.laz")) return LasKind::kCopc;
+  if (ends(".laz")) return LasKind::kLaz;
+  if (ends(".las")) return LasKind::kPlain;
+  return std::nullopt;
+}
 
 void WriteLas(const std::filesystem::path& path, const RgbdtCloud& cloud) {
   RequireLengths(

@@ -30,6 +30,32 @@ TEST(LasFiles, ABadCloudIsNotWritten) {
   EXPECT_EQ(ReadWholeFile(dir / "a.las").substr(0, 4), "LASF");
 }
 
+TEST(LasFiles, TheEndingDecides) {
+  const std::pair<const char*, std::optional<LasKind>> names[] = {
+      {"a.las", LasKind::kPlain},      {"A.LAS", LasKind::kPlain},
+      {"a.laz", LasKind::kLaz},        {"d/a.b.LAZ", LasKind::kLaz},
+      {"a.copc.laz", LasKind::kCopc},  {"a.Copc.LAZ", LasKind::kCopc},
+      {"a.copc.las", LasKind::kPlain}, {"copc.laz", LasKind::kLaz},
+      {".laz", std::nullopt},          {"a.ply", std::nullopt},
+      {"a.laz/a", std::nullopt}};
+  for (const auto& [name, kind] : names) EXPECT_EQ(LasKindOf(name), kind) << name;
+}
+
+TEST(LasFiles, ABadCloudIsNotCompressedEither) {
+  const TempDir dir;
+  MapCloud map = MakeMap();
+  map.points[1].z() = kNan;
+  for (const char* name : {"a.laz", "a.copc.laz"}) {
+    EXPECT_THAT(ErrorOf([&] { WriteLas(dir / name, MapCloud{}); }), HasSubstr("no points"));
+    EXPECT_THAT(ErrorOf([&] { WriteLas(dir / name, map); }), HasSubstr("214748"));
+    EXPECT_FALSE(std::filesystem::exists(dir / name));
+    WriteLas(dir / name, MakeMap());
+    const std::string first = ReadWholeFile(dir / name);
+    WriteLas(dir / name, MakeMap());
+    EXPECT_TRUE(ReadWholeFile(dir / name) == first) << "the same cloud, other bytes";
+  }
+}
+
 // Of the last leap second so far, when GPS counted 1930 weeks and 18 s.
 TEST(LasFiles, LeapSecondsArePutIn) {
   constexpr Utime turn = 1'483'228'800'000'000;  // 1 January 2017
