@@ -11,7 +11,7 @@ namespace rgbdt {
 Messages SessionNode::RepeatCommand() {
   const bool carries = board_stands_ && step().kind == SessionStep::Kind::kNextPose;
   const bool asks = step().kind != SessionStep::Kind::kWait && !carries;
-  const bool exchanges = !exchange_.detector_lacks.empty();  // SayWhatIsLacking does it
+  const bool exchanges = has_view_ && !exchange_.detector_lacks.empty();  // SayWhatIsLacking does
   if (!waiting_ || finished_ || answered_ || !asks || exchanges || now_ < repeat_at_) return {};
   repeat_pause_ = std::min(2 * repeat_pause_, kLongestRepeat);
   repeat_at_ = now_ + repeat_pause_;
