@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

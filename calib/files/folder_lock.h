@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 
 namespace rgbdt {
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 
 namespace rgbdt {

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/bus/bus.h"
 #include "services/bus/bus_url.h"
 

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/doctor/facts.h"
 
 namespace rgbdt {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/bus/multicast.h"
 #include "services/doctor/facts.h"
 

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 #include "services/command_line/exit_codes.h"
 

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "tests/fuzz/fuzz.h"
 #include "viewer/server/server.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 #include "services/bags/bag_reader.h"
 

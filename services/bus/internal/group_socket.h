@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/bus/bus_url.h"
 
 namespace rgbdt {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/bus/bus.h"
 #include "services/bus/internal/reassembly.h"
 #include "services/bus/internal/source.h"

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/time.h"
 #include "services/bus/bus_url.h"
 #include "services/bus/internal/sent_messages.h"

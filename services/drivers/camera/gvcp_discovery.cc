@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 
 namespace rgbdt {
 namespace {

@@ -12,7 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 
 namespace rgbdt {
 namespace {

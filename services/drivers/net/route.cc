@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "services/drivers/net/network_interfaces.h"
 
 namespace rgbdt {

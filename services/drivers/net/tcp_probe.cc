@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <memory>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 
 namespace rgbdt {
 namespace {

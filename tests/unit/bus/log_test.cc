@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 #include "services/bus/log_writer.h"
 #include "tests/unit/messages/random_messages.h"

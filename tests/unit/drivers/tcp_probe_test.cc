@@ -4,7 +4,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 
 namespace rgbdt {
 namespace {

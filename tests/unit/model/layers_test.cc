@@ -72,7 +72,7 @@ const std::map<std::string, Folders>& Allowed() {
       {"services/command_line", {}},
       {"services/messages", {}},
       {"services/posix", {}},
-      {"services/bus", {"services/messages", "services/posix"}},
+      {"services/bus", {"calib/files", "services/messages", "services/posix"}},
       {"services/runtime", {"services/bus", "services/messages", "services/posix"}},
       {"services/nodes", {"calib/*", "services/messages", "services/runtime"}},
       {"services/simulator",

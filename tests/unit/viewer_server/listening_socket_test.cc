@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "calib/files/descriptor.h"
+#include "calib/model/descriptor.h"
 #include "calib/model/errors.h"
 #include "test_browser.h"
 #include "viewer/server/internal/acceptor.h"
