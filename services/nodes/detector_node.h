@@ -15,16 +15,16 @@ namespace rgbdt {
 /// CLOUD + `<CAMERA>_IMAGE` + CORNER_SELECTION + SESSION_COMMAND capture -> DETECTION, one a view,
 /// then SESSION_EVENT done; or failed, where the view's parts cannot be made into one. A view whose
 /// sweep is not whole (SweepCollector::WhyTorn) is not looked at: failed, with the sweep's utime,
-/// and done after all, once the session has said again what it lacks. A
-/// view that never becomes complete is dropped when the next capture or a reset comes; the status
-/// says what it waits for. Where the session lacks what one of the newest kKeptViews views was
-/// detected in (say_view), all of it is said again, and the detection. Another rig forgets
-/// everything. Corners that a person picks in an image
-/// of one of the newest kKeptViews views have that view detected once more, with them: its
-/// DETECTION comes again, and the event of its capture. In spare time, so not in a replay, it
-/// looks whether a sensor sees the board now, and says so (TARGET_STATUS): one sensor at a time,
-/// the next in turn that has something new; ten times a second, or as often as takes a quarter of a
-/// core, once a second at least; less often where messages wait (NodeRunner::UseSpareTime).
+/// and done after all, once the session has said again what it lacks. A view that never becomes
+/// complete is dropped when the next capture or a reset comes; the status says what it waits for.
+/// Where the session lacks what one of the newest kKeptViews views was detected in (say_view), all
+/// of it is said again, and the detection. Another rig forgets everything. Corners that a person
+/// picks in an image of one of the newest kKeptViews views have that view detected once more, with
+/// them: its DETECTION comes again, and the event of its capture. In spare time, so not in a
+/// replay, it looks whether a sensor sees the board now, and says so (TARGET_STATUS): one sensor at
+/// a time, the next in turn that has something new; ten times a second, or as often as takes a
+/// quarter of a core, once a second at least; less often where messages wait
+/// (NodeRunner::UseSpareTime).
 class DetectorNode : public Node {
  public:
   static constexpr std::size_t kKeptViews = 6;

@@ -93,7 +93,7 @@ class SessionNode : public Node {
   static constexpr Utime kClocksSettle = 5 * kMicrosecondsPerSecond;
   static constexpr Utime kFirstRepeat = 3 * kMicrosecondsPerSecond;
   static constexpr Utime kLongestRepeat = 16 * kMicrosecondsPerSecond;
-  static constexpr int kMostExchanges = 3;  ///< of a view, 3, 6 and 12 s apart
+  static constexpr int kMostExchanges = 3;  ///< of a view, 3 and 6 s apart
 
   using OnProgress = std::function<void(const SessionProgress&)>;
   /// Whether the person who carries the board has put it where the next view wants it; asked in

@@ -1,4 +1,5 @@
 // How a session begins, and goes on with what an earlier start of it left.
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
