@@ -71,7 +71,10 @@ std::optional<SessionCommand> ReadAsked(const fs::path& directory, const Rig& ri
     const auto age = fs::file_time_type::clock::now() - fs::last_write_time(directory / kAskedFile);
     if (age > std::chrono::seconds(kAskedIsOld) || fs::exists(directory / kEndedFile)) return {};
     if (!DifferencesOf(ReadRig(directory / "rig.textproto"), rig).empty()) return {};
-    return ReadMessage<SessionCommand>(directory / kAskedFile);
+    const auto asked = ReadMessage<SessionCommand>(directory / kAskedFile);
+    const bool of_view = asked.verb == SessionVerb::kNextPose ||
+                         asked.verb == SessionVerb::kSweep || asked.verb == SessionVerb::kCapture;
+    return of_view ? std::optional(asked) : std::nullopt;
   } catch (const std::exception&) {
     return std::nullopt;
   }

@@ -50,8 +50,8 @@ struct ResumePoint {
 };
 
 /// After the script's last capture of which all views up to it are there; at the step after it that
-/// was asked for, if one was. Throws InputError, with
-/// what differs, where the views are not those that the script takes, or nothing is left to do.
+/// was asked for, if one was. Throws InputError, with what differs, where the views are not those
+/// that the script takes, or nothing is left to do.
 ResumePoint FindResumePoint(const SessionScript& script, const EarlierViews& views,
                             const std::filesystem::path& directory);
 
